@@ -1,0 +1,21 @@
+# Compiler settings that every target of the project shares.
+add_library(framelet_options INTERFACE)
+target_include_directories(framelet_options INTERFACE ${PROJECT_SOURCE_DIR})
+target_compile_definitions(framelet_options INTERFACE FRAMELET_VERSION="${PROJECT_VERSION}")
+target_compile_options(framelet_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wold-style-cast -Wnon-virtual-dtor
+  -Woverloaded-virtual -Werror
+  # No code relies on the value of errno, on trapping or on the sign of zero; NaN and infinity keep their meaning.
+  -fno-math-errno -fno-trapping-math)
+if(FRAMELET_NATIVE)
+  target_compile_options(framelet_options INTERFACE -march=native)
+endif()
+if(FRAMELET_SANITIZE)
+  add_compile_options(-fsanitize=${FRAMELET_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  add_link_options(-fsanitize=${FRAMELET_SANITIZE})
+endif()
+target_link_libraries(framelet_options INTERFACE glm::glm Threads::Threads)
+find_program(CCACHE ccache)
+if(CCACHE)
+  set_property(GLOBAL PROPERTY RULE_LAUNCH_COMPILE ${CCACHE})
+endif()

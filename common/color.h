@@ -1,0 +1,28 @@
+// From scene-linear radiance to display bytes and back: exposure, tone curve, sRGB transfer function.
+#pragma once
+
+#include <cstdint>
+
+#include "common/framelet.h"
+#include "common/math.h"
+
+namespace framelet {
+
+/// Khronos PBR Neutral tone curve: leaves base colours below 0.8 as they are and rolls highlights off towards white.
+/// In: linear Rec.709 colour, >= 0. Out: [0, 1]. (Khronos Group, "PBR Neutral Tone Mapper", 2024.)
+Vec3 tone_map(Vec3 linear);
+
+/// sRGB transfer function (IEC 61966-2-1) on [0, 1], and its inverse.
+float srgb_from_linear(float linear);
+float linear_from_srgb(float encoded);
+
+/// Table form for bytes: exact inverse of rounding `srgb_from_linear`.
+float linear_from_srgb_byte(std::uint8_t encoded);
+/// Nearest byte by table: at most half a step of the byte off near the middle of a step, clamps outside [0, 1], NaN is
+/// 0.
+std::uint8_t srgb_byte_from_linear(float linear);
+
+/// What a viewer gets to see of a rendered framelet. `exposure` multiplies radiance (2^EV).
+DisplayFramelet to_display(Framelet const& framelet, float exposure);
+
+} // namespace framelet

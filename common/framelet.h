@@ -1,0 +1,53 @@
+// Framelets and batches: what the renderer yields, and what travels and is cached.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "common/camera.h"
+#include "common/tile.h"
+
+namespace framelet {
+
+/// Seconds on the scene clock.
+using SceneTime = double;
+
+/// 16x16 rendered samples over one tile, in Morton order. Sample (i, j) of the tile lies at the centre of its cell:
+/// x = left + (i + 0.5) * spacing, y = top + (j + 0.5) * spacing, pixels.
+struct Framelet {
+    Tile tile;
+    /// Scene-linear radiance, before exposure and tone mapping; finite, >= 0.
+    std::array<float, framelet_samples> red, green, blue;
+    /// View depth, metres along the camera's forward axis; +infinity where nothing was hit.
+    std::array<float, framelet_samples> depth;
+};
+
+/// The same samples as the viewer needs them: tone-mapped, sRGB-encoded, in Morton order.
+struct DisplayFramelet {
+    Tile tile;
+    std::array<std::uint8_t, framelet_samples> red, green, blue;
+
+    bool operator==(DisplayFramelet const&) const = default;
+};
+
+/// The camera that a batch was rendered with, and the viewer's number for it (the newest one the server had).
+struct NumberedView {
+    std::uint64_t number = 0;
+    Camera camera;
+    Viewport viewport;
+
+    bool operator==(NumberedView const&) const = default;
+};
+
+/// The framelets of one server cycle: one camera, one scene time.
+struct Batch {
+    std::uint64_t number = 0; ///< counts up by one within a session, from 1
+    NumberedView view;
+    SceneTime scene_time = 0;
+    std::vector<DisplayFramelet> framelets;
+
+    bool operator==(Batch const&) const = default;
+};
+
+} // namespace framelet

@@ -1,0 +1,45 @@
+// Pictures in memory. Rows from the top, pixels interleaved, no padding.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "common/math.h"
+
+namespace framelet {
+
+/// sRGB-encoded 8-bit RGBA, alpha always 255 where a picture is shown.
+struct Picture {
+    int width = 0;
+    int height = 0;
+    std::vector<std::uint8_t> rgba; ///< width * height * 4
+
+    Picture() = default;
+    Picture(int w, int h) : width(w), height(h), rgba(static_cast<std::size_t>(w) * static_cast<std::size_t>(h) * 4) {}
+
+    bool operator==(Picture const&) const = default;
+    std::uint8_t* row(int y) { return rgba.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width) * 4; }
+    std::uint8_t const* row(int y) const {
+        return rgba.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width) * 4;
+    }
+};
+
+/// Linear float RGB.
+struct FloatImage {
+    int width = 0;
+    int height = 0;
+    std::vector<Vec3> rgb; ///< width * height
+
+    FloatImage() = default;
+    FloatImage(int w, int h) : width(w), height(h), rgb(static_cast<std::size_t>(w) * static_cast<std::size_t>(h)) {}
+
+    Vec3& at(int x, int y) {
+        return rgb[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+    }
+    Vec3 const& at(int x, int y) const {
+        return rgb[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+    }
+};
+
+} // namespace framelet

@@ -1,0 +1,26 @@
+// Image files in and out, through OpenImageIO. Every failure is an InputError that names the file.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "common/image.h"
+
+namespace framelet {
+
+/// Reads any format the library knows as 8-bit RGBA, values as stored (no colour conversion, ICC and gAMA ignored).
+/// Grey is replicated to RGB; missing alpha is 255; 16-bit is rounded to 8.
+Picture read_picture(std::filesystem::path const& file);
+
+/// The same from a file that is in memory (an image embedded in a scene file); `name` is for messages.
+Picture read_picture(std::span<std::byte const> bytes, std::string const& name);
+
+/// Reads a linear float picture (.hdr, .exr; 8-bit formats are sRGB-decoded). NaN, Inf and negatives become finite >=
+/// 0.
+FloatImage read_float_image(std::filesystem::path const& file);
+
+/// Writes RGB (alpha dropped); the format follows the name's ending (.png, .jpg, ...).
+void write_picture(std::filesystem::path const& file, Picture const& picture);
+
+} // namespace framelet

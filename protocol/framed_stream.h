@@ -1,0 +1,59 @@
+// Length-prefixed messages over TCP, with or without TLS. Whoever knows sockets and bytes is here.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ssl/context.hpp>
+
+#include "protocol/message.h"
+
+namespace framelet {
+
+/// One connection. All members are called from the io_context's thread, except where said otherwise. Callbacks hold no
+/// reference once `close` returned or `on_close` was called.
+class FramedStream : public std::enable_shared_from_this<FramedStream> {
+public:
+    using Socket = boost::asio::ip::tcp::socket;
+
+    struct Handlers {
+        std::function<void(Message)> on_message;
+        /// Once, when the connection ends for whatever reason but our own `close`; `reason` is one line.
+        std::function<void(std::string reason)> on_close;
+        /// A queued message has gone to the socket; `bytes` with its prefix.
+        std::function<void(std::size_t bytes)> on_sent;
+    };
+
+    /// Plain TCP. Sets TCP_NODELAY.
+    static std::shared_ptr<FramedStream> plain(Socket socket);
+    /// TLS as the server or as the client; `host` is the name that the certificate is checked against.
+    static std::shared_ptr<FramedStream> tls_server(Socket socket, std::shared_ptr<boost::asio::ssl::context> context);
+    static std::shared_ptr<FramedStream> tls_client(Socket socket, std::shared_ptr<boost::asio::ssl::context> context,
+                                                    std::string const& host);
+
+    virtual ~FramedStream() = default;
+
+    /// Begins: TLS handshake where there is one, then reading. Messages larger than `max_body` end the connection.
+    virtual void start(Handlers handlers, std::size_t max_body) = 0;
+    virtual void set_max_body(std::size_t max_body) = 0;
+    /// Queues a message. From any thread.
+    virtual void send(Message const& message) = 0;
+    /// Bytes queued or handed to the socket and not yet taken by it. From any thread.
+    virtual std::size_t unsent_bytes() const = 0;
+    /// Sends what is queued (for at most a second), then ends. From any thread.
+    virtual void close_after_sending() = 0;
+    /// Ends at once. From any thread.
+    virtual void close() = 0;
+    virtual std::string peer() const = 0;
+};
+
+/// Contexts for TLS 1.2 and later. Throw InputError that names the file.
+std::shared_ptr<boost::asio::ssl::context> make_tls_server_context(std::string const& certificate_file,
+                                                                   std::string const& key_file);
+/// `authority_file` empty: the system's certificate authorities.
+std::shared_ptr<boost::asio::ssl::context> make_tls_client_context(std::string const& authority_file);
+
+} // namespace framelet

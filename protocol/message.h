@@ -1,0 +1,126 @@
+// What the two programs say to each other, as values. PROTOCOL.md is the specification, framelet.fbs the schema.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "common/camera.h"
+#include "common/framelet.h"
+#include "common/scene_clock.h"
+
+namespace framelet {
+
+using Bytes = std::vector<std::byte>;
+using ByteView = std::span<std::byte const>;
+
+inline constexpr std::uint16_t protocol_version = 1;
+
+// --- upstream
+// ---------------------------------------------------------------------------------------------------------
+
+/// First message of a connection.
+struct Hello {
+    std::uint16_t version = protocol_version;
+    std::string token; ///< empty where the server asks for none
+    bool operator==(Hello const&) const = default;
+};
+
+/// The viewer's newest camera. Numbers count up; an older one that arrives late is ignored.
+struct CameraUpdate {
+    NumberedView view;
+    int scene_camera = -1; ///< >= 0: look through this camera of the scene instead (its animation included)
+    bool operator==(CameraUpdate const&) const = default;
+};
+
+/// How this viewer wants its picture.
+struct ViewerSettings {
+    float exposure_ev = 0; ///< stops, added to the server's own exposure, [-16, 16]
+    float bias = 0; ///< -1 (spatial fidelity) .. 1 (temporal)
+    bool operator==(ViewerSettings const&) const = default;
+};
+
+/// Sets the shared scene clock. Only the fields named by `set` are taken.
+struct ClockRequest {
+    enum Field : std::uint8_t { time = 1, playing = 2, speed = 4 };
+    std::uint8_t set = 0;
+    ClockState state;
+    bool operator==(ClockRequest const&) const = default;
+};
+
+/// A batch has been decoded and inserted.
+struct Ack {
+    std::uint64_t batch = 0;
+    std::uint64_t received_us = 0; ///< viewer's steady clock when the batch's last byte had arrived
+    std::uint32_t decode_us = 0;
+    bool operator==(Ack const&) const = default;
+};
+
+// --- downstream
+// -------------------------------------------------------------------------------------------------------
+
+struct SceneCameraInfo {
+    std::string name;
+    Camera camera; ///< pose at scene time 0
+    bool operator==(SceneCameraInfo const&) const = default;
+};
+
+/// Answer to Hello: the session is open.
+struct Welcome {
+    std::uint16_t version = protocol_version;
+    std::string server; ///< program and version
+    std::string scene_name;
+    Bounds scene_bounds;
+    Camera start_camera; ///< what to look through until the user moves
+    std::vector<SceneCameraInfo> cameras;
+    double animation_duration = 0; ///< seconds; 0: nothing moves
+    ClockState clock;
+};
+
+/// A batch as it travels: tiles in the clear, samples compressed by `batch_codec`.
+struct EncodedBatch {
+    std::uint64_t number = 0;
+    NumberedView view;
+    SceneTime scene_time = 0;
+    std::vector<Tile> tiles;
+    Bytes payload;
+    bool operator==(EncodedBatch const&) const = default;
+};
+
+/// Sent every second and whenever the clock or the convergence changes: a heartbeat.
+struct Status {
+    ClockState clock;
+    std::uint64_t last_batch = 0; ///< the newest batch of this session
+    std::uint64_t camera_number = 0; ///< the newest camera that arrived
+    bool converged = false; ///< nothing more will come until something changes
+    double samples_per_second = 0; ///< rendered for this session
+    std::uint32_t sessions = 0;
+    bool operator==(Status const&) const = default;
+};
+
+/// The other side did something that cannot be served; the connection ends after it. Either direction.
+struct Failure {
+    std::string text; ///< one line
+    bool operator==(Failure const&) const = default;
+};
+
+using Message =
+    std::variant<Hello, CameraUpdate, ViewerSettings, ClockRequest, Ack, Welcome, EncodedBatch, Status, Failure>;
+
+/// Largest message body that either side accepts, bytes: what one cycle's worst batch needs, with room.
+inline constexpr std::size_t max_message_bytes = 64u << 20;
+/// Before the handshake is over, and upstream at all times.
+inline constexpr std::size_t max_upstream_message_bytes = 64u << 10;
+/// Most framelets in one batch.
+inline constexpr std::size_t max_batch_framelets = 32768;
+
+/// Body of one message (without the length prefix).
+Bytes encode_message(Message const& message);
+
+/// Throws ProtocolError for anything that is not a well-formed message with every field inside its stated range.
+Message decode_message(ByteView body);
+
+} // namespace framelet

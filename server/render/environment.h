@@ -1,0 +1,39 @@
+// Light from all around: an equirectangular map, prefiltered for rough surfaces.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "common/image.h"
+
+namespace framelet {
+
+/// Prefiltered environment. Immutable after construction; look-ups are pure.
+/// Direction to map: u = 0.5 + atan2(x, -z) / 2pi (so -Z, where a default camera looks, is the middle), v = acos(y) /
+/// pi.
+class Environment {
+public:
+    /// Radiance per texel, cd/m^2 or any unit proportional to the lights' (width = 2 * height is usual, not required).
+    explicit Environment(FloatImage const& radiance);
+
+    /// The default surroundings: a clear sky gradient over a neutral ground.
+    static Environment default_sky();
+    /// The same radiance from everywhere.
+    static Environment uniform(Vec3 radiance);
+    /// Reads .hdr or .exr (anything OpenImageIO knows). Throws InputError.
+    static Environment load(std::filesystem::path const& file);
+
+    /// What a ray that hits nothing sees; `footprint` is the ray's angular width in radians (picks the level).
+    Vec3 background(Vec3 direction, float footprint) const;
+    /// Irradiance / pi about a unit normal: what a white Lambertian surface reflects.
+    Vec3 diffuse(Vec3 normal) const;
+    /// Radiance averaged over the GGX lobe of this perceptual roughness about a unit mirror direction.
+    Vec3 specular(Vec3 direction, float roughness) const;
+
+private:
+    std::vector<FloatImage> background_levels_; // box-filtered, halving
+    std::vector<FloatImage> specular_levels_; // GGX-filtered for equally spaced roughness
+    FloatImage diffuse_;
+};
+
+} // namespace framelet

@@ -1,0 +1,30 @@
+// Tiles in, framelets of samples out.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "common/framelet.h"
+#include "server/render/render_scene.h"
+
+namespace framelet {
+
+/// Where samples lie in their cells: 0 puts each at its cell's centre; any other seed places each at a point of its
+/// cell hashed from seed, tile and sample.
+using Seed = std::uint32_t;
+
+/// Renders one framelet per tile into `out` (same length), in parallel over framelets on the calling TBB arena.
+/// The result depends on scene, view, tile and seed alone, not on threads or on the other tiles.
+void render_framelets(RenderScene const& scene, Camera const& camera, ImagePlane const& plane,
+                      std::span<Tile const> tiles, Seed seed, std::span<Framelet> out);
+
+/// One framelet, on the calling thread. The bare loop that `framelet-bench limits` compares the server with.
+void render_framelet(RenderScene const& scene, ViewRays const& rays, ImagePlane const& plane, Tile tile, Seed seed,
+                     Framelet& out);
+
+/// The whole picture by the same renderer without tiling, wire or cache: `samples_per_side`^2 samples a pixel on the
+/// same grid that framelets use, each tone-mapped and then averaged in linear light (box filter). 1, 2 or 4.
+Picture render_picture(RenderScene const& scene, Camera const& camera, Viewport viewport, float exposure,
+                       int samples_per_side);
+
+} // namespace framelet

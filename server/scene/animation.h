@@ -1,0 +1,48 @@
+// A scene at one moment: where every node is, and the shape of what deforms.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "common/framelet.h"
+#include "server/scene/scene.h"
+
+namespace framelet {
+
+/// World transform of every node and the morph weights of every node that has a morphing mesh (else empty).
+struct ScenePose {
+    SceneTime time = 0;
+    std::vector<Mat4> world_from_node;
+    std::vector<std::vector<float>> morph_weights;
+};
+
+/// The clips that play together: the first one, and every later one that moves nothing an earlier one moves.
+std::vector<Index> default_clips(Scene const& scene);
+
+/// Evaluates the clips at `time`; each loops with its own duration. Rotations are interpolated along the shorter arc.
+ScenePose evaluate_pose(Scene const& scene, std::span<Index const> clips, SceneTime time);
+
+/// True for every node whose world transform one of the clips can change.
+std::vector<bool> moving_nodes(Scene const& scene, std::span<Index const> clips);
+
+/// Seconds after which all the clips together have played once (the longest); 0 where nothing is animated.
+double animation_duration(Scene const& scene, std::span<Index const> clips);
+
+/// World-space camera of the scene's camera `index` in this pose. Scale in the node's transform is ignored.
+Camera scene_camera(Scene const& scene, ScenePose const& pose, Index index);
+
+/// Vertices of a primitive after morphing and skinning. Space: world where `skin` is set, else the node's own.
+struct DeformedVertices {
+    std::vector<Vec3> positions, normals;
+    std::vector<Vec4> tangents; ///< empty where the primitive has none
+};
+void deform(Primitive const& primitive, std::span<float const> morph_weights, Skin const* skin, ScenePose const& pose,
+            DeformedVertices& out);
+
+/// World box of everything drawn, in this pose.
+Bounds scene_bounds(Scene const& scene, ScenePose const& pose);
+
+/// A view that frames the box: three quarters from the front and a little from above.
+Camera default_camera(Bounds const& bounds);
+
+} // namespace framelet
