@@ -70,13 +70,15 @@ TEST(Message, AppendsBehindWhatIsThere) {
 
 TEST(Message, GoldenHello) {
     // The example of PROTOCOL.md.
-    Bytes const golden = from_hex("00");
+    Bytes const golden = from_hex("10000000 46524d4c 08000c00 07000800 08000000 00000001 0c000000 08000c00"
+                                  "06000800 08000000 00000100 04000000 06000000 73656372 65740000");
     EXPECT_EQ(to_hex(encode_message(Hello{1, "secret"})), to_hex(golden));
     EXPECT_TRUE(same(decode_message(golden), Hello{1, "secret"}));
 }
 
 TEST(Message, GoldenAck) {
-    Bytes const golden = from_hex("00");
+    Bytes const golden = from_hex("10000000 46524d4c 08000e00 07000800 08000000 00000005 10000000 00000a00 18000800"
+                                  "10000400 0a000000 c4090000 08070605 04030201 40420f00 00000000");
     EXPECT_EQ(to_hex(encode_message(Ack{0x0102030405060708, 1000000, 2500})), to_hex(golden));
     EXPECT_TRUE(same(decode_message(golden), Ack{0x0102030405060708, 1000000, 2500}));
 }
@@ -88,10 +90,24 @@ TEST(Message, TextIsMadeOneLine) {
     EXPECT_EQ(cut.text, std::string(4096, 'x'));
 }
 
-TEST(Message, CamerasBeyondTheLimitAreLeftOut) {
-    Welcome welcome;
-    welcome.cameras.resize(5000);
-    EXPECT_EQ(std::get<Welcome>(decode_message(encode_message(welcome))).cameras.size(), 4096u);
+TEST(Message, WelcomeStaysWithinTheLimitOfTheHandshake) {
+    for (std::size_t const length : {std::size_t{0}, std::size_t{1}, std::size_t{30}, std::size_t{1024}}) {
+        Welcome welcome;
+        welcome.server = welcome.scene_name = std::string(1024, 's');
+        welcome.scene_bounds.include({0, 0, 0});
+        welcome.cameras.resize(20);
+        EXPECT_EQ(std::get<Welcome>(decode_message(encode_message(welcome))).cameras.size(), 20u);
+        welcome.cameras.resize(5000);
+        for (std::size_t i = 0; i < welcome.cameras.size(); ++i) {
+            welcome.cameras[i].name.assign(length, 'n');
+            welcome.cameras[i].camera.position.x = static_cast<float>(i);
+        }
+        Bytes const body = encode_message(welcome);
+        EXPECT_LE(body.size(), max_upstream_message_bytes);
+        auto const read = std::get<Welcome>(decode_message(body));
+        ASSERT_GT(read.cameras.size(), 20u);
+        EXPECT_EQ(read.cameras.back(), welcome.cameras[read.cameras.size() - 1]) << "the first ones are kept";
+    }
 }
 
 TEST(Message, EveryTruncationIsRefusedOrValid) {
