@@ -136,7 +136,12 @@ Scene import_assimp(std::filesystem::path const& file, Progress const& progress)
         std::string const why = importer.GetErrorString();
         throw InputError(why.empty() ? "it has no content" : why);
     }
+    // Where an .obj names a material file that is missing, Assimp tries one with the scene's own name after it.
+    std::string const fallback = std::filesystem::path(file).replace_extension(".mtl").string();
     for (std::string const& name : missing) {
+        if (name == fallback && missing.front() != fallback) {
+            continue;
+        }
         scene.warnings.push_back("file '" + name + "' is missing; shown without it");
     }
     progress("reading", 1);

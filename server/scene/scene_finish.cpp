@@ -123,11 +123,14 @@ void finish_cameras(Scene& scene) {
 
 /// Scales that are each in range may still multiply to something that is not.
 void check_placement(Scene const& scene) {
-    ScenePose const pose = evaluate_pose(scene, default_clips(scene), 0);
+    std::vector<glm::dmat4> world(scene.nodes.size());
     for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
+        Node const& node = scene.nodes[i];
+        glm::dmat4 const local(node.matrix ? *node.matrix : matrix_of(node.local));
+        world[i] = node.parent == none ? local : world[static_cast<std::size_t>(node.parent)] * local;
         for (int c = 0; c < 4; ++c) {
-            if (!(glm::length(Vec3(pose.world_from_node[i][c])) <= max_coordinate)) {
-                throw InputError(named("node", i, scene.nodes[i].name) + " is placed out of range");
+            if (!(glm::length(glm::dvec3(world[i][c])) <= max_coordinate)) {
+                throw InputError(named("node", i, node.name) + " is placed out of range");
             }
         }
     }
