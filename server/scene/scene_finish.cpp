@@ -142,6 +142,9 @@ void finish_scene(Scene& scene, Progress const& progress) {
     drop_missing_images(scene);
     finish_materials(scene);
     finish_meshes(scene, progress);
+    if (std::all_of(scene.meshes.begin(), scene.meshes.end(), [](Mesh const& m) { return m.primitives.empty(); })) {
+        scene.warnings.push_back("it has no triangles: there is nothing to see");
+    }
     finish_nodes(scene);
     finish_clips(scene);
     finish_lights(scene);

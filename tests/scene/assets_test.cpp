@@ -272,8 +272,8 @@ TEST_F(Conformance, Boxes) {
         expect_consistent(scene);
     }
     EXPECT_EQ(conformance("BoxTexturedNonPowerOfTwo").images.at(0)->width, 211);
-    auto const& colors = conformance("BoxVertexColors").meshes[0].primitives[0].colors;
-    EXPECT_EQ(colors.size(), 24u);
+    Scene const colored = conformance("BoxVertexColors");
+    EXPECT_EQ(colored.meshes[0].primitives[0].colors.size(), 24u);
 }
 
 TEST_F(Conformance, BoxAnimatedOpensAndCloses) {
