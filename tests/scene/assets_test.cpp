@@ -180,6 +180,7 @@ void expect_consistent(Scene const& scene) {
             for (JointInfluence const& influence : p.influences) {
                 auto const& w = influence.weights;
                 ASSERT_NEAR(w[0] + w[1] + w[2] + w[3], 1, 1e-5f);
+                ASSERT_TRUE(w[0] >= w[1] && w[1] >= w[2] && w[2] >= w[3]);
             }
             for (auto const& t : p.triangles) {
                 ASSERT_TRUE(t[0] < n && t[1] < n && t[2] < n);
