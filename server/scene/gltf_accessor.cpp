@@ -7,6 +7,7 @@
 #include <tiny_gltf.h>
 
 #include "common/error.h"
+#include "server/scene/primitive_ops.h"
 
 namespace framelet {
 namespace {

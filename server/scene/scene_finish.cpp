@@ -10,6 +10,7 @@
 #include "server/scene/finish_parts.h"
 #include "server/scene/image_loading.h"
 #include "server/scene/primitive_finish.h"
+#include "server/scene/primitive_ops.h"
 #include "server/scene/vector_math.h"
 
 namespace framelet {
@@ -61,11 +62,20 @@ void finish_meshes(Scene& scene, Progress const& progress) {
         PrimitiveRepairs repairs;
     };
     std::vector<Job> jobs;
+    std::uint64_t split_bytes = 0;
     for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
         std::erase_if(scene.meshes[m].primitives, [](Primitive const& p) { return p.triangles.empty(); });
         for (std::size_t p = 0; p < scene.meshes[m].primitives.size(); ++p) {
             jobs.push_back({m, p, {}});
+            Primitive const& primitive = scene.meshes[m].primitives[p];
+            if (primitive.normals.empty()) { // flat shading gives every triangle its own vertices
+                split_bytes += primitive.triangles.size() * 3 * bytes_per_vertex(primitive);
+            }
         }
+    }
+    if (split_bytes > max_geometry_bytes) {
+        throw InputError("flat shading it makes more than " + std::to_string(max_geometry_bytes >> 30) +
+                         " GiB of geometry");
     }
     std::mutex report;
     std::size_t done = 0;

@@ -167,6 +167,20 @@ TEST(BadScene, RequiredExtensionsAreNamed) {
     }
 }
 
+TEST(BadScene, SmallFilesThatGrowWithoutBound) {
+    TemporaryFolder const folder;
+    // A hundred thousand triangles of three vertices with two thousand morph targets, to be shaded flat.
+    GltfWriter writer = triangle_writer();
+    writer.array(std::vector<std::uint8_t>(300000, 1), "SCALAR", GltfWriter::u8);
+    std::string targets = R"({"POSITION":0})";
+    for (int i = 1; i < 2000; ++i) {
+        targets += R"(,{"POSITION":0})";
+    }
+    expect_error(folder.write("a.glb", writer.glb(one_mesh(R"("attributes":{"POSITION":0},"indices":1,"targets":[)" +
+                                                           targets + "]"))),
+                 "GiB of geometry");
+}
+
 /// A small file with most of what the importer knows, as binary glTF.
 std::string rich_glb() {
     GltfWriter writer = triangle_writer();
