@@ -1,0 +1,325 @@
+#include "server/render/embree_scene.h"
+
+#include <algorithm>
+#include <cstring>
+#include <type_traits>
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#include "common/error.h"
+
+namespace framelet {
+namespace {
+
+#if RTC_VERSION_MAJOR >= 4
+using Context = RTCRayQueryContext;
+#else
+using Context = RTCIntersectContext;
+#endif
+
+/// Handed through Embree to the filters; the context must stand first.
+struct QueryContext {
+    Context embree;
+    LaneVec3* transmittance = nullptr;
+};
+
+struct Handle {
+    RTCScene scene;
+    std::vector<RTCGeometry> geometries;
+};
+
+/// A hit that a filter may reject, by its lane in the callback.
+struct Candidate {
+    RTCFilterFunctionNArguments const* args;
+
+    Geometry const& geometry() const { return *static_cast<Geometry const*>(args->geometryUserPtr); }
+    template <class Visit>
+    void for_each_valid(Visit&& visit) const {
+        for (unsigned i = 0; i < args->N; ++i) {
+            if (args->valid[i] == -1) {
+                visit(i, RTCHitN_primID(args->hit, args->N, i), RTCHitN_u(args->hit, args->N, i),
+                      RTCHitN_v(args->hit, args->N, i));
+            }
+        }
+    }
+};
+
+void reject_cut_out(RTCFilterFunctionNArguments const* args) {
+    Candidate const candidate{args};
+    Geometry const& geometry = candidate.geometry();
+    candidate.for_each_valid([&](unsigned i, unsigned triangle, float u, float v) {
+        if (alpha_at(geometry, triangle, u, v) < geometry.material->alpha_cutoff) {
+            args->valid[i] = 0;
+        }
+    });
+}
+
+void attenuate_shadow(RTCFilterFunctionNArguments const* args) {
+    Candidate const candidate{args};
+    Geometry const& geometry = candidate.geometry();
+    LaneVec3& transmittance = *reinterpret_cast<QueryContext*>(args->context)->transmittance;
+    candidate.for_each_valid([&](unsigned i, unsigned triangle, float u, float v) {
+        int const lane = static_cast<int>(RTCRayN_id(args->ray, args->N, i));
+        Vec3 const through = transmittance.get(lane) * transmittance_at(geometry, triangle, u, v);
+        transmittance.set(lane, through);
+        if (std::max({through.r, through.g, through.b}) > 1e-3f) {
+            args->valid[i] = 0;
+        }
+    });
+}
+
+/// Copies `count` lanes from `first` on into Embree's layout of that many.
+template <class RayN, int count>
+void load_rays(RayPacket const& rays, int first, RayN& out) {
+    constexpr std::size_t bytes = sizeof(float) * count;
+    std::memcpy(out.org_x, rays.origin.x.lane + first, bytes);
+    std::memcpy(out.org_y, rays.origin.y.lane + first, bytes);
+    std::memcpy(out.org_z, rays.origin.z.lane + first, bytes);
+    std::memcpy(out.dir_x, rays.direction.x.lane + first, bytes);
+    std::memcpy(out.dir_y, rays.direction.y.lane + first, bytes);
+    std::memcpy(out.dir_z, rays.direction.z.lane + first, bytes);
+    std::memcpy(out.tnear, rays.near.lane + first, bytes);
+    std::memcpy(out.tfar, rays.far.lane + first, bytes);
+    for (int i = 0; i < count; ++i) {
+        out.time[i] = 0;
+        out.mask[i] = ~0u;
+        out.id[i] = static_cast<unsigned>(first + i);
+        out.flags[i] = 0;
+    }
+}
+
+template <int count>
+bool valid_lanes(LaneMask active, int first, int* valid) {
+    LaneMask const part = (active >> first) & ((1u << count) - 1);
+    for (int i = 0; i < count; ++i) {
+        valid[i] = (part >> i & 1) != 0 ? -1 : 0;
+    }
+    return part != 0;
+}
+
+template <int count>
+LaneMask intersect_lanes(RTCScene scene, RayPacket const& rays, LaneMask active, int first, bool coherent,
+                         HitPacket& hits) {
+    alignas(64) int valid[count];
+    if (!valid_lanes<count>(active, first, valid)) {
+        return 0;
+    }
+    std::conditional_t<count == 16, RTCRayHit16, RTCRayHit8> query;
+    load_rays<decltype(query.ray), count>(rays, first, query.ray);
+    for (int i = 0; i < count; ++i) {
+        query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+        query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    }
+    QueryContext context;
+#if RTC_VERSION_MAJOR >= 4
+    rtcInitRayQueryContext(&context.embree);
+    RTCIntersectArguments args;
+    rtcInitIntersectArguments(&args);
+    args.context = &context.embree;
+    args.flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
+    auto* const last = &args;
+#else
+    rtcInitIntersectContext(&context.embree);
+    context.embree.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+#endif
+    if constexpr (count == 16) {
+#if RTC_VERSION_MAJOR >= 4
+        rtcIntersect16(valid, scene, &query, last);
+#else
+        rtcIntersect16(valid, scene, &context.embree, &query);
+#endif
+    } else {
+#if RTC_VERSION_MAJOR >= 4
+        rtcIntersect8(valid, scene, &query, last);
+#else
+        rtcIntersect8(valid, scene, &context.embree, &query);
+#endif
+    }
+    LaneMask hit = 0;
+    for (int i = 0; i < count; ++i) {
+        hits.t[first + i] = query.ray.tfar[i];
+        hits.u[first + i] = query.hit.u[i];
+        hits.v[first + i] = query.hit.v[i];
+        hits.triangle[first + i] = query.hit.primID[i];
+        hits.geometry[first + i] = query.hit.geomID[i];
+        hits.instance[first + i] = query.hit.instID[0][i];
+        bool const met = valid[i] != 0 && query.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
+        hit |= static_cast<LaneMask>(met ? 1u : 0u) << (first + i);
+    }
+    return hit;
+}
+
+template <int count>
+LaneMask occluded_lanes(RTCScene scene, RayPacket const& rays, LaneMask active, int first, LaneVec3& transmittance) {
+    alignas(64) int valid[count];
+    if (!valid_lanes<count>(active, first, valid)) {
+        return 0;
+    }
+    std::conditional_t<count == 16, RTCRay16, RTCRay8> query;
+    load_rays<decltype(query), count>(rays, first, query);
+    QueryContext context;
+    context.transmittance = &transmittance;
+    // Embree 3's 16-wide coherent occlusion was seen not to return on instanced scenes under AVX-512.
+    constexpr bool coherent = count != 16;
+#if RTC_VERSION_MAJOR >= 4
+    rtcInitRayQueryContext(&context.embree);
+    RTCOccludedArguments args;
+    rtcInitOccludedArguments(&args);
+    args.context = &context.embree;
+    args.flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
+    if constexpr (count == 16) {
+        rtcOccluded16(valid, scene, &query, &args);
+    } else {
+        rtcOccluded8(valid, scene, &query, &args);
+    }
+#else
+    rtcInitIntersectContext(&context.embree);
+    context.embree.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    if constexpr (count == 16) {
+        rtcOccluded16(valid, scene, &context.embree, &query);
+    } else {
+        rtcOccluded8(valid, scene, &context.embree, &query);
+    }
+#endif
+    LaneMask blocked = 0;
+    for (int i = 0; i < count; ++i) {
+        bool const met = valid[i] != 0 && query.tfar[i] < 0; // -infinity marks a hit
+        blocked |= static_cast<LaneMask>(met ? 1u : 0u) << (first + i);
+    }
+    return blocked;
+}
+
+void report(void*, RTCError code, char const* message) {
+    std::fprintf(stderr, "Embree error %d: %s\n", static_cast<int>(code), message ? message : "");
+}
+
+} // namespace
+
+struct EmbreeScene::Handles {
+    RTCDevice device = nullptr;
+    RTCScene top = nullptr;
+    bool sixteen_wide = false;
+    std::vector<Handle> meshes;
+    std::vector<RTCGeometry> instances;
+};
+
+EmbreeScene::EmbreeScene() : handles_(std::make_unique<Handles>()) {
+    handles_->device = rtcNewDevice(nullptr);
+    FRAMELET_CHECK(handles_->device != nullptr);
+    rtcSetDeviceErrorFunction(handles_->device, report, nullptr);
+    handles_->sixteen_wide = rtcGetDeviceProperty(handles_->device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0;
+    handles_->top = rtcNewScene(handles_->device);
+    rtcCommitScene(handles_->top);
+}
+
+EmbreeScene::~EmbreeScene() {
+    for (RTCGeometry const instance : handles_->instances) {
+        rtcReleaseGeometry(instance);
+    }
+    rtcReleaseScene(handles_->top);
+    for (Handle const& mesh : handles_->meshes) {
+        for (RTCGeometry const geometry : mesh.geometries) {
+            rtcReleaseGeometry(geometry);
+        }
+        rtcReleaseScene(mesh.scene);
+    }
+    rtcReleaseDevice(handles_->device);
+}
+
+std::uint32_t EmbreeScene::add_mesh(std::span<Geometry> geometries, bool deforming) {
+    Handle mesh{rtcNewScene(handles_->device), {}};
+    if (deforming) {
+        rtcSetSceneFlags(mesh.scene, RTC_SCENE_FLAG_DYNAMIC);
+    }
+    for (std::size_t i = 0; i < geometries.size(); ++i) {
+        Geometry& geometry = geometries[i];
+        Primitive const& source = *geometry.source;
+        RTCGeometry const handle = rtcNewGeometry(handles_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+        mesh.geometries.push_back(handle);
+        if (source.positions.empty() || source.triangles.empty()) {
+            continue; // a geometry that is not attached keeps the numbers of the others
+        }
+        void* const vertices = rtcSetNewGeometryBuffer(handle, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                       sizeof(Vec3), source.positions.size());
+        FRAMELET_CHECK(vertices != nullptr);
+        std::memcpy(vertices, source.positions.data(), source.positions.size() * sizeof(Vec3));
+        geometry.positions = {static_cast<Vec3*>(vertices), source.positions.size()};
+        rtcSetSharedGeometryBuffer(handle, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, source.triangles.data(), 0,
+                                   sizeof(source.triangles[0]), source.triangles.size());
+        if (deforming) {
+            rtcSetGeometryBuildQuality(handle, RTC_BUILD_QUALITY_REFIT);
+        }
+        rtcSetGeometryUserData(handle, &geometry);
+        if (geometry.material->alpha_mode == AlphaMode::mask) {
+            rtcSetGeometryIntersectFilterFunction(handle, reject_cut_out);
+            rtcSetGeometryOccludedFilterFunction(handle, reject_cut_out);
+        }
+        if (geometry.material->see_through()) {
+            rtcSetGeometryOccludedFilterFunction(handle, attenuate_shadow);
+        }
+        rtcCommitGeometry(handle);
+        rtcAttachGeometryByID(mesh.scene, handle, static_cast<unsigned>(i));
+    }
+    rtcCommitScene(mesh.scene);
+    handles_->meshes.push_back(std::move(mesh));
+    return static_cast<std::uint32_t>(handles_->meshes.size() - 1);
+}
+
+void EmbreeScene::refit_mesh(std::uint32_t mesh) {
+    Handle const& handle = handles_->meshes[mesh];
+    for (RTCGeometry const geometry : handle.geometries) {
+        rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0);
+        rtcCommitGeometry(geometry);
+    }
+    rtcCommitScene(handle.scene);
+    // The instances' boxes follow only when they are committed as well.
+}
+
+std::uint32_t EmbreeScene::add_instance(std::uint32_t mesh) {
+    RTCGeometry const instance = rtcNewGeometry(handles_->device, RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(instance, handles_->meshes[mesh].scene);
+    rtcDisableGeometry(instance);
+    rtcCommitGeometry(instance);
+    unsigned const number = static_cast<unsigned>(handles_->instances.size());
+    rtcAttachGeometryByID(handles_->top, instance, number);
+    handles_->instances.push_back(instance);
+    return number;
+}
+
+void EmbreeScene::place_instance(std::uint32_t instance, Mat3 const& linear, Vec3 const& translation, bool present) {
+    RTCGeometry const handle = handles_->instances[instance];
+    if (!present) {
+        rtcDisableGeometry(handle);
+    } else {
+        Vec3 const columns[4] = {linear[0], linear[1], linear[2], translation};
+        rtcSetGeometryTransform(handle, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
+        rtcEnableGeometry(handle);
+    }
+    rtcCommitGeometry(handle);
+}
+
+void EmbreeScene::commit() {
+    rtcCommitScene(handles_->top);
+}
+
+LaneMask EmbreeScene::intersect(RayPacket const& rays, LaneMask active, bool coherent, HitPacket& hits) const {
+    if (handles_->sixteen_wide) {
+        return intersect_lanes<16>(handles_->top, rays, active, 0, coherent, hits);
+    }
+    return intersect_lanes<8>(handles_->top, rays, active, 0, coherent, hits) |
+           intersect_lanes<8>(handles_->top, rays, active, 8, coherent, hits);
+}
+
+LaneMask EmbreeScene::occluded(RayPacket const& rays, LaneMask active, LaneVec3& transmittance) const {
+    if (handles_->sixteen_wide) {
+        return occluded_lanes<16>(handles_->top, rays, active, 0, transmittance);
+    }
+    return occluded_lanes<8>(handles_->top, rays, active, 0, transmittance) |
+           occluded_lanes<8>(handles_->top, rays, active, 8, transmittance);
+}
+
+} // namespace framelet
