@@ -1,6 +1,7 @@
 #include "server/render/embree_scene.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <cstring>
 #include <type_traits>
 
@@ -19,6 +20,13 @@ namespace {
 using Context = RTCRayQueryContext;
 #else
 using Context = RTCIntersectContext;
+#endif
+
+/// Lets a query bring a filter of its own.
+#if RTC_VERSION_MAJOR >= 4
+constexpr RTCSceneFlags query_filters = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS;
+#else
+constexpr RTCSceneFlags query_filters = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
 #endif
 
 /// Handed through Embree to the filters; the context must stand first.
@@ -56,6 +64,22 @@ void reject_cut_out(RTCFilterFunctionNArguments const* args) {
             args->valid[i] = 0;
         }
     });
+}
+
+void reject_behind(RTCFilterFunctionNArguments const* args) {
+    if (static_cast<Geometry const*>(args->geometryUserPtr)->material->double_sided) {
+        return;
+    }
+    // Normal and ray are both in the mesh's own space, where front faces are counter-clockwise also if an instance
+    // mirrors the mesh.
+    for (unsigned i = 0; i < args->N; ++i) {
+        float const along = RTCHitN_Ng_x(args->hit, args->N, i) * RTCRayN_dir_x(args->ray, args->N, i) +
+                            RTCHitN_Ng_y(args->hit, args->N, i) * RTCRayN_dir_y(args->ray, args->N, i) +
+                            RTCHitN_Ng_z(args->hit, args->N, i) * RTCRayN_dir_z(args->ray, args->N, i);
+        if (args->valid[i] == -1 && along > 0) {
+            args->valid[i] = 0;
+        }
+    }
 }
 
 void attenuate_shadow(RTCFilterFunctionNArguments const* args) {
@@ -102,8 +126,8 @@ bool valid_lanes(LaneMask active, int first, int* valid) {
 }
 
 template <int count>
-LaneMask intersect_lanes(RTCScene scene, RayPacket const& rays, LaneMask active, int first, bool coherent,
-                         HitPacket& hits) {
+LaneMask intersect_lanes(RTCScene scene, RayPacket const& rays, LaneMask active, int first,
+                         EmbreeScene::Behind behind, HitPacket& hits) {
     alignas(64) int valid[count];
     if (!valid_lanes<count>(active, first, valid)) {
         return 0;
@@ -114,31 +138,30 @@ LaneMask intersect_lanes(RTCScene scene, RayPacket const& rays, LaneMask active,
         query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
         query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
     }
+    bool const passes = behind == EmbreeScene::Behind::passes;
     QueryContext context;
 #if RTC_VERSION_MAJOR >= 4
     rtcInitRayQueryContext(&context.embree);
     RTCIntersectArguments args;
     rtcInitIntersectArguments(&args);
     args.context = &context.embree;
-    args.flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
-    auto* const last = &args;
+    args.flags = passes ? RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER : RTC_RAY_QUERY_FLAG_COHERENT;
+    args.filter = passes ? reject_behind : nullptr;
+    if constexpr (count == 16) {
+        rtcIntersect16(valid, scene, &query, &args);
+    } else {
+        rtcIntersect8(valid, scene, &query, &args);
+    }
 #else
     rtcInitIntersectContext(&context.embree);
-    context.embree.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-#endif
+    context.embree.flags = passes ? RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT : RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    context.embree.filter = passes ? reject_behind : nullptr;
     if constexpr (count == 16) {
-#if RTC_VERSION_MAJOR >= 4
-        rtcIntersect16(valid, scene, &query, last);
-#else
         rtcIntersect16(valid, scene, &context.embree, &query);
-#endif
     } else {
-#if RTC_VERSION_MAJOR >= 4
-        rtcIntersect8(valid, scene, &query, last);
-#else
         rtcIntersect8(valid, scene, &context.embree, &query);
-#endif
     }
+#endif
     LaneMask hit = 0;
     for (int i = 0; i < count; ++i) {
         hits.t[first + i] = query.ray.tfar[i];
@@ -213,6 +236,7 @@ EmbreeScene::EmbreeScene() : handles_(std::make_unique<Handles>()) {
     rtcSetDeviceErrorFunction(handles_->device, report, nullptr);
     handles_->sixteen_wide = rtcGetDeviceProperty(handles_->device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0;
     handles_->top = rtcNewScene(handles_->device);
+    rtcSetSceneFlags(handles_->top, query_filters);
     rtcCommitScene(handles_->top);
 }
 
@@ -232,9 +256,7 @@ EmbreeScene::~EmbreeScene() {
 
 std::uint32_t EmbreeScene::add_mesh(std::span<Geometry> geometries, bool deforming) {
     Handle mesh{rtcNewScene(handles_->device), {}};
-    if (deforming) {
-        rtcSetSceneFlags(mesh.scene, RTC_SCENE_FLAG_DYNAMIC);
-    }
+    rtcSetSceneFlags(mesh.scene, deforming ? query_filters | RTC_SCENE_FLAG_DYNAMIC : query_filters);
     for (std::size_t i = 0; i < geometries.size(); ++i) {
         Geometry& geometry = geometries[i];
         Primitive const& source = *geometry.source;
@@ -306,12 +328,12 @@ void EmbreeScene::commit() {
     rtcCommitScene(handles_->top);
 }
 
-LaneMask EmbreeScene::intersect(RayPacket const& rays, LaneMask active, bool coherent, HitPacket& hits) const {
+LaneMask EmbreeScene::intersect(RayPacket const& rays, LaneMask active, Behind behind, HitPacket& hits) const {
     if (handles_->sixteen_wide) {
-        return intersect_lanes<16>(handles_->top, rays, active, 0, coherent, hits);
+        return intersect_lanes<16>(handles_->top, rays, active, 0, behind, hits);
     }
-    return intersect_lanes<8>(handles_->top, rays, active, 0, coherent, hits) |
-           intersect_lanes<8>(handles_->top, rays, active, 8, coherent, hits);
+    return intersect_lanes<8>(handles_->top, rays, active, 0, behind, hits) |
+           intersect_lanes<8>(handles_->top, rays, active, 8, behind, hits);
 }
 
 LaneMask EmbreeScene::occluded(RayPacket const& rays, LaneMask active, LaneVec3& transmittance) const {

@@ -28,8 +28,12 @@ public:
     /// Rebuilds the top level; needed after any of the above, before tracing.
     void commit();
 
+    /// Whether single-sided surfaces stop rays that meet them from behind.
+    enum class Behind { stops, passes };
+
     /// Nearest hit of each active lane between near and far, cut-outs passed through. Returns the lanes that hit.
-    LaneMask intersect(RayPacket const& rays, LaneMask active, bool coherent, HitPacket& hits) const;
+    /// `Behind::passes` costs a call for every candidate: meant for the few rays that met a surface from behind.
+    LaneMask intersect(RayPacket const& rays, LaneMask active, Behind behind, HitPacket& hits) const;
     /// Returns the lanes whose segment meets something opaque; multiplies `transmittance` of the others by what
     /// see-through surfaces let pass.
     LaneMask occluded(RayPacket const& rays, LaneMask active, LaneVec3& transmittance) const;

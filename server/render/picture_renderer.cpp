@@ -1,6 +1,7 @@
 // Whole pictures from the framelet renderer: the reference for what a viewer converges to, and the exposure probe.
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 #include <tbb/parallel_for.h>
 
@@ -68,26 +69,31 @@ Picture render_picture(RenderScene const& scene, Camera const& camera, Viewport 
 
 float auto_exposure(RenderScene const& scene, Camera const& camera) {
     constexpr Viewport probe{64, 48};
-    constexpr double darkest = 0.06, brightest = 0.8, middle = 0.25;
+    constexpr double darkest = 0.02, brightest = 1, middle = 0.18;
     ImagePlane const plane(probe);
     std::vector<Tile> const tiles = visible_tiles(plane, plane.pixel_depth());
     std::vector<Framelet> framelets(tiles.size());
     render_framelets(scene, camera, plane, tiles, 0, framelets);
-    double sum = 0, count = 0;
+    std::vector<double> luminances;
     for (Framelet const& framelet : framelets) {
         for (std::size_t i = 0; i < framelet_samples; ++i) {
             if (std::isfinite(framelet.depth[i])) {
-                float const luminance =
-                    0.2126f * framelet.red[i] + 0.7152f * framelet.green[i] + 0.0722f * framelet.blue[i];
-                sum += std::log(std::max(luminance, 1e-6f));
-                count += 1;
+                luminances.push_back(0.2126 * framelet.red[i] + 0.7152 * framelet.green[i] +
+                                     0.0722 * framelet.blue[i]);
             }
         }
     }
-    if (count == 0) {
+    double const mean =
+        std::accumulate(luminances.begin(), luminances.end(), 0.0) / std::max<double>(1, double(luminances.size()));
+    if (!(mean > 1e-12)) { // nothing is hit, or nothing can be seen at any exposure
         return 1;
     }
-    double const average = std::exp(sum / count);
+    // Black is black: however dark, it says no more about the light than a hundredth of the mean.
+    double sum = 0;
+    for (double const luminance : luminances) {
+        sum += std::log(std::max(luminance, 0.01 * mean));
+    }
+    double const average = std::exp(sum / double(luminances.size()));
     return average >= darkest && average <= brightest ? 1.0f : static_cast<float>(middle / average);
 }
 

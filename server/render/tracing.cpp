@@ -1,5 +1,6 @@
 #include "server/render/tracing.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <glm/geometric.hpp>
@@ -79,14 +80,15 @@ void trace(PreparedScene const& scene, RayPacket& rays, LaneMask active, Footpri
     HitPacket hits{};
     SurfacePacket surfaces{}; // lanes that meet nothing are computed along with the others: on zeros
     ShadedPacket shaded{};
+    EmbreeScene::Behind behind = EmbreeScene::Behind::stops;
     for (int layer = 0; active != 0 && layer < most_layers; ++layer) {
-        LaneMask const hit = scene.bvh.intersect(rays, active, layer == 0, hits);
+        LaneMask const hit = scene.bvh.intersect(rays, active, behind, hits);
         add_background(scene, rays, active & ~hit, footprint, state, out);
         if (hit == 0) {
             return;
         }
         LaneMask const present = make_surfaces(scene.instances, rays, hits, hit, footprint, surfaces);
-        LaneMask passed = hit & ~present;
+        LaneMask passed = 0;
         if (present != 0) {
             shade(scene, surfaces, present, bounces, shaded);
             if (scene.see_through) {
@@ -95,8 +97,13 @@ void trace(PreparedScene const& scene, RayPacket& rays, LaneMask active, Footpri
                 add_opaque(shaded, hits, present, out);
             }
         }
+        LaneMask const culled = hit & ~present;
+        // Behind a see-through surface: just off it. At one that is seen from behind: from just before it, since many
+        // files put a second triangle the other way round into the same place.
         for_each_lane(passed, [&](int i) { rays.near[i] = hits.t[i] * (1 + 0x1p-21f) + 1e-30f; });
-        active = passed;
+        for_each_lane(culled, [&](int i) { rays.near[i] = std::max(rays.near[i], hits.t[i] * (1 - 0x1p-18f)); });
+        active = passed | culled;
+        behind = EmbreeScene::Behind::passes;
     }
     add_background(scene, rays, active, footprint, state, out);
 }
