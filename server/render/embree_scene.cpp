@@ -116,20 +116,25 @@ void load_rays(RayPacket const& rays, int first, RayN& out) {
     }
 }
 
+/// Rays that Embree cannot trace (it checks, and aborts the process) are not handed to it: they meet nothing.
 template <int count>
-bool valid_lanes(LaneMask active, int first, int* valid) {
-    LaneMask const part = (active >> first) & ((1u << count) - 1);
-    for (int i = 0; i < count; ++i) {
-        valid[i] = (part >> i & 1) != 0 ? -1 : 0;
+bool valid_lanes(RayPacket const& rays, LaneMask active, int first, int* valid) {
+    if (((active >> first) & ((1u << count) - 1)) == 0) {
+        return false;
     }
-    return part != 0;
+    for (int i = 0; i < count; ++i) {
+        int const lane = first + i;
+        bool const wanted = (active >> lane & 1) != 0;
+        valid[i] = wanted & traceable(rays.origin.get(lane)) & traceable(rays.direction.get(lane)) ? -1 : 0;
+    }
+    return true;
 }
 
 template <int count>
 LaneMask intersect_lanes(RTCScene scene, RayPacket const& rays, LaneMask active, int first,
                          EmbreeScene::Behind behind, HitPacket& hits) {
     alignas(64) int valid[count];
-    if (!valid_lanes<count>(active, first, valid)) {
+    if (!valid_lanes<count>(rays, active, first, valid)) {
         return 0;
     }
     std::conditional_t<count == 16, RTCRayHit16, RTCRayHit8> query;
@@ -179,7 +184,7 @@ LaneMask intersect_lanes(RTCScene scene, RayPacket const& rays, LaneMask active,
 template <int count>
 LaneMask occluded_lanes(RTCScene scene, RayPacket const& rays, LaneMask active, int first, LaneVec3& transmittance) {
     alignas(64) int valid[count];
-    if (!valid_lanes<count>(active, first, valid)) {
+    if (!valid_lanes<count>(rays, active, first, valid)) {
         return 0;
     }
     std::conditional_t<count == 16, RTCRay16, RTCRay8> query;

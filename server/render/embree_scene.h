@@ -23,7 +23,8 @@ public:
     void refit_mesh(std::uint32_t mesh);
     /// Instances are numbered from 0 in the order in which they are added. Until it is placed an instance is not there.
     std::uint32_t add_instance(std::uint32_t mesh);
-    /// A transform that cannot be inverted (a scale of 0) makes the instance vanish.
+    /// Not `present`: it vanishes. A transform that is present must be invertible with no element of its inverse above
+    /// 1 / `least_instance_scale`, and move to where rays can start.
     void place_instance(std::uint32_t instance, Mat3 const& linear, Vec3 const& translation, bool present);
     /// Rebuilds the top level; needed after any of the above, before tracing.
     void commit();

@@ -28,7 +28,11 @@ RenderLight make_light(Light const& light, ScenePose const& pose) {
         out.position = Vec3(world[3]);
         Vec3 const back(world[2]);
         float const length = glm::length(back);
-        out.towards = length > 1e-20f ? back / length : Vec3(0, 0, 1);
+        out.towards = length > 1e-18f && length < 1e18f ? back / length : Vec3(0, 0, 1);
+        if (!traceable(out.position)) { // lights nothing that can be seen
+            out.position = Vec3(0);
+            out.intensity = light.type == LightType::directional ? out.intensity : Vec3(0);
+        }
     }
     out.inverse_range = light.range > 0 ? 1 / light.range : 0.0f;
     float const inner = std::cos(std::clamp(light.inner_cone, 0.0f, 1.5707964f));

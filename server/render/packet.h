@@ -3,6 +3,7 @@
 #pragma once
 
 #include <bit>
+#include <cmath>
 #include <cstdint>
 
 #include "common/math.h"
@@ -67,6 +68,14 @@ LaneMask lanes_where(Test&& test) {
         mask |= static_cast<LaneMask>(test(i) ? 1u : 0u) << i;
     }
     return mask;
+}
+
+/// Coordinates that rays can start from, metres. The BVH squares them, in single precision and in the space of
+/// instances that may be scaled down (to `least_instance_scale`).
+inline constexpr float least_instance_scale = 1e-7f;
+inline bool traceable(Vec3 const& position) {
+    constexpr float most = 1e10f;
+    return std::abs(position.x) < most && std::abs(position.y) < most && std::abs(position.z) < most;
 }
 
 /// Points at origin + t * direction for near < t < far. Directions need not have unit length.

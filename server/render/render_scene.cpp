@@ -19,10 +19,20 @@ bool morphs(Mesh const& mesh) {
     return std::ranges::any_of(mesh.primitives, [](Primitive const& p) { return !p.morph_targets.empty(); });
 }
 
-/// False for transforms that flatten: they have no inverse, so rays cannot be taken into their space.
+/// False for transforms that flatten or shrink to nothing: rays cannot be taken into their space.
 bool invertible(Mat3 const& m) {
     float const lengths = glm::length(m[0]) * glm::length(m[1]) * glm::length(m[2]);
-    return lengths > 1e-36f && lengths < 1e36f && std::abs(glm::determinant(m)) > 1e-6f * lengths;
+    if (!(lengths > 1e-30f && lengths < 1e30f && std::abs(glm::determinant(m)) > 1e-6f * lengths)) {
+        return false;
+    }
+    Mat3 const inverse = glm::inverse(m);
+    float largest = 0;
+    for (int c = 0; c < 3; ++c) {
+        for (int r = 0; r < 3; ++r) {
+            largest = std::max(largest, std::abs(inverse[c][r]));
+        }
+    }
+    return largest < 1 / least_instance_scale;
 }
 
 std::vector<Geometry> geometries_of(Mesh const& mesh, MaterialLibrary const& library) {
@@ -129,7 +139,7 @@ void RenderScene::place(Placement const& placement) {
     instance.geometries = prepared_->meshes[placement.mesh];
     instance.linear = Mat3(world);
     instance.translation = Vec3(world[3]);
-    bool const present = invertible(instance.linear);
+    bool const present = invertible(instance.linear) && traceable(instance.translation);
     if (present) {
         instance.normal_matrix = glm::inverseTranspose(instance.linear);
         instance.handedness = glm::determinant(instance.linear) < 0 ? -1.0f : 1.0f;

@@ -266,7 +266,9 @@ LaneMask make_surfaces(std::span<Instance const> instances, RayPacket const& ray
         facet.inverse_determinant = squared > 1e-30f ? 1 / squared : 0;
         Vec3 const front = unit_or(scaled_normal, -facet.ray);
         bool const behind = glm::dot(front, facet.ray) > 0;
-        if (behind && !material.double_sided) {
+        Vec3 const in_object = corner + object_edge1 * point.u + object_edge2 * point.v;
+        Vec3 const position = instance.linear * in_object + instance.translation;
+        if ((behind && !material.double_sided) || !traceable(position)) {
             return;
         }
         present |= 1u << lane;
@@ -287,11 +289,9 @@ LaneMask make_surfaces(std::span<Instance const> instances, RayPacket const& ray
         Vec3 normal = mapped_normal(geometry, instance, point, facet, front, uv[normal_set], covered[normal_set]);
         normal = behind ? -normal : normal;
 
-        Vec3 const in_object = corner + object_edge1 * point.u + object_edge2 * point.v;
-        Vec3 const position = instance.linear * in_object + instance.translation;
         Vec3 const smooth = position + smooth_offset(geometry, instance, point, in_object, facet);
         out.position.set(lane, position);
-        out.leaving.set(lane, offset_from_surface(smooth, facet.normal));
+        out.leaving.set(lane, offset_from_surface(traceable(smooth) ? smooth : position, facet.normal));
         out.geometric_normal.set(lane, facet.normal);
         out.view.set(lane, -facet.ray);
         out.width[lane] = facet.width;

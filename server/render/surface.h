@@ -22,7 +22,7 @@ struct SurfacePacket {
 };
 
 /// Fills `out` for the lanes of `hit`. Returns the lanes whose surface is there for this ray: those that meet a
-/// single-sided material from behind are left out.
+/// single-sided material from behind are left out, and those so far out that no ray can start there.
 LaneMask make_surfaces(std::span<Instance const> instances, RayPacket const& rays, HitPacket const& hits, LaneMask hit,
                        Footprint const& footprint, SurfacePacket& out);
 

@@ -162,6 +162,9 @@ Vec4 TextureSampler::sample(Vec2 uv, UvFootprint const& footprint) const {
         }
         return bilinear(base, place);
     }
+    if (!(squared_long < 1e12f)) { // covers all of the picture, and more than can be reckoned with
+        return bilinear(chain_->level(chain_->levels() - 1), place);
+    }
     float const length = std::sqrt(squared_long);
     float const width = std::max(std::sqrt(std::min(squared_a, squared_b)), 1.0f);
     int const taps = static_cast<int>(std::clamp(length / width + 0.5f, 1.0f, static_cast<float>(max_taps)));
