@@ -115,8 +115,11 @@ Vec3 Environment::specular(Vec3 direction, float roughness) const {
     float const level = std::clamp(roughness, 0.0f, 1.0f) * (roughness_levels - 1);
     std::size_t const sharp = std::min(static_cast<std::size_t>(level), std::size_t(roughness_levels - 2));
     Vec2 const point = octahedral_from_direction(direction);
-    return glm::mix(specular_levels_[sharp].sample_at(point), specular_levels_[sharp + 1].sample_at(point),
-                    level - static_cast<float>(sharp));
+    float const blend = level - static_cast<float>(sharp);
+    if (blend >= 1) { // fully rough, as much is
+        return specular_levels_.back().sample_at(point);
+    }
+    return glm::mix(specular_levels_[sharp].sample_at(point), specular_levels_[sharp + 1].sample_at(point), blend);
 }
 
 } // namespace framelet

@@ -87,6 +87,7 @@ MaterialLibrary make_materials(Scene const& scene) {
             if (usable(scene, use)) {
                 Texture const& texture = scene.textures[static_cast<std::size_t>(use.texture)];
                 sampler = TextureSampler(*chains[{texture.image, kind}], texture, use);
+                out.uses_uv = true;
             }
         });
         out.occlusion_in_roughness_map =

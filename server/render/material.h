@@ -21,14 +21,11 @@ struct RenderMaterial {
     bool double_sided = false;
     bool unlit = false;
     bool occlusion_in_roughness_map = false; ///< one look-up serves both
+    bool uses_uv = false; ///< has a map of any kind
     TextureSampler base_color_map, metallic_roughness_map, normal_map, occlusion_map, emissive_map, transmission_map;
 
     /// Light goes straight through in part: the ray continues behind it, shadows are attenuated.
     bool see_through() const { return alpha_mode == AlphaMode::blend || transmission > 0; }
-    bool uses_uv() const {
-        return base_color_map || metallic_roughness_map || normal_map || occlusion_map || emissive_map ||
-               transmission_map;
-    }
 };
 
 /// Every material of a scene, and the mip chains they share.
