@@ -35,6 +35,22 @@ struct QueryContext {
     LaneVec3* transmittance = nullptr;
 };
 
+/// Scenes this small have one top level, whatever moves in them.
+constexpr std::size_t few_instances = 256;
+
+/// The top levels to be traced; the second may not be there.
+struct Levels {
+    RTCScene first, second;
+
+    template <class Visit>
+    void for_each(Visit&& visit) const {
+        visit(first);
+        if (second) {
+            visit(second);
+        }
+    }
+};
+
 struct Handle {
     RTCScene scene;
     std::vector<RTCGeometry> geometries;
@@ -131,7 +147,7 @@ bool valid_lanes(RayPacket const& rays, LaneMask active, int first, int* valid) 
 }
 
 template <int count>
-LaneMask intersect_lanes(RTCScene scene, RayPacket const& rays, LaneMask active, int first,
+LaneMask intersect_lanes(Levels const& levels, RayPacket const& rays, LaneMask active, int first,
                          EmbreeScene::Behind behind, HitPacket& hits) {
     alignas(64) int valid[count];
     if (!valid_lanes<count>(rays, active, first, valid)) {
@@ -140,6 +156,8 @@ LaneMask intersect_lanes(RTCScene scene, RayPacket const& rays, LaneMask active,
     std::conditional_t<count == 16, RTCRayHit16, RTCRayHit8> query;
     load_rays<decltype(query.ray), count>(rays, first, query.ray);
     for (int i = 0; i < count; ++i) {
+        query.hit.u[i] = query.hit.v[i] = 0;
+        query.hit.primID[i] = 0;
         query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
         query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
     }
@@ -152,20 +170,24 @@ LaneMask intersect_lanes(RTCScene scene, RayPacket const& rays, LaneMask active,
     args.context = &context.embree;
     args.flags = passes ? RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER : RTC_RAY_QUERY_FLAG_COHERENT;
     args.filter = passes ? reject_behind : nullptr;
-    if constexpr (count == 16) {
-        rtcIntersect16(valid, scene, &query, &args);
-    } else {
-        rtcIntersect8(valid, scene, &query, &args);
-    }
+    levels.for_each([&](RTCScene scene) {
+        if constexpr (count == 16) {
+            rtcIntersect16(valid, scene, &query, &args);
+        } else {
+            rtcIntersect8(valid, scene, &query, &args);
+        }
+    });
 #else
     rtcInitIntersectContext(&context.embree);
     context.embree.flags = passes ? RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT : RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     context.embree.filter = passes ? reject_behind : nullptr;
-    if constexpr (count == 16) {
-        rtcIntersect16(valid, scene, &context.embree, &query);
-    } else {
-        rtcIntersect8(valid, scene, &context.embree, &query);
-    }
+    levels.for_each([&](RTCScene scene) { // the second one only finds what is nearer
+        if constexpr (count == 16) {
+            rtcIntersect16(valid, scene, &context.embree, &query);
+        } else {
+            rtcIntersect8(valid, scene, &context.embree, &query);
+        }
+    });
 #endif
     LaneMask hit = 0;
     for (int i = 0; i < count; ++i) {
@@ -182,7 +204,8 @@ LaneMask intersect_lanes(RTCScene scene, RayPacket const& rays, LaneMask active,
 }
 
 template <int count>
-LaneMask occluded_lanes(RTCScene scene, RayPacket const& rays, LaneMask active, int first, LaneVec3& transmittance) {
+LaneMask occluded_lanes(Levels const& levels, RayPacket const& rays, LaneMask active, int first,
+                        LaneVec3& transmittance) {
     alignas(64) int valid[count];
     if (!valid_lanes<count>(rays, active, first, valid)) {
         return 0;
@@ -191,6 +214,14 @@ LaneMask occluded_lanes(RTCScene scene, RayPacket const& rays, LaneMask active, 
     load_rays<decltype(query), count>(rays, first, query);
     QueryContext context;
     context.transmittance = &transmittance;
+    LaneMask blocked = 0;
+    auto leave_out_blocked = [&] {
+        for (int i = 0; i < count; ++i) {
+            bool const met = valid[i] != 0 && query.tfar[i] < 0; // -infinity marks a hit
+            blocked |= static_cast<LaneMask>(met ? 1u : 0u) << (first + i);
+            valid[i] = met ? 0 : valid[i];
+        }
+    };
     // Embree 3's 16-wide coherent occlusion was seen not to return on instanced scenes under AVX-512.
     constexpr bool coherent = count != 16;
 #if RTC_VERSION_MAJOR >= 4
@@ -199,25 +230,27 @@ LaneMask occluded_lanes(RTCScene scene, RayPacket const& rays, LaneMask active, 
     rtcInitOccludedArguments(&args);
     args.context = &context.embree;
     args.flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
-    if constexpr (count == 16) {
-        rtcOccluded16(valid, scene, &query, &args);
-    } else {
-        rtcOccluded8(valid, scene, &query, &args);
-    }
+    levels.for_each([&](RTCScene scene) {
+        leave_out_blocked();
+        if constexpr (count == 16) {
+            rtcOccluded16(valid, scene, &query, &args);
+        } else {
+            rtcOccluded8(valid, scene, &query, &args);
+        }
+    });
 #else
     rtcInitIntersectContext(&context.embree);
     context.embree.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-    if constexpr (count == 16) {
-        rtcOccluded16(valid, scene, &context.embree, &query);
-    } else {
-        rtcOccluded8(valid, scene, &context.embree, &query);
-    }
+    levels.for_each([&](RTCScene scene) {
+        leave_out_blocked();
+        if constexpr (count == 16) {
+            rtcOccluded16(valid, scene, &context.embree, &query);
+        } else {
+            rtcOccluded8(valid, scene, &context.embree, &query);
+        }
+    });
 #endif
-    LaneMask blocked = 0;
-    for (int i = 0; i < count; ++i) {
-        bool const met = valid[i] != 0 && query.tfar[i] < 0; // -infinity marks a hit
-        blocked |= static_cast<LaneMask>(met ? 1u : 0u) << (first + i);
-    }
+    leave_out_blocked();
     return blocked;
 }
 
@@ -228,11 +261,27 @@ void report(void*, RTCError code, char const* message) {
 } // namespace
 
 struct EmbreeScene::Handles {
+    /// One of the two top levels.
+    struct Level {
+        RTCScene scene = nullptr;
+        std::size_t count = 0;
+        bool changed = true;
+    };
+    struct Placed {
+        RTCGeometry geometry;
+        bool moves;
+    };
+
     RTCDevice device = nullptr;
-    RTCScene top = nullptr;
     bool sixteen_wide = false;
     std::vector<Handle> meshes;
-    std::vector<RTCGeometry> instances;
+    std::vector<Placed> instances;
+    /// Where many instances stand still and few move, the two kinds have a level each: rebuilding one of thousands of
+    /// instances takes milliseconds, tracing a second small one nanoseconds.
+    Level still, moving;
+    bool settled = false; ///< committed once: what is placed again from now on moves
+
+    Level& level_of(Placed const& instance) { return instance.moves ? moving : still; }
 };
 
 EmbreeScene::EmbreeScene() : handles_(std::make_unique<Handles>()) {
@@ -240,16 +289,19 @@ EmbreeScene::EmbreeScene() : handles_(std::make_unique<Handles>()) {
     FRAMELET_CHECK(handles_->device != nullptr);
     rtcSetDeviceErrorFunction(handles_->device, report, nullptr);
     handles_->sixteen_wide = rtcGetDeviceProperty(handles_->device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0;
-    handles_->top = rtcNewScene(handles_->device);
-    rtcSetSceneFlags(handles_->top, query_filters);
-    rtcCommitScene(handles_->top);
+    for (Handles::Level* level : {&handles_->still, &handles_->moving}) {
+        level->scene = rtcNewScene(handles_->device);
+        rtcSetSceneFlags(level->scene, query_filters);
+        rtcCommitScene(level->scene);
+    }
 }
 
 EmbreeScene::~EmbreeScene() {
-    for (RTCGeometry const instance : handles_->instances) {
-        rtcReleaseGeometry(instance);
+    for (Handles::Placed const& instance : handles_->instances) {
+        rtcReleaseGeometry(instance.geometry);
     }
-    rtcReleaseScene(handles_->top);
+    rtcReleaseScene(handles_->still.scene);
+    rtcReleaseScene(handles_->moving.scene);
     for (Handle const& mesh : handles_->meshes) {
         for (RTCGeometry const geometry : mesh.geometries) {
             rtcReleaseGeometry(geometry);
@@ -312,13 +364,24 @@ std::uint32_t EmbreeScene::add_instance(std::uint32_t mesh) {
     rtcDisableGeometry(instance);
     rtcCommitGeometry(instance);
     unsigned const number = static_cast<unsigned>(handles_->instances.size());
-    rtcAttachGeometryByID(handles_->top, instance, number);
-    handles_->instances.push_back(instance);
+    rtcAttachGeometryByID(handles_->still.scene, instance, number);
+    handles_->instances.push_back({instance, false});
+    ++handles_->still.count;
     return number;
 }
 
 void EmbreeScene::place_instance(std::uint32_t instance, Mat3 const& linear, Vec3 const& translation, bool present) {
-    RTCGeometry const handle = handles_->instances[instance];
+    Handles::Placed& placed = handles_->instances[instance];
+    RTCGeometry const handle = placed.geometry;
+    if (handles_->settled && !placed.moves && handles_->instances.size() > few_instances) {
+        rtcDetachGeometry(handles_->still.scene, instance);
+        rtcAttachGeometryByID(handles_->moving.scene, handle, instance);
+        --handles_->still.count;
+        ++handles_->moving.count;
+        handles_->still.changed = true;
+        placed.moves = true;
+    }
+    handles_->level_of(placed).changed = true;
     if (!present) {
         rtcDisableGeometry(handle);
     } else {
@@ -330,23 +393,31 @@ void EmbreeScene::place_instance(std::uint32_t instance, Mat3 const& linear, Vec
 }
 
 void EmbreeScene::commit() {
-    rtcCommitScene(handles_->top);
+    for (Handles::Level* level : {&handles_->still, &handles_->moving}) {
+        if (level->changed) {
+            rtcCommitScene(level->scene);
+            level->changed = false;
+        }
+    }
+    handles_->settled = true;
 }
 
 LaneMask EmbreeScene::intersect(RayPacket const& rays, LaneMask active, Behind behind, HitPacket& hits) const {
+    Levels const levels{handles_->still.scene, handles_->moving.count > 0 ? handles_->moving.scene : nullptr};
     if (handles_->sixteen_wide) {
-        return intersect_lanes<16>(handles_->top, rays, active, 0, behind, hits);
+        return intersect_lanes<16>(levels, rays, active, 0, behind, hits);
     }
-    return intersect_lanes<8>(handles_->top, rays, active, 0, behind, hits) |
-           intersect_lanes<8>(handles_->top, rays, active, 8, behind, hits);
+    return intersect_lanes<8>(levels, rays, active, 0, behind, hits) |
+           intersect_lanes<8>(levels, rays, active, 8, behind, hits);
 }
 
 LaneMask EmbreeScene::occluded(RayPacket const& rays, LaneMask active, LaneVec3& transmittance) const {
+    Levels const levels{handles_->still.scene, handles_->moving.count > 0 ? handles_->moving.scene : nullptr};
     if (handles_->sixteen_wide) {
-        return occluded_lanes<16>(handles_->top, rays, active, 0, transmittance);
+        return occluded_lanes<16>(levels, rays, active, 0, transmittance);
     }
-    return occluded_lanes<8>(handles_->top, rays, active, 0, transmittance) |
-           occluded_lanes<8>(handles_->top, rays, active, 8, transmittance);
+    return occluded_lanes<8>(levels, rays, active, 0, transmittance) |
+           occluded_lanes<8>(levels, rays, active, 8, transmittance);
 }
 
 } // namespace framelet

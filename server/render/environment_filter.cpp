@@ -116,7 +116,8 @@ Vec3 direction_from_equirect(Vec2 point) {
 
 Vec3 sample_equirect(FloatImage const& map, Vec2 point) {
     float const x = point.x * static_cast<float>(map.width) - 0.5f;
-    float const y = std::clamp(point.y * static_cast<float>(map.height) - 0.5f, 0.0f, static_cast<float>(map.height - 1));
+    float const y =
+        std::clamp(point.y * static_cast<float>(map.height) - 0.5f, 0.0f, static_cast<float>(map.height - 1));
     int const column = static_cast<int>(std::floor(x));
     int const row = static_cast<int>(y);
     int const left = (column % map.width + map.width) % map.width;

@@ -46,7 +46,8 @@ void render_framelet(RenderScene const& scene, ViewRays const& view, ImagePlane 
         for (int i = 0; i < lanes; ++i) {
             std::uint32_t const sample = static_cast<std::uint32_t>(first + i);
             Vec2 const in_cell = place_in_cell(seed, tile, sample);
-            float const x = static_cast<float>(rect.left) + (static_cast<float>(morton_x(sample)) + in_cell.x) * spacing;
+            float const x =
+                static_cast<float>(rect.left) + (static_cast<float>(morton_x(sample)) + in_cell.x) * spacing;
             float const y = static_cast<float>(rect.top) + (static_cast<float>(morton_y(sample)) + in_cell.y) * spacing;
             rays.origin.set(i, view.origin + view.origin_dx * x + view.origin_dy * y);
             rays.direction.set(i, view.direction + view.direction_dx * x + view.direction_dy * y);

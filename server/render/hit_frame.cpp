@@ -134,8 +134,8 @@ LaneMask make_hit_frames(std::span<Instance const> instances, RayPacket const& r
     out.behind = hit & make_facets(handedness, out);
     LaneMask present = 0;
     for_each_lane(hit, [&](int lane) {
-        bool const culled = (out.behind >> lane & 1) != 0 &&
-                            !out.geometry[static_cast<std::size_t>(lane)]->material->double_sided;
+        bool const culled =
+            (out.behind >> lane & 1) != 0 && !out.geometry[static_cast<std::size_t>(lane)]->material->double_sided;
         present |= static_cast<LaneMask>(!culled && traceable(out.position.get(lane)) ? 1u : 0u) << lane;
     });
     return present;

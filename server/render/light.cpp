@@ -55,8 +55,8 @@ LaneMask arriving_light(RenderLight const& light, LaneVec3 const& position, Lane
         out.to_light.fill(light.towards);
         out.distance.fill(INFINITY);
         for (int i = 0; i < lanes; ++i) {
-            out.irradiance[i] = normal.x[i] * light.towards.x + normal.y[i] * light.towards.y +
-                                normal.z[i] * light.towards.z;
+            out.irradiance[i] =
+                normal.x[i] * light.towards.x + normal.y[i] * light.towards.y + normal.z[i] * light.towards.z;
         }
     } else {
         Vec3 const from = light.position;

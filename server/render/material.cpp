@@ -90,8 +90,8 @@ MaterialLibrary make_materials(Scene const& scene) {
                 out.uses_uv = true;
             }
         });
-        out.occlusion_in_roughness_map =
-            out.occlusion_map && out.metallic_roughness_map && out.occlusion_map.same_lookup(out.metallic_roughness_map);
+        out.occlusion_in_roughness_map = out.occlusion_map && out.metallic_roughness_map &&
+                                         out.occlusion_map.same_lookup(out.metallic_roughness_map);
         library.materials.push_back(out);
     }
     library.materials.push_back(with_factors(Material{}));

@@ -34,7 +34,8 @@ struct MaterialLibrary {
     std::vector<RenderMaterial> materials; ///< one a scene material, then a default one
 };
 
-/// Builds a mip chain for each use of an image that a material needs. `scene` must outlive nothing: pictures are shared.
+/// Builds a mip chain for each use of an image that a material needs. `scene` must outlive nothing: pictures are
+/// shared.
 MaterialLibrary make_materials(Scene const& scene);
 
 } // namespace framelet

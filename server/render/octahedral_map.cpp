@@ -65,8 +65,8 @@ OctahedralMap::OctahedralMap(int side, std::vector<Vec3> const& values) : side_(
                 y = std::clamp(y, 0, side - 1);
                 x = side - 1 - x;
             }
-            Vec3 const value = values[static_cast<std::size_t>(y) * static_cast<std::size_t>(side) +
-                                      static_cast<std::size_t>(x)];
+            Vec3 const value =
+                values[static_cast<std::size_t>(y) * static_cast<std::size_t>(side) + static_cast<std::size_t>(x)];
             texels_.emplace_back(value, 0.0f);
         }
     }

@@ -35,9 +35,9 @@ void add_pixels(DisplayFramelet const& framelet, ImagePlane const& plane, int sa
                     std::size_t const sample =
                         morton_index(static_cast<std::uint32_t>((x - rect.left) * samples_per_side + i),
                                      static_cast<std::uint32_t>((y - rect.top) * samples_per_side + j));
-                    sum += Vec3(linear_from_srgb_byte(framelet.red[sample]),
-                                linear_from_srgb_byte(framelet.green[sample]),
-                                linear_from_srgb_byte(framelet.blue[sample]));
+                    sum +=
+                        Vec3(linear_from_srgb_byte(framelet.red[sample]), linear_from_srgb_byte(framelet.green[sample]),
+                             linear_from_srgb_byte(framelet.blue[sample]));
                 }
             }
             std::uint8_t* const pixel = picture.row(y) + static_cast<std::ptrdiff_t>(x) * 4;
@@ -78,8 +78,7 @@ float auto_exposure(RenderScene const& scene, Camera const& camera) {
     for (Framelet const& framelet : framelets) {
         for (std::size_t i = 0; i < framelet_samples; ++i) {
             if (std::isfinite(framelet.depth[i])) {
-                luminances.push_back(0.2126 * framelet.red[i] + 0.7152 * framelet.green[i] +
-                                     0.0722 * framelet.blue[i]);
+                luminances.push_back(0.2126 * framelet.red[i] + 0.7152 * framelet.green[i] + 0.0722 * framelet.blue[i]);
             }
         }
     }

@@ -41,8 +41,8 @@ void add_environment(PreparedScene const& scene, SurfacePacket const& s, LobePac
     ambient.traced_lanes = 0;
     for_each_lane(lit, [&](int i) {
         float const roughness = s.roughness[i];
-        AmbientShares const shares = ambient_shares(scene.split_sum.at(lobes.normal_view[i], roughness),
-                                                    lobes.f0.get(i), lobes.diffuse.get(i));
+        AmbientShares const shares =
+            ambient_shares(scene.split_sum.at(lobes.normal_view[i], roughness), lobes.f0.get(i), lobes.diffuse.get(i));
         Vec3 const irradiance = scene.environment.diffuse(s.normal.get(i));
         Vec3 const filtered = scene.environment.specular(mirrored(s, i), roughness);
         Vec3 const diffuse_part = shares.diffuse * irradiance * s.occlusion[i];

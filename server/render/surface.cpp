@@ -195,8 +195,8 @@ Vec3 transmittance_at(Geometry const& geometry, std::uint32_t triangle, float u,
     }
     float transmission = material.transmission * (1 - material.metallic);
     if (material.transmission_map) {
-        transmission *= material.transmission_map.sample(
-            uv_of(geometry, point, material.transmission_map.uv_set()), {}).r;
+        transmission *=
+            material.transmission_map.sample(uv_of(geometry, point, material.transmission_map.uv_set()), {}).r;
     }
     return Vec3(1 - presence) + tint * (presence * transmission * 0.96f); // 4% are reflected
 }

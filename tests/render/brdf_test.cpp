@@ -51,8 +51,8 @@ TEST(Brdf, NeverReflectsMoreThanArrives) {
                     float const theta = (static_cast<float>(i) + 0.5f) / steps * 1.5707963f;
                     float const phi = (static_cast<float>(j) + 0.5f) / steps * 6.2831853f;
                     double const solid_angle = std::sin(theta) * 1.5707963 / steps * 6.2831853 / steps;
-                    sum += reflected(Vec3(1), 1, roughness, at_angle(view, 0), at_angle(theta, phi)) *
-                           std::cos(theta) * solid_angle;
+                    sum += reflected(Vec3(1), 1, roughness, at_angle(view, 0), at_angle(theta, phi)) * std::cos(theta) *
+                           solid_angle;
                 }
             }
             EXPECT_LT(sum, 1.02) << roughness << ' ' << view;

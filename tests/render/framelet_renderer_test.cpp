@@ -254,8 +254,20 @@ Scene degenerate_scene(unsigned seed) {
     std::mt19937 random(seed);
     auto uniform = [&](float low, float high) { return std::uniform_real_distribution<float>(low, high)(random); };
     auto awkward = [&]() -> float {
-        float const choices[] = {0, 1, -1, 1e-20f, 1e-8f, 1e4f, -1e6f, 1e15f, uniform(-2, 2), uniform(-2, 2),
-                                 uniform(-2, 2), uniform(-2, 2), uniform(-2, 2), uniform(-2, 2)};
+        float const choices[] = {0,
+                                 1,
+                                 -1,
+                                 1e-20f,
+                                 1e-8f,
+                                 1e4f,
+                                 -1e6f,
+                                 1e15f,
+                                 uniform(-2, 2),
+                                 uniform(-2, 2),
+                                 uniform(-2, 2),
+                                 uniform(-2, 2),
+                                 uniform(-2, 2),
+                                 uniform(-2, 2)};
         return choices[random() % std::size(choices)];
     };
     auto vector = [&] { return Vec3(awkward(), awkward(), awkward()); };
@@ -324,7 +336,8 @@ TEST(FrameletRenderer, DegenerateScenesYieldFiniteLight) {
         for (Framelet const& f : out) {
             for (std::size_t i = 0; i < framelet_samples; ++i) {
                 for (float const v : {f.red[i], f.green[i], f.blue[i]}) {
-                    ASSERT_TRUE(std::isfinite(v) && v >= 0) << v << " seed " << seed << " tile " << f.tile.code << ' ' << i;
+                    ASSERT_TRUE(std::isfinite(v) && v >= 0)
+                        << v << " seed " << seed << " tile " << f.tile.code << ' ' << i;
                 }
                 ASSERT_TRUE(f.depth[i] > 0) << "seed " << seed << " tile " << f.tile.code << ' ' << i;
             }

@@ -19,9 +19,9 @@ struct Furnace {
 
 TEST(Shading, WhiteSphereInAWhiteFurnaceIsWhite) {
     // Rough metal included: light that bounces between facets is accounted for. The tolerance is that of the tables.
-    for (Furnace const& f : {Furnace{"matte", 0, 1, 0.005f}, Furnace{"plastic", 0, 0.3f, 0.005f},
-                             Furnace{"mirror", 1, 0, 0.005f}, Furnace{"brushed", 1, 0.4f, 0.005f},
-                             Furnace{"rough metal", 1, 1, 0.005f}}) {
+    for (Furnace const& f :
+         {Furnace{"matte", 0, 1, 0.005f}, Furnace{"plastic", 0, 0.3f, 0.005f}, Furnace{"mirror", 1, 0, 0.005f},
+          Furnace{"brushed", 1, 0.4f, 0.005f}, Furnace{"rough metal", 1, 1, 0.005f}}) {
         Scene scene;
         Material white = matte(Vec3(1));
         white.metallic = f.metallic;
@@ -158,10 +158,10 @@ TEST(Shading, SurfacesDoNotShadowThemselvesAtAnyScale) {
                     if (x * x + y * y > 0.85f) {
                         continue;
                     }
-                    Seen const seen =
-                        look_along(ready, place.translation + scale * Vec3(x, y, 5), Vec3(0, 0, -scale));
+                    Seen const seen = look_along(ready, place.translation + scale * Vec3(x, y, 5), Vec3(0, 0, -scale));
                     float const cosine = std::sqrt(1 - x * x - y * y);
-                    EXPECT_NEAR(seen.radiance.g, 0.5f / pi * cosine, 0.03f) << scale << ' ' << away << ' ' << x << ' ' << y;
+                    EXPECT_NEAR(seen.radiance.g, 0.5f / pi * cosine, 0.03f)
+                        << scale << ' ' << away << ' ' << x << ' ' << y;
                 }
             }
         }
