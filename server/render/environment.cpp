@@ -42,16 +42,31 @@ Vec3 clear_sky(Vec3 const& direction) {
     return glm::mix(ground, sky, std::clamp(up / 0.02f + 0.5f, 0.0f, 1.0f)); // a horizon about a degree wide
 }
 
+/// Finite and >= 0. A sun in one primary colour alone, exactly 0 in the others, is what a capture leaves that clipped
+/// each channel by itself; it would dye the whole scene, so it counts as white.
+FloatImage cleaned(FloatImage map) {
+    double sum = 0;
+    for (Vec3& texel : map.rgb) {
+        for (int c = 0; c < 3; ++c) {
+            texel[c] = texel[c] > 0 ? std::min(texel[c], 65504.0f) : 0.0f;
+        }
+        sum += std::max({texel.r, texel.g, texel.b});
+    }
+    float const sun = static_cast<float>(100 * sum / static_cast<double>(map.rgb.size()));
+    for (Vec3& texel : map.rgb) {
+        float const brightest = std::max({texel.r, texel.g, texel.b});
+        if (brightest > sun && texel.r + texel.g + texel.b == brightest) {
+            texel = Vec3(brightest);
+        }
+    }
+    return map;
+}
+
 } // namespace
 
 Environment::Environment(FloatImage const& radiance) {
     FRAMELET_CHECK(radiance.width > 0 && radiance.height > 0);
-    FloatImage clean = radiance;
-    for (Vec3& texel : clean.rgb) {
-        for (int c = 0; c < 3; ++c) {
-            texel[c] = texel[c] > 0 ? std::min(texel[c], 65504.0f) : 0.0f;
-        }
-    }
+    FloatImage const clean = cleaned(radiance);
     background_levels_ = equirect_levels(clean);
     std::size_t first = 0;
     while (first + 1 < background_levels_.size() && background_levels_[first].width > largest_filter_width) {

@@ -124,6 +124,16 @@ TEST(Environment, TinyBrightSunLightsSmoothly) {
     EXPECT_TRUE(std::isfinite(environment.background(direction_from_equirect({3.5f / 1024, 7.5f / 512}), 0).g));
 }
 
+TEST(Environment, SunOfOneClippedChannelIsWhite) {
+    FloatImage map(64, 32);
+    map.rgb.assign(map.rgb.size(), Vec3(0.1f, 0.2f, 0.5f));
+    map.at(20, 8) = Vec3(0, 0, 5000);
+    map.at(50, 20) = Vec3(0, 0, 3); // a blue lamp stays blue
+    Environment const environment(map);
+    EXPECT_EQ(environment.background(direction_from_equirect({20.5f / 64, 8.5f / 32}), 0).r, 5000);
+    EXPECT_NEAR(environment.background(direction_from_equirect({50.5f / 64, 20.5f / 32}), 0).r, 0, 1e-3f);
+}
+
 TEST(Environment, DefaultSkyIsBlueAboveAndNeutralBelow) {
     Environment const sky = Environment::default_sky();
     Vec3 const up = sky.background({0, 1, 0}, 0);
