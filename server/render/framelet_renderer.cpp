@@ -56,7 +56,7 @@ void render_framelet(RenderScene const& scene, ViewRays const& view, ImagePlane 
         rays.far.fill(INFINITY);
         trace(scene.prepared(), rays, all_lanes, footprint, mirror_bounces, traced);
         for (int i = 0; i < lanes; ++i) {
-            std::size_t const sample = static_cast<std::size_t>(first + i);
+            std::size_t const sample = static_cast<std::size_t>(first) + static_cast<std::size_t>(i);
             out.red[sample] = traced.radiance.x[i];
             out.green[sample] = traced.radiance.y[i];
             out.blue[sample] = traced.radiance.z[i];

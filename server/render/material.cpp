@@ -68,6 +68,7 @@ MaterialLibrary make_materials(Scene const& scene) {
     }
 
     std::vector<ChainKey> keys;
+    keys.reserve(chains.size());
     for (auto const& entry : chains) {
         keys.push_back(entry.first);
     }

@@ -43,7 +43,7 @@ SplitSumTable::SplitSumTable() {
         for (int i = 0; i < side; ++i) {
             float const nv = std::max(static_cast<float>(i) / (side - 1), 0.01f);
             float const roughness = std::max(static_cast<float>(j) / (side - 1), 0.03f);
-            values_[static_cast<std::size_t>(j * side + i)] = integrate(nv, roughness);
+            values_[static_cast<std::size_t>(j) * row + static_cast<std::size_t>(i)] = integrate(nv, roughness);
         }
     }
 }
@@ -55,7 +55,7 @@ Vec2 SplitSumTable::at(float normal_view, float roughness) const {
     int const j = std::min(static_cast<int>(y), side - 2);
     float const s = x - static_cast<float>(i);
     float const t = y - static_cast<float>(j);
-    Vec2 const* v = &values_[static_cast<std::size_t>(j * side + i)];
+    Vec2 const* v = &values_[static_cast<std::size_t>(j) * row + static_cast<std::size_t>(i)];
     Vec2 const upper = v[0] + (v[1] - v[0]) * s;
     Vec2 const lower = v[side] + (v[side + 1] - v[side]) * s;
     return upper + (lower - upper) * t;

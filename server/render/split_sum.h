@@ -18,7 +18,8 @@ public:
 
 private:
     static constexpr int side = 32;
-    std::array<Vec2, side * side> values_;
+    static constexpr std::size_t row = side;
+    std::array<Vec2, row * row> values_;
 };
 
 /// Shares of environment light that a surface returns, from prefiltered radiance and from irradiance / pi. Light that
