@@ -93,9 +93,9 @@ DisplayFramelet to_display(Framelet const& framelet, float exposure) {
         float green = framelet.green[i] * exposure;
         float blue = framelet.blue[i] * exposure;
         tone_map(red, green, blue);
-        steps[0][i] = static_cast<std::int32_t>(red * Tables::steps + 0.5f);
-        steps[1][i] = static_cast<std::int32_t>(green * Tables::steps + 0.5f);
-        steps[2][i] = static_cast<std::int32_t>(blue * Tables::steps + 0.5f);
+        steps[0][i] = static_cast<std::int32_t>(red * TransferTables::steps + 0.5f);
+        steps[1][i] = static_cast<std::int32_t>(green * TransferTables::steps + 0.5f);
+        steps[2][i] = static_cast<std::int32_t>(blue * TransferTables::steps + 0.5f);
     }
     DisplayFramelet out;
     out.tile = framelet.tile;
