@@ -195,6 +195,16 @@ struct ClientCore::Impl {
     }
 
     /// Under the lock.
+    ClockState clock_now() const {
+        ClockState out = status.clock;
+        if (out.playing) {
+            double const elapsed = seconds_between(status_time, Clock::now());
+            out.time = std::max(0.0, out.time + elapsed * static_cast<double>(out.speed));
+        }
+        return out;
+    }
+
+    /// Under the lock.
     void note_round_trip(std::uint64_t camera_number, Clock::time_point received) {
         std::optional<double> seconds;
         while (!sent_cameras.empty() && sent_cameras.front().number <= camera_number) {
@@ -244,6 +254,17 @@ void ClientCore::set_settings(ViewerSettings const& settings) {
 }
 
 void ClientCore::request_clock(ClockRequest const& request) {
+    {
+        std::lock_guard const lock(impl_->mutex);
+        ClockState& clock = impl_->status.clock;
+        clock = impl_->clock_now();
+        impl_->status_time = Clock::now();
+        clock.time = (request.set & ClockRequest::time) != 0 ? request.state.time : clock.time;
+        clock.playing = (request.set & ClockRequest::playing) != 0 ? request.state.playing : clock.playing;
+        clock.speed = (request.set & ClockRequest::speed) != 0 ? request.state.speed : clock.speed;
+        impl_->status.converged = false;
+        impl_->statistics.converged = false;
+    }
     impl_->connection->send(request);
 }
 
@@ -307,12 +328,7 @@ Status ClientCore::status() const {
 
 ClockState ClientCore::clock() const {
     std::lock_guard const lock(impl_->mutex);
-    ClockState out = impl_->status.clock;
-    if (out.playing) {
-        double const elapsed = seconds_between(impl_->status_time, Clock::now());
-        out.time = std::max(0.0, out.time + elapsed * static_cast<double>(out.speed));
-    }
-    return out;
+    return impl_->clock_now();
 }
 
 Camera ClientCore::shown_camera() const {

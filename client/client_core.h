@@ -62,6 +62,7 @@ public:
     /// camera of the scene. Call it at most once a display frame; a view that equals the last one costs nothing.
     void set_view(Camera const& camera, Viewport viewport, int scene_camera = -1);
     void set_settings(ViewerSettings const& settings);
+    /// `clock` answers as if it were granted, until the server says how it is.
     void request_clock(ClockRequest const& request);
 
     /// Brings `picture` up to date; true when it changed. `changed` gets the rectangles that may differ. While nothing
