@@ -14,11 +14,19 @@ int ceil_div(int value, int divisor) {
     return (value + divisor - 1) / divisor;
 }
 
-/// Four samples that follow each other in Morton order are a 2x2 square: two pairs, each of which stays together.
+/// Where in rows the samples 2i and 2i + 1 in Morton order lie: they are neighbours.
+constexpr auto pair_places = [] {
+    std::array<std::uint8_t, framelet_samples / 2> out{};
+    for (std::uint32_t i = 0; i < framelet_samples; i += 2) {
+        out[i / 2] = static_cast<std::uint8_t>(framelet_side * morton_y(i) + morton_x(i));
+    }
+    return out;
+}();
+
 void rows_from_morton(std::array<std::uint8_t, framelet_samples> const& morton,
                       std::array<std::uint8_t, framelet_samples>& rows) {
-    for (std::uint32_t i = 0; i < framelet_samples; i += 2) {
-        std::memcpy(&rows[framelet_side * morton_y(i) + morton_x(i)], &morton[i], 2);
+    for (std::size_t i = 0; i < pair_places.size(); ++i) {
+        std::memcpy(&rows[pair_places[i]], &morton[2 * i], 2);
     }
 }
 
@@ -36,34 +44,6 @@ FrameletCache::FrameletCache(ImagePlane plane) : plane_(plane) {
     nodes_.resize(nodes);
     Level const& blocks = level(plane.pixel_depth());
     changed_blocks_.resize(static_cast<std::size_t>(blocks.columns) * static_cast<std::size_t>(blocks.rows));
-}
-
-FrameletCache::Node& FrameletCache::node(int depth, int column, int row) {
-    Level const& l = level(depth);
-    return nodes_[l.first + static_cast<std::size_t>(row) * static_cast<std::size_t>(l.columns) +
-                  static_cast<std::size_t>(column)];
-}
-
-FrameletCache::Node const& FrameletCache::node(int depth, int column, int row) const {
-    return const_cast<FrameletCache*>(this)->node(depth, column, row);
-}
-
-CachedFramelet& FrameletCache::held(std::int32_t slot) {
-    auto const index = static_cast<std::size_t>(slot);
-    return (*chunks_[index / std::tuple_size_v<Chunk>])[index % std::tuple_size_v<Chunk>];
-}
-
-CachedFramelet const& FrameletCache::held(std::int32_t slot) const {
-    return const_cast<FrameletCache*>(this)->held(slot);
-}
-
-CachedFramelet const* FrameletCache::find(int depth, int column, int row) const {
-    Level const& l = level(depth);
-    if (column < 0 || row < 0 || column >= l.columns || row >= l.rows) {
-        return nullptr;
-    }
-    std::int32_t const slot = node(depth, column, row).slot;
-    return slot == no_slot ? nullptr : &held(slot);
 }
 
 std::uint64_t FrameletCache::covered_below(int depth, int column, int row) const {

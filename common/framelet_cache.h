@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "common/framelet.h"
@@ -62,7 +63,14 @@ public:
 
     /// The framelet held for exactly this tile, or null. Any column and row may be asked for; the depth must be within
     /// the plane's limits.
-    CachedFramelet const* find(int depth, int column, int row) const;
+    CachedFramelet const* find(int depth, int column, int row) const {
+        Level const& l = level(depth);
+        if (column < 0 || row < 0 || column >= l.columns || row >= l.rows) {
+            return nullptr;
+        }
+        std::int32_t const slot = node(depth, column, row).slot;
+        return slot == no_slot ? nullptr : &held(slot);
+    }
     /// The lowest batch number that shows through where only the tiles below this one are looked at; 0 where they leave
     /// a part of it bare. The tile must be visible.
     std::uint64_t covered_below(int depth, int column, int row) const;
@@ -84,10 +92,19 @@ private:
     using Chunk = std::array<CachedFramelet, 256>;
 
     Level const& level(int depth) const { return levels_[static_cast<std::size_t>(depth - plane_.min_depth())]; }
-    Node& node(int depth, int column, int row);
-    Node const& node(int depth, int column, int row) const;
-    CachedFramelet& held(std::int32_t slot);
-    CachedFramelet const& held(std::int32_t slot) const;
+    Node const& node(int depth, int column, int row) const {
+        Level const& l = level(depth);
+        return nodes_[l.first + static_cast<std::size_t>(row) * static_cast<std::size_t>(l.columns) +
+                      static_cast<std::size_t>(column)];
+    }
+    Node& node(int depth, int column, int row) {
+        return const_cast<Node&>(std::as_const(*this).node(depth, column, row));
+    }
+    CachedFramelet const& held(std::int32_t slot) const {
+        auto const index = static_cast<std::size_t>(slot);
+        return (*chunks_[index / std::tuple_size_v<Chunk>])[index % std::tuple_size_v<Chunk>];
+    }
+    CachedFramelet& held(std::int32_t slot) { return const_cast<CachedFramelet&>(std::as_const(*this).held(slot)); }
 
     bool insert_one(DisplayFramelet const& framelet, Moment const& moment);
     bool is_hidden(int depth, int column, int row, std::uint64_t batch) const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstring>
 
 #include <tbb/parallel_for.h>
@@ -16,16 +17,32 @@ namespace {
 constexpr int side = FrameletCache::block_side;
 constexpr int deepest_apron_levels = 2;
 
-/// Pixels of one block, RGBA.
-using Block = std::array<std::uint8_t, side * side * 4>;
+/// Pixels of one block, each as its four bytes lie in a picture.
+using Block = std::array<std::uint32_t, side * side>;
+
+/// Where a colour's byte stands in a pixel that is one number.
+constexpr bool little = std::endian::native == std::endian::little;
+constexpr int red_shift = little ? 0 : 24;
+constexpr int green_shift = little ? 8 : 16;
+constexpr int blue_shift = little ? 16 : 8;
+constexpr std::uint32_t opaque = 255u << (little ? 24 : 0);
+
+constexpr std::uint32_t pixel_of(std::uint32_t red, std::uint32_t green, std::uint32_t blue) {
+    return red << red_shift | green << green_shift | blue << blue_shift | opaque;
+}
 
 struct LinearColor {
     float red = 0, green = 0, blue = 0;
 };
 
-std::uint8_t encode(TransferTables const& tables, float linear) {
-    // Means and interpolations of table values stay in [0, 1].
-    return tables.encoded[static_cast<std::size_t>(linear * TransferTables::steps + 0.5f)];
+/// Place in the table of bytes. Means and interpolations of table values stay in [0, 1].
+std::int32_t step_of(float linear) {
+    return static_cast<std::int32_t>(linear * TransferTables::steps + 0.5f);
+}
+
+std::uint32_t pixel_at(TransferTables const& tables, std::int32_t red, std::int32_t green, std::int32_t blue) {
+    return pixel_of(tables.encoded[static_cast<std::size_t>(red)], tables.encoded[static_cast<std::size_t>(green)],
+                    tables.encoded[static_cast<std::size_t>(blue)]);
 }
 
 LinearColor sample_at(TransferTables const& tables, CachedFramelet const& framelet, int x, int y) {
@@ -134,27 +151,29 @@ template <int spacing>
 void interpolate(TransferTables const& tables, Neighbourhood<spacing> const& samples, Block& block) {
     static constexpr Places<spacing> places;
     constexpr std::size_t across = Neighbourhood<spacing>::across;
+    std::array<std::array<std::array<float, side>, across>, 3> wide; // as wide as the block, as high as the samples
     for (std::size_t color = 0; color < 3; ++color) {
-        std::array<std::array<float, side>, across> wide;
         for (std::size_t row = 0; row < across; ++row) {
             auto const& from = samples.planes[color][row];
             for (std::size_t i = 0; i < side; ++i) {
                 auto const at = static_cast<std::size_t>(places.index[i]);
-                wide[row][i] = from[at] + places.weight[i] * (from[at + 1] - from[at]);
+                wide[color][row][i] = from[at] + places.weight[i] * (from[at + 1] - from[at]);
             }
         }
-        for (std::size_t y = 0; y < side; ++y) {
-            auto const& above = wide[static_cast<std::size_t>(places.index[y])];
-            auto const& below = wide[static_cast<std::size_t>(places.index[y]) + 1];
-            float const weight = places.weight[y];
-            std::array<int, side> steps;
+    }
+    for (std::size_t y = 0; y < side; ++y) {
+        auto const row = static_cast<std::size_t>(places.index[y]);
+        float const weight = places.weight[y];
+        std::array<std::array<std::int32_t, side>, 3> steps;
+        for (std::size_t color = 0; color < 3; ++color) {
+            auto const& above = wide[color][row];
+            auto const& below = wide[color][row + 1];
             for (std::size_t i = 0; i < side; ++i) {
-                float const linear = above[i] + weight * (below[i] - above[i]);
-                steps[i] = static_cast<int>(linear * TransferTables::steps + 0.5f);
+                steps[color][i] = step_of(above[i] + weight * (below[i] - above[i]));
             }
-            for (std::size_t i = 0; i < side; ++i) {
-                block[(y * side + i) * 4 + color] = tables.encoded[static_cast<std::size_t>(steps[i])];
-            }
+        }
+        for (std::size_t i = 0; i < side; ++i) {
+            block[y * side + i] = pixel_at(tables, steps[0][i], steps[1][i], steps[2][i]);
         }
     }
 }
@@ -167,29 +186,57 @@ void paint_coarse(TransferTables const& tables, FrameletCache const& cache, Cach
 
 void paint_pixels(CachedFramelet const& framelet, Block& block) {
     for (std::size_t i = 0; i < framelet_samples; ++i) {
-        block[4 * i] = framelet.samples[0][i];
-        block[4 * i + 1] = framelet.samples[1][i];
-        block[4 * i + 2] = framelet.samples[2][i];
+        block[i] = pixel_of(framelet.samples[0][i], framelet.samples[1][i], framelet.samples[2][i]);
+    }
+}
+
+/// Out of line: inlined next to arithmetic, the table look-ups get entangled in it by the vectoriser.
+[[gnu::noinline]] void to_linear(TransferTables const& tables,
+                                 std::array<std::uint8_t, framelet_samples> const& samples,
+                                 std::array<float, framelet_samples>& out) {
+    for (std::size_t i = 0; i < framelet_samples; ++i) {
+        out[i] = tables.linear[samples[i]];
     }
 }
 
 /// A framelet of 2^levels x 2^levels samples a pixel, whose first pixel is (left, top) of the block.
 template <int levels>
 void paint_fine(TransferTables const& tables, CachedFramelet const& framelet, int left, int top, Block& block) {
-    constexpr int n = 1 << levels;
-    for (int y = 0; y < side / n; ++y) {
-        for (int x = 0; x < side / n; ++x) {
-            LinearColor const mean = mean_at(tables, framelet, x * n, y * n, n);
-            std::uint8_t* const pixel = &block[static_cast<std::size_t>(((top + y) * side + left + x) * 4)];
-            pixel[0] = encode(tables, mean.red);
-            pixel[1] = encode(tables, mean.green);
-            pixel[2] = encode(tables, mean.blue);
+    constexpr std::size_t n = 1 << levels;
+    constexpr std::size_t pixels = side / n; // along a side
+    constexpr float scale = 1.0f / (n * n);
+    std::array<std::array<std::int32_t, pixels * pixels>, 3> steps;
+    std::array<float, framelet_samples> linear;
+    for (std::size_t color = 0; color < 3; ++color) {
+        to_linear(tables, framelet.samples[color], linear);
+        for (std::size_t y = 0; y < pixels; ++y) {
+            std::array<float, side> columns{}; // sums of the n rows
+            for (std::size_t j = 0; j < n; ++j) {
+                for (std::size_t i = 0; i < side; ++i) {
+                    columns[i] += linear[(y * n + j) * side + i];
+                }
+            }
+            for (std::size_t x = 0; x < pixels; ++x) {
+                float sum = 0;
+                for (std::size_t i = 0; i < n; ++i) {
+                    sum += columns[x * n + i];
+                }
+                steps[color][y * pixels + x] = step_of(sum * scale);
+            }
+        }
+    }
+    std::uint32_t* row = &block[static_cast<std::size_t>(top * side + left)];
+    for (std::size_t y = 0; y < pixels; ++y, row += side) {
+        for (std::size_t x = 0; x < pixels; ++x) {
+            std::size_t const i = y * pixels + x;
+            row[x] = pixel_at(tables, steps[0][i], steps[1][i], steps[2][i]);
         }
     }
 }
 
 void paint_uncovered(TransferTables const& tables, Block& block) {
-    block.fill(encode(tables, uncovered_light));
+    std::int32_t const step = step_of(uncovered_light);
+    block.fill(pixel_at(tables, step, step, step));
 }
 
 /// The newest framelet that covers the whole block; of two of one batch the finer one.
@@ -242,9 +289,6 @@ void paint_block(TransferTables const& tables, FrameletCache const& cache, int c
             }
         }
     }
-    for (std::size_t i = 0; i < side * side; ++i) {
-        block[4 * i + 3] = 255;
-    }
 }
 
 void paint_block_row(TransferTables const& tables, FrameletCache const& cache, int first_column, int last_column,
@@ -253,10 +297,10 @@ void paint_block_row(TransferTables const& tables, FrameletCache const& cache, i
     int const rows = std::min(side, picture.height - row * side);
     for (int column = first_column; column < last_column; ++column) {
         paint_block(tables, cache, column, row, block);
-        auto const bytes = static_cast<std::size_t>(std::min(side, picture.width - column * side)) * 4;
+        auto const bytes = static_cast<std::size_t>(std::min(side, picture.width - column * side)) * sizeof block[0];
         for (int y = 0; y < rows; ++y) {
             std::memcpy(picture.row(row * side + y) + static_cast<std::size_t>(column) * side * 4,
-                        &block[static_cast<std::size_t>(y) * side * 4], bytes);
+                        &block[static_cast<std::size_t>(y) * side], bytes);
         }
     }
 }
