@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <vector>
 
 namespace framelet {
 
@@ -57,25 +56,25 @@ float linear_from_srgb(float encoded) {
 
 namespace {
 
-struct Tables {
-    static constexpr int steps = 1 << 14; // fine enough that the steepest part of the curve moves < 0.5 byte a step
-    std::array<float, 256> linear{};
-    std::vector<std::uint8_t> encoded = std::vector<std::uint8_t>(steps + 1);
-
-    Tables() {
-        for (int i = 0; i < 256; ++i) {
-            linear[static_cast<std::size_t>(i)] = linear_from_srgb(static_cast<float>(i) / 255.0f);
-        }
-        for (int i = 0; i <= steps; ++i) {
-            float const value = srgb_from_linear(static_cast<float>(i) / steps);
-            encoded[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(std::lround(255 * value));
-        }
+TransferTables make_tables() {
+    TransferTables out;
+    for (int i = 0; i < 256; ++i) {
+        out.linear[static_cast<std::size_t>(i)] = linear_from_srgb(static_cast<float>(i) / 255.0f);
     }
-};
+    for (int i = 0; i <= TransferTables::steps; ++i) {
+        float const value = srgb_from_linear(static_cast<float>(i) / TransferTables::steps);
+        out.encoded[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(std::lround(255 * value));
+    }
+    return out;
+}
 
-Tables const tables;
+TransferTables const tables = make_tables();
 
 } // namespace
+
+TransferTables const& transfer_tables() {
+    return tables;
+}
 
 float linear_from_srgb_byte(std::uint8_t encoded) {
     return tables.linear[encoded];
@@ -84,7 +83,7 @@ float linear_from_srgb_byte(std::uint8_t encoded) {
 std::uint8_t srgb_byte_from_linear(float linear) {
     // Written so that NaN compares false and lands on 0.
     float const clamped = linear > 0 ? (linear < 1 ? linear : 1.0f) : 0.0f;
-    return tables.encoded[static_cast<std::size_t>(clamped * Tables::steps + 0.5f)];
+    return tables.encoded[static_cast<std::size_t>(clamped * TransferTables::steps + 0.5f)];
 }
 
 DisplayFramelet to_display(Framelet const& framelet, float exposure) {
@@ -94,9 +93,9 @@ DisplayFramelet to_display(Framelet const& framelet, float exposure) {
         float green = framelet.green[i] * exposure;
         float blue = framelet.blue[i] * exposure;
         tone_map(red, green, blue);
-        steps[0][i] = static_cast<std::int32_t>(red * Tables::steps + 0.5f);
-        steps[1][i] = static_cast<std::int32_t>(green * Tables::steps + 0.5f);
-        steps[2][i] = static_cast<std::int32_t>(blue * Tables::steps + 0.5f);
+        steps[0][i] = static_cast<std::int32_t>(red * TransferTables::steps + 0.5f);
+        steps[1][i] = static_cast<std::int32_t>(green * TransferTables::steps + 0.5f);
+        steps[2][i] = static_cast<std::int32_t>(blue * TransferTables::steps + 0.5f);
     }
     DisplayFramelet out;
     out.tile = framelet.tile;
