@@ -3,25 +3,47 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <vector>
 
 namespace framelet {
 
-Vec3 tone_map(Vec3 color) {
+namespace {
+
+float smaller(float a, float b) {
+    return a < b ? a : b;
+}
+float larger(float a, float b) {
+    return a > b ? a : b;
+}
+float to_unit(float value) {
+    return larger(smaller(value, 1), 0);
+}
+
+/// The curve itself, without branches, so that a loop over samples becomes vector code.
+inline void tone_map(float& red, float& green, float& blue) {
     constexpr float start_compression = 0.8f - 0.04f;
     constexpr float desaturation = 0.15f;
-    float const low = std::min({color.r, color.g, color.b});
-    float const offset = low < 0.08f ? low - 6.25f * low * low : 0.04f;
-    color -= offset;
-    float const peak = std::max({color.r, color.g, color.b});
-    if (peak < start_compression) {
-        return glm::max(color, Vec3(0));
-    }
     constexpr float d = 1 - start_compression;
-    float const new_peak = 1 - d * d / (peak + d - start_compression);
-    color *= new_peak / peak;
-    float const g = 1 - 1 / (desaturation * (peak - new_peak) + 1);
-    return glm::clamp(glm::mix(color, Vec3(new_peak), g), Vec3(0), Vec3(1));
+    float const low = smaller(smaller(red, green), blue);
+    float const offset = low < 0.08f ? low - 6.25f * low * low : 0.04f;
+    red -= offset;
+    green -= offset;
+    blue -= offset;
+    float const peak = larger(larger(red, green), blue);
+    // Below the start of the compression both factors come out as "change nothing".
+    float const excess = larger(peak - start_compression, 0);
+    float const new_peak = excess > 0 ? 1 - d * d / (excess + d) : peak;
+    float const scale = excess > 0 ? new_peak / larger(peak, start_compression) : 1;
+    float const white = excess > 0 ? 1 - 1 / (desaturation * (peak - new_peak) + 1) : 0;
+    red = to_unit(red * scale * (1 - white) + new_peak * white);
+    green = to_unit(green * scale * (1 - white) + new_peak * white);
+    blue = to_unit(blue * scale * (1 - white) + new_peak * white);
+}
+
+} // namespace
+
+Vec3 tone_map(Vec3 color) {
+    tone_map(color.r, color.g, color.b);
+    return color;
 }
 
 float srgb_from_linear(float linear) {
@@ -34,25 +56,25 @@ float linear_from_srgb(float encoded) {
 
 namespace {
 
-struct Tables {
-    static constexpr int steps = 1 << 14; // fine enough that the steepest part of the curve moves < 0.5 byte a step
-    std::array<float, 256> linear{};
-    std::vector<std::uint8_t> encoded = std::vector<std::uint8_t>(steps + 1);
-
-    Tables() {
-        for (int i = 0; i < 256; ++i) {
-            linear[static_cast<std::size_t>(i)] = linear_from_srgb(static_cast<float>(i) / 255.0f);
-        }
-        for (int i = 0; i <= steps; ++i) {
-            float const value = srgb_from_linear(static_cast<float>(i) / steps);
-            encoded[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(std::lround(255 * value));
-        }
+TransferTables make_tables() {
+    TransferTables out;
+    for (int i = 0; i < 256; ++i) {
+        out.linear[static_cast<std::size_t>(i)] = linear_from_srgb(static_cast<float>(i) / 255.0f);
     }
-};
+    for (int i = 0; i <= TransferTables::steps; ++i) {
+        float const value = srgb_from_linear(static_cast<float>(i) / TransferTables::steps);
+        out.encoded[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(std::lround(255 * value));
+    }
+    return out;
+}
 
-Tables const tables;
+TransferTables const tables = make_tables();
 
 } // namespace
+
+TransferTables const& transfer_tables() {
+    return tables;
+}
 
 float linear_from_srgb_byte(std::uint8_t encoded) {
     return tables.linear[encoded];
@@ -61,17 +83,27 @@ float linear_from_srgb_byte(std::uint8_t encoded) {
 std::uint8_t srgb_byte_from_linear(float linear) {
     // Written so that NaN compares false and lands on 0.
     float const clamped = linear > 0 ? (linear < 1 ? linear : 1.0f) : 0.0f;
-    return tables.encoded[static_cast<std::size_t>(clamped * Tables::steps + 0.5f)];
+    return tables.encoded[static_cast<std::size_t>(clamped * TransferTables::steps + 0.5f)];
 }
 
 DisplayFramelet to_display(Framelet const& framelet, float exposure) {
+    std::array<std::array<std::int32_t, framelet_samples>, 3> steps;
+    for (std::size_t i = 0; i < framelet_samples; ++i) {
+        float red = framelet.red[i] * exposure;
+        float green = framelet.green[i] * exposure;
+        float blue = framelet.blue[i] * exposure;
+        tone_map(red, green, blue);
+        steps[0][i] = static_cast<std::int32_t>(red * TransferTables::steps + 0.5f);
+        steps[1][i] = static_cast<std::int32_t>(green * TransferTables::steps + 0.5f);
+        steps[2][i] = static_cast<std::int32_t>(blue * TransferTables::steps + 0.5f);
+    }
     DisplayFramelet out;
     out.tile = framelet.tile;
+    std::uint8_t const* const encoded = tables.encoded.data(); // a copy: bytes written below might alias the original
     for (std::size_t i = 0; i < framelet_samples; ++i) {
-        Vec3 const display = tone_map(Vec3(framelet.red[i], framelet.green[i], framelet.blue[i]) * exposure);
-        out.red[i] = srgb_byte_from_linear(display.r);
-        out.green[i] = srgb_byte_from_linear(display.g);
-        out.blue[i] = srgb_byte_from_linear(display.b);
+        out.red[i] = encoded[steps[0][i]];
+        out.green[i] = encoded[steps[1][i]];
+        out.blue[i] = encoded[steps[2][i]];
     }
     return out;
 }

@@ -1,6 +1,7 @@
 // From scene-linear radiance to display bytes and back: exposure, tone curve, sRGB transfer function.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "common/framelet.h"
@@ -21,6 +22,14 @@ float linear_from_srgb_byte(std::uint8_t encoded);
 /// Nearest byte by table: at most half a step of the byte off near the middle of a step, clamps outside [0, 1], NaN is
 /// 0.
 std::uint8_t srgb_byte_from_linear(float linear);
+
+/// The tables behind the two functions above, for inner loops that index them directly.
+struct TransferTables {
+    static constexpr int steps = 1 << 14; ///< fine enough that the steepest part of the curve moves < 0.5 byte a step
+    std::array<float, 256> linear{}; ///< by sRGB byte
+    std::array<std::uint8_t, steps + 1> encoded{}; ///< by round(linear * steps)
+};
+TransferTables const& transfer_tables();
 
 /// What a viewer gets to see of a rendered framelet. `exposure` multiplies radiance (2^EV).
 DisplayFramelet to_display(Framelet const& framelet, float exposure);

@@ -16,6 +16,9 @@ struct ScenePose {
     std::vector<std::vector<float>> morph_weights;
 };
 
+/// T * R * S.
+Mat4 matrix_of(Transform const& transform);
+
 /// The clips that play together: the first one, and every later one that moves nothing an earlier one moves.
 std::vector<Index> default_clips(Scene const& scene);
 
@@ -28,14 +31,17 @@ std::vector<bool> moving_nodes(Scene const& scene, std::span<Index const> clips)
 /// Seconds after which all the clips together have played once (the longest); 0 where nothing is animated.
 double animation_duration(Scene const& scene, std::span<Index const> clips);
 
-/// World-space camera of the scene's camera `index` in this pose. Scale in the node's transform is ignored.
+/// World-space camera of the scene's camera `index` in this pose. Scale and mirroring of its node are ignored.
 Camera scene_camera(Scene const& scene, ScenePose const& pose, Index index);
 
 /// Vertices of a primitive after morphing and skinning. Space: world where `skin` is set, else the node's own.
 struct DeformedVertices {
     std::vector<Vec3> positions, normals;
     std::vector<Vec4> tangents; ///< empty where the primitive has none
+    std::vector<Mat4> joint_matrices; ///< scratch
 };
+/// Weights beyond the primitive's targets, and missing ones, count as 0. `skin` needs a primitive with influences.
+/// Runs in parallel over blocks of vertices; reusing `out` for the same primitive allocates nothing.
 void deform(Primitive const& primitive, std::span<float const> morph_weights, Skin const* skin, ScenePose const& pose,
             DeformedVertices& out);
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -33,10 +34,20 @@ struct Texture {
 struct TextureUse {
     Index texture = none;
     int uv_set = 0; ///< 0 or 1
-    Vec2 offset{0, 0}; ///< KHR_texture_transform: uv' = offset + rotate(rotation) * (scale * uv)
+    Vec2 offset{0, 0}; ///< KHR_texture_transform, see `transform_uv`
     Vec2 scale{1, 1};
-    float rotation = 0;
+    float rotation = 0; ///< radians, counter-clockwise in the picture
+
+    bool transforms() const { return offset != Vec2(0) || scale != Vec2(1) || rotation != 0; }
 };
+
+/// KHR_texture_transform: uv' = offset + rotation * (scale * uv), as the extension's matrices say.
+inline Vec2 transform_uv(TextureUse const& use, Vec2 const& uv) {
+    Vec2 const s = uv * use.scale;
+    float const sine = std::sin(use.rotation);
+    float const cosine = std::cos(use.rotation);
+    return use.offset + Vec2(cosine * s.x + sine * s.y, cosine * s.y - sine * s.x);
+}
 
 enum class AlphaMode : std::uint8_t { opaque, mask, blend };
 
@@ -67,7 +78,7 @@ struct MorphTarget {
     std::vector<Vec3> positions, normals, tangents;
 };
 
-/// Up to four joints of a vertex; weights sum to 1. `joints` index the skin's joint list.
+/// Up to four joints of a vertex, the strongest first; weights sum to 1. `joints` index the skin's joint list.
 struct JointInfluence {
     std::array<std::uint16_t, 4> joints{};
     std::array<float, 4> weights{};
@@ -154,6 +165,7 @@ struct SceneCamera {
     Index node = none;
     Projection projection = Projection::perspective;
     float vertical_extent = 0.8f; ///< as in Camera
+    float aspect_ratio = 0; ///< width / height that the file was made for; 0 where it does not say
 };
 
 struct Scene {

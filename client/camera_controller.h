@@ -1,0 +1,51 @@
+// What the hands do to the camera: orbit, pan, dolly, fly. In: pointer movement in pixels, held keys and seconds. Out:
+// a camera. Works alike for scenes of a few centimetres and of kilometres, and at any frame rate.
+#pragma once
+
+#include "common/camera.h"
+
+namespace framelet {
+
+/// Which way the flying keys point, in camera space: x right, y up, z backwards. Each component -1, 0 or 1.
+struct FlyInput {
+    Vec3 direction{0, 0, 0};
+    bool fast = false; ///< four times the speed
+
+    bool moving() const { return direction != Vec3(0, 0, 0); }
+};
+
+class CameraController {
+public:
+    /// `home` is where `reset` goes back to; `scene` tells the size of things (it may be empty).
+    CameraController(Camera const& home, Bounds const& scene);
+
+    Camera const& camera() const { return camera_; }
+    /// Goes on from another camera; it looks at the point of its axis that is nearest to the scene's centre.
+    void set_camera(Camera const& camera);
+    void reset() { set_camera(home_); }
+
+    /// Around the point looked at: the picture's whole height is half a turn. World up stays up.
+    void orbit(Vec2 pixels, Viewport viewport);
+    /// Across the picture: what lies at the point looked at follows the pointer.
+    void pan(Vec2 pixels, Viewport viewport);
+    /// Towards (positive) or away from the point looked at: a step is a tenth of the way; never through it.
+    void dolly(float steps);
+    /// Through the scene: an eighth of its diagonal a second.
+    void fly(FlyInput const& input, double seconds);
+    /// Turns the head in place: the picture's whole height is the vertical field of view.
+    void look(Vec2 pixels, Viewport viewport);
+
+    /// The point looked at.
+    Vec3 pivot() const { return camera_.position + camera_.forward() * distance_; }
+
+private:
+    void turn(float yaw, float pitch);
+
+    Camera home_;
+    Bounds scene_;
+    float size_; ///< the scene's diagonal, metres
+    Camera camera_;
+    float distance_ = 1; ///< to the point looked at, metres
+};
+
+} // namespace framelet

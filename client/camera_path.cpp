@@ -1,0 +1,194 @@
+#include "client/camera_path.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+#include <nlohmann/json.hpp>
+
+#include "common/error.h"
+
+namespace framelet {
+
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr double largest_coordinate = 1e9;
+constexpr std::size_t most_bytes = 16u << 20;
+constexpr std::size_t most_keys = 100000;
+
+/// Reads fields and says where what is wrong.
+struct Reader {
+    std::string name;
+
+    [[noreturn]] void fail(std::string const& what) const { throw InputError("camera file " + name + ": " + what); }
+
+    double number(Json const& value, std::string const& field, double low, double high) const {
+        if (!value.is_number()) {
+            fail("\"" + field + "\" must be a number");
+        }
+        double const out = value.get<double>();
+        if (!(out >= low && out <= high)) {
+            fail("\"" + field + "\" is out of range");
+        }
+        return out;
+    }
+
+    Vec3 vector(Json const& value, std::string const& field) const {
+        if (!value.is_array() || value.size() != 3) {
+            fail("\"" + field + "\" must be an array of three numbers");
+        }
+        Vec3 out;
+        for (int i = 0; i < 3; ++i) {
+            out[i] = static_cast<float>(
+                number(value[static_cast<std::size_t>(i)], field, -largest_coordinate, largest_coordinate));
+        }
+        return out;
+    }
+
+    void only_fields(Json const& object, std::initializer_list<char const*> known) const {
+        if (!object.is_object()) {
+            fail("there must be an object with \"position\" and \"target\", \"keys\" or \"scene_camera\"");
+        }
+        for (auto const& [field, value] : object.items()) {
+            if (std::find(known.begin(), known.end(), field) == known.end()) {
+                fail("unknown field \"" + field + "\"");
+            }
+        }
+    }
+
+    Json const& required(Json const& object, char const* field) const {
+        if (!object.contains(field)) {
+            fail(std::string("\"") + field + "\" is missing");
+        }
+        return object[field];
+    }
+
+    CameraKey key(Json const& object) const {
+        only_fields(object, {"time", "position", "target", "up", "fov_degrees"});
+        CameraKey out;
+        out.position = vector(required(object, "position"), "position");
+        out.target = vector(required(object, "target"), "target");
+        if (object.contains("up")) {
+            out.up = vector(object["up"], "up");
+        }
+        if (object.contains("fov_degrees")) {
+            out.vertical_fov =
+                static_cast<float>(number(object["fov_degrees"], "fov_degrees", 0.1, 175) * std::numbers::pi / 180);
+        }
+        if (object.contains("time")) {
+            out.time = number(object["time"], "time", 0, 1e6);
+        }
+        if (!(glm::distance(out.position, out.target) > 0)) {
+            fail("\"position\" and \"target\" are the same point");
+        }
+        if (!(glm::length(out.up) > 0)) {
+            fail("\"up\" has no direction");
+        }
+        out.up = glm::normalize(out.up);
+        return out;
+    }
+};
+
+/// Cubic Hermite piece from a to b, `t` in [0, 1], tangents for the piece's whole length.
+template <typename T>
+T hermite(T const& a, T const& b, T const& tangent_a, T const& tangent_b, float t) {
+    float const t2 = t * t;
+    float const t3 = t2 * t;
+    return a * (2 * t3 - 3 * t2 + 1) + tangent_a * (t3 - 2 * t2 + t) + b * (3 * t2 - 2 * t3) + tangent_b * (t3 - t2);
+}
+
+} // namespace
+
+Camera CameraPath::at(double seconds) const {
+    FRAMELET_CHECK(!keys.empty());
+    auto const after =
+        std::upper_bound(keys.begin(), keys.end(), seconds, [](double t, CameraKey const& k) { return t < k.time; });
+    if (after == keys.begin() || after == keys.end()) {
+        CameraKey const& key = after == keys.begin() ? keys.front() : keys.back();
+        return look_at(key.position, key.target, key.up, key.vertical_fov);
+    }
+    CameraKey const& a = *(after - 1);
+    CameraKey const& b = *after;
+    CameraKey const& before_a = after - 1 == keys.begin() ? a : *(after - 2);
+    CameraKey const& after_b = after + 1 == keys.end() ? b : *(after + 1);
+    double const length = b.time - a.time;
+    auto const t = static_cast<float>((seconds - a.time) / length);
+    auto const piece = [&](auto member) {
+        float const share_a = static_cast<float>(length / (b.time - before_a.time));
+        float const share_b = static_cast<float>(length / (after_b.time - a.time));
+        return hermite(a.*member, b.*member, (b.*member - before_a.*member) * share_a,
+                       (after_b.*member - a.*member) * share_b, t);
+    };
+    Vec3 const position = piece(&CameraKey::position);
+    Vec3 target = piece(&CameraKey::target);
+    if (!(glm::distance(position, target) > 1e-6f * glm::distance(a.position, a.target))) {
+        target = position + (a.target - a.position); // the two curves cross here: keep looking as before
+    }
+    Vec3 up = piece(&CameraKey::up);
+    if (!(glm::length(up) > 1e-3f)) {
+        up = a.up;
+    }
+    float const fov = std::clamp(piece(&CameraKey::vertical_fov), 0.0017f, 3.1f);
+    return look_at(position, target, up, fov);
+}
+
+CameraPath parse_camera_path(std::string const& json, std::string const& name) {
+    Reader const reader{name};
+    Json document;
+    try {
+        document = Json::parse(json);
+    } catch (Json::parse_error const& error) {
+        reader.fail("not JSON: byte " + std::to_string(error.byte));
+    }
+    CameraPath out;
+    if (document.is_object() && document.contains("scene_camera")) {
+        reader.only_fields(document, {"scene_camera"});
+        Json const& number = document["scene_camera"];
+        if (!number.is_number_integer()) {
+            reader.fail("\"scene_camera\" must be a whole number");
+        }
+        out.scene_camera = static_cast<int>(reader.number(number, "scene_camera", 0, 1e6));
+        return out;
+    }
+    if (!document.is_object() || !document.contains("keys")) {
+        out.keys.push_back(reader.key(document));
+        out.keys.front().time = 0;
+        return out;
+    }
+    reader.only_fields(document, {"keys"});
+    Json const& keys = document["keys"];
+    if (!keys.is_array() || keys.empty() || keys.size() > most_keys) {
+        reader.fail("\"keys\" must be an array of 1 to " + std::to_string(most_keys) + " keys");
+    }
+    for (Json const& key : keys) {
+        if (key.is_object()) {
+            reader.required(key, "time");
+        }
+        out.keys.push_back(reader.key(key));
+        if (out.keys.size() > 1 && !(out.keys.back().time > (out.keys.end() - 2)->time)) {
+            reader.fail("the times of the keys must grow");
+        }
+    }
+    return out;
+}
+
+CameraPath read_camera_path(std::filesystem::path const& file) {
+    std::ifstream in(file, std::ios::binary);
+    std::string text;
+    if (in) {
+        text.resize(most_bytes + 1);
+        in.read(text.data(), static_cast<std::streamsize>(text.size()));
+        text.resize(static_cast<std::size_t>(in.gcount()));
+    }
+    if (!in.eof() || text.size() > most_bytes) {
+        throw InputError("camera file " + file.string() + ": cannot be read");
+    }
+    return parse_camera_path(text, file.string());
+}
+
+} // namespace framelet

@@ -1,0 +1,39 @@
+// A camera or a flight from a JSON file. In: the file. Out: the camera at any time.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "common/camera.h"
+
+namespace framelet {
+
+struct CameraKey {
+    double time = 0; ///< seconds
+    Vec3 position{0, 0, 0};
+    Vec3 target{0, 0, -1};
+    Vec3 up{0, 1, 0};
+    float vertical_fov = 0.7854f; ///< radians
+};
+
+/// One key stands still; several are passed in order of time on a smooth curve (a cubic through every key whose
+/// tangents are the chords of its neighbours), standing still before the first and after the last.
+struct CameraPath {
+    int scene_camera = -1; ///< >= 0: a camera of the scene instead of keys
+    std::vector<CameraKey> keys;
+
+    Camera at(double seconds) const;
+    /// Seconds until the last key.
+    double duration() const { return keys.empty() ? 0 : keys.back().time; }
+};
+
+/// {"position": [x,y,z], "target": [x,y,z], "up": [0,1,0], "fov_degrees": 45}, where "up" and "fov_degrees" may be
+/// left out, or {"keys": [{"time": seconds, "position": ..., ...}, ...]}, or {"scene_camera": 0}. Throws InputError;
+/// `name` is for its message.
+CameraPath parse_camera_path(std::string const& json, std::string const& name);
+
+/// The same from a file.
+CameraPath read_camera_path(std::filesystem::path const& file);
+
+} // namespace framelet

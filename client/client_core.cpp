@@ -1,0 +1,351 @@
+#include "client/client_core.h"
+
+#include <algorithm>
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <utility>
+
+#include "client/server_connection.h"
+#include "common/error.h"
+#include "common/framelet_cache.h"
+#include "common/reconstruction.h"
+#include "protocol/batch_codec.h"
+
+namespace framelet {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_between(Clock::time_point from, Clock::time_point to) {
+    return std::chrono::duration<double>(to - from).count();
+}
+
+double ratio(double amount, std::uint64_t count) {
+    return count == 0 ? 0 : amount / static_cast<double>(count);
+}
+
+/// A batch's number, view, scene time and length prefix on the wire, about.
+constexpr std::size_t batch_header_bytes = 96;
+
+} // namespace
+
+double ClientStatistics::bytes_per_sample() const {
+    return ratio(static_cast<double>(bytes), samples);
+}
+
+double ClientStatistics::decode_ns_per_sample() const {
+    return ratio(decode_seconds * 1e9, samples);
+}
+
+double ClientStatistics::reconstruct_ns_per_pixel() const {
+    return ratio(reconstruct_seconds * 1e9, pixels);
+}
+
+struct ClientCore::Impl {
+    struct SentCamera {
+        std::uint64_t number;
+        Clock::time_point time;
+    };
+    static constexpr std::size_t most_sent_cameras = 256;
+
+    std::function<void()> on_news;
+    Clock::time_point const start = Clock::now();
+    BatchCodec codec; // the connection's thread only
+
+    mutable std::mutex mutex; // guards all that follows, but the connection
+    std::condition_variable news_arrived;
+    bool news = false;
+    std::optional<CameraUpdate> waiting_view;
+    CameraUpdate view; ///< the newest, sent or not
+    std::deque<SentCamera> sent_cameras;
+    std::optional<Clock::time_point> first_camera_time;
+    std::optional<FrameletCache> cache;
+    std::uint64_t cache_generation = 0;
+    std::uint64_t shown_generation = 0;
+    std::uint8_t const* shown_pixels = nullptr; ///< recognises the caller's picture
+    std::uint64_t last_batch = 0;
+    Camera shown_camera;
+    Status status;
+    Clock::time_point status_time = start;
+    std::optional<std::string> end_reason;
+    ClientStatistics statistics;
+
+    std::unique_ptr<ServerConnection> connection; // last: its thread uses the rest
+
+    explicit Impl(ConnectionOptions const& options, std::function<void()> news_handler)
+        : on_news(std::move(news_handler)) {
+        ServerConnection::Handlers handlers;
+        handlers.on_message = [this](Message message) { receive(std::move(message)); };
+        handlers.on_lost = [this](std::string reason) {
+            {
+                std::lock_guard const lock(mutex);
+                end_reason = std::move(reason);
+            }
+            tell_news();
+        };
+        handlers.on_sent = [this] {
+            std::lock_guard const lock(mutex);
+            send_waiting_view();
+        };
+        connection = std::make_unique<ServerConnection>(options, std::move(handlers));
+        std::lock_guard const lock(mutex);
+        shown_camera = connection->welcome().start_camera;
+        if (status_time == start) { // no Status has come yet
+            status.clock = connection->welcome().clock;
+        }
+    }
+
+    void tell_news() {
+        {
+            std::lock_guard const lock(mutex);
+            news = true;
+        }
+        news_arrived.notify_all();
+        if (on_news) {
+            on_news();
+        }
+    }
+
+    /// One camera in the network's queue at most: a newer one replaces it while it waits. Under the lock.
+    void send_waiting_view() {
+        if (!waiting_view || !connection || !connection->all_sent()) {
+            return;
+        }
+        Clock::time_point const now = Clock::now();
+        if (!first_camera_time) {
+            first_camera_time = now;
+        }
+        sent_cameras.push_back({waiting_view->view.number, now});
+        if (sent_cameras.size() > most_sent_cameras) {
+            sent_cameras.pop_front();
+        }
+        ++statistics.cameras_sent;
+        connection->send(*waiting_view);
+        waiting_view.reset();
+    }
+
+    void receive(Message message) {
+        if (auto const* encoded = std::get_if<EncodedBatch>(&message)) {
+            receive_batch(*encoded);
+        } else if (auto const* news_of_server = std::get_if<Status>(&message)) {
+            std::lock_guard const lock(mutex);
+            status = *news_of_server;
+            status_time = Clock::now();
+            statistics.converged = status.converged;
+            statistics.server_samples_per_second = status.samples_per_second;
+        } else {
+            throw ProtocolError("a message that only a viewer sends");
+        }
+        tell_news();
+    }
+
+    void receive_batch(EncodedBatch const& encoded) {
+        Clock::time_point const received = Clock::now();
+        {
+            std::lock_guard const lock(mutex);
+            if (view.view.number == 0) {
+                throw ProtocolError("a batch before a camera was sent");
+            }
+        }
+        Batch const batch = codec.decode(encoded);
+        Clock::time_point const decoded = Clock::now();
+        if (batch.number == 0) {
+            throw ProtocolError("a batch numbered 0");
+        }
+        ImagePlane const plane(batch.view.viewport);
+        for (DisplayFramelet const& framelet : batch.framelets) {
+            if (!plane.accepts(framelet.tile)) {
+                throw ProtocolError("batch " + std::to_string(batch.number) + " names tile " +
+                                    std::to_string(framelet.tile.code) + ", which its viewport does not have");
+            }
+        }
+        Ack ack{batch.number, 0, 0};
+        ack.received_us = static_cast<std::uint64_t>(
+            std::chrono::duration_cast<std::chrono::microseconds>(received.time_since_epoch()).count());
+        ack.decode_us = static_cast<std::uint32_t>(std::min(seconds_between(received, decoded) * 1e6, 4e9));
+        {
+            std::lock_guard const lock(mutex);
+            take_in(batch);
+            statistics.bytes += encoded.payload.size() + encoded.tiles.size() * sizeof(Tile) + batch_header_bytes;
+            statistics.decode_seconds += seconds_between(received, decoded);
+            note_round_trip(batch.view.number, received);
+        }
+        connection->send(ack);
+    }
+
+    /// Under the lock.
+    void take_in(Batch const& batch) {
+        ++statistics.batches;
+        statistics.framelets += batch.framelets.size();
+        statistics.samples += batch.framelets.size() * framelet_samples;
+        last_batch = std::max(last_batch, batch.number);
+        if (!cache || batch.view.viewport != cache->plane().viewport()) {
+            ++statistics.stale_batches;
+            return;
+        }
+        shown_camera = batch.view.camera;
+        Clock::time_point const before = Clock::now();
+        cache->insert(batch);
+        statistics.insert_seconds += seconds_between(before, Clock::now());
+        if (statistics.full_picture_seconds < 0 && first_camera_time && cache->coverage() >= 1) {
+            statistics.full_picture_seconds = seconds_between(*first_camera_time, Clock::now());
+        }
+    }
+
+    /// Under the lock.
+    ClockState clock_now() const {
+        ClockState out = status.clock;
+        if (out.playing) {
+            double const elapsed = seconds_between(status_time, Clock::now());
+            out.time = std::max(0.0, out.time + elapsed * static_cast<double>(out.speed));
+        }
+        return out;
+    }
+
+    /// Under the lock.
+    void note_round_trip(std::uint64_t camera_number, Clock::time_point received) {
+        std::optional<double> seconds;
+        while (!sent_cameras.empty() && sent_cameras.front().number <= camera_number) {
+            if (sent_cameras.front().number == camera_number) {
+                seconds = seconds_between(sent_cameras.front().time, received);
+            }
+            sent_cameras.pop_front();
+        }
+        if (seconds) {
+            double& smoothed = statistics.round_trip_seconds;
+            double& least = statistics.least_round_trip_seconds;
+            smoothed = smoothed < 0 ? *seconds : 0.8 * smoothed + 0.2 * *seconds;
+            least = least < 0 ? *seconds : std::min(least, *seconds);
+        }
+    }
+};
+
+ClientCore::ClientCore(ConnectionOptions const& options, std::function<void()> on_news)
+    : impl_(std::make_unique<Impl>(options, std::move(on_news))) {}
+
+ClientCore::~ClientCore() = default;
+
+Welcome const& ClientCore::welcome() const {
+    return impl_->connection->welcome();
+}
+
+void ClientCore::set_view(Camera const& camera, Viewport viewport, int scene_camera) {
+    std::lock_guard const lock(impl_->mutex);
+    CameraUpdate& view = impl_->view;
+    if (view.view.number > 0 && view.view.camera == camera && view.view.viewport == viewport &&
+        view.scene_camera == scene_camera) {
+        impl_->send_waiting_view();
+        return;
+    }
+    if (!impl_->cache || impl_->cache->plane().viewport() != viewport) {
+        impl_->cache.emplace(ImagePlane(viewport));
+        ++impl_->cache_generation;
+    }
+    view = {{view.view.number + 1, camera, viewport}, scene_camera};
+    impl_->statistics.converged = false;
+    impl_->waiting_view = view;
+    impl_->send_waiting_view();
+}
+
+void ClientCore::set_settings(ViewerSettings const& settings) {
+    impl_->connection->send(settings);
+}
+
+void ClientCore::request_clock(ClockRequest const& request) {
+    {
+        std::lock_guard const lock(impl_->mutex);
+        ClockState& clock = impl_->status.clock;
+        clock = impl_->clock_now();
+        impl_->status_time = Clock::now();
+        clock.time = (request.set & ClockRequest::time) != 0 ? request.state.time : clock.time;
+        clock.playing = (request.set & ClockRequest::playing) != 0 ? request.state.playing : clock.playing;
+        clock.speed = (request.set & ClockRequest::speed) != 0 ? request.state.speed : clock.speed;
+        impl_->status.converged = false;
+        impl_->statistics.converged = false;
+    }
+    impl_->connection->send(request);
+}
+
+bool ClientCore::update_picture(Picture& picture, std::vector<PixelRect>& changed) {
+    std::lock_guard const lock(impl_->mutex);
+    Impl& core = *impl_;
+    changed.clear();
+    core.send_waiting_view();
+    if (!core.cache || core.cache->framelet_count() == 0) {
+        return false;
+    }
+    Viewport const viewport = core.cache->plane().viewport();
+    bool const whole = core.cache_generation != core.shown_generation || picture.rgba.data() != core.shown_pixels ||
+                       picture.width != viewport.width || picture.height != viewport.height;
+    core.cache->take_changed(changed);
+    if (whole) {
+        picture = Picture(viewport.width, viewport.height);
+        changed.assign(1, {0, 0, viewport.width, viewport.height});
+        core.shown_generation = core.cache_generation;
+        core.shown_pixels = picture.rgba.data();
+    }
+    if (changed.empty()) {
+        return false;
+    }
+    Clock::time_point const before = Clock::now();
+    reconstruct(*core.cache, changed, picture);
+    Clock::time_point const after = Clock::now();
+    for (PixelRect const& rect : changed) {
+        core.statistics.pixels += static_cast<std::uint64_t>(rect.width()) * static_cast<std::uint64_t>(rect.height());
+    }
+    core.statistics.reconstruct_seconds += seconds_between(before, after);
+    ++core.statistics.pictures;
+    if (core.statistics.first_picture_seconds < 0 && core.first_camera_time) {
+        core.statistics.first_picture_seconds = seconds_between(*core.first_camera_time, after);
+    }
+    return true;
+}
+
+bool ClientCore::wait_for_news(std::chrono::nanoseconds at_most) {
+    std::unique_lock lock(impl_->mutex);
+    impl_->news_arrived.wait_for(lock, at_most, [this] { return impl_->news; });
+    return std::exchange(impl_->news, false);
+}
+
+std::optional<std::string> ClientCore::end_reason() const {
+    std::lock_guard const lock(impl_->mutex);
+    return impl_->end_reason;
+}
+
+bool ClientCore::is_complete() const {
+    std::lock_guard const lock(impl_->mutex);
+    return impl_->status.converged && impl_->view.view.number > 0 &&
+           impl_->status.camera_number == impl_->view.view.number && impl_->last_batch >= impl_->status.last_batch &&
+           impl_->cache && impl_->cache->framelet_count() > 0;
+}
+
+Status ClientCore::status() const {
+    std::lock_guard const lock(impl_->mutex);
+    return impl_->status;
+}
+
+ClockState ClientCore::clock() const {
+    std::lock_guard const lock(impl_->mutex);
+    return impl_->clock_now();
+}
+
+Camera ClientCore::shown_camera() const {
+    std::lock_guard const lock(impl_->mutex);
+    return impl_->shown_camera;
+}
+
+ClientStatistics ClientCore::statistics() const {
+    std::lock_guard const lock(impl_->mutex);
+    ClientStatistics out = impl_->statistics;
+    out.seconds = seconds_between(impl_->start, Clock::now());
+    if (impl_->cache) {
+        out.coverage = impl_->cache->coverage();
+        out.cached_framelets = impl_->cache->framelet_count();
+        out.cached_bytes = impl_->cache->memory_bytes();
+    }
+    return out;
+}
+
+} // namespace framelet

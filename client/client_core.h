@@ -1,0 +1,93 @@
+// The viewer without a window: holds the connection, takes in batches, and turns what it holds into a picture whenever
+// it is asked to. In: camera, settings, clock requests. Out: picture, status, statistics.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "client/server_address.h"
+#include "common/image.h"
+#include "common/tile.h"
+#include "protocol/message.h"
+
+namespace framelet {
+
+/// What has happened since the session was opened.
+struct ClientStatistics {
+    double seconds = 0;
+    std::uint64_t pictures = 0; ///< calls of `update_picture` that changed something
+    std::uint64_t batches = 0;
+    std::uint64_t stale_batches = 0; ///< for a viewport that is no longer current; not shown
+    std::uint64_t framelets = 0;
+    std::uint64_t samples = 0;
+    std::uint64_t bytes = 0; ///< of batches: samples, tiles and headers
+    std::uint64_t pixels = 0; ///< reconstructed
+    double decode_seconds = 0;
+    double insert_seconds = 0;
+    double reconstruct_seconds = 0;
+    double first_picture_seconds = -1; ///< from the first camera to the first picture; -1: not yet
+    double full_picture_seconds = -1; ///< until no pixel was bare any more
+    double round_trip_seconds = -1; ///< camera sent -> first batch seen from it received; smoothed
+    double least_round_trip_seconds = -1;
+    double coverage = 0; ///< of the viewport now, [0, 1]
+    std::uint64_t cached_framelets = 0;
+    std::uint64_t cached_bytes = 0;
+    std::uint64_t cameras_sent = 0;
+    double server_samples_per_second = 0;
+    bool converged = false;
+
+    double bytes_per_sample() const;
+    double decode_ns_per_sample() const;
+    double reconstruct_ns_per_pixel() const;
+};
+
+/// All members may be called from any thread; `update_picture` from one at a time.
+class ClientCore {
+public:
+    /// Connects (blocks) and opens the session. `on_news` is called from the connection's thread whenever there is
+    /// something new to show or to know; it must not call back. Throws as ServerConnection does.
+    explicit ClientCore(ConnectionOptions const& options, std::function<void()> on_news = {});
+    ~ClientCore();
+    ClientCore(ClientCore const&) = delete;
+    ClientCore& operator=(ClientCore const&) = delete;
+
+    Welcome const& welcome() const;
+
+    /// Asks for this view. Only the newest one is kept while the network is busy. `scene_camera` >= 0: through that
+    /// camera of the scene. Call it at most once a display frame; a view that equals the last one costs nothing.
+    void set_view(Camera const& camera, Viewport viewport, int scene_camera = -1);
+    void set_settings(ViewerSettings const& settings);
+    /// `clock` answers as if it were granted, until the server says how it is.
+    void request_clock(ClockRequest const& request);
+
+    /// Brings `picture` up to date; true when it changed. `changed` gets the rectangles that may differ. While nothing
+    /// has come for a new viewport, the picture stays as it is, in its old size. A picture that is not the one of the
+    /// last call is written as a whole.
+    bool update_picture(Picture& picture, std::vector<PixelRect>& changed);
+
+    /// Waits until something has come since the last call, or the time is over; true when something has.
+    bool wait_for_news(std::chrono::nanoseconds at_most);
+
+    /// Why the session ended, one line; nothing while it is open.
+    std::optional<std::string> end_reason() const;
+    /// True when the server has nothing more to say about the newest view and all of it has arrived.
+    bool is_complete() const;
+    /// What the server said last.
+    Status status() const;
+    /// The scene clock as it should stand now.
+    ClockState clock() const;
+    /// The camera of the newest batch: where a scene camera was last seen.
+    Camera shown_camera() const;
+    ClientStatistics statistics() const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+} // namespace framelet

@@ -1,0 +1,73 @@
+// Writes pictures to numbered files from its own thread, so that nobody waits for compression and disk.
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "common/image.h"
+
+namespace framelet {
+
+/// A file name with a place for the frame's number: exactly one of %d, %1d .. %9d, %01d .. %09d.
+class FramePattern {
+public:
+    /// Throws InputError. A name without a place for a number is for one picture.
+    explicit FramePattern(std::string const& text);
+
+    bool numbered() const { return digits_ >= 0; }
+    std::filesystem::path path(std::uint64_t frame) const;
+
+private:
+    std::string before_, after_;
+    int digits_ = -1; ///< at least so many; -1: no number
+    char fill_ = ' ';
+};
+
+/// Frames are numbered from 0. A numbered pattern gets a file for each frame, another one only the last.
+class FrameWriter {
+public:
+    /// Makes the folder where there is none. Throws InputError where that fails.
+    explicit FrameWriter(FramePattern pattern);
+    ~FrameWriter();
+    FrameWriter(FrameWriter const&) = delete;
+    FrameWriter& operator=(FrameWriter const&) = delete;
+
+    /// Takes a copy of the next frame; `changed` false says that it equals the one before, which costs a copy of the
+    /// file. Waits while many frames are waiting to be written. Throws InputError once writing has failed.
+    void add(Picture const& picture, bool changed);
+    /// Waits until everything is written; nothing may be added afterwards. Throws InputError where writing failed.
+    void finish();
+    std::uint64_t frames() const { return frames_; }
+
+private:
+    struct Frame {
+        std::uint64_t number;
+        std::optional<Picture> picture; ///< empty: as the one before
+    };
+    static constexpr std::size_t most_waiting = 8;
+
+    void run();
+    void write(Frame const& frame);
+    void stop();
+    void throw_if_failed() const;
+
+    FramePattern const pattern_;
+    std::uint64_t frames_ = 0;
+    std::optional<Picture> last_; ///< of a pattern without number
+
+    mutable std::mutex mutex_; // guards what follows
+    std::condition_variable changed_;
+    std::deque<Frame> waiting_;
+    bool stopping_ = false;
+    std::optional<std::string> failure_;
+
+    std::thread thread_;
+};
+
+} // namespace framelet

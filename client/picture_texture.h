@@ -1,0 +1,35 @@
+// A picture on the graphics card and the two triangles that show it. Needs a current OpenGL 3.3 context, at destruction
+// too.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "common/image.h"
+#include "common/tile.h"
+
+namespace framelet {
+
+class PictureTexture {
+public:
+    /// Throws InputError where the card's compiler refuses the shaders.
+    PictureTexture();
+    ~PictureTexture();
+    PictureTexture(PictureTexture const&) = delete;
+    PictureTexture& operator=(PictureTexture const&) = delete;
+
+    /// Copies the changed rectangles; everything where the size is another than before. Rectangles that begin at the
+    /// same row go as one.
+    void upload(Picture const& picture, std::span<PixelRect const> changed);
+    /// Fills a framebuffer of this size, stretching the picture; black before the first upload.
+    void draw(int width, int height);
+
+private:
+    std::uint32_t texture_ = 0;
+    std::uint32_t program_ = 0;
+    std::uint32_t vertices_ = 0; ///< an empty array: the corners come from their number
+    int width_ = 0;
+    int height_ = 0;
+};
+
+} // namespace framelet

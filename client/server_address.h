@@ -1,0 +1,32 @@
+// Where a server is, as a user writes it, and what it takes to be let in.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace framelet {
+
+inline constexpr std::uint16_t default_port = 7070;
+
+struct ServerAddress {
+    std::string host = "127.0.0.1";
+    std::uint16_t port = default_port;
+
+    bool operator==(ServerAddress const&) const = default;
+    /// "HOST:PORT", with brackets around an IPv6 address.
+    std::string text() const;
+};
+
+/// Reads HOST:PORT or [IPV6]:PORT. Throws InputError.
+ServerAddress parse_server_address(std::string const& text);
+
+struct ConnectionOptions {
+    ServerAddress server;
+    std::string token;
+    bool tls = false;
+    std::string authority_file; ///< for TLS; empty: the system's certificate authorities
+    double connect_seconds = 10; ///< until name, connection and handshake are done
+    double silence_seconds = 5; ///< without a message after which the server is given up
+};
+
+} // namespace framelet

@@ -1,0 +1,83 @@
+#include "client/statistics_text.h"
+
+#include <iomanip>
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+
+namespace framelet {
+
+namespace {
+
+/// Null where a time was not reached.
+nlohmann::json reached(double seconds) {
+    return seconds < 0 ? nlohmann::json() : nlohmann::json(seconds);
+}
+
+std::string milliseconds(double seconds) {
+    if (seconds < 0) {
+        return "never";
+    }
+    std::ostringstream out;
+    out << std::fixed << std::setprecision(seconds < 0.01 ? 2 : 0) << seconds * 1e3 << " ms";
+    return out.str();
+}
+
+} // namespace
+
+std::string statistics_json(ClientStatistics const& s, RunFigures const& run) {
+    nlohmann::ordered_json const out = {
+        {"scene", run.scene},
+        {"width", run.viewport.width},
+        {"height", run.viewport.height},
+        {"seconds", s.seconds},
+        {"frames", run.frames},
+        {"late_frames", run.late_frames},
+        {"pictures", s.pictures},
+        {"batches", s.batches},
+        {"stale_batches", s.stale_batches},
+        {"framelets", s.framelets},
+        {"samples", s.samples},
+        {"bytes", s.bytes},
+        {"bytes_per_sample", s.bytes_per_sample()},
+        {"decode_ns_per_sample", s.decode_ns_per_sample()},
+        {"insert_ns_per_sample", s.samples > 0 ? s.insert_seconds * 1e9 / static_cast<double>(s.samples) : 0},
+        {"reconstruct_ns_per_pixel", s.reconstruct_ns_per_pixel()},
+        {"reconstructed_pixels", s.pixels},
+        {"first_picture_seconds", reached(s.first_picture_seconds)},
+        {"full_picture_seconds", reached(s.full_picture_seconds)},
+        {"converged_seconds", reached(run.converged_seconds)},
+        {"round_trip_seconds", reached(s.round_trip_seconds)},
+        {"least_round_trip_seconds", reached(s.least_round_trip_seconds)},
+        {"cameras_sent", s.cameras_sent},
+        {"coverage", s.coverage},
+        {"cached_framelets", s.cached_framelets},
+        {"cached_bytes", s.cached_bytes},
+        {"server_samples_per_second", s.server_samples_per_second},
+        {"converged", s.converged},
+    };
+    return out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+std::string statistics_summary(ClientStatistics const& s, RunFigures const& run) {
+    double const megabits = s.seconds > 0 ? static_cast<double>(s.bytes) * 8e-6 / s.seconds : 0;
+    std::ostringstream out;
+    out << std::fixed << std::setprecision(1);
+    out << run.scene << ", " << run.viewport.width << "x" << run.viewport.height << ", " << s.seconds << " s\n"
+        << "  received   " << s.batches << " batches, " << s.framelets << " framelets, "
+        << static_cast<double>(s.samples) * 1e-6 << " Msamples, " << static_cast<double>(s.bytes) * 1e-6 << " MB ("
+        << megabits << " Mbit/s, " << std::setprecision(2) << s.bytes_per_sample() << " B/sample)\n"
+        << std::setprecision(1) << "  picture    first after " << milliseconds(s.first_picture_seconds)
+        << ", full after " << milliseconds(s.full_picture_seconds) << ", complete after "
+        << milliseconds(run.converged_seconds) << "; covered " << s.coverage * 100 << "%\n"
+        << "  frames     " << run.frames << " shown, " << run.late_frames << " late, " << s.pictures << " changed\n"
+        << "  round trip " << milliseconds(s.round_trip_seconds) << " (least "
+        << milliseconds(s.least_round_trip_seconds) << ") from camera to picture\n"
+        << "  cost       decode " << s.decode_ns_per_sample() << " ns/sample, reconstruct "
+        << s.reconstruct_ns_per_pixel() << " ns/pixel, cache " << static_cast<double>(s.cached_bytes) * 1e-6 << " MB\n"
+        << "  server     " << s.server_samples_per_second * 1e-6 << " Msamples/s"
+        << (s.converged ? ", converged\n" : "\n");
+    return out.str();
+}
+
+} // namespace framelet

@@ -1,0 +1,24 @@
+// What the windowless client prints at its end.
+#pragma once
+
+#include <string>
+
+#include "client/client_core.h"
+
+namespace framelet {
+
+/// What only the program knows.
+struct RunFigures {
+    std::string scene;
+    Viewport viewport;
+    std::uint64_t frames = 0; ///< display frames
+    std::uint64_t late_frames = 0; ///< shown more than one frame's time too late
+    double converged_seconds = -1; ///< from the start until everything had arrived; -1: not seen
+};
+
+/// One JSON object, indented.
+std::string statistics_json(ClientStatistics const& statistics, RunFigures const& run);
+/// A few lines for people.
+std::string statistics_summary(ClientStatistics const& statistics, RunFigures const& run);
+
+} // namespace framelet

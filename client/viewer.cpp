@@ -1,0 +1,283 @@
+#include "client/viewer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <iomanip>
+#include <iostream>
+#include <sstream>
+
+#include "common/error.h"
+#include "common/image_io.h"
+
+namespace framelet {
+
+namespace {
+
+constexpr double clock_step = 1.0 / 30;
+constexpr float exposure_step = 0.25f;
+constexpr float largest_exposure = 16;
+constexpr double note_seconds = 2;
+/// How often to look around while nothing happens: figures on the overlay, a note to take away.
+constexpr double idle_seconds = 0.25;
+
+} // namespace
+
+Viewer::Viewer(Window& window, ConnectionOptions connection, std::unique_ptr<ClientCore> core, float exposure_ev)
+    : window_(window), connection_(std::move(connection)), overlay_(window.handle(), window.content_scale()),
+      exposure_ev_(exposure_ev) {
+    adopt(std::move(core));
+    say("F1: help");
+}
+
+std::unique_ptr<ClientCore> Viewer::connect(ConnectionOptions const& connection) {
+    return std::make_unique<ClientCore>(connection, [] { Window::wake(); });
+}
+
+double Viewer::seconds_now() const {
+    return std::chrono::duration<double>(Clock::now() - start_).count();
+}
+
+void Viewer::adopt(std::unique_ptr<ClientCore> core) {
+    core_ = std::move(core);
+    Welcome const& welcome = core_->welcome();
+    bool const same_scene = controller_ && scene_camera_ < static_cast<int>(welcome.cameras.size());
+    Camera const camera = same_scene ? controller_->camera() : welcome.start_camera;
+    controller_.emplace(welcome.start_camera, welcome.scene_bounds);
+    controller_->set_camera(camera);
+    scene_camera_ = same_scene ? scene_camera_ : -1;
+    lost_.clear();
+    meter_ = RateMeter();
+    core_->set_settings({exposure_ev_, 0});
+    window_.set_title(welcome.scene_name + " - framelet-viewer");
+}
+
+int Viewer::run() {
+    double last_look = seconds_now();
+    double next_frame = 0;
+    bool moving = false;
+    bool redraw = true;
+    OverlayContent shown;
+    while (!quit_) {
+        double const until_frame = next_frame - seconds_now();
+        WindowInput const input = window_.wait(moving || redraw ? until_frame : std::max(idle_seconds, until_frame));
+        double const now = seconds_now();
+        moving = apply(input, std::min(now - last_look, 0.1));
+        last_look = now;
+        redraw = redraw || input.redraw;
+        watch_connection();
+        if (lost_.empty()) {
+            core_->set_view(controller_->camera(), window_.framebuffer_size(), scene_camera_);
+        }
+        if (seconds_now() < next_frame || window_.is_iconified()) {
+            continue; // what has come is shown in the next display frame
+        }
+        double const begin = seconds_now();
+        if (core_->update_picture(picture_, changed_)) {
+            window_.upload(picture_, changed_);
+            redraw = true;
+        }
+        OverlayContent content = overlay_content();
+        if (redraw || moving || content != shown) {
+            window_.draw_picture();
+            overlay_.draw(content);
+            meter_.frame(seconds_now() - begin);
+            window_.present();
+            shown = std::move(content);
+            next_frame = begin + 1 / window_.refresh_rate() * 0.9; // the swap waits for the display where it can
+            redraw = false;
+        }
+    }
+    return lost_.empty() ? 0 : 1;
+}
+
+/// Returns true while a key or a drag keeps the camera moving.
+bool Viewer::apply(WindowInput const& input, double seconds) {
+    for (Command const command : input.commands) {
+        apply(command);
+    }
+    if (input.moved_camera()) {
+        leave_scene_camera();
+        Viewport const viewport = window_.framebuffer_size();
+        controller_->orbit(input.orbit, viewport);
+        controller_->pan(input.pan, viewport);
+        controller_->dolly(input.dolly);
+        controller_->fly(input.fly, seconds);
+    }
+    return input.fly.moving();
+}
+
+void Viewer::apply(Command command) {
+    ClockState clock = core_->clock();
+    switch (command) {
+    case Command::quit:
+        quit_ = true;
+        break;
+    case Command::reset:
+    case Command::reconnect:
+        if (!lost_.empty()) {
+            if (!reconnecting_.valid()) {
+                reconnecting_ = std::async(std::launch::async, [options = connection_] {
+                    auto core = connect(options);
+                    Window::wake();
+                    return core;
+                });
+            }
+        } else if (command == Command::reset) {
+            scene_camera_ = -1;
+            controller_->reset();
+        }
+        break;
+    case Command::play_or_pause:
+        clock.playing = !clock.playing;
+        ask_clock(ClockRequest::playing, clock);
+        break;
+    case Command::step_forward:
+        step_clock(clock_step);
+        break;
+    case Command::step_back:
+        step_clock(-clock_step);
+        break;
+    case Command::seek_start:
+        clock.time = 0;
+        ask_clock(ClockRequest::time, clock);
+        break;
+    case Command::faster:
+    case Command::slower:
+        clock.speed =
+            std::clamp(clock.speed * (command == Command::faster ? 2 : 0.5f), -max_clock_speed, max_clock_speed);
+        ask_clock(ClockRequest::speed, clock);
+        break;
+    case Command::brighter:
+        change_exposure(exposure_step);
+        break;
+    case Command::darker:
+        change_exposure(-exposure_step);
+        break;
+    case Command::free_camera:
+        leave_scene_camera();
+        break;
+    case Command::toggle_fullscreen:
+        window_.toggle_fullscreen();
+        break;
+    case Command::toggle_help:
+        show_help_ = !show_help_;
+        break;
+    case Command::toggle_statistics:
+        show_statistics_ = !show_statistics_;
+        statistics_.clear();
+        break;
+    case Command::screenshot:
+        save_screenshot();
+        break;
+    default:
+        choose_scene_camera(static_cast<int>(command) - static_cast<int>(Command::scene_camera));
+    }
+}
+
+void Viewer::ask_clock(std::uint8_t fields, ClockState const& state) {
+    core_->request_clock({fields, state});
+    say("clock " + clock_text(core_->clock()));
+}
+
+void Viewer::step_clock(double seconds) {
+    ClockState clock = core_->clock();
+    clock.time = std::max(0.0, clock.time + seconds);
+    clock.playing = false;
+    ask_clock(ClockRequest::time | ClockRequest::playing, clock);
+}
+
+void Viewer::choose_scene_camera(int number) {
+    auto const& cameras = core_->welcome().cameras;
+    if (number >= static_cast<int>(cameras.size())) {
+        say(cameras.empty() ? "the scene has no cameras of its own"
+                            : "the scene has only " + std::to_string(cameras.size()) + " cameras");
+        return;
+    }
+    scene_camera_ = number;
+    std::string const& name = cameras[static_cast<std::size_t>(number)].name;
+    say("camera " + std::to_string(number + 1) + (name.empty() ? "" : ": " + name));
+}
+
+void Viewer::leave_scene_camera() {
+    if (scene_camera_ >= 0) {
+        scene_camera_ = -1;
+        controller_->set_camera(core_->shown_camera());
+        say("free camera");
+    }
+}
+
+void Viewer::change_exposure(float stops) {
+    exposure_ev_ = std::clamp(exposure_ev_ + stops, -largest_exposure, largest_exposure);
+    core_->set_settings({exposure_ev_, 0});
+    std::ostringstream text;
+    text << "exposure " << std::showpos << exposure_ev_ << " EV";
+    say(text.str());
+}
+
+void Viewer::save_screenshot() {
+    if (picture_.rgba.empty()) {
+        say("there is no picture yet");
+        return;
+    }
+    std::time_t const now = std::time(nullptr);
+    std::tm local{};
+    localtime_r(&now, &local);
+    std::ostringstream name;
+    name << "framelet-" << std::put_time(&local, "%Y%m%d-%H%M%S") << ".png";
+    try {
+        write_picture(name.str(), picture_);
+        say("saved " + name.str());
+    } catch (InputError const& error) {
+        say(error.what());
+    }
+}
+
+void Viewer::say(std::string note) {
+    note_ = std::move(note);
+    note_until_ = seconds_now() + note_seconds;
+}
+
+void Viewer::watch_connection() {
+    if (reconnecting_.valid() && reconnecting_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+        try {
+            adopt(reconnecting_.get());
+        } catch (std::exception const& error) {
+            lost_ = error.what();
+            std::cerr << "framelet-viewer: " << lost_ << std::endl;
+        }
+    }
+    if (lost_.empty()) {
+        if (std::optional<std::string> reason = core_->end_reason()) {
+            lost_ = std::move(*reason);
+            std::cerr << "framelet-viewer: " << lost_ << std::endl;
+        }
+    }
+}
+
+OverlayContent Viewer::overlay_content() {
+    OverlayContent out;
+    if (show_help_) {
+        out.help = help_rows();
+    }
+    if (show_statistics_) {
+        ClientStatistics const statistics = core_->statistics();
+        if (meter_.update(seconds_now(), statistics.bytes) || statistics_.empty()) {
+            statistics_ = statistics_rows(statistics, meter_, core_->clock(), window_.framebuffer_size());
+        }
+        out.statistics = statistics_;
+    }
+    if (seconds_now() < note_until_) {
+        out.note = note_;
+    }
+    if (reconnecting_.valid()) {
+        out.message = "connecting to " + connection_.server.text() + " ...";
+    } else if (!lost_.empty()) {
+        out.message = lost_ + "\n\nR or Enter: connect again     Esc: quit";
+    } else if (picture_.rgba.empty()) {
+        out.message = "waiting for the first picture ...";
+    }
+    return out;
+}
+
+} // namespace framelet

@@ -1,0 +1,67 @@
+// The viewer's loop: hands -> camera, batches -> picture, both at display rate.
+#pragma once
+
+#include <chrono>
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "client/camera_controller.h"
+#include "client/client_core.h"
+#include "client/overlay_text.h"
+#include "client/window.h"
+
+namespace framelet {
+
+class Viewer {
+public:
+    /// `core` is connected and wakes the window on news.
+    Viewer(Window& window, ConnectionOptions connection, std::unique_ptr<ClientCore> core, float exposure_ev);
+
+    /// Until the user quits. Returns the program's exit code: 1 where the server was gone.
+    int run();
+
+    /// Connects so that news wake the window.
+    static std::unique_ptr<ClientCore> connect(ConnectionOptions const& connection);
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    void adopt(std::unique_ptr<ClientCore> core);
+    bool apply(WindowInput const& input, double seconds);
+    void apply(Command command);
+    void ask_clock(std::uint8_t fields, ClockState const& state);
+    void step_clock(double seconds);
+    void choose_scene_camera(int number);
+    void leave_scene_camera();
+    void change_exposure(float stops);
+    void save_screenshot();
+    void say(std::string note);
+    void watch_connection();
+    OverlayContent overlay_content();
+    double seconds_now() const;
+
+    Window& window_;
+    ConnectionOptions connection_;
+    Overlay overlay_;
+    std::unique_ptr<ClientCore> core_;
+    std::optional<CameraController> controller_;
+    int scene_camera_ = -1;
+    float exposure_ev_;
+    std::string lost_; ///< why there is no session; empty while there is one
+    std::future<std::unique_ptr<ClientCore>> reconnecting_;
+
+    Picture picture_;
+    std::vector<PixelRect> changed_;
+    bool show_help_ = false;
+    bool show_statistics_ = false;
+    TextRows statistics_;
+    RateMeter meter_;
+    std::string note_;
+    double note_until_ = 0;
+    bool quit_ = false;
+    Clock::time_point const start_ = Clock::now();
+};
+
+} // namespace framelet

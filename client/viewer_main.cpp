@@ -1,0 +1,50 @@
+// framelet-viewer: a window on a scene that framelet-server renders.
+#include <iostream>
+
+#include <CLI/App.hpp>
+
+#include "client/connection_arguments.h"
+#include "client/viewer.h"
+#include "common/error.h"
+
+int main(int argc, char** argv) {
+    using namespace framelet;
+    ConnectionArguments arguments;
+    arguments.server = ServerAddress{}.text();
+    std::string size = "1280x720";
+    bool fullscreen = false;
+    float exposure = 0;
+
+    CLI::App app("Shows a scene that framelet-server renders. F1 in the window lists the keys.", "framelet-viewer");
+    app.set_version_flag("--version", "framelet-viewer " FRAMELET_VERSION);
+    app.footer("\nExit code: 0 fine; 1 no display, or the server cannot be reached or has vanished; 2 bad usage.");
+    add_connection_options(app, arguments)->capture_default_str();
+    app.add_option("--size", size, "Size of the window in pixels")->capture_default_str();
+    app.add_flag("--fullscreen", fullscreen, "Fill the screen");
+    app.add_option("--exposure", exposure, "Stops brighter (or darker: negative) than the server's exposure")
+        ->check(CLI::Range(-16.0, 16.0));
+
+    Viewport viewport;
+    ConnectionOptions connection;
+    try {
+        app.parse(argc, argv);
+        viewport = parse_size(size);
+        connection = make_connection_options(arguments);
+    } catch (CLI::ParseError const& error) {
+        return exit_usage(app, error);
+    } catch (InputError const& error) {
+        return exit_usage(app, error.what());
+    }
+    try {
+        Window window("framelet-viewer", viewport);
+        Viewer viewer(window, connection, Viewer::connect(connection), exposure);
+        window.show();
+        if (fullscreen) {
+            window.toggle_fullscreen();
+        }
+        return viewer.run();
+    } catch (std::exception const& error) {
+        std::cerr << "framelet-viewer: " << error.what() << "\n";
+        return 1;
+    }
+}

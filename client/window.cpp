@@ -1,0 +1,253 @@
+#include "client/window.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include <epoxy/gl.h>
+
+#include <GLFW/glfw3.h>
+
+#include "client/picture_texture.h"
+#include "common/error.h"
+
+namespace framelet {
+
+namespace {
+
+struct KeyMeaning {
+    int key;
+    Command command;
+    bool repeats; ///< while held
+};
+
+constexpr KeyMeaning meanings[] = {
+    {GLFW_KEY_ESCAPE, Command::quit, false},           {GLFW_KEY_R, Command::reset, false},
+    {GLFW_KEY_ENTER, Command::reconnect, false},       {GLFW_KEY_KP_ENTER, Command::reconnect, false},
+    {GLFW_KEY_SPACE, Command::play_or_pause, false},   {GLFW_KEY_PERIOD, Command::step_forward, true},
+    {GLFW_KEY_COMMA, Command::step_back, true},        {GLFW_KEY_HOME, Command::seek_start, false},
+    {GLFW_KEY_EQUAL, Command::faster, false},          {GLFW_KEY_KP_ADD, Command::faster, false},
+    {GLFW_KEY_MINUS, Command::slower, false},          {GLFW_KEY_KP_SUBTRACT, Command::slower, false},
+    {GLFW_KEY_RIGHT_BRACKET, Command::brighter, true}, {GLFW_KEY_LEFT_BRACKET, Command::darker, true},
+    {GLFW_KEY_0, Command::free_camera, false},         {GLFW_KEY_F11, Command::toggle_fullscreen, false},
+    {GLFW_KEY_F1, Command::toggle_help, false},        {GLFW_KEY_F2, Command::toggle_statistics, false},
+    {GLFW_KEY_TAB, Command::toggle_statistics, false}, {GLFW_KEY_F12, Command::screenshot, false},
+};
+
+std::string last_glfw_error() {
+    char const* text = nullptr;
+    glfwGetError(&text);
+    return text == nullptr ? "no reason given" : text;
+}
+
+/// GLFW for as long as this lives.
+struct GlfwSession {
+    GlfwSession() {
+        if (glfwInit() != GLFW_TRUE) {
+            throw InputError("cannot open a window: there is no display (" + last_glfw_error() +
+                             "): use framelet-client, which needs none");
+        }
+    }
+    ~GlfwSession() { glfwTerminate(); }
+    GlfwSession(GlfwSession const&) = delete;
+    GlfwSession& operator=(GlfwSession const&) = delete;
+};
+
+} // namespace
+
+struct Window::Impl {
+    GlfwSession session;
+    GLFWwindow* window = nullptr;
+    std::optional<PictureTexture> texture;
+    WindowInput input;
+    Vec2 cursor{0, 0};
+    Viewport size;
+    struct {
+        int x = 0, y = 0, width = 0, height = 0;
+    } windowed; ///< where to go back to from the full screen
+
+    ~Impl() {
+        texture.reset(); // while there is a context
+        if (window != nullptr) {
+            glfwDestroyWindow(window);
+        }
+    }
+
+    static Impl& of(GLFWwindow* window) { return *static_cast<Impl*>(glfwGetWindowUserPointer(window)); }
+    bool held(int key) const { return glfwGetKey(window, key) == GLFW_PRESS; }
+    bool button(int number) const { return glfwGetMouseButton(window, number) == GLFW_PRESS; }
+    bool shift() const { return held(GLFW_KEY_LEFT_SHIFT) || held(GLFW_KEY_RIGHT_SHIFT); }
+
+    void key(int code, int action, int mods) {
+        if (action == GLFW_RELEASE) {
+            return;
+        }
+        if (code == GLFW_KEY_ENTER && (mods & GLFW_MOD_ALT) != 0) {
+            input.commands.push_back(Command::toggle_fullscreen);
+            return;
+        }
+        if (code >= GLFW_KEY_1 && code <= GLFW_KEY_9) {
+            input.commands.push_back(static_cast<Command>(static_cast<int>(Command::scene_camera) + code - GLFW_KEY_1));
+            return;
+        }
+        for (KeyMeaning const& meaning : meanings) {
+            if (meaning.key == code && (action == GLFW_PRESS || meaning.repeats)) {
+                input.commands.push_back(meaning.command);
+            }
+        }
+    }
+
+    void cursor_moved(Vec2 place) {
+        int width = 1;
+        int height = 1;
+        glfwGetWindowSize(window, &width, &height);
+        float const scale = static_cast<float>(size.width) / static_cast<float>(std::max(width, 1));
+        Vec2 const way = (place - cursor) * scale;
+        cursor = place;
+        if (button(GLFW_MOUSE_BUTTON_MIDDLE) || (button(GLFW_MOUSE_BUTTON_LEFT) && shift())) {
+            input.pan += way;
+        } else if (button(GLFW_MOUSE_BUTTON_LEFT)) {
+            input.orbit += way;
+        } else if (button(GLFW_MOUSE_BUTTON_RIGHT)) {
+            constexpr float steps_per_height = 30;
+            input.dolly += -way.y * steps_per_height / static_cast<float>(size.height);
+        }
+    }
+
+    void read_size() {
+        int width = 0;
+        int height = 0;
+        glfwGetFramebufferSize(window, &width, &height);
+        if (width > 0 && height > 0) {
+            size = {std::min(width, max_viewport_side), std::min(height, max_viewport_side)};
+        }
+        input.redraw = true;
+    }
+
+    void read_held_keys() {
+        auto const axis = [&](int more, int less) {
+            return static_cast<float>(held(more) ? 1 : 0) - static_cast<float>(held(less) ? 1 : 0);
+        };
+        input.fly.direction = {axis(GLFW_KEY_D, GLFW_KEY_A), axis(GLFW_KEY_E, GLFW_KEY_Q),
+                               axis(GLFW_KEY_S, GLFW_KEY_W)};
+        input.fly.fast = shift();
+    }
+
+    void listen() {
+        glfwSetWindowUserPointer(window, this);
+        glfwSetKeyCallback(window,
+                           [](GLFWwindow* w, int key, int, int action, int mods) { of(w).key(key, action, mods); });
+        glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) {
+            of(w).cursor_moved({static_cast<float>(x), static_cast<float>(y)});
+        });
+        glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int, int, int) {
+            double x = 0;
+            double y = 0;
+            glfwGetCursorPos(w, &x, &y);
+            of(w).cursor = {static_cast<float>(x), static_cast<float>(y)}; // a drag starts here
+        });
+        glfwSetScrollCallback(window,
+                              [](GLFWwindow* w, double, double y) { of(w).input.dolly += static_cast<float>(y); });
+        glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { of(w).read_size(); });
+        glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { of(w).input.redraw = true; });
+        glfwSetWindowCloseCallback(window, [](GLFWwindow* w) { of(w).input.commands.push_back(Command::quit); });
+    }
+};
+
+Window::Window(std::string const& title, Viewport size) : impl_(std::make_unique<Impl>()) {
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+    glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
+    impl_->window = glfwCreateWindow(size.width, size.height, title.c_str(), nullptr, nullptr);
+    if (impl_->window == nullptr) {
+        throw InputError("cannot open a window with OpenGL 3.3 (" + last_glfw_error() +
+                         "): update the graphics driver, or use framelet-client");
+    }
+    glfwMakeContextCurrent(impl_->window);
+    glfwSwapInterval(1);
+    impl_->texture.emplace();
+    impl_->size = size;
+    impl_->listen();
+    impl_->read_size();
+}
+
+Window::~Window() = default;
+
+Viewport Window::framebuffer_size() const {
+    return impl_->size;
+}
+
+float Window::content_scale() const {
+    float x = 1;
+    float y = 1;
+    glfwGetWindowContentScale(impl_->window, &x, &y);
+    return std::clamp(y, 0.5f, 8.0f);
+}
+
+double Window::refresh_rate() const {
+    GLFWmonitor* const monitor = glfwGetPrimaryMonitor();
+    GLFWvidmode const* const mode = monitor == nullptr ? nullptr : glfwGetVideoMode(monitor);
+    return mode == nullptr || mode->refreshRate <= 0 ? 60 : mode->refreshRate;
+}
+
+bool Window::is_iconified() const {
+    return glfwGetWindowAttrib(impl_->window, GLFW_ICONIFIED) != 0;
+}
+
+void Window::set_title(std::string const& title) {
+    glfwSetWindowTitle(impl_->window, title.c_str());
+}
+
+void Window::show() {
+    glfwShowWindow(impl_->window);
+}
+
+void Window::toggle_fullscreen() {
+    GLFWwindow* const window = impl_->window;
+    auto& windowed = impl_->windowed;
+    if (glfwGetWindowMonitor(window) != nullptr) {
+        glfwSetWindowMonitor(window, nullptr, windowed.x, windowed.y, windowed.width, windowed.height, 0);
+        return;
+    }
+    GLFWmonitor* const monitor = glfwGetPrimaryMonitor();
+    GLFWvidmode const* const mode = monitor == nullptr ? nullptr : glfwGetVideoMode(monitor);
+    if (mode != nullptr) {
+        glfwGetWindowPos(window, &windowed.x, &windowed.y);
+        glfwGetWindowSize(window, &windowed.width, &windowed.height);
+        glfwSetWindowMonitor(window, monitor, 0, 0, mode->width, mode->height, mode->refreshRate);
+    }
+}
+
+WindowInput Window::wait(double at_most_seconds) {
+    if (at_most_seconds > 0) {
+        glfwWaitEventsTimeout(at_most_seconds);
+    } else {
+        glfwPollEvents();
+    }
+    impl_->read_held_keys();
+    return std::exchange(impl_->input, WindowInput{});
+}
+
+void Window::wake() {
+    glfwPostEmptyEvent();
+}
+
+void Window::upload(Picture const& picture, std::span<PixelRect const> changed) {
+    impl_->texture->upload(picture, changed);
+}
+
+void Window::draw_picture() {
+    impl_->texture->draw(impl_->size.width, impl_->size.height);
+}
+
+void Window::present() {
+    glfwSwapBuffers(impl_->window);
+}
+
+GLFWwindow* Window::handle() const {
+    return impl_->window;
+}
+
+} // namespace framelet

@@ -1,0 +1,89 @@
+// The window: GLFW and OpenGL 3.3. In: a picture and what changed of it. Out: what the user's hands did since the last
+// look, as plain values. Everything from the main thread, but `wake`.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "client/camera_controller.h"
+#include "common/image.h"
+#include "common/tile.h"
+
+struct GLFWwindow;
+
+namespace framelet {
+
+/// What a key stands for.
+enum class Command {
+    quit,
+    reset,
+    reconnect,
+    play_or_pause,
+    step_forward,
+    step_back,
+    seek_start,
+    faster,
+    slower,
+    brighter,
+    darker,
+    free_camera,
+    toggle_fullscreen,
+    toggle_help,
+    toggle_statistics,
+    screenshot,
+    scene_camera, ///< the first; `scene_camera` + n is the n-th more, up to 8 more
+};
+
+/// What happened since the last look.
+struct WindowInput {
+    std::vector<Command> commands; ///< in order
+    Vec2 orbit{0, 0}; ///< dragged, pixels of the framebuffer, x right, y down
+    Vec2 pan{0, 0};
+    float dolly = 0; ///< steps, positive: nearer
+    FlyInput fly; ///< held now
+    bool redraw = false; ///< exposed or resized
+
+    bool moved_camera() const { return orbit != Vec2(0, 0) || pan != Vec2(0, 0) || dolly != 0 || fly.moving(); }
+};
+
+class Window {
+public:
+    /// Makes a window of this size, hidden until `show`. Throws InputError where there is no display or no OpenGL 3.3.
+    Window(std::string const& title, Viewport size);
+    ~Window();
+    Window(Window const&) = delete;
+    Window& operator=(Window const&) = delete;
+
+    /// Pixels to fill; each side at least 1. An iconified window keeps its size.
+    Viewport framebuffer_size() const;
+    /// Pixels of the framebuffer for one unit of text size.
+    float content_scale() const;
+    double refresh_rate() const;
+    bool is_iconified() const;
+    void set_title(std::string const& title);
+    void show();
+    void toggle_fullscreen();
+
+    /// Sleeps until something happens, somebody calls `wake` or the time is over; then returns what happened.
+    WindowInput wait(double at_most_seconds);
+    /// From any thread: ends `wait`.
+    static void wake();
+
+    /// Uploads the changed rectangles of the picture (as `FrameletCache::take_changed` orders them: by rows).
+    void upload(Picture const& picture, std::span<PixelRect const> changed);
+    /// Fills the framebuffer with the picture, stretched.
+    void draw_picture();
+    /// Shows what was drawn.
+    void present();
+
+    /// For the overlay's backend.
+    GLFWwindow* handle() const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+} // namespace framelet

@@ -1,0 +1,217 @@
+// framelet-client: looks at a served scene without a window, writes what a person would have seen and what it measured.
+#include <chrono>
+#include <cmath>
+#include <iostream>
+#include <optional>
+
+#include <CLI/App.hpp>
+
+#include "client/camera_path.h"
+#include "client/client_core.h"
+#include "client/connection_arguments.h"
+#include "client/frame_writer.h"
+#include "client/statistics_text.h"
+#include "common/color.h"
+#include "common/error.h"
+#include "common/reconstruction.h"
+
+namespace framelet {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct Options {
+    ConnectionArguments connection;
+    std::string size = "1280x720";
+    std::optional<double> duration;
+    std::string camera_file;
+    std::optional<double> rate;
+    std::string output;
+    bool json = false;
+    bool until_converged = false;
+    float exposure = 0;
+    bool play = false;
+    bool pause = false;
+    std::optional<double> seek;
+};
+
+constexpr char const* footer = R"(
+The camera file is JSON: {"position": [x,y,z], "target": [x,y,z], "up": [0,1,0],
+"fov_degrees": 45} stands still ("up" and "fov_degrees" may be left out);
+{"keys": [{"time": seconds, "position": ..., "target": ...}, ...]} flies smoothly
+through the keys; {"scene_camera": 0} looks through a camera of the scene.
+
+Frames are compressed and written by a thread of their own while batches go on
+arriving; where it cannot keep up, frames are shown later, none is left out.
+
+Exit code: 0 fine; 1 the server cannot be reached, vanished, or did not converge
+in time; 2 bad usage.)";
+
+std::chrono::nanoseconds nanoseconds(double seconds) {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(seconds));
+}
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+std::optional<CameraPath> read_camera(Options const& options) {
+    return options.camera_file.empty() ? std::nullopt : std::optional(read_camera_path(options.camera_file));
+}
+
+void ask_clock(ClientCore& core, Options const& options) {
+    ClockRequest request;
+    if (options.play || options.pause) {
+        request.set |= ClockRequest::playing;
+        request.state.playing = options.play;
+    }
+    if (options.seek) {
+        request.set |= ClockRequest::time;
+        request.state.time = *options.seek;
+    }
+    if (request.set != 0) {
+        core.request_clock(request);
+    }
+}
+
+/// Returns early where the session has ended.
+void wait_until(ClientCore& core, Clock::time_point time) {
+    while (Clock::now() < time && !core.end_reason()) {
+        core.wait_for_news(time - Clock::now());
+    }
+}
+
+Picture bare_picture(Viewport viewport) {
+    Picture out(viewport.width, viewport.height);
+    reconstruct_all(FrameletCache{ImagePlane(viewport)}, out);
+    return out;
+}
+
+/// Shows frames until the time is over, the session has ended or, if wanted, all is there. Returns what it counted.
+RunFigures show(ClientCore& core, Options const& options, std::optional<CameraPath> const& path, Viewport viewport,
+                FrameWriter* writer) {
+    double const period =
+        1 / options.rate.value_or(writer != nullptr && options.output.find('%') != std::string::npos ? 10.0 : 60.0);
+    double const duration = options.duration.value_or(options.until_converged ? 60 : 10);
+    double const path_duration = path ? path->duration() : 0;
+    RunFigures run;
+    run.scene = core.welcome().scene_name;
+    run.viewport = viewport;
+    Picture picture = bare_picture(viewport);
+    std::vector<PixelRect> changed;
+    Clock::time_point const start = Clock::now();
+    Clock::time_point next = start;
+    while (true) {
+        double const now = seconds_since(start);
+        bool const done = options.until_converged && now >= path_duration && core.is_complete();
+        Camera camera = core.welcome().start_camera;
+        if (path && path->scene_camera < 0) {
+            camera = path->at(now);
+        }
+        if (!done) {
+            core.set_view(camera, viewport, path ? path->scene_camera : -1);
+        }
+        bool const news = core.update_picture(picture, changed);
+        ++run.frames;
+        if (writer != nullptr) {
+            writer->add(picture, news);
+        }
+        if (run.converged_seconds < 0 && (done || core.is_complete())) {
+            run.converged_seconds = now;
+        }
+        if (done || now >= duration || core.end_reason()) {
+            return run;
+        }
+        next += nanoseconds(period);
+        if (Clock::now() > next + nanoseconds(period)) {
+            ++run.late_frames;
+            next = Clock::now();
+        }
+        wait_until(core, std::min(next, start + nanoseconds(duration)));
+    }
+}
+
+int run(Options const& options, ConnectionOptions const& connection, Viewport viewport,
+        std::optional<FramePattern> const& pattern) {
+    std::optional<CameraPath> const path = read_camera(options);
+    std::optional<FrameWriter> writer;
+    if (pattern) {
+        writer.emplace(*pattern);
+    }
+    ClientCore core(connection);
+    std::size_t const cameras = core.welcome().cameras.size();
+    if (path && path->scene_camera >= static_cast<int>(cameras)) {
+        throw InputError("the camera file asks for camera " + std::to_string(path->scene_camera) +
+                         " of the scene, which has " + std::to_string(cameras) + " (numbered from 0)");
+    }
+    core.set_settings({options.exposure, 0});
+    ask_clock(core, options);
+    RunFigures const figures = show(core, options, path, viewport, writer ? &*writer : nullptr);
+    if (writer) {
+        writer->finish();
+    }
+    ClientStatistics const statistics = core.statistics();
+    std::cout << (options.json ? statistics_json(statistics, figures) + "\n" : statistics_summary(statistics, figures))
+              << std::flush;
+    if (std::optional<std::string> const reason = core.end_reason()) {
+        throw ConnectionError(*reason);
+    }
+    if (options.until_converged && figures.converged_seconds < 0) {
+        throw ConnectionError("the picture was not complete when the time was over: give a longer --duration, or "
+                              "--pause where the scene moves");
+    }
+    return 0;
+}
+
+} // namespace
+
+} // namespace framelet
+
+int main(int argc, char** argv) {
+    using namespace framelet;
+    Options options;
+    CLI::App app("Looks at a scene that framelet-server renders, without a window: writes pictures and statistics.",
+                 "framelet-client");
+    app.set_version_flag("--version", "framelet-client " FRAMELET_VERSION);
+    app.footer(footer);
+    add_connection_options(app, options.connection)->required();
+    app.add_option("--size", options.size, "Size of the picture in pixels")->capture_default_str();
+    app.add_option("--duration", options.duration, "Seconds after which to end (default 10; with --until-converged 60)")
+        ->check(CLI::Range(0.0, 1e6));
+    app.add_option("--camera", options.camera_file, "Camera file, see below (default: the scene's own view)");
+    app.add_option("--rate", options.rate, "Display frames a second (default 60; with numbered files 10)")
+        ->check(CLI::Range(0.1, 1000.0));
+    app.add_option("--output", options.output,
+                   "Picture file for each frame, as in frames/%04d.png; without a number: for the last frame");
+    app.add_flag("--json", options.json, "Print the statistics as JSON");
+    app.add_flag("--until-converged", options.until_converged,
+                 "End once the picture is as good as it gets; exit code 1 where that takes longer than --duration");
+    app.add_option("--exposure", options.exposure, "Stops brighter (or darker: negative) than the server's exposure")
+        ->check(CLI::Range(-16.0, 16.0));
+    CLI::Option* const play = app.add_flag("--play", options.play, "Let the scene's clock run");
+    app.add_flag("--pause", options.pause, "Stop the scene's clock")->excludes(play);
+    app.add_option("--seek", options.seek, "Set the scene's clock to this second")->check(CLI::Range(0.0, 1e9));
+
+    Viewport viewport;
+    ConnectionOptions connection;
+    std::optional<FramePattern> pattern;
+    try {
+        app.parse(argc, argv);
+        viewport = parse_size(options.size);
+        connection = make_connection_options(options.connection);
+        if (!options.output.empty()) {
+            pattern.emplace(options.output);
+        }
+    } catch (CLI::ParseError const& error) {
+        return exit_usage(app, error);
+    } catch (InputError const& error) {
+        return exit_usage(app, error.what());
+    }
+    try {
+        return run(options, connection, viewport, pattern);
+    } catch (std::exception const& error) {
+        std::cerr << "framelet-client: " << error.what() << "\n";
+        return 1;
+    }
+}

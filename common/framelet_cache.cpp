@@ -1,0 +1,288 @@
+#include "common/framelet_cache.h"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
+#include "common/error.h"
+
+namespace framelet {
+
+namespace {
+
+int ceil_div(int value, int divisor) {
+    return (value + divisor - 1) / divisor;
+}
+
+/// Where in rows the samples 2i and 2i + 1 in Morton order lie: they are neighbours.
+constexpr auto pair_places = [] {
+    std::array<std::uint8_t, framelet_samples / 2> out{};
+    for (std::uint32_t i = 0; i < framelet_samples; i += 2) {
+        out[i / 2] = static_cast<std::uint8_t>(framelet_side * morton_y(i) + morton_x(i));
+    }
+    return out;
+}();
+
+void rows_from_morton(std::array<std::uint8_t, framelet_samples> const& morton,
+                      std::array<std::uint8_t, framelet_samples>& rows) {
+    for (std::size_t i = 0; i < pair_places.size(); ++i) {
+        std::memcpy(&rows[pair_places[i]], &morton[2 * i], 2);
+    }
+}
+
+} // namespace
+
+FrameletCache::FrameletCache(ImagePlane plane) : plane_(plane) {
+    Viewport const viewport = plane.viewport();
+    std::size_t nodes = 0;
+    for (int depth = plane.min_depth(); depth <= plane.max_depth(); ++depth) {
+        int const side = plane.tile_side(make_tile(depth, 0, 0));
+        Level const level{ceil_div(viewport.width, side), ceil_div(viewport.height, side), nodes};
+        nodes += static_cast<std::size_t>(level.columns) * static_cast<std::size_t>(level.rows);
+        levels_.push_back(level);
+    }
+    nodes_.resize(nodes);
+    Level const& blocks = level(plane.pixel_depth());
+    changed_blocks_.resize(static_cast<std::size_t>(blocks.columns) * static_cast<std::size_t>(blocks.rows));
+}
+
+std::uint64_t FrameletCache::covered_below(int depth, int column, int row) const {
+    if (depth == plane_.max_depth()) {
+        return 0;
+    }
+    Level const& below = level(depth + 1);
+    std::uint64_t lowest = std::numeric_limits<std::uint64_t>::max();
+    for (int y = 2 * row; y < std::min(2 * row + 2, below.rows); ++y) {
+        for (int x = 2 * column; x < std::min(2 * column + 2, below.columns); ++x) {
+            lowest = std::min(lowest, node(depth + 1, x, y).cover);
+        }
+    }
+    return lowest;
+}
+
+std::size_t FrameletCache::insert(Batch const& batch) {
+    FRAMELET_CHECK(batch.view.viewport == plane_.viewport());
+    FRAMELET_CHECK(batch.number > 0); // 0 stands for bare
+    Moment const moment{batch.number, batch.view.number, batch.scene_time};
+    std::size_t taken = 0;
+    for (DisplayFramelet const& framelet : batch.framelets) {
+        taken += insert_one(framelet, moment) ? 1 : 0;
+    }
+    return taken;
+}
+
+bool FrameletCache::insert_one(DisplayFramelet const& framelet, Moment const& moment) {
+    FRAMELET_CHECK(plane_.accepts(framelet.tile));
+    int const depth = framelet.tile.depth();
+    int const column = static_cast<int>(framelet.tile.column());
+    int const row = static_cast<int>(framelet.tile.row());
+    if (is_hidden(depth, column, row, moment.batch)) {
+        return false;
+    }
+    drop_older_below(depth, column, row, moment.batch);
+    Node& own = node(depth, column, row);
+    if (own.slot != no_slot) {
+        drop(own);
+    }
+    own.slot = take_slot();
+    ++count_;
+    CachedFramelet& cached = held(own.slot);
+    cached.tile = framelet.tile;
+    cached.moment = moment;
+    rows_from_morton(framelet.red, cached.samples[0]);
+    rows_from_morton(framelet.green, cached.samples[1]);
+    rows_from_morton(framelet.blue, cached.samples[2]);
+    refresh(depth, column, row);
+    for (int d = depth - 1; d >= plane_.min_depth(); --d) {
+        refresh(d, column >> (depth - d), row >> (depth - d));
+    }
+    mark(plane_.tile_rect(framelet.tile));
+    mark_neighbours(framelet.tile, moment);
+    return true;
+}
+
+/// Nothing of a framelet would show: something at least as new lies over it or the newer ones below it leave no gap.
+bool FrameletCache::is_hidden(int depth, int column, int row, std::uint64_t batch) const {
+    for (int d = plane_.min_depth(); d <= depth; ++d) {
+        std::int32_t const slot = node(d, column >> (depth - d), row >> (depth - d)).slot;
+        if (slot != no_slot && held(slot).moment.batch >= batch + (d < depth ? 1 : 0)) {
+            return true;
+        }
+    }
+    return covered_below(depth, column, row) >= batch;
+}
+
+void FrameletCache::drop_older_below(int depth, int column, int row, std::uint64_t batch) {
+    if (depth == plane_.max_depth()) {
+        return;
+    }
+    Level const& below = level(depth + 1);
+    for (int y = 2 * row; y < std::min(2 * row + 2, below.rows); ++y) {
+        for (int x = 2 * column; x < std::min(2 * column + 2, below.columns); ++x) {
+            Node& child = node(depth + 1, x, y);
+            if (child.held == 0) {
+                continue;
+            }
+            if (child.slot != no_slot && held(child.slot).moment.batch < batch) {
+                drop(child);
+            }
+            drop_older_below(depth + 1, x, y, batch);
+            refresh(depth + 1, x, y);
+        }
+    }
+}
+
+void FrameletCache::drop(Node& owner) {
+    CachedFramelet const& gone = held(owner.slot);
+    mark_neighbours(gone.tile, gone.moment); // those that interpolated with it
+    free_slots_.push_back(owner.slot);
+    owner.slot = no_slot;
+    --count_;
+}
+
+std::int32_t FrameletCache::take_slot() {
+    if (free_slots_.empty()) {
+        constexpr std::size_t size = std::tuple_size_v<Chunk>;
+        auto const first = static_cast<std::int32_t>(chunks_.size() * size);
+        chunks_.push_back(std::make_unique<Chunk>());
+        free_slots_.reserve(chunks_.size() * size);
+        for (auto slot = first + static_cast<std::int32_t>(size) - 1; slot >= first; --slot) {
+            free_slots_.push_back(slot);
+        }
+    }
+    std::int32_t const slot = free_slots_.back();
+    free_slots_.pop_back();
+    return slot;
+}
+
+/// Brings a node's sums up to date with its children and drops its framelet where they hide it.
+void FrameletCache::refresh(int depth, int column, int row) {
+    Node& own = node(depth, column, row);
+    std::uint64_t const below = covered_below(depth, column, row);
+    if (own.slot != no_slot && below >= held(own.slot).moment.batch) {
+        drop(own);
+    }
+    own.cover = std::max(below, own.slot == no_slot ? 0 : held(own.slot).moment.batch);
+    own.held = own.slot == no_slot ? 0 : 1;
+    if (depth < plane_.max_depth()) {
+        Level const& children = level(depth + 1);
+        for (int y = 2 * row; y < std::min(2 * row + 2, children.rows); ++y) {
+            for (int x = 2 * column; x < std::min(2 * column + 2, children.columns); ++x) {
+                own.held += node(depth + 1, x, y).held;
+            }
+        }
+    }
+}
+
+void FrameletCache::mark_block(int column, int row) {
+    Level const& blocks = level(plane_.pixel_depth());
+    changed_blocks_[static_cast<std::size_t>(row) * static_cast<std::size_t>(blocks.columns) +
+                    static_cast<std::size_t>(column)] = 1;
+    has_changes_ = true;
+}
+
+void FrameletCache::mark(PixelRect rect) {
+    Level const& blocks = level(plane_.pixel_depth());
+    for (int row = rect.top / block_side; row < std::min(ceil_div(rect.bottom, block_side), blocks.rows); ++row) {
+        for (int column = rect.left / block_side; column < std::min(ceil_div(rect.right, block_side), blocks.columns);
+             ++column) {
+            mark_block(column, row);
+        }
+    }
+}
+
+/// Coarse framelets of the same moment interpolate with what lies next to them: their blocks along this tile's border
+/// depend on it. (A sample is at most 8 pixels wide, so one block is enough.)
+void FrameletCache::mark_neighbours(Tile tile, Moment const& moment) {
+    PixelRect const rect = plane_.tile_rect(tile);
+    int const depth = plane_.pixel_depth();
+    Level const& blocks = level(depth);
+    int const left = rect.left / block_side - 1;
+    int const right = ceil_div(rect.right, block_side);
+    int const top = rect.top / block_side - 1;
+    int const bottom = ceil_div(rect.bottom, block_side);
+    auto const visit = [&](int column, int row) {
+        if (column < 0 || row < 0 || column >= blocks.columns || row >= blocks.rows) {
+            return;
+        }
+        for (int d = plane_.min_depth(); d < depth; ++d) {
+            std::int32_t const slot = node(d, column >> (depth - d), row >> (depth - d)).slot;
+            if (slot != no_slot && same_moment(held(slot).moment, moment)) {
+                mark_block(column, row);
+                return;
+            }
+        }
+    };
+    for (int column = left; column <= right; ++column) {
+        visit(column, top);
+        visit(column, bottom);
+    }
+    for (int row = top + 1; row < bottom; ++row) {
+        visit(left, row);
+        visit(right, row);
+    }
+}
+
+void FrameletCache::take_changed(std::vector<PixelRect>& changed) {
+    changed.clear();
+    if (!has_changes_) {
+        return;
+    }
+    Level const& blocks = level(plane_.pixel_depth());
+    Viewport const viewport = plane_.viewport();
+    for (int row = 0; row < blocks.rows; ++row) {
+        std::uint8_t* const flags =
+            changed_blocks_.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(blocks.columns);
+        std::uint8_t* const end = flags + blocks.columns;
+        for (std::uint8_t* first = std::find(flags, end, 1); first != end;) {
+            std::uint8_t* const last = std::find(first, end, 0);
+            std::fill(first, last, std::uint8_t{0});
+            changed.push_back({static_cast<int>(first - flags) * block_side, row * block_side,
+                               std::min(static_cast<int>(last - flags) * block_side, viewport.width),
+                               std::min((row + 1) * block_side, viewport.height)});
+            first = std::find(last, end, 1);
+        }
+    }
+    has_changes_ = false;
+}
+
+double FrameletCache::covered_area(int depth, int column, int row) const {
+    Node const& own = node(depth, column, row);
+    if (own.held == 0) {
+        return 0;
+    }
+    if (own.cover > 0) {
+        PixelRect const rect =
+            plane_.tile_rect(make_tile(depth, static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row)));
+        Viewport const viewport = plane_.viewport();
+        return static_cast<double>(std::min(rect.right, viewport.width) - rect.left) *
+               static_cast<double>(std::min(rect.bottom, viewport.height) - rect.top);
+    }
+    double area = 0;
+    Level const& below = level(depth + 1);
+    for (int y = 2 * row; y < std::min(2 * row + 2, below.rows); ++y) {
+        for (int x = 2 * column; x < std::min(2 * column + 2, below.columns); ++x) {
+            area += covered_area(depth + 1, x, y);
+        }
+    }
+    return area;
+}
+
+double FrameletCache::coverage() const {
+    double area = 0;
+    Level const& top = levels_.front();
+    for (int row = 0; row < top.rows; ++row) {
+        for (int column = 0; column < top.columns; ++column) {
+            area += covered_area(plane_.min_depth(), column, row);
+        }
+    }
+    Viewport const viewport = plane_.viewport();
+    return area / (static_cast<double>(viewport.width) * static_cast<double>(viewport.height));
+}
+
+std::size_t FrameletCache::memory_bytes() const {
+    return chunks_.size() * sizeof(Chunk) + nodes_.capacity() * sizeof(Node) +
+           free_slots_.capacity() * sizeof(std::int32_t) + changed_blocks_.capacity();
+}
+
+} // namespace framelet

@@ -1,0 +1,130 @@
+// What a viewer holds: for every place of the image plane the newest framelet that arrived, as a quadtree of pooled
+// framelets. In: batches in any order. Out: what is shown where, which parts of the picture changed, and how much of it
+// is covered. The set that is held depends on the batches inserted, not on the order in which they came.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "common/framelet.h"
+
+namespace framelet {
+
+/// When and from where samples were taken. Samples of one moment may be interpolated with each other.
+struct Moment {
+    std::uint64_t batch = 0;
+    std::uint64_t camera = 0;
+    SceneTime scene_time = 0;
+};
+
+/// True when both show the same scene at the same time from the same camera.
+constexpr bool same_moment(Moment const& a, Moment const& b) {
+    return a.camera == b.camera && (a.batch == b.batch || a.scene_time == b.scene_time);
+}
+
+/// A framelet as it is held: samples in rows, sample (i, j) at [16 * j + i].
+struct CachedFramelet {
+    Tile tile;
+    Moment moment;
+    std::array<std::array<std::uint8_t, framelet_samples>, 3> samples; ///< red, green, blue; sRGB-encoded
+};
+
+/// The newest framelets of one viewport. A place shows the framelet of the highest batch number that covers it; of two
+/// of the same batch, the finer one. A framelet of which nothing shows is dropped, so at most one framelet is held for
+/// each 4x4 pixels of the viewport. Changes are counted in blocks of 16x16 pixels, aligned to the picture's corner.
+class FrameletCache {
+public:
+    static constexpr int block_side = framelet_side;
+
+    explicit FrameletCache(ImagePlane plane);
+
+    ImagePlane const& plane() const { return plane_; }
+
+    /// Takes what the batch brings that is newer than what is held; returns how many of its framelets were taken. The
+    /// batch's viewport must be the cache's and every tile one that the plane accepts. Work is proportional to the
+    /// batch; nothing is allocated unless more framelets are held than ever before.
+    std::size_t insert(Batch const& batch);
+
+    /// Replaces `changed` by the rectangles whose pixels may differ since the last call: disjoint, each one block high
+    /// (fewer pixels at the viewport's lower edge), rows from the top.
+    void take_changed(std::vector<PixelRect>& changed);
+    /// True when `take_changed` would return something.
+    bool has_changes() const { return has_changes_; }
+
+    /// Share of the viewport's area that some framelet covers, [0, 1].
+    double coverage() const;
+    std::size_t framelet_count() const { return count_; }
+    std::size_t memory_bytes() const;
+
+    // How `reconstruct` looks at the quadtree.
+
+    /// The framelet held for exactly this tile, or null. Any column and row may be asked for; the depth must be within
+    /// the plane's limits.
+    CachedFramelet const* find(int depth, int column, int row) const {
+        Level const& l = level(depth);
+        if (column < 0 || row < 0 || column >= l.columns || row >= l.rows) {
+            return nullptr;
+        }
+        std::int32_t const slot = node(depth, column, row).slot;
+        return slot == no_slot ? nullptr : &held(slot);
+    }
+    /// The lowest batch number that shows through where only the tiles below this one are looked at; 0 where they leave
+    /// a part of it bare. The tile must be visible.
+    std::uint64_t covered_below(int depth, int column, int row) const;
+
+private:
+    static constexpr std::int32_t no_slot = -1;
+
+    struct Node {
+        std::int32_t slot = no_slot;
+        std::uint32_t held = 0; ///< framelets in this subtree, this node's own included
+        std::uint64_t cover = 0; ///< lowest batch number that shows through within this subtree; 0: bare somewhere
+    };
+    /// Tiles of one depth that are visible, in rows.
+    struct Level {
+        int columns = 0;
+        int rows = 0;
+        std::size_t first = 0;
+    };
+    using Chunk = std::array<CachedFramelet, 256>;
+
+    Level const& level(int depth) const { return levels_[static_cast<std::size_t>(depth - plane_.min_depth())]; }
+    Node const& node(int depth, int column, int row) const {
+        Level const& l = level(depth);
+        return nodes_[l.first + static_cast<std::size_t>(row) * static_cast<std::size_t>(l.columns) +
+                      static_cast<std::size_t>(column)];
+    }
+    Node& node(int depth, int column, int row) {
+        return const_cast<Node&>(std::as_const(*this).node(depth, column, row));
+    }
+    CachedFramelet const& held(std::int32_t slot) const {
+        auto const index = static_cast<std::size_t>(slot);
+        return (*chunks_[index / std::tuple_size_v<Chunk>])[index % std::tuple_size_v<Chunk>];
+    }
+    CachedFramelet& held(std::int32_t slot) { return const_cast<CachedFramelet&>(std::as_const(*this).held(slot)); }
+
+    bool insert_one(DisplayFramelet const& framelet, Moment const& moment);
+    bool is_hidden(int depth, int column, int row, std::uint64_t batch) const;
+    void drop_older_below(int depth, int column, int row, std::uint64_t batch);
+    void drop(Node& node);
+    std::int32_t take_slot();
+    void refresh(int depth, int column, int row);
+    void mark(PixelRect rect);
+    void mark_neighbours(Tile tile, Moment const& moment);
+    void mark_block(int column, int row);
+    double covered_area(int depth, int column, int row) const;
+
+    ImagePlane plane_;
+    std::vector<Level> levels_;
+    std::vector<Node> nodes_;
+    std::vector<std::unique_ptr<Chunk>> chunks_;
+    std::vector<std::int32_t> free_slots_;
+    std::vector<std::uint8_t> changed_blocks_; ///< a byte for each block, in rows
+    std::size_t count_ = 0;
+    bool has_changes_ = false;
+};
+
+} // namespace framelet

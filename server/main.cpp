@@ -1,0 +1,92 @@
+// framelet-server: loads a scene and serves it to viewers.
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <iostream>
+
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+#include <tbb/global_control.h>
+
+#include "common/error.h"
+#include "server/options.h"
+#include "server/progress_bar.h"
+#include "server/render/framelet_renderer.h"
+
+namespace framelet {
+namespace {
+
+/// The clips of these names; throws InputError that lists the names there are.
+std::vector<Index> choose_clips(Scene const& scene, std::vector<std::string> const& names) {
+    if (names.empty()) {
+        return default_clips(scene);
+    }
+    std::vector<Index> chosen;
+    for (std::string const& name : names) {
+        Index found = none;
+        std::string known;
+        for (std::size_t i = 0; i < scene.clips.size(); ++i) {
+            found = scene.clips[i].name == name ? static_cast<Index>(i) : found;
+            known += (i > 0 ? ", " : "") + scene.clips[i].name;
+        }
+        if (found == none) {
+            throw InputError("the scene has no clip '" + name +
+                             "': " + (known.empty() ? "nothing in it is animated" : "its clips are " + known));
+        }
+        chosen.push_back(found);
+    }
+    return chosen;
+}
+
+void serve(Options& options) {
+    tbb::global_control const threads(
+        tbb::global_control::max_allowed_parallelism,
+        options.threads > 0 ? static_cast<std::size_t>(options.threads)
+                            : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+    Progress const progress = make_progress_bar(options.quiet);
+    Scene const scene = import_scene(options.scene, progress);
+    for (std::string const& warning : scene.warnings) {
+        spdlog::warn("{}", warning);
+    }
+    std::vector<Index> const clips = choose_clips(scene, options.clips);
+    std::optional<Environment> environment;
+    if (options.environment) {
+        environment = Environment::load(*options.environment);
+    }
+    RenderScene render_scene(scene, std::move(environment), progress);
+    ScenePose const pose = evaluate_pose(scene, clips, 0);
+    render_scene.set_pose(pose);
+
+    Camera const start =
+        scene.cameras.empty() ? default_camera(scene_bounds(scene, pose)) : scene_camera(scene, pose, 0);
+    options.server.loop.exposure =
+        options.exposure_ev ? std::exp2(*options.exposure_ev) : auto_exposure(render_scene, start);
+    spdlog::info("{}: {} nodes, {} clips, {} lights, {} cameras; exposure {:+.1f} stops", scene.name,
+                 scene.nodes.size(), scene.clips.size(), scene.lights.size(), scene.cameras.size(),
+                 std::log2(options.server.loop.exposure));
+
+    Server server(scene, clips, render_scene, options.server);
+    std::cout << "listening on " << server.address() << std::endl;
+    server.run(true);
+}
+
+} // namespace
+} // namespace framelet
+
+int main(int argc, char** argv) {
+    auto parsed = framelet::parse_options(argc, argv);
+    if (int const* const exit_code = std::get_if<int>(&parsed)) {
+        return *exit_code;
+    }
+    auto& options = std::get<framelet::Options>(parsed);
+    spdlog::set_default_logger(spdlog::stderr_color_mt("framelet"));
+    spdlog::set_pattern("%H:%M:%S.%e %^%l%$ %v");
+    spdlog::set_level(options.quiet ? spdlog::level::warn : spdlog::level::info);
+    try {
+        framelet::serve(options);
+        return 0;
+    } catch (std::exception const& error) {
+        std::cerr << "framelet-server: " << error.what() << '\n';
+        return 1;
+    }
+}

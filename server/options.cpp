@@ -1,0 +1,75 @@
+#include "server/options.h"
+
+#include <iostream>
+
+#include <CLI/CLI.hpp>
+
+#include "common/error.h"
+#include "protocol/token.h"
+
+namespace framelet {
+namespace {
+
+void require_protection(ServerOptions const& server, bool insecure) {
+    bool const protected_link = !server.token.empty() && !server.tls_certificate.empty();
+    if (!is_loopback(server.bind) && !protected_link && !insecure) {
+        throw InputError("--bind " + server.bind +
+                         " can be reached from other machines: give --token-file, --tls-cert and --tls-key, or "
+                         "--insecure if you know that nobody else can reach it");
+    }
+    if (server.tls_certificate.empty() != server.tls_key.empty()) {
+        throw InputError("--tls-cert and --tls-key belong together: give both");
+    }
+}
+
+} // namespace
+
+std::variant<Options, int> parse_options(int argc, char const* const* argv) {
+    Options options;
+    std::string token_file;
+    bool insecure = false;
+
+    CLI::App app("Renders a scene for remote viewers: every ray where their pictures gain most.", "framelet-server");
+    app.set_version_flag("--version", "framelet-server " FRAMELET_VERSION);
+    app.add_option("SCENE", options.scene, "Scene file: .gltf, .glb, .obj and what else the import library reads")
+        ->required();
+    app.add_option("--bind", options.server.bind, "Address to listen on")->capture_default_str();
+    app.add_option("--port", options.server.port, "Port to listen on; 0 picks a free one")->capture_default_str();
+    app.add_option("--threads", options.threads, "Threads to render with; 0: one a core")
+        ->check(CLI::Range(0, 1024))
+        ->capture_default_str();
+    app.add_option("--environment", options.environment, "Environment map (.hdr, .exr) that lights the scene");
+    app.add_option("--exposure", options.exposure_ev, "Exposure in stops; default: chosen for the scene")
+        ->check(CLI::Range(-32.0f, 32.0f));
+    app.add_option("--clip", options.clips, "Animation clip to play, by name; may be given several times");
+    app.add_flag("--paused", options.server.paused, "Start with the scene clock standing");
+    app.add_option("--batch", options.server.loop.batch_framelets,
+                   "Most framelets a batch; 0: what fits a cycle of 50 ms")
+        ->check(CLI::Range(std::size_t(0), max_batch_framelets))
+        ->capture_default_str();
+    app.add_option("--max-sessions", options.server.max_sessions, "Most viewers at a time")
+        ->check(CLI::Range(1, 1024))
+        ->capture_default_str();
+    app.add_option("--token-file", token_file, "File whose first line a viewer has to know");
+    app.add_option("--tls-cert", options.server.tls_certificate, "Certificate chain (PEM): encrypt connections");
+    app.add_option("--tls-key", options.server.tls_key, "Private key (PEM) of the certificate");
+    app.add_flag("--insecure", insecure, "Listen beyond this machine without token and TLS");
+    app.add_flag("--quiet", options.quiet, "Print warnings and errors only");
+    try {
+        app.parse(argc, argv);
+        if (!token_file.empty()) {
+            options.server.token = read_token_file(token_file);
+        }
+        require_protection(options.server, insecure);
+    } catch (CLI::CallForHelp const& help) {
+        return app.exit(help);
+    } catch (CLI::CallForVersion const& version) {
+        return app.exit(version);
+    } catch (std::exception const& error) {
+        std::cerr << "framelet-server: " << error.what() << " (--help lists the options)\n";
+        return 2;
+    }
+    return options;
+}
+
+} // namespace framelet

@@ -1,0 +1,27 @@
+// The command line of framelet-server, as a value.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/session/server.h"
+
+namespace framelet {
+
+struct Options {
+    std::filesystem::path scene;
+    std::optional<std::filesystem::path> environment;
+    std::optional<float> exposure_ev; ///< stops; empty: from the scene
+    std::vector<std::string> clips; ///< names; empty: all that fit together
+    int threads = 0; ///< 0: all cores
+    bool quiet = false;
+    ServerOptions server;
+};
+
+/// The options, or the exit code where there is nothing to run (help, version: 0; bad usage: 2, with one line on
+/// stderr).
+std::variant<Options, int> parse_options(int argc, char const* const* argv);
+
+} // namespace framelet

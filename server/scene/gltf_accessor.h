@@ -1,0 +1,59 @@
+// Typed reading of glTF accessors: strided, sparse, normalised integers. Every index, offset and count of the file is
+// checked here before it is used. In: a model as tinygltf read it. Out: vectors of values, or an InputError.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/math.h"
+
+namespace tinygltf {
+class Model;
+struct Accessor;
+} // namespace tinygltf
+
+namespace framelet {
+
+class GltfAccessors {
+public:
+    explicit GltfAccessors(tinygltf::Model const& model) : model_(model) {}
+
+    /// Bytes of a buffer view.
+    std::span<std::byte const> view(int buffer_view) const;
+
+    /// Number of elements; throws where there is no such accessor.
+    std::size_t count(int accessor) const;
+    /// Components of an element: 1 to 4, 9, 16.
+    int components(int accessor) const;
+
+    /// All elements; T is float, Vec2, Vec3, Vec4 or Mat4 and must have as many components as the accessor. Integers
+    /// become -1..1 or 0..1 where the accessor says `normalized`, else keep their value.
+    template <class T>
+    std::vector<T> read(int accessor) const {
+        std::vector<T> values(checked_count(accessor, sizeof(T) / sizeof(float), sizeof(T)));
+        if (!values.empty()) {
+            read_floats(accessor, reinterpret_cast<float*>(values.data()));
+        }
+        return values;
+    }
+
+    /// All components of all elements as they are stored; the accessor must have `components` unsigned integers.
+    std::vector<std::uint32_t> read_integers(int accessor, int components) const;
+
+private:
+    tinygltf::Accessor const& find(int accessor) const;
+    std::size_t checked_count(int accessor, std::size_t components, std::size_t bytes_each) const;
+    void read_floats(int accessor, float* out) const;
+
+    tinygltf::Model const& model_;
+    mutable std::atomic<std::uint64_t> bytes_read_{0};
+};
+
+/// An accessor that says nothing of its values (all are zero, or sparse) is taken for broken when it has more of them.
+inline constexpr std::uint64_t max_zero_elements = std::uint64_t(1) << 24;
+
+} // namespace framelet

@@ -1,0 +1,27 @@
+// A .gltf or .glb file, read and taken apart by tinygltf, with the checks that tinygltf leaves out. Images stay
+// encoded. In: a path. Out: tinygltf's model, or an InputError that says what is wrong (without the file's name).
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "server/scene/image_loading.h"
+
+namespace tinygltf {
+class Model;
+}
+
+namespace framelet {
+
+class GltfAccessors;
+
+/// Reads the file and the buffers and image files that it names. Missing images get a warning, all else throws.
+/// External images are in `Image::image`, still encoded. Refuses required extensions that the importer does not know.
+std::unique_ptr<tinygltf::Model> read_gltf(std::filesystem::path const& file, std::vector<std::string>& warnings);
+
+/// The model's images, still encoded; those that are missing have no bytes. The bytes live in `model`.
+std::vector<EncodedImage> gltf_images(tinygltf::Model const& model, GltfAccessors const& accessors);
+
+} // namespace framelet

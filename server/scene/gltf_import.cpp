@@ -1,0 +1,41 @@
+#include "server/scene/gltf_import.h"
+
+#include <tbb/parallel_for.h>
+#include <tiny_gltf.h>
+
+#include "server/scene/gltf_accessor.h"
+#include "server/scene/gltf_file.h"
+#include "server/scene/gltf_parts.h"
+
+namespace framelet {
+
+Scene import_gltf(std::filesystem::path const& file, Progress const& progress) {
+    Scene scene;
+    progress("reading", 0);
+    auto const model = read_gltf(file, scene.warnings);
+    GltfAccessors const accessors(*model);
+    progress("reading", 1);
+
+    import_gltf_materials(*model, scene);
+    GltfMapping const mapping = import_gltf_nodes(*model, accessors, scene);
+    import_gltf_animations(*model, accessors, mapping.node, scene);
+
+    std::size_t const mesh_count = mapping.used_meshes.size();
+    scene.meshes.resize(mesh_count);
+    std::vector<std::vector<std::string>> warnings(mesh_count);
+    tbb::parallel_for(std::size_t(0), mesh_count, [&](std::size_t i) {
+        scene.meshes[i] = import_gltf_mesh(*model, accessors, mapping.used_meshes[i], warnings[i]);
+    });
+    for (auto const& lines : warnings) {
+        scene.warnings.insert(scene.warnings.end(), lines.begin(), lines.end());
+    }
+
+    auto const images = gltf_images(*model, accessors);
+    scene.images = load_images(images, scene.warnings, progress);
+    if (!model->scenes.empty()) {
+        scene.name = model->scenes[static_cast<std::size_t>(std::max(model->defaultScene, 0))].name;
+    }
+    return scene;
+}
+
+} // namespace framelet

@@ -1,0 +1,11 @@
+// glTF 2.0 (.gltf, .glb) to a Scene that still has to be finished (scene_finish.h).
+// In: a path. Out: a Scene, or an InputError without the file's name.
+#pragma once
+
+#include "server/scene/scene_import.h"
+
+namespace framelet {
+
+Scene import_gltf(std::filesystem::path const& file, Progress const& progress);
+
+} // namespace framelet

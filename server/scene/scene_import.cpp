@@ -1,0 +1,82 @@
+#include "server/scene/scene_import.h"
+
+#include <algorithm>
+#include <set>
+
+#include "common/error.h"
+#include "server/scene/assimp_import.h"
+#include "server/scene/gltf_import.h"
+#include "server/scene/scene_finish.h"
+
+namespace framelet {
+namespace {
+
+/// One line of bounded length, whatever the file's names and a library's message hold.
+std::string one_line(std::string text) {
+    constexpr std::size_t longest = 400;
+    std::replace_if(
+        text.begin(), text.end(), [](unsigned char c) { return c < 0x20; }, ' ');
+    text.erase(text.find_last_not_of(' ') + 1);
+    if (text.size() > longest) {
+        text.resize(longest);
+        text += "...";
+    }
+    return text;
+}
+
+std::string lower_extension(std::filesystem::path const& file) {
+    std::string extension = file.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c | 32) : c; });
+    return extension;
+}
+
+void check_file(std::filesystem::path const& file) {
+    std::error_code code;
+    if (!std::filesystem::exists(file, code)) {
+        throw InputError("there is no such file");
+    }
+    if (!std::filesystem::is_regular_file(file, code)) {
+        throw InputError("it is not a file");
+    }
+    std::uintmax_t const size = std::filesystem::file_size(file, code);
+    if (code || size == 0) {
+        throw InputError(code ? "it cannot be read" : "the file is empty");
+    }
+}
+
+/// Every warning once, on one line.
+std::vector<std::string> condensed(std::vector<std::string> const& warnings) {
+    std::vector<std::string> lines;
+    std::set<std::string> seen;
+    for (std::string const& warning : warnings) {
+        if (seen.insert(warning).second) {
+            lines.push_back(one_line(warning));
+        }
+    }
+    return lines;
+}
+
+} // namespace
+
+Scene import_scene(std::filesystem::path const& file, Progress const& progress) {
+    Progress const report = progress ? progress : [](std::string_view, double) {};
+    try {
+        check_file(file);
+        std::string const extension = lower_extension(file);
+        Scene scene =
+            extension == ".gltf" || extension == ".glb" ? import_gltf(file, report) : import_assimp(file, report);
+        finish_scene(scene, report);
+        if (scene.name.empty()) {
+            scene.name = file.stem().string();
+        }
+        scene.warnings = condensed(scene.warnings);
+        return scene;
+    } catch (InputError const& error) {
+        throw InputError(one_line("cannot load scene '" + file.string() + "': " + error.what()));
+    } catch (std::bad_alloc const&) {
+        throw InputError("cannot load scene '" + file.string() + "': it does not fit in memory");
+    }
+}
+
+} // namespace framelet

@@ -1,0 +1,31 @@
+// The scene clock that all viewers share. In: wall time and requests; out: what time it is in the scene.
+#pragma once
+
+#include <chrono>
+#include <mutex>
+
+#include "common/scene_clock.h"
+#include "protocol/message.h"
+
+namespace framelet {
+
+using WallTime = std::chrono::steady_clock::time_point;
+
+/// Runs at `speed` scene seconds per wall second while it plays; never below 0. From any thread.
+class SceneClock {
+public:
+    SceneClock(bool playing, WallTime now);
+
+    ClockState state(WallTime now) const;
+    /// Takes the fields that the request sets.
+    void apply(ClockRequest const& request, WallTime now);
+
+private:
+    ClockState advanced(WallTime now) const;
+
+    mutable std::mutex mutex_;
+    ClockState at_mark_; ///< what it stood at ...
+    WallTime mark_; ///< ... at this moment
+};
+
+} // namespace framelet

@@ -1,0 +1,101 @@
+// The server's loop: for every viewer, newest camera and scene time -> tile selection -> rendering -> encoding ->
+// socket. Encoding and sending of one batch overlap the rendering of the next.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "protocol/batch_codec.h"
+#include "server/render/framelet_renderer.h"
+#include "server/schedule/refinement.h"
+#include "server/schedule/render_rate.h"
+#include "server/session/scene_clock.h"
+#include "server/session/session.h"
+
+namespace framelet {
+
+struct LoopOptions {
+    float exposure = 1; ///< factor on radiance, before the viewer's own
+    std::size_t batch_framelets = 0; ///< most framelets of one batch; 0: what `cycle_seconds` has time for
+    double cycle_seconds = 0.05; ///< how long one cycle should take, all viewers together
+};
+
+/// What is on screen is worth refining for as long as this stays the same.
+struct ViewState {
+    CameraUpdate camera;
+    float exposure = 1;
+    SceneTime scene_time = 0; ///< 0 where nothing moves
+
+    bool operator==(ViewState const&) const = default;
+};
+
+class SessionLoop {
+public:
+    using Sessions = std::vector<std::shared_ptr<Session>>;
+
+    /// What the loop asks of its server; both may be called on the loop's thread.
+    struct Events {
+        std::function<Sessions()> open_sessions;
+        /// A session's picture is complete, or no longer.
+        std::function<void()> convergence_changed;
+    };
+
+    /// Scene and clock must outlive the loop.
+    SessionLoop(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene, SceneClock const& clock,
+                LoopOptions options, Events events);
+    ~SessionLoop();
+
+    /// Until `stop`; on the calling thread, with the worker threads of its TBB arena.
+    void run();
+    void stop();
+    /// Something changed that may be worth a cycle. From any thread.
+    void wake();
+
+    /// Counters for the status message. From any thread.
+    double samples_per_second() const { return samples_per_second_; }
+
+    /// One pass over all sessions; true when something was rendered. `run` is this in a loop; tests call it directly.
+    bool cycle(Sessions const& sessions, WallTime now);
+
+private:
+    /// What the loop remembers of a session between cycles.
+    struct Progress {
+        std::optional<ViewState> seen;
+        ImagePlane plane;
+        Refinement refinement;
+    };
+
+    void pose_scene(SceneTime time);
+    CameraUpdate resolve_camera(CameraUpdate camera) const;
+    bool render_session(Session& session, Progress& progress, SceneTime time, double cycle_seconds);
+    void finish_encoding();
+    void forget_ended(Sessions const& sessions);
+
+    Scene const& scene_;
+    std::vector<Index> const clips_;
+    bool const animated_;
+    RenderScene& render_scene_;
+    SceneClock const& clock_;
+    LoopOptions const options_;
+    Events const events_;
+
+    ScenePose pose_;
+    std::map<std::uint64_t, Progress> progress_;
+    RenderRate rate_;
+
+    struct Encoding;
+    std::unique_ptr<Encoding> encoding_;
+
+    std::mutex mutex_;
+    std::condition_variable woken_;
+    bool wake_ = false;
+    bool stop_ = false;
+    std::atomic<double> samples_per_second_ = 0;
+};
+
+} // namespace framelet

@@ -1,0 +1,150 @@
+#include "client/camera_controller.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
+
+namespace framelet {
+namespace {
+
+Viewport const viewport{800, 600};
+
+/// A scene of this diagonal around the origin and a camera that sees all of it.
+struct Stage {
+    Bounds scene;
+    Camera home;
+
+    explicit Stage(float diagonal) {
+        Vec3 const half = Vec3(1, 1, 1) * (0.5f * diagonal / std::sqrt(3.0f));
+        scene.include(-half);
+        scene.include(half);
+        home = look_at(Vec3(0, 0.3f, 1) * diagonal, Vec3(0, 0, 0), Vec3(0, 1, 0), 0.8f);
+    }
+};
+
+/// From a watch to a landscape.
+class CameraControllerOfSize : public testing::TestWithParam<float> {};
+INSTANTIATE_TEST_SUITE_P(Sizes, CameraControllerOfSize, testing::Values(0.03f, 1.0f, 50.0f, 2000.0f));
+
+TEST_P(CameraControllerOfSize, OrbitKeepsDistanceAimAndHorizon) {
+    float const size = GetParam();
+    Stage const stage(size);
+    CameraController controller(stage.home, stage.scene);
+    float const distance = glm::length(stage.home.position);
+    for (int i = 0; i < 500; ++i) {
+        controller.orbit({7, i % 60 < 30 ? 9 : -9}, viewport);
+        Camera const& camera = controller.camera();
+        ASSERT_TRUE(is_valid(camera));
+        EXPECT_NEAR(glm::length(camera.position), distance, 2e-3f * size);
+        EXPECT_GT(glm::dot(camera.forward(), glm::normalize(-camera.position)), 0.9999f);
+        EXPECT_NEAR(camera.right().y, 0, 1e-3f);
+        EXPECT_GE(camera.up().y, -1e-4f);
+    }
+}
+
+TEST_P(CameraControllerOfSize, PanMovesThePointUnderThePointerWithIt) {
+    float const size = GetParam();
+    Stage const stage(size);
+    CameraController controller(stage.home, stage.scene);
+    controller.pan({100, 40}, viewport);
+    // Where the origin is seen now: it was in the middle.
+    Camera const& camera = controller.camera();
+    Vec3 const from_camera = -camera.position;
+    float const depth = glm::dot(from_camera, camera.forward());
+    float const pixel = 2 * std::tan(0.5f * camera.vertical_extent) * depth / 600;
+    EXPECT_NEAR(glm::dot(from_camera, camera.right()) / pixel, 100, 0.1f);
+    EXPECT_NEAR(-glm::dot(from_camera, camera.up()) / pixel, 40, 0.1f);
+    EXPECT_EQ(camera.orientation, stage.home.orientation);
+}
+
+TEST_P(CameraControllerOfSize, DollyNearsButNeverPasses) {
+    Stage const stage(GetParam());
+    CameraController controller(stage.home, stage.scene);
+    float distance = glm::length(stage.home.position);
+    controller.dolly(1);
+    EXPECT_NEAR(glm::length(controller.camera().position), 0.9f * distance, 1e-3f * distance);
+    controller.dolly(-1);
+    EXPECT_NEAR(glm::length(controller.camera().position), distance, 1e-3f * distance);
+    for (int i = 0; i < 300; ++i) {
+        controller.dolly(1);
+        ASSERT_TRUE(is_valid(controller.camera()));
+        ASSERT_GT(glm::dot(controller.camera().forward(), stage.home.forward()), 0.999f);
+    }
+    EXPECT_LT(glm::length(controller.camera().position), 1e-3f * distance);
+    controller.dolly(-500);
+    EXPECT_TRUE(is_valid(controller.camera()));
+}
+
+TEST_P(CameraControllerOfSize, FlyingIsIndependentOfTheFrameRateAndScalesWithTheScene) {
+    float const size = GetParam();
+    Stage const stage(size);
+    CameraController once(stage.home, stage.scene);
+    CameraController often(stage.home, stage.scene);
+    FlyInput const forward{{0, 0, -1}, false};
+    once.fly(forward, 1);
+    for (int i = 0; i < 60; ++i) {
+        often.fly(forward, 1.0 / 60);
+    }
+    Vec3 const way = once.camera().position - stage.home.position;
+    EXPECT_NEAR(glm::length(way), size / 8, 1e-3f * size);
+    EXPECT_GT(glm::dot(glm::normalize(way), stage.home.forward()), 0.9999f);
+    EXPECT_LT(glm::distance(once.camera().position, often.camera().position), 1e-4f * size);
+}
+
+TEST(CameraController, ResetGoesHome) {
+    Stage const stage(3);
+    CameraController controller(stage.home, stage.scene);
+    controller.orbit({30, 20}, viewport);
+    controller.pan({30, 20}, viewport);
+    controller.dolly(3);
+    controller.fly({{1, 1, 1}, true}, 2);
+    EXPECT_NE(controller.camera(), stage.home);
+    controller.reset();
+    EXPECT_EQ(controller.camera(), stage.home);
+}
+
+TEST(CameraController, DraggingRightTurnsTheSceneRight) {
+    Stage const stage(2);
+    CameraController controller(stage.home, stage.scene);
+    controller.orbit({50, 0}, viewport);
+    EXPECT_LT(controller.camera().position.x, 0); // the camera goes left around it
+    controller.reset();
+    controller.orbit({0, 50}, viewport);
+    EXPECT_GT(controller.camera().position.y, stage.home.position.y); // and up over it
+}
+
+TEST(CameraController, ASceneWithoutExtentIsNoTrouble) {
+    CameraController controller(Camera{}, Bounds{});
+    controller.orbit({50, 50}, viewport);
+    controller.dolly(2);
+    controller.pan({5, 5}, viewport);
+    controller.fly({{0, 0, -1}, false}, 1);
+    EXPECT_TRUE(is_valid(controller.camera()));
+}
+
+TEST(CameraController, AViewStraightDownCanBeTakenOver) {
+    Stage const stage(2);
+    CameraController controller(stage.home, stage.scene);
+    controller.set_camera(look_at({0, 5, 0}, {0, 0, 0}, {0, 0, -1}, 0.8f));
+    for (int i = 0; i < 100; ++i) {
+        controller.orbit({11, 3}, viewport);
+        ASSERT_TRUE(is_valid(controller.camera()));
+        EXPECT_GE(controller.camera().up().y, -1e-3f);
+    }
+}
+
+TEST(CameraController, OrthographicViewsZoom) {
+    Stage const stage(2);
+    Camera camera = stage.home;
+    camera.projection = Projection::orthographic;
+    camera.vertical_extent = 4;
+    CameraController controller(camera, stage.scene);
+    controller.dolly(1);
+    EXPECT_NEAR(controller.camera().vertical_extent, 3.6f, 1e-4f);
+    EXPECT_EQ(controller.camera().position, camera.position);
+    controller.pan({150, 0}, viewport);
+    EXPECT_NEAR(glm::distance(controller.camera().position, camera.position), 0.9f, 1e-3f);
+}
+
+} // namespace
+} // namespace framelet

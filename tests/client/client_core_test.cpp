@@ -1,0 +1,337 @@
+#include "client/client_core.h"
+
+#include <gtest/gtest.h>
+
+#include "common/color.h"
+#include "common/error.h"
+#include "tests/client/fake_server.h"
+#include "tests/common/synthetic_framelets.h"
+
+namespace framelet {
+namespace {
+
+using test::FakeServer;
+using namespace std::chrono_literals;
+
+constexpr auto patience = 60s; // nothing waits for it when all is well
+
+ConnectionOptions options_for(FakeServer const& server) {
+    ConnectionOptions out;
+    out.server = server.address();
+    return out;
+}
+
+/// Waits for what the core has to say until `wanted` holds.
+bool wait_for(ClientCore& core, std::function<bool()> const& wanted) {
+    auto const end = std::chrono::steady_clock::now() + patience;
+    while (!wanted()) {
+        if (std::chrono::steady_clock::now() > end) {
+            return false;
+        }
+        core.wait_for_news(100ms);
+    }
+    return true;
+}
+
+/// The line that says why no session could be opened.
+std::string why_not(ConnectionOptions const& options) {
+    try {
+        ClientCore const core(options);
+    } catch (ConnectionError const& error) {
+        return error.what();
+    }
+    return "it worked";
+}
+
+bool one_line_with(std::string const& text, std::vector<std::string> const& parts) {
+    return text.find('\n') == std::string::npos && std::all_of(parts.begin(), parts.end(), [&](auto const& part) {
+               return text.find(part) != std::string::npos;
+           });
+}
+
+Batch constant_batch(ImagePlane const& plane, int depth, std::uint8_t value, std::uint64_t camera) {
+    Batch batch = make_batch(plane, 0, {});
+    batch.view.number = camera;
+    for (Tile const tile : visible_tiles(plane, depth)) {
+        batch.framelets.push_back(constant_framelet(plane, tile, value));
+    }
+    return batch;
+}
+
+TEST(ClientCore, CoarseThenFineArrivesAndIsAcknowledged) {
+    FakeServer server;
+    ClientCore core(options_for(server));
+    EXPECT_EQ(core.welcome().scene_name, "fake scene");
+    Viewport const viewport{100, 60};
+    ImagePlane const plane(viewport);
+    Picture picture;
+    std::vector<PixelRect> changed;
+    core.set_view({}, viewport);
+    EXPECT_FALSE(core.update_picture(picture, changed));
+
+    server.send(constant_batch(plane, plane.min_depth(), 50, 1));
+    ASSERT_TRUE(wait_for(core, [&] { return core.update_picture(picture, changed); }));
+    ASSERT_EQ(picture.width, 100);
+    ASSERT_EQ(picture.height, 60);
+    EXPECT_EQ(picture.row(59)[4 * 99], 50);
+    EXPECT_EQ(changed, (std::vector<PixelRect>{{0, 0, 100, 60}}));
+
+    Batch fine = make_batch(plane, 0, {constant_framelet(plane, make_tile(plane.pixel_depth(), 2, 1), 90)});
+    fine.view.number = 1;
+    fine.scene_time = 1; // of another moment: its neighbours stay as they are
+    server.send(fine);
+    ASSERT_TRUE(wait_for(core, [&] { return core.update_picture(picture, changed); }));
+    EXPECT_EQ(changed, (std::vector<PixelRect>{{32, 16, 48, 32}}));
+    EXPECT_EQ(picture.row(16)[4 * 32], 90);
+    EXPECT_EQ(picture.row(15)[4 * 32], 50);
+    EXPECT_FALSE(core.update_picture(picture, changed));
+
+    ASSERT_TRUE(server.wait_for_some<Ack>(2));
+    EXPECT_EQ(server.received<Ack>()[0].batch, 1u);
+    EXPECT_EQ(server.received<Ack>()[1].batch, 2u);
+    ClientStatistics const statistics = core.statistics();
+    EXPECT_EQ(statistics.batches, 2u);
+    EXPECT_EQ(statistics.samples, statistics.framelets * 256);
+    EXPECT_EQ(statistics.coverage, 1);
+    EXPECT_EQ(statistics.pictures, 2u);
+    EXPECT_GT(statistics.bytes, 0u);
+    EXPECT_GE(statistics.least_round_trip_seconds, 0);
+    EXPECT_GE(statistics.full_picture_seconds, 0);
+}
+
+TEST(ClientCore, CamerasCountUpAndEqualOnesAreNotRepeated) {
+    FakeServer server;
+    ClientCore core(options_for(server));
+    Picture picture;
+    std::vector<PixelRect> changed;
+    Camera camera;
+    for (int i = 1; i <= 20; ++i) {
+        camera.position.x = static_cast<float>(i);
+        core.set_view(camera, {64, 48}, 3);
+        core.set_view(camera, {64, 48}, 3);
+    }
+    // The last one arrives whatever was skipped before it.
+    ASSERT_TRUE(wait_for(core, [&] {
+        core.update_picture(picture, changed);
+        auto const cameras = server.received<CameraUpdate>();
+        return !cameras.empty() && cameras.back().view.camera == camera;
+    }));
+    auto const cameras = server.received<CameraUpdate>();
+    EXPECT_EQ(cameras.back().view.number, 20u);
+    EXPECT_EQ(cameras.back().scene_camera, 3);
+    for (std::size_t i = 1; i < cameras.size(); ++i) {
+        EXPECT_GT(cameras[i].view.number, cameras[i - 1].view.number);
+    }
+}
+
+TEST(ClientCore, SettingsAndClockRequestsGoUpAndStatusComesDown) {
+    FakeServer server;
+    ClientCore core(options_for(server));
+    core.set_settings({1.5f, 0});
+    core.request_clock({ClockRequest::time, {3.5, false, 1}});
+    ASSERT_TRUE(server.wait_for_some<ClockRequest>());
+    ASSERT_EQ(server.received<ViewerSettings>().size(), 1u);
+    EXPECT_EQ(server.received<ViewerSettings>().front().exposure_ev, 1.5f);
+    EXPECT_EQ(server.received<ClockRequest>().front().state.time, 3.5);
+
+    Status status;
+    status.clock = {12, false, 2};
+    status.samples_per_second = 7e6;
+    server.fall_silent();
+    server.send(Message(status));
+    ASSERT_TRUE(wait_for(core, [&] { return core.status() == status; }));
+    EXPECT_EQ(core.clock().time, 12);
+    EXPECT_EQ(core.statistics().server_samples_per_second, 7e6);
+}
+
+TEST(ClientCore, IsCompleteWhenTheNewestViewHasConvergedAndAllHasCome) {
+    FakeServer server;
+    server.fall_silent();
+    ClientCore core(options_for(server));
+    Viewport const viewport{32, 32};
+    ImagePlane const plane(viewport);
+    core.set_view({}, viewport);
+    server.send(constant_batch(plane, plane.pixel_depth(), 1, 1));
+    Status status;
+    status.converged = true;
+    status.camera_number = 1;
+    status.last_batch = 2;
+    server.send(Message(status));
+    ASSERT_TRUE(wait_for(core, [&] { return core.status().converged; }));
+    EXPECT_FALSE(core.is_complete()) << "batch 2 is still missing";
+    server.send(constant_batch(plane, plane.pixel_depth(), 2, 1));
+    EXPECT_TRUE(wait_for(core, [&] { return core.is_complete(); }));
+    Camera other;
+    other.position.x = 1;
+    core.set_view(other, viewport);
+    EXPECT_FALSE(core.is_complete()) << "that was about another view";
+}
+
+TEST(ClientCore, ANewViewportKeepsTheOldPictureUntilItsOwnContentComes) {
+    FakeServer server;
+    ClientCore core(options_for(server));
+    ImagePlane const small(Viewport{32, 32});
+    ImagePlane const large(Viewport{64, 40});
+    Picture picture;
+    std::vector<PixelRect> changed;
+    core.set_view({}, small.viewport());
+    server.send(constant_batch(small, small.pixel_depth(), 10, 1));
+    ASSERT_TRUE(wait_for(core, [&] { return core.update_picture(picture, changed); }));
+    core.set_view({}, large.viewport());
+    EXPECT_FALSE(core.update_picture(picture, changed));
+    EXPECT_EQ(picture.width, 32);
+    // What was still on its way for the old one is not shown.
+    server.send(constant_batch(small, small.pixel_depth(), 11, 1));
+    ASSERT_TRUE(wait_for(core, [&] { return core.statistics().stale_batches == 1; }));
+    EXPECT_FALSE(core.update_picture(picture, changed));
+    server.send(constant_batch(large, large.pixel_depth(), 20, 2));
+    ASSERT_TRUE(wait_for(core, [&] { return core.update_picture(picture, changed); }));
+    EXPECT_EQ(picture.width, 64);
+    EXPECT_EQ(picture.row(39)[4 * 63], 20);
+}
+
+TEST(ClientCore, SaysThatNobodyListens) {
+    ConnectionOptions options;
+    {
+        FakeServer const server;
+        options = options_for(server);
+    }
+    std::string const text = why_not(options);
+    EXPECT_TRUE(one_line_with(text, {options.server.text(), "connection refused", "framelet-server"})) << text;
+}
+
+TEST(ClientCore, SaysThatThereIsNoSuchHost) {
+    ConnectionOptions options;
+    options.server = {"nowhere.invalid", 7070};
+    std::string const text = why_not(options);
+    EXPECT_TRUE(one_line_with(text, {"nowhere.invalid:7070"})) << text;
+}
+
+TEST(ClientCore, GivesUpOnAServerThatDoesNotAnswer) {
+    FakeServer::Script script;
+    script.mute = true;
+    FakeServer server(script);
+    ConnectionOptions options = options_for(server);
+    options.connect_seconds = 0.3;
+    std::string const text = why_not(options);
+    EXPECT_TRUE(one_line_with(text, {options.server.text(), "no answer"})) << text;
+}
+
+TEST(ClientCore, SaysWhatTheServerRefusedItFor) {
+    FakeServer::Script script;
+    script.refusal = "wrong token: ask whoever runs the server";
+    FakeServer server(script);
+    std::string const text = why_not(options_for(server));
+    EXPECT_TRUE(one_line_with(text, {server.address().text(), "refused", "wrong token"})) << text;
+}
+
+TEST(ClientCore, RefusesAnotherProtocolVersion) {
+    FakeServer::Script script;
+    script.welcome.version = 77;
+    FakeServer server(script);
+    std::string const text = why_not(options_for(server));
+    EXPECT_TRUE(one_line_with(text, {server.address().text(), "77", "version"})) << text;
+}
+
+TEST(ClientCore, SendsItsTokenFirst) {
+    FakeServer server;
+    ConnectionOptions options = options_for(server);
+    options.token = "open sesame";
+    ClientCore const core(options);
+    ASSERT_EQ(server.received<Hello>().size(), 1u);
+    EXPECT_EQ(server.received<Hello>().front().token, "open sesame");
+}
+
+TEST(ClientCore, GarbageAndHostileLengthsEndTheConnection) {
+    std::string const garbage[] = {std::string(1000, '\xff'), "HTTP/1.1 400 Bad Request\r\n\r\n",
+                                   std::string("\xff\xff\xff\x7f", 4), std::string(4, '\0'),
+                                   std::string("\x10\0\0\0", 4) + std::string(16, 'x')};
+    for (std::string const& bytes : garbage) {
+        FakeServer::Script script;
+        script.raw_bytes = bytes;
+        FakeServer server(script);
+        ConnectionOptions options = options_for(server);
+        options.connect_seconds = 30;
+        std::string const text = why_not(options);
+        EXPECT_TRUE(one_line_with(text, {server.address().text()})) << text;
+        EXPECT_EQ(text.find("no answer"), std::string::npos) << text;
+    }
+}
+
+TEST(ClientCore, ServerThatBreaksTheProtocolIsLeft) {
+    ImagePlane const plane(Viewport{32, 32});
+    Batch outside = constant_batch(plane, plane.pixel_depth(), 1, 1);
+    outside.framelets.push_back(constant_framelet(plane, make_tile(plane.pixel_depth(), 0, 0), 1));
+    outside.framelets.back().tile = make_tile(plane.max_depth() + 1, 0, 0);
+    FakeServer server;
+    ClientCore core(options_for(server));
+    core.set_view({}, plane.viewport());
+    server.send(outside);
+    ASSERT_TRUE(wait_for(core, [&] { return core.end_reason().has_value(); }));
+    EXPECT_TRUE(one_line_with(*core.end_reason(), {server.address().text()})) << *core.end_reason();
+
+    FakeServer chatty;
+    ClientCore second(options_for(chatty));
+    chatty.send(Message(Hello{}));
+    ASSERT_TRUE(wait_for(second, [&] { return second.end_reason().has_value(); }));
+
+    FakeServer hasty; // a batch that nobody asked for
+    ClientCore third(options_for(hasty));
+    hasty.send(constant_batch(plane, plane.pixel_depth(), 1, 1));
+    ASSERT_TRUE(wait_for(third, [&] { return third.end_reason().has_value(); }));
+}
+
+TEST(ClientCore, NoticesThatTheServerVanished) {
+    FakeServer server;
+    ClientCore core(options_for(server));
+    server.vanish();
+    ASSERT_TRUE(wait_for(core, [&] { return core.end_reason().has_value(); }));
+    EXPECT_TRUE(one_line_with(*core.end_reason(), {server.address().text()})) << *core.end_reason();
+    core.set_view({}, {32, 32}); // may be called still, to no effect
+}
+
+TEST(ClientCore, NoticesThatTheServerFellSilent) {
+    FakeServer server;
+    ConnectionOptions options = options_for(server);
+    options.silence_seconds = 1;
+    ClientCore core(options);
+    core.wait_for_news(1500ms); // heartbeats keep it
+    EXPECT_FALSE(core.end_reason().has_value());
+    server.fall_silent();
+    ASSERT_TRUE(wait_for(core, [&] { return core.end_reason().has_value(); }));
+    EXPECT_TRUE(one_line_with(*core.end_reason(), {server.address().text(), "stopped answering"}));
+}
+
+TEST(ClientCore, PassesOnWhyTheServerEndedTheSession) {
+    FakeServer server;
+    ClientCore core(options_for(server));
+    server.send(Message(Failure{"the server is shutting down"}));
+    ASSERT_TRUE(wait_for(core, [&] { return core.end_reason().has_value(); }));
+    EXPECT_TRUE(one_line_with(*core.end_reason(), {server.address().text(), "shutting down"})) << *core.end_reason();
+}
+
+TEST(ClientCore, ManyBatchesWhileAnotherThreadDraws) {
+    FakeServer server;
+    ClientCore core(options_for(server));
+    ImagePlane const plane(Viewport{160, 90});
+    core.set_view({}, plane.viewport());
+    std::mt19937 random(5);
+    constexpr std::uint64_t count = 150;
+    for (std::uint64_t i = 0; i < count; ++i) {
+        Batch batch =
+            constant_batch(plane, plane.min_depth() + static_cast<int>(i % 5), static_cast<std::uint8_t>(i), 1);
+        batch.framelets.resize(std::min<std::size_t>(batch.framelets.size(), 40));
+        server.send(batch);
+    }
+    Picture picture;
+    std::vector<PixelRect> changed;
+    ASSERT_TRUE(wait_for(core, [&] {
+        core.update_picture(picture, changed);
+        return core.statistics().batches == count;
+    }));
+    core.update_picture(picture, changed);
+    EXPECT_EQ(picture.row(0)[0], count - 1);
+}
+
+} // namespace
+} // namespace framelet

@@ -1,0 +1,85 @@
+#include "client/frame_writer.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include <unistd.h>
+
+#include "common/error.h"
+#include "common/image_io.h"
+
+namespace framelet {
+namespace {
+
+namespace fs = std::filesystem;
+
+class FrameWriterTest : public testing::Test {
+protected:
+    void SetUp() override {
+        folder_ = fs::temp_directory_path() / ("framelet_frames_" + std::to_string(::getpid()) + "_" +
+                                               testing::UnitTest::GetInstance()->current_test_info()->name());
+        fs::remove_all(folder_);
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    fs::path folder_;
+};
+
+Picture grey(std::uint8_t value) {
+    Picture out(8, 4);
+    std::fill(out.rgba.begin(), out.rgba.end(), value);
+    return out;
+}
+
+TEST(FramePattern, NumbersFiles) {
+    EXPECT_EQ(FramePattern("a/%04d.png").path(7), "a/0007.png");
+    EXPECT_EQ(FramePattern("a/%04d.png").path(123456), "a/123456.png");
+    EXPECT_EQ(FramePattern("f%d.png").path(12), "f12.png");
+    EXPECT_EQ(FramePattern("f%3d.png").path(12), "f 12.png");
+    EXPECT_EQ(FramePattern("last.png").path(12), "last.png");
+    EXPECT_FALSE(FramePattern("last.png").numbered());
+}
+
+TEST(FramePattern, RefusesAllElse) {
+    for (char const* const text : {"", "%s.png", "%n.png", "%04d%d.png", "%.png", "%04", "%0d.png", "%00d.png",
+                                   "%12d.png", "%-4d.png", "%%.png", "a/%04x.png", "frames", "%04d", "a.png/"}) {
+        EXPECT_THROW(FramePattern{text}, InputError) << text;
+    }
+}
+
+TEST_F(FrameWriterTest, WritesEveryFrameAndRepeatsThoseThatDidNotChange) {
+    FrameWriter writer(FramePattern((folder_ / "deep" / "%02d.png").string()));
+    for (int i = 0; i < 30; ++i) {
+        writer.add(grey(static_cast<std::uint8_t>(i / 3 * 3)), i % 3 == 0);
+    }
+    writer.finish();
+    EXPECT_EQ(writer.frames(), 30u);
+    for (int i = 0; i < 30; ++i) {
+        Picture const picture =
+            read_picture(FramePattern((folder_ / "deep" / "%02d.png").string()).path(static_cast<std::uint64_t>(i)));
+        EXPECT_EQ(picture.width, 8);
+        EXPECT_EQ(picture.rgba[0], i / 3 * 3);
+    }
+}
+
+TEST_F(FrameWriterTest, WithoutANumberKeepsTheLast) {
+    FrameWriter writer(FramePattern((folder_ / "only.png").string()));
+    writer.add(grey(5), true);
+    writer.add(grey(9), true);
+    writer.add(grey(9), false);
+    writer.finish();
+    EXPECT_EQ(read_picture(folder_ / "only.png").rgba[0], 9);
+}
+
+TEST_F(FrameWriterTest, SaysThatItCannotWrite) {
+    fs::create_directories(folder_);
+    std::ofstream(folder_ / "file") << "in the way";
+    EXPECT_THROW(FrameWriter(FramePattern((folder_ / "file" / "%d.png").string())), InputError);
+    FrameWriter writer(FramePattern((folder_ / "%d.nonsense").string()));
+    writer.add(grey(1), true);
+    EXPECT_THROW(writer.finish(), InputError);
+}
+
+} // namespace
+} // namespace framelet

@@ -1,0 +1,35 @@
+#include "client/server_address.h"
+
+#include <gtest/gtest.h>
+
+#include "client/connection_arguments.h"
+#include "common/error.h"
+
+namespace framelet {
+namespace {
+
+TEST(ServerAddress, IsReadAsWritten) {
+    EXPECT_EQ(parse_server_address("127.0.0.1:7070"), (ServerAddress{"127.0.0.1", 7070}));
+    EXPECT_EQ(parse_server_address("render.example.org:1"), (ServerAddress{"render.example.org", 1}));
+    EXPECT_EQ(parse_server_address("[::1]:65535"), (ServerAddress{"::1", 65535}));
+    EXPECT_EQ(parse_server_address("[::1]:65535").text(), "[::1]:65535");
+    EXPECT_EQ(parse_server_address("host:80").text(), "host:80");
+}
+
+TEST(ServerAddress, AnythingElseIsRefused) {
+    for (char const* const text : {"", ":", "host", "host:", ":7070", "host:0", "host:65536", "host:7070x", "host:-1",
+                                   "a b:7070", "::1:7070", "[::1", "[::1]", "[::1]x:7070", "[]:7070", "host:+5"}) {
+        EXPECT_THROW(parse_server_address(text), InputError) << text;
+    }
+}
+
+TEST(PictureSize, IsReadOrRefused) {
+    EXPECT_EQ(parse_size("1280x720"), (Viewport{1280, 720}));
+    EXPECT_EQ(parse_size("1x16384"), (Viewport{1, 16384}));
+    for (char const* const text : {"", "x", "12", "12x", "x12", "0x5", "5x0", "-3x5", "12x16385", "1x1x1", "1 x 1"}) {
+        EXPECT_THROW(parse_size(text), InputError) << text;
+    }
+}
+
+} // namespace
+} // namespace framelet

@@ -1,0 +1,302 @@
+// The real server and the real windowless client as processes, over a loopback socket.
+#include <cmath>
+#include <csignal>
+#include <set>
+#include <thread>
+
+#include <boost/asio/connect.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/write.hpp>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "common/image_io.h"
+#include "server/render/framelet_renderer.h"
+#include "server/scene/animation.h"
+#include "server/scene/scene_import.h"
+#include "tests/loopback/process.h"
+
+namespace framelet::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+std::string const scene_file = FRAMELET_SOURCE_DIR "/scenes/vehicle_chase.glb";
+constexpr auto patience = 120s; // a slow machine, sanitizers; nothing waits for it when all is well
+
+double psnr(Picture const& a, Picture const& b) {
+    EXPECT_EQ(a.width, b.width);
+    EXPECT_EQ(a.height, b.height);
+    double sum = 0;
+    for (std::size_t i = 0; i < std::min(a.rgba.size(), b.rgba.size()); ++i) {
+        double const difference = double(a.rgba[i]) - double(b.rgba[i]);
+        sum += difference * difference;
+    }
+    double const mse = sum / (static_cast<double>(a.rgba.size()) * 3 / 4); // alpha is equal everywhere
+    return mse > 0 ? 10 * std::log10(255 * 255 / mse) : 999;
+}
+
+struct StillCamera {
+    Vec3 position{9, 4, 12};
+    Vec3 target{0, 1, 0};
+    float fov_degrees = 50;
+
+    std::string json() const {
+        return nlohmann::json{{"position", {position.x, position.y, position.z}},
+                              {"target", {target.x, target.y, target.z}},
+                              {"up", {0, 1, 0}},
+                              {"fov_degrees", fov_degrees}}
+            .dump();
+    }
+    Camera camera() const { return look_at(position, target, {0, 1, 0}, fov_degrees * 3.14159265f / 180); }
+};
+
+/// What the server itself would draw of the scene at this time, with neither tiles nor wire.
+Picture direct_render(Camera const& camera, Viewport viewport, SceneTime time) {
+    Scene const scene = import_scene(scene_file);
+    auto const clips = default_clips(scene);
+    RenderScene render_scene(scene, std::nullopt);
+    render_scene.set_pose(evaluate_pose(scene, clips, time));
+    return render_picture(render_scene, camera, viewport, 1, 1 << finest_levels);
+}
+
+std::vector<std::filesystem::path> frames_in(std::filesystem::path const& folder) {
+    std::set<std::filesystem::path> frames;
+    for (auto const& entry : std::filesystem::directory_iterator(folder)) {
+        if (entry.path().extension() == ".png") {
+            frames.insert(entry.path());
+        }
+    }
+    return {frames.begin(), frames.end()};
+}
+
+/// A client that ends once its picture is complete, and the last picture it saw.
+class ConvergingClient {
+public:
+    ConvergingClient(std::string const& address, std::string const& camera_json, std::string const& size,
+                     std::vector<std::string> more = {})
+        : process_(FRAMELET_CLIENT, arguments(address, camera_json, size, std::move(more))) {}
+
+    Picture finish() {
+        EXPECT_EQ(process_.wait(patience), 0) << process_.errors();
+        auto const frames = frames_in(folder_.path());
+        EXPECT_FALSE(frames.empty());
+        return frames.empty() ? Picture() : read_picture(frames.back());
+    }
+    Process& process() { return process_; }
+
+private:
+    std::vector<std::string> arguments(std::string const& address, std::string const& camera_json,
+                                       std::string const& size, std::vector<std::string> more) {
+        std::vector<std::string> all{address,
+                                     "--size",
+                                     size,
+                                     "--camera",
+                                     folder_.write("camera.json", camera_json),
+                                     "--until-converged",
+                                     "--duration",
+                                     "100",
+                                     "--rate",
+                                     "10",
+                                     "--output",
+                                     (folder_.path() / "%05d.png").string(),
+                                     "--json"};
+        all.insert(all.end(), more.begin(), more.end());
+        return all;
+    }
+
+    TemporaryFolder folder_;
+    Process process_;
+};
+
+TEST(Loopback, ConvergedPictureIsTheDirectRender) {
+    ServerProcess server(scene_file, {"--paused", "--exposure", "0"});
+    for (auto const& [size, viewport] : {std::pair{"320x180", Viewport{320, 180}}, {"131x97", Viewport{131, 97}}}) {
+        StillCamera const view;
+        ConvergingClient client(server.address(), view.json(), size);
+        Picture const seen = client.finish();
+        EXPECT_GE(psnr(seen, direct_render(view.camera(), viewport, 0)), 45) << size;
+        auto const statistics = nlohmann::json::parse(client.process().output());
+        EXPECT_TRUE(statistics.at("converged").get<bool>());
+    }
+}
+
+TEST(Loopback, CameraMovesArrive) {
+    ServerProcess server(scene_file, {"--paused", "--exposure", "0"});
+    StillCamera last;
+    last.position = {-6, 3, -10};
+    std::string const path = R"({"keys":[{"time":0,"position":[9,4,12],"target":[0,1,0],"fov_degrees":50},
+        {"time":1,"position":[-6,3,-10],"target":[0,1,0],"fov_degrees":50}]})";
+    ConvergingClient client(server.address(), path, "160x90", {"--rate", "30"});
+    EXPECT_GE(psnr(client.finish(), direct_render(last.camera(), {160, 90}, 0)), 45);
+}
+
+TEST(Loopback, AnimationPlaysPausesAndSeeks) {
+    ServerProcess server(scene_file, {"--paused", "--exposure", "0"});
+    StillCamera const view;
+    ConvergingClient at_start(server.address(), view.json(), "160x90");
+    Picture const first = at_start.finish();
+
+    TemporaryFolder folder;
+    Process playing(FRAMELET_CLIENT,
+                    {server.address(), "--size", "160x90", "--duration", "2", "--rate", "10", "--play", "--camera",
+                     folder.write("camera.json", view.json()), "--output", (folder.path() / "%04d.png").string()});
+    EXPECT_EQ(playing.wait(patience), 0) << playing.errors();
+    auto const frames = frames_in(folder.path());
+    ASSERT_GE(frames.size(), 10u);
+    int changes = 0;
+    for (std::size_t i = 5; i < frames.size(); ++i) {
+        changes += read_picture(frames[i]) != read_picture(frames[i - 1]);
+    }
+    EXPECT_GE(changes, 5) << "a playing scene changes from frame to frame";
+
+    ConvergingClient sought(server.address(), view.json(), "160x90", {"--pause", "--seek", "1.5"});
+    Picture const later = sought.finish();
+    EXPECT_GE(psnr(later, direct_render(view.camera(), {160, 90}, 1.5)), 45);
+    EXPECT_LT(psnr(later, first), 45) << "the scene has moved on";
+}
+
+TEST(Loopback, TwoClientsAtOnceSeeTheirOwnViews) {
+    ServerProcess server(scene_file, {"--paused", "--exposure", "0"});
+    StillCamera left, right;
+    left.position = {-9, 4, 8};
+    ConvergingClient one(server.address(), left.json(), "200x120");
+    ConvergingClient two(server.address(), right.json(), "160x160");
+    EXPECT_GE(psnr(one.finish(), direct_render(left.camera(), {200, 120}, 0)), 45);
+    EXPECT_GE(psnr(two.finish(), direct_render(right.camera(), {160, 160}, 0)), 45);
+}
+
+TEST(Loopback, ServerGoesOnWhenClientsVanish) {
+    ServerProcess server(scene_file, {"--exposure", "0"});
+    for (int how : {SIGKILL, SIGSTOP, SIGTERM}) {
+        Process client(FRAMELET_CLIENT, {server.address(), "--size", "1280x720", "--duration", "60"});
+        std::this_thread::sleep_for(700ms); // amid the stream
+        client.signal(how);
+        std::this_thread::sleep_for(300ms);
+        client.signal(SIGKILL);
+    }
+    ASSERT_TRUE(server.process().running());
+    StillCamera const view;
+    ConvergingClient client(server.address(), view.json(), "64x64", {"--pause", "--seek", "0"});
+    EXPECT_GE(psnr(client.finish(), direct_render(view.camera(), {64, 64}, 0)), 45);
+    server.process().signal(SIGINT);
+    EXPECT_EQ(server.process().wait(30s), 0) << server.process().errors();
+}
+
+TEST(Loopback, ClientSaysWhenTheServerVanishes) {
+    for (int how : {SIGKILL, SIGTERM, SIGSTOP}) {
+        ServerProcess server(scene_file, {});
+        Process client(FRAMELET_CLIENT, {server.address(), "--size", "320x180", "--duration", "60"});
+        std::this_thread::sleep_for(700ms);
+        ASSERT_TRUE(client.running()) << client.errors();
+        server.process().signal(how);
+        EXPECT_EQ(client.wait(30s), 1);
+        EXPECT_NE(client.errors().find("server"), std::string::npos) << client.errors();
+        std::string const errors = client.errors();
+        EXPECT_EQ(std::count(errors.begin(), errors.end(), '\n'), 1) << errors;
+    }
+}
+
+TEST(Loopback, NobodyThere) {
+    Process client(FRAMELET_CLIENT, {"127.0.0.1:1", "--duration", "5"});
+    EXPECT_EQ(client.wait(30s), 1);
+    EXPECT_NE(client.errors().find("127.0.0.1:1"), std::string::npos) << client.errors();
+}
+
+TEST(Loopback, GarbageDoesNotHarmTheServer) {
+    namespace asio = boost::asio;
+    ServerProcess server(scene_file, {"--paused", "--exposure", "0"});
+    std::string const port = server.address().substr(server.address().rfind(':') + 1);
+    std::string const garbage[] = {std::string(1000, '\xff'), "GET / HTTP/1.1\r\n\r\n", std::string(4, '\0'),
+                                   std::string("\x05\0\0\0abc", 7),
+                                   std::string("\x10\0\0\0", 4) + std::string(16, 'x')};
+    for (auto const& bytes : garbage) {
+        asio::io_context io;
+        asio::ip::tcp::socket socket(io);
+        asio::connect(socket, asio::ip::tcp::resolver(io).resolve("127.0.0.1", port));
+        boost::system::error_code ignored;
+        asio::write(socket, asio::buffer(bytes), ignored);
+        socket.shutdown(asio::socket_base::shutdown_send, ignored);
+    }
+    StillCamera const view;
+    ConvergingClient client(server.address(), view.json(), "64x64");
+    EXPECT_GE(psnr(client.finish(), direct_render(view.camera(), {64, 64}, 0)), 45);
+}
+
+TEST(Loopback, TokenIsAsked) {
+    TemporaryFolder folder;
+    std::string const right = folder.write("right", "open sesame\n");
+    std::string const wrong = folder.write("wrong", "open barley\n");
+    ServerProcess server(scene_file, {"--token-file", right, "--paused"});
+    auto const connect = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), {server.address(), "--size", "64x64", "--duration", "60", "--until-converged"});
+        auto client = std::make_unique<Process>(FRAMELET_CLIENT, more);
+        int const code = client->wait(patience);
+        return std::pair{code, client->errors()};
+    };
+    EXPECT_EQ(connect({"--token-file", right}).first, 0);
+    for (auto const& more : {std::vector<std::string>{}, {"--token-file", wrong}}) {
+        auto const [code, errors] = connect(more);
+        EXPECT_EQ(code, 1);
+        EXPECT_NE(errors.find("token"), std::string::npos) << errors;
+    }
+}
+
+TEST(Loopback, ViewersBeyondTheLimitAreToldSo) {
+    ServerProcess server(scene_file, {"--max-sessions", "1"});
+    Process first(FRAMELET_CLIENT, {server.address(), "--size", "64x64", "--duration", "60"});
+    std::this_thread::sleep_for(700ms);
+    Process second(FRAMELET_CLIENT, {server.address(), "--size", "64x64", "--duration", "60"});
+    EXPECT_EQ(second.wait(30s), 1);
+    EXPECT_NE(second.errors().find("--max-sessions"), std::string::npos) << second.errors();
+    EXPECT_TRUE(first.running());
+}
+
+struct Usage {
+    std::string program;
+    std::vector<std::string> arguments;
+    int exit_code;
+    std::string says;
+};
+
+TEST(Loopback, BadInputGetsOneLineAndTheRightExitCode) {
+    TemporaryFolder folder;
+    std::string const broken = folder.write("broken.gltf", "{ \"asset\": ");
+    std::string const text = folder.write("notes.txt", "not a scene");
+    Usage const cases[] = {
+        {FRAMELET_SERVER, {}, 2, "SCENE"},
+        {FRAMELET_SERVER, {scene_file, "--prot", "1"}, 2, "--prot"},
+        {FRAMELET_SERVER, {scene_file, "--port", "70000"}, 2, "port"},
+        {FRAMELET_SERVER, {scene_file, "--bind", "0.0.0.0", "--port", "0"}, 2, "--token-file"},
+        {FRAMELET_SERVER, {"/nonexistent/scene.glb"}, 1, "/nonexistent/scene.glb"},
+        {FRAMELET_SERVER, {broken}, 1, "broken.gltf"},
+        {FRAMELET_SERVER, {text}, 1, "notes.txt"},
+        {FRAMELET_SERVER, {folder.path().string()}, 1, folder.path().filename().string()},
+        {FRAMELET_SERVER, {scene_file, "--environment", text}, 1, "notes.txt"},
+        {FRAMELET_SERVER, {scene_file, "--clip", "no such"}, 1, "no such"},
+        {FRAMELET_CLIENT, {}, 2, "HOST:PORT"},
+        {FRAMELET_CLIENT, {"nonsense"}, 2, "nonsense"},
+        {FRAMELET_CLIENT, {"127.0.0.1:7070", "--size", "0x5"}, 2, "size"},
+        {FRAMELET_CLIENT, {"127.0.0.1:7070", "--camera", broken}, 1, "broken.gltf"},
+    };
+    for (Usage const& usage : cases) {
+        Process process(usage.program, usage.arguments);
+        EXPECT_EQ(process.wait(60s), usage.exit_code) << usage.says << process.errors();
+        std::string errors = process.errors();
+        std::size_t const last = errors.rfind("framelet-");
+        ASSERT_NE(last, std::string::npos) << errors;
+        EXPECT_NE(errors.find(usage.says, last), std::string::npos) << errors;
+        EXPECT_EQ(std::count(errors.begin() + static_cast<std::ptrdiff_t>(last), errors.end(), '\n'), 1) << errors;
+    }
+    for (auto const* program : {FRAMELET_SERVER, FRAMELET_CLIENT}) {
+        for (auto const* option : {"--help", "--version"}) {
+            Process process(program, {option});
+            EXPECT_EQ(process.wait(30s), 0);
+            EXPECT_FALSE(process.output().empty());
+        }
+    }
+}
+
+} // namespace
+} // namespace framelet::test

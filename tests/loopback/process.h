@@ -1,0 +1,64 @@
+// Runs the real programs as child processes and reads what they say.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <sys/types.h>
+
+namespace framelet::test {
+
+/// A child process with its stdout and stderr in files. Killed and reaped when it goes out of scope.
+class Process {
+public:
+    Process(std::string const& program, std::vector<std::string> const& arguments);
+    ~Process();
+    Process(Process const&) = delete;
+    Process& operator=(Process const&) = delete;
+
+    /// Exit code, or -signal; -1000 when it does not end in time.
+    int wait(std::chrono::seconds timeout);
+    void signal(int number);
+    bool running();
+    std::string output() const;
+    std::string errors() const;
+
+private:
+    pid_t pid_ = -1;
+    int status_ = 0;
+    bool reaped_ = false;
+    std::filesystem::path directory_;
+};
+
+/// A fresh folder under the system's temporary one, removed with its content at the end of its scope.
+class TemporaryFolder {
+public:
+    TemporaryFolder();
+    ~TemporaryFolder();
+    TemporaryFolder(TemporaryFolder const&) = delete;
+    TemporaryFolder& operator=(TemporaryFolder const&) = delete;
+
+    std::filesystem::path const& path() const { return path_; }
+    /// Writes a text file there and gives its name.
+    std::string write(std::string const& name, std::string const& text) const;
+
+private:
+    std::filesystem::path path_;
+};
+
+/// framelet-server on a free port of 127.0.0.1, ready for connections.
+class ServerProcess {
+public:
+    explicit ServerProcess(std::string const& scene, std::vector<std::string> options = {});
+
+    std::string const& address() const { return address_; }
+    Process& process() { return process_; }
+
+private:
+    Process process_;
+    std::string address_;
+};
+
+} // namespace framelet::test

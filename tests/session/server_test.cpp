@@ -1,0 +1,244 @@
+// The server in this process, spoken to over loopback sockets by a viewer that sends just what a test wants.
+#include "server/session/server.h"
+
+#include <thread>
+
+#include <boost/asio/ip/tcp.hpp>
+#include <gtest/gtest.h>
+
+#include "common/error.h"
+#include "protocol/framed_stream.h"
+
+namespace framelet {
+namespace {
+
+namespace asio = boost::asio;
+using namespace std::chrono_literals;
+
+/// One triangle in front of the origin, and a box-free background.
+Scene triangle_scene() {
+    Scene scene;
+    scene.name = "triangle";
+    scene.materials.emplace_back();
+    Primitive primitive;
+    primitive.positions = {{-1, -1, -5}, {1, -1, -5}, {0, 1, -5}};
+    primitive.normals = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+    primitive.triangles = {{0, 1, 2}};
+    scene.meshes.push_back({"triangle", {primitive}, {}});
+    scene.nodes.emplace_back();
+    scene.nodes.back().mesh = 0;
+    return scene;
+}
+
+class RunningServer {
+public:
+    explicit RunningServer(ServerOptions options = {})
+        : scene_(triangle_scene()), render_scene_(scene_, std::nullopt),
+          server_(scene_, {}, render_scene_, on_free_port(options)), thread_([this] { server_.run(false); }) {}
+    ~RunningServer() { server_.stop(); }
+
+    std::uint16_t port() const { return server_.port(); }
+
+private:
+    static ServerOptions on_free_port(ServerOptions options) {
+        options.port = 0;
+        return options;
+    }
+
+    Scene const scene_;
+    RenderScene render_scene_;
+    Server server_;
+    std::jthread thread_;
+};
+
+/// Runs a conversation: `answer` is called with every message and says whether to go on.
+struct Conversation {
+    asio::io_context io{1};
+    std::shared_ptr<FramedStream> stream;
+    std::string closed;
+
+    explicit Conversation(std::uint16_t port) {
+        asio::ip::tcp::socket socket(io);
+        socket.connect({asio::ip::make_address("127.0.0.1"), port});
+        stream = FramedStream::plain(std::move(socket));
+    }
+
+    void run(std::function<bool(Message const&)> const& answer) {
+        stream->start({[&](Message const& message) {
+                           if (!answer(message)) {
+                               stream->close();
+                               io.stop();
+                           }
+                       },
+                       [this](std::string const& reason) {
+                           closed = reason;
+                           io.stop();
+                       },
+                       {}},
+                      max_message_bytes);
+        io.run_for(60s);
+    }
+};
+
+CameraUpdate camera_update(std::uint64_t number, Viewport viewport = {64, 48}) {
+    return {{number, Camera{}, viewport}, -1};
+}
+
+TEST(Server, CoarseFirstThenFinerThenConverged) {
+    RunningServer const server;
+    Conversation viewer(server.port());
+    viewer.stream->send(Hello{});
+    std::vector<int> depths;
+    std::uint64_t newest = 0;
+    bool converged = false;
+    viewer.run([&](Message const& message) {
+        if (auto const* const welcome = std::get_if<Welcome>(&message)) {
+            EXPECT_EQ(welcome->scene_name, "triangle");
+            EXPECT_EQ(welcome->animation_duration, 0);
+            viewer.stream->send(camera_update(1));
+        } else if (auto const* const batch = std::get_if<EncodedBatch>(&message)) {
+            EXPECT_EQ(batch->number, newest + 1);
+            EXPECT_EQ(batch->view.number, 1u);
+            newest = batch->number;
+            depths.push_back(batch->tiles.front().depth());
+            viewer.stream->send(Ack{newest, 0, 0});
+        } else if (auto const* const status = std::get_if<Status>(&message)) {
+            converged = status->converged && status->last_batch == newest && newest > 0;
+        }
+        return !converged;
+    });
+    EXPECT_TRUE(converged) << viewer.closed;
+    ImagePlane const plane({64, 48});
+    ASSERT_FALSE(depths.empty());
+    EXPECT_EQ(depths.front(), plane.min_depth());
+    EXPECT_EQ(depths.back(), plane.max_depth());
+    EXPECT_TRUE(std::is_sorted(depths.begin(), depths.end()));
+}
+
+TEST(Server, WaitsForAcknowledgements) {
+    RunningServer const server;
+    Conversation viewer(server.port());
+    viewer.stream->send(Hello{});
+    std::uint64_t batches = 0;
+    int beats = 0;
+    viewer.run([&](Message const& message) {
+        if (std::holds_alternative<Welcome>(message)) {
+            viewer.stream->send(camera_update(1));
+        } else if (std::holds_alternative<EncodedBatch>(message)) {
+            ++batches;
+        } else if (std::holds_alternative<Status>(message)) {
+            ++beats;
+        }
+        return beats < 3;
+    });
+    EXPECT_EQ(batches, Session::max_batches_in_flight) << "and not one more while nothing is acknowledged";
+}
+
+TEST(Server, NewerCameraWinsAndLateOnesAreIgnored) {
+    RunningServer const server;
+    Conversation viewer(server.port());
+    viewer.stream->send(Hello{});
+    std::uint64_t newest = 0, camera = 0;
+    bool converged = false;
+    viewer.run([&](Message const& message) {
+        if (std::holds_alternative<Welcome>(message)) {
+            viewer.stream->send(camera_update(5, {100, 40}));
+            viewer.stream->send(camera_update(4, {32, 32}));
+        } else if (auto const* const batch = std::get_if<EncodedBatch>(&message)) {
+            newest = batch->number;
+            camera = batch->view.number;
+            EXPECT_EQ(camera, 5u);
+            EXPECT_EQ(batch->view.viewport, (Viewport{100, 40}));
+            viewer.stream->send(Ack{newest, 0, 0});
+        } else if (auto const* const status = std::get_if<Status>(&message)) {
+            converged = status->converged && status->last_batch == newest && newest > 0;
+        }
+        return !converged;
+    });
+    EXPECT_TRUE(converged) << viewer.closed;
+}
+
+std::string refusal(std::uint16_t port, Message const& first) {
+    Conversation viewer(port);
+    viewer.stream->send(first);
+    std::string text;
+    viewer.run([&](Message const& message) {
+        if (auto const* const failure = std::get_if<Failure>(&message)) {
+            text = failure->text;
+        }
+        return text.empty();
+    });
+    return text;
+}
+
+TEST(Server, RefusesWithAReason) {
+    ServerOptions options;
+    options.token = "secret";
+    RunningServer const server(options);
+    EXPECT_NE(refusal(server.port(), Hello{}).find("token"), std::string::npos);
+    EXPECT_NE(refusal(server.port(), Hello{protocol_version, "guess"}).find("token"), std::string::npos);
+    EXPECT_NE(refusal(server.port(), Hello{protocol_version + 1, "secret"}).find("version"), std::string::npos);
+    EXPECT_NE(refusal(server.port(), camera_update(1)).find("Hello"), std::string::npos);
+}
+
+TEST(Server, EndsTheSessionThatSpeaksOutOfTurn) {
+    RunningServer const server;
+    Conversation viewer(server.port());
+    viewer.stream->send(Hello{});
+    std::string text;
+    viewer.run([&](Message const& message) {
+        if (std::holds_alternative<Welcome>(message)) {
+            viewer.stream->send(Status{});
+        } else if (auto const* const failure = std::get_if<Failure>(&message)) {
+            text = failure->text;
+        }
+        return text.empty();
+    });
+    EXPECT_FALSE(text.empty()) << viewer.closed;
+}
+
+TEST(Server, ClockRequestsReachEveryViewer) {
+    RunningServer const server;
+    Conversation one(server.port()), two(server.port());
+    std::jthread const other([&] {
+        two.stream->send(Hello{});
+        two.run([&](Message const& message) {
+            auto const* const status = std::get_if<Status>(&message);
+            return !(status && status->clock.time == 7 && !status->clock.playing);
+        });
+    });
+    one.stream->send(Hello{});
+    one.run([&](Message const& message) {
+        auto const* const status = std::get_if<Status>(&message);
+        if (status && status->sessions == 2 && status->clock.playing) {
+            one.stream->send(ClockRequest{ClockRequest::time | ClockRequest::playing, {7, false, 1}});
+        }
+        return !(status && status->clock.time == 7 && !status->clock.playing);
+    });
+    EXPECT_TRUE(one.closed.empty()) << one.closed;
+}
+
+TEST(Server, AddressesThatCannotBeHadAreInputErrors) {
+    Scene const scene = triangle_scene();
+    RenderScene render_scene(scene, std::nullopt);
+    ServerOptions options;
+    options.bind = "no.such.host.invalid";
+    EXPECT_THROW(Server(scene, {}, render_scene, options), InputError);
+    options.bind = "127.0.0.1";
+    options.port = 0;
+    Server const first(scene, {}, render_scene, options);
+    options.port = first.port();
+    EXPECT_THROW(Server(scene, {}, render_scene, options), InputError);
+}
+
+TEST(Server, KnowsWhatOnlyThisMachineReaches) {
+    for (auto const* address : {"127.0.0.1", "127.8.9.1", "::1", "localhost"}) {
+        EXPECT_TRUE(is_loopback(address)) << address;
+    }
+    for (auto const* address : {"0.0.0.0", "::", "10.0.0.1", "example.com", ""}) {
+        EXPECT_FALSE(is_loopback(address)) << address;
+    }
+}
+
+} // namespace
+} // namespace framelet
