@@ -49,6 +49,19 @@ Batch make_batch(std::size_t count, Sample sample) {
     return batch;
 }
 
+/// The example of PROTOCOL.md: red = x + 16 y, green = 10, blue = 0 in the first framelet, 255 in the second.
+Batch documented_batch() {
+    Batch batch = make_batch(2, constant);
+    for (std::size_t i = 0; i < 2; ++i) {
+        for (std::uint32_t k = 0; k < framelet_samples; ++k) {
+            batch.framelets[i].red[k] = static_cast<std::uint8_t>(morton_x(k) + 16 * morton_y(k));
+            batch.framelets[i].green[k] = 10;
+            batch.framelets[i].blue[k] = i == 0 ? 0 : 255;
+        }
+    }
+    return batch;
+}
+
 std::size_t length_at(Bytes const& payload, std::size_t group) {
     std::size_t length = 0;
     for (std::size_t i = 0; i < 4; ++i) {
@@ -120,15 +133,7 @@ TEST(BatchCodec, SameBytesWhateverTheThreadsAndTheHistory) {
 }
 
 TEST(BatchCodec, GoldenLayoutBeforeCompression) {
-    // The example of PROTOCOL.md: red = x + 16 y, green = 10, blue = 0 in the first framelet, 255 in the second.
-    Batch batch = make_batch(2, constant);
-    for (std::size_t i = 0; i < 2; ++i) {
-        for (std::uint32_t k = 0; k < framelet_samples; ++k) {
-            batch.framelets[i].red[k] = static_cast<std::uint8_t>(morton_x(k) + 16 * morton_y(k));
-            batch.framelets[i].green[k] = 10;
-            batch.framelets[i].blue[k] = i == 0 ? 0 : 255;
-        }
-    }
+    Batch const batch = documented_batch();
     Bytes const payload = BatchCodec().encode(batch).payload;
     ASSERT_EQ(length_at(payload, 0), payload.size() - 4);
     std::vector<std::uint8_t> content(3 * 512 + 1);
@@ -150,6 +155,21 @@ TEST(BatchCodec, GoldenLayoutBeforeCompression) {
     golden.insert(golden.end(), 255, 0x00);
     content.resize(golden.size());
     EXPECT_EQ(content, golden);
+}
+
+TEST(BatchCodec, GoldenPayload) {
+    constexpr std::array<unsigned, 80> golden{
+        0x4c, 0x00, 0x00, 0x00, 0x28, 0xb5, 0x2f, 0xfd, 0x60, 0x00, 0x05, 0x15, 0x02, 0x00, 0x62, 0x44,
+        0x07, 0x0d, 0xd0, 0xa5, 0x03, 0x00, 0x00, 0x00, 0x00, 0x00, 0x40, 0x14, 0x00, 0x3f, 0xed, 0x89,
+        0x40, 0x60, 0xdb, 0xb6, 0x6d, 0xdb, 0xb6, 0xcd, 0xb6, 0x6d, 0xdb, 0xb6, 0x6d, 0x9b, 0x23, 0x50,
+        0x02, 0x00, 0x7b, 0x6a, 0x5f, 0xdd, 0x53, 0xb2, 0x2c, 0xcb, 0xb2, 0x2c, 0xcb, 0xb2, 0x2c, 0xcb,
+        0xb2, 0x2c, 0xcb, 0xb2, 0x2c, 0xcb, 0xb2, 0x2c, 0xcb, 0xb2, 0x2c, 0xcb, 0xb2, 0x2c, 0xcb, 0x01};
+    Batch const batch = documented_batch();
+    EncodedBatch encoded{batch.number, batch.view, batch.scene_time, {}, Bytes(golden.size())};
+    encoded.tiles = {batch.framelets[0].tile, batch.framelets[1].tile};
+    std::transform(golden.begin(), golden.end(), encoded.payload.begin(),
+                   [](unsigned b) { return static_cast<std::byte>(b); });
+    EXPECT_TRUE(BatchCodec().decode(encoded) == batch);
 }
 
 TEST(BatchCodec, LayoutByTheBook) {
