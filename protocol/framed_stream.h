@@ -13,13 +13,16 @@
 
 namespace framelet {
 
-/// One connection. All members are called from the io_context's thread, except where said otherwise. Callbacks hold no
-/// reference once `close` returned or `on_close` was called.
+/// One connection. All members are called from the io_context's thread (there is one), except where said otherwise, and
+/// all callbacks come from it. No callback begins after `close` or `close_after_sending` returned or `on_close` was
+/// called, and what the callbacks hold is released then; only one that runs in the io_context's thread while another
+/// thread calls `close` may still finish.
 class FramedStream : public std::enable_shared_from_this<FramedStream> {
 public:
     using Socket = boost::asio::ip::tcp::socket;
 
     struct Handlers {
+        /// May throw ProtocolError, which ends the connection like a message that cannot be decoded.
         std::function<void(Message)> on_message;
         /// Once, when the connection ends for whatever reason but our own `close`; `reason` is one line.
         std::function<void(std::string reason)> on_close;
@@ -29,24 +32,28 @@ public:
 
     /// Plain TCP. Sets TCP_NODELAY.
     static std::shared_ptr<FramedStream> plain(Socket socket);
-    /// TLS as the server or as the client; `host` is the name that the certificate is checked against.
+    /// TLS as the server or as the client; `host` is the name or the address that the
+    /// certificate is checked against (InputError where it is neither).
     static std::shared_ptr<FramedStream> tls_server(Socket socket, std::shared_ptr<boost::asio::ssl::context> context);
     static std::shared_ptr<FramedStream> tls_client(Socket socket, std::shared_ptr<boost::asio::ssl::context> context,
                                                     std::string const& host);
 
     virtual ~FramedStream() = default;
 
-    /// Begins: TLS handshake where there is one, then reading. Messages larger than `max_body` end the connection.
+    /// Begins: TLS handshake where there is one (10 s at most), then reading. Messages larger than `max_body` bytes and
+    /// such that break the protocol end the connection; the peer is sent a Failure that says why.
     virtual void start(Handlers handlers, std::size_t max_body) = 0;
     virtual void set_max_body(std::size_t max_body) = 0;
-    /// Queues a message. From any thread.
+    /// Queues a message; does nothing once the connection has ended. Messages of one thread stay in order. From any
+    /// thread.
     virtual void send(Message const& message) = 0;
     /// Bytes queued or handed to the socket and not yet taken by it. From any thread.
     virtual std::size_t unsent_bytes() const = 0;
-    /// Sends what is queued (for at most a second), then ends. From any thread.
+    /// Sends what is queued (for at most a second), then ends; what still arrives is not looked at. From any thread.
     virtual void close_after_sending() = 0;
     /// Ends at once. From any thread.
     virtual void close() = 0;
+    /// Address and port of the other side, as they were at the beginning. From any thread.
     virtual std::string peer() const = 0;
 };
 

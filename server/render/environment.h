@@ -2,15 +2,17 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "common/image.h"
+#include "server/render/octahedral_map.h"
 
 namespace framelet {
 
 /// Prefiltered environment. Immutable after construction; look-ups are pure.
 /// Direction to map: u = 0.5 + atan2(x, -z) / 2pi (so -Z, where a default camera looks, is the middle), v = acos(y) /
-/// pi.
+/// pi. It lights surfaces without regard to what stands between: only occlusion maps darken it.
 class Environment {
 public:
     /// Radiance per texel, cd/m^2 or any unit proportional to the lights' (width = 2 * height is usual, not required).
@@ -31,9 +33,12 @@ public:
     Vec3 specular(Vec3 direction, float roughness) const;
 
 private:
-    std::vector<FloatImage> background_levels_; // box-filtered, halving
-    std::vector<FloatImage> specular_levels_; // GGX-filtered for equally spaced roughness
-    FloatImage diffuse_;
+    Environment() = default;
+
+    std::optional<Vec3> uniform_; ///< then there are no maps
+    std::vector<FloatImage> background_levels_; ///< box-filtered, halving
+    std::vector<OctahedralMap> specular_levels_; ///< GGX-filtered for equally spaced roughness
+    OctahedralMap diffuse_;
 };
 
 } // namespace framelet

@@ -23,8 +23,13 @@ void render_framelet(RenderScene const& scene, ViewRays const& rays, ImagePlane 
                      Framelet& out);
 
 /// The whole picture by the same renderer without tiling, wire or cache: `samples_per_side`^2 samples a pixel on the
-/// same grid that framelets use, each tone-mapped and then averaged in linear light (box filter). 1, 2 or 4.
+/// same grid that framelets use, each tone-mapped and quantised as `to_display` does, then averaged in linear light
+/// (box filter). 1, 2 or 4.
 Picture render_picture(RenderScene const& scene, Camera const& camera, Viewport viewport, float exposure,
                        int samples_per_side);
+
+/// The exposure that shows this view well: 1 where the log-average luminance of what is hit is within what a display
+/// shows, else what brings it to a middle grey. From a small probe picture; deterministic.
+float auto_exposure(RenderScene const& scene, Camera const& camera);
 
 } // namespace framelet

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "server/render/environment.h"
 #include "server/scene/animation.h"
@@ -11,23 +12,48 @@
 
 namespace framelet {
 
+struct PreparedScene;
+
 class RenderScene {
 public:
-    /// Builds every BVH and mip chain. `scene` must outlive this. Scenes without lights get a sun; `environment` none
-    /// means the default sky where the scene has no lights either, else a dim uniform one.
+    /// Builds every BVH and mip chain, in the pose that the scene has without its clips. `scene` must outlive this.
+    /// Light: a scene without lights and without `environment` gets the default sky and a sun; with lights but no
+    /// `environment`, dim uniform light from everywhere; an `environment` adds to the scene's lights, and no sun.
     RenderScene(Scene const& scene, std::optional<Environment> environment, Progress const& progress = {});
     ~RenderScene();
     RenderScene(RenderScene const&) = delete;
     RenderScene& operator=(RenderScene const&) = delete;
 
-    /// Moves instances, refits what deforms. Costs nothing for what does not move. Not while anything renders.
+    /// Moves instances, refits what deforms. Costs nothing but a comparison for what does not move. Not while anything
+    /// renders. `pose` must be of this scene.
     void set_pose(ScenePose const& pose);
 
-    struct Impl;
-    Impl const& impl() const { return *impl_; }
+    PreparedScene const& prepared() const { return *prepared_; }
 
 private:
-    std::unique_ptr<Impl> impl_;
+    /// A node that draws a mesh.
+    struct Placement {
+        std::size_t node;
+        std::uint32_t mesh, instance; ///< of the BVH
+        Skin const* skin;
+        bool morphs;
+        std::size_t deformed; ///< into `deformed_`, where it deforms
+    };
+    using MeshVertices = std::vector<DeformedVertices>; ///< one a primitive
+
+    void add_meshes(Progress const& progress);
+    void place_all();
+    void place(Placement const& placement);
+    void deform_mesh(Placement const& placement);
+    bool moved(Placement const& placement, ScenePose const& pose) const;
+    bool reshaped(Placement const& placement, ScenePose const& pose) const;
+    void update_lights();
+
+    Scene const& scene_;
+    std::unique_ptr<PreparedScene> prepared_;
+    std::vector<Placement> placements_;
+    std::vector<MeshVertices> deformed_; ///< normals and tangents of deforming meshes live here
+    ScenePose pose_;
 };
 
 } // namespace framelet

@@ -21,15 +21,6 @@ float clip_time(AnimationClip const& clip, SceneTime time) {
     return static_cast<float>(wrapped < 0 ? wrapped + duration : wrapped);
 }
 
-Mat4 local_matrix(Transform const& local) {
-    Mat4 matrix = glm::mat4_cast(local.rotation);
-    matrix[0] *= local.scale.x;
-    matrix[1] *= local.scale.y;
-    matrix[2] *= local.scale.z;
-    matrix[3] = Vec4(local.translation, 1);
-    return matrix;
-}
-
 /// Where keys take a node so far that a float cannot tell, it shrinks to nothing.
 Mat4 usable(Mat4 const& world) {
     constexpr float farthest = 1e15f;
@@ -87,6 +78,15 @@ bool changes_nothing(Node const& node, AnimationChannel const& channel) {
 
 } // namespace
 
+Mat4 matrix_of(Transform const& transform) {
+    Mat4 matrix = glm::mat4_cast(transform.rotation);
+    matrix[0] *= transform.scale.x;
+    matrix[1] *= transform.scale.y;
+    matrix[2] *= transform.scale.z;
+    matrix[3] = Vec4(transform.translation, 1);
+    return matrix;
+}
+
 std::vector<Index> default_clips(Scene const& scene) {
     std::vector<bool> taken(scene.nodes.size());
     std::vector<Index> clips;
@@ -131,7 +131,7 @@ ScenePose evaluate_pose(Scene const& scene, std::span<Index const> clips, SceneT
     pose.world_from_node.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
         Node const& node = scene.nodes[i];
-        Mat4 const local = node.matrix ? *node.matrix : local_matrix(locals[i]);
+        Mat4 const local = node.matrix ? *node.matrix : matrix_of(locals[i]);
         pose.world_from_node[i] =
             usable(node.parent == none ? local : pose.world_from_node[static_cast<std::size_t>(node.parent)] * local);
     }

@@ -16,6 +16,9 @@ struct ScenePose {
     std::vector<std::vector<float>> morph_weights;
 };
 
+/// T * R * S.
+Mat4 matrix_of(Transform const& transform);
+
 /// The clips that play together: the first one, and every later one that moves nothing an earlier one moves.
 std::vector<Index> default_clips(Scene const& scene);
 

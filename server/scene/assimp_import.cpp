@@ -7,6 +7,7 @@
 
 #include "common/error.h"
 #include "server/scene/assimp_parts.h"
+#include "server/scene/polygon.h"
 
 namespace framelet {
 namespace {
@@ -33,6 +34,31 @@ private:
 
 Vec3 to_vec3(aiVector3D const& v) {
     return {v.x, v.y, v.z};
+}
+
+/// Replaces polygons by triangles and drops points and lines. Assimp's own step leaves holes in polygons that cross
+/// themselves (24 triangles of 116,501 in one model tried).
+void triangulate_faces(aiMesh& mesh) {
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    std::vector<Vec3> corners;
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+        aiFace const& face = mesh.mFaces[f];
+        corners.clear();
+        for (unsigned i = 0; i < face.mNumIndices; ++i) {
+            corners.push_back(to_vec3(mesh.mVertices[face.mIndices[i]]));
+        }
+        for (auto const& [a, b, c] : triangulate(corners)) {
+            triangles.push_back({face.mIndices[a], face.mIndices[b], face.mIndices[c]});
+        }
+    }
+    delete[] mesh.mFaces;
+    mesh.mFaces = new aiFace[triangles.size()]; // the mesh owns and deletes them
+    mesh.mNumFaces = static_cast<unsigned>(triangles.size());
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        mesh.mFaces[i].mNumIndices = 3;
+        mesh.mFaces[i].mIndices = new unsigned[3]{triangles[i][0], triangles[i][1], triangles[i][2]};
+    }
+    mesh.mPrimitiveTypes = aiPrimitiveType_TRIANGLE;
 }
 
 } // namespace
@@ -75,10 +101,8 @@ Primitive import_assimp_primitive(aiMesh const& from) {
         primitive.morph_targets.push_back(std::move(target));
     }
     for (unsigned f = 0; f < from.mNumFaces; ++f) {
-        aiFace const& face = from.mFaces[f];
-        if (face.mNumIndices == 3) {
-            primitive.triangles.push_back({face.mIndices[0], face.mIndices[1], face.mIndices[2]});
-        }
+        unsigned const* const index = from.mFaces[f].mIndices;
+        primitive.triangles.push_back({index[0], index[1], index[2]});
     }
     return primitive;
 }
@@ -94,14 +118,17 @@ Scene import_assimp(std::filesystem::path const& file, Progress const& progress)
     }
     importer.SetIOHandler(new NotingFiles(missing)); // owned by the importer
     importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, crease_degrees);
-    importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
     aiScene const* from = nullptr;
     try {
-        from = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_SortByPType |
-                                                    aiProcess_GenSmoothNormals | aiProcess_JoinIdenticalVertices |
-                                                    aiProcess_FlipUVs | aiProcess_TransformUVCoords |
-                                                    aiProcess_ValidateDataStructure);
+        from = importer.ReadFile(file.string(), aiProcess_ValidateDataStructure);
+        if (from) {
+            for (unsigned m = 0; m < from->mNumMeshes; ++m) {
+                triangulate_faces(*from->mMeshes[m]);
+            }
+            from = importer.ApplyPostProcessing(aiProcess_GenSmoothNormals | aiProcess_JoinIdenticalVertices |
+                                                aiProcess_FlipUVs | aiProcess_TransformUVCoords);
+        }
     } catch (std::exception const& error) {
         throw InputError(error.what());
     }
@@ -109,7 +136,12 @@ Scene import_assimp(std::filesystem::path const& file, Progress const& progress)
         std::string const why = importer.GetErrorString();
         throw InputError(why.empty() ? "it has no content" : why);
     }
+    // Where an .obj names a material file that is missing, Assimp tries one with the scene's own name after it.
+    std::string const fallback = std::filesystem::path(file).replace_extension(".mtl").string();
     for (std::string const& name : missing) {
+        if (name == fallback && missing.front() != fallback) {
+            continue;
+        }
         scene.warnings.push_back("file '" + name + "' is missing; shown without it");
     }
     progress("reading", 1);

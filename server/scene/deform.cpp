@@ -62,10 +62,8 @@ void skin_vertices(Primitive const& primitive, std::span<Mat4 const> joints, std
     for (std::size_t i = first; i < last; ++i) {
         JointInfluence const& influence = primitive.influences[i];
         Mat4 blend = influence.weights[0] * joints[influence.joints[0]];
-        for (std::size_t k = 1; k < 4; ++k) {
-            if (influence.weights[k] > 0) {
-                blend += influence.weights[k] * joints[influence.joints[k]];
-            }
+        for (std::size_t k = 1; k < 4 && influence.weights[k] > 0; ++k) { // the strongest come first
+            blend += influence.weights[k] * joints[influence.joints[k]];
         }
         out.positions[i] = Vec3(blend * Vec4(out.positions[i], 1));
         float const determinant = glm::dot(glm::cross(Vec3(blend[0]), Vec3(blend[1])), Vec3(blend[2]));

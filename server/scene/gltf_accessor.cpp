@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 
 #include <tiny_gltf.h>
 
 #include "common/error.h"
+#include "server/scene/primitive_ops.h"
 
 namespace framelet {
 namespace {
@@ -52,9 +54,11 @@ T load(std::byte const* from) {
 }
 
 template <class T>
-void convert(std::byte const* from, std::size_t components, float scale, float* out) {
+void convert(std::byte const* from, std::size_t components, bool normalized, float* out) {
+    constexpr auto largest = static_cast<float>(std::numeric_limits<T>::max());
     for (std::size_t c = 0; c < components; ++c) {
-        out[c] = std::max(static_cast<float>(load<T>(from + c * sizeof(T))) * scale, scale == 1 ? -INFINITY : -1.0f);
+        auto const value = static_cast<float>(load<T>(from + c * sizeof(T)));
+        out[c] = normalized ? std::max(value / largest, -1.0f) : value;
     }
 }
 
@@ -62,15 +66,15 @@ void convert(std::byte const* from, std::size_t components, float scale, float* 
 void convert_element(int type, bool normalized, std::byte const* from, std::size_t components, float* out) {
     switch (type) {
     case TINYGLTF_COMPONENT_TYPE_BYTE:
-        return convert<std::int8_t>(from, components, normalized ? 1 / 127.0f : 1, out);
+        return convert<std::int8_t>(from, components, normalized, out);
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-        return convert<std::uint8_t>(from, components, normalized ? 1 / 255.0f : 1, out);
+        return convert<std::uint8_t>(from, components, normalized, out);
     case TINYGLTF_COMPONENT_TYPE_SHORT:
-        return convert<std::int16_t>(from, components, normalized ? 1 / 32767.0f : 1, out);
+        return convert<std::int16_t>(from, components, normalized, out);
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-        return convert<std::uint16_t>(from, components, normalized ? 1 / 65535.0f : 1, out);
+        return convert<std::uint16_t>(from, components, normalized, out);
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-        return convert<std::uint32_t>(from, components, 1, out);
+        return convert<std::uint32_t>(from, components, false, out);
     default:
         std::memcpy(out, from, components * sizeof(float));
     }

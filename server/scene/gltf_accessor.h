@@ -53,9 +53,7 @@ private:
     mutable std::atomic<std::uint64_t> bytes_read_{0};
 };
 
-/// More geometry than this, bytes in memory, is taken for a broken file.
-inline constexpr std::uint64_t max_geometry_bytes = std::uint64_t(8) << 30;
-/// So is an accessor that says nothing of its values (all are zero, or sparse) and has more of them.
+/// An accessor that says nothing of its values (all are zero, or sparse) is taken for broken when it has more of them.
 inline constexpr std::uint64_t max_zero_elements = std::uint64_t(1) << 24;
 
 } // namespace framelet

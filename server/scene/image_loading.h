@@ -25,7 +25,7 @@ struct EncodedImage {
 std::vector<std::shared_ptr<Picture const>> load_images(std::span<EncodedImage const> images,
                                                         std::vector<std::string>& warnings, Progress const& progress);
 
-inline constexpr std::uint64_t max_image_bytes = std::uint64_t(8) << 30;
+inline constexpr std::uint64_t max_image_bytes = std::uint64_t(4) << 30;
 
 /// Removes images that are null, the textures that use them, and the uses of those by materials.
 void drop_missing_images(Scene& scene);

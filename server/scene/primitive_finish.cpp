@@ -57,19 +57,20 @@ std::size_t repair(std::vector<T>& values, T const& otherwise) {
     return count;
 }
 
+/// Weights sum to 1, the strongest first; a vertex without any belongs to its first joint.
 void normalise_influences(Primitive& primitive) {
     for (JointInfluence& influence : primitive.influences) {
+        std::array<std::pair<float, std::uint16_t>, 4> sorted;
         float sum = 0;
-        for (float& weight : influence.weights) {
-            weight = weight > 0 ? std::min(weight, max_coordinate) : 0;
-            sum += weight;
+        for (std::size_t k = 0; k < 4; ++k) {
+            float const weight = influence.weights[k];
+            sorted[k] = {weight > 0 ? std::min(weight, max_coordinate) : 0, influence.joints[k]};
+            sum += sorted[k].first;
         }
-        if (sum > 0) {
-            for (float& weight : influence.weights) {
-                weight /= sum;
-            }
-        } else {
-            influence.weights = {1, 0, 0, 0};
+        std::stable_sort(sorted.begin(), sorted.end(), [](auto const& x, auto const& y) { return x.first > y.first; });
+        for (std::size_t k = 0; k < 4; ++k) {
+            influence.weights[k] = sum > 0 ? sorted[k].first / sum : (k == 0 ? 1.0f : 0.0f);
+            influence.joints[k] = sorted[k].second;
         }
     }
 }

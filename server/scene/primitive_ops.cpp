@@ -33,6 +33,17 @@ Primitive gather_vertices(Primitive const& primitive, std::span<std::uint32_t co
     return result;
 }
 
+std::size_t bytes_per_vertex(Primitive const& primitive) {
+    auto const bytes = [](auto const& values) { return values.empty() ? 0 : sizeof(values[0]); };
+    std::size_t sum = bytes(primitive.positions) + bytes(primitive.normals) + bytes(primitive.tangents) +
+                      bytes(primitive.uv[0]) + bytes(primitive.uv[1]) + bytes(primitive.colors) +
+                      bytes(primitive.influences);
+    for (MorphTarget const& target : primitive.morph_targets) {
+        sum += bytes(target.positions) + bytes(target.normals) + bytes(target.tangents);
+    }
+    return sum;
+}
+
 void drop_unused_vertices(Primitive& primitive) {
     constexpr std::uint32_t unused = ~0u;
     std::vector<std::uint32_t> new_index(primitive.positions.size(), unused);

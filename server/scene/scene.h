@@ -78,7 +78,7 @@ struct MorphTarget {
     std::vector<Vec3> positions, normals, tangents;
 };
 
-/// Up to four joints of a vertex; weights sum to 1. `joints` index the skin's joint list.
+/// Up to four joints of a vertex, the strongest first; weights sum to 1. `joints` index the skin's joint list.
 struct JointInfluence {
     std::array<std::uint16_t, 4> joints{};
     std::array<float, 4> weights{};

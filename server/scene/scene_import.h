@@ -10,7 +10,7 @@
 
 namespace framelet {
 
-/// Told what is being done and how much of it, 0..1.
+/// Told what is being done and how much of it, 0..1. Calls may come from any thread, one at a time.
 using Progress = std::function<void(std::string_view what, double fraction)>;
 
 /// Throws InputError with one line that names the file where it cannot be loaded. The scene it returns is consistent:

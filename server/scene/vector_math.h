@@ -22,6 +22,10 @@ inline bool is_finite(Mat4 const& m) {
 
 /// Unit vector along `v`, or `otherwise` where `v` has no direction. Works for any length a float can hold.
 inline Vec3 unit_or(Vec3 v, Vec3 const& otherwise) {
+    float const square = glm::dot(v, v);
+    if (square > 1e-30f && square < 1e30f) {
+        return v * (1 / std::sqrt(square));
+    }
     float const largest = std::fmax(std::abs(v.x), std::fmax(std::abs(v.y), std::abs(v.z)));
     if (!(largest > 0) || !std::isfinite(largest)) {
         return otherwise;

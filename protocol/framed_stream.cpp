@@ -1,0 +1,439 @@
+#include "protocol/framed_stream.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <deque>
+#include <mutex>
+#include <sstream>
+#include <type_traits>
+
+#include <boost/asio/dispatch.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/read.hpp>
+#include <boost/asio/ssl/stream.hpp>
+#include <boost/asio/steady_timer.hpp>
+
+#include "common/error.h"
+#include "protocol/stream_reason.h"
+
+namespace framelet {
+namespace {
+
+namespace asio = boost::asio;
+using Socket = FramedStream::Socket;
+using SecureStream = asio::ssl::stream<Socket>;
+using Error = boost::system::error_code;
+
+constexpr std::size_t prefix_bytes = 4;
+constexpr std::chrono::seconds handshake_time{10};
+constexpr std::chrono::seconds ending_time{1};
+
+std::string address_of(Socket::lowest_layer_type const& socket) {
+    Error error;
+    auto const endpoint = socket.remote_endpoint(error);
+    std::ostringstream text;
+    text << endpoint;
+    return error ? "unknown" : text.str();
+}
+
+/// The message with its length in front.
+Bytes frame_of(Message const& message) {
+    Bytes bytes(prefix_bytes);
+    append_message(message, bytes);
+    std::size_t const size = bytes.size() - prefix_bytes;
+    FRAMELET_CHECK(size <= max_message_bytes);
+    for (std::size_t i = 0; i < prefix_bytes; ++i) {
+        bytes[i] = static_cast<std::byte>(size >> (8 * i));
+    }
+    return bytes;
+}
+
+/// Asks for a certificate of this host, which is a name or an address.
+void require_host(SSL* ssl, std::string host) {
+    SSL_set_verify(ssl, SSL_VERIFY_PEER, nullptr);
+    if (X509_VERIFY_PARAM_set1_ip_asc(SSL_get0_param(ssl), host.c_str()) == 1) {
+        return;
+    }
+    bool const named = !host.empty() && SSL_set1_host(ssl, host.c_str()) == 1 &&
+                       SSL_ctrl(ssl, SSL_CTRL_SET_TLSEXT_HOSTNAME, TLSEXT_NAMETYPE_host_name, host.data()) == 1;
+    if (!named) {
+        throw InputError("'" + host + "' is not a host name that a TLS certificate can be checked against");
+    }
+}
+
+template <typename Stream>
+class Connection final : public FramedStream {
+public:
+    static constexpr bool secure = std::is_same_v<Stream, SecureStream>;
+
+    /// `role` has a meaning for TLS only.
+    Connection(Stream stream, asio::ssl::stream_base::handshake_type role)
+        : stream_(std::move(stream)), executor_(stream_.get_executor()), handshake_timer_(executor_),
+          ending_timer_(executor_), role_(role), peer_(address_of(stream_.lowest_layer())) {
+        Error ignored; // the peer may be gone already; reading will find out
+        stream_.lowest_layer().set_option(asio::ip::tcp::no_delay(true), ignored);
+    }
+
+    void start(Handlers handlers, std::size_t max_body) override {
+        FRAMELET_CHECK(!started_);
+        started_ = true;
+        max_body_ = max_body;
+        {
+            std::scoped_lock const lock(handlers_mutex_);
+            if (detached_) {
+                return;
+            }
+            handlers_ = std::make_shared<Handlers>(std::move(handlers));
+        }
+        if constexpr (secure) {
+            handshake();
+        } else {
+            open();
+        }
+    }
+
+    void set_max_body(std::size_t max_body) override { max_body_ = max_body; }
+
+    void send(Message const& message) override {
+        if (detached_) {
+            return;
+        }
+        Bytes bytes = frame_of(message);
+        unsent_ += bytes.size();
+        asio::post(executor_, [self = self(), bytes = std::move(bytes)]() mutable { self->enqueue(std::move(bytes)); });
+    }
+
+    std::size_t unsent_bytes() const override { return unsent_; }
+
+    void close_after_sending() override {
+        take_handlers();
+        asio::post(executor_, [self = self()] { self->begin_ending(); }); // behind the messages sent before
+    }
+
+    void close() override {
+        take_handlers();
+        asio::dispatch(executor_, [self = self()] { self->finish(); });
+    }
+
+    std::string peer() const override { return peer_; }
+
+private:
+    std::shared_ptr<Connection> self() { return std::static_pointer_cast<Connection>(shared_from_this()); }
+
+    std::shared_ptr<Handlers> handlers() {
+        std::scoped_lock const lock(handlers_mutex_);
+        return handlers_;
+    }
+    /// From here on no callback begins.
+    std::shared_ptr<Handlers> take_handlers() {
+        std::scoped_lock const lock(handlers_mutex_);
+        detached_ = true;
+        return std::exchange(handlers_, nullptr);
+    }
+
+    // --- beginning
+
+    void handshake() {
+        handshake_timer_.expires_after(handshake_time);
+        handshake_timer_.async_wait([self = self()](Error error) {
+            if (!error && !self->open_) {
+                self->lose("TLS handshake timed out");
+            }
+        });
+        stream_.async_handshake(role_, [self = self()](Error error) {
+            self->handshake_timer_.cancel();
+            if (error) {
+                self->lose(handshake_reason(error, self->stream_.native_handle()));
+            } else {
+                self->open();
+            }
+        });
+    }
+
+    void open() {
+        if (finished_) {
+            return;
+        }
+        open_ = true;
+        read_prefix();
+        write_next();
+    }
+
+    // --- reading
+
+    void read_prefix() {
+        if (ending_) {
+            discard();
+            return;
+        }
+        asio::async_read(stream_, asio::buffer(prefix_), [self = self()](Error error, std::size_t size) {
+            if (error) {
+                self->reading_failed(error, size > 0);
+                return;
+            }
+            std::size_t length = 0;
+            for (std::size_t i = 0; i < prefix_bytes; ++i) {
+                length |= std::size_t{self->prefix_[i]} << (8 * i);
+            }
+            self->read_body(length);
+        });
+    }
+
+    void read_body(std::size_t length) {
+        if (finished_ || ending_) {
+            discard();
+            return;
+        }
+        if (length > max_body_) {
+            refuse("a message of " + std::to_string(length) + " bytes exceeds the limit of " +
+                   std::to_string(max_body_) + hint());
+            return;
+        }
+        if (body_.size() < length) {
+            body_.resize(length);
+        }
+        asio::async_read(stream_, asio::buffer(body_.data(), length),
+                         [self = self(), length](Error error, std::size_t) {
+                             if (error) {
+                                 self->reading_failed(error, true);
+                             } else {
+                                 self->deliver(ByteView(self->body_.data(), length));
+                             }
+                         });
+    }
+
+    void deliver(ByteView body) {
+        try {
+            // The handlers are kept alive while they run, whatever they close.
+            if (auto const called = handlers(); called && called->on_message) {
+                called->on_message(decode_message(body));
+            }
+        } catch (ProtocolError const& error) {
+            refuse(error.what());
+            return;
+        }
+        first_ = false;
+        if (!finished_) {
+            read_prefix();
+        }
+    }
+
+    /// The connection is about to end: what arrives is read, because a socket that closes with unread bytes would take
+    /// back what it sent last.
+    void discard() {
+        if (finished_) {
+            return;
+        }
+        body_.resize(std::max<std::size_t>(body_.size(), 4096));
+        stream_.async_read_some(asio::buffer(body_), [self = self()](Error error, std::size_t) {
+            if (error) {
+                self->reading_failed(error, false);
+            } else {
+                self->discard();
+            }
+        });
+    }
+
+    void reading_failed(Error error, bool within_message) {
+        peer_done_ = true;
+        if (ending_ && !outbox_.empty()) {
+            return; // the peer says no more, but may still listen
+        }
+        lose(stream_reason(error, within_message) + (within_message ? hint() : ""));
+    }
+
+    /// What a first message that makes no sense may be: bytes of a TLS record (RFC 8446 section 5.1).
+    std::string hint() const {
+        bool const tls = !secure && first_ && prefix_[0] >= 20 && prefix_[0] <= 23 && prefix_[1] == 3;
+        return tls ? "; the other side uses TLS and this side does not" : "";
+    }
+
+    // --- writing
+
+    void enqueue(Bytes bytes) {
+        if (finished_ || ending_ || unwritable_) {
+            unsent_ -= bytes.size();
+            return;
+        }
+        outbox_.push_back(std::move(bytes));
+        write_next();
+    }
+
+    void write_next() {
+        if (!open_ || writing_ || finished_) {
+            return;
+        }
+        if (!outbox_.empty()) {
+            writing_ = true;
+            write_some();
+        } else if (ending_) {
+            say_goodbye();
+        }
+    }
+
+    void write_some() {
+        auto const rest = asio::buffer(outbox_.front()) + written_;
+        stream_.async_write_some(rest, [self = self()](Error error, std::size_t size) { self->wrote(error, size); });
+    }
+
+    void wrote(Error error, std::size_t size) {
+        if (finished_) {
+            outbox_.clear();
+            return;
+        }
+        unsent_ -= size;
+        written_ += size;
+        if (error) {
+            writing_failed(error);
+            return;
+        }
+        if (written_ < outbox_.front().size()) {
+            write_some();
+            return;
+        }
+        outbox_.pop_front();
+        writing_ = false;
+        std::size_t const whole = std::exchange(written_, 0);
+        if (auto const called = handlers(); called && called->on_sent) {
+            called->on_sent(whole);
+        }
+        write_next();
+    }
+
+    /// A peer that went away may have said why: reading goes on for what it sent, and finds the end by itself.
+    void writing_failed(Error error) {
+        writing_ = false;
+        unwritable_ = true;
+        drop_outbox();
+        ending_timer_.expires_after(ending_time);
+        ending_timer_.async_wait([self = self(), error](Error aborted) {
+            if (!aborted) {
+                self->lose(stream_reason(error, false));
+            }
+        });
+    }
+
+    // --- ending
+
+    /// The peer broke the protocol: tells both sides why, then ends.
+    void refuse(std::string const& reason) {
+        Bytes failure = frame_of(Failure{reason});
+        unsent_ += failure.size();
+        enqueue(std::move(failure));
+        begin_ending();
+        discard();
+        tell(reason);
+    }
+
+    /// The connection is gone.
+    void lose(std::string const& reason) {
+        finish();
+        tell(reason);
+    }
+
+    void tell(std::string const& reason) {
+        if (auto const called = take_handlers(); called && called->on_close) {
+            called->on_close(reason);
+        }
+    }
+
+    void begin_ending() {
+        if (finished_ || ending_) {
+            return;
+        }
+        ending_ = true;
+        ending_timer_.expires_after(ending_time);
+        ending_timer_.async_wait([self = self()](Error aborted) {
+            if (!aborted) {
+                self->finish();
+            }
+        });
+        write_next();
+    }
+
+    /// All is sent: says that no more comes, and leaves the rest to the peer, or to the timer.
+    void say_goodbye() {
+        if (peer_done_) {
+            finish();
+            return;
+        }
+        auto const shut = [self = self()](Error) {
+            Error ignored;
+            self->stream_.lowest_layer().shutdown(Socket::shutdown_send, ignored);
+        };
+        if constexpr (secure) {
+            stream_.async_shutdown(shut);
+        } else {
+            shut({});
+        }
+    }
+
+    void finish() {
+        if (finished_) {
+            return;
+        }
+        finished_ = true;
+        handshake_timer_.cancel();
+        ending_timer_.cancel();
+        Error ignored;
+        stream_.lowest_layer().close(ignored);
+        drop_outbox();
+    }
+
+    void drop_outbox() {
+        for (Bytes const& bytes : outbox_) {
+            unsent_ -= bytes.size();
+        }
+        unsent_ += std::exchange(written_, 0);
+        if (!writing_) { // otherwise the socket still refers to the first one
+            outbox_.clear();
+        }
+    }
+
+    Stream stream_;
+    asio::any_io_executor const executor_;
+    asio::steady_timer handshake_timer_, ending_timer_;
+    asio::ssl::stream_base::handshake_type const role_;
+    std::string const peer_;
+
+    std::mutex handlers_mutex_;
+    std::shared_ptr<Handlers> handlers_;
+    std::atomic<bool> detached_ = false;
+    std::atomic<std::size_t> unsent_ = 0;
+
+    // Only for the io_context's thread.
+    std::size_t max_body_ = 0;
+    std::array<std::uint8_t, prefix_bytes> prefix_{};
+    Bytes body_; ///< room for the largest message so far
+    std::deque<Bytes> outbox_;
+    std::size_t written_ = 0; ///< of the first message in `outbox_`
+    bool started_ = false;
+    bool open_ = false; ///< the handshake is over
+    bool first_ = true; ///< no message has arrived
+    bool writing_ = false;
+    bool unwritable_ = false; ///< the socket takes no more
+    bool ending_ = false; ///< no message is read or queued any more
+    bool peer_done_ = false; ///< nothing more will arrive
+    bool finished_ = false;
+};
+
+} // namespace
+
+std::shared_ptr<FramedStream> FramedStream::plain(Socket socket) {
+    return std::make_shared<Connection<Socket>>(std::move(socket), asio::ssl::stream_base::client);
+}
+
+std::shared_ptr<FramedStream> FramedStream::tls_server(Socket socket, std::shared_ptr<asio::ssl::context> context) {
+    return std::make_shared<Connection<SecureStream>>(SecureStream(std::move(socket), *context),
+                                                      asio::ssl::stream_base::server);
+}
+
+std::shared_ptr<FramedStream> FramedStream::tls_client(Socket socket, std::shared_ptr<asio::ssl::context> context,
+                                                       std::string const& host) {
+    SecureStream stream(std::move(socket), *context);
+    require_host(stream.native_handle(), host);
+    return std::make_shared<Connection<SecureStream>>(std::move(stream), asio::ssl::stream_base::client);
+}
+
+} // namespace framelet

@@ -1,0 +1,18 @@
+// The shared secret that lets a viewer in: how it is read and how it is compared. In: a file, or what a peer sent.
+// Out: the token, or whether two are the same. Tokens never stand in messages of errors.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace framelet {
+
+/// True when both are the same. Takes a time that depends on their lengths only.
+bool same_token(std::string_view left, std::string_view right);
+
+/// The first line of `file` without the white space around it. InputError where the file cannot be read, or the line is
+/// empty, longer than 4096 bytes or not UTF-8 text.
+std::string read_token_file(std::filesystem::path const& file);
+
+} // namespace framelet

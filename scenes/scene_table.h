@@ -1,0 +1,22 @@
+// The one list of all scenes: name, length, what is hard in it, and the parameters it is made from.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+
+#include "scenes/gltf_document.h"
+
+namespace framelet {
+
+struct SceneEntry {
+    std::string name; ///< the file is NAME.glb
+    double duration; ///< seconds, of the animation's loop
+    std::string hard; ///< what makes it hard, one line
+    bool committed; ///< false: too large for the repository, made while building
+    std::function<GltfDocument()> make;
+};
+
+std::span<SceneEntry const> scene_table();
+
+} // namespace framelet

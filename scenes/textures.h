@@ -1,0 +1,25 @@
+// Procedural textures, as PNG files in memory. All repeat without a seam. Grey ones are tinted by the material.
+#pragma once
+
+#include <string>
+
+namespace framelet {
+
+/// Grey, mean about 0.7: stones of a few pixels, coarser stains.
+std::string asphalt_texture();
+/// Grey: short blades in all directions, light on dark.
+std::string grass_texture();
+/// Grey: two by two squares, light and dark.
+std::string checker_texture();
+/// Colour: one bay of a building, a window with a frame in plaster.
+std::string facade_texture();
+/// Grey: courses of bricks.
+std::string brick_texture();
+/// Grey: planks with grain, running along v.
+std::string plank_texture();
+/// Colour, 2:1, equirectangular: land with detail at every scale, sea, ice, a graticule.
+std::string globe_texture();
+/// Colour and coverage (alpha mask): a twig with leaves.
+std::string leaf_texture();
+
+} // namespace framelet

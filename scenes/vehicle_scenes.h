@@ -1,0 +1,35 @@
+// The five vehicle animations of 004 section 7.1.1.1: one world, one car (or two), different cameras.
+#pragma once
+
+#include "scenes/gltf_document.h"
+#include "scenes/landscape.h"
+
+namespace framelet {
+
+/// A car on the straight road: at constant speed along +Z (negative speed: facing and driving along -Z).
+struct Drive {
+    double lane_x = near_lane_x;
+    double start_z = 0; ///< metres, at time 0
+    double speed = 24; ///< metres a second
+    D3 paint{0.55, 0.02, 0.02};
+};
+
+enum class CameraPath {
+    fixed, ///< stands and looks at `target`
+    chase, ///< `eye` and `target` are relative to the first car, and go with it
+    pan, ///< stands, turns to keep the first car (its `target` point) in the middle
+};
+
+struct VehicleShot {
+    double duration = 5; ///< seconds
+    std::vector<Drive> cars{};
+    CameraPath camera = CameraPath::fixed;
+    D3 eye{0}, target{0};
+    double vertical_fov = 40; ///< degrees
+    int first_stretch = -2, last_stretch = 2; ///< of road, landscape.h
+    bool yard = false; ///< a paved yard with a hedge beside the road
+};
+
+GltfDocument make_vehicle_scene(VehicleShot const& shot);
+
+} // namespace framelet

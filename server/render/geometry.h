@@ -1,0 +1,36 @@
+// What the BVH's numbers stand for: triangle lists with their attributes, and meshes placed in the world.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "server/render/material.h"
+#include "server/scene/animation.h"
+
+namespace framelet {
+
+/// One Primitive as the renderer reads it. Its positions live in the BVH's own buffer.
+struct Geometry {
+    Primitive const* source = nullptr; ///< triangles, uv and colours
+    RenderMaterial const* material = nullptr;
+    std::span<Vec3> positions;
+    std::span<Vec3 const> normals;
+    std::span<Vec4 const> tangents; ///< empty where there are none
+};
+
+/// Opacity at a point of a triangle: base colour's alpha, map and vertex colour multiplied.
+float alpha_at(Geometry const& geometry, std::uint32_t triangle, float u, float v);
+
+/// Share of light that goes straight through a see-through surface, per colour.
+Vec3 transmittance_at(Geometry const& geometry, std::uint32_t triangle, float u, float v);
+
+/// A mesh in the world. Identity for skinned meshes, whose vertices are in world space already.
+struct Instance {
+    std::span<Geometry const> geometries;
+    Mat3 linear{1};
+    Vec3 translation{0};
+    Mat3 normal_matrix{1}; ///< inverse transpose of `linear`
+    float handedness = 1; ///< -1 where the transform mirrors: the winding then reads clockwise in the world
+};
+
+} // namespace framelet

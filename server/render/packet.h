@@ -1,0 +1,98 @@
+// Sixteen rays side by side: the unit that is traced and shaded. Arrays of one component each, so that a plain loop
+// over the lanes becomes vector instructions.
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+#include "common/math.h"
+
+namespace framelet {
+
+/// Lanes of a packet: 4x4 neighbouring samples of a framelet.
+inline constexpr int lanes = 16;
+
+/// Bit i set: lane i takes part.
+using LaneMask = std::uint32_t;
+inline constexpr LaneMask all_lanes = (1u << lanes) - 1;
+
+struct alignas(64) LaneFloats {
+    float lane[lanes];
+
+    float& operator[](int i) { return lane[i]; }
+    float operator[](int i) const { return lane[i]; }
+    void fill(float value) {
+        for (float& f : lane) {
+            f = value;
+        }
+    }
+};
+
+struct alignas(64) LaneIndices {
+    std::uint32_t lane[lanes];
+
+    std::uint32_t& operator[](int i) { return lane[i]; }
+    std::uint32_t operator[](int i) const { return lane[i]; }
+};
+
+struct LaneVec3 {
+    LaneFloats x, y, z;
+
+    Vec3 get(int i) const { return {x[i], y[i], z[i]}; }
+    void set(int i, Vec3 const& value) {
+        x[i] = value.x;
+        y[i] = value.y;
+        z[i] = value.z;
+    }
+    void fill(Vec3 const& value) {
+        x.fill(value.x);
+        y.fill(value.y);
+        z.fill(value.z);
+    }
+};
+
+/// Calls `visit(lane)` for each set bit, lowest first.
+template <class Visit>
+void for_each_lane(LaneMask mask, Visit&& visit) {
+    for (; mask != 0; mask &= mask - 1) {
+        visit(std::countr_zero(mask));
+    }
+}
+
+/// Mask of the lanes for which `test(lane)` holds; written without branches so that it vectorises.
+template <class Test>
+LaneMask lanes_where(Test&& test) {
+    LaneMask mask = 0;
+    for (int i = 0; i < lanes; ++i) {
+        mask |= static_cast<LaneMask>(test(i) ? 1u : 0u) << i;
+    }
+    return mask;
+}
+
+/// Coordinates that rays can start from, metres. The BVH squares them, in single precision and in the space of
+/// instances that may be scaled down (to `least_instance_scale`).
+inline constexpr float least_instance_scale = 1e-7f;
+inline bool traceable(Vec3 const& position) {
+    constexpr float most = 1e10f;
+    return std::abs(position.x) < most && std::abs(position.y) < most && std::abs(position.z) < most;
+}
+
+/// Points at origin + t * direction for near < t < far. Directions need not have unit length.
+struct RayPacket {
+    LaneVec3 origin, direction;
+    LaneFloats near, far;
+};
+
+/// What a ray met. Barycentric (u, v) weigh a triangle's second and third corner.
+struct HitPacket {
+    LaneFloats t, u, v;
+    LaneIndices triangle, geometry, instance;
+};
+
+/// Width of the cone that a sample covers, world units: constant + slope * t.
+struct Footprint {
+    LaneFloats width, slope;
+};
+
+} // namespace framelet

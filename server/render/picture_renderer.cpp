@@ -1,0 +1,99 @@
+// Whole pictures from the framelet renderer: the reference for what a viewer converges to, and the exposure probe.
+#include <bit>
+#include <cmath>
+#include <numeric>
+
+#include <tbb/parallel_for.h>
+
+#include "common/color.h"
+#include "common/error.h"
+#include "server/render/framelet_renderer.h"
+
+namespace framelet {
+namespace {
+
+std::vector<Tile> visible_tiles(ImagePlane const& plane, int depth) {
+    std::vector<Tile> tiles;
+    for (std::uint32_t code = 1u << (2 * depth); code < 2u << (2 * depth); ++code) {
+        if (plane.is_visible({code})) {
+            tiles.push_back({code});
+        }
+    }
+    return tiles;
+}
+
+/// Averages a framelet's samples over each pixel that it covers.
+void add_pixels(DisplayFramelet const& framelet, ImagePlane const& plane, int samples_per_side, Picture& picture) {
+    PixelRect const rect = plane.tile_rect(framelet.tile);
+    float const share = 1 / static_cast<float>(samples_per_side * samples_per_side);
+    int const right = std::min(rect.right, picture.width);
+    for (int y = rect.top; y < std::min(rect.bottom, picture.height); ++y) {
+        for (int x = rect.left; x < right; ++x) {
+            Vec3 sum(0);
+            for (int j = 0; j < samples_per_side; ++j) {
+                for (int i = 0; i < samples_per_side; ++i) {
+                    std::size_t const sample =
+                        morton_index(static_cast<std::uint32_t>((x - rect.left) * samples_per_side + i),
+                                     static_cast<std::uint32_t>((y - rect.top) * samples_per_side + j));
+                    sum +=
+                        Vec3(linear_from_srgb_byte(framelet.red[sample]), linear_from_srgb_byte(framelet.green[sample]),
+                             linear_from_srgb_byte(framelet.blue[sample]));
+                }
+            }
+            std::uint8_t* const pixel = picture.row(y) + static_cast<std::ptrdiff_t>(x) * 4;
+            for (int c = 0; c < 3; ++c) {
+                pixel[c] = srgb_byte_from_linear(sum[c] * share);
+            }
+            pixel[3] = 255;
+        }
+    }
+}
+
+} // namespace
+
+Picture render_picture(RenderScene const& scene, Camera const& camera, Viewport viewport, float exposure,
+                       int samples_per_side) {
+    FRAMELET_CHECK(samples_per_side == 1 || samples_per_side == 2 || samples_per_side == 4);
+    ImagePlane const plane(viewport);
+    ViewRays const view = make_view_rays(camera, viewport);
+    int const finer = std::countr_zero(static_cast<unsigned>(samples_per_side));
+    std::vector<Tile> const tiles = visible_tiles(plane, plane.pixel_depth() + finer);
+    Picture picture(viewport.width, viewport.height);
+    tbb::parallel_for(std::size_t(0), tiles.size(), [&](std::size_t i) {
+        Framelet framelet;
+        render_framelet(scene, view, plane, tiles[i], 0, framelet);
+        add_pixels(to_display(framelet, exposure), plane, samples_per_side, picture);
+    });
+    return picture;
+}
+
+float auto_exposure(RenderScene const& scene, Camera const& camera) {
+    constexpr Viewport probe{64, 48};
+    constexpr double darkest = 0.02, brightest = 1, middle = 0.18;
+    ImagePlane const plane(probe);
+    std::vector<Tile> const tiles = visible_tiles(plane, plane.pixel_depth());
+    std::vector<Framelet> framelets(tiles.size());
+    render_framelets(scene, camera, plane, tiles, 0, framelets);
+    std::vector<double> luminances;
+    for (Framelet const& framelet : framelets) {
+        for (std::size_t i = 0; i < framelet_samples; ++i) {
+            if (std::isfinite(framelet.depth[i])) {
+                luminances.push_back(0.2126 * framelet.red[i] + 0.7152 * framelet.green[i] + 0.0722 * framelet.blue[i]);
+            }
+        }
+    }
+    double const mean =
+        std::accumulate(luminances.begin(), luminances.end(), 0.0) / std::max<double>(1, double(luminances.size()));
+    if (!(mean > 1e-12)) { // nothing is hit, or nothing can be seen at any exposure
+        return 1;
+    }
+    // Black is black: however dark, it says no more about the light than a hundredth of the mean.
+    double sum = 0;
+    for (double const luminance : luminances) {
+        sum += std::log(std::max(luminance, 0.01 * mean));
+    }
+    double const average = std::exp(sum / double(luminances.size()));
+    return average >= darkest && average <= brightest ? 1.0f : static_cast<float>(middle / average);
+}
+
+} // namespace framelet

@@ -1,0 +1,24 @@
+// Everything that tracing and shading read, in one place. Built and moved by RenderScene, constant while rendering.
+#pragma once
+
+#include <vector>
+
+#include "server/render/embree_scene.h"
+#include "server/render/environment.h"
+#include "server/render/light.h"
+#include "server/render/split_sum.h"
+
+namespace framelet {
+
+struct PreparedScene {
+    MaterialLibrary library;
+    std::vector<std::vector<Geometry>> meshes; ///< by BVH number; the BVH points at the elements
+    std::vector<Instance> instances; ///< by BVH number
+    EmbreeScene bvh;
+    std::vector<RenderLight> lights;
+    Environment environment = Environment::uniform(Vec3(0));
+    SplitSumTable split_sum;
+    bool see_through = false; ///< some material lets rays pass: without, no ray is ever continued behind a surface
+};
+
+} // namespace framelet

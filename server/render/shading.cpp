@@ -1,0 +1,164 @@
+#include "server/render/shading.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "server/render/brdf.h"
+#include "server/render/tracing.h"
+
+namespace framelet {
+namespace {
+
+/// Reflections are traced below the first roughness and come from the prefiltered environment above the second.
+constexpr float traced_roughness = 0.15f;
+constexpr float filtered_roughness = 0.25f;
+/// Reflecting less than the first share of light no reflection is traced, above the second all of it is.
+constexpr float negligible_reflectance = 0.05f;
+constexpr float full_reflectance = 0.12f;
+
+float smooth_step(float from, float to, float x) {
+    float const t = std::clamp((x - from) / (to - from), 0.0f, 1.0f);
+    return t * t * (3 - 2 * t);
+}
+
+Vec3 mirrored(SurfacePacket const& s, int i) {
+    Vec3 const n = s.normal.get(i);
+    Vec3 const v = s.view.get(i);
+    return n * (2 * glm::dot(n, v)) - v;
+}
+
+/// Environment light, and the share of the specular part that is to be replaced by a traced reflection.
+struct AmbientPacket {
+    LaneVec3 reflectance; ///< specular share of the mirror direction's light
+    LaneFloats traced; ///< 0..1
+    LaneMask traced_lanes = 0;
+};
+
+void add_environment(PreparedScene const& scene, SurfacePacket const& s, LobePacket const& lobes, LaneMask lit,
+                     bool may_trace, AmbientPacket& ambient, LaneVec3& radiance) {
+    ambient.traced_lanes = 0;
+    for_each_lane(lit, [&](int i) {
+        float const roughness = s.roughness[i];
+        AmbientShares const shares =
+            ambient_shares(scene.split_sum.at(lobes.normal_view[i], roughness), lobes.f0.get(i), lobes.diffuse.get(i));
+        Vec3 const irradiance = scene.environment.diffuse(s.normal.get(i));
+        Vec3 const filtered = scene.environment.specular(mirrored(s, i), roughness);
+        Vec3 const diffuse_part = shares.diffuse * irradiance * s.occlusion[i];
+        Vec3 const specular = shares.specular * s.occlusion[i];
+        float traced = 0;
+        if (may_trace && roughness < filtered_roughness) {
+            float const strength = std::max({shares.specular.r, shares.specular.g, shares.specular.b});
+            traced = (1 - smooth_step(traced_roughness, filtered_roughness, roughness)) *
+                     smooth_step(negligible_reflectance, full_reflectance, strength);
+        }
+        if (traced > 0) {
+            ambient.traced_lanes |= 1u << i;
+            ambient.traced[i] = traced;
+            ambient.reflectance.set(i, shares.specular);
+        }
+        radiance.set(i, radiance.get(i) + diffuse_part + specular * filtered * (1 - traced));
+    });
+}
+
+void add_reflections(PreparedScene const& scene, SurfacePacket const& s, AmbientPacket const& ambient, int bounces,
+                     LaneVec3& radiance) {
+    RayPacket rays;
+    Footprint footprint;
+    rays.near.fill(0);
+    rays.far.fill(INFINITY);
+    rays.origin = s.leaving;
+    for_each_lane(ambient.traced_lanes, [&](int i) {
+        Vec3 direction = mirrored(s, i);
+        Vec3 const facet = s.geometric_normal.get(i);
+        float const above = glm::dot(direction, facet);
+        if (above < 0.01f) { // a bent normal sends the ray into the surface: along it instead
+            direction = glm::normalize(direction + facet * (0.01f - above));
+        }
+        rays.direction.set(i, direction);
+        footprint.width[i] = s.width[i];
+        footprint.slope[i] = s.spread[i] + s.roughness[i] * s.roughness[i];
+    });
+    TracedPacket reflected{};
+    trace(scene, rays, ambient.traced_lanes, footprint, bounces - 1, reflected);
+    for_each_lane(ambient.traced_lanes, [&](int i) {
+        Vec3 const share = ambient.reflectance.get(i) * ambient.traced[i];
+        radiance.set(i, radiance.get(i) + share * reflected.radiance.get(i));
+    });
+}
+
+void add_lights(PreparedScene const& scene, SurfacePacket const& s, LobePacket const& lobes, LaneMask lit,
+                LaneVec3& radiance) {
+    ArrivingLight arriving;
+    RayPacket shadow;
+    shadow.origin = s.leaving;
+    shadow.near.fill(0);
+    LaneVec3 irradiance, transmittance;
+    for (RenderLight const& light : scene.lights) {
+        LaneMask const reached = arriving_light(light, s.position, s.normal, lit, arriving);
+        if (reached == 0) {
+            continue;
+        }
+        shadow.direction = arriving.to_light;
+        for (int i = 0; i < lanes; ++i) {
+            shadow.far[i] = arriving.distance[i] * 0.999f; // the lamp's own surface casts no shadow
+        }
+        transmittance.fill(Vec3(1));
+        LaneMask const blocked = scene.bvh.occluded(shadow, reached, transmittance);
+        LaneMask const bright = reached & ~blocked;
+        if (bright == 0) {
+            continue;
+        }
+        for (int i = 0; i < lanes; ++i) {
+            float const arrives = (bright >> i & 1) != 0 ? arriving.irradiance[i] : 0.0f;
+            irradiance.x[i] = transmittance.x[i] * (light.intensity.r * arrives);
+            irradiance.y[i] = transmittance.y[i] * (light.intensity.g * arrives);
+            irradiance.z[i] = transmittance.z[i] * (light.intensity.b * arrives);
+        }
+        add_reflected(lobes, s.normal, s.view, arriving.to_light, irradiance, radiance);
+    }
+}
+
+/// Transmission replaces diffuse reflection by what is seen straight through, tinted by the base colour.
+void split_transmission(SurfacePacket const& s, LaneMask active, LobePacket& lobes, ShadedPacket& out) {
+    for_each_lane(active, [&](int i) {
+        float const transmission = s.transmission[i];
+        float const alpha = s.alpha[i];
+        float const away = 1 - std::min(lobes.normal_view[i], 1.0f);
+        float const entering = 0.96f * (1 - (away * away) * (away * away) * away); // Schlick with f0 = 0.04
+        Vec3 const tint = s.base_color.get(i) * (transmission * entering);
+        out.passed.set(i, Vec3(1 - alpha) + tint * alpha);
+        lobes.diffuse.set(i, lobes.diffuse.get(i) * (1 - transmission));
+    });
+}
+
+} // namespace
+
+void shade(PreparedScene const& scene, SurfacePacket const& s, LaneMask active, int bounces, ShadedPacket& out) {
+    LobePacket lobes;
+    make_lobes(s.base_color, s.metallic, s.roughness, s.normal, s.view, lobes);
+    if (scene.see_through) {
+        split_transmission(s, active, lobes, out);
+    }
+    out.radiance = s.emissive;
+    LaneMask const lit = active & ~s.unlit;
+    if (lit != 0) {
+        AmbientPacket ambient;
+        add_environment(scene, s, lobes, lit, bounces > 0, ambient, out.radiance);
+        if (ambient.traced_lanes != 0) {
+            add_reflections(scene, s, ambient, bounces, out.radiance);
+        }
+        add_lights(scene, s, lobes, lit, out.radiance);
+    }
+    for_each_lane(active & s.unlit, [&](int i) { out.radiance.set(i, s.base_color.get(i)); });
+    if (scene.see_through) {
+        for (int i = 0; i < lanes; ++i) {
+            out.radiance.x[i] *= s.alpha[i];
+            out.radiance.y[i] *= s.alpha[i];
+            out.radiance.z[i] *= s.alpha[i];
+        }
+    }
+}
+
+} // namespace framelet

@@ -1,0 +1,18 @@
+// Light that leaves surfaces towards the viewer: emission, environment, punctual lights with shadows, reflections.
+#pragma once
+
+#include "server/render/packet.h"
+#include "server/render/prepared_scene.h"
+#include "server/render/surface.h"
+
+namespace framelet {
+
+struct ShadedPacket {
+    LaneVec3 radiance; ///< of the surface, already weighed by its alpha
+    LaneVec3 passed; ///< share of what lies behind that is seen through it; set only where the scene is see-through
+};
+
+/// Shades the lanes of `active`. `bounces`: how often light may still be followed along mirror reflections.
+void shade(PreparedScene const& scene, SurfacePacket const& surfaces, LaneMask active, int bounces, ShadedPacket& out);
+
+} // namespace framelet

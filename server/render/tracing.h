@@ -1,0 +1,18 @@
+// Rays in, radiance and depth out: nearest surfaces, shaded, composited front to back.
+#pragma once
+
+#include "server/render/packet.h"
+#include "server/render/prepared_scene.h"
+
+namespace framelet {
+
+struct TracedPacket {
+    LaneVec3 radiance; ///< finite, >= 0
+    LaneFloats depth; ///< ray parameter of the surface that contributes most; +infinity where that is the background
+};
+
+/// Traces the lanes of `active`; the others are left as they are. `rays.near` is moved along where rays continue.
+void trace(PreparedScene const& scene, RayPacket& rays, LaneMask active, Footprint const& footprint, int bounces,
+           TracedPacket& out);
+
+} // namespace framelet

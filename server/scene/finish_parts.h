@@ -1,0 +1,33 @@
+// The pieces of `finish_scene`. Each checks and completes one kind of thing of a scene.
+// In: a scene whose meshes are finished. Out: the same, as scene.h promises, or an InputError.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "server/scene/scene.h"
+#include "server/scene/scene_finish.h"
+
+namespace framelet {
+
+/// Transforms are finite, rotations unit length, skins usable, morph weights as many as targets.
+void finish_nodes(Scene& scene);
+
+/// Keys are finite, their times increase, values fit; clips have their duration, those that move nothing are removed.
+void finish_clips(Scene& scene);
+
+/// "mesh 3 'door'", for messages.
+inline std::string named(char const* kind, std::size_t index, std::string const& name) {
+    return std::string(kind) + " " + std::to_string(index) + (name.empty() ? "" : " '" + name + "'");
+}
+
+inline bool in_range(float value) {
+    return std::abs(value) <= max_coordinate;
+}
+
+inline float clamped(float value, float low, float high, float otherwise) {
+    return std::isfinite(value) ? std::clamp(value, low, high) : otherwise;
+}
+
+} // namespace framelet

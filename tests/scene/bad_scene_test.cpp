@@ -1,0 +1,264 @@
+// What cannot be loaded: one InputError with one line, whatever the file.
+#include "server/scene/scene_import.h"
+
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "common/error.h"
+#include "gltf_writer.h"
+#include "server/scene/animation.h"
+
+namespace framelet {
+namespace {
+
+std::string import_error(std::filesystem::path const& file) {
+    try {
+        import_scene(file);
+    } catch (InputError const& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+void expect_error(std::filesystem::path const& file, std::string const& part) {
+    std::string const error = import_error(file);
+    EXPECT_NE(error.find(part), std::string::npos) << error;
+    EXPECT_NE(error.find(file.filename().string()), std::string::npos) << "names the file: " << error;
+    EXPECT_EQ(error.find('\n'), std::string::npos) << error;
+    EXPECT_LT(error.size(), 600u);
+}
+
+GltfWriter triangle_writer() {
+    GltfWriter writer;
+    writer.array(triangle_positions, "VEC3");
+    return writer;
+}
+
+std::string const triangle_mesh = R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)";
+
+TEST(BadScene, MissingEmptyDirectoryUnknown) {
+    TemporaryFolder const folder;
+    expect_error(folder.path() / "nothing.gltf", "no such file");
+    expect_error(folder.write("empty.glb", ""), "empty");
+    std::filesystem::create_directory(folder.path() / "folder.gltf");
+    expect_error(folder.path() / "folder.gltf", "not a file");
+    expect_error(folder.write("a.unknown", "text"), "format '.unknown' is not known");
+    expect_error(folder.write("noextension", "text"), "format '' is not known");
+}
+
+TEST(BadScene, BrokenJson) {
+    TemporaryFolder const folder;
+    expect_error(folder.write("a.gltf", "{\"asset\":"), "JSON is broken");
+    expect_error(folder.write("b.gltf", "just text\nof two lines"), "JSON is broken");
+    expect_error(folder.write("c.gltf", "[1,2,3]"), "not glTF");
+    expect_error(folder.write("d.gltf", R"({"asset":{"version":"1.0"}})"), "glTF version 1.0");
+    expect_error(folder.write("e.gltf", R"({"asset":{"version":"2.0"},"extras":)" + std::string(100000, '[') +
+                                            std::string(100000, ']') + "}"),
+                 "nested too deeply");
+}
+
+TEST(BadScene, TruncatedBinaryAtEveryLength) {
+    TemporaryFolder const folder;
+    std::string const whole = triangle_writer().glb(one_mesh(R"("attributes":{"POSITION":0})"));
+    for (std::size_t length = 1; length < whole.size(); ++length) {
+        expect_error(folder.write("a.glb", whole.substr(0, length)), "");
+    }
+    EXPECT_NO_THROW(import_scene(folder.write("a.glb", whole)));
+}
+
+TEST(BadScene, MissingAndShortBuffers) {
+    TemporaryFolder const folder;
+    std::string text = triangle_writer().json(one_mesh(R"("attributes":{"POSITION":0})"), false);
+    text.replace(text.find(R"("byteLength":36)"), 15, R"("byteLength":36,"uri":"gone.bin")");
+    expect_error(folder.write("a.gltf", text), "gone.bin");
+    folder.write("gone.bin", "short");
+    expect_error(folder.write("a.gltf", text), "gone.bin");
+}
+
+TEST(BadScene, NodesInCircles) {
+    TemporaryFolder const folder;
+    for (std::string const nodes :
+         {R"("scenes":[{"nodes":[0]}],"nodes":[{"children":[1]},{"children":[0]}])", R"("nodes":[{"children":[0]}])",
+          R"("scenes":[{"nodes":[0,1]}],"nodes":[{"children":[1]},{"mesh":0}])", R"("nodes":[{"children":[5]}])",
+          R"("scenes":[{"nodes":[9]}],"nodes":[{}])", R"("scene":3,"scenes":[{"nodes":[0]}],"nodes":[{}])"}) {
+        expect_error(folder.write("a.gltf", triangle_writer().json(triangle_mesh + nodes)), "");
+    }
+    expect_error(folder.write("a.gltf", triangle_writer().json(
+                                            R"("scenes":[{"nodes":[0]}],"nodes":[{"children":[1]},{"children":[0]}])")),
+                 "node 0 is reached twice");
+}
+
+TEST(BadScene, ReferencesToNothing) {
+    TemporaryFolder const folder;
+    for (auto const& [rest, message] : std::vector<std::pair<std::string, std::string>>{
+             {triangle_mesh + R"("nodes":[{"mesh":4}])", "mesh 4 does not exist"},
+             {triangle_mesh + R"("nodes":[{"mesh":0,"skin":2}])", "skin 2 does not exist"},
+             {triangle_mesh + R"("nodes":[{"camera":0}])", "camera 0 does not exist"},
+             {triangle_mesh + R"("nodes":[{"extensions":{"KHR_lights_punctual":{"light":1}}}])",
+              "light 1 does not exist"},
+             {R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":3}]}],"nodes":[{"mesh":0}])",
+              "material 3 does not exist"},
+             {R"("meshes":[{"primitives":[{"attributes":{"POSITION":8}}]}],"nodes":[{"mesh":0}])", "accessor 8"},
+             {triangle_mesh + R"("nodes":[{}],"skins":[{"joints":[7]}])", "joint node 7 does not exist"},
+             {triangle_mesh + R"("nodes":[{}],"animations":[{"samplers":[],"channels":[{"sampler":0,"target":)"
+                              R"({"node":0,"path":"scale"}}]}])",
+              "sampler 0 does not exist"},
+             {triangle_mesh +
+                  R"("nodes":[{}],"animations":[{"samplers":[{"input":0,"output":0}],"channels":[{"sampler":0,)"
+                  R"("target":{"node":0,"path":"scale"}}]}])",
+              "animation 'clip 1'"},
+         }) {
+        expect_error(folder.write("a.gltf", triangle_writer().json(rest)), message);
+    }
+}
+
+TEST(BadScene, JointBeyondTheSkin) {
+    GltfWriter writer = triangle_writer();
+    writer.array(std::vector<std::uint8_t>{0, 0, 0, 0, 0, 0, 0, 0, 3, 0, 0, 0}, "VEC4", GltfWriter::u8);
+    writer.array(std::vector<float>{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, "VEC4");
+    TemporaryFolder const folder;
+    expect_error(
+        folder.write("a.gltf",
+                     writer.json(R"("nodes":[{"mesh":0,"skin":0},{}],"skins":[{"joints":[1]}],"meshes":)"
+                                 R"([{"primitives":[{"attributes":{"POSITION":0,"JOINTS_0":1,"WEIGHTS_0":2}}]}])")),
+        "uses joint 3 of a skin with 1");
+}
+
+TEST(BadScene, NumbersThatAreNone) {
+    TemporaryFolder const folder;
+    for (float const bad : {NAN, INFINITY, 1e30f}) {
+        GltfWriter writer;
+        std::vector<float> positions = triangle_positions;
+        positions[4] = bad;
+        writer.array(positions, "VEC3");
+        expect_error(folder.write("a.gltf", writer.json(one_mesh(R"("attributes":{"POSITION":0})"))),
+                     "the position of vertex 1 is ");
+    }
+    expect_error(
+        folder.write("a.gltf", triangle_writer().json(triangle_mesh + R"("nodes":[{"mesh":0,"scale":[1e300,1,1]}])")),
+        "node 0");
+    expect_error(
+        folder.write("a.gltf", triangle_writer().json(triangle_mesh + R"("nodes":[{"scale":[1e8,1,1],"children":[1]},)"
+                                                                      R"({"scale":[1e8,1,1],"mesh":0}])")),
+        "placed out of range");
+}
+
+TEST(BadScene, BrokenNormalsAndCoordinatesAreRepairedWithAWarning) {
+    GltfWriter writer = triangle_writer();
+    writer.array(std::vector<float>{NAN, 0, 0, 0, 0, 0, 0, 0, 5}, "VEC3");
+    writer.array(std::vector<float>{0, 0, NAN, 0, 1, 1}, "VEC2");
+    TemporaryFolder const folder;
+    Scene const scene = import_scene(
+        folder.write("a.gltf", writer.json(one_mesh(R"("attributes":{"POSITION":0,"NORMAL":1,"TEXCOORD_0":2})"))));
+    EXPECT_EQ(scene.meshes[0].primitives[0].normals, std::vector<Vec3>(3, Vec3(0, 0, 1)));
+    EXPECT_EQ(scene.meshes[0].primitives[0].uv[0][1], Vec2(0));
+    EXPECT_EQ(scene.warnings.size(), 2u);
+}
+
+TEST(BadScene, RequiredExtensionsAreNamed) {
+    TemporaryFolder const folder;
+    for (std::string const name : {"KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_texture_basisu"}) {
+        std::string const list = ":[\"" + name + "\"]";
+        expect_error(folder.write("a.gltf", triangle_writer().json(one_mesh(R"("attributes":{"POSITION":0})",
+                                                                            R"(,"extensionsUsed")" + list +
+                                                                                R"(,"extensionsRequired")" + list))),
+                     name);
+    }
+}
+
+TEST(BadScene, SmallFilesThatGrowWithoutBound) {
+    TemporaryFolder const folder;
+    // A hundred thousand triangles of three vertices with two thousand morph targets, to be shaded flat.
+    GltfWriter writer = triangle_writer();
+    writer.array(std::vector<std::uint8_t>(300000, 1), "SCALAR", GltfWriter::u8);
+    std::string targets = R"({"POSITION":0})";
+    for (int i = 1; i < 2000; ++i) {
+        targets += R"(,{"POSITION":0})";
+    }
+    expect_error(folder.write("a.glb", writer.glb(one_mesh(R"("attributes":{"POSITION":0},"indices":1,"targets":[)" +
+                                                           targets + "]"))),
+                 "GiB of geometry");
+}
+
+/// A small file with most of what the importer knows, as binary glTF.
+std::string rich_glb() {
+    GltfWriter writer = triangle_writer();
+    writer.array(std::vector<std::uint16_t>{0, 1, 2}, "SCALAR", GltfWriter::u16);
+    writer.array(std::vector<std::uint8_t>{0, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0, 0}, "VEC4", GltfWriter::u8);
+    writer.array(std::vector<float>{0.5f, 0.5f, 0, 0, 1, 0, 0, 0, 0.3f, 0.3f, 0, 0}, "VEC4");
+    writer.array(std::vector<float>{0, 1}, "SCALAR");
+    writer.array(std::vector<float>{0, 0, 0, 1, 0, 1, 0, 0}, "VEC4");
+    writer.array(std::vector<float>{0, 0, 1, 1, 0, 1}, "VEC2");
+    writer.array(std::vector<float>(32, 0.5f), "MAT4");
+    int const indices = writer.view(std::vector<std::uint16_t>{2});
+    int const values = writer.view(std::vector<float>{0, 3, 0});
+    int const image = writer.view(std::vector<std::uint8_t>{'n', 'o', ' ', 'p', 'i', 'c', 't', 'u', 'r', 'e', '!', 0});
+    writer.accessor(R"("componentType":5126,"count":3,"type":"VEC3","sparse":{"count":1,"indices":{"bufferView":)" +
+                    std::to_string(indices) + R"(,"componentType":5123},"values":{"bufferView":)" +
+                    std::to_string(values) + "}}");
+    return writer.glb(
+        R"("scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,"skin":0,"children":[1]},{"rotation":[0,0,0,1],)"
+        R"("children":[2]},{"camera":0,"translation":[1,2,3],"extensions":{"KHR_lights_punctual":{"light":0}}}],)"
+        R"("cameras":[{"type":"perspective","perspective":{"yfov":0.8,"znear":0.1}}],)"
+        R"("extensions":{"KHR_lights_punctual":{"lights":[{"type":"point"}]}},)"
+        R"("skins":[{"joints":[1,2],"inverseBindMatrices":7}],"images":[{"bufferView":)" +
+        std::to_string(image) +
+        R"(,"mimeType":"image/png"}],"textures":[{"source":0}],"materials":[{"normalTexture":{"index":0}}],)"
+        R"("meshes":[{"primitives":[{"attributes":{"POSITION":0,"JOINTS_0":2,"WEIGHTS_0":3,"TEXCOORD_0":6},"indices":1,)"
+        R"("material":0,"targets":[{"POSITION":8}]}]}],"animations":[{"samplers":[{"input":4,"output":5}],)"
+        R"("channels":[{"sampler":0,"target":{"node":1,"path":"rotation"}}]}])");
+}
+
+bool all_finite(std::vector<Vec3> const& vectors) {
+    for (Vec3 const& v : vectors) {
+        if (!std::isfinite(v.x + v.y + v.z)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+TEST(BadScene, FlippedBytesGiveASceneOrAnError) {
+    TemporaryFolder const folder;
+    std::string const whole = rich_glb();
+    ASSERT_NO_THROW(import_scene(folder.write("a.glb", whole)));
+    std::mt19937 random(7);
+    int scenes = 0;
+    int errors = 0;
+    for (int round = 0; round < 4000; ++round) {
+        std::string bytes = whole;
+        int const flips = 1 + static_cast<int>(random() % 3);
+        for (int i = 0; i < flips; ++i) {
+            char& byte = bytes[random() % bytes.size()];
+            // Half of the time a digit, so that the JSON stays whole and its numbers go wrong.
+            byte = random() % 2 ? static_cast<char>('0' + random() % 10) : static_cast<char>(random());
+        }
+        try {
+            Scene const scene = import_scene(folder.write("b.glb", bytes));
+            ScenePose const pose = evaluate_pose(scene, default_clips(scene), 0.3);
+            DeformedVertices deformed;
+            for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
+                Node const& node = scene.nodes[n];
+                if (node.mesh != none) {
+                    for (Primitive const& primitive : scene.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
+                        deform(primitive, pose.morph_weights[n],
+                               node.skin == none ? nullptr : &scene.skins[static_cast<std::size_t>(node.skin)], pose,
+                               deformed);
+                        ASSERT_TRUE(all_finite(deformed.positions) && all_finite(deformed.normals))
+                            << "round " << round;
+                    }
+                }
+            }
+            ++scenes;
+        } catch (InputError const& error) {
+            ASSERT_EQ(std::string(error.what()).find('\n'), std::string::npos) << "round " << round;
+            ++errors;
+        }
+    }
+    EXPECT_GT(scenes, 500);
+    EXPECT_GT(errors, 500);
+}
+
+} // namespace
+} // namespace framelet
