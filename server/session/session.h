@@ -59,7 +59,7 @@ public:
     void invalidate();
     /// What the loop has done for this viewer: with the input of this version nothing is left to refine, or something
     /// is.
-    void report(std::uint64_t version, bool converged);
+    bool report(std::uint64_t version, bool converged);
     /// The session's part of a status message: newest batch, its camera, convergence.
     Status status() const;
     /// True when the oldest unanswered batch is older than `ack_timeout`.

@@ -88,10 +88,11 @@ bool SessionLoop::render_session(Session& session, Progress& progress, SceneTime
     if (!input.camera) {
         return false;
     }
-    Moment const moment{resolve_camera(*input.camera), options_.exposure * std::exp2(input.settings.exposure_ev), time};
+    ViewState const seen{resolve_camera(*input.camera), options_.exposure * std::exp2(input.settings.exposure_ev),
+                         time};
     double const affordable = rate_.samples_per_second * cycle_seconds;
-    NumberedView const& view = moment.camera.view;
-    bool const changed = progress.moment != moment;
+    NumberedView const& view = seen.camera.view;
+    bool const changed = progress.seen != seen;
     if (!changed && is_converged(progress.refinement)) {
         if (session.report(input.version, true)) {
             events_.convergence_changed();
@@ -105,7 +106,7 @@ bool SessionLoop::render_session(Session& session, Progress& progress, SceneTime
     if (changed) {
         progress.plane = ImagePlane(view.viewport);
         progress.refinement = start_refinement(progress.plane, deepest_affordable(progress.plane, affordable));
-        progress.moment = moment;
+        progress.seen = seen;
     }
     // A view that has just changed is shown whole or it would be torn; afterwards a cycle's worth at a time.
     std::size_t const timely = static_cast<std::size_t>(affordable / framelet_samples) + 1;
@@ -126,7 +127,7 @@ bool SessionLoop::render_session(Session& session, Progress& progress, SceneTime
     encoding_->batch.number = number;
     encoding_->batch.view = view;
     encoding_->batch.scene_time = time;
-    encoding_->exposure = moment.exposure;
+    encoding_->exposure = seen.exposure;
     encoding_->session = session.shared_from_this();
     encoding_->task.run([encoding = encoding_.get()] { encoding->run(); });
 

@@ -26,12 +26,12 @@ struct LoopOptions {
 };
 
 /// What is on screen is worth refining for as long as this stays the same.
-struct Moment {
+struct ViewState {
     CameraUpdate camera;
     float exposure = 1;
     SceneTime scene_time = 0; ///< 0 where nothing moves
 
-    bool operator==(Moment const&) const = default;
+    bool operator==(ViewState const&) const = default;
 };
 
 class SessionLoop {
@@ -65,7 +65,7 @@ public:
 private:
     /// What the loop remembers of a session between cycles.
     struct Progress {
-        std::optional<Moment> moment;
+        std::optional<ViewState> seen;
         ImagePlane plane;
         Refinement refinement;
     };

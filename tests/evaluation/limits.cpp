@@ -121,6 +121,7 @@ json measure_stages(BenchScene& scene, LimitsOptions const& options) {
 
     FrameletCache cache(plane);
     Picture picture(options.viewport.width, options.viewport.height);
+    std::vector<PixelRect> changed;
     double const pixels = static_cast<double>(picture.rgba.size() / 4);
     result["cache"] = measure_stage(options.rounds, samples, bytes, [&] {
         ++decoded.number;
@@ -129,7 +130,8 @@ json measure_stages(BenchScene& scene, LimitsOptions const& options) {
     result["reconstruct"] = measure_stage(options.rounds, pixels, picture.rgba.size(), [&] {
         ++decoded.number;
         cache.insert(decoded);
-        reconstruct(cache, cache.take_changed(), picture);
+        cache.take_changed(changed);
+        reconstruct(cache, changed, picture);
     });
     return result;
 }
