@@ -146,7 +146,8 @@ struct ClientCore::Impl {
         {
             std::lock_guard const lock(mutex);
             if (view.view.number == 0) {
-                throw ProtocolError("a batch before a camera was sent");
+                ++statistics.stale_batches; // nobody has asked for a picture yet
+                return;
             }
         }
         Batch const batch = codec.decode(encoded);

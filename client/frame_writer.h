@@ -50,7 +50,7 @@ private:
         std::uint64_t number;
         std::optional<Picture> picture; ///< empty: as the one before
     };
-    static constexpr std::size_t most_waiting = 8;
+    static constexpr std::size_t most_waiting = 4;
 
     void run();
     void write(Frame const& frame);

@@ -13,12 +13,12 @@ constexpr ImGuiWindowFlags plain = ImGuiWindowFlags_NoDecoration | ImGuiWindowFl
                                    ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
 
 /// A panel whose own point `anchor` (0..1) lies at that point of the window, a margin away from the edges.
-bool begin_panel(char const* name, ImVec2 anchor) {
+bool begin_panel(char const* name, ImVec2 anchor, float opacity = 0.75f) {
     ImVec2 const size = ImGui::GetIO().DisplaySize;
     float const margin = ImGui::GetFontSize();
     ImVec2 const place(margin + anchor.x * (size.x - 2 * margin), margin + anchor.y * (size.y - 2 * margin));
     ImGui::SetNextWindowPos(place, ImGuiCond_Always, anchor);
-    ImGui::SetNextWindowBgAlpha(0.75f);
+    ImGui::SetNextWindowBgAlpha(opacity);
     return ImGui::Begin(name, nullptr, plain);
 }
 
@@ -38,7 +38,7 @@ void table(char const* name, TextRows const& rows) {
 }
 
 void text_panel(char const* name, ImVec2 anchor, std::string const& text) {
-    if (begin_panel(name, anchor)) {
+    if (begin_panel(name, anchor, 0.9f)) {
         ImGui::PushTextWrapPos(ImGui::GetIO().DisplaySize.x * 0.8f);
         ImGui::TextUnformatted(text.c_str());
         ImGui::PopTextWrapPos();

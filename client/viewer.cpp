@@ -56,42 +56,46 @@ int Viewer::run() {
     double last_look = seconds_now();
     double next_frame = 0;
     bool moving = false;
+    bool pending = true; // there may be something to show in the next display frame
     bool redraw = true;
     OverlayContent shown;
     while (!quit_) {
-        double const until_frame = next_frame - seconds_now();
-        WindowInput const input = window_.wait(moving || redraw ? until_frame : std::max(idle_seconds, until_frame));
+        bool const hidden = window_.is_iconified();
+        WindowInput const input = window_.wait(pending && !hidden ? next_frame - seconds_now() : idle_seconds);
         double const now = seconds_now();
-        moving = apply(input, std::min(now - last_look, 0.1));
+        moving = apply(input, moving ? now - last_look : 0);
         last_look = now;
         redraw = redraw || input.redraw;
         watch_connection();
         if (lost_.empty()) {
             core_->set_view(controller_->camera(), window_.framebuffer_size(), scene_camera_);
         }
-        if (seconds_now() < next_frame || window_.is_iconified()) {
+        pending = true;
+        if (hidden || now < next_frame) {
             continue; // what has come is shown in the next display frame
         }
-        double const begin = seconds_now();
         if (core_->update_picture(picture_, changed_)) {
             window_.upload(picture_, changed_);
             redraw = true;
         }
         OverlayContent content = overlay_content();
-        if (redraw || moving || content != shown) {
+        redraw = redraw || moving || content != shown;
+        pending = redraw;
+        if (redraw) {
             window_.draw_picture();
             overlay_.draw(content);
-            meter_.frame(seconds_now() - begin);
+            meter_.frame(seconds_now() - now);
             window_.present();
             shown = std::move(content);
-            next_frame = begin + 1 / window_.refresh_rate() * 0.9; // the swap waits for the display where it can
+            // A little early: where the swap waits for the display, that sets the pace.
+            next_frame = now + 0.9 / window_.refresh_rate();
             redraw = false;
         }
     }
     return lost_.empty() ? 0 : 1;
 }
 
-/// Returns true while a key or a drag keeps the camera moving.
+/// Returns true while a key keeps the camera moving.
 bool Viewer::apply(WindowInput const& input, double seconds) {
     for (Command const command : input.commands) {
         apply(command);

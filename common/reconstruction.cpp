@@ -15,10 +15,11 @@ namespace framelet {
 namespace {
 
 constexpr int side = FrameletCache::block_side;
+constexpr std::size_t row_stride = side; ///< of a block or a framelet in rows
 constexpr int deepest_apron_levels = 2;
 
 /// Pixels of one block, each as its four bytes lie in a picture.
-using Block = std::array<std::uint32_t, side * side>;
+using Block = std::array<std::uint32_t, row_stride * row_stride>;
 
 /// Where a colour's byte stands in a pixel that is one number.
 constexpr bool little = std::endian::native == std::endian::little;
@@ -37,7 +38,8 @@ struct LinearColor {
 
 /// Place in the table of bytes. Means and interpolations of table values stay in [0, 1].
 std::int32_t step_of(float linear) {
-    return static_cast<std::int32_t>(linear * TransferTables::steps + 0.5f);
+    return static_cast<std::int32_t>(linear * TransferTables::steps +
+                                     0.5f); // NOLINT(bugprone-incorrect-roundings): >= 0
 }
 
 std::uint32_t pixel_at(TransferTables const& tables, std::int32_t red, std::int32_t green, std::int32_t blue) {
@@ -46,7 +48,7 @@ std::uint32_t pixel_at(TransferTables const& tables, std::int32_t red, std::int3
 }
 
 LinearColor sample_at(TransferTables const& tables, CachedFramelet const& framelet, int x, int y) {
-    auto const i = static_cast<std::size_t>(y * side + x);
+    std::size_t const i = static_cast<std::size_t>(y) * row_stride + static_cast<std::size_t>(x);
     return {tables.linear[framelet.samples[0][i]], tables.linear[framelet.samples[1][i]],
             tables.linear[framelet.samples[2][i]]};
 }
@@ -225,7 +227,7 @@ void paint_fine(TransferTables const& tables, CachedFramelet const& framelet, in
             }
         }
     }
-    std::uint32_t* row = &block[static_cast<std::size_t>(top * side + left)];
+    std::uint32_t* row = &block[static_cast<std::size_t>(top) * row_stride + static_cast<std::size_t>(left)];
     for (std::size_t y = 0; y < pixels; ++y, row += side) {
         for (std::size_t x = 0; x < pixels; ++x) {
             std::size_t const i = y * pixels + x;

@@ -274,11 +274,18 @@ TEST(ClientCore, ServerThatBreaksTheProtocolIsLeft) {
     ClientCore second(options_for(chatty));
     chatty.send(Message(Hello{}));
     ASSERT_TRUE(wait_for(second, [&] { return second.end_reason().has_value(); }));
+}
 
-    FakeServer hasty; // a batch that nobody asked for
-    ClientCore third(options_for(hasty));
-    hasty.send(constant_batch(plane, plane.pixel_depth(), 1, 1));
-    ASSERT_TRUE(wait_for(third, [&] { return third.end_reason().has_value(); }));
+TEST(ClientCore, ABatchThatNobodyAskedForIsNotShown) {
+    ImagePlane const plane(Viewport{32, 32});
+    FakeServer server;
+    ClientCore core(options_for(server));
+    server.send(constant_batch(plane, plane.pixel_depth(), 1, 1));
+    ASSERT_TRUE(wait_for(core, [&] { return core.statistics().stale_batches == 1; }));
+    Picture picture;
+    std::vector<PixelRect> changed;
+    EXPECT_FALSE(core.update_picture(picture, changed));
+    EXPECT_FALSE(core.end_reason().has_value());
 }
 
 TEST(ClientCore, NoticesThatTheServerVanished) {
