@@ -82,16 +82,18 @@ Environment::Environment(FloatImage const& radiance) {
     diffuse_ = filter_diffuse(levels, 32);
 }
 
-Environment Environment::default_sky() {
+Environment Environment::default_sky(float brightness, float light_share) {
     FloatImage sky(512, 256);
     for (int y = 0; y < sky.height; ++y) {
         for (int x = 0; x < sky.width; ++x) {
             Vec2 const center((static_cast<float>(x) + 0.5f) / static_cast<float>(sky.width),
                               (static_cast<float>(y) + 0.5f) / static_cast<float>(sky.height));
-            sky.at(x, y) = clear_sky(direction_from_equirect(center));
+            sky.at(x, y) = brightness * clear_sky(direction_from_equirect(center));
         }
     }
-    return Environment(sky);
+    Environment environment(sky);
+    environment.light_share_ = light_share;
+    return environment;
 }
 
 Environment Environment::uniform(Vec3 radiance) {
@@ -120,7 +122,7 @@ Vec3 Environment::background(Vec3 direction, float footprint) const {
 }
 
 Vec3 Environment::diffuse(Vec3 normal) const {
-    return uniform_ ? *uniform_ : diffuse_.sample(normal);
+    return uniform_ ? *uniform_ : light_share_ * diffuse_.sample(normal);
 }
 
 Vec3 Environment::specular(Vec3 direction, float roughness) const {
@@ -132,9 +134,10 @@ Vec3 Environment::specular(Vec3 direction, float roughness) const {
     Vec2 const point = octahedral_from_direction(direction);
     float const blend = level - static_cast<float>(sharp);
     if (blend >= 1) { // fully rough, as much is
-        return specular_levels_.back().sample_at(point);
+        return light_share_ * specular_levels_.back().sample_at(point);
     }
-    return glm::mix(specular_levels_[sharp].sample_at(point), specular_levels_[sharp + 1].sample_at(point), blend);
+    return light_share_ *
+           glm::mix(specular_levels_[sharp].sample_at(point), specular_levels_[sharp + 1].sample_at(point), blend);
 }
 
 } // namespace framelet

@@ -19,7 +19,9 @@ public:
     explicit Environment(FloatImage const& radiance);
 
     /// The default surroundings: a clear sky gradient over a neutral ground.
-    static Environment default_sky();
+    /// `brightness` scales it; `light_share` is the part of it that reaches surfaces: less than 1 stands for what walls
+    /// and trees would keep off, as environment light is not shadowed.
+    static Environment default_sky(float brightness = 1, float light_share = 1);
     /// The same radiance from everywhere.
     static Environment uniform(Vec3 radiance);
     /// Reads .hdr or .exr (anything OpenImageIO knows). Throws InputError.
@@ -36,6 +38,7 @@ private:
     Environment() = default;
 
     std::optional<Vec3> uniform_; ///< then there are no maps
+    float light_share_ = 1; ///< of the maps, in `diffuse` and `specular`
     std::vector<FloatImage> background_levels_; ///< box-filtered, halving
     std::vector<OctahedralMap> specular_levels_; ///< GGX-filtered for equally spaced roughness
     OctahedralMap diffuse_;

@@ -50,14 +50,16 @@ std::vector<Geometry> geometries_of(Mesh const& mesh, MaterialLibrary const& lib
     return out;
 }
 
-/// What is around a scene with lamps and nothing else: enough to tell the shapes in the shade apart. It follows the
-/// suns, whose light the surroundings would scatter.
-Environment dim_surroundings(Scene const& scene) {
+/// What is around a scene with lamps and no map: under a sun the sky that belongs to it, else just enough to tell the
+/// shapes in the shade apart.
+Environment surroundings_of_lights(Scene const& scene) {
     float suns = 0;
     for (Light const& light : scene.lights) {
         suns += light.type == LightType::directional ? std::clamp(light.intensity, 0.0f, 1e6f) : 0.0f;
     }
-    return Environment::uniform(Vec3(0.05f + 0.04f * suns));
+    constexpr float light_share = 0.4f; // many scenes with a sun are rooms
+    return suns > 0 ? Environment::default_sky(suns / default_sun().intensity.r, light_share)
+                    : Environment::uniform(Vec3(0.05f));
 }
 
 } // namespace
@@ -79,7 +81,7 @@ RenderScene::RenderScene(Scene const& scene, std::optional<Environment> environm
     if (environment) {
         prepared_->environment = std::move(*environment);
     } else {
-        prepared_->environment = scene.lights.empty() ? Environment::default_sky() : dim_surroundings(scene);
+        prepared_->environment = scene.lights.empty() ? Environment::default_sky() : surroundings_of_lights(scene);
         if (scene.lights.empty()) {
             prepared_->lights.push_back(default_sun());
         }
