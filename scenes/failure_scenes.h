@@ -28,8 +28,8 @@ GltfDocument make_globe_scene(GlobeParameters const& parameters);
 struct TerrainParameters {
     double duration = 16;
     int columns = 710, rows = 710; ///< two triangles a cell
-    double cell = 0.35; ///< metres
-    double flight_radius = 66, flight_height = 42;
+    double cell = 0.28; ///< metres
+    double flight_radius = 62, flight_height = 50;
 };
 GltfDocument make_terrain_scene(TerrainParameters const& parameters);
 

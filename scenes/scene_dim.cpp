@@ -24,6 +24,7 @@ std::vector<int> add_half(GltfDocument& document, double left, double shade) {
     int const boards = surface("boards", D3(0.9, 0.7, 0.4), document.add_image(plank_texture()));
     int const paint = surface("paint", D3(0.25, 0.5, 0.8));
     D3 const floor_center(left + half_stage.x / 2, 0, 0);
+    double const inward = left < 0 ? 1 : -1;
     D3 const center(left < 0 ? -2.1 : 2.1, 0, 0); // of the things: near the middle of the picture
     document.add_object("floor", make_ground({half_stage.x, half_stage.z}, 1), floor, {floor_center});
     document.add_object("back", make_box({half_stage.x, half_stage.y, 0.3}, 1.6), bricks,
@@ -35,12 +36,14 @@ std::vector<int> add_half(GltfDocument& document, double left, double shade) {
         append(wheel, make_rounded_box({0.06, 0.06, 0.9}, 0.02), {turned * D3(0, 0, 0.47), turned, {1, 1, 1}});
     }
     wheel.uv.clear();
-    int const stand = document.add_node(
-        {.name = "stand",
-         .place = {center + D3(0.4, 1.9, -1.6), rotation_about({1, 0, 0}, pi / 2) * rotation_about({0, 0, 1}, 0.2)}});
+    int const stand =
+        document.add_node({.name = "stand",
+                           .place = {center + D3(0.4 * inward, 1.9, -1.6),
+                                     rotation_about({1, 0, 0}, pi / 2) * rotation_about({0, 0, 1}, 0.2)}});
     turning.push_back(document.add_object("wheel", std::move(wheel), paint, {}, stand));
-    turning.push_back(document.add_object("crate", make_box(D3(1.1), 1.1), boards, {center + D3(-1.0, 0.56, 0.6)}));
-    document.add_object("ball", make_sphere(0.55, 32), paint, {center + D3(0.9, 0.55, 1.0)});
+    turning.push_back(
+        document.add_object("crate", make_box(D3(1.1), 1.1), boards, {center + D3(-1.0 * inward, 0.56, 0.6)}));
+    document.add_object("ball", make_sphere(0.55, 32), paint, {center + D3(0.9 * inward, 0.55, 1.0)});
     return turning;
 }
 

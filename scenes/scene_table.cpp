@@ -39,7 +39,7 @@ std::span<SceneEntry const> scene_table() {
          }},
         {"vehicle_approach", 5, "mostly still; the region that moves, and the detail in it, grows", true,
          [] {
-             return make_vehicle_scene({.cars = {{.start_z = -112, .speed = 24, .paint = {0.75, 0.42, 0.02}}},
+             return make_vehicle_scene({.cars = {{.start_z = -76, .speed = 17, .paint = {0.75, 0.42, 0.02}}},
                                         .camera = CameraPath::fixed,
                                         .eye = {0.2, 1.25, 9},
                                         .target = {-0.6, 1.1, 0},
@@ -53,8 +53,8 @@ std::span<SceneEntry const> scene_table() {
              return make_vehicle_scene({.cars = {{.start_z = -60, .speed = 60, .paint = {0.6, 0.6, 0.62}},
                                                  {.lane_x = far_lane_x, .start_z = 200, .speed = -60}},
                                         .camera = CameraPath::fixed,
-                                        .eye = {-10.5, 1.6, -1},
-                                        .target = {0, 1.2, 0},
+                                        .eye = {-10.5, 1.6, -14},
+                                        .target = {0, 1.4, -15},
                                         .vertical_fov = 40,
                                         .first_stretch = -3,
                                         .last_stretch = 3});

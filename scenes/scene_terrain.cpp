@@ -19,7 +19,7 @@ double mountain_height(D2 at) {
 /// The mountains sink below the plain towards the edge.
 double terrain_height(D2 at, double half_side) {
     double const inside = std::clamp(6 * (1 - std::max(std::abs(at.x), std::abs(at.y)) / half_side), 0.0, 1.0);
-    return glm::mix(-10.0, mountain_height(at), inside * inside * (3 - 2 * inside));
+    return glm::mix(-22.0, mountain_height(at), inside * inside * (3 - 2 * inside));
 }
 
 MeshData make_terrain(TerrainParameters const& parameters) {
@@ -58,7 +58,7 @@ GltfDocument make_terrain_scene(TerrainParameters const& parameters) {
     add_sun(document, {-0.55, 0.80, 0.25});
     add_surroundings(document);
     int const ground = document.add_material({.name = "ground", .roughness = 0.55});
-    document.add_object("terrain", make_terrain(parameters), ground, {{0, 6, 0}});
+    document.add_object("terrain", make_terrain(parameters), ground, {{0, 18, 0}});
     int const camera = add_camera(document, {0, 0, 0}, {0, 0, -1}, 50);
     auto const position = [&](double time) {
         double const angle = 2 * pi * time / parameters.duration;
@@ -68,7 +68,7 @@ GltfDocument make_terrain_scene(TerrainParameters const& parameters) {
     document.tracks.push_back(translation_track(camera, parameters.duration, 240, position));
     document.tracks.push_back(rotation_track(camera, parameters.duration, 240, [&](double time) {
         D3 const ahead = position(time + 0.09 * parameters.duration);
-        return looking_at(position(time), D3(ahead.x * 0.55, 8, ahead.z * 0.55));
+        return looking_at(position(time), D3(ahead.x * 0.45, 22, ahead.z * 0.45));
     }));
     return document;
 }

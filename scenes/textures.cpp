@@ -200,7 +200,7 @@ std::string leaf_texture() {
                 D2 const offset = D2(x + 0.5, y + 0.5) - base;
                 double const along = glm::dot(offset, axis) / length;
                 double const across = (offset.x * axis.y - offset.y * axis.x) / length;
-                if (along < 0 || along > 1 || std::abs(across) > 0.55 * std::sin(pi * along) * (1 - 0.5 * along)) {
+                if (along < 0 || along > 1 || std::abs(across) > 0.40 * std::sin(pi * along) * (1 - 0.5 * along)) {
                     continue;
                 }
                 double const vein = std::abs(across) < 0.03 ? 0.12 : 0.0;
