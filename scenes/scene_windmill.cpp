@@ -97,7 +97,7 @@ GltfDocument make_windmill_scene(WindmillParameters const& parameters) {
     }
     document.tracks.push_back(spin_track({sails}, {0, 0, 1}, -2 * pi * parameters.sail_turns, parameters.duration));
     document.tracks.push_back(spin_track({vanes}, {0, 0, 1}, 2 * pi * parameters.vane_turns, parameters.duration));
-    add_camera(document, {2.2, 2.2, 21}, {0.6, 5.9, 0}, 50);
+    add_camera(document, {1.6, 2.2, 21}, {-0.4, 6.4, 0}, 43);
     return document;
 }
 
