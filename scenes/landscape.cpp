@@ -139,12 +139,20 @@ MeshData make_sky() {
                         {2, -1});
 }
 
+int add_grass(GltfDocument& document) {
+    return document.add_material({.name = "grass",
+                                  .base_color = D3(0.62, 0.72, 0.28),
+                                  .base_color_texture = document.add_image(grass_texture())});
+}
+
 } // namespace
 
+void add_meadow(GltfDocument& document, double side) {
+    document.add_object("meadow", make_tinted_grid(D2(side), 20, 20, 3, field_tint), add_grass(document));
+}
+
 void add_roadside(GltfDocument& document, int first, int last) {
-    int const grass = document.add_material({.name = "grass",
-                                             .base_color = D3(0.62, 0.72, 0.28),
-                                             .base_color_texture = document.add_image(grass_texture())});
+    int const grass = add_grass(document);
     int const asphalt_image = document.add_image(asphalt_texture());
     int const asphalt = document.add_material({.name = "asphalt",
                                                .base_color = D3(0.42, 0.42, 0.44),

@@ -13,6 +13,8 @@ inline constexpr double far_lane_x = 2;
 
 /// Stretches first .. last (inclusive) of the road, each `roadside_period` long, stretch 0 centred on z = 0.
 void add_roadside(GltfDocument& document, int first, int last);
+/// A meadow about the origin, `side` metres square.
+void add_meadow(GltfDocument& document, double side);
 /// A paved yard beside the road, slabs of 2 m, centred on `center`.
 void add_yard(GltfDocument& document, D3 center, D2 size);
 /// What is far away: a plain, a ring of hills, a sky with clouds up to 50 degrees (the sun shines in from above).

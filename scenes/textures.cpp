@@ -171,8 +171,8 @@ std::string globe_texture() {
             D3 color(0.07, 0.20 + 0.06 * height, 0.42 + 0.2 * height);
             if (height > 0.05) {
                 double const dry = fractal_noise(70, at, 3, 8);
-                color = dry > 0.1 ? D3(0.72, 0.62, 0.38) : D3(0.22, 0.45, 0.16);
-                color *= 0.75 + 1.2 * height;
+                color = dry > 0.1 ? D3(0.72, 0.62, 0.38) : D3(0.27, 0.40, 0.17);
+                color *= 0.8 + 0.6 * height;
             }
             if (latitude + 0.2 * height > 0.86) {
                 color = D3(0.93, 0.95, 0.98);
@@ -190,7 +190,7 @@ std::string leaf_texture() {
     for (int y = 0; y < pixels.height; ++y) {
         for (int x = 0; x < pixels.width; ++x) {
             std::uint8_t* const pixel = pixels.at(x, y);
-            set_color(pixel, D3(0.22, 0.36, 0.10)); // under the mask too: filtering reaches there
+            set_color(pixel, D3(0.40, 0.54, 0.20)); // under the mask too: filtering reaches there
         }
     }
     auto const draw_leaf = [&](D2 base, double angle, double length, double tone) {
@@ -200,11 +200,11 @@ std::string leaf_texture() {
                 D2 const offset = D2(x + 0.5, y + 0.5) - base;
                 double const along = glm::dot(offset, axis) / length;
                 double const across = (offset.x * axis.y - offset.y * axis.x) / length;
-                if (along < 0 || along > 1 || std::abs(across) > 0.55 * std::sin(pi * along) * (1 - 0.5 * along)) {
+                if (along < 0 || along > 1 || std::abs(across) > 0.40 * std::sin(pi * along) * (1 - 0.5 * along)) {
                     continue;
                 }
                 double const vein = std::abs(across) < 0.03 ? 0.12 : 0.0;
-                set_color(pixels.at(x, y), D3(0.28, 0.46, 0.12) * (tone + vein), 32);
+                set_color(pixels.at(x, y), D3(0.50, 0.66, 0.24) * (tone + vein), 32);
                 pixels.at(x, y)[3] = 255;
             }
         }

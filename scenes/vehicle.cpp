@@ -58,12 +58,9 @@ VehicleMeshes add_vehicle_meshes(GltfDocument& document, D3 paint_color) {
     int const glass = document.add_material({.name = "glass", .base_color = D3(0.015, 0.02, 0.025), .roughness = 0.03});
     int const trim =
         document.add_material({.name = "trim", .base_color = D3(0.02), .roughness = 0.6, .double_sided = true});
-    int const head = document.add_material(
-        {.name = "head lamp", .base_color = D3(0.8), .roughness = 0.05, .emissive = D3(0.25, 0.25, 0.22)});
-    int const tail = document.add_material({.name = "tail lamp",
-                                            .base_color = D3(0.10, 0.004, 0.004),
-                                            .roughness = 0.05,
-                                            .emissive = D3(0.20, 0.006, 0.006)});
+    int const head = document.add_material({.name = "head lamp", .base_color = D3(0.8), .roughness = 0.05});
+    int const tail =
+        document.add_material({.name = "tail lamp", .base_color = D3(0.10, 0.004, 0.004), .roughness = 0.03});
     int const plate = document.add_material({.name = "plate", .base_color = D3(0.7), .roughness = 0.4});
     int const rubber = document.add_material({.name = "rubber", .base_color = D3(0.03), .roughness = 0.8});
     int const metal =
