@@ -15,10 +15,13 @@ constexpr float pi = std::numbers::pi_v<float>;
 constexpr float steepest = 0.499f * pi;
 constexpr float dolly_step = 0.9f;
 constexpr float fast_factor = 4;
+/// Beyond this nobody sees anything, and arithmetic stays finite.
+constexpr float farthest = 1e9f;
+constexpr float largest_scene = 1e7f;
 
 float diagonal(Bounds const& scene) {
     float const length = scene.empty() ? 0 : glm::length(scene.size());
-    return std::isfinite(length) && length > 0 ? length : 1;
+    return std::isfinite(length) && length > 0 ? std::min(length, largest_scene) : 1;
 }
 
 } // namespace
@@ -30,9 +33,14 @@ CameraController::CameraController(Camera const& home, Bounds const& scene)
 
 void CameraController::set_camera(Camera const& camera) {
     camera_ = camera;
-    Vec3 const center = scene_.empty() ? camera.position + camera.forward() * size_ : scene_.center();
+    Vec3 const center =
+        scene_.empty() || size_ >= largest_scene ? camera.position + camera.forward() * size_ : scene_.center();
     float const along = glm::dot(center - camera.position, camera.forward());
     distance_ = along > 1e-3f * size_ ? along : 0.25f * size_;
+}
+
+void CameraController::go_to(Vec3 position) {
+    camera_.position = glm::clamp(position, Vec3(-farthest), Vec3(farthest));
 }
 
 void CameraController::turn(float yaw, float pitch) {
@@ -50,7 +58,7 @@ void CameraController::orbit(Vec2 pixels, Viewport viewport) {
     Vec3 const center = pivot();
     Vec2 const angle = pixels * (pi / static_cast<float>(viewport.height));
     turn(-angle.x, -angle.y);
-    camera_.position = center - camera_.forward() * distance_;
+    go_to(center - camera_.forward() * distance_);
 }
 
 void CameraController::look(Vec2 pixels, Viewport viewport) {
@@ -64,7 +72,7 @@ void CameraController::pan(Vec2 pixels, Viewport viewport) {
                              ? 2 * std::tan(0.5f * camera_.vertical_extent) * distance_
                              : camera_.vertical_extent;
     Vec2 const metres = pixels * (height / static_cast<float>(viewport.height));
-    camera_.position += camera_.up() * metres.y - camera_.right() * metres.x;
+    go_to(camera_.position + camera_.up() * metres.y - camera_.right() * metres.x);
 }
 
 void CameraController::dolly(float steps) {
@@ -75,7 +83,7 @@ void CameraController::dolly(float steps) {
     }
     Vec3 const center = pivot();
     distance_ = std::clamp(distance_ * scale, 1e-5f * size_, 1e3f * size_);
-    camera_.position = center - camera_.forward() * distance_;
+    go_to(center - camera_.forward() * distance_);
 }
 
 void CameraController::fly(FlyInput const& input, double seconds) {
@@ -84,7 +92,7 @@ void CameraController::fly(FlyInput const& input, double seconds) {
     }
     float const speed = size_ / 8 * (input.fast ? fast_factor : 1);
     Vec3 const direction = glm::normalize(input.direction);
-    camera_.position += camera_.orientation * direction * (speed * static_cast<float>(seconds));
+    go_to(camera_.position + camera_.orientation * direction * (speed * static_cast<float>(seconds)));
 }
 
 } // namespace framelet

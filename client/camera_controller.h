@@ -40,6 +40,7 @@ public:
 
 private:
     void turn(float yaw, float pitch);
+    void go_to(Vec3 position);
 
     Camera home_;
     Bounds scene_;

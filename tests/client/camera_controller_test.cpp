@@ -122,6 +122,20 @@ TEST(CameraController, ASceneWithoutExtentIsNoTrouble) {
     EXPECT_TRUE(is_valid(controller.camera()));
 }
 
+TEST(CameraController, HoweverFarItGoesItStaysACamera) {
+    Bounds huge;
+    huge.include(Vec3(-3e38f));
+    huge.include(Vec3(3e38f));
+    CameraController controller(Camera{}, huge);
+    for (int i = 0; i < 1000; ++i) {
+        controller.fly({{1, 0.5f, -1}, true}, 1e6);
+        controller.dolly(-20);
+        controller.pan({1e6f, 1e6f}, viewport);
+        controller.orbit({31, 7}, viewport);
+        ASSERT_TRUE(is_valid(controller.camera()));
+    }
+}
+
 TEST(CameraController, AViewStraightDownCanBeTakenOver) {
     Stage const stage(2);
     CameraController controller(stage.home, stage.scene);
