@@ -15,6 +15,9 @@ constexpr float pi = std::numbers::pi_v<float>;
 constexpr float steepest = 0.499f * pi;
 constexpr float dolly_step = 0.9f;
 constexpr float fast_factor = 4;
+/// Up to this size a scene is crossed in the same time; larger ones are travelled faster, but by the square root only:
+/// what one goes past in a landscape is still as large as a house. Metres.
+constexpr float room_size = 30;
 /// Beyond this nobody sees anything, and arithmetic stays finite.
 constexpr float farthest = 1e9f;
 constexpr float largest_scene = 1e7f;
@@ -27,7 +30,8 @@ float diagonal(Bounds const& scene) {
 } // namespace
 
 CameraController::CameraController(Camera const& home, Bounds const& scene)
-    : home_(home), scene_(scene), size_(diagonal(scene)), camera_(home) {
+    : home_(home), scene_(scene), size_(diagonal(scene)), reach_(std::min(size_, std::sqrt(room_size * size_))),
+      camera_(home) {
     reset();
 }
 
@@ -36,7 +40,11 @@ void CameraController::set_camera(Camera const& camera) {
     Vec3 const center =
         scene_.empty() || size_ >= largest_scene ? camera.position + camera.forward() * size_ : scene_.center();
     float const along = glm::dot(center - camera.position, camera.forward());
-    distance_ = along > 1e-3f * size_ ? along : 0.25f * size_;
+    distance_ = along > 1e-3f * size_ ? along : reach_ / 4;
+    Vec3 const place = camera.position;
+    if (glm::clamp(place, scene_.lower, scene_.upper) == place) {
+        distance_ = std::min(distance_, reach_ / 10); // amid the scene one looks at what is near
+    }
 }
 
 void CameraController::go_to(Vec3 position) {
@@ -90,7 +98,7 @@ void CameraController::fly(FlyInput const& input, double seconds) {
     if (!input.moving()) {
         return;
     }
-    float const speed = size_ / 8 * (input.fast ? fast_factor : 1);
+    float const speed = reach_ / 8 * (input.fast ? fast_factor : 1);
     Vec3 const direction = glm::normalize(input.direction);
     go_to(camera_.position + camera_.orientation * direction * (speed * static_cast<float>(seconds)));
 }
