@@ -118,7 +118,8 @@ inline constexpr std::size_t max_upstream_message_bytes = 64u << 10;
 inline constexpr std::size_t max_batch_framelets = 32768;
 
 /// Body of one message (without the length prefix). Every number must be inside its range (FRAMELET_CHECK); text is
-/// made one line of UTF-8 and cut to its limit, cameras beyond the 4096th are left out.
+/// made one line of UTF-8 and cut to its limit, the last cameras of a Welcome that exceeds max_upstream_message_bytes
+/// are left out.
 Bytes encode_message(Message const& message);
 /// The same, appended to `out`.
 void append_message(Message const& message, Bytes& out);

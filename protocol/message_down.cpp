@@ -7,6 +7,10 @@
 namespace framelet {
 namespace {
 
+/// A Welcome has to fit into the limit before the handshake is over: the cameras' names and lenses take no more than
+/// this (and one longest), which leaves room for their list, the other names and the rest.
+constexpr std::size_t max_cameras_bytes = max_upstream_message_bytes - 8192;
+
 bool is_finite_box(Bounds const& box) {
     bool fine = true;
     for (int axis = 0; axis < 3; ++axis) {
@@ -25,8 +29,10 @@ bool has_duplicate(std::vector<Tile> tiles) {
 
 Offset<wire::Welcome> write(Builder& builder, Welcome const& value) {
     std::vector<Offset<wire::SceneCamera>> cameras;
-    for (SceneCameraInfo const& info :
-         std::span(value.cameras).first(std::min(value.cameras.size(), max_scene_cameras))) {
+    for (SceneCameraInfo const& info : value.cameras) {
+        if (builder.GetSize() > max_cameras_bytes) {
+            break;
+        }
         auto const name = write_text(builder, info.name, max_name_bytes);
         cameras.push_back(wire::CreateSceneCamera(builder, name, write(builder, info.camera)));
     }

@@ -1,12 +1,36 @@
 #include "scenes/gltf_document.h"
 
+#include <algorithm>
+
 #include "common/error.h"
 
 namespace framelet {
 
+namespace {
+
+template <typename Value>
+int find_or_add(std::vector<Value>& values, Value value) {
+    auto const found = std::find(values.begin(), values.end(), value);
+    if (found != values.end()) {
+        return static_cast<int>(found - values.begin());
+    }
+    values.push_back(std::move(value));
+    return static_cast<int>(values.size()) - 1;
+}
+
+} // namespace
+
+int GltfDocument::add_image(std::string png) {
+    return find_or_add(images, std::move(png));
+}
+
 int GltfDocument::add_material(GltfMaterial material) {
-    materials.push_back(std::move(material));
-    return static_cast<int>(materials.size()) - 1;
+    return find_or_add(materials, std::move(material));
+}
+
+int GltfDocument::add_object(std::string object_name, MeshData data, int material, Placement const& place, int parent) {
+    int const mesh = add_mesh(object_name, {{std::move(data), material}});
+    return add_node({.name = std::move(object_name), .place = place, .mesh = mesh}, parent);
 }
 
 int GltfDocument::add_mesh(std::string mesh_name, std::vector<GltfPrimitive> primitives) {

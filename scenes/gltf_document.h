@@ -22,6 +22,9 @@ struct GltfMaterial {
     int base_color_texture = no_index; ///< index of an image
     double alpha_cutoff = 0; ///< above 0: alpha mask
     bool double_sided = false;
+    bool unlit = false; ///< KHR_materials_unlit
+
+    bool operator==(GltfMaterial const&) const = default;
 };
 
 /// A mesh has one primitive a material.
@@ -77,8 +80,12 @@ struct GltfDocument {
     std::vector<GltfLight> lights;
     std::vector<GltfTrack> tracks; ///< one clip
 
+    /// These return an index; an image or a material that is already there is not added again.
+    int add_image(std::string png);
     int add_material(GltfMaterial material);
     int add_mesh(std::string name, std::vector<GltfPrimitive> primitives);
+    /// A mesh of one material, shown by one node.
+    int add_object(std::string name, MeshData data, int material, Placement const& place = {}, int parent = no_index);
     /// Adds the node, to `parent` where one is given.
     int add_node(GltfNode node, int parent = no_index);
 };

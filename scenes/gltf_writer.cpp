@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <map>
 #include <set>
 
 #include <nlohmann/json.hpp>
@@ -43,8 +44,14 @@ struct Binary {
     std::string bytes;
     Json views = Json::array();
     Json accessors = Json::array();
+    std::map<std::pair<std::string, int>, int> known_views; // equal arrays are stored once
 
     int add_view(void const* data, std::size_t size, int target) {
+        auto const [known, is_new] = known_views.try_emplace(
+            {std::string(static_cast<char const*>(data), size), target}, static_cast<int>(views.size()));
+        if (!is_new) {
+            return known->second;
+        }
         while (bytes.size() % 4 != 0) {
             bytes.push_back('\0');
         }
@@ -54,7 +61,7 @@ struct Binary {
         }
         bytes.append(static_cast<char const*>(data), size);
         views.push_back(std::move(view));
-        return static_cast<int>(views.size()) - 1;
+        return known->second;
     }
 
     /// `components` floats an element; positions and key times must state their range.
@@ -142,7 +149,8 @@ Json write_primitive(Binary& binary, GltfPrimitive const& primitive, bool textur
             {"material", primitive.material}};
 }
 
-Json write_material(GltfMaterial const& material) {
+/// Adds what it makes use of to `extensions`.
+Json write_material(GltfMaterial const& material, std::set<std::string>& extensions) {
     Json surface{
         {"baseColorFactor", numbers({material.base_color.x, material.base_color.y, material.base_color.z, 1.0})},
         {"metallicFactor", material.metallic},
@@ -156,12 +164,17 @@ Json write_material(GltfMaterial const& material) {
         D3 const factor = material.emissive / std::max(strongest, 1.0);
         json["emissiveFactor"] = numbers({factor.x, factor.y, factor.z});
         if (strongest > 1) {
+            extensions.insert("KHR_materials_emissive_strength");
             json["extensions"]["KHR_materials_emissive_strength"] = {{"emissiveStrength", strongest}};
         }
     }
     if (material.alpha_cutoff > 0) {
         json["alphaMode"] = "MASK";
         json["alphaCutoff"] = material.alpha_cutoff;
+    }
+    if (material.unlit) {
+        extensions.insert("KHR_materials_unlit");
+        json["extensions"]["KHR_materials_unlit"] = Json::object();
     }
     if (material.double_sided) {
         json["doubleSided"] = true;
@@ -275,10 +288,7 @@ std::string write_glb(GltfDocument const& document) {
         json["meshes"].push_back({{"name", mesh.name}, {"primitives", std::move(primitives)}});
     }
     for (GltfMaterial const& material : document.materials) {
-        json["materials"].push_back(write_material(material));
-        if (json["materials"].back().contains("extensions")) {
-            extensions.insert("KHR_materials_emissive_strength");
-        }
+        json["materials"].push_back(write_material(material, extensions));
     }
     for (std::string const& image : document.images) {
         json["images"].push_back(

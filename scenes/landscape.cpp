@@ -14,6 +14,8 @@ namespace {
 constexpr double road_half_width = 4;
 constexpr double road_height = 0.02;
 constexpr double field_half_width = 160;
+constexpr double hills_radius = 900;
+constexpr double sky_radius = 1500;
 
 /// A level grid centred on the origin, facing +Y, with a colour a vertex and one texture repeat a `texture_size`.
 MeshData make_tinted_grid(D2 size, int columns, int rows, double texture_size, double (*tint)(D2)) {
@@ -107,18 +109,43 @@ void add_scenery(GltfDocument& document, Scenery const& scenery, int stretch) {
     }
 }
 
-int add_image(GltfDocument& document, std::string image) {
-    document.images.push_back(std::move(image));
-    return static_cast<int>(document.images.size()) - 1;
+/// Ridges around the origin, seen from inside the ring.
+MeshData make_hills() {
+    MeshData hills = make_surface(240, 6, [](double u, double v) {
+        double const angle = 2 * pi * (u >= 1 ? 0 : -u);
+        double const ridge = 0.5 + 0.5 * fractal_noise(105, {u * 12, 0.5}, 5, 12, 0.55);
+        double const height = hills_radius * (0.015 + 0.10 * ridge * ridge);
+        double const dents = 1 + 0.24 * v * (1 - v) * value_noise(106, {u * 60, v * 3}, 60);
+        double const distance = hills_radius * (1.0 + 0.45 * v) * dents;
+        return D3(distance * std::sin(angle), height * std::sin(pi / 2 * v) - 1 + v, distance * std::cos(angle));
+    });
+    for (D3 const& p : hills.positions) {
+        double const patchy = fractal_noise(107, {p.x / 80, p.z / 80}, 3);
+        hills.colors.push_back(D3(0.17, 0.23, 0.13) * (0.8 + 0.4 * patchy) + D3(0.02, 0.035, 0.07));
+    }
+    hills.uv.clear();
+    return hills;
+}
+
+/// The inside of a band of a sphere, from under the horizon to 50 degrees; the texture twice around.
+MeshData make_sky() {
+    return make_surface(48, 8,
+                        [](double u, double v) {
+                            double const angle = -2 * pi * (u >= 1 ? 0 : u);
+                            double const elevation = radians(-2 + 52 * v);
+                            return sky_radius * D3(std::cos(elevation) * std::sin(angle), std::sin(elevation),
+                                                   std::cos(elevation) * std::cos(angle));
+                        },
+                        {2, -1});
 }
 
 } // namespace
 
 void add_roadside(GltfDocument& document, int first, int last) {
     int const grass = document.add_material({.name = "grass",
-                                             .base_color = D3(0.42, 0.52, 0.20),
-                                             .base_color_texture = add_image(document, grass_texture())});
-    int const asphalt_image = add_image(document, asphalt_texture());
+                                             .base_color = D3(0.62, 0.72, 0.28),
+                                             .base_color_texture = document.add_image(grass_texture())});
+    int const asphalt_image = document.add_image(asphalt_texture());
     int const asphalt = document.add_material({.name = "asphalt",
                                                .base_color = D3(0.42, 0.42, 0.44),
                                                .roughness = 0.85,
@@ -165,42 +192,23 @@ void add_yard(GltfDocument& document, D3 center, D2 size) {
     append(slabs,
            make_tinted_grid(size, 16, 16, 4, [](D2 at) { return 0.85 + 0.15 * fractal_noise(104, at / 3.0, 2); }));
     int const slab = document.add_material({.name = "slabs",
-                                            .base_color = D3(0.62, 0.58, 0.52),
+                                            .base_color = D3(0.8, 0.76, 0.70),
                                             .roughness = 0.7,
-                                            .base_color_texture = add_image(document, checker_texture())});
+                                            .base_color_texture = document.add_image(slab_texture())});
     int const mesh = document.add_mesh("yard", {{std::move(slabs), slab}});
     document.add_node({.name = "yard", .place = {center}, .mesh = mesh});
 }
 
-int add_hills(GltfDocument& document, double radius) {
-    constexpr int around = 240;
-    MeshData hills = make_surface(around, 6, [radius](double u, double v) {
-        double const angle = 2 * pi * (u >= 1 ? 0 : u);
-        double const ridge = 0.5 + 0.5 * fractal_noise(105, {u * 12, 0.5}, 5, 12, 0.55);
-        double const height = radius * (0.015 + 0.10 * ridge * ridge);
-        double const lift = std::sin(pi / 2 * v);
-        double const dents = 1 + 0.06 * v * (1 - v) * 4 * value_noise(106, {u * 60, v * 3}, 60);
-        double const distance = radius * (1.0 + 0.45 * v) * dents;
-        return D3(distance * std::sin(angle), height * lift - 1 + v, distance * std::cos(angle));
-    });
-    for (D3& normal : hills.normals) { // they are seen from inside the ring
-        normal = normal.y < 0 ? -normal : normal;
-    }
-    for (std::size_t i = 0; i + 2 < hills.indices.size(); i += 3) {
-        std::swap(hills.indices[i], hills.indices[i + 1]);
-    }
-    for (D3 const& p : hills.positions) {
-        double const patchy = fractal_noise(107, {p.x / 80, p.z / 80}, 3);
-        hills.colors.push_back(D3(0.30, 0.38, 0.26) * (0.75 + 0.35 * patchy) + D3(0.03, 0.05, 0.09));
-    }
-    hills.uv.clear();
-    MeshData plain = make_ground({2.1 * radius, 2.1 * radius}, 1);
+int add_surroundings(GltfDocument& document) {
+    int const forest = document.add_material({.name = "forest", .roughness = 1, .double_sided = true});
+    int const far_fields = document.add_material({.name = "far fields", .base_color = D3(0.17, 0.21, 0.075)});
+    int const sky =
+        document.add_material({.name = "sky", .base_color_texture = document.add_image(sky_texture()), .unlit = true});
+    MeshData plain = make_ground({2.1 * hills_radius, 2.1 * hills_radius}, 1);
     plain.uv.clear();
-    int const forest =
-        document.add_material({.name = "forest", .base_color = D3(0.55), .roughness = 1, .double_sided = true});
-    int const far_fields = document.add_material({.name = "far fields", .base_color = D3(0.085, 0.12, 0.045)});
-    int const mesh = document.add_mesh("hills", {{std::move(hills), forest}, {std::move(plain), far_fields}});
-    return document.add_node({.name = "hills", .place = {{0, -0.3, 0}}, .mesh = mesh});
+    int const mesh =
+        document.add_mesh("surroundings", {{make_hills(), forest}, {std::move(plain), far_fields}, {make_sky(), sky}});
+    return document.add_node({.name = "surroundings", .place = {{0, -0.3, 0}}, .mesh = mesh});
 }
 
 void add_sun(GltfDocument& document, D3 towards_sun, double intensity) {

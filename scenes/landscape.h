@@ -15,9 +15,11 @@ inline constexpr double far_lane_x = 2;
 void add_roadside(GltfDocument& document, int first, int last);
 /// A paved yard beside the road, slabs of 2 m, centred on `center`.
 void add_yard(GltfDocument& document, D3 center, D2 size);
-/// A ring of hills and the plain inside it; returns its node, which may ride along with a camera.
-int add_hills(GltfDocument& document, double radius);
+/// What is far away: a plain, a ring of hills, a sky with clouds up to 50 degrees (the sun shines in from above).
+/// Returns the node of all this, which may ride along with a camera.
+int add_surroundings(GltfDocument& document);
 /// Sunlight that falls along -`towards_sun`. The sun lights a grey of 0.5 to 0.5 * cosine: intensity pi.
+/// It must stand higher than 52 degrees where there is a sky.
 void add_sun(GltfDocument& document, D3 towards_sun, double intensity = pi);
 /// A camera node, looking from `eye` to `target`; vertical field of view in degrees.
 int add_camera(GltfDocument& document, D3 eye, D3 target, double vertical_fov_degrees, int parent = no_index);

@@ -9,24 +9,8 @@
 namespace framelet {
 namespace {
 
-int find_or_add_material(GltfDocument& document, GltfMaterial const& material) {
-    auto const found = std::find_if(document.materials.begin(), document.materials.end(),
-                                    [&](GltfMaterial const& known) { return known.name == material.name; });
-    return found != document.materials.end() ? static_cast<int>(found - document.materials.begin())
-                                             : document.add_material(material);
-}
-
-int add_image(GltfDocument& document, std::string image) {
-    auto const found = std::find(document.images.begin(), document.images.end(), image);
-    if (found != document.images.end()) {
-        return static_cast<int>(found - document.images.begin());
-    }
-    document.images.push_back(std::move(image));
-    return static_cast<int>(document.images.size()) - 1;
-}
-
 int bark(GltfDocument& document) {
-    return find_or_add_material(document, {.name = "bark", .base_color = D3(0.13, 0.085, 0.05)});
+    return document.add_material({.name = "bark", .base_color = D3(0.13, 0.085, 0.05)});
 }
 
 } // namespace
@@ -55,8 +39,8 @@ int add_conifer_mesh(GltfDocument& document, std::uint32_t seed) {
     }
     needles.uv.clear();
     MeshData trunk = make_cone(0.028, 0.4, 8);
-    int const leaf = find_or_add_material(
-        document, {.name = "needles", .base_color = D3(0.05, 0.11, 0.045), .roughness = 0.9, .double_sided = true});
+    int const leaf = document.add_material(
+        {.name = "needles", .base_color = D3(0.05, 0.11, 0.045), .roughness = 0.9, .double_sided = true});
     return document.add_mesh("conifer", {{std::move(needles), leaf}, {std::move(trunk), bark(document)}});
 }
 
@@ -81,8 +65,8 @@ int add_broadleaf_mesh(GltfDocument& document, std::uint32_t seed) {
     }
     crown.uv.clear();
     MeshData trunk = make_lathe(std::array<D2, 3>{D2(0.04, 0), D2(0.024, 0.25), D2(0.012, 0.65)}, 8);
-    int const leaf = find_or_add_material(
-        document, {.name = "leaves", .base_color = D3(0.12, 0.21, 0.045), .roughness = 0.9, .double_sided = true});
+    int const leaf = document.add_material(
+        {.name = "leaves", .base_color = D3(0.12, 0.21, 0.045), .roughness = 0.9, .double_sided = true});
     return document.add_mesh("broadleaf", {{std::move(crown), leaf}, {std::move(trunk), bark(document)}});
 }
 
@@ -113,14 +97,13 @@ int add_house_mesh(GltfDocument& document, int bays, int depth_bays, int floors)
         }
         gables.indices.insert(gables.indices.end(), {first, first + 1, first + 2});
     }
-    int const facade = find_or_add_material(
-        document, {.name = "facade", .roughness = 0.8, .base_color_texture = add_image(document, facade_texture())});
-    int const tiles = find_or_add_material(document, {.name = "roof tiles",
-                                                      .base_color = D3(0.42, 0.15, 0.09),
-                                                      .roughness = 0.8,
-                                                      .base_color_texture = add_image(document, brick_texture())});
-    int const plaster =
-        find_or_add_material(document, {.name = "plaster", .base_color = D3(0.6, 0.55, 0.45), .roughness = 0.9});
+    int const facade = document.add_material(
+        {.name = "facade", .roughness = 0.8, .base_color_texture = document.add_image(facade_texture())});
+    int const tiles = document.add_material({.name = "roof tiles",
+                                             .base_color = D3(0.42, 0.15, 0.09),
+                                             .roughness = 0.8,
+                                             .base_color_texture = document.add_image(brick_texture())});
+    int const plaster = document.add_material({.name = "plaster", .base_color = D3(0.6, 0.55, 0.45), .roughness = 0.9});
     return document.add_mesh("house",
                              {{std::move(placed), facade}, {std::move(roof), tiles}, {std::move(gables), plaster}});
 }
@@ -134,7 +117,7 @@ int add_mast_mesh(GltfDocument& document) {
     for (double const x : {-1.1, -0.4, 0.4, 1.1}) {
         append(caps, make_cylinder(0.05, 0.18, 8), {{x, 7.36, 0.12}});
     }
-    int const white = find_or_add_material(document, {.name = "porcelain", .base_color = D3(0.8), .roughness = 0.15});
+    int const white = document.add_material({.name = "porcelain", .base_color = D3(0.8), .roughness = 0.15});
     return document.add_mesh("mast", {{std::move(wood), bark(document)}, {std::move(caps), white}});
 }
 
@@ -148,7 +131,7 @@ int add_fence_mesh(GltfDocument& document, double length) {
     append(fence, make_box({length, 0.08, 0.04}), {{0, 0.35, 0}});
     append(fence, make_box({length, 0.08, 0.04}), {{0, 0.95, 0}});
     int const white =
-        find_or_add_material(document, {.name = "painted wood", .base_color = D3(0.75, 0.74, 0.70), .roughness = 0.6});
+        document.add_material({.name = "painted wood", .base_color = D3(0.75, 0.74, 0.70), .roughness = 0.6});
     return document.add_mesh("fence", {{std::move(fence), white}});
 }
 

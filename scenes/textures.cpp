@@ -35,7 +35,7 @@ std::string asphalt_texture() {
             double const stones = value_noise(1, cell_of(pixels, x, y, 96), 96);
             double const stains = fractal_noise(2, cell_of(pixels, x, y, 4), 3, 4);
             double const grit = random_unit(3, x, y) < 0.02 ? 0.25 : 0.0;
-            *pixels.at(x, y) = stepped(0.68 + 0.17 * stones + 0.1 * stains + grit, 24);
+            *pixels.at(x, y) = stepped(0.72 + 0.13 * stones + 0.08 * stains + grit, 24);
         }
     }
     return encode_png(pixels);
@@ -43,11 +43,11 @@ std::string asphalt_texture() {
 
 std::string grass_texture() {
     TexturePixels pixels(256, 256, 1);
-    std::fill(pixels.bytes.begin(), pixels.bytes.end(), stepped(0.42, 24));
+    std::fill(pixels.bytes.begin(), pixels.bytes.end(), stepped(0.5, 24));
     for (int blade = 0; blade < 5200; ++blade) {
         double const angle = 2 * pi * random_unit(10, blade);
         double const length = 6 + 10 * random_unit(11, blade);
-        double const light = 0.35 + 0.6 * blade / 5200.0 * (0.5 + 0.5 * random_unit(12, blade));
+        double const light = 0.45 + 0.55 * blade / 5200.0 * (0.5 + 0.5 * random_unit(12, blade));
         D2 const start(256 * random_unit(13, blade), 256 * random_unit(14, blade));
         for (double along = 0; along < length; along += 0.7) {
             D2 const at = start + along * D2(std::cos(angle), std::sin(angle));
@@ -125,6 +125,37 @@ std::string plank_texture() {
             double const tone = 0.6 + 0.2 * random_unit(50, plank);
             double const grain = 0.14 * value_noise(51, {x * 64 / 128.0, y * 4 / 256.0}, 64);
             *pixels.at(x, y) = stepped(x % 32 < 2 ? 0.2 : tone + grain, 24);
+        }
+    }
+    return encode_png(pixels);
+}
+
+std::string sky_texture() {
+    TexturePixels pixels(512, 128, 3);
+    for (int y = 0; y < pixels.height; ++y) {
+        for (int x = 0; x < pixels.width; ++x) {
+            double const up = 1 - (y + 0.5) / 128;
+            D3 const clear = glm::mix(D3(0.80, 0.88, 0.95), D3(0.42, 0.58, 0.80), std::pow(up, 0.6));
+            // Clouds are seen ever flatter towards the horizon.
+            D2 const at(x * 8 / 512.0, 2.2 / (0.18 + up));
+            double const cover = fractal_noise(90, at, 5, 8, 0.55);
+            double const cloud = std::clamp((cover - 0.02) * 3.2, 0.0, 1.0) * std::clamp(up * 6, 0.0, 1.0);
+            double const shade = 0.93 + 0.06 * std::clamp(1 - cover * 2, 0.0, 1.0);
+            set_color(pixels.at(x, y), glm::mix(clear, D3(shade), 0.85 * cloud), 128);
+        }
+    }
+    return encode_png(pixels);
+}
+
+std::string slab_texture() {
+    TexturePixels pixels(256, 256, 1);
+    for (int y = 0; y < pixels.height; ++y) {
+        for (int x = 0; x < pixels.width; ++x) {
+            bool const joint = x % 128 < 3 || y % 128 < 3;
+            double const tone = 0.72 + 0.16 * random_unit(95, x / 128, y / 128);
+            double const grain = 0.05 * value_noise(96, cell_of(pixels, x, y, 128), 128) +
+                                 0.05 * fractal_noise(97, cell_of(pixels, x, y, 8), 3, 8);
+            *pixels.at(x, y) = stepped(joint ? 0.4 : tone + grain, 24);
         }
     }
     return encode_png(pixels);

@@ -17,6 +17,10 @@ std::string facade_texture();
 std::string brick_texture();
 /// Grey: planks with grain, running along v.
 std::string plank_texture();
+/// Colour: clouds over a gradient from the horizon (lower edge) to 50 degrees; repeats sideways only.
+std::string sky_texture();
+/// Grey: slabs of stone, two by two, slightly different.
+std::string slab_texture();
 /// Colour, 2:1, equirectangular: land with detail at every scale, sea, ice, a graticule.
 std::string globe_texture();
 /// Colour and coverage (alpha mask): a twig with leaves.

@@ -54,14 +54,17 @@ MeshData make_rim() {
 VehicleMeshes add_vehicle_meshes(GltfDocument& document, D3 paint_color) {
     VehicleBody body = make_vehicle_body();
     int const paint = document.add_material(
-        {.name = "paint", .base_color = paint_color, .metallic = 0.1, .roughness = 0.07, .double_sided = true});
+        {.name = "paint", .base_color = paint_color, .metallic = 0.4, .roughness = 0.06, .double_sided = true});
     int const glass = document.add_material({.name = "glass", .base_color = D3(0.015, 0.02, 0.025), .roughness = 0.03});
     int const trim =
         document.add_material({.name = "trim", .base_color = D3(0.02), .roughness = 0.6, .double_sided = true});
     int const head = document.add_material(
-        {.name = "head lamp", .base_color = D3(0.8), .roughness = 0.05, .emissive = D3(0.7, 0.7, 0.65)});
-    int const tail = document.add_material(
-        {.name = "tail lamp", .base_color = D3(0.5, 0.01, 0.01), .roughness = 0.1, .emissive = D3(0.55, 0.02, 0.02)});
+        {.name = "head lamp", .base_color = D3(0.8), .roughness = 0.05, .emissive = D3(0.25, 0.25, 0.22)});
+    int const tail = document.add_material({.name = "tail lamp",
+                                            .base_color = D3(0.10, 0.004, 0.004),
+                                            .roughness = 0.05,
+                                            .emissive = D3(0.20, 0.006, 0.006)});
+    int const plate = document.add_material({.name = "plate", .base_color = D3(0.7), .roughness = 0.4});
     int const rubber = document.add_material({.name = "rubber", .base_color = D3(0.03), .roughness = 0.8});
     int const metal =
         document.add_material({.name = "rim", .base_color = D3(0.78, 0.79, 0.81), .metallic = 1, .roughness = 0.22});
@@ -72,7 +75,8 @@ VehicleMeshes add_vehicle_meshes(GltfDocument& document, D3 paint_color) {
                                                  {std::move(body.glass), glass},
                                                  {std::move(body.trim), trim},
                                                  {std::move(body.head_lamps), head},
-                                                 {std::move(body.tail_lamps), tail}});
+                                                 {std::move(body.tail_lamps), tail},
+                                                 {std::move(body.plate), plate}});
     meshes.wheel = document.add_mesh("wheel", {{make_tyre(), rubber}, {make_rim_bed(), dark}, {make_rim(), metal}});
     return meshes;
 }

@@ -252,7 +252,7 @@ VehicleBody make_vehicle_body() {
     }
     MeshData plate = make_rounded_box({0.5, 0.11, 0.03}, 0.01);
     plate.uv.clear();
-    append(body.head_lamps, plate, {{0, 0.48, -2.255}});
+    append(body.plate, plate, {{0, 0.48, -2.255}});
     return body;
 }
 

@@ -6,7 +6,7 @@
 namespace framelet {
 
 struct VehicleBody {
-    MeshData paint, glass, trim, head_lamps, tail_lamps;
+    MeshData paint, glass, trim, head_lamps, tail_lamps, plate;
 };
 
 /// Faces +Z, stands on y = 0; wheel arches are cut where vehicle.h puts the axles.

@@ -9,8 +9,6 @@
 namespace framelet {
 namespace {
 
-constexpr double hills_radius = 900;
-
 /// Wheels roll: distance / radius, rounded to a whole number of spokes so that the loop has no jump.
 double rolling_angle(double distance) {
     double const spoke = 2 * pi / wheel_spokes;
@@ -32,8 +30,8 @@ void add_hedge(GltfDocument& document) {
 
 GltfDocument make_vehicle_scene(VehicleShot const& shot) {
     GltfDocument document;
-    add_sun(document, {0.62, 0.60, -0.30});
-    int const hills = add_hills(document, hills_radius);
+    add_sun(document, {0.50, 0.80, -0.28});
+    int const hills = add_surroundings(document);
     add_roadside(document, shot.first_stretch, shot.last_stretch);
     if (shot.yard) {
         add_yard(document, {14, 0.03, 0}, {17, 48});

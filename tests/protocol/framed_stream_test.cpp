@@ -1,0 +1,364 @@
+#include "protocol/framed_stream.h"
+
+#include <atomic>
+#include <future>
+
+#include <gtest/gtest.h>
+
+#include "common/error.h"
+#include "random_message.h"
+#include "stream_pair.h"
+
+namespace framelet {
+namespace {
+
+class FramedStreamTest : public testing::Test {
+protected:
+    void write(Bytes const& bytes) { boost::asio::write(raw, boost::asio::buffer(bytes)); }
+    /// The Failure that the stream sent as its only message.
+    std::string failure_sent() {
+        Bytes const all = read_to_end(raw);
+        return all.size() < 4 ? "" : std::get<Failure>(decode_message(ByteView(all).subspan(4))).text;
+    }
+
+    IoThread thread_;
+    std::pair<Socket, Socket> sockets_ = thread_.connect();
+    Socket& raw = sockets_.first; ///< the other side, bare
+    End end{FramedStream::plain(std::move(sockets_.second))};
+};
+
+TEST(FramedStream, ManyMessagesBothWays) {
+    IoThread thread;
+    auto [one, two] = thread.connect();
+    End left(FramedStream::plain(std::move(one)));
+    End right(FramedStream::plain(std::move(two)));
+    left.start(thread);
+    right.start(thread);
+    constexpr std::size_t count = 2000;
+    std::vector<Message> sent;
+    RandomMessages random(1);
+    for (std::size_t i = 0; i < count; ++i) {
+        sent.push_back(random.message());
+    }
+    std::thread sender([&] {
+        for (Message const& message : sent) {
+            right.stream->send(message);
+        }
+    });
+    for (Message const& message : sent) {
+        left.stream->send(message);
+    }
+    sender.join();
+    for (End* const end : {&left, &right}) {
+        ASSERT_TRUE(end->wait_for_messages(count));
+        std::vector<Message> const received = end->messages();
+        ASSERT_EQ(received.size(), count);
+        for (std::size_t i = 0; i < count; ++i) {
+            ASSERT_TRUE(same(received[i], sent[i])) << i;
+        }
+    }
+    EXPECT_EQ(left.stream->peer().substr(0, 10), "127.0.0.1:");
+}
+
+TEST(FramedStream, MessagesOfSeveralThreadsStayInTheirOrder) {
+    IoThread thread;
+    auto [one, two] = thread.connect();
+    End left(FramedStream::plain(std::move(one)));
+    End right(FramedStream::plain(std::move(two)));
+    right.start(thread);
+    std::vector<std::thread> senders;
+    for (std::uint64_t sender = 0; sender < 3; ++sender) {
+        senders.emplace_back([&, sender] {
+            for (std::uint64_t i = 0; i < 500; ++i) {
+                left.stream->send(Ack{i, sender, 0});
+            }
+        });
+    }
+    left.start(thread); // messages before and after it
+    for (std::thread& sender : senders) {
+        sender.join();
+    }
+    ASSERT_TRUE(right.wait_for_messages(1500));
+    std::array<std::uint64_t, 3> next{};
+    for (Message const& message : right.messages()) {
+        auto const& ack = std::get<Ack>(message);
+        EXPECT_EQ(ack.batch, next.at(ack.received_us)++);
+    }
+}
+
+TEST(FramedStream, LargeMessagesAndTheirCount) {
+    IoThread thread;
+    auto [one, two] = thread.connect();
+    End left(FramedStream::plain(std::move(one)));
+    End right(FramedStream::plain(std::move(two)));
+    left.start(thread);
+    right.start(thread);
+    std::size_t bytes = 0;
+    for (std::uint64_t i = 1; i <= 4; ++i) {
+        EncodedBatch const batch = large_batch(i, i == 2 ? 100 : 20u << 20);
+        bytes += 4 + encode_message(batch).size();
+        left.stream->send(batch);
+    }
+    ASSERT_TRUE(right.wait_for_messages(4));
+    std::vector<Message> const received = right.messages();
+    for (std::uint64_t i = 1; i <= 4; ++i) {
+        EXPECT_EQ(std::get<EncodedBatch>(received[i - 1]), large_batch(i, i == 2 ? 100 : 20u << 20));
+    }
+    EXPECT_TRUE(left.wait_for_sent(bytes));
+    EXPECT_TRUE(End::eventually([&] { return left.stream->unsent_bytes() == 0; }));
+}
+
+TEST_F(FramedStreamTest, OversizedMessageIsRefusedBeforeItComes) {
+    end.start(thread_, max_upstream_message_bytes);
+    Bytes prefix(4);
+    prefix[2] = std::byte{2}; // 131072
+    write(prefix);
+    std::string const reason = "a message of 131072 bytes exceeds the limit of 65536";
+    EXPECT_EQ(end.wait_for_close(), reason);
+    EXPECT_EQ(failure_sent(), reason);
+    EXPECT_TRUE(end.messages().empty());
+}
+
+TEST_F(FramedStreamTest, LargestPrefixIsRefused) {
+    end.start(thread_);
+    write(Bytes(4, std::byte{0xff}));
+    EXPECT_EQ(end.wait_for_close(), "a message of 4294967295 bytes exceeds the limit of 67108864");
+}
+
+TEST_F(FramedStreamTest, LimitCanChange) {
+    end.start(thread_, 100);
+    boost::asio::post(thread_.io, [stream = end.stream] { stream->set_max_body(10000); });
+    // The new limit is in force once a message has come through that was sent after it was set.
+    write(framed(encode_message(Ack{})));
+    ASSERT_TRUE(end.wait_for_messages(1));
+    write(framed(encode_message(Failure{std::string(4000, 'x')})));
+    EXPECT_TRUE(end.wait_for_messages(2));
+}
+
+TEST_F(FramedStreamTest, GarbageIsRefused) {
+    end.start(thread_);
+    write(framed(Bytes(40, std::byte{0x55})));
+    EXPECT_EQ(end.wait_for_close(), "a message is not well-formed");
+    EXPECT_EQ(failure_sent(), "a message is not well-formed");
+}
+
+TEST_F(FramedStreamTest, EmptyMessageIsRefused) {
+    end.start(thread_);
+    write(Bytes(4));
+    EXPECT_EQ(end.wait_for_close(), "a message is not well-formed");
+}
+
+TEST_F(FramedStreamTest, RandomBytesNeverGetThrough) {
+    end.start(thread_, 1000);
+    RandomMessages random(3);
+    Bytes bytes(100000);
+    for (std::byte& byte : bytes) {
+        byte = static_cast<std::byte>(random.any64());
+    }
+    boost::system::error_code ignored;
+    boost::asio::write(raw, boost::asio::buffer(bytes), ignored);
+    EXPECT_TRUE(end.wait_for_close().has_value());
+    EXPECT_FALSE(failure_sent().empty()) << "the answer arrives although much was never read";
+}
+
+TEST_F(FramedStreamTest, TlsBytesAreNamed) {
+    end.start(thread_, 65536);
+    write({std::byte{22}, std::byte{3}, std::byte{1}, std::byte{2}, std::byte{0}});
+    auto const reason = end.wait_for_close();
+    ASSERT_TRUE(reason);
+    EXPECT_NE(reason->find("the other side uses TLS"), std::string::npos) << *reason;
+}
+
+TEST_F(FramedStreamTest, HandlerMayRefuse) {
+    auto const reason = std::make_shared<std::promise<std::string>>();
+    boost::asio::post(thread_.io, [stream = end.stream, reason] {
+        stream->start({[](Message const&) { throw ProtocolError("not now"); },
+                       [reason](std::string text) { reason->set_value(std::move(text)); },
+                       {}},
+                      1000);
+    });
+    write(framed(encode_message(Ack{})));
+    EXPECT_EQ(reason->get_future().get(), "not now");
+    EXPECT_EQ(failure_sent(), "not now");
+}
+
+TEST_F(FramedStreamTest, PeerCloses) {
+    end.start(thread_);
+    write(framed(encode_message(Ack{1, 2, 3})));
+    raw.close();
+    EXPECT_EQ(end.wait_for_close(), "the other side closed the connection");
+    EXPECT_EQ(end.messages().size(), 1u);
+    EXPECT_TRUE(end.is_released());
+    end.stream->send(Ack{});
+    end.stream->close();
+    EXPECT_EQ(end.stream->unsent_bytes(), 0u);
+    EXPECT_EQ(end.closes(), 1);
+}
+
+TEST_F(FramedStreamTest, PeerVanishesInTheMiddle) {
+    Bytes const whole = framed(encode_message(Ack{1, 2, 3}));
+    for (std::size_t const size : {std::size_t{1}, std::size_t{4}, whole.size() - 1}) {
+        auto [one, two] = thread_.connect();
+        End other(FramedStream::plain(std::move(two)));
+        other.start(thread_);
+        boost::asio::write(one, boost::asio::buffer(whole, size));
+        one.close();
+        EXPECT_EQ(other.wait_for_close(), "the other side closed the connection in the middle of a message");
+    }
+}
+
+TEST_F(FramedStreamTest, PeerResets) {
+    end.start(thread_);
+    raw.set_option(boost::asio::socket_base::linger(true, 0));
+    raw.close();
+    EXPECT_EQ(end.wait_for_close(), "connection reset by the other side");
+}
+
+TEST_F(FramedStreamTest, PeerVanishesWhileMuchIsQueued) {
+    end.start(thread_);
+    for (std::uint64_t i = 1; i <= 20; ++i) {
+        end.stream->send(large_batch(i, 4u << 20));
+    }
+    EXPECT_GT(end.stream->unsent_bytes(), 1u << 20);
+    raw.close();
+    EXPECT_TRUE(end.wait_for_close().has_value());
+    EXPECT_TRUE(End::eventually([&] { return end.stream->unsent_bytes() == 0; }));
+}
+
+TEST_F(FramedStreamTest, CloseDuringSend) {
+    end.start(thread_);
+    for (std::uint64_t i = 1; i <= 20; ++i) {
+        end.stream->send(large_batch(i, 4u << 20)); // more than the socket takes
+    }
+    end.stream->close();
+    EXPECT_TRUE(end.is_released());
+    EXPECT_TRUE(End::eventually([&] { return end.stream->unsent_bytes() == 0; }));
+    std::weak_ptr<FramedStream> const watched = end.stream;
+    read_to_end(raw);
+    end.stream->close();
+    EXPECT_EQ(end.closes(), 0) << "our own close is not reported";
+}
+
+TEST_F(FramedStreamTest, CloseFromOtherThreadsWhileMessagesArrive) {
+    for (int round = 0; round < 30; ++round) {
+        auto [one, two] = thread_.connect();
+        End left(FramedStream::plain(std::move(one)));
+        End right(FramedStream::plain(std::move(two)));
+        left.start(thread_);
+        right.start(thread_);
+        std::vector<std::thread> threads;
+        for (End* const side : {&left, &right}) {
+            threads.emplace_back([side] {
+                for (std::uint64_t i = 0; i < 100; ++i) {
+                    side->stream->send(Ack{i, 0, 0});
+                }
+            });
+        }
+        threads.emplace_back([&] { left.stream->close(); });
+        threads.emplace_back([&] { left.stream->close_after_sending(); });
+        for (std::thread& thread : threads) {
+            thread.join();
+        }
+        EXPECT_TRUE(right.wait_for_close().has_value());
+        EXPECT_TRUE(left.is_released());
+        EXPECT_EQ(left.closes(), 0);
+    }
+}
+
+TEST_F(FramedStreamTest, CloseBeforeStart) {
+    end.stream->close();
+    end.start(thread_);
+    EXPECT_TRUE(read_to_end(raw).empty());
+    EXPECT_TRUE(end.is_released());
+}
+
+TEST_F(FramedStreamTest, CloseInsideAHandler) {
+    auto const called = std::make_shared<std::promise<void>>();
+    auto const kept = std::make_shared<int>(1);
+    boost::asio::post(thread_.io, [stream = end.stream, called, kept] {
+        stream->start({[stream, called, kept](Message const&) {
+                           stream->close();
+                           EXPECT_EQ(*kept, 1) << "what runs keeps what it holds";
+                           called->set_value(); // a second call would throw
+                       },
+                       [](std::string const&) { ADD_FAILURE(); },
+                       {}},
+                      1000);
+    });
+    Bytes bytes = framed(encode_message(Ack{}));
+    bytes.insert(bytes.end(), bytes.begin(), bytes.end());
+    write(bytes);
+    called->get_future().get();
+    read_to_end(raw);
+    EXPECT_TRUE(End::eventually([&] { return kept.use_count() == 1; }));
+}
+
+TEST_F(FramedStreamTest, CloseAfterSendingSendsAll) {
+    end.start(thread_);
+    Bytes expected;
+    for (std::uint64_t i = 1; i <= 10; ++i) {
+        EncodedBatch const batch = large_batch(i, 1u << 20);
+        end.stream->send(batch);
+        Bytes const bytes = framed(encode_message(batch));
+        expected.insert(expected.end(), bytes.begin(), bytes.end());
+    }
+    end.stream->close_after_sending();
+    end.stream->send(Ack{}); // too late
+    EXPECT_TRUE(read_to_end(raw) == expected);
+    raw.close();
+    EXPECT_TRUE(end.is_released());
+    EXPECT_EQ(end.closes(), 0);
+}
+
+TEST_F(FramedStreamTest, CloseAfterSendingDoesNotWaitForever) {
+    end.start(thread_);
+    for (std::uint64_t i = 1; i <= 20; ++i) {
+        end.stream->send(large_batch(i, 4u << 20));
+    }
+    end.stream->close_after_sending(); // and the peer never reads
+    EXPECT_TRUE(End::eventually([&] { return end.stream->unsent_bytes() == 0; }));
+}
+
+TEST_F(FramedStreamTest, LastWordArrivesAlthoughThePeerTalks) {
+    for (int round = 0; round < 20; ++round) {
+        auto [one, two] = thread_.connect();
+        End server(FramedStream::plain(std::move(one)));
+        End client(FramedStream::plain(std::move(two)));
+        server.start(thread_);
+        client.start(thread_);
+        client.stream->send(Ack{});
+        ASSERT_TRUE(server.wait_for_messages(1));
+        std::atomic<bool> done = false;
+        std::thread talker([&] {
+            while (!done) {
+                client.stream->send(large_batch(1, 100000));
+                std::this_thread::sleep_for(std::chrono::microseconds(200));
+            }
+        });
+        server.stream->send(Failure{"the server is full"});
+        server.stream->close_after_sending();
+        EXPECT_TRUE(client.wait_for_close().has_value());
+        done = true;
+        talker.join();
+        std::vector<Message> const received = client.messages();
+        ASSERT_EQ(received.size(), 1u);
+        EXPECT_EQ(std::get<Failure>(received[0]).text, "the server is full");
+    }
+}
+
+TEST(FramedStream, IoContextMayEndFirst) {
+    auto thread = std::make_unique<IoThread>();
+    auto [one, two] = thread->connect();
+    auto const kept = std::make_shared<int>(1);
+    auto stream = FramedStream::plain(std::move(one));
+    boost::asio::post(thread->io, [stream, kept] { stream->start({[kept](Message const&) {}, {}, {}}, 1000); });
+    stream->send(large_batch(1, 8u << 20));
+    two.close();
+    stream->close();
+    stream.reset();
+    thread.reset();
+    EXPECT_EQ(kept.use_count(), 1);
+}
+
+} // namespace
+} // namespace framelet

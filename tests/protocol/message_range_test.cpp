@@ -1,0 +1,257 @@
+// Every field beyond its range, as a peer that does not check could send it.
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "common/error.h"
+#include "protocol/message_wire.h"
+
+namespace framelet {
+namespace {
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+template <typename Table>
+Bytes finish(Builder& builder, Offset<Table> body, wire::Body type = wire::BodyTraits<Table>::enum_value) {
+    builder.Finish(wire::CreateMessage(builder, type, body.Union()), wire::MessageIdentifier());
+    auto const* const data = reinterpret_cast<std::byte const*>(builder.GetBufferPointer());
+    return {data, data + builder.GetSize()};
+}
+
+template <typename Value>
+Bytes unchecked(Value const& value) {
+    Builder builder;
+    return finish(builder, write(builder, value));
+}
+
+void expect_refused(Bytes const& body, std::string const& word) {
+    try {
+        decode_message(body);
+        ADD_FAILURE() << "accepted, should name " << word;
+    } catch (ProtocolError const& error) {
+        EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
+    }
+}
+
+EncodedBatch batch_of(std::vector<Tile> tiles) {
+    EncodedBatch batch;
+    batch.number = 1;
+    batch.tiles = std::move(tiles);
+    return batch;
+}
+
+TEST(MessageRange, Camera) {
+    auto const with = [](auto change) {
+        CameraUpdate update;
+        change(update.view.camera);
+        return unchecked(update);
+    };
+    expect_refused(with([](Camera& c) { c.position.x = nan; }), "camera");
+    expect_refused(with([](Camera& c) { c.position.y = infinity; }), "camera");
+    expect_refused(with([](Camera& c) { c.position.z = -infinity; }), "camera");
+    expect_refused(with([](Camera& c) { c.orientation = Quat(0, 0, 0, 0); }), "camera");
+    expect_refused(with([](Camera& c) { c.orientation = Quat(2, 0, 0, 0); }), "camera");
+    expect_refused(with([](Camera& c) { c.orientation.x = nan; }), "camera");
+    expect_refused(with([](Camera& c) { c.vertical_extent = 0; }), "camera");
+    expect_refused(with([](Camera& c) { c.vertical_extent = -1; }), "camera");
+    expect_refused(with([](Camera& c) { c.vertical_extent = 3.2f; }), "camera");
+    expect_refused(with([](Camera& c) { c.vertical_extent = nan; }), "camera");
+    expect_refused(with([](Camera& c) { c.projection = static_cast<Projection>(2); }), "projection");
+    expect_refused(with([](Camera& c) {
+                       c.projection = Projection::orthographic;
+                       c.vertical_extent = infinity;
+                   }),
+                   "camera");
+}
+
+TEST(MessageRange, Viewport) {
+    for (Viewport const bad : {Viewport{0, 1}, Viewport{1, 0}, Viewport{max_viewport_side + 1, 1},
+                               Viewport{1, max_viewport_side + 1}, Viewport{65535, 65535}}) {
+        CameraUpdate update;
+        update.view.viewport = bad;
+        expect_refused(unchecked(update), "viewport");
+        EncodedBatch batch = batch_of({});
+        batch.view.viewport = bad;
+        expect_refused(unchecked(batch), "viewport");
+    }
+}
+
+TEST(MessageRange, SceneCamera) {
+    for (int const bad : {-2, 4096, std::numeric_limits<int>::min(), std::numeric_limits<int>::max()}) {
+        expect_refused(unchecked(CameraUpdate{{}, bad}), "camera of the scene");
+    }
+}
+
+TEST(MessageRange, ViewerSettings) {
+    for (float const bad : {-16.5f, 16.5f, nan, infinity}) {
+        expect_refused(unchecked(ViewerSettings{bad, 0}), "exposure");
+    }
+    for (float const bad : {-1.5f, 1.5f, nan, -infinity}) {
+        expect_refused(unchecked(ViewerSettings{0, bad}), "bias");
+    }
+}
+
+TEST(MessageRange, Clock) {
+    double const bad_times[] = {-0.5, static_cast<double>(nan), static_cast<double>(infinity)};
+    for (double const bad : bad_times) {
+        expect_refused(unchecked(ClockRequest{1, {bad, true, 1}}), "time");
+        Status status;
+        status.clock.time = bad;
+        expect_refused(unchecked(status), "time");
+        Welcome welcome;
+        welcome.clock.time = bad;
+        expect_refused(unchecked(welcome), "time");
+    }
+    for (float const bad : {-17.0f, 17.0f, nan}) {
+        expect_refused(unchecked(ClockRequest{4, {0, true, bad}}), "speed");
+    }
+    expect_refused(unchecked(ClockRequest{8, {}}), "unknown field");
+}
+
+TEST(MessageRange, Status) {
+    for (double const bad : {-1.0, static_cast<double>(nan), static_cast<double>(infinity)}) {
+        Status status;
+        status.samples_per_second = bad;
+        expect_refused(unchecked(status), "samples per second");
+    }
+}
+
+TEST(MessageRange, Welcome) {
+    auto const with = [](auto change) {
+        Welcome welcome;
+        welcome.scene_bounds.include({0, 0, 0});
+        change(welcome);
+        return unchecked(welcome);
+    };
+    expect_refused(with([](Welcome& w) { w.animation_duration = -1; }), "duration");
+    expect_refused(with([](Welcome& w) { w.animation_duration = static_cast<double>(infinity); }), "duration");
+    expect_refused(with([](Welcome& w) { w.start_camera.vertical_extent = 0; }), "camera");
+    expect_refused(with([](Welcome& w) {
+                       w.cameras.resize(2);
+                       w.cameras[1].camera.position.x = nan;
+                   }),
+                   "camera");
+    expect_refused(with([](Welcome& w) { w.scene_bounds.upper.x = infinity; }), "bounds");
+    expect_refused(with([](Welcome& w) { w.scene_bounds.lower.y = 1; }), "bounds");
+    expect_refused(with([](Welcome& w) { w.scene_bounds.upper.z = nan; }), "bounds");
+}
+
+TEST(MessageRange, TooManyCameras) {
+    Builder builder;
+    auto const camera = write(builder, Camera{});
+    std::vector const cameras(max_scene_cameras + 1, wire::CreateSceneCamera(builder, 0, camera));
+    wire::Clock const clock = write(ClockState{});
+    auto const list = builder.CreateVector(cameras);
+    expect_refused(finish(builder, wire::CreateWelcome(builder, 1, 0, 0, nullptr, camera, list, 0, &clock)), "4096");
+}
+
+TEST(MessageRange, Text) {
+    auto const failure = [](std::string const& text) {
+        Builder builder;
+        return finish(builder, wire::CreateFailure(builder, builder.CreateString(text)));
+    };
+    expect_refused(failure(std::string(4097, 'x')), "4096");
+    expect_refused(failure("two\nlines"), "one line");
+    expect_refused(failure(std::string("nul\0byte", 8)), "one line");
+    expect_refused(failure("\x1b[2J"), "one line");
+    expect_refused(failure("\xff"), "one line");
+    auto const hello = [](std::string const& text) {
+        Builder builder;
+        return finish(builder, wire::CreateHello(builder, 1, builder.CreateString(text)));
+    };
+    expect_refused(hello(std::string(4097, 'x')), "4096");
+    auto const welcome = [](std::string const& server, std::string const& scene, std::string const& camera_name) {
+        Builder builder;
+        auto const camera = write(builder, Camera{});
+        auto const named = wire::CreateSceneCamera(builder, builder.CreateString(camera_name), camera);
+        wire::Clock const clock = write(ClockState{});
+        auto const first = builder.CreateString(server);
+        auto const second = builder.CreateString(scene);
+        auto const list = builder.CreateVector(&named, 1);
+        return finish(builder, wire::CreateWelcome(builder, 1, first, second, nullptr, camera, list, 0, &clock));
+    };
+    std::string const long_name(1025, 'x');
+    expect_refused(welcome(long_name, "", ""), "1024");
+    expect_refused(welcome("", long_name, ""), "1024");
+    expect_refused(welcome("", "", long_name), "1024");
+    EXPECT_NO_THROW(decode_message(welcome("a", "b", "c")));
+}
+
+TEST(MessageRange, Batch) {
+    EncodedBatch batch = batch_of({make_tile(7, 0, 0)});
+    EXPECT_NO_THROW(decode_message(unchecked(batch)));
+    batch.number = 0;
+    expect_refused(unchecked(batch), "number");
+    batch = batch_of({});
+    batch.scene_time = static_cast<double>(nan);
+    expect_refused(unchecked(batch), "scene time");
+    batch.scene_time = -1;
+    expect_refused(unchecked(batch), "scene time");
+    batch.scene_time = 0;
+    batch.view.camera.vertical_extent = 9;
+    expect_refused(unchecked(batch), "camera");
+}
+
+TEST(MessageRange, Tiles) {
+    for (Tile const bad :
+         {Tile{0}, Tile{1}, Tile{2}, make_tile(10, 0, 0), make_tile(7, 80, 0), make_tile(7, 0, 45), Tile{0xffffffff}}) {
+        expect_refused(unchecked(batch_of({make_tile(7, 0, 0), bad})), "tile");
+    }
+    expect_refused(unchecked(batch_of({make_tile(7, 0, 0), make_tile(7, 1, 0), make_tile(7, 0, 0)})), "twice");
+    EncodedBatch batch = batch_of({});
+    batch.view.viewport = {max_viewport_side, max_viewport_side};
+    ImagePlane const plane(batch.view.viewport);
+    for (std::uint32_t i = 0; i < max_batch_framelets; ++i) {
+        batch.tiles.push_back(make_tile(plane.pixel_depth(), i % 1024, i / 1024));
+    }
+    EXPECT_NO_THROW(decode_message(unchecked(batch)));
+    batch.tiles.push_back(make_tile(plane.pixel_depth(), 0, 500));
+    expect_refused(unchecked(batch), "32768");
+}
+
+TEST(MessageRange, Sections) {
+    auto const with = [](std::vector<std::pair<int, int>> const& sections) {
+        Builder builder;
+        std::vector<Offset<wire::Section>> offsets;
+        for (auto const& [content, encoding] : sections) {
+            auto const data = builder.CreateVector(std::vector<std::uint8_t>{1, 2});
+            offsets.push_back(wire::CreateSection(builder, static_cast<wire::Content>(content),
+                                                  static_cast<wire::Encoding>(encoding), data));
+        }
+        auto const list = builder.CreateVector(offsets);
+        auto const tiles = builder.CreateVector(std::vector<std::uint32_t>{});
+        auto const view = write(builder, NumberedView{});
+        return finish(builder, wire::CreateBatch(builder, 1, view, 0, tiles, list));
+    };
+    EXPECT_NO_THROW(decode_message(with({{1, 1}})));
+    expect_refused(with({}), "sections");
+    expect_refused(with({{1, 1}, {1, 1}}), "sections");
+    expect_refused(with({{0, 1}}), "unknown");
+    expect_refused(with({{2, 1}}), "unknown");
+    expect_refused(with({{1, 0}}), "encoding");
+    expect_refused(with({{1, 2}}), "encoding");
+}
+
+TEST(MessageRange, UnknownType) {
+    for (int const type : {10, 200, 255}) {
+        Builder builder;
+        expect_refused(finish(builder, write(builder, Ack{}), static_cast<wire::Body>(type)), "unknown type");
+    }
+    Builder builder;
+    expect_refused(finish(builder, write(builder, Ack{}), wire::Body::NONE), "");
+}
+
+TEST(MessageRange, WrongIdentifier) {
+    Bytes body = unchecked(Ack{});
+    body[4] = std::byte{'X'};
+    expect_refused(body, "well-formed");
+}
+
+TEST(MessageRange, NumbersOfOwnMessagesAreChecked) {
+    EXPECT_DEATH(encode_message(ViewerSettings{nan, 0}), "exposure");
+}
+
+} // namespace
+} // namespace framelet

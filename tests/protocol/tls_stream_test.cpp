@@ -1,0 +1,296 @@
+#include <filesystem>
+#include <memory>
+
+#include <gtest/gtest.h>
+#include <openssl/evp.h>
+#include <openssl/pem.h>
+#include <openssl/x509v3.h>
+
+#include "common/error.h"
+#include "protocol/framed_stream.h"
+#include "random_message.h"
+#include "stream_pair.h"
+
+namespace framelet {
+namespace {
+
+template <typename Thing, void (*free_it)(Thing*)>
+struct Free {
+    void operator()(Thing* thing) const { free_it(thing); }
+};
+using Key = std::unique_ptr<EVP_PKEY, Free<EVP_PKEY, EVP_PKEY_free>>;
+using Certificate = std::unique_ptr<X509, Free<X509, X509_free>>;
+
+/// A certificate for localhost and 127.0.0.1, signed with its own key, as files in a folder of the test's.
+class Identity {
+public:
+    explicit Identity(std::string const& name)
+        : folder_(std::filesystem::path(testing::TempDir()) /
+                  ("tls_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + "_" + name)) {
+        std::filesystem::create_directory(folder_);
+        Key const key(EVP_EC_gen("P-256"));
+        Certificate const certificate(X509_new());
+        X509_set_version(certificate.get(), X509_VERSION_3);
+        ASN1_INTEGER_set(X509_get_serialNumber(certificate.get()), 1);
+        X509_gmtime_adj(X509_getm_notBefore(certificate.get()), -3600);
+        X509_gmtime_adj(X509_getm_notAfter(certificate.get()), 3600);
+        X509_set_pubkey(certificate.get(), key.get());
+        X509_NAME* const subject = X509_get_subject_name(certificate.get());
+        auto const* const text = reinterpret_cast<unsigned char const*>(name.c_str());
+        X509_NAME_add_entry_by_txt(subject, "CN", MBSTRING_ASC, text, -1, -1, 0);
+        X509_set_issuer_name(certificate.get(), subject);
+        X509_EXTENSION* const names =
+            X509V3_EXT_conf_nid(nullptr, nullptr, NID_subject_alt_name, "DNS:localhost,IP:127.0.0.1");
+        X509_add_ext(certificate.get(), names, -1);
+        X509_EXTENSION_free(names);
+        X509_sign(certificate.get(), key.get(), EVP_sha256());
+
+        write(certificate_file(), [&](BIO* out) { return PEM_write_bio_X509(out, certificate.get()); });
+        write(key_file(), [&](BIO* out) {
+            return PEM_write_bio_PrivateKey(out, key.get(), nullptr, nullptr, 0, nullptr, nullptr);
+        });
+        std::string password = "password";
+        write(locked_key_file(), [&](BIO* out) {
+            return PEM_write_bio_PrivateKey(out, key.get(), EVP_aes_128_cbc(), nullptr, 0, nullptr, password.data());
+        });
+    }
+    ~Identity() { std::filesystem::remove_all(folder_); }
+    Identity(Identity const&) = delete;
+    Identity& operator=(Identity const&) = delete;
+
+    std::string certificate_file() const { return (folder_ / "certificate.pem").string(); }
+    std::string key_file() const { return (folder_ / "key.pem").string(); }
+    std::string locked_key_file() const { return (folder_ / "locked.pem").string(); }
+    std::shared_ptr<boost::asio::ssl::context> server() const {
+        return make_tls_server_context(certificate_file(), key_file());
+    }
+    std::shared_ptr<boost::asio::ssl::context> client() const { return make_tls_client_context(certificate_file()); }
+
+private:
+    template <typename Writer>
+    void write(std::string const& file, Writer const& writer) {
+        BIO* const out = BIO_new_file(file.c_str(), "w");
+        EXPECT_NE(out, nullptr);
+        EXPECT_EQ(writer(out), 1);
+        BIO_free(out);
+    }
+
+    std::filesystem::path folder_;
+};
+
+class TlsStream : public testing::Test {
+protected:
+    void expect_names(std::optional<std::string> const& reason, std::string const& words) {
+        ASSERT_TRUE(reason);
+        EXPECT_NE(reason->find(words), std::string::npos) << *reason;
+        EXPECT_EQ(reason->find('\n'), std::string::npos);
+    }
+    template <typename Function>
+    void expect_input_error(Function const& function, std::string const& words) {
+        try {
+            function();
+            ADD_FAILURE() << "accepted, should name " << words;
+        } catch (InputError const& error) {
+            expect_names(error.what(), words);
+        }
+    }
+
+    Identity const identity_{"server"};
+    IoThread thread_;
+    std::pair<Socket, Socket> sockets_ = thread_.connect();
+};
+
+TEST_F(TlsStream, ManyMessagesBothWays) {
+    for (char const* host : {"localhost", "127.0.0.1"}) {
+        auto [one, two] = thread_.connect();
+        End server(FramedStream::tls_server(std::move(one), identity_.server()));
+        End client(FramedStream::tls_client(std::move(two), identity_.client(), host));
+        std::vector<Message> sent;
+        RandomMessages random(2);
+        for (int i = 0; i < 500; ++i) {
+            sent.push_back(random.message());
+        }
+        sent.push_back(large_batch(1, 20u << 20));
+        client.stream->send(sent[0]); // waits for the handshake
+        server.start(thread_);
+        client.start(thread_);
+        std::thread sender([&] {
+            for (Message const& message : sent) {
+                server.stream->send(message);
+            }
+        });
+        for (std::size_t i = 1; i < sent.size(); ++i) {
+            client.stream->send(sent[i]);
+        }
+        sender.join();
+        for (End* const end : {&server, &client}) {
+            ASSERT_TRUE(end->wait_for_messages(sent.size()));
+            std::vector<Message> const received = end->messages();
+            for (std::size_t i = 0; i < sent.size(); ++i) {
+                ASSERT_TRUE(same(received[i], sent[i])) << i;
+            }
+            EXPECT_TRUE(End::eventually([&] { return end->stream->unsent_bytes() == 0; }));
+        }
+        server.stream->close_after_sending();
+        EXPECT_EQ(client.wait_for_close(), "the other side closed the connection");
+        EXPECT_TRUE(server.is_released());
+    }
+}
+
+TEST_F(TlsStream, LastWordArrives) {
+    for (int round = 0; round < 20; ++round) {
+        auto [one, two] = thread_.connect();
+        End server(FramedStream::tls_server(std::move(one), identity_.server()));
+        End client(FramedStream::tls_client(std::move(two), identity_.client(), "localhost"));
+        server.start(thread_);
+        client.start(thread_);
+        client.stream->send(Hello{});
+        ASSERT_TRUE(server.wait_for_messages(1));
+        for (std::uint64_t i = 1; i <= 20; ++i) {
+            client.stream->send(large_batch(i, 300000)); // will not be read
+        }
+        server.stream->send(large_batch(1, 3000000));
+        server.stream->send(Failure{"the token is wrong"});
+        server.stream->close_after_sending();
+        EXPECT_TRUE(client.wait_for_close().has_value());
+        std::vector<Message> const received = client.messages();
+        ASSERT_EQ(received.size(), 2u);
+        EXPECT_EQ(std::get<Failure>(received[1]).text, "the token is wrong");
+    }
+}
+
+TEST_F(TlsStream, GarbageInsideIsRefused) {
+    End server(FramedStream::tls_server(std::move(sockets_.first), identity_.server()));
+    End client(FramedStream::tls_client(std::move(sockets_.second), identity_.client(), "localhost"));
+    server.start(thread_, 100);
+    client.start(thread_);
+    client.stream->send(large_batch(1, 1000000));
+    expect_names(server.wait_for_close(), "exceeds the limit of 100");
+    EXPECT_TRUE(client.wait_for_close().has_value());
+    std::vector<Message> const received = client.messages();
+    ASSERT_EQ(received.size(), 1u);
+    expect_names(std::get<Failure>(received[0]).text, "exceeds the limit of 100");
+}
+
+TEST_F(TlsStream, WrongHostIsRefused) {
+    for (char const* host : {"example.org", "127.0.0.2"}) {
+        auto [one, two] = thread_.connect();
+        End server(FramedStream::tls_server(std::move(one), identity_.server()));
+        End client(FramedStream::tls_client(std::move(two), identity_.client(), host));
+        server.start(thread_);
+        client.start(thread_);
+        client.stream->send(Hello{1, "must not leave"});
+        auto const reason = client.wait_for_close();
+        expect_names(reason, "TLS handshake failed: certificate verify failed");
+        expect_names(reason, "mismatch");
+        EXPECT_TRUE(server.wait_for_close().has_value());
+        EXPECT_TRUE(server.messages().empty());
+    }
+}
+
+TEST_F(TlsStream, UntrustedCertificateIsRefused) {
+    Identity const other("other");
+    for (auto const& context : {other.client(), make_tls_client_context("")}) {
+        auto [one, two] = thread_.connect();
+        End server(FramedStream::tls_server(std::move(one), identity_.server()));
+        End client(FramedStream::tls_client(std::move(two), context, "localhost"));
+        server.start(thread_);
+        client.start(thread_);
+        expect_names(client.wait_for_close(), "certificate verify failed (self-signed certificate)");
+        EXPECT_TRUE(server.wait_for_close().has_value());
+    }
+}
+
+TEST_F(TlsStream, HostThatCannotBeChecked) {
+    expect_input_error([&] { FramedStream::tls_client(std::move(sockets_.first), identity_.client(), ""); },
+                       "host name");
+    expect_input_error(
+        [&] { FramedStream::tls_client(std::move(sockets_.second), identity_.client(), std::string(1000, 'x')); },
+        "host name");
+}
+
+TEST_F(TlsStream, ClientAtAPlainServer) {
+    End server(FramedStream::plain(std::move(sockets_.first)));
+    End client(FramedStream::tls_client(std::move(sockets_.second), identity_.client(), "localhost"));
+    server.start(thread_, max_upstream_message_bytes);
+    client.start(thread_);
+    expect_names(client.wait_for_close(), "the other side may not use TLS");
+    expect_names(server.wait_for_close(), "the other side uses TLS and this side does not");
+}
+
+TEST_F(TlsStream, PlainClientAtATlsServer) {
+    End server(FramedStream::tls_server(std::move(sockets_.first), identity_.server()));
+    End client(FramedStream::plain(std::move(sockets_.second)));
+    server.start(thread_);
+    client.start(thread_);
+    client.stream->send(Hello{});
+    expect_names(server.wait_for_close(), "the other side may not use TLS");
+    expect_names(client.wait_for_close(), "the other side");
+}
+
+TEST_F(TlsStream, PeerVanishesInTheHandshake) {
+    End server(FramedStream::tls_server(std::move(sockets_.first), identity_.server()));
+    server.start(thread_);
+    sockets_.second.close();
+    expect_names(server.wait_for_close(), "TLS handshake failed: the other side closed the connection");
+}
+
+TEST_F(TlsStream, SilentPeerIsLeft) {
+    End server(FramedStream::tls_server(std::move(sockets_.first), identity_.server()));
+    server.start(thread_);
+    EXPECT_EQ(server.wait_for_close(), "TLS handshake timed out");
+}
+
+TEST_F(TlsStream, CloseInTheHandshake) {
+    End server(FramedStream::tls_server(std::move(sockets_.first), identity_.server()));
+    End client(FramedStream::tls_client(std::move(sockets_.second), identity_.client(), "localhost"));
+    server.start(thread_);
+    client.start(thread_);
+    client.stream->close();
+    EXPECT_TRUE(server.wait_for_close().has_value());
+    EXPECT_TRUE(client.is_released());
+    EXPECT_EQ(client.closes(), 0);
+}
+
+TEST_F(TlsStream, CloseWhileMuchIsQueued) {
+    for (int round = 0; round < 10; ++round) {
+        auto [one, two] = thread_.connect();
+        End server(FramedStream::tls_server(std::move(one), identity_.server()));
+        End client(FramedStream::tls_client(std::move(two), identity_.client(), "localhost"));
+        server.start(thread_);
+        client.start(thread_);
+        client.stream->send(Hello{});
+        ASSERT_TRUE(server.wait_for_messages(1));
+        for (std::uint64_t i = 1; i <= 8; ++i) {
+            server.stream->send(large_batch(i, 1u << 20));
+            client.stream->send(large_batch(i, 1u << 20));
+        }
+        server.stream->close();
+        EXPECT_TRUE(client.wait_for_close().has_value());
+        EXPECT_TRUE(End::eventually([&] { return server.stream->unsent_bytes() == 0; }));
+        EXPECT_TRUE(End::eventually([&] { return client.stream->unsent_bytes() == 0; }));
+    }
+}
+
+TEST_F(TlsStream, OldVersionsAreRefused) {
+    for (auto const& context : {identity_.server(), identity_.client()}) {
+        EXPECT_EQ(SSL_CTX_get_min_proto_version(context->native_handle()), TLS1_2_VERSION);
+    }
+}
+
+TEST_F(TlsStream, FilesThatCannotBeUsed) {
+    Identity const other("other");
+    std::string const certificate = identity_.certificate_file();
+    std::string const key = identity_.key_file();
+    expect_input_error([&] { make_tls_server_context("/nowhere.pem", key); }, "TLS certificate '/nowhere.pem'");
+    expect_input_error([&] { make_tls_server_context(certificate, "/nowhere.pem"); }, "TLS key '/nowhere.pem'");
+    expect_input_error([&] { make_tls_server_context(key, key); }, "TLS certificate '" + key);
+    expect_input_error([&] { make_tls_server_context(certificate, certificate); }, "TLS key '" + certificate);
+    expect_input_error([&] { make_tls_server_context(certificate, other.key_file()); }, "key values mismatch");
+    expect_input_error([&] { make_tls_server_context(certificate, identity_.locked_key_file()); }, "TLS key");
+    expect_input_error([&] { make_tls_client_context("/nowhere.pem"); }, "TLS authority '/nowhere.pem'");
+    expect_input_error([&] { make_tls_client_context(key); }, "TLS authority '" + key);
+}
+
+} // namespace
+} // namespace framelet

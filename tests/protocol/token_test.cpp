@@ -1,0 +1,68 @@
+#include "protocol/token.h"
+
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "common/error.h"
+
+namespace framelet {
+namespace {
+
+class TokenFile : public testing::Test {
+protected:
+    std::filesystem::path const file_ =
+        std::filesystem::path(testing::TempDir()) /
+        (std::string("token_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+
+    void TearDown() override { std::filesystem::remove(file_); }
+    void put(std::string const& content) { std::ofstream(file_, std::ios::binary) << content; }
+    void expect_refused(std::string const& word) {
+        try {
+            read_token_file(file_);
+            ADD_FAILURE() << "accepted, should name " << word;
+        } catch (InputError const& error) {
+            EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
+            EXPECT_NE(std::string(error.what()).find(file_.string()), std::string::npos) << error.what();
+        }
+    }
+};
+
+TEST_F(TokenFile, FirstLineTrimmed) {
+    for (char const* content : {"secret", "secret\n", " \tsecret \r\nmore\n"}) {
+        put(content);
+        EXPECT_EQ(read_token_file(file_), "secret");
+    }
+    put(std::string(4096, 'x') + "\n");
+    EXPECT_EQ(read_token_file(file_).size(), 4096u);
+}
+
+TEST_F(TokenFile, Refused) {
+    expect_refused("cannot be read");
+    for (char const* content : {"", "\n", "  \r\nsecret\n"}) {
+        put(content);
+        expect_refused("empty");
+    }
+    put(std::string(4097, 'x'));
+    expect_refused("longer");
+    put(std::string(1 << 20, 'x'));
+    expect_refused("longer");
+    put("\x01\x02");
+    expect_refused("UTF-8");
+}
+
+TEST_F(TokenFile, FolderIsRefused) {
+    std::filesystem::create_directory(file_);
+    expect_refused("cannot be read");
+}
+
+TEST(Token, Comparison) {
+    EXPECT_TRUE(same_token("", ""));
+    EXPECT_TRUE(same_token("secret", "secret"));
+    EXPECT_FALSE(same_token("secret", "secreT"));
+    EXPECT_FALSE(same_token("secret", "secret "));
+    EXPECT_FALSE(same_token("", "secret"));
+}
+
+} // namespace
+} // namespace framelet
