@@ -15,24 +15,40 @@ constexpr float pi = std::numbers::pi_v<float>;
 constexpr float steepest = 0.499f * pi;
 constexpr float dolly_step = 0.9f;
 constexpr float fast_factor = 4;
+/// Up to this size a scene is crossed in the same time; larger ones are travelled faster, but by the square root only:
+/// what one goes past in a landscape is still as large as a house. Metres.
+constexpr float room_size = 30;
+/// Beyond this nobody sees anything, and arithmetic stays finite.
+constexpr float farthest = 1e9f;
+constexpr float largest_scene = 1e7f;
 
 float diagonal(Bounds const& scene) {
     float const length = scene.empty() ? 0 : glm::length(scene.size());
-    return std::isfinite(length) && length > 0 ? length : 1;
+    return std::isfinite(length) && length > 0 ? std::min(length, largest_scene) : 1;
 }
 
 } // namespace
 
 CameraController::CameraController(Camera const& home, Bounds const& scene)
-    : home_(home), scene_(scene), size_(diagonal(scene)), camera_(home) {
+    : home_(home), scene_(scene), size_(diagonal(scene)), reach_(std::min(size_, std::sqrt(room_size * size_))),
+      camera_(home) {
     reset();
 }
 
 void CameraController::set_camera(Camera const& camera) {
     camera_ = camera;
-    Vec3 const center = scene_.empty() ? camera.position + camera.forward() * size_ : scene_.center();
+    Vec3 const center =
+        scene_.empty() || size_ >= largest_scene ? camera.position + camera.forward() * size_ : scene_.center();
     float const along = glm::dot(center - camera.position, camera.forward());
-    distance_ = along > 1e-3f * size_ ? along : 0.25f * size_;
+    distance_ = along > 1e-3f * size_ ? along : reach_ / 4;
+    Vec3 const place = camera.position;
+    if (glm::clamp(place, scene_.lower, scene_.upper) == place) {
+        distance_ = std::min(distance_, reach_ / 10); // amid the scene one looks at what is near
+    }
+}
+
+void CameraController::go_to(Vec3 position) {
+    camera_.position = glm::clamp(position, Vec3(-farthest), Vec3(farthest));
 }
 
 void CameraController::turn(float yaw, float pitch) {
@@ -50,7 +66,7 @@ void CameraController::orbit(Vec2 pixels, Viewport viewport) {
     Vec3 const center = pivot();
     Vec2 const angle = pixels * (pi / static_cast<float>(viewport.height));
     turn(-angle.x, -angle.y);
-    camera_.position = center - camera_.forward() * distance_;
+    go_to(center - camera_.forward() * distance_);
 }
 
 void CameraController::look(Vec2 pixels, Viewport viewport) {
@@ -64,7 +80,7 @@ void CameraController::pan(Vec2 pixels, Viewport viewport) {
                              ? 2 * std::tan(0.5f * camera_.vertical_extent) * distance_
                              : camera_.vertical_extent;
     Vec2 const metres = pixels * (height / static_cast<float>(viewport.height));
-    camera_.position += camera_.up() * metres.y - camera_.right() * metres.x;
+    go_to(camera_.position + camera_.up() * metres.y - camera_.right() * metres.x);
 }
 
 void CameraController::dolly(float steps) {
@@ -75,16 +91,16 @@ void CameraController::dolly(float steps) {
     }
     Vec3 const center = pivot();
     distance_ = std::clamp(distance_ * scale, 1e-5f * size_, 1e3f * size_);
-    camera_.position = center - camera_.forward() * distance_;
+    go_to(center - camera_.forward() * distance_);
 }
 
 void CameraController::fly(FlyInput const& input, double seconds) {
     if (!input.moving()) {
         return;
     }
-    float const speed = size_ / 8 * (input.fast ? fast_factor : 1);
+    float const speed = reach_ / 8 * (input.fast ? fast_factor : 1);
     Vec3 const direction = glm::normalize(input.direction);
-    camera_.position += camera_.orientation * direction * (speed * static_cast<float>(seconds));
+    go_to(camera_.position + camera_.orientation * direction * (speed * static_cast<float>(seconds)));
 }
 
 } // namespace framelet

@@ -20,7 +20,8 @@ public:
     CameraController(Camera const& home, Bounds const& scene);
 
     Camera const& camera() const { return camera_; }
-    /// Goes on from another camera; it looks at the point of its axis that is nearest to the scene's centre.
+    /// Goes on from another camera; it looks at the point of its axis that is nearest to the scene's centre, or amid
+    /// the scene at one close by.
     void set_camera(Camera const& camera);
     void reset() { set_camera(home_); }
 
@@ -30,7 +31,7 @@ public:
     void pan(Vec2 pixels, Viewport viewport);
     /// Towards (positive) or away from the point looked at: a step is a tenth of the way; never through it.
     void dolly(float steps);
-    /// Through the scene: an eighth of its diagonal a second.
+    /// Through the scene: an eighth of its diagonal a second, in large scenes less (2 km: 30 m/s).
     void fly(FlyInput const& input, double seconds);
     /// Turns the head in place: the picture's whole height is the vertical field of view.
     void look(Vec2 pixels, Viewport viewport);
@@ -40,10 +41,12 @@ public:
 
 private:
     void turn(float yaw, float pitch);
+    void go_to(Vec3 position);
 
     Camera home_;
     Bounds scene_;
     float size_; ///< the scene's diagonal, metres
+    float reach_; ///< how far one goes in a few seconds, metres
     Camera camera_;
     float distance_ = 1; ///< to the point looked at, metres
 };

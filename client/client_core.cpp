@@ -152,16 +152,6 @@ struct ClientCore::Impl {
         }
         Batch const batch = codec.decode(encoded);
         Clock::time_point const decoded = Clock::now();
-        if (batch.number == 0) {
-            throw ProtocolError("a batch numbered 0");
-        }
-        ImagePlane const plane(batch.view.viewport);
-        for (DisplayFramelet const& framelet : batch.framelets) {
-            if (!plane.accepts(framelet.tile)) {
-                throw ProtocolError("batch " + std::to_string(batch.number) + " names tile " +
-                                    std::to_string(framelet.tile.code) + ", which its viewport does not have");
-            }
-        }
         Ack ack{batch.number, 0, 0};
         ack.received_us = static_cast<std::uint64_t>(
             std::chrono::duration_cast<std::chrono::microseconds>(received.time_since_epoch()).count());

@@ -259,21 +259,22 @@ TEST(ClientCore, GarbageAndHostileLengthsEndTheConnection) {
 }
 
 TEST(ClientCore, ServerThatBreaksTheProtocolIsLeft) {
-    ImagePlane const plane(Viewport{32, 32});
-    Batch outside = constant_batch(plane, plane.pixel_depth(), 1, 1);
-    outside.framelets.push_back(constant_framelet(plane, make_tile(plane.pixel_depth(), 0, 0), 1));
-    outside.framelets.back().tile = make_tile(plane.max_depth() + 1, 0, 0);
-    FakeServer server;
-    ClientCore core(options_for(server));
-    core.set_view({}, plane.viewport());
-    server.send(outside);
-    ASSERT_TRUE(wait_for(core, [&] { return core.end_reason().has_value(); }));
-    EXPECT_TRUE(one_line_with(*core.end_reason(), {server.address().text()})) << *core.end_reason();
-
     FakeServer chatty;
-    ClientCore second(options_for(chatty));
-    chatty.send(Message(Hello{}));
+    ClientCore core(options_for(chatty));
+    chatty.send(Message(Hello{})); // only viewers say that
+    ASSERT_TRUE(wait_for(core, [&] { return core.end_reason().has_value(); }));
+    EXPECT_TRUE(one_line_with(*core.end_reason(), {chatty.address().text(), "protocol"})) << *core.end_reason();
+
+    ImagePlane const plane(Viewport{32, 32});
+    FakeServer broken;
+    ClientCore second(options_for(broken));
+    second.set_view({}, plane.viewport());
+    EncodedBatch encoded =
+        BatchCodec().encode(make_batch(plane, 1, {constant_framelet(plane, make_tile(plane.pixel_depth(), 0, 0), 1)}));
+    encoded.payload.resize(encoded.payload.size() / 2);
+    broken.send(Message(encoded));
     ASSERT_TRUE(wait_for(second, [&] { return second.end_reason().has_value(); }));
+    EXPECT_TRUE(one_line_with(*second.end_reason(), {broken.address().text(), "protocol"})) << *second.end_reason();
 }
 
 TEST(ClientCore, ABatchThatNobodyAskedForIsNotShown) {
