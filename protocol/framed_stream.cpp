@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <deque>
 #include <mutex>
 #include <sstream>
 #include <type_traits>
@@ -15,7 +14,9 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include "common/error.h"
+#include "protocol/outbox.h"
 #include "protocol/stream_reason.h"
+#include "protocol/tls.h"
 
 namespace framelet {
 namespace {
@@ -47,19 +48,6 @@ Bytes frame_of(Message const& message) {
         bytes[i] = static_cast<std::byte>(size >> (8 * i));
     }
     return bytes;
-}
-
-/// Asks for a certificate of this host, which is a name or an address.
-void require_host(SSL* ssl, std::string host) {
-    SSL_set_verify(ssl, SSL_VERIFY_PEER, nullptr);
-    if (X509_VERIFY_PARAM_set1_ip_asc(SSL_get0_param(ssl), host.c_str()) == 1) {
-        return;
-    }
-    bool const named = !host.empty() && SSL_set1_host(ssl, host.c_str()) == 1 &&
-                       SSL_ctrl(ssl, SSL_CTRL_SET_TLSEXT_HOSTNAME, TLSEXT_NAMETYPE_host_name, host.data()) == 1;
-    if (!named) {
-        throw InputError("'" + host + "' is not a host name that a TLS certificate can be checked against");
-    }
 }
 
 template <typename Stream>
@@ -100,11 +88,11 @@ public:
             return;
         }
         Bytes bytes = frame_of(message);
-        unsent_ += bytes.size();
+        outbox_.announce(bytes.size());
         asio::post(executor_, [self = self(), bytes = std::move(bytes)]() mutable { self->enqueue(std::move(bytes)); });
     }
 
-    std::size_t unsent_bytes() const override { return unsent_; }
+    std::size_t unsent_bytes() const override { return outbox_.unsent(); }
 
     void close_after_sending() override {
         take_handlers();
@@ -253,10 +241,10 @@ private:
 
     void enqueue(Bytes bytes) {
         if (finished_ || ending_ || unwritable_) {
-            unsent_ -= bytes.size();
+            outbox_.refuse(bytes);
             return;
         }
-        outbox_.push_back(std::move(bytes));
+        outbox_.push(std::move(bytes));
         write_next();
     }
 
@@ -266,46 +254,38 @@ private:
         }
         if (!outbox_.empty()) {
             writing_ = true;
-            write_some();
+            ByteView const rest = outbox_.rest();
+            stream_.async_write_some(asio::buffer(rest.data(), rest.size()),
+                                     [self = self()](Error error, std::size_t size) { self->wrote(error, size); });
         } else if (ending_) {
             say_goodbye();
         }
     }
 
-    void write_some() {
-        auto const rest = asio::buffer(outbox_.front()) + written_;
-        stream_.async_write_some(rest, [self = self()](Error error, std::size_t size) { self->wrote(error, size); });
-    }
-
     void wrote(Error error, std::size_t size) {
+        writing_ = false;
         if (finished_) {
-            outbox_.clear();
+            outbox_.release();
             return;
         }
-        unsent_ -= size;
-        written_ += size;
+        std::size_t const whole = outbox_.took(size);
         if (error) {
             writing_failed(error);
             return;
         }
-        if (written_ < outbox_.front().size()) {
-            write_some();
-            return;
-        }
-        outbox_.pop_front();
-        writing_ = false;
-        std::size_t const whole = std::exchange(written_, 0);
-        if (auto const called = handlers(); called && called->on_sent) {
-            called->on_sent(whole);
+        if (whole > 0) {
+            if (auto const called = handlers(); called && called->on_sent) {
+                called->on_sent(whole);
+            }
         }
         write_next();
     }
 
     /// A peer that went away may have said why: reading goes on for what it sent, and finds the end by itself.
     void writing_failed(Error error) {
-        writing_ = false;
         unwritable_ = true;
-        drop_outbox();
+        outbox_.abandon();
+        outbox_.release();
         ending_timer_.expires_after(ending_time);
         ending_timer_.async_wait([self = self(), error](Error aborted) {
             if (!aborted) {
@@ -319,7 +299,7 @@ private:
     /// The peer broke the protocol: tells both sides why, then ends.
     void refuse(std::string const& reason) {
         Bytes failure = frame_of(Failure{reason});
-        unsent_ += failure.size();
+        outbox_.announce(failure.size());
         enqueue(std::move(failure));
         begin_ending();
         discard();
@@ -378,16 +358,9 @@ private:
         ending_timer_.cancel();
         Error ignored;
         stream_.lowest_layer().close(ignored);
-        drop_outbox();
-    }
-
-    void drop_outbox() {
-        for (Bytes const& bytes : outbox_) {
-            unsent_ -= bytes.size();
-        }
-        unsent_ += std::exchange(written_, 0);
-        if (!writing_) { // otherwise the socket still refers to the first one
-            outbox_.clear();
+        outbox_.abandon();
+        if (!writing_) {
+            outbox_.release();
         }
     }
 
@@ -400,14 +373,12 @@ private:
     std::mutex handlers_mutex_;
     std::shared_ptr<Handlers> handlers_;
     std::atomic<bool> detached_ = false;
-    std::atomic<std::size_t> unsent_ = 0;
+    Outbox outbox_;
 
     // Only for the io_context's thread.
     std::size_t max_body_ = 0;
     std::array<std::uint8_t, prefix_bytes> prefix_{};
     Bytes body_; ///< room for the largest message so far
-    std::deque<Bytes> outbox_;
-    std::size_t written_ = 0; ///< of the first message in `outbox_`
     bool started_ = false;
     bool open_ = false; ///< the handshake is over
     bool first_ = true; ///< no message has arrived
