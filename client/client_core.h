@@ -58,6 +58,9 @@ public:
 
     Welcome const& welcome() const;
 
+    /// What a viewer looks through until the user moves: the scene's first camera, its animation included; -1 where the
+    /// scene has none (then `welcome().start_camera`).
+    int start_scene_camera() const { return welcome().cameras.empty() ? -1 : 0; }
     /// Asks for this view. Only the newest one is kept while the network is busy. `scene_camera` >= 0: through that
     /// camera of the scene. Call it at most once a display frame; a view that equals the last one costs nothing.
     void set_view(Camera const& camera, Viewport viewport, int scene_camera = -1);

@@ -45,7 +45,7 @@ void Viewer::adopt(std::unique_ptr<ClientCore> core) {
     Camera const camera = same_scene ? controller_->camera() : welcome.start_camera;
     controller_.emplace(welcome.start_camera, welcome.scene_bounds);
     controller_->set_camera(camera);
-    scene_camera_ = same_scene ? scene_camera_ : -1;
+    scene_camera_ = same_scene ? scene_camera_ : core_->start_scene_camera();
     lost_.clear();
     meter_ = RateMeter();
     core_->set_settings({exposure_ev_, 0});
@@ -128,7 +128,7 @@ void Viewer::apply(Command command) {
                 });
             }
         } else if (command == Command::reset) {
-            scene_camera_ = -1;
+            scene_camera_ = core_->start_scene_camera();
             controller_->reset();
         }
         break;

@@ -110,7 +110,7 @@ RunFigures show(ClientCore& core, Options const& options, std::optional<CameraPa
             camera = path->at(now);
         }
         if (!done) {
-            core.set_view(camera, viewport, path ? path->scene_camera : -1);
+            core.set_view(camera, viewport, path ? path->scene_camera : core.start_scene_camera());
         }
         bool const news = core.update_picture(picture, changed);
         ++run.frames;

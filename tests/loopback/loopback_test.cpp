@@ -110,6 +110,29 @@ private:
     Process process_;
 };
 
+/// A client that goes on until it is told to stop.
+class StreamingClient {
+public:
+    StreamingClient(std::string const& address, std::string const& size)
+        : process_(FRAMELET_CLIENT,
+                   {address, "--size", size, "--duration", "100", "--output", (folder_.path() / "%05d.png").string()}) {
+    }
+
+    /// Returns once it writes pictures, so its session is open.
+    void wait_until_streaming() {
+        auto const deadline = std::chrono::steady_clock::now() + patience;
+        while (frames_in(folder_.path()).empty() && process_.running() && std::chrono::steady_clock::now() < deadline) {
+            std::this_thread::sleep_for(20ms);
+        }
+        EXPECT_TRUE(process_.running()) << process_.errors();
+    }
+    Process& process() { return process_; }
+
+private:
+    TemporaryFolder folder_;
+    Process process_;
+};
+
 TEST(Loopback, ConvergedPictureIsTheDirectRender) {
     ServerProcess server(scene_file, {"--paused", "--exposure", "0"});
     for (auto const& [size, viewport] : {std::pair{"320x180", Viewport{320, 180}}, {"131x97", Viewport{131, 97}}}) {
@@ -170,11 +193,11 @@ TEST(Loopback, TwoClientsAtOnceSeeTheirOwnViews) {
 TEST(Loopback, ServerGoesOnWhenClientsVanish) {
     ServerProcess server(scene_file, {"--exposure", "0"});
     for (int how : {SIGKILL, SIGSTOP, SIGTERM}) {
-        Process client(FRAMELET_CLIENT, {server.address(), "--size", "1280x720", "--duration", "60"});
-        std::this_thread::sleep_for(700ms); // amid the stream
-        client.signal(how);
-        std::this_thread::sleep_for(300ms);
-        client.signal(SIGKILL);
+        StreamingClient client(server.address(), "1280x720");
+        client.wait_until_streaming();
+        client.process().signal(how);
+        std::this_thread::sleep_for(300ms); // stopped or gone, amid the stream
+        client.process().signal(SIGKILL);
     }
     ASSERT_TRUE(server.process().running());
     StillCamera const view;
@@ -187,13 +210,12 @@ TEST(Loopback, ServerGoesOnWhenClientsVanish) {
 TEST(Loopback, ClientSaysWhenTheServerVanishes) {
     for (int how : {SIGKILL, SIGTERM, SIGSTOP}) {
         ServerProcess server(scene_file, {});
-        Process client(FRAMELET_CLIENT, {server.address(), "--size", "320x180", "--duration", "60"});
-        std::this_thread::sleep_for(700ms);
-        ASSERT_TRUE(client.running()) << client.errors();
+        StreamingClient client(server.address(), "320x180");
+        client.wait_until_streaming();
         server.process().signal(how);
-        EXPECT_EQ(client.wait(30s), 1);
-        EXPECT_NE(client.errors().find("server"), std::string::npos) << client.errors();
-        std::string const errors = client.errors();
+        EXPECT_EQ(client.process().wait(60s), 1);
+        std::string const errors = client.process().errors();
+        EXPECT_NE(errors.find("server"), std::string::npos) << errors;
         EXPECT_EQ(std::count(errors.begin(), errors.end(), '\n'), 1) << errors;
     }
 }
@@ -243,14 +265,33 @@ TEST(Loopback, TokenIsAsked) {
     }
 }
 
+TEST(Loopback, TlsProtectsAndIsChecked) {
+    TemporaryFolder folder;
+    std::string const key = (folder.path() / "key.pem").string();
+    std::string const certificate = (folder.path() / "cert.pem").string();
+    Process openssl("/usr/bin/openssl",
+                    {"req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "1", "-keyout", key, "-out", certificate,
+                     "-subj", "/CN=localhost", "-addext", "subjectAltName=IP:127.0.0.1"});
+    ASSERT_EQ(openssl.wait(60s), 0) << openssl.errors();
+    ServerProcess server(scene_file, {"--tls-cert", certificate, "--tls-key", key, "--paused"});
+    auto const connect = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), {server.address(), "--size", "64x64", "--duration", "60", "--until-converged"});
+        Process client(FRAMELET_CLIENT, more);
+        return client.wait(patience);
+    };
+    EXPECT_EQ(connect({"--tls", "--tls-ca", certificate}), 0);
+    EXPECT_EQ(connect({"--tls"}), 1) << "nobody vouches for the certificate";
+    EXPECT_EQ(connect({}), 1) << "plain text is not served";
+}
+
 TEST(Loopback, ViewersBeyondTheLimitAreToldSo) {
     ServerProcess server(scene_file, {"--max-sessions", "1"});
-    Process first(FRAMELET_CLIENT, {server.address(), "--size", "64x64", "--duration", "60"});
-    std::this_thread::sleep_for(700ms);
+    StreamingClient first(server.address(), "64x64");
+    first.wait_until_streaming();
     Process second(FRAMELET_CLIENT, {server.address(), "--size", "64x64", "--duration", "60"});
     EXPECT_EQ(second.wait(30s), 1);
     EXPECT_NE(second.errors().find("--max-sessions"), std::string::npos) << second.errors();
-    EXPECT_TRUE(first.running());
+    EXPECT_TRUE(first.process().running());
 }
 
 struct Usage {
