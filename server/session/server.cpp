@@ -275,7 +275,12 @@ void Server::run(bool handle_signals) {
     impl_->accept();
     impl_->beat();
     std::jthread const loop([this] { impl_->loop.run(); });
-    impl_->io.run(); // returns when everything is closed
+    try {
+        impl_->io.run(); // returns when everything is closed
+    } catch (...) {
+        impl_->loop.stop();
+        throw;
+    }
     impl_->loop.stop();
 }
 
