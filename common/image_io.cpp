@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <mutex>
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -28,7 +29,14 @@ std::unique_ptr<OIIO::ImageInput> open(std::string const& name, OIIO::Filesystem
         OIIO::Filesystem::IOProxy* const proxy = memory;
         config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
     }
-    auto input = OIIO::ImageInput::open(name, &config, memory);
+    std::unique_ptr<OIIO::ImageInput> input;
+    {
+        // OpenImageIO 2.4 fills its tables of metadata fields (Exif, colour profiles) unguarded when it first needs
+        // them (its issue 3756). Opening reads no more than headers; pixels are decoded side by side.
+        static std::mutex opening;
+        std::lock_guard const lock(opening);
+        input = OIIO::ImageInput::open(name, &config, memory);
+    }
     if (!input) {
         fail(name, OIIO::geterror());
     }
