@@ -19,7 +19,7 @@ using Samples = std::array<std::uint8_t, framelet_samples>;
 /// Framelets that are compressed together, and apart from the others: enough for the compressor to learn from, few
 /// enough to stay in the cache and to give every core some.
 constexpr std::size_t group_framelets = 128;
-constexpr std::size_t framelet_bytes = 3 * framelet_samples;
+constexpr auto framelet_bytes = std::size_t{3} * framelet_samples;
 constexpr int compression_level = 1;
 constexpr std::size_t length_bytes = 4;
 /// First bytes of a zstd frame (RFC 8878); other kinds of frames that the library knows are not part of the format.

@@ -395,13 +395,14 @@ std::shared_ptr<FramedStream> FramedStream::plain(Socket socket) {
     return std::make_shared<Connection<Socket>>(std::move(socket), asio::ssl::stream_base::client);
 }
 
-std::shared_ptr<FramedStream> FramedStream::tls_server(Socket socket, std::shared_ptr<asio::ssl::context> context) {
+std::shared_ptr<FramedStream> FramedStream::tls_server(Socket socket,
+                                                       std::shared_ptr<asio::ssl::context> const& context) {
     return std::make_shared<Connection<SecureStream>>(SecureStream(std::move(socket), *context),
                                                       asio::ssl::stream_base::server);
 }
 
-std::shared_ptr<FramedStream> FramedStream::tls_client(Socket socket, std::shared_ptr<asio::ssl::context> context,
-                                                       std::string const& host) {
+std::shared_ptr<FramedStream>
+FramedStream::tls_client(Socket socket, std::shared_ptr<asio::ssl::context> const& context, std::string const& host) {
     SecureStream stream(std::move(socket), *context);
     require_host(stream.native_handle(), host);
     return std::make_shared<Connection<SecureStream>>(std::move(stream), asio::ssl::stream_base::client);

@@ -34,9 +34,10 @@ public:
     static std::shared_ptr<FramedStream> plain(Socket socket);
     /// TLS as the server or as the client; `host` is the name or the address that the
     /// certificate is checked against (InputError where it is neither).
-    static std::shared_ptr<FramedStream> tls_server(Socket socket, std::shared_ptr<boost::asio::ssl::context> context);
-    static std::shared_ptr<FramedStream> tls_client(Socket socket, std::shared_ptr<boost::asio::ssl::context> context,
-                                                    std::string const& host);
+    static std::shared_ptr<FramedStream> tls_server(Socket socket,
+                                                    std::shared_ptr<boost::asio::ssl::context> const& context);
+    static std::shared_ptr<FramedStream>
+    tls_client(Socket socket, std::shared_ptr<boost::asio::ssl::context> const& context, std::string const& host);
 
     virtual ~FramedStream() = default;
 
