@@ -40,6 +40,9 @@ struct NumberedView {
     bool operator==(NumberedView const&) const = default;
 };
 
+/// Most framelets that one batch may carry: 8 Mi samples.
+inline constexpr std::size_t max_batch_framelets = 32768;
+
 /// The framelets of one server cycle: one camera, one scene time.
 struct Batch {
     std::uint64_t number = 0; ///< counts up by one within a session, from 1

@@ -114,8 +114,6 @@ using Message =
 inline constexpr std::size_t max_message_bytes = 64u << 20;
 /// Before the handshake is over, and upstream at all times.
 inline constexpr std::size_t max_upstream_message_bytes = 64u << 10;
-/// Most framelets in one batch.
-inline constexpr std::size_t max_batch_framelets = 32768;
 
 /// Body of one message (without the length prefix). Every number must be inside its range (FRAMELET_CHECK); text is
 /// made one line of UTF-8 and cut to its limit, the last cameras of a Welcome that exceeds max_upstream_message_bytes

@@ -1,5 +1,8 @@
 #include "server/render/framelet_renderer.h"
 
+#include <algorithm>
+#include <atomic>
+
 #include <tbb/parallel_for.h>
 
 #include "common/error.h"
@@ -29,32 +32,48 @@ Vec2 place_in_cell(Seed seed, Tile tile, std::uint32_t sample) {
     return {static_cast<float>(x >> 8) * 0x1p-24f, static_cast<float>(y >> 8) * 0x1p-24f};
 }
 
-} // namespace
-
-void render_framelet(RenderScene const& scene, ViewRays const& view, ImagePlane const& plane, Tile tile, Seed seed,
-                     Framelet& out) {
-    FlushDenormals const flush;
-    PixelRect const rect = plane.tile_rect(tile);
-    float const spacing = plane.sample_spacing(tile);
-    RayPacket rays;
+Footprint sample_footprint(ViewRays const& view, float spacing) {
     Footprint footprint;
     footprint.width.fill(glm::length(view.origin_dx) * spacing);
     footprint.slope.fill(glm::length(view.direction_dx) * spacing);
+    return footprint;
+}
+
+/// `place(lane)`: where on the image plane that lane looks, pixels.
+template <class Place>
+void trace_places(RenderScene const& scene, ViewRays const& view, Footprint const& footprint, Place&& place,
+                  TracedPacket& traced) {
+    RayPacket rays;
+    for (int i = 0; i < lanes; ++i) {
+        Vec2 const p = place(i);
+        rays.origin.set(i, view.origin + view.origin_dx * p.x + view.origin_dy * p.y);
+        rays.direction.set(i, view.direction + view.direction_dx * p.x + view.direction_dy * p.y);
+    }
+    rays.near.fill(0);
+    rays.far.fill(INFINITY);
+    trace(scene.prepared(), rays, all_lanes, footprint, mirror_bounces, traced);
+}
+
+} // namespace
+
+std::uint32_t render_framelet(RenderScene const& scene, ViewRays const& view, ImagePlane const& plane, Tile tile,
+                              Seed seed, Framelet& out) {
+    FlushDenormals const flush;
+    PixelRect const rect = plane.tile_rect(tile);
+    Vec2 const corner(rect.left, rect.top);
+    float const spacing = plane.sample_spacing(tile);
+    Footprint const footprint = sample_footprint(view, spacing);
     TracedPacket traced{};
+    std::uint32_t segments = 0;
     out.tile = tile;
     for (int first = 0; first < framelet_samples; first += lanes) {
-        for (int i = 0; i < lanes; ++i) {
+        auto const place = [&](int i) {
             std::uint32_t const sample = static_cast<std::uint32_t>(first + i);
-            Vec2 const in_cell = place_in_cell(seed, tile, sample);
-            float const x =
-                static_cast<float>(rect.left) + (static_cast<float>(morton_x(sample)) + in_cell.x) * spacing;
-            float const y = static_cast<float>(rect.top) + (static_cast<float>(morton_y(sample)) + in_cell.y) * spacing;
-            rays.origin.set(i, view.origin + view.origin_dx * x + view.origin_dy * y);
-            rays.direction.set(i, view.direction + view.direction_dx * x + view.direction_dy * y);
-        }
-        rays.near.fill(0);
-        rays.far.fill(INFINITY);
-        trace(scene.prepared(), rays, all_lanes, footprint, mirror_bounces, traced);
+            Vec2 const cell(morton_x(sample), morton_y(sample));
+            return corner + (cell + place_in_cell(seed, tile, sample)) * spacing;
+        };
+        trace_places(scene, view, footprint, place, traced);
+        segments += traced.segments;
         for (int i = 0; i < lanes; ++i) {
             std::size_t const sample = static_cast<std::size_t>(first) + static_cast<std::size_t>(i);
             out.red[sample] = traced.radiance.x[i];
@@ -63,14 +82,41 @@ void render_framelet(RenderScene const& scene, ViewRays const& view, ImagePlane 
             out.depth[sample] = traced.depth[i];
         }
     }
+    return segments;
 }
 
-void render_framelets(RenderScene const& scene, Camera const& camera, ImagePlane const& plane,
-                      std::span<Tile const> tiles, Seed seed, std::span<Framelet> out) {
+std::uint64_t render_framelets(RenderScene const& scene, Camera const& camera, ImagePlane const& plane,
+                               std::span<Tile const> tiles, Seed seed, std::span<Framelet> out) {
     FRAMELET_CHECK(tiles.size() == out.size());
     ViewRays const view = make_view_rays(camera, plane.viewport());
-    tbb::parallel_for(std::size_t(0), tiles.size(),
-                      [&](std::size_t i) { render_framelet(scene, view, plane, tiles[i], seed, out[i]); });
+    std::atomic<std::uint64_t> segments{0};
+    tbb::parallel_for(std::size_t(0), tiles.size(), [&](std::size_t i) {
+        segments.fetch_add(render_framelet(scene, view, plane, tiles[i], seed, out[i]), std::memory_order_relaxed);
+    });
+    return segments;
+}
+
+std::uint64_t render_samples(RenderScene const& scene, ViewRays const& view, std::span<Vec2 const> places,
+                             float spacing, std::span<Vec3> radiance) {
+    FRAMELET_CHECK(places.size() == radiance.size());
+    Footprint const footprint = sample_footprint(view, spacing);
+    std::atomic<std::uint64_t> segments{0};
+    std::size_t const packets = (places.size() + lanes - 1) / lanes;
+    tbb::parallel_for(std::size_t(0), packets, [&](std::size_t packet) {
+        FlushDenormals const flush;
+        std::span<Vec2 const> const mine =
+            places.subspan(packet * lanes).first(std::min<std::size_t>(lanes, places.size() - packet * lanes));
+        TracedPacket traced{};
+        // What is left over of the last packet repeats its last place.
+        trace_places(
+            scene, view, footprint, [&](int i) { return mine[std::min(static_cast<std::size_t>(i), mine.size() - 1)]; },
+            traced);
+        for (std::size_t i = 0; i < mine.size(); ++i) {
+            radiance[packet * lanes + i] = traced.radiance.get(static_cast<int>(i));
+        }
+        segments.fetch_add(traced.segments, std::memory_order_relaxed);
+    });
+    return segments;
 }
 
 } // namespace framelet

@@ -14,13 +14,20 @@ namespace framelet {
 using Seed = std::uint32_t;
 
 /// Renders one framelet per tile into `out` (same length), in parallel over framelets on the calling TBB arena.
-/// The result depends on scene, view, tile and seed alone, not on threads or on the other tiles.
-void render_framelets(RenderScene const& scene, Camera const& camera, ImagePlane const& plane,
-                      std::span<Tile const> tiles, Seed seed, std::span<Framelet> out);
+/// The result depends on scene, view, tile and seed alone, not on threads or on the other tiles. Returns how many rays
+/// that took, shadow and mirror rays included.
+std::uint64_t render_framelets(RenderScene const& scene, Camera const& camera, ImagePlane const& plane,
+                               std::span<Tile const> tiles, Seed seed, std::span<Framelet> out);
 
 /// One framelet, on the calling thread. The bare loop that `framelet-bench limits` compares the server with.
-void render_framelet(RenderScene const& scene, ViewRays const& rays, ImagePlane const& plane, Tile tile, Seed seed,
-                     Framelet& out);
+std::uint32_t render_framelet(RenderScene const& scene, ViewRays const& rays, ImagePlane const& plane, Tile tile,
+                              Seed seed, Framelet& out);
+
+/// Scene-linear radiance at any places of the image plane (pixels), each of a footprint of `spacing` pixels, into
+/// `radiance` (same length). Places that follow each other are traced together: neighbours are cheaper. Parallel;
+/// returns how many rays that took.
+std::uint64_t render_samples(RenderScene const& scene, ViewRays const& rays, std::span<Vec2 const> places,
+                             float spacing, std::span<Vec3> radiance);
 
 /// The whole picture by the same renderer without tiling, wire or cache: `samples_per_side`^2 samples a pixel on the
 /// same grid that framelets use, each tone-mapped and quantised as `to_display` does, then averaged in linear light

@@ -1,6 +1,7 @@
 #include "server/render/shading.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include <glm/geometric.hpp>
@@ -62,8 +63,9 @@ void add_environment(PreparedScene const& scene, SurfacePacket const& s, LobePac
     });
 }
 
-void add_reflections(PreparedScene const& scene, SurfacePacket const& s, AmbientPacket const& ambient, int bounces,
-                     LaneVec3& radiance) {
+/// The functions that trace return how many rays that took.
+std::uint32_t add_reflections(PreparedScene const& scene, SurfacePacket const& s, AmbientPacket const& ambient,
+                              int bounces, LaneVec3& radiance) {
     RayPacket rays;
     Footprint footprint;
     rays.near.fill(0);
@@ -86,10 +88,12 @@ void add_reflections(PreparedScene const& scene, SurfacePacket const& s, Ambient
         Vec3 const share = ambient.reflectance.get(i) * ambient.traced[i];
         radiance.set(i, radiance.get(i) + share * reflected.radiance.get(i));
     });
+    return reflected.segments;
 }
 
-void add_lights(PreparedScene const& scene, SurfacePacket const& s, LobePacket const& lobes, LaneMask lit,
-                LaneVec3& radiance) {
+std::uint32_t add_lights(PreparedScene const& scene, SurfacePacket const& s, LobePacket const& lobes, LaneMask lit,
+                         LaneVec3& radiance) {
+    std::uint32_t segments = 0;
     ArrivingLight arriving;
     RayPacket shadow;
     shadow.origin = s.leaving;
@@ -105,6 +109,7 @@ void add_lights(PreparedScene const& scene, SurfacePacket const& s, LobePacket c
             shadow.far[i] = arriving.distance[i] * 0.999f; // the lamp's own surface casts no shadow
         }
         transmittance.fill(Vec3(1));
+        segments += static_cast<std::uint32_t>(std::popcount(reached));
         LaneMask const blocked = scene.bvh.occluded(shadow, reached, transmittance);
         LaneMask const bright = reached & ~blocked;
         if (bright == 0) {
@@ -118,6 +123,7 @@ void add_lights(PreparedScene const& scene, SurfacePacket const& s, LobePacket c
         }
         add_reflected(lobes, s.normal, s.view, arriving.to_light, irradiance, radiance);
     }
+    return segments;
 }
 
 /// Transmission replaces diffuse reflection by what is seen straight through, tinted by the base colour.
@@ -142,14 +148,15 @@ void shade(PreparedScene const& scene, SurfacePacket const& s, LaneMask active, 
         split_transmission(s, active, lobes, out);
     }
     out.radiance = s.emissive;
+    out.segments = 0;
     LaneMask const lit = active & ~s.unlit;
     if (lit != 0) {
         AmbientPacket ambient;
         add_environment(scene, s, lobes, lit, bounces > 0, ambient, out.radiance);
         if (ambient.traced_lanes != 0) {
-            add_reflections(scene, s, ambient, bounces, out.radiance);
+            out.segments += add_reflections(scene, s, ambient, bounces, out.radiance);
         }
-        add_lights(scene, s, lobes, lit, out.radiance);
+        out.segments += add_lights(scene, s, lobes, lit, out.radiance);
     }
     for_each_lane(active & s.unlit, [&](int i) { out.radiance.set(i, s.base_color.get(i)); });
     if (scene.see_through) {

@@ -1,6 +1,7 @@
 #include "server/render/tracing.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include <glm/geometric.hpp>
@@ -73,6 +74,7 @@ void trace(PreparedScene const& scene, RayPacket& rays, LaneMask active, Footpri
     Compositing state;
     state.throughput.fill(Vec3(1));
     state.weight.fill(0);
+    out.segments = 0;
     for_each_lane(active, [&](int i) {
         out.radiance.set(i, Vec3(0));
         out.depth[i] = INFINITY;
@@ -82,6 +84,7 @@ void trace(PreparedScene const& scene, RayPacket& rays, LaneMask active, Footpri
     ShadedPacket shaded{};
     EmbreeScene::Behind behind = EmbreeScene::Behind::stops;
     for (int layer = 0; active != 0 && layer < most_layers; ++layer) {
+        out.segments += static_cast<std::uint32_t>(std::popcount(active));
         LaneMask const hit = scene.bvh.intersect(rays, active, behind, hits);
         add_background(scene, rays, active & ~hit, footprint, state, out);
         if (hit == 0) {
@@ -91,6 +94,7 @@ void trace(PreparedScene const& scene, RayPacket& rays, LaneMask active, Footpri
         LaneMask passed = 0;
         if (present != 0) {
             shade(scene, surfaces, present, bounces, shaded);
+            out.segments += shaded.segments;
             if (scene.see_through) {
                 passed |= add_layer(shaded, hits, present, state, out);
             } else {

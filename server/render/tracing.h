@@ -9,6 +9,7 @@ namespace framelet {
 struct TracedPacket {
     LaneVec3 radiance; ///< finite, >= 0
     LaneFloats depth; ///< ray parameter of the surface that contributes most; +infinity where that is the background
+    std::uint32_t segments = 0; ///< rays traced for it, shadow and mirror rays included
 };
 
 /// Traces the lanes of `active`; the others are left as they are. `rays.near` is moved along where rays continue.

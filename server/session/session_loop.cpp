@@ -78,22 +78,19 @@ bool SessionLoop::cycle(Sessions const& sessions, WallTime now) {
     double const share = options_.cycle_seconds / static_cast<double>(sessions.size());
     bool rendered = false;
     for (auto const& session : sessions) {
-        rendered |= render_session(*session, progress_[session->id()], time, share);
+        rendered |= render_session(*session, refreshes_[session->id()], time, share);
     }
     return rendered;
 }
 
-bool SessionLoop::render_session(Session& session, Progress& progress, SceneTime time, double cycle_seconds) {
+bool SessionLoop::render_session(Session& session, ViewRefresh& refresh, SceneTime time, double cycle_seconds) {
     SessionInput const input = session.newest_input();
     if (!input.camera) {
         return false;
     }
-    ViewState const seen{resolve_camera(*input.camera), options_.exposure * std::exp2(input.settings.exposure_ev),
-                         time};
-    double const affordable = rate_.samples_per_second * cycle_seconds;
-    NumberedView const& view = seen.camera.view;
-    bool const changed = progress.seen != seen;
-    if (!changed && is_converged(progress.refinement)) {
+    ViewState const state{resolve_camera(*input.camera), options_.exposure * std::exp2(input.settings.exposure_ev),
+                          time};
+    if (is_complete(refresh, state)) {
         if (session.report(input.version, true)) {
             events_.convergence_changed();
         }
@@ -103,21 +100,12 @@ bool SessionLoop::render_session(Session& session, Progress& progress, SceneTime
     if (number == 0) {
         return false;
     }
-    if (changed) {
-        progress.plane = ImagePlane(view.viewport);
-        progress.refinement = start_refinement(progress.plane, deepest_affordable(progress.plane, affordable));
-        progress.seen = seen;
-    }
-    // A view that has just changed is shown whole or it would be torn; afterwards a cycle's worth at a time.
-    std::size_t const timely = static_cast<std::size_t>(affordable / framelet_samples) + 1;
-    std::size_t const limit = options_.batch_framelets > 0 ? options_.batch_framelets
-                              : changed                    ? max_batch_framelets
-                                                           : timely;
-    std::vector<Tile> const tiles = select_tiles(progress.refinement, std::min(limit, max_batch_framelets));
+    std::vector<Tile> const tiles =
+        next_tiles(refresh, state, rate_.samples_per_second * cycle_seconds, options_.batch_framelets);
 
     auto const start = std::chrono::steady_clock::now();
     encoding_->spare.resize(tiles.size());
-    render_framelets(render_scene_, view.camera, progress.plane, tiles, 0, encoding_->spare);
+    render_framelets(render_scene_, state.view.camera, refresh.plane, tiles, 0, encoding_->spare);
     std::chrono::duration<double> const seconds = std::chrono::steady_clock::now() - start;
     rate_ = update_render_rate(rate_, static_cast<double>(tiles.size() * framelet_samples), seconds.count());
     samples_per_second_ = rate_.samples_per_second;
@@ -125,13 +113,13 @@ bool SessionLoop::render_session(Session& session, Progress& progress, SceneTime
     finish_encoding();
     std::swap(encoding_->rendered, encoding_->spare);
     encoding_->batch.number = number;
-    encoding_->batch.view = view;
+    encoding_->batch.view = state.view;
     encoding_->batch.scene_time = time;
-    encoding_->exposure = seen.exposure;
+    encoding_->exposure = state.exposure;
     encoding_->session = session.shared_from_this();
     encoding_->task.run([encoding = encoding_.get()] { encoding->run(); });
 
-    if (session.report(input.version, is_converged(progress.refinement))) {
+    if (session.report(input.version, is_complete(refresh, state))) {
         events_.convergence_changed();
     }
     return true;
@@ -144,11 +132,12 @@ void SessionLoop::pose_scene(SceneTime time) {
     }
 }
 
-CameraUpdate SessionLoop::resolve_camera(CameraUpdate camera) const {
+NumberedView SessionLoop::resolve_camera(CameraUpdate const& camera) const {
+    NumberedView view = camera.view;
     if (camera.scene_camera >= 0 && camera.scene_camera < static_cast<int>(scene_.cameras.size())) {
-        camera.view.camera = framelet::scene_camera(scene_, pose_, camera.scene_camera);
+        view.camera = framelet::scene_camera(scene_, pose_, camera.scene_camera);
     }
-    return camera;
+    return view;
 }
 
 void SessionLoop::finish_encoding() {
@@ -160,7 +149,7 @@ void SessionLoop::forget_ended(Sessions const& sessions) {
     auto const is_open = [&sessions](std::uint64_t id) {
         return std::any_of(sessions.begin(), sessions.end(), [id](auto const& session) { return session->id() == id; });
     };
-    std::erase_if(progress_, [&](auto const& entry) { return !is_open(entry.first); });
+    std::erase_if(refreshes_, [&](auto const& entry) { return !is_open(entry.first); });
 }
 
 void SessionLoop::wake() {

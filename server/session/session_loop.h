@@ -12,8 +12,8 @@
 
 #include "protocol/batch_codec.h"
 #include "server/render/framelet_renderer.h"
-#include "server/schedule/refinement.h"
 #include "server/schedule/render_rate.h"
+#include "server/schedule/view_refresh.h"
 #include "server/session/scene_clock.h"
 #include "server/session/session.h"
 
@@ -23,15 +23,6 @@ struct LoopOptions {
     float exposure = 1; ///< factor on radiance, before the viewer's own
     std::size_t batch_framelets = 0; ///< most framelets of one batch; 0: what `cycle_seconds` has time for
     double cycle_seconds = 0.05; ///< how long one cycle should take, all viewers together
-};
-
-/// What is on screen is worth refining for as long as this stays the same.
-struct ViewState {
-    CameraUpdate camera;
-    float exposure = 1;
-    SceneTime scene_time = 0; ///< 0 where nothing moves
-
-    bool operator==(ViewState const&) const = default;
 };
 
 class SessionLoop {
@@ -63,16 +54,9 @@ public:
     bool cycle(Sessions const& sessions, WallTime now);
 
 private:
-    /// What the loop remembers of a session between cycles.
-    struct Progress {
-        std::optional<ViewState> seen;
-        ImagePlane plane;
-        Refinement refinement;
-    };
-
     void pose_scene(SceneTime time);
-    CameraUpdate resolve_camera(CameraUpdate camera) const;
-    bool render_session(Session& session, Progress& progress, SceneTime time, double cycle_seconds);
+    NumberedView resolve_camera(CameraUpdate const& camera) const;
+    bool render_session(Session& session, ViewRefresh& refresh, SceneTime time, double cycle_seconds);
     void finish_encoding();
     void forget_ended(Sessions const& sessions);
 
@@ -85,7 +69,7 @@ private:
     Events const events_;
 
     ScenePose pose_;
-    std::map<std::uint64_t, Progress> progress_;
+    std::map<std::uint64_t, ViewRefresh> refreshes_; ///< by session
     RenderRate rate_;
 
     struct Encoding;

@@ -80,6 +80,29 @@ TEST(FrameletRenderer, ResultDependsOnNeitherThreadsNorOrder) {
     }
 }
 
+TEST(FrameletRenderer, SamplesAtItsPlacesAreThoseOfTheFramelet) {
+    Scene const scene = varied_scene();
+    RenderScene const ready(scene, Environment::default_sky());
+    ImagePlane const plane({48, 40});
+    ViewRays const rays = make_view_rays(view, plane.viewport());
+    Tile const tile = make_tile(plane.pixel_depth(), 1, 1);
+    Framelet framelet;
+    std::uint32_t const segments = render_framelet(ready, rays, plane, tile, 0, framelet);
+    EXPECT_GE(segments, 256u);
+    std::vector<Vec2> places;
+    for (std::uint32_t i = 0; i < framelet_samples; ++i) {
+        places.emplace_back(16.5f + static_cast<float>(morton_x(i)), 16.5f + static_cast<float>(morton_y(i)));
+    }
+    std::vector<Vec3> radiance(places.size());
+    EXPECT_EQ(render_samples(ready, rays, places, 1, radiance), segments);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        EXPECT_EQ(radiance[i], Vec3(framelet.red[i], framelet.green[i], framelet.blue[i])) << i;
+    }
+    std::vector<Vec3> few(5);
+    render_samples(ready, rays, std::span(places).first(5), 1, few);
+    EXPECT_TRUE(std::equal(few.begin(), few.end(), radiance.begin()));
+}
+
 TEST(FrameletRenderer, DepthIsViewDepthAndInfiniteInTheSky) {
     Scene scene;
     scene.materials = {matte(Vec3(0.5f))};
