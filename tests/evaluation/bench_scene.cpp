@@ -1,20 +1,46 @@
 #include "tests/evaluation/bench_scene.h"
 
+#include "common/error.h"
 #include "server/scene/scene_import.h"
 
 namespace framelet::bench {
 
-std::unique_ptr<BenchScene> load_bench_scene(std::filesystem::path const& file) {
+std::unique_ptr<BenchScene> load_bench_scene(std::filesystem::path const& file, int camera) {
     auto loaded = std::make_unique<BenchScene>();
+    loaded->file = file;
+    loaded->name = file.stem().string();
     loaded->scene = import_scene(file);
+    auto const cameras = static_cast<int>(loaded->scene.cameras.size());
+    if (camera < 0 || camera >= std::max(cameras, 1)) {
+        throw InputError("'" + file.string() + "' has no camera " + std::to_string(camera) + ": it has " +
+                         std::to_string(cameras));
+    }
     loaded->clips = default_clips(loaded->scene);
+    loaded->duration = animation_duration(loaded->scene, loaded->clips);
     loaded->render_scene = std::make_unique<RenderScene>(loaded->scene, std::nullopt);
-    ScenePose const pose = evaluate_pose(loaded->scene, loaded->clips, 0);
-    loaded->render_scene->set_pose(pose);
-    loaded->camera = loaded->scene.cameras.empty() ? default_camera(scene_bounds(loaded->scene, pose))
-                                                   : scene_camera(loaded->scene, pose, 0);
+    loaded->pose = evaluate_pose(loaded->scene, loaded->clips, 0);
+    loaded->render_scene->set_pose(loaded->pose);
+    loaded->scene_camera = cameras > 0 ? camera : none;
+    loaded->camera = default_camera(scene_bounds(loaded->scene, loaded->pose));
+    loaded->camera = camera_at(*loaded, 0);
     loaded->exposure = auto_exposure(*loaded->render_scene, loaded->camera);
     return loaded;
+}
+
+void pose_at(BenchScene& scene, SceneTime time) {
+    if (time != scene.pose.time) {
+        scene.pose = evaluate_pose(scene.scene, scene.clips, time);
+        scene.render_scene->set_pose(scene.pose);
+    }
+    if (scene.scene_camera != none) {
+        scene.camera = scene_camera(scene.scene, scene.pose, scene.scene_camera);
+    }
+}
+
+Camera camera_at(BenchScene const& scene, SceneTime time) {
+    return scene.scene_camera == none
+               ? scene.camera
+               : scene_camera(scene.scene, evaluate_pose(scene.scene, scene.clips, time), scene.scene_camera);
 }
 
 } // namespace framelet::bench

@@ -1,8 +1,9 @@
-// A scene loaded and ready to be rendered, as every verb of framelet-bench needs it.
+// A scene loaded and ready to be rendered at any of its times, as every verb of framelet-bench needs it.
 #pragma once
 
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "server/render/framelet_renderer.h"
@@ -11,14 +12,26 @@
 namespace framelet::bench {
 
 struct BenchScene {
+    std::filesystem::path file;
+    std::string name; ///< stem of the file
     Scene scene;
     std::vector<Index> clips;
-    std::unique_ptr<RenderScene> render_scene; ///< reads `scene`; posed at time 0
-    Camera camera; ///< the scene's first, or the default one
+    std::unique_ptr<RenderScene> render_scene; ///< reads `scene`
+    Index scene_camera = none; ///< looked through; none: `camera`
+    Camera camera; ///< at the time that the scene was posed for last
     float exposure = 1;
+    double duration = 0; ///< seconds of animation; 0: nothing moves
+    ScenePose pose;
 };
 
-/// Throws InputError.
-std::unique_ptr<BenchScene> load_bench_scene(std::filesystem::path const& file);
+/// Loads the scene and poses it at time 0. `camera`: which of the scene's cameras, from 0; a scene that has none is
+/// seen by the default one. Throws InputError.
+std::unique_ptr<BenchScene> load_bench_scene(std::filesystem::path const& file, int camera = 0);
+
+/// Moves everything, the camera included, to where it is at `time`.
+void pose_at(BenchScene& scene, SceneTime time);
+
+/// Where the camera is at `time`; the scene stays as it is.
+Camera camera_at(BenchScene const& scene, SceneTime time);
 
 } // namespace framelet::bench

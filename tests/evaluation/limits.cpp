@@ -1,7 +1,6 @@
 #include "tests/evaluation/limits.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <functional>
@@ -19,23 +18,12 @@
 #include "server/schedule/tiling.h"
 #include "server/session/server.h"
 #include "tests/evaluation/sink_viewer.h"
+#include "tests/evaluation/stopwatch.h"
 
 namespace framelet::bench {
 namespace {
 
 using nlohmann::json;
-using std::chrono::steady_clock;
-
-double seconds_of(std::function<void()> const& work) {
-    auto const start = steady_clock::now();
-    work();
-    return std::chrono::duration<double>(steady_clock::now() - start).count();
-}
-
-double median(std::vector<double> values) {
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-    return values[values.size() / 2];
-}
 
 /// Embree and shading alone: the same tiles as the server's batches, one parallel loop over all of them.
 double bare_loop_seconds(BenchScene& scene, Viewport viewport, std::vector<Tile> const& tiles) {
@@ -140,14 +128,14 @@ json measure_stages(BenchScene& scene, LimitsOptions const& options) {
 
 json measure_limits(BenchScene& scene, LimitsOptions const& options) {
     json result;
-    result["scene"] = scene.scene.name;
+    result["scene"] = scene.name;
     result["viewport"] = {options.viewport.width, options.viewport.height};
     result["threads"] = tbb::info::default_concurrency();
     result["server"] = measure_server(scene, options);
     result["stages"] = measure_stages(scene, options);
 
     json const& server = result["server"];
-    std::printf("%s, %dx%d, %d threads, medians of %d rounds\n\n", scene.scene.name.c_str(), options.viewport.width,
+    std::printf("%s, %dx%d, %d threads, medians of %d rounds\n\n", scene.name.c_str(), options.viewport.width,
                 options.viewport.height, result["threads"].get<int>(), options.rounds);
     std::printf("rendering, all threads        Msamples/s\n");
     std::printf("  bare Embree + shading loop  %8.2f\n", server["bare_samples_per_second"].get<double>() / 1e6);

@@ -1,0 +1,185 @@
+#include "tests/evaluation/calibrate.h"
+
+#include <random>
+
+#include <tbb/global_control.h>
+
+#include "common/color.h"
+#include "common/framelet_cache.h"
+#include "common/reconstruction.h"
+#include "protocol/batch_codec.h"
+#include "server/schedule/view_refresh.h"
+#include "tests/evaluation/codecs/h264_codec.h"
+#include "tests/evaluation/codecs/jpeg_codec.h"
+#include "tests/evaluation/methods/kd_leaves.h"
+#include "tests/evaluation/methods/whole_frame.h"
+#include "tests/evaluation/stopwatch.h"
+
+namespace framelet::bench {
+namespace {
+
+/// Pictures of the scene a thirtieth of a second apart, for the codecs that look back.
+std::vector<Picture> moving_pictures(BenchScene& scene, Viewport viewport, int count) {
+    std::vector<Picture> pictures;
+    for (int i = 0; i < count; ++i) {
+        pose_at(scene, i / 30.0);
+        pictures.push_back(render_picture(*scene.render_scene, scene.camera, viewport, scene.exposure, 1));
+    }
+    pose_at(scene, 0);
+    return pictures;
+}
+
+void calibrate_rendering(BenchScene& scene, ImagePlane const& plane, int rounds, std::vector<Framelet>& rendered,
+                         CostTable& costs) {
+    auto const tiles = make_uniform_tiling(plane, plane.pixel_depth()).tiles;
+    rendered.resize(tiles.size());
+    std::vector<Vec2> places;
+    for (Tile const tile : tiles) {
+        PixelRect const rect = plane.tile_rect(tile);
+        for (std::uint32_t i = 0; i < framelet_samples; ++i) {
+            places.push_back(Vec2(rect.left, rect.top) + Vec2(morton_x(i), morton_y(i)) + 0.5f);
+        }
+    }
+    std::mt19937 random(1);
+    std::shuffle(places.begin(), places.end(), random);
+    std::vector<Vec3> radiance(places.size());
+    ViewRays const rays = make_view_rays(scene.camera, plane.viewport());
+    std::vector<double> coherent, incoherent;
+    for (int round = 0; round < rounds; ++round) {
+        std::uint64_t segments = 0;
+        double seconds = seconds_of(
+            [&] { segments = render_framelets(*scene.render_scene, scene.camera, plane, tiles, 0, rendered); });
+        coherent.push_back(1e9 * seconds / static_cast<double>(segments));
+        seconds = seconds_of([&] { segments = render_samples(*scene.render_scene, rays, places, 1, radiance); });
+        incoherent.push_back(1e9 * seconds / static_cast<double>(segments));
+    }
+    costs.coherent_segment = median(coherent);
+    costs.incoherent_segment = median(incoherent);
+}
+
+/// Median nanoseconds a unit.
+template <class Work>
+double cost(int rounds, double units, Work&& work) {
+    std::vector<double> all;
+    for (int round = 0; round < rounds; ++round) {
+        all.push_back(1e9 * seconds_of(work) / units);
+    }
+    return median(all);
+}
+
+void calibrate_framelets(BenchScene& scene, ImagePlane const& plane, int rounds, std::vector<Framelet> const& rendered,
+                         CostTable& costs) {
+    Viewport const viewport = plane.viewport();
+    double const samples = static_cast<double>(rendered.size() * framelet_samples);
+    double const pixels = static_cast<double>(viewport.width) * viewport.height;
+    Batch batch;
+    batch.view = {1, scene.camera, viewport};
+    batch.framelets.resize(rendered.size());
+    costs.display_sample = cost(rounds, samples, [&] {
+        std::transform(rendered.begin(), rendered.end(), batch.framelets.begin(),
+                       [&](Framelet const& framelet) { return to_display(framelet, scene.exposure); });
+    });
+    BatchCodec codec;
+    EncodedBatch encoded;
+    Batch decoded;
+    costs.encode_sample = cost(rounds, samples, [&] { encoded = codec.encode(batch); });
+    costs.decode_sample = cost(rounds, samples, [&] { decoded = codec.decode(encoded); });
+
+    FrameletCache cache(plane);
+    Picture picture(viewport.width, viewport.height);
+    std::vector<PixelRect> changed;
+    std::vector<double> insertion, coarse, fine;
+    for (int round = 0; round < rounds; ++round) {
+        ++decoded.number;
+        insertion.push_back(seconds_of([&] { cache.insert(decoded); }));
+        cache.take_changed(changed);
+        coarse.push_back(seconds_of([&] { reconstruct(cache, changed, picture); }));
+    }
+    // The same colours once more, a level finer: four framelets where there was one.
+    Batch finer = decoded;
+    finer.framelets.clear();
+    for (DisplayFramelet framelet : decoded.framelets) {
+        Tile const tile = framelet.tile;
+        for (std::uint32_t quadrant = 0; quadrant < 4; ++quadrant) {
+            framelet.tile = tile.child(quadrant);
+            if (plane.is_visible(framelet.tile)) {
+                finer.framelets.push_back(framelet);
+            }
+        }
+    }
+    for (int round = 0; round < rounds; ++round) {
+        ++finer.number;
+        cache.insert(finer);
+        cache.take_changed(changed);
+        fine.push_back(seconds_of([&] { reconstruct(cache, changed, picture); }));
+    }
+    costs.cache_sample = 1e9 * median(insertion) / samples;
+    costs.reconstruct_pixel = 1e9 * median(coarse) / pixels;
+    double const fine_samples = static_cast<double>(finer.framelets.size() * framelet_samples);
+    costs.reconstruct_fine_sample = 1e9 * std::max(median(fine) - median(coarse), 0.1 * median(coarse)) / fine_samples;
+    costs.place_pixel = cost(rounds, pixels, [&] {
+        for (DisplayFramelet const& framelet : batch.framelets) {
+            place_framelet(framelet, plane, picture);
+        }
+    });
+    ViewState state{{1, scene.camera, viewport}, 1, 0};
+    costs.select_tile = cost(rounds, static_cast<double>(rendered.size()), [&] {
+        ViewRefresh refresh;
+        next_tiles(refresh, state, samples + 1, 0);
+    });
+}
+
+void calibrate_afr(Viewport viewport, int rounds, CostTable& costs) {
+    KdLeaves leaves(viewport, 64);
+    std::mt19937_64 random(1);
+    // A step takes about as many samples as there are leaves.
+    double time = 0;
+    costs.afr_sample = cost(rounds * 8, static_cast<double>(leaves.size()), [&] {
+        std::size_t const count = leaves.size();
+        time += 1.0 / 120;
+        for (std::size_t i = 0; i < count; ++i) {
+            std::size_t const leaf = random() % leaves.size();
+            leaves.add(leaf, time, static_cast<float>(random() % 256) / 255.0f * (leaf % 2 == 0 ? 1.0f : 0.1f));
+        }
+        leaves.adapt(count / 64);
+    });
+}
+
+void calibrate_codecs(BenchScene& scene, Viewport viewport, int rounds, CostTable& costs) {
+    auto const pictures = moving_pictures(scene, viewport, std::max(rounds, 8));
+    double const pixels = static_cast<double>(viewport.width) * viewport.height;
+    JpegCodec jpeg;
+    H264Encoder encoder(viewport.width, viewport.height, 30, 20e6);
+    H264Decoder decoder;
+    std::vector<double> jpeg_in, jpeg_out, h264_in, h264_out;
+    Picture decoded;
+    for (Picture const& picture : pictures) {
+        std::span<std::byte const> bytes;
+        jpeg_in.push_back(seconds_of([&] { bytes = jpeg.encode(picture, 85); }));
+        jpeg_out.push_back(seconds_of([&] { jpeg.decode(bytes, decoded); }));
+        std::vector<std::byte> unit;
+        h264_in.push_back(seconds_of([&] { unit = encoder.encode(picture); }));
+        h264_out.push_back(seconds_of([&] { decoder.decode(unit, decoded); }));
+    }
+    costs.jpeg_encode_pixel = 1e9 * median(jpeg_in) / pixels;
+    costs.jpeg_decode_pixel = 1e9 * median(jpeg_out) / pixels;
+    costs.h264_encode_pixel = 1e9 * median(h264_in) / pixels;
+    costs.h264_decode_pixel = 1e9 * median(h264_out) / pixels;
+}
+
+} // namespace
+
+CostTable calibrate(BenchScene& scene, Viewport viewport, int rounds) {
+    tbb::global_control const one_thread(tbb::global_control::max_allowed_parallelism, 1);
+    pose_at(scene, 0);
+    ImagePlane const plane(viewport);
+    CostTable costs;
+    std::vector<Framelet> rendered;
+    calibrate_rendering(scene, plane, rounds, rendered, costs);
+    calibrate_framelets(scene, plane, rounds, rendered, costs);
+    calibrate_afr(viewport, rounds, costs);
+    calibrate_codecs(scene, viewport, rounds, costs);
+    return costs;
+}
+
+} // namespace framelet::bench

@@ -1,0 +1,12 @@
+// Measures what every stage costs on this machine: the table that the virtual clock runs on.
+#pragma once
+
+#include "tests/evaluation/bench_scene.h"
+#include "tests/evaluation/cost_table.h"
+
+namespace framelet::bench {
+
+/// One thread, medians of `rounds`. The scene is posed anew.
+CostTable calibrate(BenchScene& scene, Viewport viewport, int rounds);
+
+} // namespace framelet::bench

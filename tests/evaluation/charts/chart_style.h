@@ -1,0 +1,48 @@
+// What all charts have in common: the look, the colour of each method, axes.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace framelet::bench {
+
+struct LineStyle {
+    std::string color; ///< "#rrggbb"
+    int dash = 1; ///< gnuplot's dash type; 1 is solid
+    int point = 7; ///< gnuplot's point type
+    double width = 2;
+};
+
+/// A style for each name. The methods of the evaluation have theirs fixed (colours that the colour-blind tell apart,
+/// after Okabe and Ito and P. Tol); any other name has a colour that follows from its letters, or the next
+/// free one where two of one chart would be alike; beyond eight such names colours return with other dashes.
+std::vector<LineStyle> line_styles(std::span<std::string const> names);
+
+/// "lc rgb ... lw ... dt ... pt ..." for a plot command.
+std::string to_string(LineStyle const& style);
+
+/// Light grid, grey axes left and below, the legend to the right. `title` is drawn as it is.
+std::string common_look(std::string const& title);
+
+/// Reach of one axis, low < high.
+struct Range {
+    double low = 0;
+    double high = 1;
+};
+
+/// From the least to the greatest finite value above zero, at least four times as far up as down; where a value is zero
+/// or less, half as far down again, so that what is drawn there is seen to be lower. [0.1, 1] if none is above zero.
+Range log_range(std::span<double const> values);
+
+/// Where a value is drawn on a logarithmic axis: inside it.
+double on_log_axis(double value, Range const& range);
+
+/// Commands that make `axis` ("x", "y") logarithmic. Its marks end at `marked_high`, which leaves the rest free for
+/// text.
+std::string log_axis(std::string const& axis, Range const& range, double marked_low, double marked_high);
+
+/// Commands for an axis' title, drawn as it is.
+std::string axis_title(std::string const& axis, std::string const& title);
+
+} // namespace framelet::bench

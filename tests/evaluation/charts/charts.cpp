@@ -1,0 +1,211 @@
+#include "tests/evaluation/charts/charts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <optional>
+
+#include "common/error.h"
+#include "tests/evaluation/charts/chart_style.h"
+
+namespace framelet::bench {
+namespace {
+
+using OptionalRange = std::optional<Range>; ///< none: a linear axis, which gnuplot scales
+
+bool drawable(Curve const& curve, std::size_t i) {
+    return std::isfinite(curve.x[i]) && std::isfinite(curve.y[i]);
+}
+
+void check(std::string const& title, std::vector<Curve> const& curves) {
+    if (curves.empty()) {
+        throw InputError("chart '" + title + "' has no curve");
+    }
+    for (Curve const& curve : curves) {
+        if (curve.x.size() != curve.y.size()) {
+            throw InputError("chart '" + title + "': curve '" + curve.name + "' has " + std::to_string(curve.x.size()) +
+                             " x but " + std::to_string(curve.y.size()) + " y");
+        }
+        std::size_t i = 0;
+        while (i < curve.x.size() && !drawable(curve, i)) {
+            ++i;
+        }
+        if (i == curve.x.size()) {
+            throw InputError("chart '" + title + "': curve '" + curve.name + "' has no point to draw");
+        }
+    }
+}
+
+Range range_of(std::vector<Curve> const& curves, std::vector<double> Curve::*axis) {
+    std::vector<double> values;
+    for (Curve const& curve : curves) {
+        for (std::size_t i = 0; i < curve.x.size(); ++i) {
+            if (drawable(curve, i)) {
+                values.push_back((curve.*axis)[i]);
+            }
+        }
+    }
+    return log_range(values);
+}
+
+/// So that marks at the ends are not cut.
+Range widened(Range range, double share) {
+    double const factor = std::pow(range.high / range.low, share);
+    return {range.low / factor, range.high * factor};
+}
+
+std::string block_name(char const* what, std::size_t i) {
+    return std::string("$") + what + std::to_string(i);
+}
+
+std::string place(double value, OptionalRange const& range) {
+    return number(range ? on_log_axis(value, *range) : value);
+}
+
+std::string data_block(std::string const& name, Curve const& curve, OptionalRange const& x, OptionalRange const& y) {
+    std::string out = name + " << EOD\n";
+    bool gap = true; // of one blank line: two would begin another data set
+    for (std::size_t i = 0; i < curve.x.size(); ++i) {
+        if (drawable(curve, i)) {
+            out += place(curve.x[i], x) + " " + place(curve.y[i], y) + "\n";
+            gap = false;
+        } else if (!gap) {
+            out += "\n";
+            gap = true;
+        }
+    }
+    return out + "EOD\n";
+}
+
+std::vector<LineStyle> styles_of(std::vector<Curve> const& curves) {
+    std::vector<std::string> names;
+    std::transform(curves.begin(), curves.end(), std::back_inserter(names), [](Curve const& c) { return c.name; });
+    return line_styles(names);
+}
+
+/// The data blocks $curve0... and the plot command without an end of line.
+std::string add_lines(Plot& plot, std::vector<Curve> const& curves, OptionalRange const& x, OptionalRange const& y,
+                      char const* with) {
+    std::vector<LineStyle> const styles = styles_of(curves);
+    std::string command = "plot ";
+    for (std::size_t i = 0; i < curves.size(); ++i) {
+        std::string const block = block_name("curve", i);
+        plot.data += data_block(block, curves[i], x, y);
+        command += (i == 0 ? "" : ", \\\n  ") + block + " with " + with + " " + to_string(styles[i]) + " title " +
+                   quoted(curves[i].name);
+    }
+    return command;
+}
+
+constexpr double mark_margin = 0.03; // share of a logarithmic axis, on each side
+
+std::string log_axis_with_margin(std::string const& axis, Range const& range) {
+    Range const wide = widened(range, mark_margin);
+    return log_axis(axis, wide, wide.low, wide.high);
+}
+
+Curve curve_of(ParetoCurve const& from) {
+    Curve curve{from.method, {}, {}};
+    for (ParetoPoint const& point : from.points) {
+        curve.x.push_back(point.cost);
+        curve.y.push_back(point.error);
+    }
+    return curve;
+}
+
+constexpr double row_height = 0.03; // of one method's refreshes, as share of the chart's
+
+/// Data and plot commands of the rows of refreshes, on a second y axis from 0 to 1.
+std::string add_refreshes(Plot& plot, std::vector<ErrorSeries> const& series, std::vector<LineStyle> const& styles) {
+    std::string command;
+    std::size_t row = 0;
+    for (std::size_t i = 0; i < series.size(); ++i) {
+        if (series[i].refreshes.empty()) {
+            continue;
+        }
+        std::string const block = block_name("refresh", i);
+        std::string const low = number((static_cast<double>(row) + 0.2) * row_height);
+        plot.data += block + " << EOD\n";
+        for (double const seconds : series[i].refreshes) {
+            plot.data += number(seconds) + " " + low + "\n";
+        }
+        plot.data += "EOD\n";
+        command += ", \\\n  " + block + " using 1:2:(0):(" + number(0.6 * row_height) +
+                   ") axes x1y2 with vectors nohead lw 1 lc rgb '" + styles[i].color + "' notitle";
+        ++row;
+    }
+    return command;
+}
+
+} // namespace
+
+Plot plot_of(Curves const& chart) {
+    check(chart.title, chart.curves);
+    OptionalRange const x = chart.log_x ? OptionalRange(range_of(chart.curves, &Curve::x)) : std::nullopt;
+    OptionalRange const y = chart.log_y ? OptionalRange(range_of(chart.curves, &Curve::y)) : std::nullopt;
+    Plot plot;
+    plot.commands = common_look(chart.title) + axis_title("x", chart.x_title) + axis_title("y", chart.y_title);
+    plot.commands += x ? log_axis_with_margin("x", *x) : "";
+    plot.commands += y ? log_axis_with_margin("y", *y) : "";
+    plot.commands += add_lines(plot, chart.curves, x, y, chart.points ? "linespoints" : "lines") + "\n";
+    return plot;
+}
+
+Plot plot_of(ErrorOverTime const& chart) {
+    std::vector<Curve> curves;
+    double first = INFINITY, last = -INFINITY;
+    std::size_t rows = 0;
+    for (ErrorSeries const& series : chart.series) {
+        curves.push_back({series.method, series.seconds, series.mse});
+        for (double const seconds : series.seconds) {
+            first = std::min(first, seconds);
+            last = std::max(last, seconds);
+        }
+        rows += series.refreshes.empty() ? 0 : 1;
+    }
+    check(chart.title, curves);
+    Range const y = widened(range_of(curves, &Curve::y), mark_margin);
+    double const rows_share = row_height * static_cast<double>(rows);
+    Range const with_rows{y.low / std::pow(y.high / y.low, rows_share / (1 - rows_share)), y.high};
+
+    Plot plot;
+    plot.commands = common_look(chart.title) + axis_title("x", "time [s]") + axis_title("y", chart.y_title);
+    plot.commands += log_axis("y", with_rows, y.low, y.high);
+    if (last > first) {
+        plot.commands += "set xrange [" + number(first) + ":" + number(last) + "]\n";
+    }
+    plot.commands += "set y2range [0:1]\n";
+    if (rows > 0) {
+        plot.commands += "set label 'refreshes' at graph -0.01, graph " + number(rows_share / 2) +
+                         " right font ',9' textcolor rgb '#666666'\n";
+    }
+    plot.commands += add_lines(plot, curves, std::nullopt, y, "lines");
+    plot.commands += add_refreshes(plot, chart.series, styles_of(curves)) + "\n";
+    return plot;
+}
+
+Plot plot_of(ParetoCurves const& chart) {
+    std::vector<Curve> curves;
+    std::transform(chart.curves.begin(), chart.curves.end(), std::back_inserter(curves), curve_of);
+    check(chart.title, curves);
+    Range const x = range_of(curves, &Curve::x);
+    Range const y = range_of(curves, &Curve::y);
+    std::vector<LineStyle> const styles = styles_of(curves);
+    Plot plot;
+    plot.commands = common_look(chart.title) + axis_title("x", chart.x_title) + axis_title("y", chart.y_title);
+    plot.commands += log_axis_with_margin("x", x) + log_axis_with_margin("y", y);
+    for (std::size_t i = 0; i < curves.size(); ++i) {
+        for (std::size_t j = 0; j < curves[i].x.size(); ++j) {
+            std::string const& label = chart.curves[i].points[j].label;
+            if (!label.empty() && drawable(curves[i], j)) {
+                plot.commands += "set label " + quoted(label) + " noenhanced at " + place(curves[i].x[j], x) + ", " +
+                                 place(curves[i].y[j], y) + " offset 0.6,0.6 front font ',8' textcolor rgb '" +
+                                 styles[i].color + "'\n";
+            }
+        }
+    }
+    plot.commands += add_lines(plot, curves, x, y, "linespoints") + "\n";
+    return plot;
+}
+
+} // namespace framelet::bench

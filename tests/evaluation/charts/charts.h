@@ -1,0 +1,77 @@
+// Charts of lines: error over time, error against cost, sweeps. Values in, gnuplot scripts or files out.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tests/evaluation/charts/gnuplot.h"
+
+namespace framelet::bench {
+
+/// A line through points, in the order given. A point that is not finite leaves a gap.
+struct Curve {
+    std::string name; ///< in the legend; fixes the colour (chart_style.h)
+    std::vector<double> x;
+    std::vector<double> y; ///< as many as `x`
+};
+
+/// General lines with a mark at each point: link sweeps, ablations, spectra. On a logarithmic axis values of zero and
+/// less stand at its lower end.
+struct Curves {
+    std::string title;
+    std::string x_title; ///< with unit
+    std::string y_title; ///< with unit
+    bool log_x = false;
+    bool log_y = false;
+    bool points = true; ///< a mark at each point
+    std::vector<Curve> curves;
+};
+
+struct ErrorSeries {
+    std::string method;
+    std::vector<double> seconds; ///< ascending
+    std::vector<double> mse; ///< one for each of `seconds`; zero stands at the lower end of the axis
+    std::vector<double> refreshes; ///< seconds at which a new picture was displayed; may be empty
+};
+
+/// Mean squared error against time, logarithmic, with a row of ticks below for each method that has refreshes (004 figs
+/// 7.8 and 7.14).
+struct ErrorOverTime {
+    std::string title;
+    std::string y_title = "mean squared error";
+    std::vector<ErrorSeries> series;
+};
+
+struct ParetoPoint {
+    double cost = 0; ///< > 0
+    double error = 0; ///< zero stands at the lower end of the axis
+    std::string label; ///< beside the point; may be empty
+};
+
+struct ParetoCurve {
+    std::string method;
+    std::vector<ParetoPoint> points; ///< joined in this order
+};
+
+/// Error against cost, both logarithmic; left and below is better.
+struct ParetoCurves {
+    std::string title;
+    std::string x_title; ///< "server CPU [s]", "link [bytes/s]", "latency [ms]"
+    std::string y_title = "mean squared error";
+    std::vector<ParetoCurve> curves;
+};
+
+/// The drawing as text, the same for the same values. InputError where a curve has no point to draw or not as many x as
+/// y.
+Plot plot_of(Curves const& chart);
+Plot plot_of(ErrorOverTime const& chart);
+Plot plot_of(ParetoCurves const& chart);
+
+/// Draws to `stem`.svg and `stem`.png.
+template <class Chart>
+void draw(Chart const& chart, std::filesystem::path const& stem) {
+    render(plot_of(chart), stem);
+}
+
+} // namespace framelet::bench

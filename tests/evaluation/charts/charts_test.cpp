@@ -1,0 +1,225 @@
+#include "tests/evaluation/charts/charts.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <limits>
+#include <set>
+#include <sstream>
+#include <unistd.h>
+
+#include <gtest/gtest.h>
+
+#include "common/error.h"
+#include "common/image_io.h"
+#include "tests/evaluation/charts/chart_style.h"
+#include "tests/evaluation/charts/ratio_boxes.h"
+
+namespace framelet::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// gnuplot's own idea of right: the files are there, the drawing has ink in it, its texts are in the SVG.
+class Drawn : public testing::Test {
+protected:
+    Drawn() { fs::create_directories(folder_); }
+    ~Drawn() override { fs::remove_all(folder_); }
+
+    std::string svg(fs::path const& stem) const {
+        std::ifstream stream(stem.string() + ".svg");
+        std::ostringstream text;
+        text << stream.rdbuf();
+        return text.str();
+    }
+
+    template <class Chart>
+    std::string drawn(Chart const& chart) {
+        fs::path const stem = folder_ / "chart v1.5"; // a dot and a blank in the name
+        draw(chart, stem);
+        Picture const png = read_picture(stem.string() + ".png");
+        Plot const plot = plot_of(chart);
+        EXPECT_EQ(png.width, plot.width);
+        EXPECT_EQ(png.height, plot.height);
+        std::set<std::uint8_t> const levels(png.rgba.begin(), png.rgba.end());
+        EXPECT_GT(levels.size(), 20u);
+        EXPECT_EQ(png.rgba[0], 255);
+        return svg(stem);
+    }
+
+    fs::path const folder_ = fs::path(testing::TempDir()) / ("framelet_charts_test_" + std::to_string(getpid()));
+};
+
+void expect_has(std::string const& text, std::string const& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << "no '" << part << "' in:\n" << text.substr(0, 3000);
+}
+
+TEST_F(Drawn, ErrorOverTime) {
+    ErrorOverTime const chart{.title = "Scene 'x' at {5} Mbit/s",
+                              .series = {{"framed_a", {0, 1, 2, 3}, {1e-3, 2e-3, 1e-3, 0}, {0, 2}},
+                                         {"framelet", {0, 1, 2, 3}, {1e-4, NAN, 2e-5, 1e-5}, {}}}};
+    std::string const text = drawn(chart);
+    expect_has(text, "Scene 'x' at {5} Mbit/s");
+    expect_has(text, "framed_a");
+    expect_has(text, "time [s]");
+    expect_has(text, "refreshes");
+
+    std::string const data = plot_of(chart).data;
+    expect_has(data, "$curve1 << EOD\n0 1e-04\n\n2 2e-05\n3 1e-05\nEOD\n"); // a gap where there is no value
+    expect_has(data, "$refresh0 << EOD\n0 ");
+    EXPECT_EQ(data.find("$refresh1"), std::string::npos);
+}
+
+TEST_F(Drawn, Curves) {
+    Curves chart{"t", "link [Mbit/s]", "PSNR [dB]", true, false, true, {{"tsar", {1, 10, 100}, {20, 25, 30}}}};
+    std::string const text = drawn(chart);
+    expect_has(text, "link [Mbit/s]");
+    expect_has(text, ">100<"); // a mark of the axis
+    chart.log_x = false;
+    chart.points = false;
+    chart.curves[0].y = {0, 0, 0};
+    drawn(chart);
+}
+
+TEST_F(Drawn, ParetoCurves) {
+    ParetoCurves const chart{.title = "t",
+                             .x_title = "server CPU [s]",
+                             .curves = {{"framed", {{1, 1e-3, "q 30"}, {2, 1e-6, ""}}}, {"oracle", {{1, 1e-5, ""}}}}};
+    std::string const text = drawn(chart);
+    expect_has(text, "q 30");
+    expect_has(text, "server CPU [s]");
+}
+
+TEST_F(Drawn, RatioBoxes) {
+    RatioBoxes const chart{.title = "Suitability",
+                           .scenes = {{"scene A", {{"0", {0.1, 0.5, 2}, 16.0}, {"1", {1, infinity}, std::nullopt}}},
+                                      {"scene B", {{"a long label", {0, 0.2}, 100.0}}},
+                                      {"scene C", {{"0", {3}, 5.0}}}}};
+    std::string const text = drawn(chart);
+    for (char const* part : {"Suitability", "scene A", "scene B", "scene C", ">66<", ">16<", "a long label"}) {
+        expect_has(text, part);
+    }
+}
+
+TEST(Ratios, PercentilesAndSuitability) {
+    std::vector<double> ratios;
+    for (int i = 100; i >= 0; --i) {
+        ratios.push_back(i / 50.0);
+    }
+    RatioSummary const s = summarise_ratios(ratios);
+    EXPECT_NEAR(s.p5, 0.1, 1e-12);
+    EXPECT_NEAR(s.p25, 0.5, 1e-12);
+    EXPECT_NEAR(s.p50, 1, 1e-12);
+    EXPECT_NEAR(s.p75, 1.5, 1e-12);
+    EXPECT_NEAR(s.p95, 1.9, 1e-12);
+    EXPECT_NEAR(s.suitable, 100 * 51 / 101.0, 1e-9); // one counts as suitable
+
+    RatioSummary const two = summarise_ratios(std::vector<double>{1, 2});
+    EXPECT_DOUBLE_EQ(two.p25, 1.25);
+    EXPECT_DOUBLE_EQ(two.suitable, 50);
+    RatioSummary const endless = summarise_ratios(std::vector<double>{0, infinity, infinity});
+    EXPECT_EQ(endless.p50, infinity);
+    EXPECT_EQ(endless.p95, infinity);
+
+    EXPECT_THROW(summarise_ratios({}), InputError);
+    EXPECT_THROW(summarise_ratios(std::vector<double>{0.5, NAN}), InputError);
+    EXPECT_THROW(summarise_ratios(std::vector<double>{-1}), InputError);
+}
+
+TEST(Charts, BadInputIsRefused) {
+    Curves chart{"t", "x", "y", false, false, true, {}};
+    EXPECT_THROW(plot_of(chart), InputError);
+    chart.curves = {{"a", {1, 2}, {1}}};
+    EXPECT_THROW(plot_of(chart), InputError);
+    chart.curves = {{"a", {1, NAN}, {NAN, 1}}};
+    EXPECT_THROW(plot_of(chart), InputError);
+    EXPECT_THROW(plot_of(ErrorOverTime{}), InputError);
+    EXPECT_THROW(plot_of(ParetoCurves{}), InputError);
+    EXPECT_THROW(plot_of(RatioBoxes{}), InputError);
+    EXPECT_THROW(plot_of(RatioBoxes{.title = "t", .scenes = {{"empty", {}}}}), InputError);
+}
+
+TEST(ChartStyle, AMethodLooksTheSameInEveryChart) {
+    auto const both = line_styles(std::vector<std::string>{"framed", "framelet"});
+    auto const one = line_styles(std::vector<std::string>{"framelet"});
+    EXPECT_EQ(to_string(both[1]), to_string(one[0]));
+    EXPECT_NE(both[0].color, both[1].color);
+    auto const other = line_styles(std::vector<std::string>{"framelet", "no response"});
+    EXPECT_EQ(to_string(other[1]), to_string(line_styles(std::vector<std::string>{"no response"})[0]));
+
+    std::vector<std::string> names;
+    std::set<std::string> looks;
+    names.reserve(24);
+    for (int i = 0; i < 24; ++i) {
+        names.push_back("variant " + std::to_string(i));
+    }
+    for (LineStyle const& style : line_styles(names)) {
+        looks.insert(to_string(style));
+    }
+    EXPECT_EQ(looks.size(), names.size());
+}
+
+TEST(ChartStyle, LogarithmicAxes) {
+    Range const wide = log_range(std::vector<double>{1e-5, NAN, 3, infinity});
+    EXPECT_EQ(wide.low, 1e-5);
+    EXPECT_EQ(wide.high, 3);
+    Range const with_zero = log_range(std::vector<double>{0, 1, 100});
+    EXPECT_EQ(with_zero.low, 0.5);
+    EXPECT_EQ(on_log_axis(0, with_zero), 0.5);
+    EXPECT_EQ(on_log_axis(infinity, with_zero), 100);
+    Range const one = log_range(std::vector<double>{3, 3});
+    EXPECT_NEAR(one.high / one.low, 4, 1e-12);
+    EXPECT_NEAR(one.high * one.low, 9, 1e-12);
+    Range const none = log_range(std::vector<double>{0, -2});
+    EXPECT_LT(none.low, none.high);
+
+    expect_has(log_axis("y", {0.9, 8}, 0.9, 8), "('' 0.9 1, '1' 1 0, '2' 2 0, '' 3 1, '' 4 1, '5' 5 0,");
+    std::string const powers = log_axis("x", {1e-6, 1}, 1e-6, 1);
+    expect_has(powers, "'10^{-6}' 1e-06 0");
+    expect_has(powers, "'0.01' 0.01 0");
+    EXPECT_EQ(log_axis("y", {0.1, 100}, 0.1, 10).find("100 0"), std::string::npos);
+}
+
+TEST(Gnuplot, TextIsTakenLiterally) {
+    EXPECT_EQ(quoted("it's\na \"test\" `x`"), "'it''s a \"test\" `x`'");
+    EXPECT_EQ(number(0.1), "0.1");
+    EXPECT_EQ(number(-2e-7), "-2e-07");
+}
+
+std::string failure_of(std::string const& script) {
+    try {
+        run_gnuplot(script);
+    } catch (InputError const& error) {
+        return error.what();
+    }
+    return "";
+}
+
+TEST(Gnuplot, AFailingScriptSaysWhere) {
+    EXPECT_EQ(failure_of("set title 'fine'\n"), "");
+    std::string const failure = failure_of("set title 'fine'\nplot nonsense(x)\n");
+    expect_has(failure, "gnuplot failed: line 2: undefined function: nonsense");
+    EXPECT_EQ(failure.find('\n'), std::string::npos);
+}
+
+TEST(Gnuplot, FilesThatCannotBeWrittenAreNamed) {
+    try {
+        render({"", "plot x\n"}, "/nowhere/at all/chart");
+        FAIL();
+    } catch (InputError const& error) {
+        EXPECT_STREQ(error.what(), "cannot write '/nowhere/at all/chart.svg'");
+    }
+}
+
+TEST(Gnuplot, WithoutGnuplotTheMessageSaysWhatToInstall) {
+    std::string const path = std::getenv("PATH");
+    ASSERT_EQ(setenv("PATH", "/nowhere", 1), 0);
+    std::string const failure = failure_of("set title 'fine'\n");
+    ASSERT_EQ(setenv("PATH", path.c_str(), 1), 0);
+    expect_has(failure, "gnuplot-nox");
+}
+
+} // namespace
+} // namespace framelet::bench

@@ -1,0 +1,180 @@
+#include "tests/evaluation/codecs/h264_codec.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+extern "C" {
+#include <libavcodec/avcodec.h>
+#include <libavutil/opt.h>
+#include <libswscale/swscale.h>
+}
+
+#include "common/error.h"
+
+namespace framelet::bench {
+namespace {
+
+template <auto Free>
+struct Freed {
+    template <class T>
+    void operator()(T* pointer) const {
+        Free(&pointer);
+    }
+};
+struct FreedScaler {
+    void operator()(SwsContext* scaler) const { sws_freeContext(scaler); }
+};
+using Context = std::unique_ptr<AVCodecContext, Freed<avcodec_free_context>>;
+using Frame = std::unique_ptr<AVFrame, Freed<av_frame_free>>;
+using Packet = std::unique_ptr<AVPacket, Freed<av_packet_free>>;
+using Scaler = std::unique_ptr<SwsContext, FreedScaler>;
+
+int even(int side) {
+    return side + side % 2;
+}
+
+/// Between full-range BT.709 YCbCr and the picture's RGB, as exactly as the library can.
+Scaler make_scaler(int width, int height, AVPixelFormat from, AVPixelFormat to) {
+    Scaler scaler(sws_getContext(width, height, from, width, height, to,
+                                 SWS_BILINEAR | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INT | SWS_FULL_CHR_H_INP, nullptr,
+                                 nullptr, nullptr));
+    FRAMELET_CHECK(scaler);
+    int const* const coefficients = sws_getCoefficients(SWS_CS_ITU709);
+    sws_setColorspaceDetails(scaler.get(), coefficients, 1, coefficients, 1, 0, 1 << 16, 1 << 16);
+    return scaler;
+}
+
+Context make_context(AVCodec const* codec) {
+    av_log_set_level(AV_LOG_QUIET);
+    if (!codec) {
+        throw InputError("libavcodec here has no H.264 with x264");
+    }
+    Context context(avcodec_alloc_context3(codec));
+    FRAMELET_CHECK(context);
+    context->thread_count = 1;
+    return context;
+}
+
+} // namespace
+
+struct H264Encoder::State {
+    Context context;
+    Frame frame{av_frame_alloc()};
+    Packet packet{av_packet_alloc()};
+    Scaler scaler;
+    std::vector<std::uint8_t> padded; ///< the picture with even sides
+    int width = 0, height = 0;
+    std::int64_t number = 0;
+};
+
+H264Encoder::H264Encoder(int width, int height, double frames_per_second, double bits_per_second)
+    : state_(std::make_unique<State>()) {
+    FRAMELET_CHECK(width > 0 && height > 0 && frames_per_second > 0);
+    State& s = *state_;
+    s.width = width;
+    s.height = height;
+    s.context = make_context(avcodec_find_encoder_by_name("libx264"));
+    AVCodecContext& c = *s.context;
+    c.width = even(width);
+    c.height = even(height);
+    c.pix_fmt = AV_PIX_FMT_YUV420P;
+    c.color_range = AVCOL_RANGE_JPEG;
+    c.colorspace = AVCOL_SPC_BT709;
+    c.framerate = av_d2q(frames_per_second, 100000);
+    c.time_base = av_inv_q(c.framerate);
+    c.max_b_frames = 0;
+    c.gop_size = 1 << 20;
+    av_opt_set(c.priv_data, "preset", "veryfast", 0);
+    av_opt_set(c.priv_data, "tune", "zerolatency", 0);
+    if (bits_per_second > 0) {
+        c.bit_rate = c.rc_max_rate = std::llround(bits_per_second);
+        c.rc_buffer_size = static_cast<int>(std::min(bits_per_second / frames_per_second, 2e9));
+    } else {
+        av_opt_set(c.priv_data, "crf", "18", 0);
+    }
+    if (avcodec_open2(&c, c.codec, nullptr) < 0) {
+        throw InputError("x264 refuses pictures of " + std::to_string(width) + "x" + std::to_string(height));
+    }
+    s.frame->format = c.pix_fmt;
+    s.frame->width = c.width;
+    s.frame->height = c.height;
+    FRAMELET_CHECK(av_frame_get_buffer(s.frame.get(), 0) == 0);
+    s.scaler = make_scaler(c.width, c.height, AV_PIX_FMT_RGBA, AV_PIX_FMT_YUV420P);
+    s.padded.resize(static_cast<std::size_t>(c.width) * static_cast<std::size_t>(c.height) * 4);
+}
+
+H264Encoder::~H264Encoder() = default;
+
+std::vector<std::byte> H264Encoder::encode(Picture const& picture) {
+    State& s = *state_;
+    FRAMELET_CHECK(picture.width == s.width && picture.height == s.height);
+    std::size_t const row_bytes = static_cast<std::size_t>(s.context->width) * 4;
+    for (int y = 0; y < s.context->height; ++y) {
+        std::uint8_t const* const in = picture.row(std::min(y, s.height - 1));
+        std::uint8_t* const out = s.padded.data() + static_cast<std::size_t>(y) * row_bytes;
+        std::size_t const bytes = static_cast<std::size_t>(s.width) * 4;
+        std::copy_n(in, bytes, out);
+        std::copy_n(in + bytes - 4, row_bytes - bytes, out + bytes);
+    }
+    FRAMELET_CHECK(av_frame_make_writable(s.frame.get()) == 0);
+    std::array<std::uint8_t const*, 1> const planes{s.padded.data()};
+    std::array<int, 1> const strides{static_cast<int>(row_bytes)};
+    sws_scale(s.scaler.get(), planes.data(), strides.data(), 0, s.context->height, s.frame->data, s.frame->linesize);
+    s.frame->pts = s.number++;
+    FRAMELET_CHECK(avcodec_send_frame(s.context.get(), s.frame.get()) == 0);
+    FRAMELET_CHECK(avcodec_receive_packet(s.context.get(), s.packet.get()) == 0); // zero latency: at once
+    auto const* const data = reinterpret_cast<std::byte const*>(s.packet->data);
+    std::vector<std::byte> unit(data, data + s.packet->size);
+    av_packet_unref(s.packet.get());
+    return unit;
+}
+
+struct H264Decoder::State {
+    Context context;
+    Frame frame{av_frame_alloc()};
+    Packet packet{av_packet_alloc()};
+    Scaler scaler;
+    int width = 0, height = 0;
+    std::vector<std::uint8_t> input; ///< a unit and the padding that the decoder reads over
+};
+
+H264Decoder::H264Decoder() : state_(std::make_unique<State>()) {
+    state_->context = make_context(avcodec_find_decoder(AV_CODEC_ID_H264));
+    state_->context->flags |= AV_CODEC_FLAG_LOW_DELAY;
+    FRAMELET_CHECK(avcodec_open2(state_->context.get(), state_->context->codec, nullptr) == 0);
+}
+
+H264Decoder::~H264Decoder() = default;
+
+void H264Decoder::decode(std::span<std::byte const> unit, Picture& out) {
+    State& s = *state_;
+    s.input.assign(unit.size() + AV_INPUT_BUFFER_PADDING_SIZE, 0);
+    std::ranges::transform(unit, s.input.begin(), [](std::byte b) { return std::to_integer<std::uint8_t>(b); });
+    s.packet->data = s.input.data();
+    s.packet->size = static_cast<int>(unit.size());
+    if (unit.empty() || avcodec_send_packet(s.context.get(), s.packet.get()) != 0 ||
+        avcodec_receive_frame(s.context.get(), s.frame.get()) != 0) {
+        throw InputError("H.264: damaged access unit");
+    }
+    AVFrame const& frame = *s.frame;
+    if (!s.scaler || s.width != frame.width || s.height != frame.height) {
+        s.width = frame.width;
+        s.height = frame.height;
+        s.scaler = make_scaler(s.width, s.height, AV_PIX_FMT_YUV420P, AV_PIX_FMT_RGBA);
+    }
+    // An encoder's odd last column or row is cut off where `out` already has the picture's size.
+    bool const fits = even(out.width) == s.width && even(out.height) == s.height;
+    Picture whole(s.width, s.height);
+    std::array<std::uint8_t*, 1> const planes{whole.rgba.data()};
+    std::array<int, 1> const strides{s.width * 4};
+    sws_scale(s.scaler.get(), frame.data, frame.linesize, 0, s.height, planes.data(), strides.data());
+    if (!fits) {
+        out = Picture(s.width, s.height);
+    }
+    for (int y = 0; y < out.height; ++y) {
+        std::copy_n(whole.row(y), static_cast<std::size_t>(out.width) * 4, out.row(y));
+    }
+}
+
+} // namespace framelet::bench

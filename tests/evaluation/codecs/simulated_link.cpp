@@ -1,0 +1,70 @@
+#include "tests/evaluation/codecs/simulated_link.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace framelet::bench {
+namespace {
+
+/// Uniform in [0, 1) (SplitMix64, Steele et al. 2014).
+double uniform(std::uint64_t seed, std::uint64_t index) {
+    std::uint64_t z = seed + (index + 1) * 0x9e3779b97f4a7c15u;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
+}
+
+} // namespace
+
+double SimulatedLink::rate_at(double time) const {
+    double rate = parameters_.bits_per_second;
+    for (RateStep const& step : parameters_.rate_steps) {
+        rate = step.begin <= time ? step.bits_per_second : rate;
+    }
+    return rate;
+}
+
+bool SimulatedLink::stalled_at(double time) const {
+    return std::ranges::any_of(parameters_.stalls, [time](Stall const& stall) {
+        return stall.begin <= time && time < stall.begin + stall.seconds;
+    });
+}
+
+double SimulatedLink::next_change(double time) const {
+    double next = INFINITY;
+    auto const consider = [&](double change) { next = change > time ? std::min(next, change) : next; };
+    for (Stall const& stall : parameters_.stalls) {
+        consider(stall.begin);
+        consider(stall.begin + stall.seconds);
+    }
+    for (RateStep const& step : parameters_.rate_steps) {
+        consider(step.begin);
+    }
+    return next;
+}
+
+SimulatedLink::Delivery SimulatedLink::send(double now, std::size_t bytes) {
+    double time = std::max(now, free_);
+    double bits = 8 * static_cast<double>(bytes);
+    for (;;) {
+        double const change = next_change(time);
+        if (stalled_at(time)) {
+            time = change;
+            continue;
+        }
+        double const rate = rate_at(time);
+        double const needed = rate > 0 ? bits / rate : 0;
+        if (time + needed <= change) {
+            time += needed;
+            break;
+        }
+        bits -= rate * (change - time);
+        time = change;
+    }
+    free_ = time;
+    double const jitter = parameters_.jitter_seconds * uniform(parameters_.seed, messages_++);
+    last_arrival_ = std::max(last_arrival_, time + parameters_.delay_seconds + jitter);
+    return {time, last_arrival_};
+}
+
+} // namespace framelet::bench

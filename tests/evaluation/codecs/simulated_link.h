@@ -1,0 +1,57 @@
+// A link on the virtual clock: rate, delay, jitter, stalls. Reliable and in order, as TCP is. A value: the same
+// messages at the same times arrive at the same times.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace framelet::bench {
+
+/// From `begin` on nothing moves for so long.
+struct Stall {
+    double begin = 0, seconds = 0;
+};
+
+/// From `begin` on the link has another rate.
+struct RateStep {
+    double begin = 0, bits_per_second = 0;
+};
+
+struct LinkParameters {
+    double bits_per_second = 0; ///< 0: unlimited
+    double delay_seconds = 0; ///< one way
+    double jitter_seconds = 0; ///< more delay, uniform from 0 to this
+    std::vector<Stall> stalls; ///< in order of time, disjoint
+    std::vector<RateStep> rate_steps; ///< in order of time
+    std::uint64_t seed = 1;
+};
+
+class SimulatedLink {
+public:
+    explicit SimulatedLink(LinkParameters parameters) : parameters_(std::move(parameters)) {}
+
+    struct Delivery {
+        double departed = 0; ///< when the last byte left the sender
+        double arrived = 0; ///< when it is there; never before an earlier message
+    };
+
+    /// Times of calls must not decrease.
+    Delivery send(double now, std::size_t bytes);
+
+    /// How long the sender's queue still needs.
+    double backlog_seconds(double now) const { return free_ > now ? free_ - now : 0; }
+
+private:
+    double rate_at(double time) const;
+    /// The first moment after `time` at which the rate changes or a stall begins or ends.
+    double next_change(double time) const;
+    bool stalled_at(double time) const;
+
+    LinkParameters parameters_;
+    double free_ = -1e300; ///< when the last byte of what was sent has left
+    double last_arrival_ = -1e300;
+    std::uint64_t messages_ = 0;
+};
+
+} // namespace framelet::bench

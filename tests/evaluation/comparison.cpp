@@ -1,0 +1,184 @@
+#include "tests/evaluation/comparison.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include <nlohmann/json.hpp>
+#include <tbb/task_group.h>
+
+#include "common/error.h"
+#include "tests/evaluation/charts/ratio_boxes.h"
+#include "tests/evaluation/charts/spectrum.h"
+
+namespace framelet::bench {
+namespace {
+
+using nlohmann::json;
+
+/// Errors below this are those of rounding to bytes.
+constexpr double least_mse = 1e-9;
+
+template <class Value>
+json series(std::vector<MethodRecord>::value_type const& record, Value&& value) {
+    json list = json::array();
+    for (Measures const& measures : record.measures) {
+        list.push_back(value(measures));
+    }
+    return list;
+}
+
+template <class Value>
+double mean_of(MethodRecord const& record, Value&& value) {
+    double sum = 0;
+    for (Measures const& measures : record.measures) {
+        sum += value(measures);
+    }
+    return record.measures.empty() ? 0 : sum / static_cast<double>(record.measures.size());
+}
+
+double mean_slope(Reference const& reference) {
+    constexpr std::size_t most = 8;
+    std::size_t const count = std::min(most, reference.size());
+    double sum = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        sum += power_spectrum_slope(reference.picture(i * reference.size() / count));
+    }
+    return count == 0 ? 0 : sum / static_cast<double>(count);
+}
+
+} // namespace
+
+Comparison compare_methods(BenchScene& scene, Reference const& reference, std::vector<std::string> const& methods,
+                           RunParameters const& parameters, CostTable const& costs) {
+    FRAMELET_CHECK(reference.size() >= reference_count(parameters));
+    Comparison comparison;
+    comparison.scene = scene.name;
+    comparison.parameters = parameters;
+    comparison.machine = machine_factor(scene, parameters, costs);
+    comparison.spatial_slope = mean_slope(reference);
+    std::size_t const times = reference_count(parameters);
+    comparison.reference_sample = reference.picture(times / 2);
+    MethodSetup const setup{
+        parameters.viewport, costs, comparison.machine, parameters.frames_per_second, parameters.link.bits_per_second,
+        parameters.seed};
+    for (std::string const& name : methods) {
+        MethodRecord record;
+        record.method = name;
+        record.measures.resize(times);
+        record.ages.resize(times);
+        tbb::task_group measuring;
+        auto const method = make_method(name, setup);
+        record.run = run_method(scene, *method, parameters, comparison.machine,
+                                [&](std::size_t index, Picture const& shown, double age) {
+                                    record.ages[index] = age;
+                                    if (index == times / 2) {
+                                        record.sample = shown;
+                                    }
+                                    measuring.run([&record, &reference, index, shown] {
+                                        record.measures[index] = measure(shown, reference.picture(index));
+                                    });
+                                });
+        measuring.wait();
+        comparison.records.push_back(std::move(record));
+    }
+    return comparison;
+}
+
+MethodRecord const* find_framed(Comparison const& comparison) {
+    auto const found = std::ranges::find(comparison.records, "framed", &MethodRecord::method);
+    return found == comparison.records.end() ? nullptr : &*found;
+}
+
+std::vector<double> error_ratios(MethodRecord const& method, MethodRecord const& framed) {
+    FRAMELET_CHECK(method.measures.size() == framed.measures.size());
+    std::vector<double> ratios;
+    for (std::size_t i = 0; i < method.measures.size(); ++i) {
+        ratios.push_back(std::max(method.measures[i].mse, least_mse) / std::max(framed.measures[i].mse, least_mse));
+    }
+    return ratios;
+}
+
+double mean_mse(MethodRecord const& record) {
+    return mean_of(record, [](Measures const& m) { return m.mse; });
+}
+
+json to_json(Comparison const& comparison) {
+    RunParameters const& p = comparison.parameters;
+    json result{{"scene", comparison.scene},
+                {"viewport", {p.viewport.width, p.viewport.height}},
+                {"seconds", p.seconds},
+                {"reference_rate", p.reference_rate},
+                {"frames_per_second", p.frames_per_second},
+                {"counting", p.counting == Counting::total ? "total" : "server"},
+                {"seed", p.seed},
+                {"machine_factor", comparison.machine},
+                {"spectrum_slope", comparison.spatial_slope},
+                {"link",
+                 {{"bits_per_second", p.link.bits_per_second},
+                  {"delay_seconds", p.link.delay_seconds},
+                  {"jitter_seconds", p.link.jitter_seconds}}}};
+    MethodRecord const* const framed = find_framed(comparison);
+    for (MethodRecord const& record : comparison.records) {
+        json entry{{"method", record.method},
+                   {"mean",
+                    {{"mse", mean_mse(record)},
+                     {"psnr", mean_of(record, [](Measures const& m) { return m.psnr; })},
+                     {"ssim", mean_of(record, [](Measures const& m) { return m.ssim; })},
+                     {"flip", mean_of(record, [](Measures const& m) { return m.flip; })}}},
+                   {"cpu_seconds",
+                    {{"render", record.run.cpu.render},
+                     {"response", record.run.cpu.response},
+                     {"encode", record.run.cpu.encode},
+                     {"decode", record.run.cpu.decode},
+                     {"reconstruct", record.run.cpu.reconstruct},
+                     {"server", record.run.cpu.server()},
+                     {"viewer", record.run.cpu.viewer()}}},
+                   {"samples", record.run.samples},
+                   {"bytes", record.run.bytes},
+                   {"messages", record.run.messages},
+                   {"mean_delay_seconds", record.run.mean_delay},
+                   {"displayed", record.run.displayed},
+                   {"age", record.ages},
+                   {"mse", series(record, [](Measures const& m) { return m.mse; })},
+                   {"ssim", series(record, [](Measures const& m) { return m.ssim; })},
+                   {"flip", series(record, [](Measures const& m) { return m.flip; })}};
+        if (framed) {
+            RatioSummary const ratio = summarise_ratios(error_ratios(record, *framed));
+            entry["ratio_to_framed"] = {{"median", ratio.p50}, {"suitable_percentile", ratio.suitable}};
+        }
+        result["methods"].push_back(entry);
+    }
+    return result;
+}
+
+void print(Comparison const& comparison) {
+    RunParameters const& p = comparison.parameters;
+    std::printf("%s, %dx%d, %g s, framed reaches %g frames/s, power spectrum slope %.2f\n", comparison.scene.c_str(),
+                p.viewport.width, p.viewport.height, p.seconds, p.frames_per_second, comparison.spatial_slope);
+    if (p.link.bits_per_second > 0 || p.link.delay_seconds > 0) {
+        std::printf("link %.3g Mbit/s, %.0f ms each way\n", p.link.bits_per_second / 1e6, 1e3 * p.link.delay_seconds);
+    }
+    std::printf("%-12s %10s %6s %6s %6s %7s %8s %7s %7s %9s %9s\n", "method", "mse", "psnr", "ssim", "flip", "age ms",
+                "ratio", "suit. %", "CPU s", "viewer s", "kB/s");
+    MethodRecord const* const framed = find_framed(comparison);
+    for (MethodRecord const& record : comparison.records) {
+        double age = 0;
+        for (double const a : record.ages) {
+            age += a / static_cast<double>(record.ages.size());
+        }
+        std::printf("%-12s %10.3e %6.2f %6.4f %6.4f %7.0f ", record.method.c_str(), mean_mse(record),
+                    mean_of(record, [](Measures const& m) { return m.psnr; }),
+                    mean_of(record, [](Measures const& m) { return m.ssim; }),
+                    mean_of(record, [](Measures const& m) { return m.flip; }), 1e3 * age);
+        if (framed) {
+            RatioSummary const ratio = summarise_ratios(error_ratios(record, *framed));
+            std::printf("%8.3f %7.0f ", ratio.p50, ratio.suitable);
+        } else {
+            std::printf("%8s %7s ", "-", "-");
+        }
+        std::printf("%7.3f %9.4f %9.1f\n", record.run.cpu.server(), record.run.cpu.viewer(),
+                    static_cast<double>(record.run.bytes) / p.seconds / 1e3);
+    }
+}
+
+} // namespace framelet::bench

@@ -1,0 +1,56 @@
+#include "tests/evaluation/cost_table.h"
+
+#include <array>
+#include <fstream>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "common/error.h"
+
+namespace framelet::bench {
+namespace {
+
+constexpr std::array<std::pair<char const*, double CostTable::*>, 15> fields{{
+    {"coherent_segment", &CostTable::coherent_segment},
+    {"incoherent_segment", &CostTable::incoherent_segment},
+    {"display_sample", &CostTable::display_sample},
+    {"select_tile", &CostTable::select_tile},
+    {"encode_sample", &CostTable::encode_sample},
+    {"decode_sample", &CostTable::decode_sample},
+    {"cache_sample", &CostTable::cache_sample},
+    {"reconstruct_pixel", &CostTable::reconstruct_pixel},
+    {"reconstruct_fine_sample", &CostTable::reconstruct_fine_sample},
+    {"place_pixel", &CostTable::place_pixel},
+    {"afr_sample", &CostTable::afr_sample},
+    {"jpeg_encode_pixel", &CostTable::jpeg_encode_pixel},
+    {"jpeg_decode_pixel", &CostTable::jpeg_decode_pixel},
+    {"h264_encode_pixel", &CostTable::h264_encode_pixel},
+    {"h264_decode_pixel", &CostTable::h264_decode_pixel},
+}};
+
+} // namespace
+
+CostTable read_cost_table(std::filesystem::path const& file) {
+    std::ifstream stream(file);
+    auto const json = nlohmann::json::parse(stream, nullptr, false);
+    CostTable costs;
+    for (auto const& [name, field] : fields) {
+        if (!json.is_object() || !json.contains(name) || !json[name].is_number() || !(json[name] > 0)) {
+            throw InputError("'" + file.string() + "' is not a table of costs: '" + name +
+                             "' is missing or no positive number (framelet-bench calibrate writes one)");
+        }
+        costs.*field = json[name];
+    }
+    return costs;
+}
+
+nlohmann::json to_json(CostTable const& costs) {
+    nlohmann::json json;
+    for (auto const& [name, field] : fields) {
+        json[name] = costs.*field;
+    }
+    return json;
+}
+
+} // namespace framelet::bench

@@ -1,0 +1,35 @@
+// What every stage costs, nanoseconds on one thread: measured by `framelet-bench calibrate`, carried by the repository
+// (tests/evaluation/costs.json), read by everything that runs on the virtual clock.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace framelet::bench {
+
+struct CostTable {
+    double coherent_segment = 0; ///< one ray of a framelet, its share of shading included
+    double incoherent_segment = 0; ///< one ray of samples at random places
+    double display_sample = 0; ///< tone curve and sRGB
+    double select_tile = 0; ///< choosing one tile to refresh
+    double encode_sample = 0; ///< batch codec
+    double decode_sample = 0;
+    double cache_sample = 0; ///< insertion into the framelet cache
+    double reconstruct_pixel = 0; ///< from samples not finer than a pixel
+    double reconstruct_fine_sample = 0; ///< one sample finer than a pixel
+    double place_pixel = 0; ///< writing a received pixel to where it belongs
+    double afr_sample = 0; ///< adaptive frameless rendering's choice and statistics of one sample
+    double jpeg_encode_pixel = 0;
+    double jpeg_decode_pixel = 0;
+    double h264_encode_pixel = 0;
+    double h264_decode_pixel = 0;
+};
+
+/// Throws InputError where the file is not a complete table of positive numbers.
+CostTable read_cost_table(std::filesystem::path const& file);
+nlohmann::json to_json(CostTable const& costs);
+
+} // namespace framelet::bench

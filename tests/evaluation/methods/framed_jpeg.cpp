@@ -1,0 +1,54 @@
+// `framed+jpeg`: whole frames in turn as JPEG, the quality chosen for the link.
+#include <cstring>
+
+#include "tests/evaluation/codecs/jpeg_codec.h"
+#include "tests/evaluation/methods/methods.h"
+#include "tests/evaluation/methods/whole_frame.h"
+
+namespace framelet::bench {
+namespace {
+
+class FramedJpeg final : public Method {
+public:
+    explicit FramedJpeg(MethodSetup const& setup)
+        : setup_(setup), frame_(setup), picture_(setup.viewport.width, setup.viewport.height) {}
+
+    ServerStep produce(StepInput const& input) override {
+        ServerStep step = frame_.render(input);
+        int const quality = rate_.quality(setup_.bits_per_second / 8 / setup_.frames_per_second);
+        auto const bytes = codec_.encode(frame_.picture(), quality);
+        rate_.took(quality, bytes.size());
+        step.message.resize(sizeof(input.time) + bytes.size());
+        std::memcpy(step.message.data(), &input.time, sizeof(input.time));
+        std::memcpy(step.message.data() + sizeof(input.time), bytes.data(), bytes.size());
+        step.seconds.encode += 1e-9 * static_cast<double>(frame_.pixels()) * setup_.costs.jpeg_encode_pixel;
+        return step;
+    }
+
+    ViewerStep consume(std::vector<std::byte> const& message) override {
+        std::memcpy(&time_, message.data(), sizeof(time_));
+        codec_.decode(std::span(message).subspan(sizeof(time_)), picture_);
+        ViewerStep step;
+        step.seconds.decode = 1e-9 * static_cast<double>(frame_.pixels()) * setup_.costs.jpeg_decode_pixel;
+        return step;
+    }
+
+    Picture const& picture() const override { return picture_; }
+    double mean_sample_time() const override { return time_; }
+
+private:
+    MethodSetup const setup_;
+    WholeFrame frame_;
+    JpegCodec codec_;
+    JpegRate rate_;
+    Picture picture_;
+    double time_ = 0;
+};
+
+} // namespace
+
+std::unique_ptr<Method> make_framed_jpeg(MethodSetup const& setup) {
+    return std::make_unique<FramedJpeg>(setup);
+}
+
+} // namespace framelet::bench

@@ -1,0 +1,118 @@
+// `framelet`: the project's own server and viewer as they stand, the very stages that the programs run.
+#include "common/color.h"
+#include "common/framelet_cache.h"
+#include "common/reconstruction.h"
+#include "protocol/batch_codec.h"
+#include "server/schedule/render_rate.h"
+#include "server/schedule/view_refresh.h"
+#include "server/session/session.h"
+#include "server/session/session_loop.h"
+#include "tests/evaluation/methods/methods.h"
+
+namespace framelet::bench {
+namespace {
+
+class Framelets final : public Method {
+public:
+    explicit Framelets(MethodSetup const& setup)
+        : setup_(setup), cache_(ImagePlane(setup.viewport)), picture_(setup.viewport.width, setup.viewport.height),
+          cells_((setup.viewport.width + cell - 1) / cell),
+          times_(static_cast<std::size_t>(cells_) *
+                 static_cast<std::size_t>((setup.viewport.height + cell - 1) / cell)) {}
+
+    ServerStep produce(StepInput const& input) override {
+        SceneTime const time = input.scene.duration > 0 ? input.time : 0;
+        ViewState const state{input.view, input.scene.exposure, time};
+        if (is_complete(refresh_, state)) {
+            return {};
+        }
+        auto const tiles = next_tiles(refresh_, state, rate_.samples_per_second * LoopOptions{}.cycle_seconds, 0);
+        ServerStep step;
+        rendered_.resize(tiles.size());
+        std::uint64_t const segments =
+            render_framelets(*input.scene.render_scene, input.view.camera, refresh_.plane, tiles, 0, rendered_);
+        step.samples = tiles.size() * framelet_samples;
+        double const samples = static_cast<double>(step.samples);
+        step.seconds.render = 1e-9 * static_cast<double>(segments) * setup_.costs.coherent_segment;
+        step.seconds.response = 1e-9 * static_cast<double>(tiles.size()) * setup_.costs.select_tile;
+        step.seconds.encode = 1e-9 * samples * (setup_.costs.display_sample + setup_.costs.encode_sample);
+        rate_ = update_render_rate(rate_, samples, setup_.machine * step.seconds.render);
+
+        batch_.number = ++number_;
+        batch_.view = input.view;
+        batch_.scene_time = time;
+        batch_.framelets.clear();
+        for (Framelet const& framelet : rendered_) {
+            batch_.framelets.push_back(to_display(framelet, input.scene.exposure));
+        }
+        step.message = encode_message(codec_.encode(batch_));
+        return step;
+    }
+
+    ViewerStep consume(std::vector<std::byte> const& message) override {
+        Batch const batch = codec_.decode(std::get<EncodedBatch>(decode_message(message)));
+        cache_.insert(batch);
+        cache_.take_changed(changed_);
+        reconstruct(cache_, changed_, picture_);
+        double pixels = 0;
+        for (PixelRect const& rect : changed_) {
+            pixels += static_cast<double>(rect.width()) * rect.height();
+        }
+        double fine = 0;
+        for (DisplayFramelet const& framelet : batch.framelets) {
+            fine += cache_.plane().sample_spacing(framelet.tile) < 1 ? framelet_samples : 0;
+            stamp(cache_.plane().tile_rect(framelet.tile), batch.scene_time);
+        }
+        double const samples = static_cast<double>(batch.framelets.size() * framelet_samples);
+        ViewerStep step;
+        step.seconds.decode = 1e-9 * samples * (setup_.costs.decode_sample + setup_.costs.cache_sample);
+        step.seconds.reconstruct =
+            1e-9 * (pixels * setup_.costs.reconstruct_pixel + fine * setup_.costs.reconstruct_fine_sample);
+        return step;
+    }
+
+    Picture const& picture() const override { return picture_; }
+
+    double mean_sample_time() const override {
+        double sum = 0;
+        for (double const time : times_) {
+            sum += time;
+        }
+        return sum / static_cast<double>(times_.size());
+    }
+
+    std::size_t most_in_flight() const override { return Session::max_batches_in_flight; }
+
+private:
+    static constexpr int cell = framelet_side >> finest_levels; ///< side of the finest tile, pixels
+
+    void stamp(PixelRect const& rect, double time) {
+        int const right = std::min(rect.right, picture_.width);
+        for (int y = rect.top; y < std::min(rect.bottom, picture_.height); y += cell) {
+            auto const row = times_.begin() + static_cast<std::ptrdiff_t>(y / cell) * cells_;
+            std::fill(row + rect.left / cell, row + (right + cell - 1) / cell, time);
+        }
+    }
+
+    MethodSetup const setup_;
+    ViewRefresh refresh_;
+    RenderRate rate_;
+    std::vector<Framelet> rendered_;
+    Batch batch_;
+    std::uint64_t number_ = 0;
+    BatchCodec codec_;
+
+    FrameletCache cache_;
+    std::vector<PixelRect> changed_;
+    Picture picture_;
+    int const cells_; ///< in a row
+    std::vector<double> times_; ///< scene time shown in each cell
+};
+
+} // namespace
+
+std::unique_ptr<Method> make_framelet(MethodSetup const& setup) {
+    return std::make_unique<Framelets>(setup);
+}
+
+} // namespace framelet::bench

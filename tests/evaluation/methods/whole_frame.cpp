@@ -1,0 +1,51 @@
+#include "tests/evaluation/methods/whole_frame.h"
+
+#include <algorithm>
+
+#include <tbb/parallel_for.h>
+
+#include "common/color.h"
+#include "server/schedule/tiling.h"
+
+namespace framelet::bench {
+
+WholeFrame::WholeFrame(MethodSetup const& setup)
+    : costs_(setup.costs), plane_(setup.viewport), tiles_(make_uniform_tiling(plane_, plane_.pixel_depth()).tiles),
+      rendered_(tiles_.size()), displayed_(tiles_.size()), picture_(setup.viewport.width, setup.viewport.height),
+      pixels_(picture_.rgba.size() / 4) {}
+
+ServerStep WholeFrame::render(StepInput const& input) {
+    ServerStep step;
+    std::uint64_t const segments =
+        render_framelets(*input.scene.render_scene, input.view.camera, plane_, tiles_, 0, rendered_);
+    tbb::parallel_for(std::size_t(0), rendered_.size(),
+                      [&](std::size_t i) { displayed_[i] = to_display(rendered_[i], input.scene.exposure); });
+    step.samples = tiles_.size() * framelet_samples;
+    step.seconds.render = 1e-9 * static_cast<double>(segments) * costs_.coherent_segment;
+    step.seconds.encode = 1e-9 * static_cast<double>(step.samples) * costs_.display_sample;
+    return step;
+}
+
+Picture const& WholeFrame::picture() {
+    for (DisplayFramelet const& framelet : displayed_) {
+        place_framelet(framelet, plane_, picture_);
+    }
+    return picture_;
+}
+
+void place_framelet(DisplayFramelet const& framelet, ImagePlane const& plane, Picture& picture) {
+    PixelRect const rect = plane.tile_rect(framelet.tile);
+    for (std::uint32_t i = 0; i < framelet_samples; ++i) {
+        int const x = rect.left + static_cast<int>(morton_x(i));
+        int const y = rect.top + static_cast<int>(morton_y(i));
+        if (x < picture.width && y < picture.height) {
+            std::uint8_t* const pixel = picture.row(y) + static_cast<std::ptrdiff_t>(x) * 4;
+            pixel[0] = framelet.red[i];
+            pixel[1] = framelet.green[i];
+            pixel[2] = framelet.blue[i];
+            pixel[3] = 255;
+        }
+    }
+}
+
+} // namespace framelet::bench

@@ -1,0 +1,36 @@
+// Whole frames in turn, one sample a pixel: what every `framed` method renders. In: a posed scene and a view. Out: the
+// framelets of one frame as they are displayed, and what they cost.
+#pragma once
+
+#include <vector>
+
+#include "tests/evaluation/method.h"
+
+namespace framelet::bench {
+
+class WholeFrame {
+public:
+    explicit WholeFrame(MethodSetup const& setup);
+
+    /// Renders every pixel of the view. Seconds: render, and the tone curve under `encode`.
+    ServerStep render(StepInput const& input);
+    std::vector<DisplayFramelet> const& framelets() const { return displayed_; }
+    /// The same as a picture.
+    Picture const& picture();
+
+    std::size_t pixels() const { return pixels_; }
+
+private:
+    CostTable costs_;
+    ImagePlane plane_;
+    std::vector<Tile> tiles_;
+    std::vector<Framelet> rendered_;
+    std::vector<DisplayFramelet> displayed_;
+    Picture picture_;
+    std::size_t pixels_;
+};
+
+/// Writes a framelet of one sample a pixel to its place.
+void place_framelet(DisplayFramelet const& framelet, ImagePlane const& plane, Picture& picture);
+
+} // namespace framelet::bench

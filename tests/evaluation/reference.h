@@ -1,0 +1,44 @@
+// What a perfect viewer would show: the scene at many times, many samples a pixel (ALGORITHMS: stratified, box filter),
+// kept on disk as PNG files, since it takes long. In: scene, size, times. Out: a picture for each time.
+#pragma once
+
+#include <filesystem>
+
+#include "common/image.h"
+#include "tests/evaluation/bench_scene.h"
+
+namespace framelet::bench {
+
+struct ReferenceParameters {
+    Viewport viewport{256, 256};
+    double seconds = 1;
+    double rate = 120; ///< pictures a second, from time 0
+    int samples_per_side = 3; ///< of a pixel; samples are jittered in their strata
+};
+
+class Reference {
+public:
+    /// Renders what the cache lacks. Told-progress goes to stderr where that is a terminal or `progress` is set.
+    /// What is cached is compared with a picture rendered anew, and made again where the renderer has changed.
+    Reference(BenchScene& scene, ReferenceParameters const& parameters, std::filesystem::path const& cache);
+
+    std::size_t size() const { return count_; }
+    /// Throws InputError where the file has gone since.
+    Picture picture(std::size_t index) const;
+    std::filesystem::path const& folder() const { return folder_; }
+
+private:
+    std::filesystem::path file(std::size_t index) const;
+
+    std::filesystem::path folder_;
+    std::size_t count_;
+};
+
+/// One such picture, of the scene as it is posed.
+Picture render_reference(BenchScene const& scene, Viewport viewport, int samples_per_side);
+
+/// Where references are kept unless told otherwise: $XDG_CACHE_HOME/framelet/reference, else
+/// ~/.cache/framelet/reference.
+std::filesystem::path default_reference_cache();
+
+} // namespace framelet::bench

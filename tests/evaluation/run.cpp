@@ -1,0 +1,138 @@
+#include "tests/evaluation/run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+
+#include "server/schedule/tiling.h"
+
+namespace framelet::bench {
+namespace {
+
+/// How often a server that has nothing to do looks again.
+constexpr double idle_seconds = 0.002;
+
+void add(StageSeconds& sum, StageSeconds const& step, double server, double viewer) {
+    sum.render += server * step.render;
+    sum.response += server * step.response;
+    sum.encode += server * step.encode;
+    sum.decode += viewer * step.decode;
+    sum.reconstruct += viewer * step.reconstruct;
+}
+
+/// Hands the picture out at every reference time that passes.
+class Spectator {
+public:
+    Spectator(RunParameters const& parameters, OnReferenceTime const& on_reference_time)
+        : parameters_(parameters), count_(reference_count(parameters)), on_reference_time_(on_reference_time) {}
+
+    /// Until `end` the viewer shows this.
+    void watch(double end, Picture const& shown, double sample_time) {
+        while (next_ < count_ && reference_time(parameters_, next_) < end) {
+            double const age = reference_time(parameters_, next_) - sample_time;
+            on_reference_time_(next_++, shown, age);
+        }
+    }
+
+private:
+    RunParameters const& parameters_;
+    std::size_t const count_;
+    OnReferenceTime const& on_reference_time_;
+    std::size_t next_ = 0;
+};
+
+} // namespace
+
+double lead_seconds(RunParameters const& parameters) {
+    return std::max(0.5, 3 / parameters.frames_per_second) + 4 * parameters.link.delay_seconds;
+}
+
+std::size_t reference_count(RunParameters const& parameters) {
+    return static_cast<std::size_t>(std::lround(parameters.seconds * parameters.reference_rate));
+}
+
+double reference_time(RunParameters const& parameters, std::size_t index) {
+    return static_cast<double>(index) / parameters.reference_rate;
+}
+
+double machine_factor(BenchScene& scene, RunParameters const& parameters, CostTable const& costs) {
+    constexpr int probes = 8;
+    ImagePlane const plane(parameters.viewport);
+    auto const tiles = make_uniform_tiling(plane, plane.pixel_depth()).tiles;
+    std::vector<Framelet> rendered(tiles.size());
+    double segments = 0;
+    for (int i = 0; i < probes; ++i) {
+        pose_at(scene, parameters.seconds * i / probes);
+        segments +=
+            static_cast<double>(render_framelets(*scene.render_scene, scene.camera, plane, tiles, 0, rendered)) /
+            probes;
+    }
+    double const samples = static_cast<double>(tiles.size() * framelet_samples);
+    double const frame =
+        1e-9 * (segments * costs.coherent_segment + samples * (costs.display_sample + costs.encode_sample));
+    return 1 / (frame * parameters.frames_per_second);
+}
+
+RunResult run_method(BenchScene& scene, Method& method, RunParameters const& parameters, double machine,
+                     OnReferenceTime const& on_reference_time) {
+    SimulatedLink link(parameters.link);
+    Spectator spectator(parameters, on_reference_time);
+    bool const shared = parameters.counting == Counting::total;
+    double const viewer_machine = shared ? machine : 1;
+    RunResult result;
+    double now = -lead_seconds(parameters);
+    double viewer_free = now;
+    std::deque<double> answers; // when the server learns that a message has been shown
+    Picture shown = method.picture();
+    while (now < parameters.seconds) {
+        while (!answers.empty() && answers.front() <= now) {
+            answers.pop_front();
+        }
+        if (answers.size() >= method.most_in_flight()) {
+            now = answers.front();
+            continue;
+        }
+        SceneTime const time = std::max(0.0, now);
+        pose_at(scene, time);
+        // The camera is the viewer's: the server knows it as it was when it set out.
+        Camera const camera = parameters.link.delay_seconds > 0
+                                  ? camera_at(scene, std::max(0.0, now - parameters.link.delay_seconds))
+                                  : scene.camera;
+        StepInput const input{scene, time, {1, camera, parameters.viewport}, link.backlog_seconds(now)};
+        ServerStep const step = method.produce(input);
+        if (step.message.empty()) {
+            now += idle_seconds;
+            continue;
+        }
+        double const started = now;
+        bool const measured = started >= 0;
+        now += machine * step.seconds.server();
+        SimulatedLink::Delivery const delivery = link.send(now, step.message.size());
+
+        double const begin = std::max(delivery.arrived, viewer_free);
+        double const sample_time = method.mean_sample_time();
+        shown = method.picture();
+        ViewerStep const viewed = method.consume(step.message);
+        double const displayed = begin + viewer_machine * viewed.seconds.viewer();
+        spectator.watch(displayed, shown, sample_time);
+        viewer_free = displayed;
+        answers.push_back(displayed + parameters.link.delay_seconds);
+        if (shared) {
+            now += machine * viewed.seconds.viewer();
+        }
+        if (measured) {
+            add(result.cpu, step.seconds, machine, 0);
+            add(result.cpu, viewed.seconds, 0, viewer_machine);
+            result.samples += step.samples;
+            result.bytes += step.message.size();
+            ++result.messages;
+            result.mean_delay += displayed - started;
+            result.displayed.push_back(displayed);
+        }
+    }
+    spectator.watch(INFINITY, method.picture(), method.mean_sample_time());
+    result.mean_delay /= std::max<double>(1, static_cast<double>(result.messages));
+    return result;
+}
+
+} // namespace framelet::bench

@@ -1,0 +1,55 @@
+// One run of one method on the virtual clock: server, link and viewer in turn, each stage taking the time that the cost
+// table says. In: scene, method, parameters. Out: what was shown at each reference time, and what it cost.
+//
+// The server is one pool of processors. Every stage is taken to spread over all of it, so that stages one after the
+// other take as long as the same stages overlapped, and a picture is never later than with the best pipeline. The
+// viewer is one processor of the calibrated machine, of its own.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "tests/evaluation/codecs/simulated_link.h"
+#include "tests/evaluation/method.h"
+
+namespace framelet::bench {
+
+/// Who pays for the viewer's work: a machine of its own, or the server's pool (as in 004, total CPU).
+enum class Counting { server, total };
+
+struct RunParameters {
+    Viewport viewport{256, 256};
+    double seconds = 1; ///< of scene time that are measured
+    double reference_rate = 120; ///< measurements a second
+    double frames_per_second = 10; ///< what `framed` reaches at one sample a pixel: the machine's speed
+    LinkParameters link;
+    Counting counting = Counting::server;
+    std::uint64_t seed = 1;
+};
+
+/// The scene stands still for this long before the run, so that every method starts from a finished picture.
+double lead_seconds(RunParameters const& parameters);
+std::size_t reference_count(RunParameters const& parameters);
+double reference_time(RunParameters const& parameters, std::size_t index);
+
+/// How many times slower than the calibrated machine one is that renders and encodes whole frames of this scene, at one
+/// sample a pixel, at the rate of the parameters.
+double machine_factor(BenchScene& scene, RunParameters const& parameters, CostTable const& costs);
+
+/// What was shown at a reference time. `age`: reference time less the mean scene time of the picture's pixels, seconds.
+using OnReferenceTime = std::function<void(std::size_t index, Picture const& shown, double age)>;
+
+struct RunResult {
+    StageSeconds cpu; ///< spent in the measured time; server stages in seconds of the run's machine
+    std::uint64_t samples = 0;
+    std::uint64_t bytes = 0;
+    std::uint64_t messages = 0;
+    std::vector<double> displayed; ///< times at which the picture changed
+    double mean_delay = 0; ///< from the start of a step until its picture shows, seconds
+};
+
+/// `on_reference_time` is called once for each, in order.
+RunResult run_method(BenchScene& scene, Method& method, RunParameters const& parameters, double machine,
+                     OnReferenceTime const& on_reference_time);
+
+} // namespace framelet::bench

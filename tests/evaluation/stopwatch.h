@@ -1,0 +1,27 @@
+// How long something takes.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <vector>
+
+namespace framelet::bench {
+
+template <class Work>
+double seconds_of(Work&& work) {
+    auto const start = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// The upper one of the two middle values where their number is even; 0 where there is none.
+inline double median(std::vector<double> values) {
+    if (values.empty()) {
+        return 0;
+    }
+    auto const middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+} // namespace framelet::bench
