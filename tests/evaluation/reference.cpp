@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include <tbb/parallel_for.h>
+#include <unistd.h>
 
 #include "common/color.h"
 #include "common/image_io.h"
@@ -113,6 +114,7 @@ Reference::Reference(BenchScene& scene, ReferenceParameters const& p, std::files
             stale = stale || picture(probe) != render(probe);
         }
     }
+    bool const terminal = isatty(STDERR_FILENO) != 0;
     std::size_t rendered = 0;
     for (std::size_t i = 0; i < count_; ++i) {
         if (stale || !std::filesystem::exists(file(i))) {
@@ -120,11 +122,16 @@ Reference::Reference(BenchScene& scene, ReferenceParameters const& p, std::files
             auto const unfinished = folder_ / "unfinished.png";
             write_picture(unfinished, render(i));
             std::filesystem::rename(unfinished, file(i));
-            std::fprintf(stderr, "\rreference of %s: %zu of %zu", scene.name.c_str(), i + 1, count_);
             ++rendered;
+            // A terminal gets a line that counts up, a log one line a quarter.
+            bool const quarter = (i + 1) * 4 / count_ != i * 4 / count_;
+            if (terminal || quarter) {
+                std::fprintf(stderr, "%sreference of %s: %zu of %zu%s", terminal ? "\r" : "", scene.name.c_str(), i + 1,
+                             count_, terminal ? "" : "\n");
+            }
         }
     }
-    if (rendered > 0) {
+    if (terminal && rendered > 0) {
         std::fputc('\n', stderr);
     }
 }

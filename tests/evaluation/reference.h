@@ -18,8 +18,8 @@ struct ReferenceParameters {
 
 class Reference {
 public:
-    /// Renders what the cache lacks. Told-progress goes to stderr where that is a terminal or `progress` is set.
-    /// What is cached is compared with a picture rendered anew, and made again where the renderer has changed.
+    /// Renders what the cache lacks and tells on stderr how far it is. What is cached is compared with a picture
+    /// rendered anew, and made again where the renderer has changed.
     Reference(BenchScene& scene, ReferenceParameters const& parameters, std::filesystem::path const& cache);
 
     std::size_t size() const { return count_; }

@@ -1,0 +1,173 @@
+// The engine of the evaluation: virtual clock, methods, costs. Small pictures, little time.
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "common/error.h"
+#include "tests/evaluation/comparison.h"
+#include "tests/evaluation/methods/kd_leaves.h"
+
+namespace framelet::bench {
+namespace {
+
+std::filesystem::path const source = FRAMELET_SOURCE_DIR;
+
+RunParameters small_run() {
+    RunParameters parameters;
+    parameters.viewport = {64, 48};
+    parameters.seconds = 0.5;
+    parameters.reference_rate = 40;
+    return parameters;
+}
+
+class Evaluation : public testing::Test {
+protected:
+    std::unique_ptr<BenchScene> scene = load_bench_scene(source / "scenes/vehicle_chase.glb");
+    CostTable costs = read_cost_table(source / "tests/evaluation/costs.json");
+    std::filesystem::path cache =
+        std::filesystem::temp_directory_path() / ("framelet-evaluation-" + std::to_string(getpid()));
+
+    void TearDown() override { std::filesystem::remove_all(cache); }
+
+    Reference reference(RunParameters const& parameters) {
+        return {*scene, {parameters.viewport, parameters.seconds, parameters.reference_rate, 3}, cache};
+    }
+};
+
+TEST_F(Evaluation, TheSameSeedGivesTheSameFigures) {
+    RunParameters parameters = small_run();
+    parameters.link.bits_per_second = 5e6;
+    parameters.link.delay_seconds = 0.02;
+    parameters.link.jitter_seconds = 0.01;
+    parameters.link.stalls = {{0.2, 0.1}};
+    Reference const truth = reference(parameters);
+    auto const run = [&] { return to_json(compare_methods(*scene, truth, method_names(), parameters, costs)).dump(); };
+    std::string const once = run();
+    EXPECT_EQ(once, run());
+    EXPECT_EQ(once.find("null"), std::string::npos) << "not a number";
+}
+
+TEST_F(Evaluation, FramedReachesTheRateThatTheMachineIsStatedBy) {
+    for (double const rate : {5.0, 20.0}) {
+        RunParameters parameters = small_run();
+        parameters.seconds = 2;
+        parameters.frames_per_second = rate;
+        double const machine = machine_factor(*scene, parameters, costs);
+        auto const framed = make_method("framed", {parameters.viewport, costs, machine, rate, 0, 1});
+        std::size_t times = 0;
+        RunResult const result =
+            run_method(*scene, *framed, parameters, machine, [&](std::size_t index, Picture const&, double age) {
+                EXPECT_EQ(index, times++);
+                EXPECT_GE(age, 0);
+            });
+        EXPECT_EQ(times, 80u);
+        EXPECT_NEAR(static_cast<double>(result.messages), 2 * rate, 0.1 * rate + 1);
+        EXPECT_NEAR(result.cpu.server(), 2, 0.3) << "busy all the time";
+    }
+}
+
+TEST_F(Evaluation, EveryMethodSpendsTheSameOnTheServer) {
+    RunParameters parameters = small_run();
+    parameters.seconds = 1;
+    Reference const truth = reference(parameters);
+    for (MethodRecord const& record : compare_methods(*scene, truth, method_names(), parameters, costs).records) {
+        EXPECT_NEAR(record.run.cpu.server(), 1, 0.15) << record.method;
+        EXPECT_GT(record.run.bytes, 0u) << record.method;
+    }
+}
+
+TEST_F(Evaluation, AStillSceneIsShownWithoutError) {
+    auto const still = load_bench_scene(source / "scenes/vehicle_fixed.glb");
+    RunParameters parameters = small_run();
+    parameters.seconds = 0.05; // the lead-in is over, nothing to speak of has moved
+    parameters.frames_per_second = 30;
+    double const machine = machine_factor(*still, parameters, costs);
+    pose_at(*still, 0);
+    Picture const first = render_picture(*still->render_scene, still->camera, parameters.viewport, still->exposure, 1);
+    for (std::string const name : {"framed", "frameless", "afr"}) {
+        auto const method = make_method(name, {parameters.viewport, costs, machine, 30, 0, 1});
+        run_method(*still, *method, parameters, machine, [&](std::size_t index, Picture const& shown, double) {
+            if (index == 0) {
+                EXPECT_LT(mean_squared_error(shown, first), 1e-6) << name;
+            }
+        });
+    }
+}
+
+TEST_F(Evaluation, ALinkDelaysWhatIsShown) {
+    RunParameters parameters = small_run();
+    auto const age_with = [&](double delay) {
+        parameters.link.delay_seconds = delay;
+        double const machine = machine_factor(*scene, parameters, costs);
+        auto const method = make_method("framelet", {parameters.viewport, costs, machine, 10, 0, 1});
+        double sum = 0;
+        run_method(*scene, *method, parameters, machine,
+                   [&](std::size_t, Picture const&, double age) { sum += age / 20; });
+        return sum;
+    };
+    double const near = age_with(0);
+    double const far = age_with(0.1);
+    EXPECT_GT(far, near + 0.05);
+    EXPECT_LT(far, near + 0.25);
+}
+
+TEST_F(Evaluation, ReferencesAreKeptAndMadeAgainWhenTheyAreWrong) {
+    RunParameters const parameters = small_run();
+    Picture const first = reference(parameters).picture(0);
+    auto const file = reference(parameters).folder() / "00000.png";
+    auto const written = std::filesystem::last_write_time(file);
+    reference(parameters);
+    EXPECT_EQ(std::filesystem::last_write_time(file), written);
+    std::filesystem::copy_file(reference(parameters).folder() / "00019.png", file,
+                               std::filesystem::copy_options::overwrite_existing);
+    EXPECT_EQ(reference(parameters).picture(0), first);
+}
+
+TEST(EvaluationInput, BadOnesAreRefusedInOneLine) {
+    EXPECT_THROW(make_method("magic", {}), InputError);
+    EXPECT_THROW(load_bench_scene(source / "scenes/dim.glb", 7), InputError);
+    auto const file = std::filesystem::temp_directory_path() / "framelet-costs-test.json";
+    for (char const* const text : {"", "[]", "{}", "{\"coherent_segment\": -1}"}) {
+        std::ofstream(file) << text;
+        EXPECT_THROW(read_cost_table(file), InputError) << text;
+    }
+    std::filesystem::remove(file);
+    EXPECT_THROW(read_cost_table(file), InputError);
+}
+
+double area_of(KdLeaves const& leaves) {
+    double area = 0;
+    for (std::size_t i = 0; i < leaves.size(); ++i) {
+        EXPECT_FALSE(leaves.rect(i).empty());
+        area += static_cast<double>(leaves.rect(i).width()) * leaves.rect(i).height();
+    }
+    return area;
+}
+
+TEST(KdLeaves, CoverThePictureKeepTheirNumberAndGatherWhereItVaries) {
+    KdLeaves leaves({100, 60}, 64);
+    std::size_t const count = leaves.size();
+    EXPECT_EQ(area_of(leaves), 6000);
+    std::uint32_t noise = 1;
+    for (int step = 0; step < 300; ++step) {
+        for (std::size_t leaf = 0; leaf < leaves.size(); ++leaf) {
+            noise = noise * 1664525u + 1013904223u;
+            bool const busy = leaves.rect(leaf).left < 30;
+            leaves.add(leaf, step * 0.01, busy ? static_cast<float>(noise >> 8) * 0x1p-24f : 0.5f);
+        }
+        leaves.adapt(3);
+        ASSERT_EQ(leaves.size(), count);
+    }
+    EXPECT_EQ(area_of(leaves), 6000);
+    std::size_t busy = 0;
+    for (std::size_t i = 0; i < leaves.size(); ++i) {
+        busy += leaves.rect(i).left < 30;
+    }
+    EXPECT_GT(busy, count * 2 / 3);
+}
+
+} // namespace
+} // namespace framelet::bench
