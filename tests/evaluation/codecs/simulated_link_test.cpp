@@ -11,21 +11,21 @@ TEST(SimulatedLink, RateAndDelayAddUp) {
     parameters.delay_seconds = 0.05;
     SimulatedLink link(parameters);
     auto const first = link.send(1, 100'000);
-    EXPECT_DOUBLE_EQ(first.departed, 1.1);
-    EXPECT_DOUBLE_EQ(first.arrived, 1.15);
-    EXPECT_DOUBLE_EQ(link.backlog_seconds(1.04), 0.06);
+    EXPECT_NEAR(first.departed, 1.1, 1e-12);
+    EXPECT_NEAR(first.arrived, 1.15, 1e-12);
+    EXPECT_NEAR(link.backlog_seconds(1.04), 0.06, 1e-12);
     auto const second = link.send(1.05, 100'000);
-    EXPECT_DOUBLE_EQ(second.departed, 1.2) << "waits for the first";
-    EXPECT_DOUBLE_EQ(link.backlog_seconds(2), 0);
-    EXPECT_DOUBLE_EQ(link.send(3, 0).arrived, 3.05);
+    EXPECT_NEAR(second.departed, 1.2, 1e-12) << "waits for the first";
+    EXPECT_NEAR(link.backlog_seconds(2), 0, 1e-12);
+    EXPECT_NEAR(link.send(3, 0).arrived, 3.05, 1e-12);
 }
 
 TEST(SimulatedLink, UnlimitedTakesOnlyItsDelay) {
     LinkParameters parameters;
     parameters.delay_seconds = 0.01;
     SimulatedLink link(parameters);
-    EXPECT_DOUBLE_EQ(link.send(-2, 1'000'000'000).arrived, -1.99);
-    EXPECT_DOUBLE_EQ(link.backlog_seconds(-2), 0);
+    EXPECT_NEAR(link.send(-2, 1'000'000'000).arrived, -1.99, 1e-12);
+    EXPECT_NEAR(link.backlog_seconds(-2), 0, 1e-12);
 }
 
 TEST(SimulatedLink, AStallHoldsWhatIsOnItsWay) {
@@ -33,11 +33,11 @@ TEST(SimulatedLink, AStallHoldsWhatIsOnItsWay) {
     parameters.bits_per_second = 8e6;
     parameters.stalls = {{0.05, 2}};
     SimulatedLink link(parameters);
-    EXPECT_DOUBLE_EQ(link.send(0, 100'000).departed, 2.1);
-    EXPECT_DOUBLE_EQ(link.send(2.2, 100'000).departed, 2.3);
+    EXPECT_NEAR(link.send(0, 100'000).departed, 2.1, 1e-12);
+    EXPECT_NEAR(link.send(2.2, 100'000).departed, 2.3, 1e-12);
     parameters.bits_per_second = 0;
     SimulatedLink unlimited(parameters);
-    EXPECT_DOUBLE_EQ(unlimited.send(0.5, 1).departed, 2.05);
+    EXPECT_NEAR(unlimited.send(0.5, 1).departed, 2.05, 1e-12);
 }
 
 TEST(SimulatedLink, ARateStepCountsFromItsMoment) {
@@ -45,8 +45,8 @@ TEST(SimulatedLink, ARateStepCountsFromItsMoment) {
     parameters.bits_per_second = 8e6;
     parameters.rate_steps = {{0.05, 0.8e6}, {10, 80e6}};
     SimulatedLink link(parameters);
-    EXPECT_DOUBLE_EQ(link.send(0, 100'000).departed, 0.05 + 0.5);
-    EXPECT_DOUBLE_EQ(link.send(10, 100'000).departed, 10.01);
+    EXPECT_NEAR(link.send(0, 100'000).departed, 0.05 + 0.5, 1e-12);
+    EXPECT_NEAR(link.send(10, 100'000).departed, 10.01, 1e-12);
 }
 
 TEST(SimulatedLink, JitterIsBoundedRepeatableAndKeepsOrder) {
