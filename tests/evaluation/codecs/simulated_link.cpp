@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "common/error.h"
 
 namespace framelet::bench {
 namespace {
@@ -14,7 +17,32 @@ double uniform(std::uint64_t seed, std::uint64_t index) {
     return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
 }
 
+bool is_amount(double value) {
+    return std::isfinite(value) && value >= 0;
+}
+
 } // namespace
+
+SimulatedLink::SimulatedLink(LinkParameters parameters) : parameters_(std::move(parameters)) {
+    LinkParameters const& p = parameters_;
+    if (!is_amount(p.bits_per_second) || !is_amount(p.delay_seconds) || !is_amount(p.jitter_seconds)) {
+        throw InputError("link: rate, delay and jitter must be finite and not below 0");
+    }
+    double earliest = -INFINITY;
+    for (Stall const& stall : p.stalls) {
+        if (!std::isfinite(stall.begin) || !is_amount(stall.seconds) || stall.begin < earliest) {
+            throw InputError("link: stalls must be finite, in order of time and disjoint");
+        }
+        earliest = stall.begin + stall.seconds;
+    }
+    earliest = -INFINITY;
+    for (RateStep const& step : p.rate_steps) {
+        if (!std::isfinite(step.begin) || !is_amount(step.bits_per_second) || step.begin < earliest) {
+            throw InputError("link: rate steps must be finite and in order of time");
+        }
+        earliest = step.begin;
+    }
+}
 
 double SimulatedLink::rate_at(double time) const {
     double rate = parameters_.bits_per_second;
@@ -43,8 +71,32 @@ double SimulatedLink::next_change(double time) const {
     return next;
 }
 
+double SimulatedLink::carried_bits(double from, double to) const {
+    double bits = 0;
+    while (from < to) {
+        double const until = std::min(next_change(from), to);
+        bits += stalled_at(from) ? 0 : rate_at(from) * (until - from);
+        from = until;
+    }
+    return bits;
+}
+
+double SimulatedLink::backlog_bytes(double now) const {
+    double bytes = 0;
+    for (Waiting const& message : waiting_) {
+        if (message.departed > now) {
+            bytes += std::max(0.0, message.bytes - carried_bits(message.started, now) / 8);
+        }
+    }
+    return bytes;
+}
+
 SimulatedLink::Delivery SimulatedLink::send(double now, std::size_t bytes) {
-    double time = std::max(now, free_);
+    while (!waiting_.empty() && waiting_.front().departed <= now) {
+        waiting_.pop_front();
+    }
+    double const started = std::max(now, free_);
+    double time = started;
     double bits = 8 * static_cast<double>(bytes);
     for (;;) {
         double const change = next_change(time);
@@ -62,6 +114,7 @@ SimulatedLink::Delivery SimulatedLink::send(double now, std::size_t bytes) {
         time = change;
     }
     free_ = time;
+    waiting_.push_back({started, time, static_cast<double>(bytes)});
     double const jitter = parameters_.jitter_seconds * uniform(parameters_.seed, messages_++);
     last_arrival_ = std::max(last_arrival_, time + parameters_.delay_seconds + jitter);
     return {time, last_arrival_};

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <vector>
 
 namespace framelet::bench {
@@ -29,7 +30,9 @@ struct LinkParameters {
 
 class SimulatedLink {
 public:
-    explicit SimulatedLink(LinkParameters parameters) : parameters_(std::move(parameters)) {}
+    /// Throws InputError for a rate, delay or jitter below 0, for times that are not finite, and for stalls or steps
+    /// that are not in order.
+    explicit SimulatedLink(LinkParameters parameters);
 
     struct Delivery {
         double departed = 0; ///< when the last byte left the sender
@@ -41,16 +44,27 @@ public:
 
     /// How long the sender's queue still needs.
     double backlog_seconds(double now) const { return free_ > now ? free_ - now : 0; }
+    /// What has been sent and has not left yet. `now`: not before the last call of `send`.
+    double backlog_bytes(double now) const;
+    /// Bits a second in force, stalls apart; 0: unlimited.
+    double rate_at(double time) const;
 
 private:
-    double rate_at(double time) const;
+    struct Waiting {
+        double started = 0, departed = 0; ///< first and last byte
+        double bytes = 0;
+    };
+
     /// The first moment after `time` at which the rate changes or a stall begins or ends.
     double next_change(double time) const;
     bool stalled_at(double time) const;
+    /// What a link that is always busy sends between two times of limited rate.
+    double carried_bits(double from, double to) const;
 
     LinkParameters parameters_;
     double free_ = -1e300; ///< when the last byte of what was sent has left
     double last_arrival_ = -1e300;
+    std::deque<Waiting> waiting_; ///< what had not left by the last call of `send`
     std::uint64_t messages_ = 0;
 };
 

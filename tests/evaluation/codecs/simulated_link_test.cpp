@@ -1,6 +1,10 @@
 #include "tests/evaluation/codecs/simulated_link.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
+
+#include "common/error.h"
 
 namespace framelet::bench {
 namespace {
@@ -38,6 +42,58 @@ TEST(SimulatedLink, AStallHoldsWhatIsOnItsWay) {
     parameters.bits_per_second = 0;
     SimulatedLink unlimited(parameters);
     EXPECT_NEAR(unlimited.send(0.5, 1).departed, 2.05, 1e-12);
+}
+
+TEST(SimulatedLink, AMessageLastsOverStallsAndSteps) {
+    LinkParameters parameters;
+    parameters.bits_per_second = 8e6; // a byte a microsecond
+    parameters.stalls = {{0.02, 0.1}, {0.15, 0.05}};
+    parameters.rate_steps = {{0.14, 4e6}};
+    SimulatedLink link(parameters);
+    // 20 kB before the first stall, 20 kB up to the step, 5 kB up to the second stall, 10 kB after it.
+    EXPECT_NEAR(link.send(0, 55'000).departed, 0.22, 1e-12);
+    EXPECT_NEAR(link.backlog_bytes(0), 55'000, 1e-6);
+    EXPECT_NEAR(link.backlog_bytes(0.01), 45'000, 1e-6);
+    EXPECT_NEAR(link.backlog_bytes(0.07), 35'000, 1e-6) << "stalled";
+    EXPECT_NEAR(link.backlog_bytes(0.145), 12'500, 1e-6);
+    EXPECT_NEAR(link.backlog_bytes(0.21), 5'000, 1e-6);
+    EXPECT_EQ(link.backlog_bytes(0.23), 0);
+    EXPECT_NEAR(link.backlog_seconds(0.21), 0.01, 1e-12);
+}
+
+TEST(SimulatedLink, WhatWaitsIsCountedMessageByMessage) {
+    LinkParameters parameters;
+    parameters.bits_per_second = 8e6;
+    SimulatedLink link(parameters);
+    link.send(0, 10'000);
+    link.send(0.002, 20'000);
+    EXPECT_NEAR(link.backlog_bytes(0.002), 28'000, 1e-6);
+    link.send(0.015, 5'000);
+    EXPECT_NEAR(link.backlog_bytes(0.02), 15'000, 1e-6);
+    EXPECT_NEAR(link.backlog_bytes(0.032), 3'000, 1e-6);
+
+    parameters.bits_per_second = 0;
+    parameters.stalls = {{1, 1}};
+    SimulatedLink unlimited(parameters);
+    unlimited.send(1.5, 1000);
+    EXPECT_EQ(unlimited.backlog_bytes(1.9), 1000)
+        << "a stall holds back what an unlimited link would have sent at once";
+    EXPECT_EQ(unlimited.backlog_bytes(2), 0);
+}
+
+TEST(SimulatedLink, RefusesWhatNoLinkIs) {
+    auto const with = [](auto change) {
+        LinkParameters parameters;
+        change(parameters);
+        return parameters;
+    };
+    EXPECT_THROW(SimulatedLink(with([](auto& p) { p.bits_per_second = -1; })), InputError);
+    EXPECT_THROW(SimulatedLink(with([](auto& p) { p.delay_seconds = NAN; })), InputError);
+    EXPECT_THROW(SimulatedLink(with([](auto& p) { p.jitter_seconds = INFINITY; })), InputError);
+    EXPECT_THROW(SimulatedLink(with([](auto& p) { p.stalls = {{1, 2}, {2, 1}}; })), InputError);
+    EXPECT_THROW(SimulatedLink(with([](auto& p) { p.stalls = {{1, -2}}; })), InputError);
+    EXPECT_THROW(SimulatedLink(with([](auto& p) { p.rate_steps = {{2, 1e6}, {1, 1e6}}; })), InputError);
+    EXPECT_NO_THROW(SimulatedLink(with([](auto& p) { p.stalls = {{1, 2}, {3, 1}}; })));
 }
 
 TEST(SimulatedLink, ARateStepCountsFromItsMoment) {
