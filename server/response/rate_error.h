@@ -1,0 +1,30 @@
+// What an error estimator says: whether a place is sampled too rarely or too often, in space and in time apart.
+#pragma once
+
+namespace framelet {
+
+/// Sample-rate error (004 ch. 5), each in [-1, 1]: above 0 undersampled, below 0 redundant.
+struct RateError {
+    float space = 0;
+    float time = 0;
+
+    bool operator==(RateError const&) const = default;
+};
+
+/// The energy that an octave may have, as a straight line: log2(energy) = offset + slope * octave, octave 0 the finest
+/// of the framelet. More is undersampled, less is redundant.
+struct EnergyTemplate {
+    float offset = 0;
+    float slope = 0;
+
+    bool operator==(EnergyTemplate const&) const = default;
+};
+
+struct RateTemplates {
+    EnergyTemplate space;
+    EnergyTemplate time;
+
+    bool operator==(RateTemplates const&) const = default;
+};
+
+} // namespace framelet
