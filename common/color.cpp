@@ -108,4 +108,9 @@ DisplayFramelet to_display(Framelet const& framelet, float exposure) {
     return out;
 }
 
+float display_luma(Vec3 radiance, float exposure) {
+    Vec3 const shown = tone_map(radiance * exposure);
+    return display_luma(srgb_byte_from_linear(shown.r), srgb_byte_from_linear(shown.g), srgb_byte_from_linear(shown.b));
+}
+
 } // namespace framelet

@@ -34,4 +34,11 @@ TransferTables const& transfer_tables();
 /// What a viewer gets to see of a rendered framelet. `exposure` multiplies radiance (2^EV).
 DisplayFramelet to_display(Framelet const& framelet, float exposure);
 
+/// Luma by which errors are judged: (R + 2 G + B) / 4 of the display-encoded bytes, [0, 1].
+constexpr float display_luma(std::uint8_t red, std::uint8_t green, std::uint8_t blue) {
+    return static_cast<float>(red + 2 * green + blue) / (4 * 255.0f);
+}
+/// The same of radiance as `to_display` shows it.
+float display_luma(Vec3 radiance, float exposure);
+
 } // namespace framelet

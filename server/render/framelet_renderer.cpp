@@ -96,27 +96,49 @@ std::uint64_t render_framelets(RenderScene const& scene, Camera const& camera, I
     return segments;
 }
 
-std::uint64_t render_samples(RenderScene const& scene, ViewRays const& view, std::span<Vec2 const> places,
-                             float spacing, std::span<Vec3> radiance) {
+namespace {
+
+/// `spacing(i)`: footprint of place i, pixels.
+template <class Spacing>
+std::uint64_t render_places(RenderScene const& scene, ViewRays const& view, std::span<Vec2 const> places,
+                            Spacing const& spacing, std::span<Vec3> radiance) {
     FRAMELET_CHECK(places.size() == radiance.size());
-    Footprint const footprint = sample_footprint(view, spacing);
+    float const width = glm::length(view.origin_dx);
+    float const slope = glm::length(view.direction_dx);
     std::atomic<std::uint64_t> segments{0};
     std::size_t const packets = (places.size() + lanes - 1) / lanes;
     tbb::parallel_for(std::size_t(0), packets, [&](std::size_t packet) {
         FlushDenormals const flush;
-        std::span<Vec2 const> const mine =
-            places.subspan(packet * lanes).first(std::min<std::size_t>(lanes, places.size() - packet * lanes));
-        TracedPacket traced{};
+        std::size_t const first = packet * lanes;
+        std::size_t const count = std::min<std::size_t>(lanes, places.size() - first);
         // What is left over of the last packet repeats its last place.
-        trace_places(
-            scene, view, footprint, [&](int i) { return mine[std::min(static_cast<std::size_t>(i), mine.size() - 1)]; },
-            traced);
-        for (std::size_t i = 0; i < mine.size(); ++i) {
-            radiance[packet * lanes + i] = traced.radiance.get(static_cast<int>(i));
+        auto const of_lane = [&](int i) { return first + std::min(static_cast<std::size_t>(i), count - 1); };
+        Footprint footprint;
+        for (int i = 0; i < lanes; ++i) {
+            footprint.width[i] = width * spacing(of_lane(i));
+            footprint.slope[i] = slope * spacing(of_lane(i));
+        }
+        TracedPacket traced{};
+        trace_places(scene, view, footprint, [&](int i) { return places[of_lane(i)]; }, traced);
+        for (std::size_t i = 0; i < count; ++i) {
+            radiance[first + i] = traced.radiance.get(static_cast<int>(i));
         }
         segments.fetch_add(traced.segments, std::memory_order_relaxed);
     });
     return segments;
+}
+
+} // namespace
+
+std::uint64_t render_samples(RenderScene const& scene, ViewRays const& view, std::span<Vec2 const> places,
+                             float spacing, std::span<Vec3> radiance) {
+    return render_places(scene, view, places, [spacing](std::size_t) { return spacing; }, radiance);
+}
+
+std::uint64_t render_samples(RenderScene const& scene, ViewRays const& view, std::span<Vec2 const> places,
+                             std::span<float const> spacings, std::span<Vec3> radiance) {
+    FRAMELET_CHECK(places.size() == spacings.size());
+    return render_places(scene, view, places, [spacings](std::size_t i) { return spacings[i]; }, radiance);
 }
 
 } // namespace framelet

@@ -28,6 +28,9 @@ std::uint32_t render_framelet(RenderScene const& scene, ViewRays const& rays, Im
 /// returns how many rays that took.
 std::uint64_t render_samples(RenderScene const& scene, ViewRays const& rays, std::span<Vec2 const> places,
                              float spacing, std::span<Vec3> radiance);
+/// The same with a footprint for each place.
+std::uint64_t render_samples(RenderScene const& scene, ViewRays const& rays, std::span<Vec2 const> places,
+                             std::span<float const> spacings, std::span<Vec3> radiance);
 
 /// The whole picture by the same renderer without tiling, wire or cache: `samples_per_side`^2 samples a pixel on the
 /// same grid that framelets use, each tone-mapped and quantised as `to_display` does, then averaged in linear light

@@ -7,17 +7,9 @@
 
 #include "common/framelet.h"
 #include "server/schedule/refinement.h"
+#include "server/schedule/view_state.h"
 
 namespace framelet {
-
-/// What is on screen is worth refining for as long as this stays the same.
-struct ViewState {
-    NumberedView view;
-    float exposure = 1;
-    SceneTime scene_time = 0; ///< 0 where nothing moves
-
-    bool operator==(ViewState const&) const = default;
-};
 
 /// How far one viewer's picture has come.
 struct ViewRefresh {

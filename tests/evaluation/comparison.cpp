@@ -60,7 +60,7 @@ Comparison compare_methods(BenchScene& scene, Reference const& reference, std::v
     comparison.reference_sample = reference.picture(times / 2);
     MethodSetup const setup{
         parameters.viewport, costs, comparison.machine, parameters.frames_per_second, parameters.link.bits_per_second,
-        parameters.seed};
+        parameters.seed, parameters.link.delay_seconds};
     for (std::string const& name : methods) {
         MethodRecord record;
         record.method = name;

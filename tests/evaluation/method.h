@@ -32,17 +32,19 @@ struct MethodSetup {
     double frames_per_second = 10; ///< what whole frames at one sample a pixel reach on that server
     double bits_per_second = 0; ///< of the link, for those who control their rate; 0: unlimited
     std::uint64_t seed = 1;
+    double delay_seconds = 0; ///< of the link, one way, for those who measure it
 };
 
 /// What the server's half works on. The scene is posed for this moment.
 struct StepInput {
     BenchScene const& scene;
     SceneTime time = 0;
+    double now = 0; ///< seconds on the run's clock; goes on while the scene stands still
     NumberedView view; ///< the newest camera that the server knows
     double backlog_seconds = 0; ///< what the link has yet to carry, as its sender sees it
 };
 
-/// One message to the viewer. Empty: nothing to send for this view.
+/// One message to the viewer. Empty: nothing to send; where no time was spent either, nothing to do.
 struct ServerStep {
     std::vector<std::byte> message;
     StageSeconds seconds;

@@ -98,15 +98,19 @@ RunResult run_method(BenchScene& scene, Method& method, RunParameters const& par
         Camera const camera = parameters.link.delay_seconds > 0
                                   ? camera_at(scene, std::max(0.0, now - parameters.link.delay_seconds))
                                   : scene.camera;
-        StepInput const input{scene, time, {1, camera, parameters.viewport}, link.backlog_seconds(now)};
+        StepInput const input{scene, time, now, {1, camera, parameters.viewport}, link.backlog_seconds(now)};
         ServerStep const step = method.produce(input);
-        if (step.message.empty()) {
-            now += idle_seconds;
-            continue;
-        }
         double const started = now;
         bool const measured = started >= 0;
         now += machine * step.seconds.server();
+        if (step.message.empty()) {
+            if (measured) {
+                add(result.cpu, step.seconds, machine, 0);
+                result.samples += step.samples;
+            }
+            now = std::max(now, started + idle_seconds);
+            continue;
+        }
         SimulatedLink::Delivery const delivery = link.send(now, step.message.size());
 
         double const begin = std::max(delivery.arrived, viewer_free);

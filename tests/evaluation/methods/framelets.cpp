@@ -4,7 +4,7 @@
 #include "common/reconstruction.h"
 #include "protocol/batch_codec.h"
 #include "server/schedule/render_rate.h"
-#include "server/schedule/view_refresh.h"
+#include "server/schedule/adaptive_refresh.h"
 #include "server/session/session.h"
 #include "server/session/session_loop.h"
 #include "tests/evaluation/methods/methods.h"
@@ -23,29 +23,52 @@ public:
     ServerStep produce(StepInput const& input) override {
         SceneTime const time = input.scene.duration > 0 ? input.time : 0;
         ViewState const state{input.view, input.scene.exposure, time};
-        if (is_complete(refresh_, state)) {
+        if (refresh_.is_complete(state)) {
             return {};
         }
-        auto const tiles = next_tiles(refresh_, state, rate_.samples_per_second * LoopOptions{}.cycle_seconds, 0);
-        ServerStep step;
-        rendered_.resize(tiles.size());
-        std::uint64_t const segments =
-            render_framelets(*input.scene.render_scene, input.view.camera, refresh_.plane, tiles, 0, rendered_);
-        step.samples = tiles.size() * framelet_samples;
-        double const samples = static_cast<double>(step.samples);
-        step.seconds.render = 1e-9 * static_cast<double>(segments) * setup_.costs.coherent_segment;
-        step.seconds.response = 1e-9 * static_cast<double>(tiles.size()) * setup_.costs.select_tile;
-        step.seconds.encode = 1e-9 * samples * (setup_.costs.display_sample + setup_.costs.encode_sample);
-        rate_ = update_render_rate(rate_, samples, setup_.machine * step.seconds.render);
-
-        batch_.number = ++number_;
-        batch_.view = input.view;
-        batch_.scene_time = time;
-        batch_.framelets.clear();
-        for (Framelet const& framelet : rendered_) {
-            batch_.framelets.push_back(to_display(framelet, input.scene.exposure));
+        RefreshInput refresh;
+        refresh.state = state;
+        refresh.now = input.now;
+        refresh.samples_per_second = rate_.samples_per_second > 0 ? rate_.samples_per_second : first_rate();
+        refresh.latency = refresh.cycle_seconds + static_cast<float>(setup_.delay_seconds);
+        RefreshPlan const& plan = refresh_.plan(refresh);
+        if (plan.tiles.empty() && plan.probes.empty()) {
+            return {};
         }
-        step.message = encode_message(codec_.encode(batch_));
+        ServerStep step;
+        rendered_.resize(plan.tiles.size());
+        std::uint64_t const segments = render_framelets(*input.scene.render_scene, input.view.camera,
+                                                        ImagePlane(setup_.viewport), plan.tiles, 0, rendered_);
+        std::uint64_t const probe_segments = render_probes(input, plan.probes);
+        step.samples = plan.tiles.size() * framelet_samples + plan.probes.size();
+        double const samples = static_cast<double>(plan.tiles.size() * framelet_samples);
+        step.seconds.render = 1e-9 * (static_cast<double>(segments) * setup_.costs.coherent_segment +
+                                      static_cast<double>(probe_segments) * setup_.costs.incoherent_segment);
+        step.seconds.response = 1e-9 * static_cast<double>(plan.tiles.size()) * setup_.costs.select_tile;
+        if (!plan.tiles.empty()) {
+            rate_ = update_render_rate(rate_, static_cast<double>(step.samples), setup_.machine * step.seconds.render);
+        }
+
+        display_.clear();
+        for (Framelet const& framelet : rendered_) {
+            display_.push_back(to_display(framelet, input.scene.exposure));
+        }
+        auto const& send = refresh_.learn(display_, rendered_, probe_luma_);
+        batch_.framelets.clear();
+        for (std::size_t i = 0; i < display_.size(); ++i) {
+            if (send[i] != 0) {
+                batch_.framelets.push_back(display_[i]);
+            }
+        }
+        step.seconds.encode =
+            1e-9 * (samples * setup_.costs.display_sample +
+                    static_cast<double>(batch_.framelets.size() * framelet_samples) * setup_.costs.encode_sample);
+        if (!batch_.framelets.empty()) {
+            batch_.number = ++number_;
+            batch_.view = input.view;
+            batch_.scene_time = time;
+            step.message = encode_message(codec_.encode(batch_));
+        }
         return step;
     }
 
@@ -84,6 +107,29 @@ public:
     std::size_t most_in_flight() const override { return Session::max_batches_in_flight; }
 
 private:
+    /// Before anything has been measured.
+    double first_rate() const {
+        return setup_.frames_per_second * setup_.viewport.width * setup_.viewport.height;
+    }
+
+    std::uint64_t render_probes(StepInput const& input, std::vector<Probe> const& probes) {
+        places_.clear();
+        spacings_.clear();
+        for (Probe const& probe : probes) {
+            places_.push_back(probe.place);
+            spacings_.push_back(probe.spacing);
+        }
+        radiance_.resize(probes.size());
+        ViewRays const rays = make_view_rays(input.view.camera, setup_.viewport);
+        std::uint64_t const segments =
+            render_samples(*input.scene.render_scene, rays, places_, spacings_, radiance_);
+        probe_luma_.clear();
+        for (Vec3 const& light : radiance_) {
+            probe_luma_.push_back(display_luma(light, input.scene.exposure));
+        }
+        return segments;
+    }
+
     static constexpr int cell = framelet_side >> finest_levels; ///< side of the finest tile, pixels
 
     void stamp(PixelRect const& rect, double time) {
@@ -95,9 +141,14 @@ private:
     }
 
     MethodSetup const setup_;
-    ViewRefresh refresh_;
+    AdaptiveRefresh refresh_;
     RenderRate rate_;
     std::vector<Framelet> rendered_;
+    std::vector<DisplayFramelet> display_;
+    std::vector<Vec2> places_;
+    std::vector<float> spacings_;
+    std::vector<Vec3> radiance_;
+    std::vector<float> probe_luma_;
     Batch batch_;
     std::uint64_t number_ = 0;
     BatchCodec codec_;

@@ -1,0 +1,40 @@
+// What each tile showed when it was last rendered: display-encoded luma, in a table of fixed size that forgets what
+// collides. In: rendered framelets. Out: what the same samples were before.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "common/framelet.h"
+
+namespace framelet {
+
+class LumaHistory {
+public:
+    struct Entry {
+        Tile tile{0}; ///< 0: empty
+        double time = 0; ///< seconds, on the clock of whoever stores
+        std::uint64_t content = 0; ///< hash of the samples' colours: equal ones mean equal pictures
+        std::array<float, framelet_samples> luma{}; ///< in Morton order
+    };
+
+    /// `entries`: a power of 2; more than that many tiles are never remembered.
+    explicit LumaHistory(std::size_t entries = 8192);
+
+    /// Null where the tile is not remembered.
+    Entry const* find(Tile tile) const;
+    void store(Entry const& entry);
+    void clear();
+    std::size_t memory_bytes() const { return entries_.size() * sizeof(Entry); }
+
+private:
+    std::size_t slot(Tile tile) const;
+
+    std::vector<Entry> entries_;
+};
+
+/// `time`: when it was rendered.
+LumaHistory::Entry make_entry(DisplayFramelet const& framelet, double time);
+
+} // namespace framelet

@@ -1,0 +1,66 @@
+#include "server/response/sampling_choice.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace framelet {
+namespace {
+
+/// x with 1 - exp(-x)(1 + x) = cost, by a table over sqrt(cost): x is nearly linear in that. In [0, 1).
+class BestPeriod {
+public:
+    BestPeriod() {
+        for (std::size_t i = 0; i < steps; ++i) {
+            double const root = static_cast<double>(i) / steps;
+            double low = 0;
+            double high = 40;
+            for (int step = 0; step < 50; ++step) {
+                double const x = 0.5 * (low + high);
+                (1 - std::exp(-x) * (1 + x) < root * root ? low : high) = x;
+            }
+            periods_[i] = static_cast<float>(high);
+        }
+    }
+    float operator()(float cost) const {
+        return periods_[std::min(static_cast<std::size_t>(std::sqrt(cost) * steps), steps - 1)];
+    }
+
+private:
+    static constexpr std::size_t steps = 1024;
+    std::array<float, steps> periods_{};
+};
+
+BestPeriod const best_period;
+
+} // namespace
+
+SamplingChoice choose_sampling(PlaceModel const& place, float life, SamplingPrice const& price, int least_level,
+                               int most_level) {
+    float const time_weight = std::exp2(2 * price.bias);
+    float const space_weight = 1 / time_weight;
+    SamplingChoice best;
+    float least = std::numeric_limits<float>::infinity();
+    for (int level = least_level; level <= most_level; ++level) {
+        float const cost = price.price * samples_per_pixel(level);
+        float const unresolved = space_weight * unresolved_error(place, level);
+        DriftBounds const bounds = drift_bounds(place, level);
+        float const most = time_weight * bounds.most;
+        float const rate = place.motion * bounds.growth / bounds.most; // 1/s, of the one exponential
+        float const left = most * std::exp(-rate * price.latency); // what a refresh can save, fresh as it comes
+        float const share = rate * cost / left;
+        float const wanted = share < 1 && rate > 0 ? best_period(share) / rate : life;
+        float const period = std::clamp(wanted, price.least_period, std::max(life, price.least_period));
+        float const x = rate * period;
+        float const mean_kept = x > 1e-3f ? (1 - std::exp(-x)) / x : 1 - 0.5f * x;
+        float const paid = unresolved + most - left * mean_kept + cost / period;
+        if (paid < least) {
+            least = paid;
+            best = {level, period, paid};
+        }
+    }
+    return best;
+}
+
+} // namespace framelet

@@ -1,0 +1,203 @@
+#include "server/schedule/adaptive_refresh.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/error.h"
+
+namespace framelet {
+namespace {
+
+/// Of a cycle's samples, for probes: while the scene moves, what seems to stand is looked at now and then.
+constexpr double probe_share = 0.08;
+/// A probe's rays go together with none of their neighbours.
+constexpr double probe_cost = 2;
+/// A place is probed again after so many seconds, sooner beside something that moves.
+constexpr double probe_period = 0.25;
+/// A scene time that jumps by more than this over what has passed has been set.
+constexpr double most_time_step = 0.5;
+
+bool is_cut(ViewState const& a, ViewState const& b, double seconds) {
+    return a.exposure != b.exposure || std::abs(b.scene_time - a.scene_time) > seconds * 4 + most_time_step ||
+           a.view.camera.projection != b.view.camera.projection;
+}
+
+} // namespace
+
+bool AdaptiveRefresh::is_finished(std::uint32_t index) const {
+    Place const& place = field_[index];
+    return place.level == sampling_levels - 1 && place.rendered >= still_since_;
+}
+
+bool AdaptiveRefresh::is_complete(ViewState const& state) const {
+    return seen_ && same_picture(*seen_, state) &&
+           std::all_of(field_.visible().begin(), field_.visible().end(),
+                       [this](std::uint32_t index) { return is_finished(index); });
+}
+
+/// Brings the field to the present.
+void AdaptiveRefresh::go_on(RefreshInput const& input) {
+    ViewState const& state = input.state;
+    if (!seen_ || seen_->view.viewport != state.view.viewport) {
+        field_ = PlaceField(ImagePlane(state.view.viewport));
+        history_.clear();
+        price_ = 1e-6f;
+        still_since_ = input.now;
+        scene_moves_ = false;
+    } else {
+        double const seconds = std::max(input.now - now_, 0.0);
+        bool const same = same_picture(*seen_, state);
+        if (!same) {
+            still_since_ = input.now;
+        }
+        scene_moves_ = seen_->scene_time != state.scene_time;
+        if (is_cut(*seen_, state, seconds)) {
+            invalidate(field_);
+        } else {
+            drift_on(field_, make_view_rays(seen_->view.camera, state.view.viewport),
+                     make_view_rays(state.view.camera, state.view.viewport), scene_moves_, static_cast<float>(seconds));
+        }
+    }
+    seen_ = state;
+    now_ = input.now;
+}
+
+RefreshPlan const& AdaptiveRefresh::plan(RefreshInput const& input) {
+    FRAMELET_CHECK(input.samples_per_second > 0 && input.cycle_seconds > 0);
+    go_on(input);
+    plan_.patches.clear();
+    plan_.tiles.clear();
+    plan_.probes.clear();
+    plan_.probed.clear();
+    double samples = input.samples_per_second * static_cast<double>(input.cycle_seconds);
+    if (scene_moves_) {
+        plan_probes(probe_share * samples);
+        samples -= probe_cost * static_cast<double>(plan_.probes.size());
+    }
+    plan_patches(input, samples);
+    if (plan_.patches.empty()) {
+        plan_completion(input, samples);
+    }
+    for (Patch const& patch : plan_.patches) {
+        append_tiles(field_.plane(), patch, plan_.tiles);
+    }
+    return plan_;
+}
+
+void AdaptiveRefresh::plan_patches(RefreshInput const& input, double samples) {
+    Budget const budget{samples / static_cast<double>(input.cycle_seconds), input.cycle_seconds, input.latency,
+                        input.bias};
+    price_ = solve_price(field_, now_, budget, price_, choices_);
+    density_.assign(field_.size(), 0);
+    for (std::uint32_t const index : field_.visible()) {
+        density_[index] = samples_per_pixel(choices_[index].level);
+    }
+    make_density_patches(field_.plane(), density_, field_.depth(), tiling_scratch_, cut_);
+    rate_patches(field_, choices_, cut_, budget, rated_);
+    std::size_t const most = input.batch_framelets > 0 ? input.batch_framelets : max_batch_framelets / 2;
+    select_patches(samples, std::min(most, max_batch_framelets / 2), rated_);
+    for (RatedPatch const& entry : rated_) {
+        plan_.patches.push_back(entry.patch);
+    }
+    if (scene_moves_) {
+        select_inspections(field_, now_, budget, suspects_, plan_.patches);
+    }
+}
+
+/// What stands still is finished in the end, whatever the model says of it.
+void AdaptiveRefresh::plan_completion(RefreshInput const& input, double samples) {
+    std::size_t const most = input.batch_framelets > 0 ? input.batch_framelets : max_batch_framelets / 2;
+    double tiles = 0;
+    for (std::uint32_t const index : field_.visible()) {
+        bool const fine = field_[index].level == sampling_levels - 1;
+        if (is_finished(index) || (scene_moves_ && fine)) { // while things move, probes and inspections are enough
+            continue;
+        }
+        Patch const patch{{(1u << (2 * field_.depth())) + index}, field_.plane().max_depth()};
+        plan_.patches.push_back(patch);
+        tiles += std::ldexp(1.0, 2 * (patch.depth - patch.node.depth()));
+        if (tiles * framelet_samples >= samples || tiles >= static_cast<double>(most)) {
+            return;
+        }
+    }
+}
+
+/// Probes what seems to stand, the neighbours of what moves first.
+void AdaptiveRefresh::plan_probes(double samples) {
+    auto const is_active = [this](int column, int row) {
+        int const side = 1 << field_.depth();
+        if (column < 0 || row < 0 || column >= side || row >= side) {
+            return false;
+        }
+        std::uint32_t const index = morton_index(static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row));
+        return field_.pixels_of(index) > 0 && field_[index].model.motion > 0;
+    };
+    auto const suspicion = [&](std::uint32_t index) {
+        Place const& place = field_[index];
+        int const column = static_cast<int>(morton_x(index));
+        int const row = static_cast<int>(morton_y(index));
+        bool beside = false;
+        for (int y = row - 1; y <= row + 1; ++y) {
+            for (int x = column - 1; x <= column + 1; ++x) {
+                beside = beside || is_active(x, y);
+            }
+        }
+        return (now_ - place.checked) * (beside ? 8 : 1);
+    };
+    suspects_.clear();
+    std::vector<double>& keys = suspicions_;
+    keys.assign(field_.size(), 0);
+    for (std::uint32_t const index : field_.visible()) {
+        Place const& place = field_[index];
+        // What moves is refreshed anyway, unless that is far away.
+        bool const refreshed = place.model.motion > 0 && choices_.size() == field_.size() &&
+                               static_cast<double>(choices_[index].period) < probe_period;
+        if (place.level >= 0 && place.probe_count > 0 && !refreshed) {
+            keys[index] = suspicion(index);
+            if (keys[index] > probe_period) {
+                suspects_.push_back(index);
+            }
+        }
+    }
+    auto const count = std::min(suspects_.size(),
+                                static_cast<std::size_t>(samples / (probe_cost * static_cast<double>(probes_per_place))));
+    auto const middle = suspects_.begin() + static_cast<std::ptrdiff_t>(count);
+    std::partial_sort(suspects_.begin(), middle, suspects_.end(), [&keys](std::uint32_t a, std::uint32_t b) {
+        return keys[a] != keys[b] ? keys[a] > keys[b] : a < b;
+    });
+    for (auto at = suspects_.begin(); at != middle; ++at) {
+        Place const& place = field_[*at];
+        plan_.probed.push_back(*at);
+        plan_.probes.insert(plan_.probes.end(), place.probes.begin(),
+                            place.probes.begin() + static_cast<std::ptrdiff_t>(place.probe_count));
+    }
+}
+
+std::vector<std::uint8_t> const& AdaptiveRefresh::learn(std::span<DisplayFramelet const> framelets,
+                                                        std::span<Framelet const> rendered,
+                                                        std::span<float const> probe_luma) {
+    FRAMELET_CHECK(framelets.size() == plan_.tiles.size() && rendered.size() == plan_.tiles.size());
+    FRAMELET_CHECK(probe_luma.size() == plan_.probes.size());
+    std::size_t probe = 0;
+    for (std::uint32_t const index : plan_.probed) {
+        Place& place = field_[index];
+        learn_probes(place, probe_luma.subspan(probe, place.probe_count), now_);
+        probe += place.probe_count;
+    }
+    send_.assign(framelets.size(), 1);
+    std::size_t first = 0;
+    for (Patch const& patch : plan_.patches) {
+        std::size_t count = 0;
+        while (first + count < plan_.tiles.size() &&
+               (plan_.tiles[first + count].code >> (2 * (patch.depth - patch.node.depth()))) == patch.node.code &&
+               plan_.tiles[first + count].depth() == patch.depth) {
+            ++count;
+        }
+        learn_patch(field_, patch, framelets.subspan(first, count), rendered.subspan(first, count), now_, history_,
+                    std::span(send_).subspan(first, count));
+        first += count;
+    }
+    return send_;
+}
+
+} // namespace framelet

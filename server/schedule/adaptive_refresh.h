@@ -1,0 +1,77 @@
+// What one viewer's picture gets next, adaptively: price -> choices -> density -> tiling -> selection, and learning from
+// what was rendered. In: what is to be seen, when, how many samples a cycle has time for; then the framelets. Out: tiles
+// and probes to render, and which of the framelets are worth sending.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "server/schedule/patch_selection.h"
+#include "server/schedule/view_state.h"
+
+namespace framelet {
+
+struct RefreshInput {
+    ViewState state;
+    double now = 0; ///< seconds, steady
+    double samples_per_second = 0; ///< what the renderer can do for this viewer
+    float cycle_seconds = 0.02f;
+    float latency = 0.02f; ///< from the start of rendering until it shows, seconds
+    float bias = 0;
+    std::size_t batch_framelets = 0; ///< most framelets of one batch; 0: what a cycle has time for
+};
+
+/// What to render now.
+struct RefreshPlan {
+    std::vector<Patch> patches;
+    std::vector<Tile> tiles; ///< of the patches, in order
+    std::vector<Probe> probes; ///< of the probed places, in order
+    std::vector<std::uint32_t> probed; ///< places
+};
+
+class AdaptiveRefresh {
+public:
+    /// True when the picture of `state` is complete: `plan` would return nothing.
+    bool is_complete(ViewState const& state) const;
+
+    /// The next cycle's work. Time does not go back.
+    RefreshPlan const& plan(RefreshInput const& input);
+
+    /// Takes in what was rendered by the last plan: display samples, the same with depth, luma of the probes. Returns for
+    /// each framelet whether the viewer needs it.
+    std::vector<std::uint8_t> const& learn(std::span<DisplayFramelet const> framelets,
+                                           std::span<Framelet const> rendered, std::span<float const> probe_luma);
+
+    // To look at it.
+    PlaceField const& field() const { return field_; }
+    Choices const& choices() const { return choices_; }
+    float price() const { return price_; }
+
+private:
+    void go_on(RefreshInput const& input);
+    void plan_patches(RefreshInput const& input, double samples);
+    void plan_probes(double samples);
+    void plan_completion(RefreshInput const& input, double samples);
+    bool is_finished(std::uint32_t index) const;
+
+    std::optional<ViewState> seen_;
+    double now_ = 0;
+    double still_since_ = 0; ///< when what is to be seen changed last
+    bool scene_moves_ = false;
+    PlaceField field_;
+    LumaHistory history_;
+    Choices choices_;
+    float price_ = 1e-6f;
+    RefreshPlan plan_;
+    std::vector<std::uint8_t> send_;
+
+    // Scratch.
+    std::vector<float> density_;
+    TilingScratch tiling_scratch_;
+    std::vector<Patch> cut_;
+    std::vector<RatedPatch> rated_;
+    std::vector<std::uint32_t> suspects_;
+    std::vector<double> suspicions_;
+};
+
+} // namespace framelet

@@ -1,0 +1,87 @@
+#include "server/schedule/patch_selection.h"
+
+#include <algorithm>
+
+namespace framelet {
+namespace {
+
+constexpr double inspection_share = 0.05;
+constexpr double least_inspection_period = 2;
+
+double tile_count(Patch const& patch) {
+    return static_cast<double>(std::uint64_t{1} << (2 * (patch.depth - patch.node.depth())));
+}
+
+} // namespace
+
+void rate_patches(PlaceField const& field, Choices const& choices, std::vector<Patch> const& cut, Budget const& budget,
+                  std::vector<RatedPatch>& rated) {
+    rated.clear();
+    for (Patch const& patch : cut) {
+        PlaceField::Range const range = field.range_of(patch.node);
+        int const level = field.level_of(patch.depth);
+        double gain = 0;
+        for (std::uint32_t i = range.first; i < range.last; ++i) {
+            if (field.pixels_of(i) == 0) {
+                continue;
+            }
+            Place const& place = field[i];
+            float const fresh = unresolved_error(place.model, level) +
+                                drift_error(place.model, level, place.model.motion * budget.latency);
+            gain += static_cast<double>(field.pixels_of(i)) *
+                    static_cast<double>(due_error(place, budget) - std::max(choices[i].due_error, fresh));
+        }
+        double const samples = framelet_samples * tile_count(patch);
+        rated.push_back({patch, samples, gain / samples});
+    }
+}
+
+void select_patches(double samples, std::size_t most_tiles, std::vector<RatedPatch>& rated) {
+    std::erase_if(rated, [](RatedPatch const& entry) { return !(entry.urgency > 0); });
+    std::sort(rated.begin(), rated.end(), [](RatedPatch const& a, RatedPatch const& b) {
+        return a.urgency != b.urgency ? a.urgency > b.urgency : a.patch.node < b.patch.node;
+    });
+    double spent = 0;
+    double tiles = 0;
+    std::size_t count = 0;
+    for (; count < rated.size() && spent < samples; ++count) {
+        double const more = tile_count(rated[count].patch);
+        if (count > 0 && tiles + more > static_cast<double>(most_tiles)) {
+            break;
+        }
+        tiles += more;
+        spent += rated[count].samples;
+    }
+    rated.resize(count);
+}
+
+double inspection_period(PlaceField const& field, Budget const& budget) {
+    Viewport const viewport = field.plane().viewport();
+    double const pixels = static_cast<double>(viewport.width) * viewport.height;
+    return std::max(least_inspection_period, pixels / (inspection_share * budget.samples_per_second));
+}
+
+void select_inspections(PlaceField const& field, double now, Budget const& budget, std::vector<std::uint32_t>& scratch,
+                        std::vector<Patch>& patches) {
+    double const latest = now - inspection_period(field, budget);
+    scratch.clear();
+    for (std::uint32_t const index : field.visible()) {
+        if (field[index].inspected < latest) {
+            scratch.push_back(index);
+        }
+    }
+    std::sort(scratch.begin(), scratch.end(), [&field](std::uint32_t a, std::uint32_t b) {
+        return field[a].inspected != field[b].inspected ? field[a].inspected < field[b].inspected : a < b;
+    });
+    double samples = inspection_share * budget.samples_per_second * static_cast<double>(budget.cycle_seconds);
+    for (std::uint32_t const index : scratch) {
+        if (samples <= 0) {
+            return;
+        }
+        Patch const patch{{(1u << (2 * field.depth())) + index}, field.plane().pixel_depth()};
+        samples -= framelet_samples * tile_count(patch);
+        patches.push_back(patch);
+    }
+}
+
+} // namespace framelet

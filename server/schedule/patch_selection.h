@@ -1,0 +1,33 @@
+// Which patches of a tiling are rendered next: those by whose refresh the picture gains most for each sample. In: the
+// field, the choices, the cut that follows from them; out: patches, the most urgent first.
+#pragma once
+
+#include <vector>
+
+#include "server/schedule/price.h"
+
+namespace framelet {
+
+struct RatedPatch {
+    Patch patch;
+    double samples = 0; ///< what it costs
+    double urgency = 0; ///< error that waiting costs, summed over pixels, for each sample; above 0: due
+};
+
+/// Replaces `rated` by every patch of the cut, with its urgency.
+void rate_patches(PlaceField const& field, Choices const& choices, std::vector<Patch> const& cut, Budget const& budget,
+                  std::vector<RatedPatch>& rated);
+
+/// Keeps what is due, the most urgent first, until `samples` are spent or `most_tiles` reached.
+void select_patches(double samples, std::size_t most_tiles, std::vector<RatedPatch>& rated);
+
+/// How long a place may go without a look at all of its pixels, seconds: at least two, and so long that looking takes a
+/// twentieth of the samples. It bounds how long anything small can stay unseen.
+double inspection_period(PlaceField const& field, Budget const& budget);
+
+/// Appends a patch at one sample a pixel for places that have not been looked at for so long, within their twentieth of
+/// a cycle's samples, those that have waited longest first. `scratch` is overwritten.
+void select_inspections(PlaceField const& field, double now, Budget const& budget, std::vector<std::uint32_t>& scratch,
+                        std::vector<Patch>& patches);
+
+} // namespace framelet

@@ -1,0 +1,96 @@
+// What the server knows of every place of one viewer's picture, and what the viewer holds there: a field over the image
+// plane in Morton order. In: time and camera as they go on, and what was rendered. Out: the error that is shown.
+#pragma once
+
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "server/response/luma_history.h"
+#include "server/response/place_model.h"
+#include "server/response/sampling_choice.h"
+#include "server/schedule/density_tiling.h"
+
+namespace framelet {
+
+inline constexpr double never = -std::numeric_limits<double>::infinity();
+
+/// A sample that was rendered and can be rendered again, to see whether it is still true.
+struct Probe {
+    Vec2 place{0, 0}; ///< pixels
+    float spacing = 1; ///< footprint, pixels
+    float luma = 0;
+};
+inline constexpr std::size_t probes_per_place = 16;
+
+struct Place {
+    PlaceModel model = unknown_place();
+    int level = -1; ///< of what the viewer holds; -1: nothing
+    float drift = 0; ///< since that was rendered
+    double rendered = never; ///< seconds
+    double changed = never; ///< when it was last seen to be different
+    double checked = never; ///< when it was last rendered or probed
+    double inspected = never; ///< when all its pixels were last rendered
+    float inverse_depth = 0; ///< mean, 1/metres
+    float speed = 0; ///< of the camera's motion here, pixels a second, when `model.motion` was learnt
+    std::array<Probe, probes_per_place> probes{};
+    std::size_t probe_count = 0;
+};
+
+class PlaceField {
+public:
+    PlaceField() : PlaceField(ImagePlane()) {}
+    explicit PlaceField(ImagePlane plane);
+
+    ImagePlane const& plane() const { return plane_; }
+    int depth() const { return depth_; }
+    /// Levels that tiles of this plane can have: [least_level(), sampling_levels).
+    int least_level() const { return plane_.min_depth() - plane_.pixel_depth() + pixel_level; }
+    int level_of(int tile_depth) const { return tile_depth - plane_.pixel_depth() + pixel_level; }
+    int depth_of(int level) const { return level + plane_.pixel_depth() - pixel_level; }
+
+    /// Morton indices of the places of which something is in the viewport.
+    std::span<std::uint32_t const> visible() const { return visible_; }
+    Place& operator[](std::uint32_t index) { return places_[index]; }
+    Place const& operator[](std::uint32_t index) const { return places_[index]; }
+    std::size_t size() const { return places_.size(); }
+    /// Pixels along a side, and of the part inside the viewport.
+    int place_side() const { return plane_.side() >> depth_; }
+    PixelRect rect_of(std::uint32_t index) const;
+    float pixels_of(std::uint32_t index) const { return pixels_[index]; }
+
+    /// Indices of the places under a node.
+    struct Range {
+        std::uint32_t first = 0, last = 0;
+    };
+    Range range_of(Tile node) const;
+
+private:
+    ImagePlane plane_;
+    int depth_;
+    std::vector<Place> places_;
+    std::vector<float> pixels_;
+    std::vector<std::uint32_t> visible_;
+};
+
+/// The error that the viewer sees at this place once `more` drift has been added.
+float shown_error(Place const& place, float more);
+/// Error of a place of which the viewer has nothing.
+inline constexpr float bare_error = 0.25f;
+
+/// Time goes on by `seconds` while the camera moves from one view to the other. `moving`: the scene's own things may
+/// move as well. A place drifts as it was found to, more where the camera has become faster, less where slower.
+void drift_on(PlaceField& field, ViewRays const& from, ViewRays const& to, bool moving, float seconds);
+/// Nothing that is held is true any more (a cut, another exposure).
+void invalidate(PlaceField& field);
+
+/// Takes what was rendered of one patch into account. `framelets`: of its tiles, all the visible ones; `rendered`: the
+/// same with depth. `send` (same length): what the viewer needs: false where it holds the very same. `history` is
+/// brought up to date.
+void learn_patch(PlaceField& field, Patch const& patch, std::span<DisplayFramelet const> framelets,
+                 std::span<Framelet const> rendered, double now, LumaHistory& history, std::span<std::uint8_t> send);
+
+/// Takes the answers to a place's probes into account: their luma now.
+void learn_probes(Place& place, std::span<float const> luma, double now);
+
+} // namespace framelet

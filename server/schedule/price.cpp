@@ -1,0 +1,72 @@
+#include "server/schedule/price.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace framelet {
+namespace {
+
+constexpr float least_price = 1e-12f;
+constexpr float most_price = 1e3f;
+/// What is due should be done within so many cycles.
+constexpr float backlog_cycles = 3;
+/// Seconds that a place is expected to stay as it is: as long as it has, within these.
+constexpr float least_life = 0.1f;
+constexpr float most_life = 4;
+
+float expected_life(Place const& place, double now) {
+    float const still = static_cast<float>(std::min(now - place.changed, static_cast<double>(most_life)));
+    float const motion = place.model.motion;
+    float const passing = motion > 2 / most_life ? 2 / motion : most_life;
+    return std::clamp(std::min(std::max(still, passing), most_life), least_life, most_life);
+}
+
+void choose_all(PlaceField const& field, double now, Budget const& budget, float price, Choices& choices) {
+    SamplingPrice const terms{price, budget.latency, budget.cycle_seconds, budget.bias};
+    for (std::uint32_t const index : field.visible()) {
+        Place const& place = field[index];
+        choices[index] = choose_sampling(place.model, expected_life(place, now), terms, field.least_level(),
+                                         sampling_levels - 1);
+    }
+}
+
+} // namespace
+
+float due_error(Place const& place, Budget const& budget) {
+    return shown_error(place, place.model.motion * budget.latency);
+}
+
+double demand_of(PlaceField const& field, Budget const& budget, Choices const& choices) {
+    double steady = 0;
+    double backlog = 0;
+    for (std::uint32_t const index : field.visible()) {
+        Place const& place = field[index];
+        SamplingChoice const& choice = choices[index];
+        double const samples = field.pixels_of(index) * samples_per_pixel(choice.level);
+        steady += place.model.motion > 0 ? samples / choice.period : 0;
+        backlog += due_error(place, budget) > choice.due_error ? samples : 0;
+    }
+    return std::max(steady, backlog / (backlog_cycles * budget.cycle_seconds));
+}
+
+float solve_price(PlaceField const& field, double now, Budget const& budget, float last_price, Choices& choices) {
+    choices.resize(field.size());
+    constexpr int most_steps = 4;
+    float price = std::clamp(last_price, least_price, most_price);
+    for (int step = 0;; ++step) {
+        choose_all(field, now, budget, price, choices);
+        double const ratio = demand_of(field, budget, choices) / budget.samples_per_second;
+        if (step == most_steps || (ratio > 0.8 && ratio < 1.2)) {
+            return price;
+        }
+        // Demand falls about as the square root of the price, faster where it makes levels coarser.
+        float const factor = static_cast<float>(std::clamp(ratio * std::sqrt(ratio), 1.0 / 16, 16.0));
+        float const next = std::clamp(price * factor, least_price, most_price);
+        if (next == price) {
+            return price;
+        }
+        price = next;
+    }
+}
+
+} // namespace framelet

@@ -1,0 +1,33 @@
+// The price of a sample: what the cheapest error that is still worth removing costs. In: the field, how many samples a
+// second there are. Out: for every place how finely and how often it should be sampled, so that all together use what
+// there is. This conserves the budget: the integral of density over space and time.
+#pragma once
+
+#include <vector>
+
+#include "server/schedule/place_field.h"
+
+namespace framelet {
+
+struct Budget {
+    double samples_per_second = 0;
+    float cycle_seconds = 0.02f;
+    float latency = 0; ///< seconds from rendering to display
+    float bias = 0; ///< -1 (spatial fidelity) .. 1 (temporal)
+};
+
+/// For every place of a field, by Morton index; what is not visible keeps its default.
+using Choices = std::vector<SamplingChoice>;
+
+/// Finds the price at which the choices use the budget, from the last cycle's price, and the choices. Returns the price.
+/// What is due already counts as if it were to be done within a few cycles, so that a cut makes samples dear, and the
+/// first picture coarse.
+float solve_price(PlaceField const& field, double now, Budget const& budget, float last_price, Choices& choices);
+
+/// Samples a second that the choices ask for.
+double demand_of(PlaceField const& field, Budget const& budget, Choices const& choices);
+
+/// Error that a place shows by the time at which a refresh would come.
+float due_error(Place const& place, Budget const& budget);
+
+} // namespace framelet
