@@ -119,7 +119,8 @@ std::uint64_t render_places(RenderScene const& scene, ViewRays const& view, std:
             footprint.slope[i] = slope * spacing(of_lane(i));
         }
         TracedPacket traced{};
-        trace_places(scene, view, footprint, [&](int i) { return places[of_lane(i)]; }, traced);
+        trace_places(
+            scene, view, footprint, [&](int i) { return places[of_lane(i)]; }, traced);
         for (std::size_t i = 0; i < count; ++i) {
             radiance[first + i] = traced.radiance.get(static_cast<int>(i));
         }
@@ -132,13 +133,15 @@ std::uint64_t render_places(RenderScene const& scene, ViewRays const& view, std:
 
 std::uint64_t render_samples(RenderScene const& scene, ViewRays const& view, std::span<Vec2 const> places,
                              float spacing, std::span<Vec3> radiance) {
-    return render_places(scene, view, places, [spacing](std::size_t) { return spacing; }, radiance);
+    return render_places(
+        scene, view, places, [spacing](std::size_t) { return spacing; }, radiance);
 }
 
 std::uint64_t render_samples(RenderScene const& scene, ViewRays const& view, std::span<Vec2 const> places,
                              std::span<float const> spacings, std::span<Vec3> radiance) {
     FRAMELET_CHECK(places.size() == spacings.size());
-    return render_places(scene, view, places, [spacings](std::size_t i) { return spacings[i]; }, radiance);
+    return render_places(
+        scene, view, places, [spacings](std::size_t i) { return spacings[i]; }, radiance);
 }
 
 } // namespace framelet

@@ -159,8 +159,8 @@ void AdaptiveRefresh::plan_probes(double samples) {
             }
         }
     }
-    auto const count = std::min(suspects_.size(),
-                                static_cast<std::size_t>(samples / (probe_cost * static_cast<double>(probes_per_place))));
+    auto const count = std::min(
+        suspects_.size(), static_cast<std::size_t>(samples / (probe_cost * static_cast<double>(probes_per_place))));
     auto const middle = suspects_.begin() + static_cast<std::ptrdiff_t>(count);
     std::partial_sort(suspects_.begin(), middle, suspects_.end(), [&keys](std::uint32_t a, std::uint32_t b) {
         return keys[a] != keys[b] ? keys[a] > keys[b] : a < b;

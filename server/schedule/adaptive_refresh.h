@@ -1,6 +1,6 @@
-// What one viewer's picture gets next, adaptively: price -> choices -> density -> tiling -> selection, and learning from
-// what was rendered. In: what is to be seen, when, how many samples a cycle has time for; then the framelets. Out: tiles
-// and probes to render, and which of the framelets are worth sending.
+// What one viewer's picture gets next, adaptively: price -> choices -> density -> tiling -> selection, and learning
+// from what was rendered. In: what is to be seen, when, how many samples a cycle has time for; then the framelets. Out:
+// tiles and probes to render, and which of the framelets are worth sending.
 #pragma once
 
 #include <optional>
@@ -37,8 +37,8 @@ public:
     /// The next cycle's work. Time does not go back.
     RefreshPlan const& plan(RefreshInput const& input);
 
-    /// Takes in what was rendered by the last plan: display samples, the same with depth, luma of the probes. Returns for
-    /// each framelet whether the viewer needs it.
+    /// Takes in what was rendered by the last plan: display samples, the same with depth, luma of the probes. Returns
+    /// for each framelet whether the viewer needs it.
     std::vector<std::uint8_t> const& learn(std::span<DisplayFramelet const> framelets,
                                            std::span<Framelet const> rendered, std::span<float const> probe_luma);
 

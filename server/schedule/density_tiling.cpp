@@ -87,9 +87,8 @@ void make_density_patches_parallel(ImagePlane const& plane, std::span<float cons
     int const top = std::min(plane.min_depth(), depth);
     std::vector<std::vector<Patch>> parts(std::size_t{1} << (2 * top));
     Cut const cut(plane, depth, scratch.sums);
-    tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t i) {
-        cut.descend({static_cast<std::uint32_t>(parts.size() + i)}, parts[i]);
-    });
+    tbb::parallel_for(std::size_t{0}, parts.size(),
+                      [&](std::size_t i) { cut.descend({static_cast<std::uint32_t>(parts.size() + i)}, parts[i]); });
     patches.clear();
     for (auto const& part : parts) {
         patches.insert(patches.end(), part.begin(), part.end());

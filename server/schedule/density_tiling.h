@@ -18,8 +18,8 @@ struct Patch {
     bool operator==(Patch const&) const = default;
 };
 
-/// Which depth a field of density has: that of single pixels' framelets, but never more than `most_field_depth`, so that
-/// what is computed for each element does not grow with the picture.
+/// Which depth a field of density has: that of single pixels' framelets, but never more than `most_field_depth`, so
+/// that what is computed for each element does not grow with the picture.
 inline constexpr int most_field_depth = 6;
 inline int field_depth(ImagePlane const& plane) {
     return plane.pixel_depth() < most_field_depth ? plane.pixel_depth() : most_field_depth;

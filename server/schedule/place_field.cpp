@@ -42,9 +42,9 @@ PlaceField::Range PlaceField::range_of(Tile node) const {
 }
 
 float shown_error(Place const& place, float more) {
-    return place.level < 0 ? bare_error
-                           : unresolved_error(place.model, place.level) +
-                                 drift_error(place.model, place.level, place.drift + more);
+    return place.level < 0
+               ? bare_error
+               : unresolved_error(place.model, place.level) + drift_error(place.model, place.level, place.drift + more);
 }
 
 void drift_on(PlaceField& field, ViewRays const& from, ViewRays const& to, bool moving, float seconds) {
@@ -100,7 +100,8 @@ void note_probes(Place& place, ImagePlane const& plane, LumaHistory::Entry const
     Viewport const viewport = plane.viewport();
     std::size_t const share = std::max<std::size_t>(count / wanted, 1);
     for (std::size_t i = 0; i < std::min(wanted, count) && place.probe_count < probes_per_place; ++i) {
-        std::size_t const sample = first + i * share + scattered(entry.tile.code + static_cast<std::uint32_t>(i), share);
+        std::size_t const sample =
+            first + i * share + scattered(entry.tile.code + static_cast<std::uint32_t>(i), share);
         Vec2 const at = sample_place(plane, entry.tile, sample);
         if (at.x < static_cast<float>(viewport.width) && at.y < static_cast<float>(viewport.height)) {
             place.probes[place.probe_count++] = {at, plane.sample_spacing(entry.tile), entry.luma[sample]};

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "common/probe.h"
 #include "server/response/luma_history.h"
 #include "server/response/place_model.h"
 #include "server/response/sampling_choice.h"
@@ -15,12 +16,6 @@ namespace framelet {
 
 inline constexpr double never = -std::numeric_limits<double>::infinity();
 
-/// A sample that was rendered and can be rendered again, to see whether it is still true.
-struct Probe {
-    Vec2 place{0, 0}; ///< pixels
-    float spacing = 1; ///< footprint, pixels
-    float luma = 0;
-};
 inline constexpr std::size_t probes_per_place = 16;
 
 struct Place {

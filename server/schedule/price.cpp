@@ -25,8 +25,8 @@ void choose_all(PlaceField const& field, double now, Budget const& budget, float
     SamplingPrice const terms{price, budget.latency, budget.cycle_seconds, budget.bias};
     for (std::uint32_t const index : field.visible()) {
         Place const& place = field[index];
-        choices[index] = choose_sampling(place.model, expected_life(place, now), terms, field.least_level(),
-                                         sampling_levels - 1);
+        choices[index] =
+            choose_sampling(place.model, expected_life(place, now), terms, field.least_level(), sampling_levels - 1);
     }
 }
 

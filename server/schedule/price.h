@@ -19,9 +19,9 @@ struct Budget {
 /// For every place of a field, by Morton index; what is not visible keeps its default.
 using Choices = std::vector<SamplingChoice>;
 
-/// Finds the price at which the choices use the budget, from the last cycle's price, and the choices. Returns the price.
-/// What is due already counts as if it were to be done within a few cycles, so that a cut makes samples dear, and the
-/// first picture coarse.
+/// Finds the price at which the choices use the budget, from the last cycle's price, and the choices. Returns the
+/// price. What is due already counts as if it were to be done within a few cycles, so that a cut makes samples dear,
+/// and the first picture coarse.
 float solve_price(PlaceField const& field, double now, Budget const& budget, float last_price, Choices& choices);
 
 /// Samples a second that the choices ask for.

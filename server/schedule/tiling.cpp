@@ -38,13 +38,4 @@ std::size_t uniform_tile_count(ImagePlane const& plane, int depth) {
     return tiles_across(plane, depth, viewport.width) * tiles_across(plane, depth, viewport.height);
 }
 
-int deepest_affordable(ImagePlane const& plane, double samples) {
-    int depth = plane.min_depth();
-    while (depth < plane.pixel_depth() &&
-           static_cast<double>(uniform_tile_count(plane, depth + 1)) * framelet_samples <= samples) {
-        ++depth;
-    }
-    return depth;
-}
-
 } // namespace framelet

@@ -22,8 +22,4 @@ Tiling make_uniform_tiling(ImagePlane const& plane, int depth);
 /// How many tiles that has; costs nothing.
 std::size_t uniform_tile_count(ImagePlane const& plane, int depth);
 
-/// The finest depth, at most one sample per pixel, whose uniform tiling needs no more than `samples` samples;
-/// the coarsest allowed depth where even that needs more.
-int deepest_affordable(ImagePlane const& plane, double samples);
-
 } // namespace framelet

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "common/error.h"
+
 namespace framelet {
 
 Session::Session(std::uint64_t id, std::shared_ptr<FramedStream> stream, Events events)
@@ -34,15 +36,26 @@ SessionInput Session::newest_input() const {
     return input_;
 }
 
+bool Session::has_room() const {
+    std::scoped_lock const lock(mutex_);
+    return open_ && last_batch_ - last_ack_ < max_batches_in_flight;
+}
+
 std::uint64_t Session::begin_batch() {
     std::scoped_lock const lock(mutex_);
-    if (!open_ || last_batch_ - last_ack_ >= max_batches_in_flight) {
-        return 0;
-    }
+    FRAMELET_CHECK(last_batch_ - last_ack_ < max_batches_in_flight);
+    auto const now = std::chrono::steady_clock::now();
     if (last_batch_ == last_ack_) {
-        last_progress_ = std::chrono::steady_clock::now();
+        last_progress_ = now;
     }
-    return ++last_batch_;
+    ++last_batch_;
+    begun_[last_batch_ % max_batches_in_flight] = now;
+    return last_batch_;
+}
+
+double Session::answer_seconds() const {
+    std::scoped_lock const lock(mutex_);
+    return answer_seconds_;
 }
 
 void Session::send(Message const& message) {
@@ -106,6 +119,9 @@ void Session::receive(Message message) {
             }
             last_ack_ = ack->batch;
             last_progress_ = std::chrono::steady_clock::now();
+            std::chrono::duration<double> const taken = last_progress_ - begun_[last_ack_ % max_batches_in_flight];
+            constexpr double weight = 0.125;
+            answer_seconds_ += (answer_seconds_ > 0 ? weight : 1) * (taken.count() - answer_seconds_);
         }
         events_.changed();
     } else if (auto const* const failure = std::get_if<Failure>(&message)) {

@@ -2,6 +2,7 @@
 // io thread feeds it, the render loop reads its newest input and hands it batches.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -52,8 +53,12 @@ public:
     // From any thread:
     bool is_open() const;
     SessionInput newest_input() const;
-    /// Reserves a place in flight for one batch and gives its number (from 1); 0 while there is none.
+    /// True while another batch may be sent.
+    bool has_room() const;
+    /// Takes a place in flight for one batch and gives its number, from 1. Only while there is room.
     std::uint64_t begin_batch();
+    /// From `begin_batch` until the viewer has answered, seconds, lately.
+    double answer_seconds() const;
     void send(Message const& message);
     /// The picture may have to change for a reason that is not in the input (the clock was set).
     void invalidate();
@@ -82,6 +87,8 @@ private:
     std::uint64_t last_ack_ = 0;
     std::uint64_t converged_version_ = 0; ///< of the input that there is nothing left to refine for; 0: none
     std::chrono::steady_clock::time_point last_progress_;
+    std::array<std::chrono::steady_clock::time_point, max_batches_in_flight> begun_; ///< by batch number
+    double answer_seconds_ = 0; ///< running mean
 };
 
 } // namespace framelet

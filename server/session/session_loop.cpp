@@ -4,29 +4,28 @@
 #include <chrono>
 #include <cmath>
 
+#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 
 #include "common/color.h"
 
 namespace framelet {
+namespace {
+
+/// Samples a second of a renderer that has not been measured yet.
+constexpr double first_rate = 1e6;
+
+} // namespace
 
 /// The batch being encoded while the next one renders.
 struct SessionLoop::Encoding {
     tbb::task_group task;
     BatchCodec codec;
     Batch batch;
-    std::vector<Framelet> rendered; ///< being encoded
-    std::vector<Framelet> spare; ///< being rendered into
-    float exposure = 1;
     std::shared_ptr<Session> session;
 
-    void run() {
-        batch.framelets.resize(rendered.size());
-        std::transform(rendered.begin(), rendered.end(), batch.framelets.begin(),
-                       [this](Framelet const& framelet) { return to_display(framelet, exposure); });
-        session->send(codec.encode(batch));
-    }
+    void run() { session->send(codec.encode(batch)); }
 };
 
 SessionLoop::SessionLoop(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene,
@@ -75,7 +74,7 @@ bool SessionLoop::cycle(Sessions const& sessions, WallTime now) {
     }
     SceneTime const time = animated_ ? clock_.state(now).time : 0;
     pose_scene(time);
-    double const share = options_.cycle_seconds / static_cast<double>(sessions.size());
+    double const share = 1 / static_cast<double>(sessions.size());
     bool rendered = false;
     for (auto const& session : sessions) {
         rendered |= render_session(*session, refreshes_[session->id()], time, share);
@@ -83,46 +82,78 @@ bool SessionLoop::cycle(Sessions const& sessions, WallTime now) {
     return rendered;
 }
 
-bool SessionLoop::render_session(Session& session, ViewRefresh& refresh, SceneTime time, double cycle_seconds) {
+bool SessionLoop::render_session(Session& session, AdaptiveRefresh& refresh, SceneTime time, double share) {
     SessionInput const input = session.newest_input();
     if (!input.camera) {
         return false;
     }
     ViewState const state{resolve_camera(*input.camera), options_.exposure * std::exp2(input.settings.exposure_ev),
                           time};
-    if (is_complete(refresh, state)) {
+    if (refresh.is_complete(state)) {
         if (session.report(input.version, true)) {
             events_.convergence_changed();
         }
         return false;
     }
-    std::uint64_t const number = session.begin_batch();
-    if (number == 0) {
+    if (!session.has_room()) {
         return false;
     }
-    std::vector<Tile> const tiles =
-        next_tiles(refresh, state, rate_.samples_per_second * cycle_seconds, options_.batch_framelets);
-
     auto const start = std::chrono::steady_clock::now();
-    encoding_->spare.resize(tiles.size());
-    render_framelets(render_scene_, state.view.camera, refresh.plane, tiles, 0, encoding_->spare);
-    std::chrono::duration<double> const seconds = std::chrono::steady_clock::now() - start;
-    rate_ = update_render_rate(rate_, static_cast<double>(tiles.size() * framelet_samples), seconds.count());
-    samples_per_second_ = rate_.samples_per_second;
-
+    RefreshInput wanted;
+    wanted.state = state;
+    wanted.now = std::chrono::duration<double>(start.time_since_epoch()).count();
+    wanted.samples_per_second = share * (rate_.samples_per_second > 0 ? rate_.samples_per_second : first_rate);
+    wanted.cycle_seconds = static_cast<float>(options_.cycle_seconds);
+    wanted.latency = static_cast<float>(options_.cycle_seconds + 0.5 * session.answer_seconds());
+    wanted.bias = std::clamp(static_cast<float>(options_.bias) + input.settings.bias, -1.0f, 1.0f);
+    wanted.batch_framelets = options_.batch_framelets;
+    RefreshPlan const& plan = refresh.plan(wanted);
+    if (plan.tiles.empty() && plan.probes.empty()) {
+        return false;
+    }
+    render_plan(plan, state);
+    auto const& needed = refresh.learn(display_, rendered_, probes_.luma());
     finish_encoding();
-    std::swap(encoding_->rendered, encoding_->spare);
-    encoding_->batch.number = number;
-    encoding_->batch.view = state.view;
-    encoding_->batch.scene_time = time;
-    encoding_->exposure = state.exposure;
-    encoding_->session = session.shared_from_this();
-    encoding_->task.run([encoding = encoding_.get()] { encoding->run(); });
+    send_batch(session, needed, state);
 
-    if (session.report(input.version, is_complete(refresh, state))) {
+    std::chrono::duration<double> const seconds = std::chrono::steady_clock::now() - start;
+    if (!plan.tiles.empty()) {
+        double const samples = static_cast<double>(plan.tiles.size() * framelet_samples);
+        rate_ = update_render_rate(rate_, samples, seconds.count());
+        samples_per_second_ = rate_.samples_per_second;
+    }
+    if (session.report(input.version, refresh.is_complete(state))) {
         events_.convergence_changed();
     }
     return true;
+}
+
+void SessionLoop::render_plan(RefreshPlan const& plan, ViewState const& state) {
+    rendered_.resize(plan.tiles.size());
+    display_.resize(plan.tiles.size());
+    Camera const& camera = state.view.camera;
+    render_framelets(render_scene_, camera, ImagePlane(state.view.viewport), plan.tiles, 0, rendered_);
+    probes_.render(render_scene_, camera, state.view.viewport, state.exposure, plan.probes);
+    tbb::parallel_for(std::size_t{0}, rendered_.size(),
+                      [&](std::size_t i) { display_[i] = to_display(rendered_[i], state.exposure); });
+}
+
+void SessionLoop::send_batch(Session& session, std::vector<std::uint8_t> const& needed, ViewState const& state) {
+    Batch& batch = encoding_->batch;
+    batch.framelets.clear();
+    for (std::size_t i = 0; i < display_.size(); ++i) {
+        if (needed[i] != 0) {
+            batch.framelets.push_back(display_[i]);
+        }
+    }
+    if (batch.framelets.empty() || !session.is_open()) {
+        return;
+    }
+    batch.number = session.begin_batch();
+    batch.view = state.view;
+    batch.scene_time = state.scene_time;
+    encoding_->session = session.shared_from_this();
+    encoding_->task.run([encoding = encoding_.get()] { encoding->run(); });
 }
 
 void SessionLoop::pose_scene(SceneTime time) {

@@ -1,5 +1,6 @@
 // The server's loop: for every viewer, newest camera and scene time -> tile selection -> rendering -> encoding ->
-// socket. Encoding and sending of one batch overlap the rendering of the next.
+// display values -> what was learnt -> encoding -> socket. Encoding and sending of one batch overlap the rendering of
+// the next.
 #pragma once
 
 #include <atomic>
@@ -11,9 +12,9 @@
 #include <vector>
 
 #include "protocol/batch_codec.h"
-#include "server/render/framelet_renderer.h"
+#include "server/render/probe_renderer.h"
+#include "server/schedule/adaptive_refresh.h"
 #include "server/schedule/render_rate.h"
-#include "server/schedule/view_refresh.h"
 #include "server/session/scene_clock.h"
 #include "server/session/session.h"
 
@@ -22,7 +23,8 @@ namespace framelet {
 struct LoopOptions {
     float exposure = 1; ///< factor on radiance, before the viewer's own
     std::size_t batch_framelets = 0; ///< most framelets of one batch; 0: what `cycle_seconds` has time for
-    double cycle_seconds = 0.05; ///< how long one cycle should take, all viewers together
+    double cycle_seconds = 0.02; ///< how long one cycle should take, all viewers together
+    double bias = 0; ///< -1 (spatial fidelity) .. 1 (temporal), before the viewer's own
 };
 
 class SessionLoop {
@@ -56,7 +58,9 @@ public:
 private:
     void pose_scene(SceneTime time);
     NumberedView resolve_camera(CameraUpdate const& camera) const;
-    bool render_session(Session& session, ViewRefresh& refresh, SceneTime time, double cycle_seconds);
+    bool render_session(Session& session, AdaptiveRefresh& refresh, SceneTime time, double share);
+    void render_plan(RefreshPlan const& plan, ViewState const& state);
+    void send_batch(Session& session, std::vector<std::uint8_t> const& needed, ViewState const& state);
     void finish_encoding();
     void forget_ended(Sessions const& sessions);
 
@@ -69,8 +73,11 @@ private:
     Events const events_;
 
     ScenePose pose_;
-    std::map<std::uint64_t, ViewRefresh> refreshes_; ///< by session
+    std::map<std::uint64_t, AdaptiveRefresh> refreshes_; ///< by session
     RenderRate rate_;
+    ProbeRenderer probes_;
+    std::vector<Framelet> rendered_;
+    std::vector<DisplayFramelet> display_;
 
     struct Encoding;
     std::unique_ptr<Encoding> encoding_;

@@ -58,9 +58,14 @@ Comparison compare_methods(BenchScene& scene, Reference const& reference, std::v
     comparison.spatial_slope = mean_slope(reference);
     std::size_t const times = reference_count(parameters);
     comparison.reference_sample = reference.picture(times / 2);
-    MethodSetup const setup{
-        parameters.viewport, costs, comparison.machine, parameters.frames_per_second, parameters.link.bits_per_second,
-        parameters.seed, parameters.link.delay_seconds};
+    MethodSetup const setup{parameters.viewport,
+                            costs,
+                            comparison.machine,
+                            parameters.frames_per_second,
+                            parameters.link.bits_per_second,
+                            parameters.seed,
+                            parameters.link.delay_seconds,
+                            parameters.bias};
     for (std::string const& name : methods) {
         MethodRecord record;
         record.method = name;

@@ -11,11 +11,12 @@
 namespace framelet::bench {
 namespace {
 
-constexpr std::array<std::pair<char const*, double CostTable::*>, 15> fields{{
+constexpr std::array<std::pair<char const*, double CostTable::*>, 16> fields{{
     {"coherent_segment", &CostTable::coherent_segment},
     {"incoherent_segment", &CostTable::incoherent_segment},
     {"display_sample", &CostTable::display_sample},
-    {"select_tile", &CostTable::select_tile},
+    {"plan_place", &CostTable::plan_place},
+    {"learn_sample", &CostTable::learn_sample},
     {"encode_sample", &CostTable::encode_sample},
     {"decode_sample", &CostTable::decode_sample},
     {"cache_sample", &CostTable::cache_sample},

@@ -76,6 +76,9 @@ void add_run_options(CLI::App& verb, Options& options) {
         ->check(CLI::Range(0.0, 10000.0))
         ->capture_default_str();
     verb.add_flag("--total", options.total, "The viewer's work is charged to the server's processors");
+    verb.add_option("--bias", study.run.bias, "The viewer's wish: -1 (spatial fidelity) .. 1 (temporal)")
+        ->check(CLI::Range(-1.0, 1.0))
+        ->capture_default_str();
     verb.add_option("--seed", study.run.seed, "Of everything that is random")->capture_default_str();
     verb.add_option("--costs", options.costs_file, "Table of stage costs (calibrate writes one)")
         ->capture_default_str();

@@ -33,6 +33,7 @@ struct MethodSetup {
     double bits_per_second = 0; ///< of the link, for those who control their rate; 0: unlimited
     std::uint64_t seed = 1;
     double delay_seconds = 0; ///< of the link, one way, for those who measure it
+    double bias = 0; ///< -1 (spatial fidelity) .. 1 (temporal), for those who know one
 };
 
 /// What the server's half works on. The scene is posed for this moment.

@@ -33,22 +33,5 @@ TEST(Tiling, FollowsTheMortonCurve) {
     EXPECT_TRUE(std::is_sorted(tiling.tiles.begin(), tiling.tiles.end()));
 }
 
-TEST(Tiling, DepthIsWhatTheBudgetAllows) {
-    ImagePlane const plane({1280, 720});
-    EXPECT_EQ(deepest_affordable(plane, 0), plane.min_depth());
-    EXPECT_EQ(deepest_affordable(plane, 1e12), plane.pixel_depth()) << "never beyond a sample per pixel";
-    std::mt19937 random(3);
-    for (int i = 0; i < 1000; ++i) {
-        double const samples = std::exp2(std::uniform_real_distribution<double>(10, 22)(random));
-        int const depth = deepest_affordable(plane, samples);
-        if (depth > plane.min_depth()) {
-            EXPECT_LE(static_cast<double>(uniform_tile_count(plane, depth)) * framelet_samples, samples);
-        }
-        if (depth < plane.pixel_depth()) {
-            EXPECT_GT(static_cast<double>(uniform_tile_count(plane, depth + 1)) * framelet_samples, samples);
-        }
-    }
-}
-
 } // namespace
 } // namespace framelet

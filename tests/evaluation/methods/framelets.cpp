@@ -3,8 +3,9 @@
 #include "common/framelet_cache.h"
 #include "common/reconstruction.h"
 #include "protocol/batch_codec.h"
-#include "server/schedule/render_rate.h"
+#include "server/render/probe_renderer.h"
 #include "server/schedule/adaptive_refresh.h"
+#include "server/schedule/render_rate.h"
 #include "server/session/session.h"
 #include "server/session/session_loop.h"
 #include "tests/evaluation/methods/methods.h"
@@ -31,6 +32,7 @@ public:
         refresh.now = input.now;
         refresh.samples_per_second = rate_.samples_per_second > 0 ? rate_.samples_per_second : first_rate();
         refresh.latency = refresh.cycle_seconds + static_cast<float>(setup_.delay_seconds);
+        refresh.bias = static_cast<float>(setup_.bias);
         RefreshPlan const& plan = refresh_.plan(refresh);
         if (plan.tiles.empty() && plan.probes.empty()) {
             return {};
@@ -39,12 +41,15 @@ public:
         rendered_.resize(plan.tiles.size());
         std::uint64_t const segments = render_framelets(*input.scene.render_scene, input.view.camera,
                                                         ImagePlane(setup_.viewport), plan.tiles, 0, rendered_);
-        std::uint64_t const probe_segments = render_probes(input, plan.probes);
+        std::uint64_t const probe_segments = probes_.render(*input.scene.render_scene, input.view.camera,
+                                                            setup_.viewport, input.scene.exposure, plan.probes);
         step.samples = plan.tiles.size() * framelet_samples + plan.probes.size();
         double const samples = static_cast<double>(plan.tiles.size() * framelet_samples);
         step.seconds.render = 1e-9 * (static_cast<double>(segments) * setup_.costs.coherent_segment +
                                       static_cast<double>(probe_segments) * setup_.costs.incoherent_segment);
-        step.seconds.response = 1e-9 * static_cast<double>(plan.tiles.size()) * setup_.costs.select_tile;
+        step.seconds.response =
+            1e-9 * (static_cast<double>(refresh_.field().visible().size()) * setup_.costs.plan_place +
+                    samples * setup_.costs.learn_sample);
         if (!plan.tiles.empty()) {
             rate_ = update_render_rate(rate_, static_cast<double>(step.samples), setup_.machine * step.seconds.render);
         }
@@ -53,7 +58,7 @@ public:
         for (Framelet const& framelet : rendered_) {
             display_.push_back(to_display(framelet, input.scene.exposure));
         }
-        auto const& send = refresh_.learn(display_, rendered_, probe_luma_);
+        auto const& send = refresh_.learn(display_, rendered_, probes_.luma());
         batch_.framelets.clear();
         for (std::size_t i = 0; i < display_.size(); ++i) {
             if (send[i] != 0) {
@@ -108,27 +113,7 @@ public:
 
 private:
     /// Before anything has been measured.
-    double first_rate() const {
-        return setup_.frames_per_second * setup_.viewport.width * setup_.viewport.height;
-    }
-
-    std::uint64_t render_probes(StepInput const& input, std::vector<Probe> const& probes) {
-        places_.clear();
-        spacings_.clear();
-        for (Probe const& probe : probes) {
-            places_.push_back(probe.place);
-            spacings_.push_back(probe.spacing);
-        }
-        radiance_.resize(probes.size());
-        ViewRays const rays = make_view_rays(input.view.camera, setup_.viewport);
-        std::uint64_t const segments =
-            render_samples(*input.scene.render_scene, rays, places_, spacings_, radiance_);
-        probe_luma_.clear();
-        for (Vec3 const& light : radiance_) {
-            probe_luma_.push_back(display_luma(light, input.scene.exposure));
-        }
-        return segments;
-    }
+    double first_rate() const { return setup_.frames_per_second * setup_.viewport.width * setup_.viewport.height; }
 
     static constexpr int cell = framelet_side >> finest_levels; ///< side of the finest tile, pixels
 
@@ -145,10 +130,7 @@ private:
     RenderRate rate_;
     std::vector<Framelet> rendered_;
     std::vector<DisplayFramelet> display_;
-    std::vector<Vec2> places_;
-    std::vector<float> spacings_;
-    std::vector<Vec3> radiance_;
-    std::vector<float> probe_luma_;
+    ProbeRenderer probes_;
     Batch batch_;
     std::uint64_t number_ = 0;
     BatchCodec codec_;

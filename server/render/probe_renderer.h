@@ -1,0 +1,28 @@
+// Probes in, the luma that they show now out.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "common/probe.h"
+#include "server/render/framelet_renderer.h"
+
+namespace framelet {
+
+/// Renders single samples and shows them as `to_display` does; keeps its scratch.
+class ProbeRenderer {
+public:
+    /// Returns how many rays that took. Parallel on the calling TBB arena.
+    std::uint64_t render(RenderScene const& scene, Camera const& camera, Viewport viewport, float exposure,
+                         std::span<Probe const> probes);
+    /// Display-encoded luma of the probes rendered last, [0, 1].
+    std::vector<float> const& luma() const { return luma_; }
+
+private:
+    std::vector<Vec2> places_;
+    std::vector<float> spacings_;
+    std::vector<Vec3> radiance_;
+    std::vector<float> luma_;
+};
+
+} // namespace framelet
