@@ -1,0 +1,43 @@
+// Error estimate by a streaming Haar transform (004 section 5.3). In: the samples of a framelet and the coefficients of
+// the previous one of the same place. Out: sample-rate errors by block, and the coefficients to keep.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "common/tile.h"
+#include "server/response/rate_error.h"
+
+namespace framelet {
+
+/// Spatial coefficients of the previous framelets of a place, octave after octave. Empty: there was none yet.
+struct HaarHistory {
+    std::vector<float> coefficients;
+
+    bool operator==(HaarHistory const&) const = default;
+};
+
+/// Templates of `estimate_haar`: what is tolerated grows with scale, as it does along an edge.
+inline constexpr RateTemplates haar_templates{{-12.0f, 1.0f}, {-12.0f, 0.0f}};
+
+/// Seconds between refreshes at which the template in time counts a framelet's finest octave as octave 0; refreshes
+/// twice as far apart are an octave coarser. So the template is a line over frequency, whatever the rate.
+inline constexpr float haar_interval = 1.0f / 60;
+
+/// Error of each block (004 section 5.3.4).
+///
+/// `samples`: display-encoded luma in [0, 1], Morton order; 256 or 1024 (framelets of 16x16 or 32x32).
+/// `history`: of a framelet of the same place and size; is replaced by what the next call needs.
+/// `seconds_since`: > 0, time since the history's framelet; not read where the history is empty.
+/// `elements`: 1, 4, 16, 64 or 256 equal blocks of the framelet, in Morton order.
+///
+/// In each octave: a step of the transform in x and y, the coefficients A; one in time, against the cached A'; what is
+/// low pass in all three goes on to the next octave, A into the cache. Energy in space is that of ghh, hgh and ggh, in
+/// time of hhg, hgg and ghg, as mean square over the block; where coefficients are wider than the block it has its
+/// share of them. Error is the mean over the octaves of (energy - template) / (energy + template): as tanh of half the
+/// difference of their logarithms, it is signed, 0 where they agree, and no single octave decides alone. Without a
+/// history the error in time is 0, and the one in space that of the framelet alone.
+void estimate_haar(std::span<float const> samples, HaarHistory& history, float seconds_since,
+                   RateTemplates const& templates, std::span<RateError> elements);
+
+} // namespace framelet
