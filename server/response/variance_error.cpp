@@ -1,6 +1,7 @@
 #include "server/response/variance_error.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -11,24 +12,38 @@ namespace {
 
 constexpr std::size_t smallest_block = 4; // that has a variance
 
-float variance(std::span<float const> samples) {
-    float sum = 0, squares = 0;
-    for (float const sample : samples) {
-        float const value = sample - 0.5f; // keeps the two terms below small: single precision suffices
-        sum += value;
-        squares += value * value;
+/// Sum of value(i), i < count, in several partial sums, which the compiler keeps in one vector.
+template <class Value>
+float sum_of(std::size_t count, Value&& value) {
+    constexpr std::size_t lanes = 16;
+    float sum = 0;
+    std::size_t i = 0;
+    if (count >= lanes) {
+        std::array<float, lanes> partial{};
+        for (; i + lanes <= count; i += lanes) {
+            for (std::size_t lane = 0; lane < lanes; ++lane) {
+                partial[lane] += value(i + lane);
+            }
+        }
+        for (float const part : partial) {
+            sum += part;
+        }
     }
+    for (; i < count; ++i) {
+        sum += value(i);
+    }
+    return sum;
+}
+
+float variance(std::span<float const> samples) {
     float const share = 1 / static_cast<float>(samples.size());
-    float const mean = sum * share;
-    return std::max(squares * share - mean * mean, 0.0f);
+    float const mean = share * sum_of(samples.size(), [&](std::size_t i) { return samples[i]; });
+    return share * sum_of(samples.size(), [&](std::size_t i) { return (samples[i] - mean) * (samples[i] - mean); });
 }
 
 float mean_square_difference(std::span<float const> a, std::span<float const> b) {
-    float squares = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        squares += (a[i] - b[i]) * (a[i] - b[i]);
-    }
-    return squares / static_cast<float>(a.size());
+    return sum_of(a.size(), [&](std::size_t i) { return (a[i] - b[i]) * (a[i] - b[i]); }) /
+           static_cast<float>(a.size());
 }
 
 float signed_difference(float energy, float allowed) {
