@@ -83,14 +83,16 @@ void estimate_haar(std::span<float const> samples, HaarHistory& history, float s
     history.values.resize(coefficients);
     std::fill(elements.begin(), elements.end(), RateError{});
 
-    float const weight = 2 / static_cast<float>(std::countr_zero(samples.size())); // 1 / octaves
+    int const octaves = std::countr_zero(samples.size()) / 2;
+    float const weights = static_cast<float>((1 << octaves) - 1);
+    float weight = static_cast<float>(1 << (octaves - 1)); // powers of two: their sums are exact, the bounds too
     float space_allowed = std::exp2(templates.space.offset);
     float const space_step = std::exp2(templates.space.slope);
     float const time_step = std::exp2(templates.time.slope);
     float time_allowed = 0;
     if (has_history) {
-        float const octaves = std::log2(seconds_since / template_interval);
-        time_allowed = std::exp2(templates.time.offset + templates.time.slope * octaves);
+        float const coarser = std::log2(seconds_since / template_interval);
+        time_allowed = std::exp2(templates.time.offset + templates.time.slope * coarser);
     }
 
     std::array<Blocks, 2> low;
@@ -109,8 +111,12 @@ void estimate_haar(std::span<float const> samples, HaarHistory& history, float s
         add_differences({space.data(), blocks}, space_allowed, weight, elements, &RateError::space);
         space_allowed *= space_step;
         time_allowed *= time_step;
+        weight *= 0.5f;
         input = output.data();
         cached += 4 * blocks;
+    }
+    for (RateError& element : elements) {
+        element = {element.space / weights, element.time / weights};
     }
 }
 

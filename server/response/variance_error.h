@@ -9,8 +9,8 @@ namespace framelet {
 /// Samples of the previous framelet of a place.
 using VarianceHistory = ErrorHistory;
 
-/// Templates of `estimate_variance`.
-inline constexpr RateTemplates variance_templates{{-9.0f, 0.0f}, {-9.0f, 0.0f}};
+/// Templates of `estimate_variance`, from `framelet-bench fit`.
+inline constexpr RateTemplates variance_templates{{-11.25f, 0.0f}, {-11.0f, -4.125f}};
 
 /// Error of each block, called as `estimate_haar` is: in space from the variance of its samples (004 eq. 5.5), in time
 /// from the mean square of what they differ from the previous ones; 0 without a history. Each is compared with its

@@ -42,6 +42,11 @@ RateError estimate(Samples const& samples, HaarHistory& history, float seconds =
     return error;
 }
 
+/// Weight of an octave: 8, 4, 2 and 1 of 15.
+float weight(std::size_t octave) {
+    return static_cast<float>(8 >> octave) / 15;
+}
+
 float difference(float energy, EnergyTemplate const& line, float octave) {
     float const allowed = std::exp2(line.offset + line.slope * octave);
     return (energy - allowed) / (energy + allowed);
@@ -77,7 +82,7 @@ TEST(HaarError, ComparesTheEnergiesOfTheOctavesWithTheTemplate) {
     OctaveEnergies const energies = octave_energies(std::span<float const, framelet_samples>(coefficients));
     float expected = 0;
     for (std::size_t octave = 0; octave < framelet_octaves; ++octave) {
-        expected += difference(energies[octave], templates.space, static_cast<float>(octave)) / framelet_octaves;
+        expected += difference(energies[octave], templates.space, static_cast<float>(octave)) * weight(octave);
     }
     HaarHistory history;
     EXPECT_NEAR(estimate(samples, history).space, expected, 1e-5);
@@ -119,8 +124,8 @@ TEST(HaarError, IsTheTransformInThreeDimensions) {
         }
         auto const blocks = static_cast<float>(low_after.size());
         auto const line = static_cast<float>(octave);
-        expected.space += difference(space / blocks, templates.space, line) / framelet_octaves;
-        expected.time += difference(time / blocks, templates.time, line + 2) / framelet_octaves; // 2^2 intervals
+        expected.space += difference(space / blocks, templates.space, line) * weight(octave);
+        expected.time += difference(time / blocks, templates.time, line + 2) * weight(octave); // 2^2 intervals
     }
     EXPECT_NEAR(found.space, expected.space, 1e-4);
     EXPECT_NEAR(found.time, expected.time, 1e-4);

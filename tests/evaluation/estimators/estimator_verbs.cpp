@@ -93,6 +93,7 @@ json parameters_of(EstimatorStudy const& study) {
 } // namespace
 
 void add_estimator_options(CLI::App& verb, EstimatorStudy& study) {
+    study.scenes.clear(); // both verbs have the same options
     for (char const* const name : default_scenes) {
         study.scenes.push_back(std::string(FRAMELET_SOURCE_DIR "/scenes/") + name + ".glb");
     }

@@ -47,10 +47,23 @@ std::vector<double> spatial_energies(SampleVolume const& volume) {
     return energies;
 }
 
-/// Mean square of all samples' course in time, by cycles per window.
+/// Mean of the samples of each pixel: [time][pixel].
+std::vector<double> pixel_means(SampleVolume const& volume) {
+    auto const side = static_cast<std::size_t>(volume.side), pixels = static_cast<std::size_t>(volume.pixels);
+    std::size_t const per_pixel = side / pixels;
+    std::vector<double> means(pixels * pixels * static_cast<std::size_t>(volume.times));
+    for (std::size_t i = 0; i < volume.luma.size(); ++i) {
+        std::size_t const x = i % side / per_pixel, y = i / side % side / per_pixel, t = i / (side * side);
+        means[(t * pixels + y) * pixels + x] += volume.luma[i] / static_cast<double>(per_pixel * per_pixel);
+    }
+    return means;
+}
+
+/// Mean square of all pixels' course in time, by cycles per window.
 std::vector<double> temporal_energies(SampleVolume const& volume) {
-    auto const pixels = static_cast<std::size_t>(volume.side) * static_cast<std::size_t>(volume.side);
+    std::vector<double> const means = pixel_means(volume);
     auto const times = static_cast<std::size_t>(volume.times);
+    std::size_t const pixels = means.size() / times;
     std::vector<double> const window = hann(volume.times);
     double sum = 0, squares = 0;
     for (double const weight : window) {
@@ -62,11 +75,11 @@ std::vector<double> temporal_energies(SampleVolume const& volume) {
     for (std::size_t i = 0; i < pixels; ++i) {
         double mean = 0;
         for (std::size_t t = 0; t < times; ++t) {
-            mean += window[t] * volume.luma[t * pixels + i];
+            mean += window[t] * means[t * pixels + i];
         }
         mean /= sum;
         for (std::size_t t = 0; t < times; ++t) {
-            dft.signal()[t] = window[t] * (volume.luma[t * pixels + i] - mean);
+            dft.signal()[t] = window[t] * (means[t * pixels + i] - mean);
         }
         dft.execute();
         for (std::size_t bin = 0; bin < energies.size(); ++bin) {
@@ -99,10 +112,11 @@ double edge_of(std::vector<double> const& energies, OracleParameters const& para
 } // namespace
 
 IdealDensity ideal_density(SampleVolume const& volume, OracleParameters const& parameters) {
+    FRAMELET_CHECK(volume.pixels > 0 && volume.side % volume.pixels == 0);
     FRAMELET_CHECK(volume.luma.size() == static_cast<std::size_t>(volume.side) * static_cast<std::size_t>(volume.side) *
                                              static_cast<std::size_t>(volume.times));
     IdealDensity ideal;
-    ideal.space_frequency = edge_of(spatial_energies(volume), parameters) / (2 * volume.pixels);
+    ideal.space_frequency = edge_of(spatial_energies(volume), parameters) / (2.0 * volume.pixels);
     ideal.time_frequency = edge_of(temporal_energies(volume), parameters) / volume.seconds;
     return ideal;
 }

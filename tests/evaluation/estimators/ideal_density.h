@@ -10,14 +10,14 @@ namespace framelet::bench {
 struct SampleVolume {
     int side = 0; ///< samples along x and along y
     int times = 0;
-    double pixels = 0; ///< side of the place
+    int pixels = 0; ///< side of the place; divides `side`
     double seconds = 0; ///< `times` intervals
     std::vector<float> luma; ///< [time][y][x]
 };
 
 struct OracleParameters {
     double share = 0.95; ///< of the energy that varies along an axis, to be captured
-    double floor = 1.28e-6; ///< mean square that need not be captured: what rounding to bytes leaves, (1/255)^2 / 12
+    double floor = 1e-4; ///< mean square that need not be captured: 40 dB
 };
 
 struct IdealDensity {
@@ -28,15 +28,16 @@ struct IdealDensity {
     double refreshes_per_second() const { return 2 * time_frequency; }
 };
 
-/// fs: the least frequency such that the square band max(|fx|, |fy|) <= fs, at all temporal frequencies, has its share
-/// of the energy; ft the same in time at all spatial ones. Together they capture at least 2 share - 1. (004 eq. 5.3
-/// looks for a small gradient of the norm and leaves the threshold open; a share is the same whatever the contrast.)
+/// fs: the least frequency such that the square band max(|fx|, |fy|) <= fs has its share of the energy, at all temporal
+/// frequencies; ft the same in time, at the spatial frequencies that a pixel's mean lets pass: detail that is finer is
+/// never displayed, and would flicker in time whenever anything moves. (004 eq. 5.3 looks for a small gradient of the
+/// cumulative norm and leaves the threshold open; a share is the same whatever the contrast.)
 ///
 /// By Parseval's theorem the power spectrum in three dimensions, summed over all temporal frequencies, is the sum of
 /// the spatial spectra of all times, and the same the other way round: these are what is computed. In time: mean of
-/// each sample taken off, Hann window, so that the middle counts, where an estimator stands. In space: mean of each
-/// time taken off; the place is mirrored at its borders instead of windowed, since all of it counts, and one pixel as
-/// much as another. Between bins the share is interpolated. What does not vary more than `floor` has frequency 0.
+/// each pixel taken off, Hann window, so that the middle counts, where an estimator stands. In space: mean of each time
+/// taken off; the place is mirrored at its borders instead of windowed, since all of it counts, and one pixel as much
+/// as another. Between bins the share is interpolated. What does not vary more than `floor` has frequency 0.
 IdealDensity ideal_density(SampleVolume const& volume, OracleParameters const& parameters);
 
 } // namespace framelet::bench

@@ -38,7 +38,7 @@ TEST(IdealDensity, OfAMovingWaveIsItsFrequencyAndThatTimesItsSpeed) {
         double frequency; ///< cycles per pixel
         double speed; ///< pixels per second
     };
-    for (Wave const wave : {Wave{0.25, 60}, Wave{0.5, 40}, Wave{1, 20}, Wave{0.5, 90}}) {
+    for (Wave const wave : {Wave{0.25, 60}, Wave{0.5, 40}, Wave{0.125, 200}, Wave{0.5, 90}}) {
         auto const moving = [&](double x, double, double t) {
             return 0.5 + 0.3 * std::sin(2 * pi * wave.frequency * (x - wave.speed * t));
         };
@@ -47,6 +47,13 @@ TEST(IdealDensity, OfAMovingWaveIsItsFrequencyAndThatTimesItsSpeed) {
         EXPECT_NEAR(ideal.time_frequency, wave.frequency * wave.speed, rate / 64) << wave.speed;
         EXPECT_NEAR(ideal.samples_per_pixel(), std::pow(2 * wave.frequency, 2), 0.25 * wave.frequency + 0.01);
     }
+}
+
+TEST(IdealDensity, DetailWithinAPixelDoesNotCountInTime) {
+    auto const moving = [](double x, double, double t) { return 0.5 + 0.3 * std::sin(2 * pi * (x - 20 * t)); };
+    IdealDensity const ideal = ideal_density(volume_of(moving), {});
+    EXPECT_NEAR(ideal.space_frequency, 1, 1.0 / 32);
+    EXPECT_EQ(ideal.time_frequency, 0);
 }
 
 TEST(IdealDensity, OfAWaveThatStandsIsZeroInTime) {
@@ -87,7 +94,7 @@ TEST(IdealDensity, GrowsWithTheShare) {
     }
 }
 
-TEST(IdealDensity, WhatRoundingWouldHideDoesNotCount) {
+TEST(IdealDensity, WhatIsBelowTheFloorDoesNotCount) {
     auto const faint = [](double x, double, double t) { return 0.5 + 0.001 * std::sin(2 * pi * (x - 20 * t)); };
     EXPECT_EQ(ideal_density(volume_of(faint), {}).space_frequency, 0);
     EXPECT_NEAR(ideal_density(volume_of(faint), {0.95, 0}).space_frequency, 1, 1.0 / 32);

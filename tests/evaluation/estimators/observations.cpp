@@ -109,7 +109,7 @@ void observe_window(BenchScene& scene, ImagePlane const& plane, OracleParameters
     empty.luma.resize(std::size_t(oracle_side) * oracle_side * oracle_times);
     std::vector<SampleVolume> volumes(places.size(), empty);
     for (Place& place : places) {
-        place.luma.resize(observed_times().size() * framelets_in_all * framelet_samples);
+        place.luma.resize(observed_luma_size());
     }
     for (int const ago : observed_times()) {
         if (ago > oracle_times / 2) {
@@ -131,6 +131,10 @@ std::span<float const> observed_samples(Place const& place, int ago, int level, 
     FRAMELET_CHECK(slot != times.end() && *slot == ago);
     std::ptrdiff_t const framelet = (slot - times.begin()) * framelets_in_all + first_framelet(level) + index;
     return std::span(place.luma).subspan(static_cast<std::size_t>(framelet) * framelet_samples, framelet_samples);
+}
+
+std::size_t observed_luma_size() {
+    return observed_times().size() * framelets_in_all * framelet_samples;
 }
 
 std::vector<Place> observe_places(BenchScene& scene, ObservationOptions const& options) {

@@ -44,6 +44,9 @@ struct Place {
 /// refresh.
 std::span<float const> observed_samples(Place const& place, int ago, int level, int index);
 
+/// How many values a place's `luma` has.
+std::size_t observed_luma_size();
+
 struct ObservationOptions {
     Viewport viewport{512, 512};
     int windows = 3; ///< times that are looked at
