@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/error.h"
+#include "server/response/energy.h"
 
 namespace framelet {
 namespace {
@@ -55,19 +56,16 @@ void add_differences(std::span<float const> energies, float allowed, float weigh
         std::size_t const width = elements.size() / energies.size();
         for (std::size_t i = 0; i < elements.size(); ++i) {
             float const energy = energies[i / width];
-            elements[i].*axis += weight * (energy - allowed) / (energy + allowed);
+            elements[i].*axis += weight * compare_energies(energy, allowed);
         }
         return;
     }
     std::size_t const width = energies.size() / elements.size();
     float const share = 1 / static_cast<float>(width);
     for (std::size_t i = 0; i < elements.size(); ++i) {
-        float sum = 0;
-        for (float const energy : energies.subspan(i * width, width)) {
-            sum += energy;
-        }
-        float const energy = sum * share;
-        elements[i].*axis += weight * (energy - allowed) / (energy + allowed);
+        float const* const block = energies.data() + i * width;
+        float const energy = share * sum_of(width, [&](std::size_t j) { return block[j]; });
+        elements[i].*axis += weight * compare_energies(energy, allowed);
     }
 }
 
@@ -86,14 +84,10 @@ void estimate_haar(std::span<float const> samples, HaarHistory& history, float s
     int const octaves = std::countr_zero(samples.size()) / 2;
     float const weights = static_cast<float>((1 << octaves) - 1);
     float weight = static_cast<float>(1 << (octaves - 1)); // powers of two: their sums are exact, the bounds too
-    float space_allowed = std::exp2(templates.space.offset);
+    float space_allowed = energy_allowed(templates.space, 0);
     float const space_step = std::exp2(templates.space.slope);
     float const time_step = std::exp2(templates.time.slope);
-    float time_allowed = 0;
-    if (has_history) {
-        float const coarser = std::log2(seconds_since / template_interval);
-        time_allowed = std::exp2(templates.time.offset + templates.time.slope * coarser);
-    }
+    float time_allowed = has_history ? energy_allowed(templates.time, octave_of_interval(seconds_since)) : 0;
 
     std::array<Blocks, 2> low;
     Blocks space, time;
