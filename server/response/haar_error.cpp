@@ -24,28 +24,37 @@ bool is_square(std::size_t count) {
 /// input).
 template <bool has_history>
 void transform(float const* input, std::size_t blocks, float* cached, Blocks& low, Blocks& space, Blocks& time) {
+    Blocks hh, gh, hg, gg; // apart from all that is read: the loops below become vectors
     for (std::size_t i = 0; i < blocks; ++i) {
         float const a = input[4 * i], b = input[4 * i + 1], c = input[4 * i + 2], d = input[4 * i + 3];
-        float const hh = 0.25f * ((a + b) + (c + d));
-        float const gh = 0.25f * ((a - b) + (c - d));
-        float const hg = 0.25f * ((a + b) - (c + d));
-        float const gg = 0.25f * ((a - b) - (c - d));
-        if constexpr (has_history) {
-            float const old_hh = cached[i], old_gh = cached[i + blocks];
-            float const old_hg = cached[i + 2 * blocks], old_gg = cached[i + 3 * blocks];
-            float const ghh = 0.5f * (gh + old_gh), hgh = 0.5f * (hg + old_hg), ggh = 0.5f * (gg + old_gg);
-            float const hhg = 0.5f * (hh - old_hh), ghg = 0.5f * (gh - old_gh), hgg = 0.5f * (hg - old_hg);
-            low[i] = 0.5f * (hh + old_hh);
+        hh[i] = 0.25f * ((a + b) + (c + d));
+        gh[i] = 0.25f * ((a - b) + (c - d));
+        hg[i] = 0.25f * ((a + b) - (c + d));
+        gg[i] = 0.25f * ((a - b) - (c - d));
+    }
+    if constexpr (has_history) {
+        float const* const old = cached;
+        for (std::size_t i = 0; i < blocks; ++i) {
+            float const ghh = 0.5f * (gh[i] + old[i + blocks]);
+            float const hgh = 0.5f * (hg[i] + old[i + 2 * blocks]);
+            float const ggh = 0.5f * (gg[i] + old[i + 3 * blocks]);
             space[i] = ghh * ghh + hgh * hgh + ggh * ggh;
-            time[i] = hhg * hhg + ghg * ghg + hgg * hgg;
-        } else {
-            low[i] = hh;
-            space[i] = gh * gh + hg * hg + gg * gg;
         }
-        cached[i] = hh;
-        cached[i + blocks] = gh;
-        cached[i + 2 * blocks] = hg;
-        cached[i + 3 * blocks] = gg;
+        for (std::size_t i = 0; i < blocks; ++i) {
+            float const hhg = 0.5f * (hh[i] - old[i]);
+            float const ghg = 0.5f * (gh[i] - old[i + blocks]);
+            float const hgg = 0.5f * (hg[i] - old[i + 2 * blocks]);
+            time[i] = hhg * hhg + ghg * ghg + hgg * hgg;
+            low[i] = 0.5f * (hh[i] + old[i]);
+        }
+    } else {
+        for (std::size_t i = 0; i < blocks; ++i) {
+            space[i] = gh[i] * gh[i] + hg[i] * hg[i] + gg[i] * gg[i];
+        }
+        std::copy_n(hh.begin(), blocks, low.begin());
+    }
+    for (Blocks const* const quadrant : {&hh, &gh, &hg, &gg}) {
+        cached = std::copy_n(quadrant->begin(), blocks, cached);
     }
 }
 
