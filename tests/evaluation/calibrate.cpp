@@ -149,7 +149,7 @@ void calibrate_codecs(BenchScene& scene, Viewport viewport, int rounds, CostTabl
     auto const pictures = moving_pictures(scene, viewport, std::max(rounds, 8));
     double const pixels = static_cast<double>(viewport.width) * viewport.height;
     JpegCodec jpeg;
-    H264Encoder encoder(viewport.width, viewport.height, 30, 20e6);
+    H264Encoder encoder(viewport.width, viewport.height, 30, 5e6);
     H264Decoder decoder;
     std::vector<double> jpeg_in, jpeg_out, h264_in, h264_out;
     Picture decoded;

@@ -79,6 +79,18 @@ TEST_F(Evaluation, EveryMethodSpendsTheSameOnTheServer) {
     }
 }
 
+TEST_F(Evaluation, BothSlopesOfTheSpectrumAreTold) {
+    RunParameters const parameters = small_run();
+    Comparison const comparison = compare_methods(*scene, reference(parameters), {}, parameters, costs);
+    // Less power in what is fine and fast, as 004 found; the ground under a following camera is near to noise in time.
+    EXPECT_LT(comparison.spatial_slope, -0.5);
+    EXPECT_GT(comparison.spatial_slope, -4);
+    EXPECT_LT(comparison.temporal_slope, -0.05);
+    auto const figures = to_json(comparison);
+    EXPECT_EQ(figures["spectrum_slope"]["spatial"], comparison.spatial_slope);
+    EXPECT_EQ(figures["spectrum_slope"]["temporal"], comparison.temporal_slope);
+}
+
 TEST_F(Evaluation, AStillSceneIsShownWithoutError) {
     auto const still = load_bench_scene(source / "scenes/vehicle_fixed.glb");
     RunParameters parameters = small_run();

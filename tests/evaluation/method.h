@@ -32,6 +32,7 @@ struct MethodSetup {
     double frames_per_second = 10; ///< what whole frames at one sample a pixel reach on that server
     double bits_per_second = 0; ///< of the link, for those who control their rate; 0: unlimited
     std::uint64_t seed = 1;
+    std::size_t batch_framelets = 0; ///< most framelets of one batch; 0: what a cycle has time for
 };
 
 /// What the server's half works on. The scene is posed for this moment.
@@ -69,6 +70,9 @@ public:
 
 /// Names in the order in which they are charted.
 std::vector<std::string> const& method_names();
+
+/// Whether the method goes by `batch_framelets`. Throws InputError where there is no method of that name.
+bool has_batches(std::string_view name);
 
 /// Throws InputError where there is no method of that name.
 std::unique_ptr<Method> make_method(std::string_view name, MethodSetup const& setup);

@@ -25,6 +25,7 @@ struct RunParameters {
     LinkParameters link;
     Counting counting = Counting::server;
     std::uint64_t seed = 1;
+    std::size_t batch_framelets = 0; ///< as in MethodSetup
 };
 
 /// The scene stands still for this long before the run, so that every method starts from a finished picture.

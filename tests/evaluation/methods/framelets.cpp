@@ -26,7 +26,8 @@ public:
         if (is_complete(refresh_, state)) {
             return {};
         }
-        auto const tiles = next_tiles(refresh_, state, rate_.samples_per_second * LoopOptions{}.cycle_seconds, 0);
+        auto const tiles =
+            next_tiles(refresh_, state, rate_.samples_per_second * LoopOptions{}.cycle_seconds, setup_.batch_framelets);
         ServerStep step;
         rendered_.resize(tiles.size());
         std::uint64_t const segments =
