@@ -82,7 +82,7 @@ public:
         return sum / static_cast<double>(times_.size());
     }
 
-    std::size_t most_in_flight() const override { return Session::max_batches_in_flight; }
+    Window window() const override { return {Session::max_batches_in_flight, false}; }
 
 private:
     static constexpr int cell = framelet_side >> finest_levels; ///< side of the finest tile, pixels
