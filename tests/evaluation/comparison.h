@@ -33,8 +33,8 @@ struct Comparison {
     Picture reference_sample;
 };
 
-/// One method on a machine of this speed; measures are taken in parallel to the run. `reference` must have a picture for
-/// each reference time.
+/// One method on a machine of this speed; measures are taken in parallel to the run. `reference` must have a picture
+/// for each reference time.
 MethodRecord record_method(BenchScene& scene, Reference const& reference, std::string const& method,
                            RunParameters const& parameters, double machine, CostTable const& costs);
 

@@ -1,10 +1,12 @@
 // framelet-bench: measures the renderer, one verb a question.
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <iostream>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -16,6 +18,7 @@
 #include "tests/evaluation/limits.h"
 #include "tests/evaluation/table.h"
 #include "tests/evaluation/verbs.h"
+#include "tests/evaluation/wall.h"
 
 namespace {
 
@@ -46,6 +49,8 @@ struct Options {
     std::vector<int> table_runs;
     std::vector<std::string> table_scenes;
     framelet::bench::StudyOptions study;
+    framelet::bench::WallOptions wall{.server_threads =
+                                          std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1)};
 };
 
 void add_output_options(CLI::App& verb, Options& options) {
@@ -80,6 +85,12 @@ void add_study_options(CLI::App& verb, Options& options) {
     add_time_options(verb, options);
 }
 
+void add_result_options(CLI::App& verb, Options& options) {
+    verb.add_option("--costs", options.costs_file, "Table of stage costs (calibrate writes one)")
+        ->capture_default_str();
+    verb.add_option("--charts", options.study.charts, "Draw charts into this folder");
+}
+
 void add_machine_options(CLI::App& verb, Options& options) {
     auto& study = options.study;
     verb.add_option("--methods", study.methods, "Which methods (default: all)")
@@ -90,9 +101,7 @@ void add_machine_options(CLI::App& verb, Options& options) {
         ->check(CLI::Range(0.1, 1000.0))
         ->capture_default_str();
     verb.add_option("--seed", study.run.seed, "Of everything that is random")->capture_default_str();
-    verb.add_option("--costs", options.costs_file, "Table of stage costs (calibrate writes one)")
-        ->capture_default_str();
-    verb.add_option("--charts", study.charts, "Draw charts into this folder");
+    add_result_options(verb, options);
 }
 
 void add_link_options(CLI::App& verb, Options& options) {
@@ -120,6 +129,19 @@ void add_table_options(CLI::App& verb, Options& options) {
     add_machine_options(verb, options);
     verb.add_option("--runs", options.table_runs, "Which runs of the table, by number (default: all)")->delimiter(',');
     verb.add_option("--scenes", options.table_scenes, "Which of its scenes, by name (default: all)")->delimiter(',');
+}
+
+void add_wall_options(CLI::App& verb, Options& options) {
+    add_study_options(verb, options);
+    add_link_options(verb, options);
+    add_result_options(verb, options);
+    verb.add_option("--threads", options.wall.server_threads,
+                    "Threads of the server; client and link need processors of their own")
+        ->check(CLI::Range(1, 1024))
+        ->capture_default_str();
+    verb.add_option("--display-rate", options.wall.display_rate, "Frames a second that the client shows")
+        ->check(CLI::Range(1.0, 240.0))
+        ->capture_default_str();
 }
 
 void settle(Options& options, Scale const& scale) {
@@ -201,6 +223,10 @@ int main(int argc, char** argv) {
              study(framelet::bench::link_study));
     add_verb("table", "Runs and scenes of the dissertation's Table 7.2 (--quick: those of 256x256)", add_table_options,
              [&options] { return table(options); });
+    add_verb("wall", "The real server and client through an emulated link, beside what the virtual clock predicts",
+             add_wall_options, study([&options](BenchScene& scene, framelet::bench::StudyOptions const& settled) {
+                 return framelet::bench::measure_wall(scene, settled, options.wall);
+             }));
     add_verb("reference", "Renders what the methods are compared with", add_study_options,
              study(framelet::bench::prepare_reference));
     add_verb("calibrate", "What every stage costs on this machine", add_scene_options,
