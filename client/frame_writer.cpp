@@ -1,5 +1,6 @@
 #include "client/frame_writer.h"
 
+#include "common/cpu_clock.h"
 #include "common/error.h"
 #include "common/image_io.h"
 
@@ -123,6 +124,7 @@ void FrameWriter::run() {
         std::optional<std::string> failure;
         try {
             write(frame);
+            cpu_seconds_ = cpu_seconds_of(CLOCK_THREAD_CPUTIME_ID);
         } catch (std::exception const& error) {
             failure = error.what();
         }

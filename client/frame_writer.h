@@ -1,6 +1,7 @@
 // Writes pictures to numbered files from its own thread, so that nobody waits for compression and disk.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
@@ -44,6 +45,8 @@ public:
     /// Waits until everything is written; nothing may be added afterwards. Throws InputError where writing failed.
     void finish();
     std::uint64_t frames() const { return frames_; }
+    /// What compression and disk have cost so far. From any thread.
+    double cpu_seconds() const { return cpu_seconds_; }
 
 private:
     struct Frame {
@@ -60,6 +63,7 @@ private:
     FramePattern const pattern_;
     std::uint64_t frames_ = 0;
     std::optional<Picture> last_; ///< of a pattern without number
+    std::atomic<double> cpu_seconds_ = 0;
 
     mutable std::mutex mutex_; // guards what follows
     std::condition_variable changed_;

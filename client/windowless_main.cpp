@@ -1,6 +1,7 @@
 // framelet-client: looks at a served scene without a window, writes what a person would have seen and what it measured.
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <iostream>
 #include <optional>
 
@@ -9,9 +10,11 @@
 #include "client/camera_path.h"
 #include "client/client_core.h"
 #include "client/connection_arguments.h"
+#include "client/frame_log.h"
 #include "client/frame_writer.h"
 #include "client/statistics_text.h"
 #include "common/color.h"
+#include "common/cpu_clock.h"
 #include "common/error.h"
 #include "common/reconstruction.h"
 
@@ -28,6 +31,7 @@ struct Options {
     std::string camera_file;
     std::optional<double> rate;
     std::string output;
+    std::string frames_file;
     bool json = false;
     bool until_converged = false;
     float exposure = 0;
@@ -45,8 +49,18 @@ through the keys; {"scene_camera": 0} looks through a camera of the scene.
 Frames are compressed and written by a thread of their own while batches go on
 arriving; where it cannot keep up, frames are shown later, none is left out.
 
+SIGINT (Ctrl-C) and SIGTERM end it as the end of --duration does.
+
 Exit code: 0 fine; 1 the server cannot be reached, vanished, or did not converge
 in time; 2 bad usage.)";
+
+volatile std::sig_atomic_t told_to_end = 0;
+
+void end_on_signals() {
+    for (int const number : {SIGINT, SIGTERM}) {
+        std::signal(number, [](int) { told_to_end = 1; });
+    }
+}
 
 std::chrono::nanoseconds nanoseconds(double seconds) {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(seconds));
@@ -54,6 +68,10 @@ std::chrono::nanoseconds nanoseconds(double seconds) {
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+double unix_seconds() {
+    return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
 std::optional<CameraPath> read_camera(Options const& options) {
@@ -90,7 +108,7 @@ Picture bare_picture(Viewport viewport) {
 
 /// Shows frames until the time is over, the session has ended or, if wanted, all is there. Returns what it counted.
 RunFigures show(ClientCore& core, Options const& options, std::optional<CameraPath> const& path, Viewport viewport,
-                FrameWriter* writer) {
+                FrameWriter* writer, FrameLog* log) {
     double const period =
         1 / options.rate.value_or(writer != nullptr && options.output.find('%') != std::string::npos ? 10.0 : 60.0);
     double const duration = options.duration.value_or(options.until_converged ? 60 : 10);
@@ -113,6 +131,11 @@ RunFigures show(ClientCore& core, Options const& options, std::optional<CameraPa
             core.set_view(camera, viewport, path ? path->scene_camera : core.start_scene_camera());
         }
         bool const news = core.update_picture(picture, changed);
+        if (log != nullptr) {
+            double const writing = writer != nullptr ? writer->cpu_seconds() : 0;
+            log->add({run.frames, unix_seconds(), core.clock().time, news, core.is_complete(), core.statistics().bytes,
+                      cpu_seconds_of(CLOCK_PROCESS_CPUTIME_ID) - writing});
+        }
         ++run.frames;
         if (writer != nullptr) {
             writer->add(picture, news);
@@ -120,7 +143,7 @@ RunFigures show(ClientCore& core, Options const& options, std::optional<CameraPa
         if (run.converged_seconds < 0 && (done || core.is_complete())) {
             run.converged_seconds = now;
         }
-        if (done || now >= duration || core.end_reason()) {
+        if (done || now >= duration || core.end_reason() || told_to_end != 0) {
             return run;
         }
         next += nanoseconds(period);
@@ -139,6 +162,11 @@ int run(Options const& options, ConnectionOptions const& connection, Viewport vi
     if (pattern) {
         writer.emplace(*pattern);
     }
+    std::optional<FrameLog> log;
+    if (!options.frames_file.empty()) {
+        log.emplace(options.frames_file);
+    }
+    end_on_signals();
     ClientCore core(connection);
     std::size_t const cameras = core.welcome().cameras.size();
     if (path && path->scene_camera >= static_cast<int>(cameras)) {
@@ -147,7 +175,7 @@ int run(Options const& options, ConnectionOptions const& connection, Viewport vi
     }
     core.set_settings({options.exposure, 0});
     ask_clock(core, options);
-    RunFigures const figures = show(core, options, path, viewport, writer ? &*writer : nullptr);
+    RunFigures const figures = show(core, options, path, viewport, writer ? &*writer : nullptr, log ? &*log : nullptr);
     if (writer) {
         writer->finish();
     }
@@ -184,6 +212,8 @@ int main(int argc, char** argv) {
         ->check(CLI::Range(0.1, 1000.0));
     app.add_option("--output", options.output,
                    "Picture file for each frame, as in frames/%04d.png; without a number: for the last frame");
+    app.add_option("--frames", options.frames_file,
+                   "Write a line of JSON for each frame to this file: when it was shown, the scene's time, bytes, CPU");
     app.add_flag("--json", options.json, "Print the statistics as JSON");
     app.add_flag("--until-converged", options.until_converged,
                  "End once the picture is as good as it gets; exit code 1 where that takes longer than --duration");

@@ -36,7 +36,7 @@ bool AdaptiveRefresh::is_complete(ViewState const& state) const {
 }
 
 /// Brings the field to the present.
-void AdaptiveRefresh::go_on(RefreshInput const& input) {
+void AdaptiveRefresh::advance(RefreshInput const& input) {
     ViewState const& state = input.state;
     if (!seen_ || seen_->view.viewport != state.view.viewport) {
         field_ = PlaceField(ImagePlane(state.view.viewport));
@@ -45,9 +45,8 @@ void AdaptiveRefresh::go_on(RefreshInput const& input) {
         still_since_ = input.now;
         scene_moves_ = false;
     } else {
-        double const seconds = std::max(input.now - now_, 0.0);
-        bool const same = same_picture(*seen_, state);
-        if (!same) {
+        double const seconds = std::max(input.now - advanced_, 0.0);
+        if (!same_picture(*seen_, state)) {
             still_since_ = input.now;
         }
         scene_moves_ = seen_->scene_time != state.scene_time;
@@ -59,54 +58,82 @@ void AdaptiveRefresh::go_on(RefreshInput const& input) {
         }
     }
     seen_ = state;
-    now_ = input.now;
+    advanced_ = input.now;
+}
+
+/// True while the last cycle's plan still holds.
+bool AdaptiveRefresh::goes_on(RefreshInput const& input) const {
+    double const seconds = input.now - planned_;
+    return next_ < cycle_.size() && seconds < static_cast<double>(input.cycle_seconds) &&
+           seen_->view.viewport == input.state.view.viewport && !is_cut(*seen_, input.state, seconds);
 }
 
 RefreshPlan const& AdaptiveRefresh::plan(RefreshInput const& input) {
     FRAMELET_CHECK(input.samples_per_second > 0 && input.cycle_seconds > 0);
-    go_on(input);
     plan_.patches.clear();
     plan_.tiles.clear();
     plan_.probes.clear();
     plan_.probed.clear();
+    if (!goes_on(input)) {
+        advance(input);
+        plan_cycle(input);
+    }
+    now_ = input.now;
+    take_batch(input.batch_framelets > 0 ? std::min(input.batch_framelets, max_batch_framelets) : max_batch_framelets);
+    return plan_;
+}
+
+void AdaptiveRefresh::plan_cycle(RefreshInput const& input) {
+    planned_ = input.now;
+    cycle_.clear();
+    next_ = 0;
     double samples = input.samples_per_second * static_cast<double>(input.cycle_seconds);
     if (scene_moves_) {
         plan_probes(probe_share * samples);
         samples -= probe_cost * static_cast<double>(plan_.probes.size());
     }
     plan_patches(input, samples);
-    if (plan_.patches.empty()) {
-        plan_completion(input, samples);
+    if (cycle_.empty()) {
+        plan_completion(samples);
     }
-    for (Patch const& patch : plan_.patches) {
+}
+
+/// The next patches of the cycle, as many as a batch may hold, at least one.
+void AdaptiveRefresh::take_batch(std::size_t most_framelets) {
+    while (next_ < cycle_.size()) {
+        Patch const& patch = cycle_[next_];
+        std::size_t const tiles = plan_.tiles.size();
         append_tiles(field_.plane(), patch, plan_.tiles);
+        if (tiles > 0 && plan_.tiles.size() > most_framelets) {
+            plan_.tiles.resize(tiles);
+            return;
+        }
+        plan_.patches.push_back(patch);
+        ++next_;
     }
-    return plan_;
 }
 
 void AdaptiveRefresh::plan_patches(RefreshInput const& input, double samples) {
     Budget const budget{samples / static_cast<double>(input.cycle_seconds), input.cycle_seconds, input.latency,
                         input.bias};
-    price_ = solve_price(field_, now_, budget, price_, choices_);
+    price_ = solve_price(field_, advanced_, budget, price_, choices_);
     density_.assign(field_.size(), 0);
     for (std::uint32_t const index : field_.visible()) {
         density_[index] = samples_per_pixel(choices_[index].level);
     }
     make_density_patches(field_.plane(), density_, field_.depth(), tiling_scratch_, cut_);
     rate_patches(field_, choices_, cut_, budget, rated_);
-    std::size_t const most = input.batch_framelets > 0 ? input.batch_framelets : max_batch_framelets / 2;
-    select_patches(samples, std::min(most, max_batch_framelets / 2), rated_);
+    select_patches(samples, rated_);
     for (RatedPatch const& entry : rated_) {
-        plan_.patches.push_back(entry.patch);
+        cycle_.push_back(entry.patch);
     }
     if (scene_moves_) {
-        select_inspections(field_, now_, budget, suspects_, plan_.patches);
+        select_inspections(field_, advanced_, budget, suspects_, cycle_);
     }
 }
 
 /// What stands still is finished in the end, whatever the model says of it.
-void AdaptiveRefresh::plan_completion(RefreshInput const& input, double samples) {
-    std::size_t const most = input.batch_framelets > 0 ? input.batch_framelets : max_batch_framelets / 2;
+void AdaptiveRefresh::plan_completion(double samples) {
     double tiles = 0;
     for (std::uint32_t const index : field_.visible()) {
         bool const fine = field_[index].level == sampling_levels - 1;
@@ -114,9 +141,9 @@ void AdaptiveRefresh::plan_completion(RefreshInput const& input, double samples)
             continue;
         }
         Patch const patch{{(1u << (2 * field_.depth())) + index}, field_.plane().max_depth()};
-        plan_.patches.push_back(patch);
+        cycle_.push_back(patch);
         tiles += std::ldexp(1.0, 2 * (patch.depth - patch.node.depth()));
-        if (tiles * framelet_samples >= samples || tiles >= static_cast<double>(most)) {
+        if (tiles * framelet_samples >= samples) {
             return;
         }
     }
@@ -142,7 +169,7 @@ void AdaptiveRefresh::plan_probes(double samples) {
                 beside = beside || is_active(x, y);
             }
         }
-        return (now_ - place.checked) * (beside ? 8 : 1);
+        return (advanced_ - place.checked) * (beside ? 8 : 1);
     };
     suspects_.clear();
     std::vector<double>& keys = suspicions_;

@@ -34,7 +34,8 @@ public:
     /// True when the picture of `state` is complete: `plan` would return nothing.
     bool is_complete(ViewState const& state) const;
 
-    /// The next cycle's work. Time does not go back.
+    /// The next batch's work: of the cycle that was planned last while that lasts, or of a new one, so that small
+    /// batches do not plan more often than large ones. Time does not go back.
     RefreshPlan const& plan(RefreshInput const& input);
 
     /// Takes in what was rendered by the last plan: display samples, the same with depth, luma of the probes. Returns
@@ -48,20 +49,27 @@ public:
     float price() const { return price_; }
 
 private:
-    void go_on(RefreshInput const& input);
+    bool goes_on(RefreshInput const& input) const;
+    void advance(RefreshInput const& input);
+    void plan_cycle(RefreshInput const& input);
     void plan_patches(RefreshInput const& input, double samples);
     void plan_probes(double samples);
-    void plan_completion(RefreshInput const& input, double samples);
+    void plan_completion(double samples);
+    void take_batch(std::size_t most_framelets);
     bool is_finished(std::uint32_t index) const;
 
     std::optional<ViewState> seen_;
     double now_ = 0;
+    double advanced_ = 0; ///< the time that the field stands for
     double still_since_ = 0; ///< when what is to be seen changed last
     bool scene_moves_ = false;
     PlaceField field_;
     LumaHistory history_;
     Choices choices_;
     float price_ = 1e-6f;
+    double planned_ = never; ///< when the cycle was planned
+    std::vector<Patch> cycle_; ///< patches of the cycle
+    std::size_t next_ = 0; ///< of these
     RefreshPlan plan_;
     std::vector<std::uint8_t> send_;
 

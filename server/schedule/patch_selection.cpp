@@ -36,21 +36,16 @@ void rate_patches(PlaceField const& field, Choices const& choices, std::vector<P
     }
 }
 
-void select_patches(double samples, std::size_t most_tiles, std::vector<RatedPatch>& rated) {
+void select_patches(double samples, std::vector<RatedPatch>& rated) {
     std::erase_if(rated, [](RatedPatch const& entry) { return !(entry.urgency > 0); });
     std::sort(rated.begin(), rated.end(), [](RatedPatch const& a, RatedPatch const& b) {
         return a.urgency != b.urgency ? a.urgency > b.urgency : a.patch.node < b.patch.node;
     });
     double spent = 0;
-    double tiles = 0;
     std::size_t count = 0;
-    for (; count < rated.size() && spent < samples; ++count) {
-        double const more = tile_count(rated[count].patch);
-        if (count > 0 && tiles + more > static_cast<double>(most_tiles)) {
-            break;
-        }
-        tiles += more;
+    while (count < rated.size() && spent < samples) {
         spent += rated[count].samples;
+        ++count;
     }
     rated.resize(count);
 }

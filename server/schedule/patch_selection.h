@@ -18,8 +18,8 @@ struct RatedPatch {
 void rate_patches(PlaceField const& field, Choices const& choices, std::vector<Patch> const& cut, Budget const& budget,
                   std::vector<RatedPatch>& rated);
 
-/// Keeps what is due, the most urgent first, until `samples` are spent or `most_tiles` reached.
-void select_patches(double samples, std::size_t most_tiles, std::vector<RatedPatch>& rated);
+/// Keeps what is due, the most urgent first, until `samples` are spent.
+void select_patches(double samples, std::vector<RatedPatch>& rated);
 
 /// How long a place may go without a look at all of its pixels, seconds: at least two, and so long that looking takes a
 /// twentieth of the samples. It bounds how long anything small can stay unseen.

@@ -36,55 +36,74 @@ double mean_of(MethodRecord const& record, Value&& value) {
     return record.measures.empty() ? 0 : sum / static_cast<double>(record.measures.size());
 }
 
-double mean_slope(Reference const& reference) {
+double mean_spatial_slope(Reference const& reference, std::size_t times) {
     constexpr std::size_t most = 8;
-    std::size_t const count = std::min(most, reference.size());
+    std::size_t const count = std::min(most, times);
     double sum = 0;
     for (std::size_t i = 0; i < count; ++i) {
-        sum += power_spectrum_slope(reference.picture(i * reference.size() / count));
+        sum += power_spectrum_slope(reference.picture(i * times / count));
     }
     return count == 0 ? 0 : sum / static_cast<double>(count);
 }
 
+/// Of some rows of the pictures: as many as a quarter of a gigabyte holds of all of them.
+double temporal_slope_of(Reference const& reference, std::size_t times) {
+    constexpr std::size_t most_bytes = 256 << 20;
+    std::vector<Picture> strips;
+    for (std::size_t i = 0; i < times; ++i) {
+        Picture const whole = reference.picture(i);
+        std::size_t const row_bytes = whole.rgba.size() / static_cast<std::size_t>(whole.height);
+        auto const most_rows = static_cast<int>(std::max<std::size_t>(most_bytes / (times * row_bytes), 1));
+        int const rows = std::min(whole.height, most_rows);
+        Picture& strip = strips.emplace_back(whole.width, rows);
+        for (int y = 0; y < rows; ++y) {
+            std::copy_n(whole.row(static_cast<int>(static_cast<std::int64_t>(y) * whole.height / rows)), row_bytes,
+                        strip.row(y));
+        }
+    }
+    return temporal_spectrum_slope(strips);
+}
+
 } // namespace
+
+MethodRecord record_method(BenchScene& scene, Reference const& reference, std::string const& name,
+                           RunParameters const& parameters, double machine, CostTable const& costs) {
+    std::size_t const times = reference_count(parameters);
+    FRAMELET_CHECK(reference.size() >= times);
+    MethodRecord record;
+    record.method = name;
+    record.measures.resize(times);
+    record.ages.resize(times);
+    auto const method = make_method(name, {parameters.viewport, costs, machine, parameters.frames_per_second,
+                                           parameters.link.bits_per_second, parameters.seed,
+                                           parameters.link.delay_seconds, parameters.bias, parameters.batch_framelets});
+    tbb::task_group measuring;
+    record.run =
+        run_method(scene, *method, parameters, machine, [&](std::size_t index, Picture const& shown, double age) {
+            record.ages[index] = age;
+            if (index == times / 2) {
+                record.sample = shown;
+            }
+            measuring.run([&record, &reference, index, shown] {
+                record.measures[index] = measure(shown, reference.picture(index));
+            });
+        });
+    measuring.wait();
+    return record;
+}
 
 Comparison compare_methods(BenchScene& scene, Reference const& reference, std::vector<std::string> const& methods,
                            RunParameters const& parameters, CostTable const& costs) {
-    FRAMELET_CHECK(reference.size() >= reference_count(parameters));
     Comparison comparison;
     comparison.scene = scene.name;
     comparison.parameters = parameters;
     comparison.machine = machine_factor(scene, parameters, costs);
-    comparison.spatial_slope = mean_slope(reference);
     std::size_t const times = reference_count(parameters);
+    comparison.spatial_slope = mean_spatial_slope(reference, times);
+    comparison.temporal_slope = temporal_slope_of(reference, times);
     comparison.reference_sample = reference.picture(times / 2);
-    MethodSetup const setup{parameters.viewport,
-                            costs,
-                            comparison.machine,
-                            parameters.frames_per_second,
-                            parameters.link.bits_per_second,
-                            parameters.seed,
-                            parameters.link.delay_seconds,
-                            parameters.bias};
     for (std::string const& name : methods) {
-        MethodRecord record;
-        record.method = name;
-        record.measures.resize(times);
-        record.ages.resize(times);
-        tbb::task_group measuring;
-        auto const method = make_method(name, setup);
-        record.run = run_method(scene, *method, parameters, comparison.machine,
-                                [&](std::size_t index, Picture const& shown, double age) {
-                                    record.ages[index] = age;
-                                    if (index == times / 2) {
-                                        record.sample = shown;
-                                    }
-                                    measuring.run([&record, &reference, index, shown] {
-                                        record.measures[index] = measure(shown, reference.picture(index));
-                                    });
-                                });
-        measuring.wait();
-        comparison.records.push_back(std::move(record));
+        comparison.records.push_back(record_method(scene, reference, name, parameters, comparison.machine, costs));
     }
     return comparison;
 }
@@ -117,7 +136,7 @@ json to_json(Comparison const& comparison) {
                 {"counting", p.counting == Counting::total ? "total" : "server"},
                 {"seed", p.seed},
                 {"machine_factor", comparison.machine},
-                {"spectrum_slope", comparison.spatial_slope},
+                {"spectrum_slope", {{"spatial", comparison.spatial_slope}, {"temporal", comparison.temporal_slope}}},
                 {"link",
                  {{"bits_per_second", p.link.bits_per_second},
                   {"delay_seconds", p.link.delay_seconds},
@@ -158,8 +177,10 @@ json to_json(Comparison const& comparison) {
 
 void print(Comparison const& comparison) {
     RunParameters const& p = comparison.parameters;
-    std::printf("%s, %dx%d, %g s, framed reaches %g frames/s, power spectrum slope %.2f\n", comparison.scene.c_str(),
-                p.viewport.width, p.viewport.height, p.seconds, p.frames_per_second, comparison.spatial_slope);
+    std::printf(
+        "%s, %dx%d, %g s, framed reaches %g frames/s, slope of the power spectrum %.2f in space, %.2f in time\n",
+        comparison.scene.c_str(), p.viewport.width, p.viewport.height, p.seconds, p.frames_per_second,
+        comparison.spatial_slope, comparison.temporal_slope);
     if (p.link.bits_per_second > 0 || p.link.delay_seconds > 0) {
         std::printf("link %.3g Mbit/s, %.0f ms each way\n", p.link.bits_per_second / 1e6, 1e3 * p.link.delay_seconds);
     }

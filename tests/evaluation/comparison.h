@@ -28,11 +28,17 @@ struct Comparison {
     RunParameters parameters;
     double machine = 1;
     double spatial_slope = 0; ///< of the power spectrum (004 fig. 1.3), mean over reference pictures
+    double temporal_slope = 0; ///< of the power spectrum along time, mean over pixels
     std::vector<MethodRecord> records;
     Picture reference_sample;
 };
 
-/// Runs the methods one after the other; measures are taken in parallel to the runs.
+/// One method on a machine of this speed; measures are taken in parallel to the run. `reference` must have a picture
+/// for each reference time.
+MethodRecord record_method(BenchScene& scene, Reference const& reference, std::string const& method,
+                           RunParameters const& parameters, double machine, CostTable const& costs);
+
+/// Runs the methods one after the other, on the machine that the parameters state.
 Comparison compare_methods(BenchScene& scene, Reference const& reference, std::vector<std::string> const& methods,
                            RunParameters const& parameters, CostTable const& costs);
 

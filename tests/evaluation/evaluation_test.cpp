@@ -79,6 +79,18 @@ TEST_F(Evaluation, EveryMethodSpendsTheSameOnTheServer) {
     }
 }
 
+TEST_F(Evaluation, BothSlopesOfTheSpectrumAreTold) {
+    RunParameters const parameters = small_run();
+    Comparison const comparison = compare_methods(*scene, reference(parameters), {}, parameters, costs);
+    // Less power in what is fine and fast, as 004 found; the ground under a following camera is near to noise in time.
+    EXPECT_LT(comparison.spatial_slope, -0.5);
+    EXPECT_GT(comparison.spatial_slope, -4);
+    EXPECT_LT(comparison.temporal_slope, -0.05);
+    auto const figures = to_json(comparison);
+    EXPECT_EQ(figures["spectrum_slope"]["spatial"], comparison.spatial_slope);
+    EXPECT_EQ(figures["spectrum_slope"]["temporal"], comparison.temporal_slope);
+}
+
 TEST_F(Evaluation, AStillSceneIsShownWithoutError) {
     auto const still = load_bench_scene(source / "scenes/vehicle_fixed.glb");
     RunParameters parameters = small_run();
@@ -112,6 +124,32 @@ TEST_F(Evaluation, ALinkDelaysWhatIsShown) {
     double const far = age_with(0.1);
     EXPECT_GT(far, near + 0.05);
     EXPECT_LT(far, near + 0.25);
+}
+
+/// Delay of what is shown in the last part of a run whose link has lost most of its rate.
+TEST_F(Evaluation, CodedFramesFollowTheLinkDown) {
+    RunParameters parameters = small_run();
+    parameters.viewport = {128, 128};
+    parameters.seconds = 3;
+    parameters.link.bits_per_second = 4e6;
+    parameters.link.delay_seconds = 0.02;
+    double const machine = machine_factor(*scene, parameters, costs);
+    auto const run_at_end = [&](std::string const& name, std::vector<RateStep> steps) {
+        parameters.link.rate_steps = std::move(steps);
+        auto const method = make_method(name, {parameters.viewport, costs, machine, 10, 4e6, 1});
+        double age_sum = 0;
+        RunResult const result =
+            run_method(*scene, *method, parameters, machine,
+                       [&](std::size_t index, Picture const&, double age) { age_sum += index >= 80 ? age / 40 : 0; });
+        return std::pair(age_sum, result.bytes);
+    };
+    for (std::string const name : {"framed+jpeg", "framed+h264"}) {
+        auto const [age, bytes] = run_at_end(name, {});
+        auto const [narrow_age, narrow_bytes] = run_at_end(name, {{0.5, 0.25e6}});
+        EXPECT_LT(narrow_age, age + 0.12) << name << ": a queue would hold its frames up for seconds";
+        EXPECT_LT(narrow_bytes, bytes / 2) << name;
+        EXPECT_GT(static_cast<double>(narrow_bytes), 0.6 * 2.5 * 0.25e6 / 8) << name << ": the link is used";
+    }
 }
 
 TEST_F(Evaluation, ReferencesAreKeptAndMadeAgainWhenTheyAreWrong) {

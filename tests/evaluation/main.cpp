@@ -1,8 +1,13 @@
 // framelet-bench: measures the renderer, one verb a question.
+#include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <iostream>
+#include <optional>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -12,62 +17,99 @@
 #include "tests/evaluation/calibrate.h"
 #include "tests/evaluation/estimators/estimator_verbs.h"
 #include "tests/evaluation/limits.h"
+#include "tests/evaluation/table.h"
 #include "tests/evaluation/verbs.h"
+#include "tests/evaluation/wall.h"
 
 namespace {
 
 using framelet::bench::BenchScene;
 using nlohmann::json;
 
+std::filesystem::path const source = FRAMELET_SOURCE_DIR;
+
+/// How much a study measures where it is not told.
+struct Scale {
+    int size = 512; ///< side of the picture, pixels
+    double seconds = 2;
+    double rate = 120; ///< measurements a second
+};
+
 struct Options {
-    std::string scene = FRAMELET_SOURCE_DIR "/scenes/vehicle_chase.glb";
+    std::filesystem::path scene = source / "scenes/vehicle_chase.glb";
     int camera = 0;
     std::string json_file;
-    std::string costs_file = FRAMELET_SOURCE_DIR "/tests/evaluation/costs.json";
+    std::filesystem::path costs_file = source / "tests/evaluation/costs.json";
     bool quick = false;
-    int size = 512;
+    std::optional<int> size;
+    std::optional<double> seconds, rate;
     double megabits = 0;
     double delay_ms = 0;
     double jitter_ms = 0;
     bool total = false;
+    std::vector<int> table_runs;
+    std::vector<std::string> table_scenes;
     framelet::bench::StudyOptions study;
     framelet::bench::EstimatorStudy estimators;
+    framelet::bench::WallOptions wall{.server_threads =
+                                          std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1)};
 };
 
-void add_common_options(CLI::App& verb, Options& options) {
-    verb.add_option("--scene", options.scene, "Scene file to measure with")->capture_default_str();
-    verb.add_option("--camera", options.camera, "Which of its cameras, from 0")->capture_default_str();
+void add_output_options(CLI::App& verb, Options& options) {
     verb.add_option("--json", options.json_file, "Write the figures to this file as well");
     verb.add_flag("--quick", options.quick, "Smaller pictures, less time");
 }
 
-void add_study_options(CLI::App& verb, Options& options) {
+void add_scene_options(CLI::App& verb, Options& options) {
+    add_output_options(verb, options);
+    verb.add_option("--scene", options.scene, "Scene file to measure with")->capture_default_str();
+    verb.add_option("--camera", options.camera, "Which of its cameras, from 0")->capture_default_str();
+}
+
+void add_time_options(CLI::App& verb, Options& options) {
     auto& study = options.study;
-    add_common_options(verb, options);
-    verb.add_option("--size", options.size, "Side of the picture, pixels (--quick: 256)")
-        ->check(CLI::Range(16, 4096))
-        ->capture_default_str();
-    verb.add_option("--seconds", study.run.seconds, "Scene time that is measured (--quick: 1)")
-        ->check(CLI::Range(0.05, 600.0))
-        ->capture_default_str();
-    verb.add_option("--rate", study.run.reference_rate, "Measurements a second")
-        ->check(CLI::Range(1.0, 1000.0))
-        ->capture_default_str();
+    verb.add_option("--seconds", options.seconds, "Scene time that is measured")->check(CLI::Range(0.05, 600.0));
+    verb.add_option("--rate", options.rate, "Measurements a second")->check(CLI::Range(1.0, 1000.0));
     verb.add_option("--reference-samples", study.samples_per_side, "Samples along a side of a reference's pixel")
         ->check(CLI::Range(1, 16))
         ->capture_default_str();
     verb.add_option("--reference-cache", study.reference_cache, "Folder that keeps references")->capture_default_str();
 }
 
-void add_run_options(CLI::App& verb, Options& options) {
+void add_size_option(CLI::App& verb, Options& options) {
+    verb.add_option("--size", options.size, "Side of the picture, pixels (default 512, --quick: 256)")
+        ->check(CLI::Range(16, 4096));
+}
+
+void add_study_options(CLI::App& verb, Options& options) {
+    add_scene_options(verb, options);
+    add_size_option(verb, options);
+    add_time_options(verb, options);
+}
+
+void add_result_options(CLI::App& verb, Options& options) {
+    verb.add_option("--costs", options.costs_file, "Table of stage costs (calibrate writes one)")
+        ->capture_default_str();
+    verb.add_option("--charts", options.study.charts, "Draw charts into this folder");
+}
+
+void add_machine_options(CLI::App& verb, Options& options) {
     auto& study = options.study;
-    add_study_options(verb, options);
-    study.methods = framelet::bench::method_names();
-    verb.add_option("--methods", study.methods, "Which methods")->delimiter(',')->capture_default_str();
+    verb.add_option("--methods", study.methods, "Which methods (default: all)")
+        ->delimiter(',')
+        ->check(CLI::IsMember(framelet::bench::method_names()));
     verb.add_option("--fps", study.run.frames_per_second,
                     "The server's speed: whole frames a second that framed reaches")
         ->check(CLI::Range(0.1, 1000.0))
         ->capture_default_str();
+    verb.add_option("--bias", study.run.bias, "The viewer's wish: -1 (spatial fidelity) .. 1 (temporal)")
+        ->check(CLI::Range(-1.0, 1.0))
+        ->capture_default_str();
+    verb.add_option("--seed", study.run.seed, "Of everything that is random")->capture_default_str();
+    add_result_options(verb, options);
+}
+
+void add_link_options(CLI::App& verb, Options& options) {
     verb.add_option("--bandwidth", options.megabits, "The link's rate, Mbit/s; 0: unlimited")
         ->check(CLI::Range(0.0, 1e6))
         ->capture_default_str();
@@ -77,29 +119,65 @@ void add_run_options(CLI::App& verb, Options& options) {
     verb.add_option("--jitter", options.jitter_ms, "Up to so much more delay, ms")
         ->check(CLI::Range(0.0, 10000.0))
         ->capture_default_str();
-    verb.add_flag("--total", options.total, "The viewer's work is charged to the server's processors");
-    verb.add_option("--bias", study.run.bias, "The viewer's wish: -1 (spatial fidelity) .. 1 (temporal)")
-        ->check(CLI::Range(-1.0, 1.0))
-        ->capture_default_str();
-    verb.add_option("--seed", study.run.seed, "Of everything that is random")->capture_default_str();
-    verb.add_option("--costs", options.costs_file, "Table of stage costs (calibrate writes one)")
-        ->capture_default_str();
-    verb.add_option("--charts", study.charts, "Draw charts into this folder");
 }
 
-void settle(Options& options) {
+void add_run_options(CLI::App& verb, Options& options) {
+    add_study_options(verb, options);
+    add_machine_options(verb, options);
+    add_link_options(verb, options);
+    verb.add_flag("--total", options.total, "The viewer's work is charged to the server's processors");
+}
+
+void add_table_options(CLI::App& verb, Options& options) {
+    add_output_options(verb, options);
+    add_time_options(verb, options);
+    add_machine_options(verb, options);
+    verb.add_option("--runs", options.table_runs, "Which runs of the table, by number (default: all)")->delimiter(',');
+    verb.add_option("--scenes", options.table_scenes, "Which of its scenes, by name (default: all)")->delimiter(',');
+}
+
+void add_wall_options(CLI::App& verb, Options& options) {
+    add_study_options(verb, options);
+    add_link_options(verb, options);
+    add_result_options(verb, options);
+    verb.add_option("--threads", options.wall.server_threads,
+                    "Threads of the server; client and link need processors of their own")
+        ->check(CLI::Range(1, 1024))
+        ->capture_default_str();
+    verb.add_option("--display-rate", options.wall.display_rate, "Frames a second that the client shows")
+        ->check(CLI::Range(1.0, 240.0))
+        ->capture_default_str();
+}
+
+void settle(Options& options, Scale const& scale) {
     auto& study = options.study;
-    if (options.quick) {
-        options.size = 256;
-        study.run.seconds = 1;
-    }
-    study.run.viewport = {options.size, options.size};
+    int const size = options.size.value_or(scale.size);
+    study.run.viewport = {size, size};
+    study.run.seconds = options.seconds.value_or(scale.seconds);
+    study.run.reference_rate = options.rate.value_or(scale.rate);
     study.run.link.bits_per_second = 1e6 * options.megabits;
     study.run.link.delay_seconds = 1e-3 * options.delay_ms;
     study.run.link.jitter_seconds = 1e-3 * options.jitter_ms;
     study.run.link.seed = study.run.seed;
     study.run.counting = options.total ? framelet::bench::Counting::total : framelet::bench::Counting::server;
     study.costs = framelet::bench::read_cost_table(options.costs_file);
+}
+
+json table(Options& options) {
+    namespace bench = framelet::bench;
+    settle(options, {.seconds = 5, .rate = 10}); // the whole of every scene
+    if (options.study.methods.empty()) {
+        options.study.methods = {"afr", "framelet"};
+    }
+    auto const published = bench::read_published_table(source / "tests/evaluation/published_table_7_2.csv");
+    auto part = bench::part_of(published, options.table_runs, options.table_scenes);
+    if (options.quick) {
+        std::erase_if(part.runs, [](bench::PublishedRun const& run) { return run.side > 256; });
+    }
+    if (part.runs.empty()) {
+        throw framelet::InputError("--quick leaves none of these runs: it takes those of 256x256 pixels alone");
+    }
+    return bench::run_table(part, source / "scenes", options.study);
 }
 
 json calibrate(BenchScene& scene, bool quick) {
@@ -122,7 +200,6 @@ void write_json(std::string const& file, json const& figures) {
 
 int main(int argc, char** argv) {
     Options options;
-    options.study.run.seconds = 2;
     CLI::App app("Measures framelet: each verb answers one question.", "framelet-bench");
     app.set_version_flag("--version", "framelet-bench " FRAMELET_VERSION);
     app.require_subcommand(1);
@@ -130,9 +207,7 @@ int main(int argc, char** argv) {
     auto const add_verb = [&](char const* name, char const* question, auto add_options, auto run) {
         CLI::App& verb = *app.add_subcommand(name, question);
         add_options(verb, options);
-        verb.callback([&, run] {
-            answer = [&options, run] { return run(*framelet::bench::load_bench_scene(options.scene, options.camera)); };
-        });
+        verb.callback([&answer, run] { answer = run; });
     };
     auto const add_estimator_verb = [&](char const* name, char const* question, auto run) {
         CLI::App& verb = *app.add_subcommand(name, question);
@@ -140,28 +215,41 @@ int main(int argc, char** argv) {
         framelet::bench::add_estimator_options(verb, options.estimators);
         verb.callback([&, run] { answer = [&options, run] { return run(options.estimators); }; });
     };
-    auto const study = [&options](auto run) {
-        return [&options, run](BenchScene& scene) {
-            settle(options);
+    auto const with_scene = [&options](auto run) {
+        return [&options, run] { return run(*framelet::bench::load_bench_scene(options.scene, options.camera)); };
+    };
+    auto const study = [&options, &with_scene](auto run) {
+        return with_scene([&options, run](BenchScene& scene) {
+            settle(options, options.quick ? Scale{.size = 256, .seconds = 1} : Scale{});
+            if (options.study.methods.empty()) {
+                options.study.methods = framelet::bench::method_names();
+            }
             return run(scene, options.study);
-        };
+        });
     };
     add_verb("compare", "Error over time and cost of every method, beside the reference", add_run_options,
              study(framelet::bench::compare));
     add_verb("pareto", "Error against server CPU, bytes and delay", add_run_options, study(framelet::bench::pareto));
     add_verb("link", "Error against the link's rate, delay and stalls", add_run_options,
              study(framelet::bench::link_study));
+    add_verb("table", "Runs and scenes of the dissertation's Table 7.2 (--quick: those of 256x256)", add_table_options,
+             [&options] { return table(options); });
+    add_verb("wall", "The real server and client through an emulated link, beside what the virtual clock predicts",
+             add_wall_options, study([&options](BenchScene& scene, framelet::bench::StudyOptions const& settled) {
+                 return framelet::bench::measure_wall(scene, settled, options.wall);
+             }));
     add_verb("reference", "Renders what the methods are compared with", add_study_options,
              study(framelet::bench::prepare_reference));
-    add_verb("calibrate", "What every stage costs on this machine", add_common_options,
-             [&options](BenchScene& scene) { return calibrate(scene, options.quick); });
-    add_verb("limits", "Each stage against its bare limit", add_common_options, [&options](BenchScene& scene) {
-        framelet::bench::LimitsOptions limits;
-        if (options.quick) {
-            limits = {{640, 360}, 3};
-        }
-        return framelet::bench::measure_limits(scene, limits);
-    });
+    add_verb("calibrate", "What every stage costs on this machine", add_scene_options,
+             with_scene([&options](BenchScene& scene) { return calibrate(scene, options.quick); }));
+    add_verb("limits", "Each stage against its bare limit", add_scene_options,
+             with_scene([&options](BenchScene& scene) {
+                 framelet::bench::LimitsOptions limits;
+                 if (options.quick) {
+                     limits = {{640, 360}, 3};
+                 }
+                 return framelet::bench::measure_limits(scene, limits);
+             }));
     add_estimator_verb("estimators", "Cost of error estimators against their agreement with the ideal density",
                        framelet::bench::compare_estimators);
     add_estimator_verb("fit", "Fits the templates of the error estimators", framelet::bench::fit_estimators);

@@ -1,7 +1,7 @@
 #include "tests/evaluation/method.h"
 
+#include <algorithm>
 #include <array>
-#include <utility>
 
 #include "common/error.h"
 #include "tests/evaluation/methods/methods.h"
@@ -9,41 +9,52 @@
 namespace framelet::bench {
 namespace {
 
-using Maker = std::unique_ptr<Method> (*)(MethodSetup const&);
+struct KnownMethod {
+    std::string_view name;
+    std::unique_ptr<Method> (*make)(MethodSetup const&);
+    bool batches = false;
+};
 
-constexpr std::array<std::pair<std::string_view, Maker>, 6> makers{{
+constexpr std::array<KnownMethod, 6> known_methods{{
     {"framed", make_framed},
     {"framed+jpeg", make_framed_jpeg},
     {"framed+h264", make_framed_h264},
     {"frameless", make_frameless},
     {"afr", make_afr},
-    {"framelet", make_framelet},
+    {"framelet", make_framelet, true},
 }};
 
-} // namespace
-
-std::vector<std::string> const& method_names() {
-    static std::vector<std::string> const names = [] {
-        std::vector<std::string> all;
-        for (auto const& maker : makers) {
-            all.emplace_back(maker.first);
-        }
-        return all;
-    }();
-    return names;
-}
-
-std::unique_ptr<Method> make_method(std::string_view name, MethodSetup const& setup) {
-    for (auto const& [known, make] : makers) {
-        if (known == name) {
-            return make(setup);
-        }
+KnownMethod const& find_method(std::string_view name) {
+    auto const found = std::ranges::find(known_methods, name, &KnownMethod::name);
+    if (found != known_methods.end()) {
+        return *found;
     }
     std::string known;
     for (std::string const& method : method_names()) {
         known += (known.empty() ? "" : ", ") + method;
     }
     throw InputError("no method is called '" + std::string(name) + "': there are " + known);
+}
+
+} // namespace
+
+std::vector<std::string> const& method_names() {
+    static std::vector<std::string> const names = [] {
+        std::vector<std::string> all;
+        for (KnownMethod const& method : known_methods) {
+            all.emplace_back(method.name);
+        }
+        return all;
+    }();
+    return names;
+}
+
+bool has_batches(std::string_view name) {
+    return find_method(name).batches;
+}
+
+std::unique_ptr<Method> make_method(std::string_view name, MethodSetup const& setup) {
+    return find_method(name).make(setup);
 }
 
 } // namespace framelet::bench

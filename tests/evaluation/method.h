@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,10 +31,17 @@ struct MethodSetup {
     CostTable costs;
     double machine = 1; ///< how many times slower than the calibrated machine the server is
     double frames_per_second = 10; ///< what whole frames at one sample a pixel reach on that server
-    double bits_per_second = 0; ///< of the link, for those who control their rate; 0: unlimited
+    double bits_per_second = 0; ///< of the link at the start, for those who control their rate; 0: unlimited
     std::uint64_t seed = 1;
     double delay_seconds = 0; ///< of the link, one way, for those who measure it
     double bias = 0; ///< -1 (spatial fidelity) .. 1 (temporal), for those who know one
+    std::size_t batch_framelets = 0; ///< most framelets of one batch; 0: what a cycle has time for
+};
+
+/// What the viewer's answer tells of a message.
+struct DeliveredMessage {
+    double bytes = 0;
+    double seconds = 0; ///< from its first byte to its last, by the viewer's clock
 };
 
 /// What the server's half works on. The scene is posed for this moment.
@@ -42,7 +50,8 @@ struct StepInput {
     SceneTime time = 0;
     double now = 0; ///< seconds on the run's clock; goes on while the scene stands still
     NumberedView view; ///< the newest camera that the server knows
-    double backlog_seconds = 0; ///< what the link has yet to carry, as its sender sees it
+    double waiting_bytes = 0; ///< sent and not on the way yet, as the sender's socket knows
+    std::span<DeliveredMessage const> delivered; ///< what the viewer's answers say that have come since the last step
 };
 
 /// One message to the viewer. Empty: nothing to send; where no time was spent either, nothing to do.
@@ -56,6 +65,12 @@ struct ViewerStep {
     StageSeconds seconds;
 };
 
+/// How many messages may be on their way.
+struct Window {
+    std::size_t messages = 2;
+    bool beyond_round_trip = true; ///< more than a round trip holds, as a sender may that has measured it; else in all
+};
+
 class Method {
 public:
     virtual ~Method() = default;
@@ -66,12 +81,15 @@ public:
     virtual Picture const& picture() const = 0;
     /// Scene time of what the picture shows, mean over its pixels.
     virtual double mean_sample_time() const = 0;
-    /// Messages that may be on their way before the viewer has answered; one more is rendered meanwhile.
-    virtual std::size_t most_in_flight() const { return 2; }
+    /// How far it may be ahead of the viewer; one more message is rendered meanwhile.
+    virtual Window window() const { return {}; }
 };
 
 /// Names in the order in which they are charted.
 std::vector<std::string> const& method_names();
+
+/// Whether the method goes by `batch_framelets`. Throws InputError where there is no method of that name.
+bool has_batches(std::string_view name);
 
 /// Throws InputError where there is no method of that name.
 std::unique_ptr<Method> make_method(std::string_view name, MethodSetup const& setup);

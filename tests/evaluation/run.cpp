@@ -82,15 +82,27 @@ RunResult run_method(BenchScene& scene, Method& method, RunParameters const& par
     RunResult result;
     double now = -lead_seconds(parameters);
     double viewer_free = now;
-    std::deque<double> answers; // when the server learns that a message has been shown
+    Window const window = method.window();
+    std::deque<double> in_flight; // when each message no longer counts
+    struct Answer {
+        double when;
+        DeliveredMessage message;
+    };
+    std::deque<Answer> answers;
+    std::vector<DeliveredMessage> delivered;
     Picture shown = method.picture();
     while (now < parameters.seconds) {
-        while (!answers.empty() && answers.front() <= now) {
-            answers.pop_front();
+        while (!in_flight.empty() && in_flight.front() <= now) {
+            in_flight.pop_front();
         }
-        if (answers.size() >= method.most_in_flight()) {
-            now = answers.front();
+        if (in_flight.size() >= window.messages) {
+            now = in_flight.front();
             continue;
+        }
+        delivered.clear();
+        while (!answers.empty() && answers.front().when <= now) {
+            delivered.push_back(answers.front().message);
+            answers.pop_front();
         }
         SceneTime const time = std::max(0.0, now);
         pose_at(scene, time);
@@ -98,7 +110,7 @@ RunResult run_method(BenchScene& scene, Method& method, RunParameters const& par
         Camera const camera = parameters.link.delay_seconds > 0
                                   ? camera_at(scene, std::max(0.0, now - parameters.link.delay_seconds))
                                   : scene.camera;
-        StepInput const input{scene, time, now, {1, camera, parameters.viewport}, link.backlog_seconds(now)};
+        StepInput const input{scene, time, now, {1, camera, parameters.viewport}, link.backlog_bytes(now), delivered};
         ServerStep const step = method.produce(input);
         double const started = now;
         bool const measured = started >= 0;
@@ -120,7 +132,10 @@ RunResult run_method(BenchScene& scene, Method& method, RunParameters const& par
         double const displayed = begin + viewer_machine * viewed.seconds.viewer();
         spectator.watch(displayed, shown, sample_time);
         viewer_free = displayed;
-        answers.push_back(displayed + parameters.link.delay_seconds);
+        double const delay = parameters.link.delay_seconds;
+        in_flight.push_back(displayed + (window.beyond_round_trip ? -delay : delay));
+        answers.push_back(
+            {displayed + delay, {static_cast<double>(step.message.size()), delivery.departed - delivery.begun}});
         if (shared) {
             now += machine * viewed.seconds.viewer();
         }

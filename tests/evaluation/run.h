@@ -26,6 +26,7 @@ struct RunParameters {
     Counting counting = Counting::server;
     std::uint64_t seed = 1;
     double bias = 0; ///< -1 (spatial fidelity) .. 1 (temporal)
+    std::size_t batch_framelets = 0; ///< as in MethodSetup
 };
 
 /// The scene stands still for this long before the run, so that every method starts from a finished picture.

@@ -8,17 +8,12 @@
 #include "common/image_io.h"
 #include "tests/evaluation/charts/charts.h"
 #include "tests/evaluation/charts/side_by_side.h"
+#include "tests/evaluation/comparison.h"
 
 namespace framelet::bench {
 namespace {
 
 using nlohmann::json;
-
-Reference reference_of(BenchScene& scene, StudyOptions const& options) {
-    return {scene,
-            {options.run.viewport, options.run.seconds, options.run.reference_rate, options.samples_per_side},
-            options.reference_cache};
-}
 
 void draw_comparison(Comparison const& comparison, std::filesystem::path const& folder) {
     std::filesystem::create_directories(folder);

@@ -2,25 +2,11 @@
 // figures.
 #pragma once
 
-#include <filesystem>
-#include <string>
-#include <vector>
-
 #include <nlohmann/json_fwd.hpp>
 
-#include "tests/evaluation/comparison.h"
+#include "tests/evaluation/study.h"
 
 namespace framelet::bench {
-
-/// What every such verb is told.
-struct StudyOptions {
-    std::vector<std::string> methods;
-    RunParameters run;
-    int samples_per_side = 3; ///< of the reference
-    std::filesystem::path reference_cache = default_reference_cache();
-    std::filesystem::path charts; ///< folder; empty: none are drawn
-    CostTable costs;
-};
 
 /// One run: every method against the reference; error over time, and the pictures side by side.
 nlohmann::json compare(BenchScene& scene, StudyOptions const& options);

@@ -22,6 +22,7 @@ public:
     int wait(std::chrono::seconds timeout);
     void signal(int number);
     bool running();
+    pid_t pid() const { return pid_; }
     std::string output() const;
     std::string errors() const;
 

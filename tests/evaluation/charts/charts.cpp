@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <optional>
+#include <utility>
 
 #include "common/error.h"
 #include "tests/evaluation/charts/chart_style.h"
@@ -113,6 +114,66 @@ Curve curve_of(ParetoCurve const& from) {
     return curve;
 }
 
+/// Where labels of a Pareto chart stand, in pixels from a corner of the plotting area.
+struct LabelBox {
+    double left, bottom, width, height;
+
+    bool overlaps(LabelBox const& other) const {
+        return left < other.left + other.width && other.left < left + width && bottom < other.bottom + other.height &&
+               other.bottom < bottom + height;
+    }
+};
+
+/// Places labels one after the other beside their points: where one stands already, another corner of the point is
+/// tried, and where all are taken the label is left out. Points that coincide thus share one label, in the first one's
+/// colour.
+class LabelPlacer {
+public:
+    LabelPlacer(Range x, Range y, Plot const& plot)
+        : x_(x), y_(y), width_(plot_share * plot.width), height_(plot_share * plot.height) {}
+
+    std::string place(std::string const& text, double x, double y, std::string const& color) {
+        double const across = width_ * share(x, x_);
+        double const up = height_ * share(y, y_);
+        double const length = letter_width * static_cast<double>(text.size());
+        for (Placed const& other : placed_) {
+            if (other.text == text && std::abs(across - other.across) < length && std::abs(up - other.up) < near) {
+                return "";
+            }
+        }
+        for (auto const& [right, above] : {std::pair{true, true}, {true, false}, {false, true}, {false, false}}) {
+            LabelBox const box{right ? across + gap : across - gap - length,
+                               above ? up + gap : up - gap - letter_height, length, letter_height};
+            if (std::ranges::none_of(placed_, [&](Placed const& other) { return box.overlaps(other.box); })) {
+                placed_.push_back({text, across, up, box});
+                return "set label " + quoted(text) + " noenhanced at " + number(x) + ", " + number(y) +
+                       (right ? " left" : " right") + " offset " + (right ? "0.6," : "-0.6,") +
+                       (above ? "0.6" : "-0.6") + " front font ',8' textcolor rgb '" + color + "'\n";
+            }
+        }
+        return "";
+    }
+
+private:
+    static constexpr double plot_share = 0.8; // of the picture, about
+    static constexpr double letter_width = 6.5, letter_height = 12, gap = 5;
+    static constexpr double near = 2 * letter_height; ///< apart by less, one label can be read as that of both points
+
+    struct Placed {
+        std::string text;
+        double across, up; ///< the point
+        LabelBox box;
+    };
+
+    static double share(double value, Range const& range) {
+        return std::log(value / range.low) / std::log(range.high / range.low);
+    }
+
+    Range x_, y_;
+    double width_, height_;
+    std::vector<Placed> placed_;
+};
+
 constexpr double row_height = 0.03; // of one method's refreshes, as share of the chart's
 
 /// Data and plot commands of the rows of refreshes, on a second y axis from 0 to 1.
@@ -194,13 +255,13 @@ Plot plot_of(ParetoCurves const& chart) {
     Plot plot;
     plot.commands = common_look(chart.title) + axis_title("x", chart.x_title) + axis_title("y", chart.y_title);
     plot.commands += log_axis_with_margin("x", x) + log_axis_with_margin("y", y);
+    LabelPlacer labels(widened(x, mark_margin), widened(y, mark_margin), plot);
     for (std::size_t i = 0; i < curves.size(); ++i) {
         for (std::size_t j = 0; j < curves[i].x.size(); ++j) {
             std::string const& label = chart.curves[i].points[j].label;
             if (!label.empty() && drawable(curves[i], j)) {
-                plot.commands += "set label " + quoted(label) + " noenhanced at " + place(curves[i].x[j], x) + ", " +
-                                 place(curves[i].y[j], y) + " offset 0.6,0.6 front font ',8' textcolor rgb '" +
-                                 styles[i].color + "'\n";
+                plot.commands += labels.place(label, on_log_axis(curves[i].x[j], x), on_log_axis(curves[i].y[j], y),
+                                              styles[i].color);
             }
         }
     }

@@ -92,6 +92,27 @@ TEST_F(Drawn, ParetoCurves) {
     expect_has(text, "server CPU [s]");
 }
 
+std::size_t count_of(std::string const& text, std::string const& part) {
+    std::size_t count = 0;
+    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) {
+        ++count;
+    }
+    return count;
+}
+
+TEST(ParetoLabels, NoneStandsOnAnother) {
+    ParetoCurves chart{.title = "t", .x_title = "x", .curves = {{"far", {{1, 1, "a"}, {100, 1e-4, "b"}}}}};
+    for (char const* const name : {"framed", "framed+jpeg", "framed+h264"}) {
+        chart.curves.push_back({name, {{10, 1e-2, "10 frames/s"}}});
+    }
+    chart.curves.push_back({"framelet", {{10, 1e-2, "other"}}});
+    std::string const commands = plot_of(chart).commands;
+    EXPECT_EQ(count_of(commands, "'10 frames/s'"), 1u) << "one label for all that stand there";
+    EXPECT_EQ(count_of(commands, "'other' noenhanced at 10, 0.01 left offset 0.6,-0.6"), 1u) << "below it";
+    EXPECT_EQ(count_of(commands, "'a'"), 1u);
+    EXPECT_EQ(count_of(commands, "'b'"), 1u);
+}
+
 TEST_F(Drawn, RatioBoxes) {
     RatioBoxes const chart{.title = "Suitability",
                            .scenes = {{"scene A", {{"0", {0.1, 0.5, 2}, 16.0}, {"1", {1, infinity}, std::nullopt}}},

@@ -86,14 +86,14 @@ std::string per_cent(double value) {
 }
 
 std::string percent_rows(RatioScene const& scene, Summaries const& summaries) {
-    char const* const ours_row = "graph 0.955";
+    char const* const measured_row = "graph 0.955";
     char const* const published_row = "graph 0.885";
-    std::string out = text("ours %", std::string("graph -0.012, ") + ours_row, "right font ',9'", suitable_color);
+    std::string out = text("here %", std::string("graph -0.012, ") + measured_row, "right font ',9'", suitable_color);
     out += text("published %", std::string("graph -0.012, ") + published_row, "right font ',9'", published_color);
     for (std::size_t i = 0; i < summaries.size(); ++i) {
         std::string const x = "first " + std::to_string(i) + ", ";
         char const* const color = summaries[i].p75 <= 1 ? suitable_color : unsuitable_color;
-        out += text(per_cent(summaries[i].suitable), x + ours_row, "center font ',9'", color);
+        out += text(per_cent(summaries[i].suitable), x + measured_row, "center font ',9'", color);
         out += text(scene.runs[i].published ? per_cent(*scene.runs[i].published) : "-", x + published_row,
                     "center font ',9'", published_color);
     }

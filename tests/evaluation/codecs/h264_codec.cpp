@@ -15,6 +15,10 @@ extern "C" {
 namespace framelet::bench {
 namespace {
 
+/// Colour at full resolution: at half of it, RGB pictures cannot come nearer than some 37 dB at any rate, and are worse
+/// at every rate tried.
+constexpr AVPixelFormat coded_format = AV_PIX_FMT_YUV444P;
+
 template <auto Free>
 struct Freed {
     template <class T>
@@ -29,10 +33,6 @@ using Context = std::unique_ptr<AVCodecContext, Freed<avcodec_free_context>>;
 using Frame = std::unique_ptr<AVFrame, Freed<av_frame_free>>;
 using Packet = std::unique_ptr<AVPacket, Freed<av_packet_free>>;
 using Scaler = std::unique_ptr<SwsContext, FreedScaler>;
-
-int even(int side) {
-    return side + side % 2;
-}
 
 /// Between full-range BT.709 YCbCr and the picture's RGB, as exactly as the library can.
 Scaler make_scaler(int width, int height, AVPixelFormat from, AVPixelFormat to) {
@@ -63,22 +63,28 @@ struct H264Encoder::State {
     Frame frame{av_frame_alloc()};
     Packet packet{av_packet_alloc()};
     Scaler scaler;
-    std::vector<std::uint8_t> padded; ///< the picture with even sides
-    int width = 0, height = 0;
+    double frames_per_second = 0;
     std::int64_t number = 0;
+
+    /// libavcodec's x264 looks at these fields before every frame and reconfigures the encoder where they have changed.
+    /// The buffer is one frame: what is saved in one is not to be spent in a later one. At most what the picture has.
+    void limit_frame(double bytes) {
+        AVCodecContext& c = *context;
+        double const bits = 8 * std::min(bytes, 3.0 * c.width * c.height);
+        c.rc_buffer_size = static_cast<int>(std::max(bits, 1000.0)); // x264 counts in thousands
+        c.rc_max_rate = std::llround(c.rc_buffer_size * frames_per_second);
+    }
 };
 
-H264Encoder::H264Encoder(int width, int height, double frames_per_second, double bits_per_second)
-    : state_(std::make_unique<State>()) {
+H264Encoder::H264Encoder(int width, int height, double frames_per_second) : state_(std::make_unique<State>()) {
     FRAMELET_CHECK(width > 0 && height > 0 && frames_per_second > 0);
     State& s = *state_;
-    s.width = width;
-    s.height = height;
+    s.frames_per_second = frames_per_second;
     s.context = make_context(avcodec_find_encoder_by_name("libx264"));
     AVCodecContext& c = *s.context;
-    c.width = even(width);
-    c.height = even(height);
-    c.pix_fmt = AV_PIX_FMT_YUV420P;
+    c.width = width;
+    c.height = height;
+    c.pix_fmt = coded_format;
     c.color_range = AVCOL_RANGE_JPEG;
     c.colorspace = AVCOL_SPC_BT709;
     c.framerate = av_d2q(frames_per_second, 100000);
@@ -86,13 +92,10 @@ H264Encoder::H264Encoder(int width, int height, double frames_per_second, double
     c.max_b_frames = 0;
     c.gop_size = 1 << 20;
     av_opt_set(c.priv_data, "preset", "veryfast", 0);
-    av_opt_set(c.priv_data, "tune", "zerolatency", 0);
-    if (bits_per_second > 0) {
-        c.bit_rate = c.rc_max_rate = std::llround(bits_per_second);
-        c.rc_buffer_size = static_cast<int>(std::min(bits_per_second / frames_per_second, 2e9));
-    } else {
-        av_opt_set(c.priv_data, "crf", "18", 0);
-    }
+    // Without psychovisual choices, which look good and are further from the reference.
+    av_opt_set(c.priv_data, "tune", "psnr,zerolatency", 0);
+    av_opt_set(c.priv_data, "crf", "8", 0);
+    s.limit_frame(INFINITY); // a limit cannot be set later unless there is one from the start
     if (avcodec_open2(&c, c.codec, nullptr) < 0) {
         throw InputError("x264 refuses pictures of " + std::to_string(width) + "x" + std::to_string(height));
     }
@@ -100,27 +103,19 @@ H264Encoder::H264Encoder(int width, int height, double frames_per_second, double
     s.frame->width = c.width;
     s.frame->height = c.height;
     FRAMELET_CHECK(av_frame_get_buffer(s.frame.get(), 0) == 0);
-    s.scaler = make_scaler(c.width, c.height, AV_PIX_FMT_RGBA, AV_PIX_FMT_YUV420P);
-    s.padded.resize(static_cast<std::size_t>(c.width) * static_cast<std::size_t>(c.height) * 4);
+    s.scaler = make_scaler(c.width, c.height, AV_PIX_FMT_RGBA, coded_format);
 }
 
 H264Encoder::~H264Encoder() = default;
 
-std::vector<std::byte> H264Encoder::encode(Picture const& picture) {
+std::vector<std::byte> H264Encoder::encode(Picture const& picture, double most_bytes) {
     State& s = *state_;
-    FRAMELET_CHECK(picture.width == s.width && picture.height == s.height);
-    std::size_t const row_bytes = static_cast<std::size_t>(s.context->width) * 4;
-    for (int y = 0; y < s.context->height; ++y) {
-        std::uint8_t const* const in = picture.row(std::min(y, s.height - 1));
-        std::uint8_t* const out = s.padded.data() + static_cast<std::size_t>(y) * row_bytes;
-        std::size_t const bytes = static_cast<std::size_t>(s.width) * 4;
-        std::copy_n(in, bytes, out);
-        std::copy_n(in + bytes - 4, row_bytes - bytes, out + bytes);
-    }
+    FRAMELET_CHECK(picture.width == s.context->width && picture.height == s.context->height && most_bytes > 0);
+    s.limit_frame(most_bytes);
     FRAMELET_CHECK(av_frame_make_writable(s.frame.get()) == 0);
-    std::array<std::uint8_t const*, 1> const planes{s.padded.data()};
-    std::array<int, 1> const strides{static_cast<int>(row_bytes)};
-    sws_scale(s.scaler.get(), planes.data(), strides.data(), 0, s.context->height, s.frame->data, s.frame->linesize);
+    std::array<std::uint8_t const*, 1> const planes{picture.rgba.data()};
+    std::array<int, 1> const strides{picture.width * 4};
+    sws_scale(s.scaler.get(), planes.data(), strides.data(), 0, picture.height, s.frame->data, s.frame->linesize);
     s.frame->pts = s.number++;
     FRAMELET_CHECK(avcodec_send_frame(s.context.get(), s.frame.get()) == 0);
     FRAMELET_CHECK(avcodec_receive_packet(s.context.get(), s.packet.get()) == 0); // zero latency: at once
@@ -161,20 +156,14 @@ void H264Decoder::decode(std::span<std::byte const> unit, Picture& out) {
     if (!s.scaler || s.width != frame.width || s.height != frame.height) {
         s.width = frame.width;
         s.height = frame.height;
-        s.scaler = make_scaler(s.width, s.height, AV_PIX_FMT_YUV420P, AV_PIX_FMT_RGBA);
+        s.scaler = make_scaler(s.width, s.height, coded_format, AV_PIX_FMT_RGBA);
     }
-    // An encoder's odd last column or row is cut off where `out` already has the picture's size.
-    bool const fits = even(out.width) == s.width && even(out.height) == s.height;
-    Picture whole(s.width, s.height);
-    std::array<std::uint8_t*, 1> const planes{whole.rgba.data()};
-    std::array<int, 1> const strides{s.width * 4};
-    sws_scale(s.scaler.get(), frame.data, frame.linesize, 0, s.height, planes.data(), strides.data());
-    if (!fits) {
+    if (out.width != s.width || out.height != s.height) {
         out = Picture(s.width, s.height);
     }
-    for (int y = 0; y < out.height; ++y) {
-        std::copy_n(whole.row(y), static_cast<std::size_t>(out.width) * 4, out.row(y));
-    }
+    std::array<std::uint8_t*, 1> const planes{out.rgba.data()};
+    std::array<int, 1> const strides{s.width * 4};
+    sws_scale(s.scaler.get(), frame.data, frame.linesize, 0, s.height, planes.data(), strides.data());
 }
 
 } // namespace framelet::bench

@@ -1,5 +1,5 @@
 // H.264 by x264 through libavcodec, set up as a low-latency streamer would: every picture comes out at once, no picture
-// refers to a later one, no frame takes more than its share of the link.
+// refers to a later one, no frame takes more than it may.
 #pragma once
 
 #include <cstddef>
@@ -13,14 +13,16 @@ namespace framelet::bench {
 
 class H264Encoder {
 public:
-    /// Preset veryfast, tune zerolatency, one key frame at the start (TCP loses nothing), full-range BT.709, 4:2:0.
-    /// `bits_per_second` > 0: at most that, with a buffer of one frame; 0: constant quality (crf 18). One thread: the
-    /// same pictures give the same bytes. Throws InputError where libavcodec has no x264.
-    H264Encoder(int width, int height, double frames_per_second, double bits_per_second);
+    /// Preset veryfast, tuned for the mean squared error and zero latency, 4:4:4, full-range BT.709, one key frame at
+    /// the start (TCP loses nothing; x264 makes another where the scene is cut). One thread: the same pictures give the
+    /// same bytes. Throws InputError where libavcodec has no x264.
+    H264Encoder(int width, int height, double frames_per_second);
     ~H264Encoder();
 
-    /// The complete access unit of exactly this picture, which must have the encoder's size.
-    std::vector<std::byte> encode(Picture const& picture);
+    /// The complete access unit of exactly this picture, which must have the encoder's size. `most_bytes`: what the
+    /// frame may take, > 0, from one frame to the next as the link changes; infinite: whatever constant quality (crf 8)
+    /// takes, which is never exceeded. x264 keeps to it within some per cent, the first frame apart.
+    std::vector<std::byte> encode(Picture const& picture, double most_bytes);
 
 private:
     struct State;

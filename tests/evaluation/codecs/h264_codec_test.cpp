@@ -33,15 +33,15 @@ double psnr(Picture const& a, Picture const& b) {
 
 TEST(H264Codec, MovingPicturesComeOutAtOnceAndAlike) {
     for (auto const& [width, height] : {std::pair{192, 128}, std::pair{97, 65}}) {
-        H264Encoder encoder(width, height, 30, 0);
+        H264Encoder encoder(width, height, 30);
         H264Decoder decoder;
         Picture out(width, height);
         for (int i = 0; i < 12; ++i) {
             Picture const picture = waves(width, height, i / 30.0);
-            decoder.decode(encoder.encode(picture), out);
+            decoder.decode(encoder.encode(picture, INFINITY), out);
             ASSERT_EQ(out.width, width);
             ASSERT_EQ(out.height, height);
-            EXPECT_GT(psnr(picture, out), 36) << i;
+            EXPECT_GT(psnr(picture, out), 45) << i;
         }
     }
 }
@@ -53,29 +53,27 @@ TEST(H264Codec, KeepsPrimaryColors) {
         for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
             picture.rgba[i] = static_cast<std::uint8_t>(i % 4 == 3 ? 255 : color[i % 4]);
         }
-        H264Encoder encoder(64, 64, 30, 0);
+        H264Encoder encoder(64, 64, 30);
         Picture out(64, 64);
-        H264Decoder().decode(encoder.encode(picture), out);
+        H264Decoder().decode(encoder.encode(picture, INFINITY), out);
         for (std::size_t c = 0; c < 3; ++c) {
             EXPECT_NEAR(out.row(32)[32 * 4 + c], color[c], 4) << color[0] << ' ' << color[1] << ' ' << color[2];
         }
     }
 }
 
-TEST(H264Codec, TheSamePicturesGiveTheSameBytesWithinTheRate) {
-    constexpr double rate = 400e3;
-    H264Encoder a(256, 192, 30, rate), b(256, 192, 30, rate);
-    std::size_t bytes = 0;
-    std::size_t largest = 0;
-    for (int i = 0; i < 60; ++i) {
+TEST(H264Codec, TheSamePicturesGiveTheSameBytesAndNoFrameTakesMoreThanItMay) {
+    H264Encoder a(256, 192, 30), b(256, 192, 30);
+    for (int i = 0; i < 90; ++i) {
         Picture const picture = waves(256, 192, i / 30.0);
-        auto const unit = a.encode(picture);
-        EXPECT_EQ(unit, b.encode(picture));
-        bytes += i > 0 ? unit.size() : 0;
-        largest = std::max(largest, i > 10 ? unit.size() : 0);
+        double const most_bytes = i < 30 ? 3000 : i < 60 ? 700 : 2000; // a link whose rate changes
+        auto const unit = a.encode(picture, most_bytes);
+        EXPECT_EQ(unit, b.encode(picture, most_bytes));
+        if (i % 30 > 2) {
+            EXPECT_LT(static_cast<double>(unit.size()), 1.3 * most_bytes) << i;
+            EXPECT_GT(static_cast<double>(unit.size()), 0.4 * most_bytes) << i;
+        }
     }
-    EXPECT_LT(8.0 * static_cast<double>(bytes) / (59 / 30.0), 1.25 * rate);
-    EXPECT_LT(8.0 * static_cast<double>(largest), 2 * rate / 30) << "no frame holds up the link";
 }
 
 TEST(H264Codec, RefusesDamagedBytes) {

@@ -70,7 +70,7 @@ void JpegCodec::decode(std::span<std::byte const> bytes, Picture& out) {
 }
 
 int JpegRate::quality(double budget) const {
-    if (budget <= 0) {
+    if (!std::isfinite(budget)) {
         return best;
     }
     if (best_bytes_ <= 0) {

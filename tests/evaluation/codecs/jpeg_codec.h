@@ -31,7 +31,7 @@ class JpegRate {
 public:
     static constexpr int worst = 10, best = 95;
 
-    /// For the next frame. `budget`: bytes; 0: unlimited.
+    /// For the next frame. `budget`: bytes; infinite: unlimited.
     int quality(double budget) const;
     /// What a frame took.
     void took(int quality, std::size_t bytes);

@@ -79,7 +79,7 @@ TEST(JpegRate, FitsItsBudgetFromEitherSide) {
         EXPECT_LE(static_cast<double>(size), 1.15 * budget) << quality;
         EXPECT_TRUE(static_cast<double>(size) >= 0.6 * budget || quality == JpegRate::best) << quality << ' ' << size;
     }
-    EXPECT_EQ(JpegRate{}.quality(0), JpegRate::best);
+    EXPECT_EQ(JpegRate{}.quality(INFINITY), JpegRate::best);
 }
 
 } // namespace

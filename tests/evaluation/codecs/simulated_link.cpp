@@ -117,7 +117,7 @@ SimulatedLink::Delivery SimulatedLink::send(double now, std::size_t bytes) {
     waiting_.push_back({started, time, static_cast<double>(bytes)});
     double const jitter = parameters_.jitter_seconds * uniform(parameters_.seed, messages_++);
     last_arrival_ = std::max(last_arrival_, time + parameters_.delay_seconds + jitter);
-    return {time, last_arrival_};
+    return {started, time, last_arrival_};
 }
 
 } // namespace framelet::bench

@@ -35,6 +35,7 @@ public:
     explicit SimulatedLink(LinkParameters parameters);
 
     struct Delivery {
+        double begun = 0; ///< when the first byte left the sender
         double departed = 0; ///< when the last byte left the sender
         double arrived = 0; ///< when it is there; never before an earlier message
     };

@@ -74,7 +74,7 @@ public:
 
     Picture const& picture() const override { return viewer_.picture(); }
     double mean_sample_time() const override { return viewer_.mean_sample_time(); }
-    std::size_t most_in_flight() const override { return 16; }
+    Window window() const override { return {16}; }
 
 private:
     MethodSetup const setup_;

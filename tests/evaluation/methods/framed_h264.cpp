@@ -1,4 +1,4 @@
-// `framed+h264`: whole frames in turn through x264 at the rate of the link.
+// `framed+h264`: whole frames in turn through x264, no frame larger than the link carries in its time.
 #include <cstring>
 
 #include "tests/evaluation/codecs/h264_codec.h"
@@ -8,23 +8,20 @@
 namespace framelet::bench {
 namespace {
 
-/// Of the link's rate that the encoder aims at: the rest is room for what it overshoots by.
-constexpr double link_share = 0.95;
-
 class FramedH264 final : public Method {
 public:
     explicit FramedH264(MethodSetup const& setup)
-        : setup_(setup), frame_(setup), encoder_(setup.viewport.width, setup.viewport.height, setup.frames_per_second,
-                                                 link_share * setup.bits_per_second),
+        : setup_(setup), frame_(setup), encoder_(setup.viewport.width, setup.viewport.height, setup.frames_per_second),
           picture_(setup.viewport.width, setup.viewport.height) {}
 
     ServerStep produce(StepInput const& input) override {
         ServerStep step = frame_.render(input);
-        auto const bytes = encoder_.encode(frame_.picture());
+        double const encoding = 1e-9 * static_cast<double>(frame_.pixels()) * setup_.costs.h264_encode_pixel;
+        auto const bytes = encoder_.encode(frame_.picture(), frame_.budget(input, step, encoding));
         step.message.resize(sizeof(input.time) + bytes.size());
         std::memcpy(step.message.data(), &input.time, sizeof(input.time));
         std::memcpy(step.message.data() + sizeof(input.time), bytes.data(), bytes.size());
-        step.seconds.encode += 1e-9 * static_cast<double>(frame_.pixels()) * setup_.costs.h264_encode_pixel;
+        step.seconds.encode += encoding;
         return step;
     }
 

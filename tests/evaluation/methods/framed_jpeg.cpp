@@ -15,13 +15,14 @@ public:
 
     ServerStep produce(StepInput const& input) override {
         ServerStep step = frame_.render(input);
-        int const quality = rate_.quality(setup_.bits_per_second / 8 / setup_.frames_per_second);
+        double const encoding = 1e-9 * static_cast<double>(frame_.pixels()) * setup_.costs.jpeg_encode_pixel;
+        int const quality = rate_.quality(frame_.budget(input, step, encoding));
         auto const bytes = codec_.encode(frame_.picture(), quality);
         rate_.took(quality, bytes.size());
         step.message.resize(sizeof(input.time) + bytes.size());
         std::memcpy(step.message.data(), &input.time, sizeof(input.time));
         std::memcpy(step.message.data() + sizeof(input.time), bytes.data(), bytes.size());
-        step.seconds.encode += 1e-9 * static_cast<double>(frame_.pixels()) * setup_.costs.jpeg_encode_pixel;
+        step.seconds.encode += encoding;
         return step;
     }
 

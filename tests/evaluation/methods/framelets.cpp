@@ -32,6 +32,7 @@ public:
         refresh.now = input.now;
         refresh.samples_per_second = rate_.samples_per_second > 0 ? rate_.samples_per_second : first_rate();
         refresh.latency = refresh.cycle_seconds + static_cast<float>(setup_.delay_seconds);
+        refresh.batch_framelets = setup_.batch_framelets;
         refresh.bias = static_cast<float>(setup_.bias);
         RefreshPlan const& plan = refresh_.plan(refresh);
         if (plan.tiles.empty() && plan.probes.empty()) {
@@ -109,7 +110,7 @@ public:
         return sum / static_cast<double>(times_.size());
     }
 
-    std::size_t most_in_flight() const override { return Session::max_batches_in_flight; }
+    Window window() const override { return {Session::max_batches_in_flight, false}; }
 
 private:
     /// Before anything has been measured.

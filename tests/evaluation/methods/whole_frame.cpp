@@ -1,6 +1,7 @@
 #include "tests/evaluation/methods/whole_frame.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <tbb/parallel_for.h>
 
@@ -10,8 +11,10 @@
 namespace framelet::bench {
 
 WholeFrame::WholeFrame(MethodSetup const& setup)
-    : costs_(setup.costs), plane_(setup.viewport), tiles_(make_uniform_tiling(plane_, plane_.pixel_depth()).tiles),
-      rendered_(tiles_.size()), displayed_(tiles_.size()), picture_(setup.viewport.width, setup.viewport.height),
+    : costs_(setup.costs),
+      machine_(setup.machine), rate_{setup.bits_per_second > 0 ? setup.bits_per_second / 8 : INFINITY},
+      plane_(setup.viewport), tiles_(make_uniform_tiling(plane_, plane_.pixel_depth()).tiles), rendered_(tiles_.size()),
+      displayed_(tiles_.size()), picture_(setup.viewport.width, setup.viewport.height),
       pixels_(picture_.rgba.size() / 4) {}
 
 ServerStep WholeFrame::render(StepInput const& input) {
@@ -24,6 +27,14 @@ ServerStep WholeFrame::render(StepInput const& input) {
     step.seconds.render = 1e-9 * static_cast<double>(segments) * costs_.coherent_segment;
     step.seconds.encode = 1e-9 * static_cast<double>(step.samples) * costs_.display_sample;
     return step;
+}
+
+double WholeFrame::budget(StepInput const& input, ServerStep const& rendered, double encode_seconds) {
+    for (DeliveredMessage const& message : input.delivered) {
+        rate_ = update_delivery_rate(rate_, message.bytes, message.seconds);
+    }
+    double const period = machine_ * (rendered.seconds.server() + encode_seconds);
+    return frame_budget(rate_, period, input.waiting_bytes);
 }
 
 Picture const& WholeFrame::picture() {

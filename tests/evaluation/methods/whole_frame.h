@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "tests/evaluation/codecs/delivery_rate.h"
 #include "tests/evaluation/method.h"
 
 namespace framelet::bench {
@@ -20,8 +21,15 @@ public:
 
     std::size_t pixels() const { return pixels_; }
 
+    /// Bytes that the encoder may make of the frame last rendered, for a link that it shall neither fill nor leave
+    /// idle: from what the answers say and from how long a frame takes. `encode_seconds`: what encoding costs,
+    /// calibrated.
+    double budget(StepInput const& input, ServerStep const& rendered, double encode_seconds);
+
 private:
     CostTable costs_;
+    double machine_;
+    DeliveryRate rate_;
     ImagePlane plane_;
     std::vector<Tile> tiles_;
     std::vector<Framelet> rendered_;

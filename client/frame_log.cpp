@@ -1,0 +1,29 @@
+#include "client/frame_log.h"
+
+#include <nlohmann/json.hpp>
+
+#include "common/error.h"
+
+namespace framelet {
+
+FrameLog::FrameLog(std::filesystem::path const& file) : file_(file), stream_(file) {
+    if (!stream_) {
+        throw InputError("cannot write '" + file.string() + "'");
+    }
+}
+
+void FrameLog::add(FrameEntry const& entry) {
+    nlohmann::ordered_json const line = {{"frame", entry.frame},
+                                         {"unix_seconds", entry.unix_seconds},
+                                         {"scene_seconds", entry.scene_seconds},
+                                         {"changed", entry.changed},
+                                         {"complete", entry.complete},
+                                         {"bytes", entry.bytes},
+                                         {"cpu_seconds", entry.cpu_seconds}};
+    stream_ << line << '\n';
+    if (!stream_.flush()) {
+        throw InputError("cannot write '" + file_.string() + "'");
+    }
+}
+
+} // namespace framelet

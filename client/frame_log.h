@@ -1,0 +1,34 @@
+// Tells of every display frame in a line of JSON: when it was shown, what the scene's clock stood at, what it had cost
+// by then. For whoever compares the pictures with something else afterwards.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+
+namespace framelet {
+
+struct FrameEntry {
+    std::uint64_t frame = 0; ///< as in the picture's file name
+    double unix_seconds = 0; ///< when the picture was ready to be shown
+    double scene_seconds = 0; ///< what the scene's clock stood at, as far as the client knew
+    bool changed = false; ///< the picture differs from the one before
+    bool complete = false; ///< as good as it gets
+    std::uint64_t bytes = 0; ///< of batches, received since the start
+    double cpu_seconds = 0; ///< of the client since its start, writing of pictures apart
+};
+
+class FrameLog {
+public:
+    /// Throws InputError where the file cannot be written.
+    explicit FrameLog(std::filesystem::path const& file);
+
+    /// The line can be read at once. Throws InputError where it cannot be written.
+    void add(FrameEntry const& entry);
+
+private:
+    std::filesystem::path const file_;
+    std::ofstream stream_;
+};
+
+} // namespace framelet
