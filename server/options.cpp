@@ -44,7 +44,7 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
     app.add_option("--clip", options.clips, "Animation clip to play, by name; may be given several times");
     app.add_flag("--paused", options.server.paused, "Start with the scene clock standing");
     app.add_option("--batch", options.server.loop.batch_framelets,
-                   "Most framelets a batch; 0: what fits a cycle of 20 ms")
+                   "Most framelets a batch; 0: what takes 5 ms")
         ->check(CLI::Range(std::size_t(0), max_batch_framelets))
         ->capture_default_str();
     app.add_option("--bias", options.server.loop.bias, "What to favour: -1 detail .. 1 freshness")

@@ -20,10 +20,10 @@ constexpr float tail = band_falloff / (1 - band_falloff);
 constexpr float alias_share = 4.0f / 9.0f;
 /// A drift beyond which even the coarsest band has passed.
 constexpr float most_drift = 64;
-
-constexpr float band_weight(int band) {
-    return static_cast<float>(1 << band) / static_cast<float>(1 << pixel_level);
-}
+constexpr float most_motion = 1e6f; ///< a second
+constexpr float most_pace = 1e3f;
+/// Of its bound, that a change is taken for at most: beyond, all that is known is that it has passed.
+constexpr float most_share = 0.9f;
 
 float energy_above(PlaceModel const& place, int level) {
     float sum = tail * place.energy.back();
@@ -34,8 +34,8 @@ float energy_above(PlaceModel const& place, int level) {
 }
 
 /// Bands finer than a pixel are averaged away on the display and cannot become untrue.
-int shown_level(int level) {
-    return std::min(level, pixel_level);
+std::size_t shown_band(int level) {
+    return static_cast<std::size_t>(std::min(level, pixel_level));
 }
 
 float to_energy(float value) {
@@ -68,20 +68,17 @@ float unresolved_error(PlaceModel const& place, int level) {
 
 float drift_error(PlaceModel const& place, int level, float drift) {
     float sum = 0;
-    float kept = std::exp(-drift * band_weight(0)); // of the band; the next one passes twice as fast
-    for (int band = 0; band <= shown_level(level); ++band) {
-        sum += 2 * place.energy[static_cast<std::size_t>(band)] * (1 - kept);
-        kept *= kept;
+    for (std::size_t band = 0; band <= shown_band(level); ++band) {
+        sum += 2 * place.energy[band] * (1 - std::exp(-drift * place.pace[band]));
     }
     return sum;
 }
 
 DriftBounds drift_bounds(PlaceModel const& place, int level) {
     DriftBounds bounds;
-    for (int band = 0; band <= shown_level(level); ++band) {
-        float const energy = 2 * place.energy[static_cast<std::size_t>(band)];
-        bounds.most += energy;
-        bounds.growth += energy * band_weight(band);
+    for (std::size_t band = 0; band <= shown_band(level); ++band) {
+        bounds.most += 2 * place.energy[band];
+        bounds.growth += 2 * place.energy[band] * place.pace[band];
     }
     return bounds;
 }
@@ -91,9 +88,11 @@ float drift_of_error(PlaceModel& place, int level, float error) {
         return 0;
     }
     DriftBounds const bounds = drift_bounds(place, level);
-    constexpr float most_share = 0.9f;
     if (error > most_share * bounds.most) {
         place.energy[0] = to_energy(place.energy[0] + 0.5f * (error / most_share - bounds.most));
+    }
+    if (!(bounds.growth > 0)) {
+        place.pace = PlaceModel::unknown_pace();
     }
     // Monotone: halving the interval of the logarithm.
     float low = 1e-6f;
@@ -171,39 +170,83 @@ Observation mean_of(Observation const& sum, int count) {
 
 namespace {
 
-/// Puts the energies of the octaves into their bands and carries what is known of finer bands along.
-void learn_energy(PlaceModel& place, Observation const& seen) {
-    std::array<float, sampling_levels> found{};
-    int const coarsest_band = std::max(seen.level - static_cast<int>(framelet_octaves) + 1, 0);
+/// Octaves of an observation put into their bands; what is coarser than the coarsest band goes into that.
+std::array<float, sampling_levels> by_band(int level, OctaveEnergies const& octaves) {
+    std::array<float, sampling_levels> bands{};
     for (int octave = 0; octave < static_cast<int>(framelet_octaves); ++octave) {
-        found[static_cast<std::size_t>(std::max(seen.level - octave, 0))] +=
-            seen.energy[static_cast<std::size_t>(octave)];
+        bands[static_cast<std::size_t>(std::max(level - octave, 0))] += octaves[static_cast<std::size_t>(octave)];
     }
+    return bands;
+}
+
+/// The coarsest band that tiles of this level see all of.
+std::size_t coarsest_band(int level) {
+    return static_cast<std::size_t>(std::max(level - static_cast<int>(framelet_octaves) + 1, 0));
+}
+
+/// Carries what is known of finer bands along.
+void learn_energy(PlaceModel& place, Observation const& seen) {
+    auto const found = by_band(seen.level, seen.energy);
     auto const finest = static_cast<std::size_t>(seen.level);
     float const scale = place.finest_seen >= seen.level
                             ? std::clamp(to_energy(found[finest]) / to_energy(place.energy[finest]), 0.25f, 4.0f)
                             : 0;
-    for (int band = coarsest_band; band <= seen.level; ++band) {
-        auto const b = static_cast<std::size_t>(band);
-        place.energy[b] = to_energy(found[b]);
+    for (std::size_t band = coarsest_band(seen.level); band <= finest; ++band) {
+        place.energy[band] = to_energy(found[band]);
     }
-    for (auto b = finest + 1; b < place.energy.size(); ++b) {
-        bool const known = static_cast<int>(b) <= place.finest_seen;
-        place.energy[b] = to_energy(known ? scale * place.energy[b] : band_falloff * place.energy[b - 1]);
+    for (std::size_t band = finest + 1; band < place.energy.size(); ++band) {
+        bool const known = static_cast<int>(band) <= place.finest_seen;
+        place.energy[band] = to_energy(known ? scale * place.energy[band] : band_falloff * place.energy[band - 1]);
     }
     place.finest_seen = std::max(place.finest_seen, seen.level);
 }
 
+/// Drift a second of each band, from what has changed of it; then what they have in common, and each one's own pace.
 void learn_motion(PlaceModel& place, Observation const& seen) {
-    float change = seen.mean_change;
-    for (float const octave : seen.change) {
-        change += octave;
-    }
+    auto change = by_band(seen.level, seen.change);
+    std::size_t const coarsest = coarsest_band(seen.level);
+    auto const finest = static_cast<std::size_t>(seen.level);
+    change[coarsest > 0 ? coarsest - 1 : 0] += seen.mean_change;
     // Newer evidence counts more; what does not change at all is taken at its word.
     constexpr float trust = 0.7f;
-    float const drift = drift_of_error(place, seen.level, change);
-    float const motion = drift / seen.seconds;
-    place.motion = motion > 0 ? place.motion + trust * (motion - place.motion) : 0;
+    // A finer band that was not sampled goes with the finest one that was, as it last did; that memory fades.
+    constexpr float fading = 0.25f;
+    std::array<float, sampling_levels> rates{};
+    for (std::size_t band = 0; band < rates.size(); ++band) {
+        float const before = place.motion * place.pace[band];
+        float const coarser = band > 0 ? 2 * rates[band - 1] : before;
+        if (band <= finest && (band >= coarsest || change[band] > 0)) {
+            float const gone = std::min(change[band], most_energy);
+            place.energy[band] = std::max(place.energy[band], to_energy(0.5f * gone / most_share));
+            float const share = std::min(gone / (2 * place.energy[band]), most_share);
+            float const rate = -std::log1p(-share) / seen.seconds;
+            bool const passed = share >= 0.99f * most_share; // at least that fast
+            rates[band] = passed ? std::max(rate, std::min(before, coarser))
+                                 : before + (rate > 0 ? trust : 1.0f) * (rate - before);
+        } else if (band > finest) {
+            float const doubled = static_cast<float>(1 << (band - finest));
+            float const known = place.pace[finest] > 0 ? place.pace[band] / place.pace[finest] : doubled;
+            rates[band] = rates[finest] * (known + fading * (doubled - known));
+        } else {
+            rates[band] = before;
+        }
+    }
+    float growth = 0;
+    float as_one = 0;
+    auto const unknown = PlaceModel::unknown_pace();
+    for (std::size_t band = 0; band <= shown_band(seen.level); ++band) {
+        growth += place.energy[band] * rates[band];
+        as_one += place.energy[band] * unknown[band];
+    }
+    place.motion = std::min(growth / as_one, most_motion);
+    if (place.motion > 0) {
+        for (std::size_t band = 0; band < rates.size(); ++band) {
+            place.pace[band] = std::min(rates[band] / place.motion, most_pace);
+        }
+    } else {
+        place.motion = 0;
+        place.pace = unknown;
+    }
 }
 
 } // namespace

@@ -33,6 +33,17 @@ struct PlaceModel {
     std::array<float, sampling_levels> energy{};
     int finest_seen = -1; ///< finer bands are extrapolated; -1: nothing is known
     float motion = 0; ///< drift a second; 1 is about the time that detail of a pixel takes to be elsewhere
+    /// How soon each band passes, w: 1 for that of a pixel where all of it moves as one.
+    std::array<float, sampling_levels> pace = unknown_pace();
+
+    /// Doubling from band to band.
+    static constexpr std::array<float, sampling_levels> unknown_pace() {
+        std::array<float, sampling_levels> pace{};
+        for (std::size_t band = 0; band < pace.size(); ++band) {
+            pace[band] = static_cast<float>(1 << band) / static_cast<float>(1 << pixel_level);
+        }
+        return pace;
+    }
 
     bool operator==(PlaceModel const&) const = default;
 };

@@ -22,6 +22,14 @@ bool is_cut(ViewState const& a, ViewState const& b, double seconds) {
            a.view.camera.projection != b.view.camera.projection;
 }
 
+std::size_t batch_limit(RefreshInput const& input) {
+    if (input.batch_framelets > 0) {
+        return std::min(input.batch_framelets, max_batch_framelets);
+    }
+    double const timely = input.samples_per_second * static_cast<double>(input.batch_seconds) / framelet_samples;
+    return static_cast<std::size_t>(std::clamp(timely, 1.0, static_cast<double>(max_batch_framelets)));
+}
+
 } // namespace
 
 bool AdaptiveRefresh::is_finished(std::uint32_t index) const {
@@ -79,7 +87,7 @@ RefreshPlan const& AdaptiveRefresh::plan(RefreshInput const& input) {
         plan_cycle(input);
     }
     now_ = input.now;
-    take_batch(input.batch_framelets > 0 ? std::min(input.batch_framelets, max_batch_framelets) : max_batch_framelets);
+    take_batch(batch_limit(input));
     return plan_;
 }
 
@@ -114,8 +122,10 @@ void AdaptiveRefresh::take_batch(std::size_t most_framelets) {
 }
 
 void AdaptiveRefresh::plan_patches(RefreshInput const& input, double samples) {
-    Budget const budget{samples / static_cast<double>(input.cycle_seconds), input.cycle_seconds, input.latency,
-                        input.bias};
+    double const batch_samples = static_cast<double>(batch_limit(input) * framelet_samples);
+    double const rendering = std::min(batch_samples, samples) / input.samples_per_second;
+    Budget const budget{samples / static_cast<double>(input.cycle_seconds), input.cycle_seconds,
+                        static_cast<float>(rendering) + input.delivery_seconds, input.bias};
     price_ = solve_price(field_, advanced_, budget, price_, choices_);
     density_.assign(field_.size(), 0);
     for (std::uint32_t const index : field_.visible()) {

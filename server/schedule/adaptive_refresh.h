@@ -15,10 +15,11 @@ struct RefreshInput {
     ViewState state;
     double now = 0; ///< seconds, steady
     double samples_per_second = 0; ///< what the renderer can do for this viewer
-    float cycle_seconds = 0.02f;
-    float latency = 0.02f; ///< from the start of rendering until it shows, seconds
+    float cycle_seconds = 0.01f; ///< how often the response is worked out anew
+    float batch_seconds = 0.005f; ///< how long a batch of a cycle should take: it shows that much later
+    float delivery_seconds = 0; ///< from the end of its rendering until it shows
     float bias = 0;
-    std::size_t batch_framelets = 0; ///< most framelets of one batch; 0: what a cycle has time for
+    std::size_t batch_framelets = 0; ///< most framelets of one batch; 0: what `batch_seconds` has time for
 };
 
 /// What to render now.

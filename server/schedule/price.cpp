@@ -8,8 +8,10 @@ namespace {
 
 constexpr float least_price = 1e-12f;
 constexpr float most_price = 1e3f;
-/// What is due should be done within so many cycles.
-constexpr float backlog_cycles = 3;
+/// What is shown and no longer true should be renewed within so many cycles.
+constexpr double stale_cycles = 3;
+/// What is true but coarse can wait longer, seconds.
+constexpr double coarse_seconds = 0.12;
 /// Seconds that a place is expected to stay as it is: as long as it has, within these.
 constexpr float least_life = 0.1f;
 constexpr float most_life = 4;
@@ -38,15 +40,21 @@ float due_error(Place const& place, Budget const& budget) {
 
 double demand_of(PlaceField const& field, Budget const& budget, Choices const& choices) {
     double steady = 0;
-    double backlog = 0;
+    double stale = 0;
+    double coarse = 0;
     for (std::uint32_t const index : field.visible()) {
         Place const& place = field[index];
         SamplingChoice const& choice = choices[index];
-        double const samples = field.pixels_of(index) * samples_per_pixel(choice.level);
-        steady += place.model.motion > 0 ? samples / choice.period : 0;
-        backlog += due_error(place, budget) > choice.due_error ? samples : 0;
+        double const samples = static_cast<double>(field.pixels_of(index) * samples_per_pixel(choice.level));
+        steady += place.model.motion > 0 ? samples / static_cast<double>(choice.period) : 0;
+        float const error = due_error(place, budget);
+        if (error > choice.due_error) {
+            bool const is_true = place.level >= 0 && unresolved_error(place.model, place.level) > 0.5f * error;
+            (is_true ? coarse : stale) += samples;
+        }
     }
-    return std::max(steady, backlog / (backlog_cycles * budget.cycle_seconds));
+    return std::max(steady, stale / (stale_cycles * static_cast<double>(budget.cycle_seconds))) +
+           coarse / coarse_seconds;
 }
 
 float solve_price(PlaceField const& field, double now, Budget const& budget, float last_price, Choices& choices) {

@@ -11,7 +11,7 @@ namespace framelet {
 
 struct Budget {
     double samples_per_second = 0;
-    float cycle_seconds = 0.02f;
+    float cycle_seconds = 0.01f;
     float latency = 0; ///< seconds from rendering to display
     float bias = 0; ///< -1 (spatial fidelity) .. 1 (temporal)
 };

@@ -23,7 +23,7 @@ namespace framelet {
 struct LoopOptions {
     float exposure = 1; ///< factor on radiance, before the viewer's own
     std::size_t batch_framelets = 0; ///< most framelets of one batch; 0: what `cycle_seconds` has time for
-    double cycle_seconds = 0.02; ///< how long one cycle should take, all viewers together
+    double cycle_seconds = 0.01; ///< how often what to render is worked out anew; a batch takes half of it
     double bias = 0; ///< -1 (spatial fidelity) .. 1 (temporal), before the viewer's own
 };
 

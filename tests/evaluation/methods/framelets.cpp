@@ -31,7 +31,7 @@ public:
         refresh.state = state;
         refresh.now = input.now;
         refresh.samples_per_second = rate_.samples_per_second > 0 ? rate_.samples_per_second : first_rate();
-        refresh.latency = refresh.cycle_seconds + static_cast<float>(setup_.delay_seconds);
+        refresh.delivery_seconds = static_cast<float>(setup_.delay_seconds);
         refresh.batch_framelets = setup_.batch_framelets;
         refresh.bias = static_cast<float>(setup_.bias);
         RefreshPlan const& plan = refresh_.plan(refresh);
