@@ -1,5 +1,6 @@
 #include "tests/evaluation/calibrate.h"
 
+#include <numeric>
 #include <random>
 
 #include <tbb/global_control.h>
@@ -12,6 +13,8 @@
 #include "tests/evaluation/codecs/h264_codec.h"
 #include "tests/evaluation/codecs/jpeg_codec.h"
 #include "tests/evaluation/methods/kd_leaves.h"
+#include "tests/evaluation/methods/tsar_server.h"
+#include "tests/evaluation/methods/tsar_viewer.h"
 #include "tests/evaluation/methods/whole_frame.h"
 #include "tests/evaluation/stopwatch.h"
 
@@ -145,6 +148,69 @@ void calibrate_afr(Viewport viewport, int rounds, CostTable& costs) {
     });
 }
 
+/// The stages of the response, each alone, on a picture that has just moved.
+void calibrate_response(ImagePlane const& plane, std::vector<Framelet> const& rendered, int rounds, CostTable& costs) {
+    std::vector<std::array<float, framelet_samples>> luma;
+    for (Framelet const& framelet : rendered) {
+        std::transform(framelet.green.begin(), framelet.green.end(), luma.emplace_back().begin(),
+                       [](float radiance) { return std::min(radiance, 1.0f); });
+    }
+    constexpr std::size_t blocks = 16;
+    std::vector<HaarHistory> histories(luma.size());
+    std::vector<RateError> errors(luma.size() * blocks);
+    costs.estimate_sample = cost(rounds, static_cast<double>(luma.size() * framelet_samples), [&] {
+        for (std::size_t i = 0; i < luma.size(); ++i) {
+            estimate_haar(luma[i], histories[i], haar_interval, haar_templates,
+                          std::span(errors).subspan(i * blocks, blocks));
+        }
+    });
+    DensityField density = make_uniform_density(plane.max_depth(), {1, 10});
+    std::vector<std::uint32_t> elements(density.size());
+    std::iota(elements.begin(), elements.end(), 0u);
+    errors.resize(elements.size());
+    // Both signs, so that density is transported.
+    std::mt19937 random(1);
+    for (RateError& error : errors) {
+        error = {static_cast<float>(random() % 256) / 128 - 1, static_cast<float>(random() % 256) / 128 - 1};
+    }
+    ResponseParameters const parameters{{{1.0 / 64, 1}, {16, 80}}, 0.1, 10, 0, Transport::fill_smaller};
+    Surplus surplus;
+    ResponseScratch scratch;
+    double const count = static_cast<double>(elements.size());
+    costs.respond_element =
+        cost(rounds, count, [&] { respond(density, elements, errors, parameters, surplus, scratch); });
+    costs.tiling_element =
+        cost(rounds, count, [&] { make_density_tiling(plane, density.space, density.depth, framelet_samples); });
+}
+
+/// Reconstruction of 004: a picture of one age, and the same once more with older framelets under newer ones.
+void calibrate_blending(BenchScene const& scene, ImagePlane const& plane, std::vector<Framelet> const& rendered,
+                        int rounds, CostTable& costs) {
+    std::vector<DisplayFramelet> all, half;
+    for (Framelet const& framelet : rendered) {
+        all.push_back(to_display(framelet, scene.exposure));
+        if (all.size() % 2 == 0) {
+            half.push_back(all.back());
+        }
+    }
+    std::vector<double> plain, extra;
+    for (int round = 0; round < rounds; ++round) {
+        TsarViewer viewer(plane);
+        BlendWork few{}, many{};
+        double const few_seconds = seconds_of([&] { few = viewer.show(all, 0, 0); });
+        double many_seconds = 0;
+        for (int step = 1; step < 4; ++step) { // neighbours of other ages let the older ones through
+            many_seconds = seconds_of([&] { many = viewer.show(half, step, 0); });
+        }
+        double const each = 1e9 * std::max(many_seconds - few_seconds, 0.1 * few_seconds) /
+                            std::max(many.contributions - few.contributions, 1.0);
+        extra.push_back(each);
+        plain.push_back(std::max(1e9 * few_seconds - few.contributions * each, 0.1e9 * few_seconds) / few.pixels);
+    }
+    costs.blend_contribution = median(extra);
+    costs.blend_pixel = median(plain);
+}
+
 void calibrate_codecs(BenchScene& scene, Viewport viewport, int rounds, CostTable& costs) {
     auto const pictures = moving_pictures(scene, viewport, std::max(rounds, 8));
     double const pixels = static_cast<double>(viewport.width) * viewport.height;
@@ -178,6 +244,8 @@ CostTable calibrate(BenchScene& scene, Viewport viewport, int rounds) {
     calibrate_rendering(scene, plane, rounds, rendered, costs);
     calibrate_framelets(scene, plane, rounds, rendered, costs);
     calibrate_afr(viewport, rounds, costs);
+    calibrate_response(plane, rendered, rounds, costs);
+    calibrate_blending(scene, plane, rendered, rounds, costs);
     calibrate_codecs(scene, viewport, rounds, costs);
     return costs;
 }

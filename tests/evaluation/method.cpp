@@ -11,12 +11,13 @@ namespace {
 
 using Maker = std::unique_ptr<Method> (*)(MethodSetup const&);
 
-constexpr std::array<std::pair<std::string_view, Maker>, 6> makers{{
+constexpr std::array<std::pair<std::string_view, Maker>, 7> makers{{
     {"framed", make_framed},
     {"framed+jpeg", make_framed_jpeg},
     {"framed+h264", make_framed_h264},
     {"frameless", make_frameless},
     {"afr", make_afr},
+    {"tsar", make_tsar},
     {"framelet", make_framelet},
 }};
 

@@ -32,6 +32,7 @@ struct MethodSetup {
     double frames_per_second = 10; ///< what whole frames at one sample a pixel reach on that server
     double bits_per_second = 0; ///< of the link, for those who control their rate; 0: unlimited
     std::uint64_t seed = 1;
+    std::size_t batch_framelets = 0; ///< most framelets of one batch; 0: what a cycle has time for
 };
 
 /// What the server's half works on. The scene is posed for this moment.
