@@ -78,9 +78,9 @@ void estimate_haar(std::span<float const> samples, HaarHistory& history, float s
     FRAMELET_CHECK(is_square(samples.size()) && samples.size() >= 4 && samples.size() <= 4 * most_blocks);
     FRAMELET_CHECK(is_square(elements.size()) && elements.size() <= samples.size());
     std::size_t const coefficients = 4 * (samples.size() - 1) / 3; // of all octaves
-    bool const has_history = !history.coefficients.empty();
-    FRAMELET_CHECK(!has_history || (history.coefficients.size() == coefficients && seconds_since > 0));
-    history.coefficients.resize(coefficients);
+    bool const has_history = !history.values.empty();
+    FRAMELET_CHECK(!has_history || (history.values.size() == coefficients && seconds_since > 0));
+    history.values.resize(coefficients);
     std::fill(elements.begin(), elements.end(), RateError{});
 
     float const weight = 2 / static_cast<float>(std::countr_zero(samples.size())); // 1 / octaves
@@ -89,14 +89,14 @@ void estimate_haar(std::span<float const> samples, HaarHistory& history, float s
     float const time_step = std::exp2(templates.time.slope);
     float time_allowed = 0;
     if (has_history) {
-        float const octaves = std::log2(seconds_since / haar_interval);
+        float const octaves = std::log2(seconds_since / template_interval);
         time_allowed = std::exp2(templates.time.offset + templates.time.slope * octaves);
     }
 
     std::array<Blocks, 2> low;
     Blocks space, time;
     float const* input = samples.data();
-    float* cached = history.coefficients.data();
+    float* cached = history.values.data();
     std::size_t octave = 0;
     for (std::size_t blocks = samples.size() / 4; blocks > 0; blocks /= 4, ++octave) {
         Blocks& output = low[octave % 2];

@@ -2,27 +2,15 @@
 // the previous one of the same place. Out: sample-rate errors by block, and the coefficients to keep.
 #pragma once
 
-#include <span>
-#include <vector>
-
-#include "common/tile.h"
 #include "server/response/rate_error.h"
 
 namespace framelet {
 
-/// Spatial coefficients of the previous framelets of a place, octave after octave. Empty: there was none yet.
-struct HaarHistory {
-    std::vector<float> coefficients;
-
-    bool operator==(HaarHistory const&) const = default;
-};
+/// Spatial coefficients of the previous framelet of a place, octave after octave.
+using HaarHistory = ErrorHistory;
 
 /// Templates of `estimate_haar`: what is tolerated grows with scale, as it does along an edge.
 inline constexpr RateTemplates haar_templates{{-12.0f, 1.0f}, {-12.0f, 0.0f}};
-
-/// Seconds between refreshes at which the template in time counts a framelet's finest octave as octave 0; refreshes
-/// twice as far apart are an octave coarser. So the template is a line over frequency, whatever the rate.
-inline constexpr float haar_interval = 1.0f / 60;
 
 /// Error of each block (004 section 5.3.4).
 ///

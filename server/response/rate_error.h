@@ -1,6 +1,9 @@
 // What an error estimator says: whether a place is sampled too rarely or too often, in space and in time apart.
 #pragma once
 
+#include <span>
+#include <vector>
+
 namespace framelet {
 
 /// Sample-rate error (004 ch. 5), each in [-1, 1]: above 0 undersampled, below 0 redundant.
@@ -25,6 +28,17 @@ struct RateTemplates {
     EnergyTemplate time;
 
     bool operator==(RateTemplates const&) const = default;
+};
+
+/// Seconds between refreshes at which the template in time counts a framelet's finest octave as octave 0; refreshes
+/// twice as far apart are an octave coarser. So the template is a line over frequency, whatever the rate.
+inline constexpr float template_interval = 1.0f / 60;
+
+/// What an estimator keeps of a place between its framelets. Empty: there was none yet.
+struct ErrorHistory {
+    std::vector<float> values;
+
+    bool operator==(ErrorHistory const&) const = default;
 };
 
 } // namespace framelet

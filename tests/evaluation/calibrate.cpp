@@ -160,7 +160,7 @@ void calibrate_response(ImagePlane const& plane, std::vector<Framelet> const& re
     std::vector<RateError> errors(luma.size() * blocks);
     costs.estimate_sample = cost(rounds, static_cast<double>(luma.size() * framelet_samples), [&] {
         for (std::size_t i = 0; i < luma.size(); ++i) {
-            estimate_haar(luma[i], histories[i], haar_interval, haar_templates,
+            estimate_haar(luma[i], histories[i], template_interval, haar_templates,
                           std::span(errors).subspan(i * blocks, blocks));
         }
     });

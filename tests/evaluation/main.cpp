@@ -10,6 +10,7 @@
 
 #include "common/error.h"
 #include "tests/evaluation/calibrate.h"
+#include "tests/evaluation/estimators/estimator_verbs.h"
 #include "tests/evaluation/limits.h"
 #include "tests/evaluation/verbs.h"
 
@@ -30,6 +31,7 @@ struct Options {
     double jitter_ms = 0;
     bool total = false;
     framelet::bench::StudyOptions study;
+    framelet::bench::EstimatorStudy estimators;
 };
 
 void add_common_options(CLI::App& verb, Options& options) {
@@ -121,11 +123,19 @@ int main(int argc, char** argv) {
     CLI::App app("Measures framelet: each verb answers one question.", "framelet-bench");
     app.set_version_flag("--version", "framelet-bench " FRAMELET_VERSION);
     app.require_subcommand(1);
-    std::function<json(BenchScene&)> answer;
+    std::function<json()> answer;
     auto const add_verb = [&](char const* name, char const* question, auto add_options, auto run) {
         CLI::App& verb = *app.add_subcommand(name, question);
         add_options(verb, options);
-        verb.callback([&answer, run] { answer = run; });
+        verb.callback([&, run] {
+            answer = [&options, run] { return run(*framelet::bench::load_bench_scene(options.scene, options.camera)); };
+        });
+    };
+    auto const add_estimator_verb = [&](char const* name, char const* question, auto run) {
+        CLI::App& verb = *app.add_subcommand(name, question);
+        verb.add_option("--json", options.json_file, "Write the figures to this file as well");
+        framelet::bench::add_estimator_options(verb, options.estimators);
+        verb.callback([&, run] { answer = [&options, run] { return run(options.estimators); }; });
     };
     auto const study = [&options](auto run) {
         return [&options, run](BenchScene& scene) {
@@ -149,6 +159,9 @@ int main(int argc, char** argv) {
         }
         return framelet::bench::measure_limits(scene, limits);
     });
+    add_estimator_verb("estimators", "Cost of error estimators against their agreement with the ideal density",
+                       framelet::bench::compare_estimators);
+    add_estimator_verb("fit", "Fits the templates of the error estimators", framelet::bench::fit_estimators);
     try {
         app.parse(argc, argv);
     } catch (CLI::CallForHelp const& help) {
@@ -161,8 +174,7 @@ int main(int argc, char** argv) {
     }
     spdlog::set_level(spdlog::level::warn);
     try {
-        auto const scene = framelet::bench::load_bench_scene(options.scene, options.camera);
-        json const figures = answer(*scene);
+        json const figures = answer();
         if (!options.json_file.empty()) {
             write_json(options.json_file, figures);
         }

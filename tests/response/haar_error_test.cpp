@@ -36,7 +36,7 @@ Samples noise(unsigned seed, std::size_t count = framelet_samples) {
     return samples;
 }
 
-RateError estimate(Samples const& samples, HaarHistory& history, float seconds = haar_interval) {
+RateError estimate(Samples const& samples, HaarHistory& history, float seconds = template_interval) {
     RateError error;
     estimate_haar(samples, history, seconds, templates, {&error, 1});
     return error;
@@ -88,7 +88,7 @@ TEST(HaarError, IsTheTransformInThreeDimensions) {
     Samples before = noise(4), after = noise(5);
     HaarHistory history;
     estimate(before, history);
-    float const seconds = 4 * haar_interval;
+    float const seconds = 4 * template_interval;
     RateError const found = estimate(after, history, seconds);
     haar_forward(before);
     haar_forward(after);

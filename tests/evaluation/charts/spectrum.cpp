@@ -2,13 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
-#include <mutex>
-#include <numbers>
-
-#include <fftw3.h>
 
 #include "common/error.h"
+#include "tests/evaluation/charts/real_dft.h"
 
 namespace framelet::bench {
 namespace {
@@ -18,67 +14,8 @@ constexpr std::size_t least_points = 3;
 constexpr double highest_frequency = 0.25;
 constexpr double least_power = 1e-12;
 
-struct FftwFree {
-    void operator()(void* memory) const { fftw_free(memory); }
-};
-
-/// Real signals of one size and their transforms, memory and plan.
-class RealDft {
-public:
-    /// `howmany` signals one after the other, of `sizes` (slowest first).
-    RealDft(std::vector<int> const& sizes, int howmany) {
-        int signal = 1;
-        for (int const size : sizes) {
-            signal *= size;
-        }
-        int const transform = signal / sizes.back() * (sizes.back() / 2 + 1);
-        auto const count = static_cast<std::size_t>(howmany);
-        signal_.reset(fftw_alloc_real(static_cast<std::size_t>(signal) * count));
-        transform_.reset(fftw_alloc_complex(static_cast<std::size_t>(transform) * count));
-        FRAMELET_CHECK(signal_ && transform_);
-        std::lock_guard const lock(planner());
-        plan_ = fftw_plan_many_dft_r2c(static_cast<int>(sizes.size()), sizes.data(), howmany, signal_.get(), nullptr, 1,
-                                       signal, transform_.get(), nullptr, 1, transform, FFTW_ESTIMATE);
-        FRAMELET_CHECK(plan_ != nullptr);
-    }
-    ~RealDft() {
-        std::lock_guard const lock(planner());
-        fftw_destroy_plan(plan_);
-    }
-    RealDft(RealDft const&) = delete;
-    RealDft& operator=(RealDft const&) = delete;
-
-    double* signal() { return signal_.get(); }
-    void execute() { fftw_execute(plan_); }
-    double power(std::size_t i) const {
-        auto const& value = transform_.get()[i];
-        return value[0] * value[0] + value[1] * value[1];
-    }
-
-private:
-    /// FFTW executes side by side but plans one at a time.
-    static std::mutex& planner() {
-        static std::mutex mutex;
-        return mutex;
-    }
-
-    std::unique_ptr<double[], FftwFree> signal_;
-    std::unique_ptr<fftw_complex[], FftwFree> transform_;
-    fftw_plan plan_ = nullptr;
-};
-
 double luma(std::uint8_t const* pixel) {
     return (0.2126 * pixel[0] + 0.7152 * pixel[1] + 0.0722 * pixel[2]) / 255;
-}
-
-/// Samples at the middle of their cells, so that none is zero.
-std::vector<double> hann(int size) {
-    std::vector<double> window(static_cast<std::size_t>(size));
-    for (std::size_t i = 0; i < window.size(); ++i) {
-        double const sine = std::sin(std::numbers::pi * (static_cast<double>(i) + 0.5) / size);
-        window[i] = sine * sine;
-    }
-    return window;
 }
 
 double sum_of(std::vector<double> const& values) {
