@@ -12,6 +12,7 @@
 #include "tests/evaluation/calibrate.h"
 #include "tests/evaluation/estimators/estimator_verbs.h"
 #include "tests/evaluation/limits.h"
+#include "tests/evaluation/sensitivity.h"
 #include "tests/evaluation/verbs.h"
 
 namespace {
@@ -150,6 +151,8 @@ int main(int argc, char** argv) {
              study(framelet::bench::link_study));
     add_verb("reference", "Renders what the methods are compared with", add_study_options,
              study(framelet::bench::prepare_reference));
+    add_verb("sensitivity", "How tsar answers to steeper and flatter templates of its error estimate", add_run_options,
+             study(framelet::bench::sensitivity));
     add_verb("calibrate", "What every stage costs on this machine", add_common_options,
              [&options](BenchScene& scene) { return calibrate(scene, options.quick); });
     add_verb("limits", "Each stage against its bare limit", add_common_options, [&options](BenchScene& scene) {

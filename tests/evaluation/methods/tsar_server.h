@@ -15,9 +15,11 @@ namespace framelet::bench {
 struct TsarParameters {
     RateTemplates templates = haar_templates;
     double gain = 0.1; ///< samples per pixel, and refreshes per frame of `framed`, that an error of 1 asks for
-    Transport strategy = Transport::fill_smaller;
+    Transport strategy = Transport::shrink_larger; ///< "the safest" (section 6.3.2.3)
     double most_saved = 0; ///< of the surplus account, as a share of the budget
-    double most_samples = framelet_samples; ///< of a tile by its density, before it is split
+    /// Of a tile by its density, before it is split: the middle, by ratio, between a framelet and its four children, so
+    /// that the tiling has neither more nor fewer samples than the density.
+    double most_samples = 2 * framelet_samples;
 };
 
 class TsarServer {
