@@ -183,32 +183,26 @@ void calibrate_response(ImagePlane const& plane, std::vector<Framelet> const& re
         cost(rounds, count, [&] { make_density_tiling(plane, density.space, density.depth, framelet_samples); });
 }
 
-/// Reconstruction of 004: a picture of one age, and the same once more with older framelets under newer ones.
+/// Reconstruction of 004: a picture of one sample a pixel, and the same colours a level finer.
 void calibrate_blending(BenchScene const& scene, ImagePlane const& plane, std::vector<Framelet> const& rendered,
                         int rounds, CostTable& costs) {
-    std::vector<DisplayFramelet> all, half;
+    std::vector<DisplayFramelet> coarse, fine;
     for (Framelet const& framelet : rendered) {
-        all.push_back(to_display(framelet, scene.exposure));
-        if (all.size() % 2 == 0) {
-            half.push_back(all.back());
+        DisplayFramelet displayed = coarse.emplace_back(to_display(framelet, scene.exposure));
+        for (std::uint32_t quadrant = 0; quadrant < 4; ++quadrant) {
+            displayed.tile = framelet.tile.child(quadrant);
+            fine.push_back(displayed);
         }
     }
-    std::vector<double> plain, extra;
-    for (int round = 0; round < rounds; ++round) {
-        TsarViewer viewer(plane);
-        BlendWork few{}, many{};
-        double const few_seconds = seconds_of([&] { few = viewer.show(all, 0, 0); });
-        double many_seconds = 0;
-        for (int step = 1; step < 4; ++step) { // neighbours of other ages let the older ones through
-            many_seconds = seconds_of([&] { many = viewer.show(half, step, 0); });
-        }
-        double const each = 1e9 * std::max(many_seconds - few_seconds, 0.1 * few_seconds) /
-                            std::max(many.contributions - few.contributions, 1.0);
-        extra.push_back(each);
-        plain.push_back(std::max(1e9 * few_seconds - few.contributions * each, 0.1e9 * few_seconds) / few.pixels);
-    }
-    costs.blend_contribution = median(extra);
-    costs.blend_pixel = median(plain);
+    BlendWork few, many;
+    TsarViewer coarse_viewer(plane), fine_viewer(plane);
+    double time = 0;
+    double const few_seconds = 1e-9 * cost(rounds, 1, [&] { few = coarse_viewer.show(coarse, ++time, 0); });
+    double const many_seconds = 1e-9 * cost(rounds, 1, [&] { many = fine_viewer.show(fine, ++time, 0); });
+    costs.blend_contribution =
+        1e9 * std::max(many_seconds - few_seconds, 0.1 * few_seconds) / (many.contributions - few.contributions);
+    double const rest = 1e9 * few_seconds - few.contributions * costs.blend_contribution;
+    costs.blend_pixel = std::max(rest, 0.1e9 * few_seconds) / few.pixels;
 }
 
 void calibrate_codecs(BenchScene& scene, Viewport viewport, int rounds, CostTable& costs) {
