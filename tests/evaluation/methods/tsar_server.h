@@ -14,7 +14,7 @@ namespace framelet::bench {
 /// 004 leaves these to experiment ("determined empirically", section 7.1.2.1).
 struct TsarParameters {
     RateTemplates templates = haar_templates;
-    double gain = 0.3; ///< samples per pixel, and slowest rates of refresh, that an error of 1 asks for
+    double gain = 1; ///< samples per pixel, and slowest rates of refresh, that an error of 1 asks for: eq. 6.11 has 1
     Transport strategy = Transport::shrink_larger; ///< "the safest" (section 6.3.2.3)
     double most_saved = 0; ///< of the surplus account, as a share of the budget
     /// Of a tile by its density, before it is split: the middle, by ratio, between a framelet and its four children, so
