@@ -41,7 +41,9 @@ DensityBounds realisable(ImagePlane const& plane, double frames_per_second, std:
 
 TsarServer::TsarServer(MethodSetup const& setup, TsarParameters const& parameters)
     : setup_(setup), parameters_(parameters), plane_(setup.viewport),
-      batch_framelets_(setup.batch_framelets > 0 ? setup.batch_framelets : default_batch),
+      // Never more than a frame: 004 admits no batch that costs more (section 7.1.3).
+      batch_framelets_(std::min(setup.batch_framelets > 0 ? setup.batch_framelets : default_batch,
+                                uniform_tile_count(plane_, plane_.pixel_depth()))),
       response_{realisable(plane_, setup.frames_per_second, batch_framelets_), parameters.gain,
                 // One measure for both axes: the slowest rate counts as a sample per pixel. Were it the rate of
                 // `framed`, nothing in a picture that stands still would ask for more, and nothing would move.
