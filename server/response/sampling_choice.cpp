@@ -57,7 +57,7 @@ SamplingChoice choose_sampling(PlaceModel const& place, float life, SamplingPric
         float const paid = unresolved + most - left * mean_kept + cost / period;
         if (paid < least) {
             least = paid;
-            best = {level, period, paid};
+            best = {level, period, paid, period < life};
         }
     }
     return best;

@@ -23,6 +23,7 @@ struct SamplingChoice {
     int level = 0;
     float period = 0; ///< seconds between refreshes
     float due_error = 0; ///< it is time to refresh once the shown error is as great
+    bool recurring = false; ///< false: it goes on as it is for its life; another refresh is not worth its price
 };
 
 /// `life`: seconds for which the place is expected to go on as it does: nothing is worth more than it saves in that

@@ -14,6 +14,8 @@ constexpr double probe_share = 0.08;
 constexpr double probe_cost = 2;
 /// A place is probed again after so many seconds, sooner beside something that moves.
 constexpr double probe_period = 0.25;
+/// What should have been refreshed by then, and has not, is probed after so many.
+constexpr double most_unseen = 0.5;
 /// A scene time that jumps by more than this over what has passed has been set.
 constexpr double most_time_step = 0.5;
 
@@ -79,6 +81,7 @@ bool AdaptiveRefresh::goes_on(RefreshInput const& input) const {
 RefreshPlan const& AdaptiveRefresh::plan(RefreshInput const& input) {
     FRAMELET_CHECK(input.samples_per_second > 0 && input.cycle_seconds > 0);
     plan_.patches.clear();
+    plan_.tile_counts.clear();
     plan_.tiles.clear();
     plan_.probes.clear();
     plan_.probed.clear();
@@ -117,6 +120,7 @@ void AdaptiveRefresh::take_batch(std::size_t most_framelets) {
             return;
         }
         plan_.patches.push_back(patch);
+        plan_.tile_counts.push_back(plan_.tiles.size() - tiles);
         ++next_;
     }
 }
@@ -146,7 +150,8 @@ void AdaptiveRefresh::plan_patches(RefreshInput const& input, double samples) {
 void AdaptiveRefresh::plan_completion(double samples) {
     double tiles = 0;
     for (std::uint32_t const index : field_.visible()) {
-        bool const fine = field_[index].level == sampling_levels - 1;
+        Place const& place = field_[index];
+        bool const fine = place.level == sampling_levels - 1 && place.settled;
         if (is_finished(index) || (scene_moves_ && fine)) { // while things move, probes and inspections are enough
             continue;
         }
@@ -186,14 +191,16 @@ void AdaptiveRefresh::plan_probes(double samples) {
     keys.assign(field_.size(), 0);
     for (std::uint32_t const index : field_.visible()) {
         Place const& place = field_[index];
-        // What moves is refreshed anyway, unless that is far away.
-        bool const refreshed = place.model.motion > 0 && choices_.size() == field_.size() &&
-                               static_cast<double>(choices_[index].period) < probe_period;
-        if (place.level >= 0 && place.probe_count > 0 && !refreshed) {
-            keys[index] = suspicion(index);
-            if (keys[index] > probe_period) {
-                suspects_.push_back(index);
-            }
+        if (place.level < 0 || place.probe_count == 0) {
+            continue;
+        }
+        // What is refreshed again and again needs no probes, as long as it is.
+        bool const planned = place.model.motion > 0 && choices_.size() == field_.size() &&
+                             static_cast<double>(choices_[index].period) < probe_period;
+        double const expected = planned ? most_unseen : 0;
+        keys[index] = suspicion(index);
+        if (keys[index] > probe_period && advanced_ - place.checked > expected) {
+            suspects_.push_back(index);
         }
     }
     auto const count = std::min(
@@ -223,15 +230,10 @@ std::vector<std::uint8_t> const& AdaptiveRefresh::learn(std::span<DisplayFramele
     }
     send_.assign(framelets.size(), 1);
     std::size_t first = 0;
-    for (Patch const& patch : plan_.patches) {
-        std::size_t count = 0;
-        while (first + count < plan_.tiles.size() &&
-               (plan_.tiles[first + count].code >> (2 * (patch.depth - patch.node.depth()))) == patch.node.code &&
-               plan_.tiles[first + count].depth() == patch.depth) {
-            ++count;
-        }
-        learn_patch(field_, patch, framelets.subspan(first, count), rendered.subspan(first, count), now_, history_,
-                    std::span(send_).subspan(first, count));
+    for (std::size_t i = 0; i < plan_.patches.size(); ++i) {
+        std::size_t const count = plan_.tile_counts[i];
+        learn_patch(field_, plan_.patches[i], framelets.subspan(first, count), rendered.subspan(first, count), now_,
+                    history_, std::span(send_).subspan(first, count));
         first += count;
     }
     return send_;

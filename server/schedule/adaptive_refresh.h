@@ -25,6 +25,7 @@ struct RefreshInput {
 /// What to render now.
 struct RefreshPlan {
     std::vector<Patch> patches;
+    std::vector<std::size_t> tile_counts; ///< of each patch
     std::vector<Tile> tiles; ///< of the patches, in order
     std::vector<Probe> probes; ///< of the probed places, in order
     std::vector<std::uint32_t> probed; ///< places

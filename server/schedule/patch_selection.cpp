@@ -74,8 +74,10 @@ void select_inspections(PlaceField const& field, double now, Budget const& budge
             return;
         }
         Patch const patch{{(1u << (2 * field.depth())) + index}, field.plane().pixel_depth()};
-        samples -= framelet_samples * tile_count(patch);
-        patches.push_back(patch);
+        if (std::find(patches.begin(), patches.end(), patch) == patches.end()) {
+            samples -= framelet_samples * tile_count(patch);
+            patches.push_back(patch);
+        }
     }
 }
 

@@ -94,14 +94,30 @@ std::size_t scattered(std::uint32_t seed, std::size_t count) {
     return (seed * 0x9e3779b9u >> 16) % count;
 }
 
-/// Notes some samples of a part of a framelet, one in each of equal shares of it.
+/// Of samples [first, last) the one that differs most from the next: where an edge is, the smallest motion shows.
+std::size_t steepest(LumaHistory::Entry const& entry, std::size_t first, std::size_t last) {
+    std::size_t found = first;
+    float most = -1;
+    for (std::size_t i = first; i < last; ++i) {
+        float const step = std::abs(entry.luma[i] - entry.luma[(i + 1) % framelet_samples]);
+        if (step > most) {
+            most = step;
+            found = i;
+        }
+    }
+    return found;
+}
+
+/// Notes some samples of a part of a framelet, one in each of equal shares of it: in turn the steepest and any one.
 void note_probes(Place& place, ImagePlane const& plane, LumaHistory::Entry const& entry, std::size_t first,
                  std::size_t count, std::size_t wanted) {
     Viewport const viewport = plane.viewport();
     std::size_t const share = std::max<std::size_t>(count / wanted, 1);
     for (std::size_t i = 0; i < std::min(wanted, count) && place.probe_count < probes_per_place; ++i) {
-        std::size_t const sample =
-            first + i * share + scattered(entry.tile.code + static_cast<std::uint32_t>(i), share);
+        std::size_t const begin = first + i * share;
+        std::size_t const sample = place.probe_count % 2 == 0
+                                       ? steepest(entry, begin, begin + share)
+                                       : begin + scattered(entry.tile.code + static_cast<std::uint32_t>(i), share);
         Vec2 const at = sample_place(plane, entry.tile, sample);
         if (at.x < static_cast<float>(viewport.width) && at.y < static_cast<float>(viewport.height)) {
             place.probes[place.probe_count++] = {at, plane.sample_spacing(entry.tile), entry.luma[sample]};
@@ -184,6 +200,7 @@ void learn_patch(PlaceField& field, Patch const& patch, std::span<DisplayFramele
         Place& place = field[i];
         Observation const seen = mean_of(sums[i - range.first], static_cast<int>(framelets.size()));
         learn(place.model, seen);
+        place.settled = seen.has_change && !is_change(seen);
         if (is_change(seen) || place.rendered == never) {
             place.changed = now;
         }
@@ -203,21 +220,30 @@ void learn_patch(PlaceField& field, Patch const& patch, std::span<DisplayFramele
 void learn_probes(Place& place, std::span<float const> luma, double now) {
     FRAMELET_CHECK(luma.size() == place.probe_count && place.level >= 0);
     constexpr float step = 1.0f / 255;
+    // The steepest samples say whether there is a change; how large it is on the whole the others know.
+    constexpr float steep_weight = 1.0f / 16;
     float sum = 0;
+    float weights = 0;
     for (std::size_t i = 0; i < luma.size(); ++i) {
         float const difference = std::abs(luma[i] - place.probes[i].luma);
-        sum += difference > 0.5f * step ? difference * difference : 0;
+        float const weight = i % 2 == 0 ? steep_weight : 1 - steep_weight;
+        sum += difference > 0.5f * step ? weight * difference * difference : 0;
+        weights += weight;
     }
-    float const error = luma.empty() ? 0 : sum / static_cast<float>(luma.size());
+    float const error = luma.empty() ? 0 : sum / weights;
     if (error > 0) {
         float const drift = drift_of_error(place.model, place.level, error);
         place.drift = std::max(place.drift, drift);
         auto const seconds = static_cast<float>(now - place.checked);
         place.model.motion = std::max(place.model.motion, seconds > 0 ? drift / seconds : 0);
         place.changed = now;
+        place.settled = false;
     } else {
-        place.drift = 0;
-        place.model.motion = 0;
+        // Too few samples to say so of all of it, unless its last rendering did.
+        constexpr float least_motion = 0.5f;
+        float const kept = place.settled || place.model.motion < least_motion ? 0 : 0.5f;
+        place.drift *= kept;
+        place.model.motion *= kept;
     }
     place.checked = now;
 }

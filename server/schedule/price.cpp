@@ -46,7 +46,7 @@ double demand_of(PlaceField const& field, Budget const& budget, Choices const& c
         Place const& place = field[index];
         SamplingChoice const& choice = choices[index];
         double const samples = static_cast<double>(field.pixels_of(index) * samples_per_pixel(choice.level));
-        steady += place.model.motion > 0 ? samples / static_cast<double>(choice.period) : 0;
+        steady += choice.recurring ? samples / static_cast<double>(choice.period) : 0;
         float const error = due_error(place, budget);
         if (error > choice.due_error) {
             bool const is_true = place.level >= 0 && unresolved_error(place.model, place.level) > 0.5f * error;

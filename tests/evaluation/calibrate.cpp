@@ -1,5 +1,6 @@
 #include "tests/evaluation/calibrate.h"
 
+#include <numeric>
 #include <random>
 
 #include <tbb/global_control.h>
@@ -13,6 +14,8 @@
 #include "tests/evaluation/codecs/h264_codec.h"
 #include "tests/evaluation/codecs/jpeg_codec.h"
 #include "tests/evaluation/methods/kd_leaves.h"
+#include "tests/evaluation/methods/tsar_server.h"
+#include "tests/evaluation/methods/tsar_viewer.h"
 #include "tests/evaluation/methods/whole_frame.h"
 #include "tests/evaluation/stopwatch.h"
 
@@ -177,6 +180,63 @@ void calibrate_afr(Viewport viewport, int rounds, CostTable& costs) {
 
 /// Of x264's frames: 5 Mbit/s at 30 frames a second. The more bytes, the longer it takes.
 constexpr double streamed_frame_bytes = 5e6 / 8 / 30;
+/// The stages of the response, each alone, on a picture that has just moved.
+void calibrate_density_response(ImagePlane const& plane, std::vector<Framelet> const& rendered, int rounds,
+                                CostTable& costs) {
+    std::vector<std::array<float, framelet_samples>> luma;
+    for (Framelet const& framelet : rendered) {
+        std::transform(framelet.green.begin(), framelet.green.end(), luma.emplace_back().begin(),
+                       [](float radiance) { return std::min(radiance, 1.0f); });
+    }
+    constexpr std::size_t blocks = 16;
+    std::vector<HaarHistory> histories(luma.size());
+    std::vector<RateError> errors(luma.size() * blocks);
+    costs.estimate_sample = cost(rounds, static_cast<double>(luma.size() * framelet_samples), [&] {
+        for (std::size_t i = 0; i < luma.size(); ++i) {
+            estimate_haar(luma[i], histories[i], template_interval, haar_templates,
+                          std::span(errors).subspan(i * blocks, blocks));
+        }
+    });
+    DensityField density = make_uniform_density(plane.max_depth(), {1, 10});
+    std::vector<std::uint32_t> elements(density.size());
+    std::iota(elements.begin(), elements.end(), 0u);
+    errors.resize(elements.size());
+    // Both signs, so that density is transported.
+    std::mt19937 random(1);
+    for (RateError& error : errors) {
+        error = {static_cast<float>(random() % 256) / 128 - 1, static_cast<float>(random() % 256) / 128 - 1};
+    }
+    ResponseParameters const parameters{{{1.0 / 64, 1}, {16, 80}}, 0.1, 10, 0, Transport::fill_smaller};
+    Surplus surplus;
+    ResponseScratch scratch;
+    double const count = static_cast<double>(elements.size());
+    costs.respond_element =
+        cost(rounds, count, [&] { respond(density, elements, errors, parameters, surplus, scratch); });
+    costs.tiling_element =
+        cost(rounds, count, [&] { make_density_tiling(plane, density.space, density.depth, framelet_samples); });
+}
+
+/// Reconstruction of 004: a picture of one sample a pixel, and the same colours a level finer.
+void calibrate_blending(BenchScene const& scene, ImagePlane const& plane, std::vector<Framelet> const& rendered,
+                        int rounds, CostTable& costs) {
+    std::vector<DisplayFramelet> coarse, fine;
+    for (Framelet const& framelet : rendered) {
+        DisplayFramelet displayed = coarse.emplace_back(to_display(framelet, scene.exposure));
+        for (std::uint32_t quadrant = 0; quadrant < 4; ++quadrant) {
+            displayed.tile = framelet.tile.child(quadrant);
+            fine.push_back(displayed);
+        }
+    }
+    BlendWork few, many;
+    TsarViewer coarse_viewer(plane), fine_viewer(plane);
+    double time = 0;
+    double const few_seconds = 1e-9 * cost(rounds, 1, [&] { few = coarse_viewer.show(coarse, ++time, 0); });
+    double const many_seconds = 1e-9 * cost(rounds, 1, [&] { many = fine_viewer.show(fine, ++time, 0); });
+    costs.blend_contribution =
+        1e9 * std::max(many_seconds - few_seconds, 0.1 * few_seconds) / (many.contributions - few.contributions);
+    double const rest = 1e9 * few_seconds - few.contributions * costs.blend_contribution;
+    costs.blend_pixel = std::max(rest, 0.1e9 * few_seconds) / few.pixels;
+}
 
 void calibrate_codecs(BenchScene& scene, Viewport viewport, int rounds, CostTable& costs) {
     auto const pictures = moving_pictures(scene, viewport, std::max(rounds, 8));
@@ -212,6 +272,8 @@ CostTable calibrate(BenchScene& scene, Viewport viewport, int rounds) {
     calibrate_framelets(scene, plane, rounds, rendered, costs);
     calibrate_response(scene, plane, rounds, costs);
     calibrate_afr(viewport, rounds, costs);
+    calibrate_density_response(plane, rendered, rounds, costs);
+    calibrate_blending(scene, plane, rendered, rounds, costs);
     calibrate_codecs(scene, viewport, rounds, costs);
     return costs;
 }

@@ -11,7 +11,7 @@
 namespace framelet::bench {
 namespace {
 
-constexpr std::array<std::pair<char const*, double CostTable::*>, 16> fields{{
+constexpr std::array<std::pair<char const*, double CostTable::*>, 21> fields{{
     {"coherent_segment", &CostTable::coherent_segment},
     {"incoherent_segment", &CostTable::incoherent_segment},
     {"display_sample", &CostTable::display_sample},
@@ -24,6 +24,11 @@ constexpr std::array<std::pair<char const*, double CostTable::*>, 16> fields{{
     {"reconstruct_fine_sample", &CostTable::reconstruct_fine_sample},
     {"place_pixel", &CostTable::place_pixel},
     {"afr_sample", &CostTable::afr_sample},
+    {"estimate_sample", &CostTable::estimate_sample},
+    {"respond_element", &CostTable::respond_element},
+    {"tiling_element", &CostTable::tiling_element},
+    {"blend_pixel", &CostTable::blend_pixel},
+    {"blend_contribution", &CostTable::blend_contribution},
     {"jpeg_encode_pixel", &CostTable::jpeg_encode_pixel},
     {"jpeg_decode_pixel", &CostTable::jpeg_decode_pixel},
     {"h264_encode_pixel", &CostTable::h264_encode_pixel},

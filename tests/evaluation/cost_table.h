@@ -23,6 +23,11 @@ struct CostTable {
     double reconstruct_fine_sample = 0; ///< one sample finer than a pixel
     double place_pixel = 0; ///< writing a received pixel to where it belongs
     double afr_sample = 0; ///< adaptive frameless rendering's choice and statistics of one sample
+    double estimate_sample = 0; ///< sample-rate error by streaming Haar transform
+    double respond_element = 0; ///< response decision of one element that has an error
+    double tiling_element = 0; ///< tiling from density, one element of the field
+    double blend_pixel = 0; ///< age-weighted reconstruction: age, its smoothing, normalisation of a pixel
+    double blend_contribution = 0; ///< of a framelet to a pixel, by four samples
     double jpeg_encode_pixel = 0;
     double jpeg_decode_pixel = 0;
     double h264_encode_pixel = 0;

@@ -17,6 +17,7 @@
 #include "tests/evaluation/calibrate.h"
 #include "tests/evaluation/estimators/estimator_verbs.h"
 #include "tests/evaluation/limits.h"
+#include "tests/evaluation/sensitivity.h"
 #include "tests/evaluation/table.h"
 #include "tests/evaluation/verbs.h"
 #include "tests/evaluation/wall.h"
@@ -240,6 +241,8 @@ int main(int argc, char** argv) {
              }));
     add_verb("reference", "Renders what the methods are compared with", add_study_options,
              study(framelet::bench::prepare_reference));
+    add_verb("sensitivity", "How tsar answers to steeper and flatter templates of its error estimate", add_run_options,
+             study(framelet::bench::sensitivity));
     add_verb("calibrate", "What every stage costs on this machine", add_scene_options,
              with_scene([&options](BenchScene& scene) { return calibrate(scene, options.quick); }));
     add_verb("limits", "Each stage against its bare limit", add_scene_options,

@@ -15,12 +15,13 @@ struct KnownMethod {
     bool batches = false;
 };
 
-constexpr std::array<KnownMethod, 6> known_methods{{
+constexpr std::array<KnownMethod, 7> known_methods{{
     {"framed", make_framed},
     {"framed+jpeg", make_framed_jpeg},
     {"framed+h264", make_framed_h264},
     {"frameless", make_frameless},
     {"afr", make_afr},
+    {"tsar", make_tsar, true},
     {"framelet", make_framelet, true},
 }};
 

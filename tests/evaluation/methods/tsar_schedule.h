@@ -1,0 +1,25 @@
+// Which tiles there are and which come next, as 004 places samples (sections 3.4.4.1 and 4.1.6). In: sample density.
+// Out: a tiling, and the tiles of the next batch.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "server/response/density_field.h"
+#include "server/schedule/tiling.h"
+
+namespace framelet::bench {
+
+/// Serial construction of 004 section 4.1.6.1: a tile whose integral of density is above `most_samples` is replaced by
+/// its children, down to the plane's limit; integrals by prefix sums along the Morton curve. `samples_per_pixel`:
+/// 4^field_depth elements. Along the Morton curve, visible tiles only.
+Tiling make_density_tiling(ImagePlane const& plane, std::span<double const> samples_per_pixel, int field_depth,
+                           double most_samples);
+
+/// At most `count` indices into `tiles`, those most overdue relative to their own period: greatest (now - refreshed) *
+/// rate. `refreshed`: seconds at which each element was refreshed last, `density`: of the same resolution. In the order
+/// of the tiling.
+std::vector<std::size_t> select_overdue(std::span<Tile const> tiles, DensityField const& density,
+                                        std::span<double const> refreshed, double now, std::size_t count);
+
+} // namespace framelet::bench

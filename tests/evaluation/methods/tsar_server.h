@@ -1,0 +1,75 @@
+// The server's half of `tsar` (004 chapters 3 to 6): density -> tiling -> batch -> error -> density.
+#pragma once
+
+#include <unordered_map>
+
+#include "protocol/batch_codec.h"
+#include "server/response/density_response.h"
+#include "server/response/haar_error.h"
+#include "tests/evaluation/method.h"
+#include "tests/evaluation/methods/tsar_schedule.h"
+
+namespace framelet::bench {
+
+/// 004 leaves these to experiment ("determined empirically", section 7.1.2.1).
+struct TsarParameters {
+    RateTemplates templates = haar_templates;
+    double gain = 1; ///< samples per pixel, and slowest rates of refresh, that an error of 1 asks for: eq. 6.11 has 1
+    Transport strategy = Transport::shrink_larger; ///< "the safest" (section 6.3.2.3)
+    double most_saved = 0; ///< of the surplus account, as a share of the budget
+    /// Of a tile by its density, before it is split: the middle, by ratio, between a framelet and its four children, so
+    /// that the tiling has neither more nor fewer samples than the density.
+    double most_samples = 2 * framelet_samples;
+};
+
+class TsarServer {
+public:
+    TsarServer(MethodSetup const& setup, TsarParameters const& parameters);
+
+    /// Renders and sends one batch, then responds to it.
+    ServerStep produce(StepInput const& input);
+
+    Tiling const& tiling() const { return tiling_; }
+    DensityField const& density() const { return density_; }
+
+private:
+    /// What is known of the last framelet of a tile.
+    struct Place {
+        HaarHistory history;
+        double time = 0;
+    };
+
+    void build_tiling();
+    void estimate(Batch const& batch);
+    void forget_old_places();
+
+    MethodSetup const setup_;
+    TsarParameters const parameters_;
+    ImagePlane const plane_;
+    std::size_t const batch_framelets_;
+    ResponseParameters response_;
+    Surplus surplus_;
+    ResponseScratch scratch_;
+
+    DensityField density_;
+    std::vector<double> refreshed_; ///< seconds at which each element was refreshed last
+    Tiling tiling_;
+    std::unordered_map<std::uint32_t, Place> places_; ///< by tile code
+    std::vector<std::uint32_t> elements_; ///< that the batch touched
+    std::vector<RateError> errors_; ///< of those
+
+    double clock_ = 0; ///< seconds of the server's own
+    double last_input_ = 0;
+    BatchCodec codec_;
+    Batch batch_;
+};
+
+/// What the message holds: when the batch was rendered by the server's clock, which goes on while the scene's stands
+/// still, and the batch.
+struct TsarMessage {
+    double time;
+    EncodedBatch batch;
+};
+TsarMessage decode_tsar_message(std::vector<std::byte> const& message);
+
+} // namespace framelet::bench

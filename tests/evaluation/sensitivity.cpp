@@ -1,0 +1,191 @@
+#include "tests/evaluation/sensitivity.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+
+#include <nlohmann/json.hpp>
+
+#include "common/image_io.h"
+#include "tests/evaluation/measures/measures.h"
+#include "tests/evaluation/methods/tsar.h"
+
+namespace framelet::bench {
+namespace {
+
+using nlohmann::json;
+
+constexpr int cells = 5; ///< along a side of the grid
+constexpr float slope_step = 0.5f; ///< in log2 of energy an octave
+
+/// A steeper line through the same energy at the octave of a framelet's mean: finer octaves are tolerated less, as in
+/// 004, whose offset is that of the mean.
+EnergyTemplate turned(EnergyTemplate line, float steeper) {
+    constexpr float mean_octave = 4;
+    return {line.offset - steeper * mean_octave, line.slope + steeper};
+}
+
+/// What one choice of slopes came to.
+struct Cell {
+    RateTemplates templates;
+    double mse = 0; ///< mean over the run
+    double age = 0; ///< likewise, seconds
+    RunResult run;
+    Picture picture; ///< at half the run, and all below
+    Picture tiling;
+    std::size_t tiles = 0;
+    double samples_per_pixel = 0;
+    double mean_rate = 0, least_rate = 0, most_rate = 0; ///< refreshes per second that the tiles ask for
+};
+
+/// Tiles with their outlines. Each doubling of the rate is one step brighter, up to a refresh each cycle.
+Picture draw_tiling(Tiling const& tiling, std::vector<double> const& rates, double most_rate) {
+    Viewport const viewport = tiling.plane.viewport();
+    Picture picture(viewport.width, viewport.height);
+    for (std::size_t i = 0; i < tiling.tiles.size(); ++i) {
+        PixelRect const rect = tiling.plane.tile_rect(tiling.tiles[i]);
+        double const octaves = std::log2(most_rate / rates[i]);
+        auto const level = static_cast<std::uint8_t>(std::clamp(std::lround(255 - 40 * octaves), 30l, 255l));
+        for (int y = rect.top; y < std::min(rect.bottom, picture.height); ++y) {
+            for (int x = rect.left; x < std::min(rect.right, picture.width); ++x) {
+                bool const outline = x == rect.left || y == rect.top;
+                std::uint8_t* const pixel = picture.row(y) + static_cast<std::ptrdiff_t>(x) * 4;
+                std::fill_n(pixel, 3, outline ? std::uint8_t(0) : level);
+                pixel[3] = 255;
+            }
+        }
+    }
+    return picture;
+}
+
+void look_at(TsarServer const& server, double fastest, Cell& cell) {
+    Tiling const& tiling = server.tiling();
+    std::vector<double> rates(tiling.tiles.size());
+    tiles_from_field(tiling.tiles, server.density().time, rates);
+    cell.tiling = draw_tiling(tiling, rates, fastest);
+    Viewport const viewport = tiling.plane.viewport();
+    double const pixels = static_cast<double>(viewport.width) * viewport.height;
+    cell.tiles = tiling.tiles.size();
+    cell.samples_per_pixel = static_cast<double>(cell.tiles * framelet_samples) / pixels;
+    double const sum = std::accumulate(rates.begin(), rates.end(), 0.0);
+    cell.mean_rate = sum / static_cast<double>(rates.size());
+    auto const [least, most] = std::ranges::minmax(rates);
+    cell.least_rate = least;
+    cell.most_rate = most;
+}
+
+Cell run_cell(BenchScene& scene, Reference const& reference, StudyOptions const& options, double machine,
+              RateTemplates const& templates) {
+    RunParameters const& run = options.run;
+    MethodSetup const setup{.viewport = run.viewport,
+                            .costs = options.costs,
+                            .machine = machine,
+                            .frames_per_second = run.frames_per_second,
+                            .bits_per_second = run.link.bits_per_second,
+                            .seed = run.seed};
+    TsarParameters parameters;
+    parameters.templates = templates;
+    Tsar method(setup, parameters);
+    Cell cell;
+    cell.templates = templates;
+    std::size_t const times = reference_count(run);
+    double const count = static_cast<double>(times);
+    cell.run = run_method(scene, method, run, machine, [&](std::size_t index, Picture const& shown, double age) {
+        cell.mse += mean_squared_error(shown, reference.picture(index)) / count;
+        cell.age += age / count;
+        if (index == times / 2) {
+            cell.picture = shown;
+            look_at(method.server(), 4 * run.frames_per_second, cell);
+        }
+    });
+    return cell;
+}
+
+/// Pictures in rows of `cells`; a black frame around the one in the middle.
+Picture contact_sheet(std::vector<Picture const*> const& pictures) {
+    int const width = pictures.front()->width, height = pictures.front()->height;
+    int const gap = std::max(4, width / 64);
+    Picture sheet(cells * (width + gap) + gap, cells * (height + gap) + gap);
+    std::fill(sheet.rgba.begin(), sheet.rgba.end(), std::uint8_t(255));
+    for (int i = 0; i < cells * cells; ++i) {
+        int const left = gap + i % cells * (width + gap);
+        int const top = gap + i / cells * (height + gap);
+        if (i == cells * cells / 2) {
+            for (int y = top - gap / 2; y < top + height + gap / 2; ++y) {
+                std::uint8_t* const row = sheet.row(y) + static_cast<std::ptrdiff_t>(left - gap / 2) * 4;
+                for (int x = 0; x < width + gap / 2 * 2; ++x) {
+                    std::fill_n(row + x * 4, 3, std::uint8_t(0));
+                }
+            }
+        }
+        for (int y = 0; y < height; ++y) {
+            std::copy_n(pictures[static_cast<std::size_t>(i)]->row(y), width * 4,
+                        sheet.row(top + y) + static_cast<std::ptrdiff_t>(left) * 4);
+        }
+    }
+    return sheet;
+}
+
+void draw_sheets(std::vector<Cell> const& grid, std::filesystem::path const& folder, std::string const& scene) {
+    std::filesystem::create_directories(folder);
+    std::vector<Picture const*> pictures, tilings;
+    for (Cell const& cell : grid) {
+        pictures.push_back(&cell.picture);
+        tilings.push_back(&cell.tiling);
+    }
+    write_picture(folder / (scene + "-sensitivity.png"), contact_sheet(pictures));
+    write_picture(folder / (scene + "-sensitivity-tiling.png"), contact_sheet(tilings));
+}
+
+json to_json(EnergyTemplate const& line) {
+    return {{"offset", line.offset}, {"slope", line.slope}};
+}
+
+json to_json(Cell const& cell) {
+    return {{"space", to_json(cell.templates.space)},
+            {"time", to_json(cell.templates.time)},
+            {"mse", cell.mse},
+            {"age_seconds", cell.age},
+            {"samples", cell.run.samples},
+            {"bytes", cell.run.bytes},
+            {"tiles", cell.tiles},
+            {"samples_per_pixel", cell.samples_per_pixel},
+            {"refreshes_per_second", {{"mean", cell.mean_rate}, {"least", cell.least_rate}, {"most", cell.most_rate}}}};
+}
+
+} // namespace
+
+json sensitivity(BenchScene& scene, StudyOptions const& options) {
+    RunParameters const& run = options.run;
+    Reference const reference(scene, {run.viewport, run.seconds, run.reference_rate, options.samples_per_side},
+                              options.reference_cache);
+    double const machine = machine_factor(scene, run, options.costs);
+    RateTemplates const middle = TsarParameters{}.templates;
+    std::vector<Cell> grid;
+    std::printf(
+        "%s: mean squared error, samples a pixel, mean refreshes a second; slope in space from left to right, in "
+        "time downwards\n",
+        scene.name.c_str());
+    for (int y = 0; y < cells; ++y) {
+        float const time = slope_step * static_cast<float>(cells / 2 - y);
+        for (int x = 0; x < cells; ++x) {
+            float const space = slope_step * static_cast<float>(cells / 2 - x);
+            grid.push_back(
+                run_cell(scene, reference, options, machine, {turned(middle.space, space), turned(middle.time, time)}));
+            Cell const& cell = grid.back();
+            std::printf("  %8.2e %4.2f %4.1f", cell.mse, cell.samples_per_pixel, cell.mean_rate);
+        }
+        std::printf("\n");
+    }
+    if (!options.charts.empty()) {
+        draw_sheets(grid, options.charts, scene.name);
+    }
+    json result{{"scene", scene.name}, {"cells", json::array()}};
+    for (Cell const& cell : grid) {
+        result["cells"].push_back(to_json(cell));
+    }
+    return result;
+}
+
+} // namespace framelet::bench
