@@ -200,7 +200,9 @@ void learn_patch(PlaceField& field, Patch const& patch, std::span<DisplayFramele
         Place& place = field[i];
         Observation const seen = mean_of(sums[i - range.first], static_cast<int>(framelets.size()));
         learn(place.model, seen);
-        place.settled = seen.has_change && !is_change(seen);
+        if (seen.has_change) {
+            place.settled = !is_change(seen);
+        }
         if (is_change(seen) || place.rendered == never) {
             place.changed = now;
         }

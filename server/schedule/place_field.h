@@ -25,7 +25,7 @@ struct Place {
     double rendered = never; ///< seconds
     double changed = never; ///< when it was last seen to be different
     double checked = never; ///< when it was last rendered or probed
-    bool settled = false; ///< the last two renderings of it were the same
+    bool settled = true; ///< false from a change that was seen until two renderings are the same
     double inspected = never; ///< when all its pixels were last rendered
     float inverse_depth = 0; ///< mean, 1/metres
     float speed = 0; ///< of the camera's motion here, pixels a second, when `model.motion` was learnt
