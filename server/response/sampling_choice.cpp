@@ -38,27 +38,43 @@ BestPeriod const best_period;
 
 SamplingChoice choose_sampling(PlaceModel const& place, float life, SamplingPrice const& price, int least_level,
                                int most_level) {
-    float const time_weight = std::exp2(2 * price.bias);
+    float const time_weight = price.bias == 0 ? 1 : std::exp2(2 * price.bias);
     float const space_weight = 1 / time_weight;
+    float const longest = std::max(life, price.least_period);
     SamplingChoice best;
     float least = std::numeric_limits<float>::infinity();
-    for (int level = least_level; level <= most_level; ++level) {
-        float const cost = price.price * samples_per_pixel(level);
+    /// What the level would cost at its best; false where it cannot be the best.
+    auto const offer = [&](int level) {
         float const unresolved = space_weight * unresolved_error(place, level);
-        DriftBounds const bounds = drift_bounds(place, level);
-        float const most = time_weight * bounds.most;
-        float const rate = place.motion * bounds.growth / bounds.most; // 1/s, of the one exponential
-        float const left = most * std::exp(-rate * price.latency); // what a refresh can save, fresh as it comes
-        float const share = rate * cost / left;
-        float const wanted = share < 1 && rate > 0 ? best_period(share) / rate : life;
-        float const period = std::clamp(wanted, price.least_period, std::max(life, price.least_period));
-        float const x = rate * period;
-        float const mean_kept = x > 1e-3f ? (1 - std::exp(-x)) / x : 1 - 0.5f * x;
-        float const paid = unresolved + most - left * mean_kept + cost / period;
+        float const cost = price.price * samples_per_pixel(level);
+        if (unresolved + cost / longest >= least) {
+            return false;
+        }
+        float period = longest;
+        float paid = unresolved + cost / longest;
+        if (place.motion > 0) {
+            DriftBounds const bounds = drift_bounds(place, level);
+            float const most = time_weight * bounds.most;
+            float const rate = place.motion * bounds.growth / bounds.most; // 1/s, of the one exponential
+            float const left = most * std::exp(-rate * price.latency); // what a refresh can save, fresh as it comes
+            float const share = rate * cost / left;
+            float const wanted = share < 1 && rate > 0 ? best_period(share) / rate : longest;
+            period = std::clamp(wanted, price.least_period, longest);
+            float const x = rate * period;
+            float const mean_kept = x > 1e-3f ? (1 - std::exp(-x)) / x : 1 - 0.5f * x;
+            paid = unresolved + most - left * mean_kept + cost / period;
+        }
         if (paid < least) {
             least = paid;
             best = {level, period, paid, period < life};
         }
+        return true;
+    };
+    // Coarser levels leave more unresolved, finer ones cost more: from the middle outwards, until that alone is too much.
+    int const middle = std::clamp(pixel_level, least_level, most_level);
+    for (int level = middle; level >= least_level && offer(level); --level) {
+    }
+    for (int level = middle + 1; level <= most_level && offer(level); ++level) {
     }
     return best;
 }

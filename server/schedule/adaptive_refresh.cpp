@@ -28,11 +28,15 @@ std::size_t batch_limit(RefreshInput const& input) {
     if (input.batch_framelets > 0) {
         return std::min(input.batch_framelets, max_batch_framelets);
     }
-    double const timely = input.samples_per_second * static_cast<double>(input.batch_seconds) / framelet_samples;
+    double const timely = 0.5 * input.samples_per_second * static_cast<double>(input.cycle_seconds) / framelet_samples;
     return static_cast<std::size_t>(std::clamp(timely, 1.0, static_cast<double>(max_batch_framelets)));
 }
 
 } // namespace
+
+float cycle_length(double plan_seconds) {
+    return std::clamp(static_cast<float>(40 * plan_seconds), least_cycle_seconds, most_cycle_seconds);
+}
 
 bool AdaptiveRefresh::is_finished(std::uint32_t index) const {
     Place const& place = field_[index];
@@ -85,7 +89,8 @@ RefreshPlan const& AdaptiveRefresh::plan(RefreshInput const& input) {
     plan_.tiles.clear();
     plan_.probes.clear();
     plan_.probed.clear();
-    if (!goes_on(input)) {
+    plan_.is_new_cycle = !goes_on(input);
+    if (plan_.is_new_cycle) {
         advance(input);
         plan_cycle(input);
     }

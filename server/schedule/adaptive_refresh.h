@@ -11,19 +11,25 @@
 
 namespace framelet {
 
+/// Bounds of a cycle's length.
+inline constexpr float least_cycle_seconds = 0.01f;
+inline constexpr float most_cycle_seconds = 0.05f;
+/// How long a cycle should be where planning one takes so long: planning may take a fortieth of it.
+float cycle_length(double plan_seconds);
+
 struct RefreshInput {
     ViewState state;
     double now = 0; ///< seconds, steady
     double samples_per_second = 0; ///< what the renderer can do for this viewer
-    float cycle_seconds = 0.01f; ///< how often the response is worked out anew
-    float batch_seconds = 0.005f; ///< how long a batch of a cycle should take: it shows that much later
+    float cycle_seconds = least_cycle_seconds; ///< how often the response is worked out anew
     float delivery_seconds = 0; ///< from the end of its rendering until it shows
     float bias = 0;
-    std::size_t batch_framelets = 0; ///< most framelets of one batch; 0: what `batch_seconds` has time for
+    std::size_t batch_framelets = 0; ///< most framelets of one batch; 0: what half a cycle has time for, so that it shows sooner
 };
 
 /// What to render now.
 struct RefreshPlan {
+    bool is_new_cycle = false; ///< worked out anew, not what the last one left
     std::vector<Patch> patches;
     std::vector<std::size_t> tile_counts; ///< of each patch
     std::vector<Tile> tiles; ///< of the patches, in order

@@ -103,12 +103,13 @@ bool SessionLoop::render_session(Session& session, AdaptiveRefresh& refresh, Sce
     wanted.state = state;
     wanted.now = std::chrono::duration<double>(start.time_since_epoch()).count();
     wanted.samples_per_second = share * (rate_.samples_per_second > 0 ? rate_.samples_per_second : first_rate);
-    wanted.cycle_seconds = static_cast<float>(options_.cycle_seconds);
-    wanted.batch_seconds = 0.5f * wanted.cycle_seconds;
+    wanted.cycle_seconds = cycle_length(plan_seconds_);
     wanted.delivery_seconds = static_cast<float>(0.5 * session.answer_seconds());
     wanted.bias = std::clamp(static_cast<float>(options_.bias) + input.settings.bias, -1.0f, 1.0f);
     wanted.batch_framelets = options_.batch_framelets;
     RefreshPlan const& plan = refresh.plan(wanted);
+    std::chrono::duration<double> const planned = std::chrono::steady_clock::now() - start;
+    plan_seconds_ = std::max(planned.count(), 0.95 * plan_seconds_); // most plans only take what the last one left
     if (plan.tiles.empty() && plan.probes.empty()) {
         return false;
     }

@@ -22,8 +22,7 @@ namespace framelet {
 
 struct LoopOptions {
     float exposure = 1; ///< factor on radiance, before the viewer's own
-    std::size_t batch_framelets = 0; ///< most framelets of one batch; 0: what `cycle_seconds` has time for
-    double cycle_seconds = 0.01; ///< how often what to render is worked out anew; a batch takes half of it
+    std::size_t batch_framelets = 0; ///< most framelets of one batch; 0: what half a cycle has time for
     double bias = 0; ///< -1 (spatial fidelity) .. 1 (temporal), before the viewer's own
 };
 
@@ -75,6 +74,7 @@ private:
     ScenePose pose_;
     std::map<std::uint64_t, AdaptiveRefresh> refreshes_; ///< by session
     RenderRate rate_;
+    double plan_seconds_ = 0; ///< what planning a cycle takes
     ProbeRenderer probes_;
     std::vector<Framelet> rendered_;
     std::vector<DisplayFramelet> display_;

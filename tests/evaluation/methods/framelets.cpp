@@ -31,6 +31,7 @@ public:
         refresh.state = state;
         refresh.now = input.now;
         refresh.samples_per_second = rate_.samples_per_second > 0 ? rate_.samples_per_second : first_rate();
+        refresh.cycle_seconds = cycle_length(setup_.machine * plan_seconds());
         refresh.delivery_seconds = static_cast<float>(setup_.delay_seconds);
         refresh.batch_framelets = setup_.batch_framelets;
         refresh.bias = static_cast<float>(setup_.bias);
@@ -48,9 +49,7 @@ public:
         double const samples = static_cast<double>(plan.tiles.size() * framelet_samples);
         step.seconds.render = 1e-9 * (static_cast<double>(segments) * setup_.costs.coherent_segment +
                                       static_cast<double>(probe_segments) * setup_.costs.incoherent_segment);
-        step.seconds.response =
-            1e-9 * (static_cast<double>(refresh_.field().visible().size()) * setup_.costs.plan_place +
-                    samples * setup_.costs.learn_sample);
+        step.seconds.response = (plan.is_new_cycle ? plan_seconds() : 0) + 1e-9 * samples * setup_.costs.learn_sample;
         if (!plan.tiles.empty()) {
             rate_ = update_render_rate(rate_, static_cast<double>(step.samples), setup_.machine * step.seconds.render);
         }
@@ -115,6 +114,11 @@ public:
 private:
     /// Before anything has been measured.
     double first_rate() const { return setup_.frames_per_second * setup_.viewport.width * setup_.viewport.height; }
+
+    /// Of the calibrated machine, for a cycle.
+    double plan_seconds() const {
+        return 1e-9 * static_cast<double>(refresh_.field().visible().size()) * setup_.costs.plan_place;
+    }
 
     static constexpr int cell = framelet_side >> finest_levels; ///< side of the finest tile, pixels
 
