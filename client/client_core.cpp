@@ -6,6 +6,7 @@
 #include <mutex>
 #include <utility>
 
+#include "client/framelet_outlines.h"
 #include "client/server_connection.h"
 #include "common/error.h"
 #include "common/framelet_cache.h"
@@ -292,6 +293,13 @@ bool ClientCore::update_picture(Picture& picture, std::vector<PixelRect>& change
         core.statistics.first_picture_seconds = seconds_between(*core.first_camera_time, after);
     }
     return true;
+}
+
+void ClientCore::outline_framelets(Picture& picture) const {
+    std::lock_guard const lock(impl_->mutex);
+    if (impl_->cache && impl_->cache->plane().viewport() == Viewport{picture.width, picture.height}) {
+        draw_outlines(*impl_->cache, picture);
+    }
 }
 
 bool ClientCore::wait_for_news(std::chrono::nanoseconds at_most) {

@@ -73,6 +73,10 @@ public:
     /// last call is written as a whole.
     bool update_picture(Picture& picture, std::vector<PixelRect>& changed);
 
+    /// Draws the outlines of the framelets that are held into a copy of the picture that `update_picture` made, as
+    /// `draw_outlines`. A picture of another size stays as it is.
+    void outline_framelets(Picture& picture) const;
+
     /// Waits until something has come since the last call, or the time is over; true when something has.
     bool wait_for_news(std::chrono::nanoseconds at_most);
 

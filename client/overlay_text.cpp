@@ -52,6 +52,7 @@ TextRows help_rows() {
         {"+ and -", "animation speed"},
         {"] and [", "brighter, darker"},
         {"F2 or Tab", "statistics"},
+        {"F3", "outlines of framelets, fresh ones bright"},
         {"F11 or Alt+Enter", "full screen"},
         {"F12", "screenshot (PNG, in the current folder)"},
         {"F1", "this help"},

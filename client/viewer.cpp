@@ -6,6 +6,7 @@
 #include <iomanip>
 #include <iostream>
 #include <sstream>
+#include <utility>
 
 #include "common/error.h"
 #include "common/image_io.h"
@@ -74,10 +75,7 @@ int Viewer::run() {
         if (hidden || now < next_frame) {
             continue; // what has come is shown in the next display frame
         }
-        if (core_->update_picture(picture_, changed_)) {
-            window_.upload(picture_, changed_);
-            redraw = true;
-        }
+        redraw = update_shown_picture() || redraw;
         OverlayContent content = overlay_content();
         redraw = redraw || moving || content != shown;
         pending = redraw;
@@ -93,6 +91,24 @@ int Viewer::run() {
         }
     }
     return lost_.empty() ? 0 : 1;
+}
+
+/// Uploads what has changed; true when something has.
+bool Viewer::update_shown_picture() {
+    bool const changed = core_->update_picture(picture_, changed_);
+    bool const toggled = std::exchange(outlines_toggled_, false) && !picture_.rgba.empty();
+    if (!changed && !toggled) {
+        return false;
+    }
+    if (show_outlines_ || toggled) { // outlines age everywhere
+        changed_.assign(1, {0, 0, picture_.width, picture_.height});
+    }
+    if (show_outlines_) {
+        outlined_ = picture_;
+        core_->outline_framelets(outlined_);
+    }
+    window_.upload(show_outlines_ ? outlined_ : picture_, changed_);
+    return true;
 }
 
 /// Returns true while a key keeps the camera moving.
@@ -170,6 +186,10 @@ void Viewer::apply(Command command) {
     case Command::toggle_statistics:
         show_statistics_ = !show_statistics_;
         statistics_.clear();
+        break;
+    case Command::toggle_outlines:
+        show_outlines_ = !show_outlines_;
+        outlines_toggled_ = true;
         break;
     case Command::screenshot:
         save_screenshot();

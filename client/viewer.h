@@ -39,6 +39,7 @@ private:
     void save_screenshot();
     void say(std::string note);
     void watch_connection();
+    bool update_shown_picture();
     OverlayContent overlay_content();
     double seconds_now() const;
 
@@ -56,6 +57,9 @@ private:
     std::vector<PixelRect> changed_;
     bool show_help_ = false;
     bool show_statistics_ = false;
+    bool show_outlines_ = false;
+    bool outlines_toggled_ = false; ///< since the picture was uploaded
+    Picture outlined_; ///< the picture with outlines, while they are shown
     TextRows statistics_;
     RateMeter meter_;
     std::string note_;

@@ -32,6 +32,7 @@ enum class Command {
     toggle_fullscreen,
     toggle_help,
     toggle_statistics,
+    toggle_outlines,
     screenshot,
     scene_camera, ///< the first; `scene_camera` + n is the n-th more, up to 8 more
 };

@@ -33,6 +33,7 @@ struct Options {
     std::string output;
     std::string frames_file;
     bool json = false;
+    bool overlay = false;
     bool until_converged = false;
     float exposure = 0;
     bool play = false;
@@ -117,6 +118,7 @@ RunFigures show(ClientCore& core, Options const& options, std::optional<CameraPa
     run.scene = core.welcome().scene_name;
     run.viewport = viewport;
     Picture picture = bare_picture(viewport);
+    Picture outlined;
     std::vector<PixelRect> changed;
     Clock::time_point const start = Clock::now();
     Clock::time_point next = start;
@@ -138,7 +140,11 @@ RunFigures show(ClientCore& core, Options const& options, std::optional<CameraPa
         }
         ++run.frames;
         if (writer != nullptr) {
-            writer->add(picture, news);
+            if (options.overlay) {
+                outlined = picture;
+                core.outline_framelets(outlined);
+            }
+            writer->add(options.overlay ? outlined : picture, news);
         }
         if (run.converged_seconds < 0 && (done || core.is_complete())) {
             run.converged_seconds = now;
@@ -214,6 +220,8 @@ int main(int argc, char** argv) {
                    "Picture file for each frame, as in frames/%04d.png; without a number: for the last frame");
     app.add_option("--frames", options.frames_file,
                    "Write a line of JSON for each frame to this file: when it was shown, the scene's time, bytes, CPU");
+    app.add_flag("--overlay", options.overlay,
+                 "Draw the outlines of the framelets that are held into the pictures, fresh ones bright");
     app.add_flag("--json", options.json, "Print the statistics as JSON");
     app.add_flag("--until-converged", options.until_converged,
                  "End once the picture is as good as it gets; exit code 1 where that takes longer than --duration");

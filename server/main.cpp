@@ -43,6 +43,10 @@ void serve(Options& options) {
         tbb::global_control::max_allowed_parallelism,
         options.threads > 0 ? static_cast<std::size_t>(options.threads)
                             : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+    std::optional<Recorder> recorder;
+    if (!options.record.empty()) {
+        recorder.emplace(options.record, options.record_rate);
+    }
     Progress const progress = make_progress_bar(options.quiet);
     Scene const scene = import_scene(options.scene, progress);
     for (std::string const& warning : scene.warnings) {
@@ -65,6 +69,7 @@ void serve(Options& options) {
                  scene.nodes.size(), scene.clips.size(), scene.lights.size(), scene.cameras.size(),
                  std::log2(options.server.loop.exposure));
 
+    options.server.loop.recorder = recorder ? &*recorder : nullptr;
     Server server(scene, clips, render_scene, options.server);
     std::cout << "listening on " << server.address() << std::endl;
     server.run(true);

@@ -44,7 +44,7 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
     app.add_option("--clip", options.clips, "Animation clip to play, by name; may be given several times");
     app.add_flag("--paused", options.server.paused, "Start with the scene clock standing");
     app.add_option("--batch", options.server.loop.batch_framelets,
-                   "Most framelets a batch; 0: what takes 5 ms")
+                   "Most framelets a batch; 0: what half a cycle has time for. A place's 16 stay together")
         ->check(CLI::Range(std::size_t(0), max_batch_framelets))
         ->capture_default_str();
     app.add_option("--bias", options.server.loop.bias, "What to favour: -1 detail .. 1 freshness")
@@ -57,6 +57,13 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
     app.add_option("--tls-cert", options.server.tls_certificate, "Certificate chain (PEM): encrypt connections");
     app.add_option("--tls-key", options.server.tls_key, "Private key (PEM) of the certificate");
     app.add_flag("--insecure", insecure, "Listen beyond this machine without token and TLS");
+    app.add_option(
+        "--record", options.record,
+        "Write what is planned for each viewer into this folder: a line of JSON for each batch, and pictures "
+        "of tiles, density, error and motion");
+    app.add_option("--record-rate", options.record_rate, "Sets of such pictures a second, for each viewer")
+        ->check(CLI::Range(0.01, 1000.0))
+        ->capture_default_str();
     app.add_flag("--quiet", options.quiet, "Print warnings and errors only");
     try {
         app.parse(argc, argv);

@@ -17,6 +17,8 @@ struct Options {
     std::vector<std::string> clips; ///< names; empty: all that fit together
     int threads = 0; ///< 0: all cores
     bool quiet = false;
+    std::filesystem::path record; ///< folder for what the server thought; empty: nothing is recorded
+    double record_rate = 4; ///< sets of pictures a second and session
     ServerOptions server;
 };
 

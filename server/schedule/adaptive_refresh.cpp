@@ -103,7 +103,9 @@ void AdaptiveRefresh::plan_cycle(RefreshInput const& input) {
     planned_ = input.now;
     cycle_.clear();
     next_ = 0;
-    double samples = input.samples_per_second * static_cast<double>(input.cycle_seconds);
+    ++cycle_count_;
+    cycle_budget_ = input.samples_per_second * static_cast<double>(input.cycle_seconds);
+    double samples = cycle_budget_;
     if (scene_moves_) {
         plan_probes(probe_share * samples);
         samples -= probe_cost * static_cast<double>(plan_.probes.size());

@@ -59,6 +59,7 @@ double demand_of(PlaceField const& field, Budget const& budget, Choices const& c
 
 float solve_price(PlaceField const& field, double now, Budget const& budget, float last_price, Choices& choices) {
     choices.resize(field.size());
+    constexpr int most_steps = 4;
     float price = std::clamp(last_price, least_price, most_price);
     for (int step = 0;; ++step) {
         choose_all(field, now, budget, price, choices);
@@ -67,7 +68,7 @@ float solve_price(PlaceField const& field, double now, Budget const& budget, flo
         float const factor = static_cast<float>(std::clamp(ratio * std::sqrt(ratio), 1.0 / 64, 64.0));
         price = std::clamp(ratio > 0.8 && ratio < 1.2 ? price : price * factor, least_price, most_price);
         // What is left to correct is left to the next cycle, unless it is much.
-        if (step == 1 || (ratio > 0.5 && ratio < 2)) {
+        if (step == most_steps || (ratio > 0.5 && ratio < 2)) {
             return price;
         }
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -15,6 +16,18 @@ namespace {
 
 /// Samples a second of a renderer that has not been measured yet.
 constexpr double first_rate = 1e6;
+
+/// Seconds from lap to lap.
+class Laps {
+public:
+    double lap() {
+        auto const now = std::chrono::steady_clock::now();
+        return std::chrono::duration<double>(now - std::exchange(last_, now)).count();
+    }
+
+private:
+    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
 
 } // namespace
 
@@ -107,15 +120,21 @@ bool SessionLoop::render_session(Session& session, AdaptiveRefresh& refresh, Sce
     wanted.delivery_seconds = static_cast<float>(0.5 * session.answer_seconds());
     wanted.bias = std::clamp(static_cast<float>(options_.bias) + input.settings.bias, -1.0f, 1.0f);
     wanted.batch_framelets = options_.batch_framelets;
+    CycleRecord record;
+    Laps laps;
     RefreshPlan const& plan = refresh.plan(wanted);
-    std::chrono::duration<double> const planned = std::chrono::steady_clock::now() - start;
-    plan_seconds_ = std::max(planned.count(), 0.95 * plan_seconds_); // most plans only take what the last one left
+    record.stage_seconds.plan = laps.lap();
+    // Most plans only take what the last one left.
+    plan_seconds_ = std::max(record.stage_seconds.plan, 0.95 * plan_seconds_);
     if (plan.tiles.empty() && plan.probes.empty()) {
         return false;
     }
     render_plan(plan, state);
+    record.stage_seconds.render = laps.lap();
     auto const& needed = refresh.learn(display_, rendered_, probes_.luma());
+    record.stage_seconds.learn = laps.lap();
     finish_encoding();
+    record.stage_seconds.wait = laps.lap();
     send_batch(session, needed, state);
 
     std::chrono::duration<double> const seconds = std::chrono::steady_clock::now() - start;
@@ -123,6 +142,16 @@ bool SessionLoop::render_session(Session& session, AdaptiveRefresh& refresh, Sce
         double const samples = static_cast<double>(plan.tiles.size() * framelet_samples);
         rate_ = update_render_rate(rate_, samples, seconds.count());
         samples_per_second_ = rate_.samples_per_second;
+    }
+    if (options_.recorder != nullptr) {
+        record.session = session.id();
+        record.scene_time = time;
+        record.samples_rendered = plan.tiles.size() * framelet_samples;
+        record.probes = plan.probes.size();
+        record.framelets_sent =
+            static_cast<std::uint64_t>(std::ranges::count_if(needed, [](auto n) { return n != 0; }));
+        record.framelets_unchanged = needed.size() - record.framelets_sent;
+        options_.recorder->add(record, refresh, wanted.now);
     }
     if (session.report(input.version, refresh.is_complete(state))) {
         events_.convergence_changed();

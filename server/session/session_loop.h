@@ -15,6 +15,7 @@
 #include "server/render/probe_renderer.h"
 #include "server/schedule/adaptive_refresh.h"
 #include "server/schedule/render_rate.h"
+#include "server/session/recorder.h"
 #include "server/session/scene_clock.h"
 #include "server/session/session.h"
 
@@ -24,6 +25,7 @@ struct LoopOptions {
     float exposure = 1; ///< factor on radiance, before the viewer's own
     std::size_t batch_framelets = 0; ///< most framelets of one batch; 0: what half a cycle has time for
     double bias = 0; ///< -1 (spatial fidelity) .. 1 (temporal), before the viewer's own
+    Recorder* recorder = nullptr; ///< must outlive the loop; null: nothing is recorded
 };
 
 class SessionLoop {

@@ -18,6 +18,7 @@
 #include "tests/evaluation/estimators/estimator_verbs.h"
 #include "tests/evaluation/limits.h"
 #include "tests/evaluation/sensitivity.h"
+#include "tests/evaluation/stability.h"
 #include "tests/evaluation/table.h"
 #include "tests/evaluation/verbs.h"
 #include "tests/evaluation/wall.h"
@@ -48,6 +49,7 @@ struct Options {
     double delay_ms = 0;
     double jitter_ms = 0;
     bool total = false;
+    framelet::bench::StabilityOptions stability;
     std::vector<int> table_runs;
     std::vector<std::string> table_scenes;
     framelet::bench::StudyOptions study;
@@ -67,14 +69,18 @@ void add_scene_options(CLI::App& verb, Options& options) {
     verb.add_option("--camera", options.camera, "Which of its cameras, from 0")->capture_default_str();
 }
 
-void add_time_options(CLI::App& verb, Options& options) {
+void add_reference_options(CLI::App& verb, Options& options) {
     auto& study = options.study;
-    verb.add_option("--seconds", options.seconds, "Scene time that is measured")->check(CLI::Range(0.05, 600.0));
     verb.add_option("--rate", options.rate, "Measurements a second")->check(CLI::Range(1.0, 1000.0));
     verb.add_option("--reference-samples", study.samples_per_side, "Samples along a side of a reference's pixel")
         ->check(CLI::Range(1, 16))
         ->capture_default_str();
     verb.add_option("--reference-cache", study.reference_cache, "Folder that keeps references")->capture_default_str();
+}
+
+void add_time_options(CLI::App& verb, Options& options) {
+    verb.add_option("--seconds", options.seconds, "Scene time that is measured")->check(CLI::Range(0.05, 600.0));
+    add_reference_options(verb, options);
 }
 
 void add_size_option(CLI::App& verb, Options& options) {
@@ -96,9 +102,6 @@ void add_result_options(CLI::App& verb, Options& options) {
 
 void add_machine_options(CLI::App& verb, Options& options) {
     auto& study = options.study;
-    verb.add_option("--methods", study.methods, "Which methods (default: all)")
-        ->delimiter(',')
-        ->check(CLI::IsMember(framelet::bench::method_names()));
     verb.add_option("--fps", study.run.frames_per_second,
                     "The server's speed: whole frames a second that framed reaches")
         ->check(CLI::Range(0.1, 1000.0))
@@ -108,6 +111,13 @@ void add_machine_options(CLI::App& verb, Options& options) {
         ->capture_default_str();
     verb.add_option("--seed", study.run.seed, "Of everything that is random")->capture_default_str();
     add_result_options(verb, options);
+}
+
+void add_method_options(CLI::App& verb, Options& options) {
+    verb.add_option("--methods", options.study.methods, "Which methods (default: all)")
+        ->delimiter(',')
+        ->check(CLI::IsMember(framelet::bench::method_names()));
+    add_machine_options(verb, options);
 }
 
 void add_link_options(CLI::App& verb, Options& options) {
@@ -124,7 +134,7 @@ void add_link_options(CLI::App& verb, Options& options) {
 
 void add_run_options(CLI::App& verb, Options& options) {
     add_study_options(verb, options);
-    add_machine_options(verb, options);
+    add_method_options(verb, options);
     add_link_options(verb, options);
     verb.add_flag("--total", options.total, "The viewer's work is charged to the server's processors");
 }
@@ -132,9 +142,26 @@ void add_run_options(CLI::App& verb, Options& options) {
 void add_table_options(CLI::App& verb, Options& options) {
     add_output_options(verb, options);
     add_time_options(verb, options);
-    add_machine_options(verb, options);
+    add_method_options(verb, options);
     verb.add_option("--runs", options.table_runs, "Which runs of the table, by number (default: all)")->delimiter(',');
     verb.add_option("--scenes", options.table_scenes, "Which of its scenes, by name (default: all)")->delimiter(',');
+}
+
+void add_stability_options(CLI::App& verb, Options& options) {
+    auto& stability = options.stability;
+    add_output_options(verb, options);
+    add_size_option(verb, options);
+    add_reference_options(verb, options);
+    add_machine_options(verb, options);
+    add_link_options(verb, options);
+    verb.add_option("--scenes", stability.scenes, "Scenes with events, by name")->delimiter(',')->capture_default_str();
+    verb.add_option("--batches", stability.batches, "Most framelets of a batch, one run each")
+        ->delimiter(',')
+        ->check(CLI::Range(std::size_t(1), framelet::max_batch_framelets))
+        ->capture_default_str();
+    verb.add_option("--factor", stability.factor, "Settled is what is within so many times its final level")
+        ->check(CLI::Range(1.01, 100.0))
+        ->capture_default_str();
 }
 
 void add_wall_options(CLI::App& verb, Options& options) {
@@ -179,6 +206,11 @@ json table(Options& options) {
         throw framelet::InputError("--quick leaves none of these runs: it takes those of 256x256 pixels alone");
     }
     return bench::run_table(part, source / "scenes", options.study);
+}
+
+json stability(Options& options) {
+    settle(options, options.quick ? Scale{.size = 96, .rate = 20} : Scale{.size = 256, .rate = 40});
+    return framelet::bench::measure_stability(source / "scenes", options.stability, options.study);
 }
 
 json calibrate(BenchScene& scene, bool quick) {
@@ -235,6 +267,8 @@ int main(int argc, char** argv) {
              study(framelet::bench::link_study));
     add_verb("table", "Runs and scenes of the dissertation's Table 7.2 (--quick: those of 256x256)", add_table_options,
              [&options] { return table(options); });
+    add_verb("stability", "How the loop of error, density and tiling settles after events, and how steady it is then",
+             add_stability_options, [&options] { return stability(options); });
     add_verb("wall", "The real server and client through an emulated link, beside what the virtual clock predicts",
              add_wall_options, study([&options](BenchScene& scene, framelet::bench::StudyOptions const& settled) {
                  return framelet::bench::measure_wall(scene, settled, options.wall);

@@ -14,6 +14,10 @@
 #include "tests/evaluation/bench_scene.h"
 #include "tests/evaluation/cost_table.h"
 
+namespace framelet {
+class AdaptiveRefresh;
+}
+
 namespace framelet::bench {
 
 /// CPU seconds by stage, of the calibrated machine.
@@ -81,6 +85,8 @@ public:
     virtual Picture const& picture() const = 0;
     /// Scene time of what the picture shows, mean over its pixels.
     virtual double mean_sample_time() const = 0;
+    /// For looking at what it decides; null for methods that have none.
+    virtual AdaptiveRefresh const* scheduler() const { return nullptr; }
     /// How far it may be ahead of the viewer; one more message is rendered meanwhile.
     virtual Window window() const { return {}; }
 };

@@ -74,7 +74,7 @@ double machine_factor(BenchScene& scene, RunParameters const& parameters, CostTa
 }
 
 RunResult run_method(BenchScene& scene, Method& method, RunParameters const& parameters, double machine,
-                     OnReferenceTime const& on_reference_time) {
+                     OnReferenceTime const& on_reference_time, OnStep const& on_step) {
     SimulatedLink link(parameters.link);
     Spectator spectator(parameters, on_reference_time);
     bool const shared = parameters.counting == Counting::total;
@@ -113,6 +113,9 @@ RunResult run_method(BenchScene& scene, Method& method, RunParameters const& par
         StepInput const input{scene, time, now, {1, camera, parameters.viewport}, link.backlog_bytes(now), delivered};
         ServerStep const step = method.produce(input);
         double const started = now;
+        if (on_step) {
+            on_step(started, step);
+        }
         bool const measured = started >= 0;
         now += machine * step.seconds.server();
         if (step.message.empty()) {

@@ -41,6 +41,9 @@ double machine_factor(BenchScene& scene, RunParameters const& parameters, CostTa
 /// What was shown at a reference time. `age`: reference time less the mean scene time of the picture's pixels, seconds.
 using OnReferenceTime = std::function<void(std::size_t index, Picture const& shown, double age)>;
 
+/// What the server did in a step that began at `start`, which may be in the lead-in.
+using OnStep = std::function<void(double start, ServerStep const& step)>;
+
 struct RunResult {
     StageSeconds cpu; ///< spent in the measured time; server stages in seconds of the run's machine
     std::uint64_t samples = 0;
@@ -50,8 +53,8 @@ struct RunResult {
     double mean_delay = 0; ///< from the start of a step until its picture shows, seconds
 };
 
-/// `on_reference_time` is called once for each, in order.
+/// `on_reference_time` is called once for each, in order; `on_step`, where there is one, after each step.
 RunResult run_method(BenchScene& scene, Method& method, RunParameters const& parameters, double machine,
-                     OnReferenceTime const& on_reference_time);
+                     OnReferenceTime const& on_reference_time, OnStep const& on_step = {});
 
 } // namespace framelet::bench

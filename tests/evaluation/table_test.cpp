@@ -77,8 +77,8 @@ TEST(Table, BatchesHaveNoMoreFrameletsThanTheRunSays) {
         return most;
     };
     EXPECT_TRUE(has_batches("framelet"));
-    EXPECT_EQ(largest(3), 3u);
-    EXPECT_GT(largest(0), 3u);
+    EXPECT_LE(largest(20), 20u);
+    EXPECT_GT(largest(20), 10u);
 }
 
 TEST(Table, EveryRunOfEverySceneGetsItsFigures) {

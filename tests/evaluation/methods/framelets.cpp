@@ -109,6 +109,8 @@ public:
         return sum / static_cast<double>(times_.size());
     }
 
+    AdaptiveRefresh const* scheduler() const override { return &refresh_; }
+
     Window window() const override { return {Session::max_batches_in_flight, false}; }
 
 private:

@@ -1,0 +1,39 @@
+// What a cycle did for one viewer, in figures. In: the scheduler after a batch. Out: a line of JSON.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "server/schedule/adaptive_refresh.h"
+
+namespace framelet {
+
+/// One batch of a cycle; a cycle has several where batches are small.
+struct CycleRecord {
+    std::uint64_t session = 0;
+    std::uint64_t cycle = 0; ///< counts from 1
+    double seconds = 0; ///< since the recording began
+    SceneTime scene_time = 0;
+    double price = 0;
+    double budget = 0; ///< samples that the cycle has time for
+    std::uint64_t samples_planned = 0; ///< of the whole cycle, probes not included
+    std::uint64_t samples_rendered = 0; ///< of this batch
+    std::uint64_t framelets_sent = 0;
+    std::uint64_t framelets_unchanged = 0; ///< rendered, and the viewer had them
+    std::uint64_t probes = 0;
+    std::array<std::uint64_t, sampling_levels + 1> places_by_level{}; ///< of what the viewer holds; first: bare
+    double mean_shown_error = 0; ///< over the viewport's pixels
+    struct {
+        double plan = 0, render = 0, learn = 0;
+        double wait = 0; ///< until the batch before is encoded
+    } stage_seconds;
+};
+
+/// Fills in what the scheduler knows of its cycle and field.
+void describe(AdaptiveRefresh const& refresh, CycleRecord& record);
+
+/// Without the end of line.
+std::string to_json_line(CycleRecord const& record);
+
+} // namespace framelet

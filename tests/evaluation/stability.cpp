@@ -1,0 +1,251 @@
+#include "tests/evaluation/stability.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include <nlohmann/json.hpp>
+
+#include "common/error.h"
+#include "scenes/scene_table.h"
+#include "tests/evaluation/charts/charts.h"
+#include "tests/evaluation/cycle_log.h"
+#include "tests/evaluation/measures/measures.h"
+#include "tests/evaluation/settling.h"
+
+namespace framelet::bench {
+namespace {
+
+using nlohmann::json;
+
+/// The still time that hunting is looked for in: the end of an interval, when the error should have settled.
+constexpr double hunting_share = 0.5;
+
+struct EventRecord {
+    double time = 0, until = 0;
+    Settling settling;
+    Hunting hunting;
+};
+
+struct StabilityRun {
+    std::size_t batch = 0;
+    std::vector<double> times, errors;
+    std::vector<CycleEntry> cycles;
+    std::vector<EventRecord> events;
+    Conservation conservation;
+};
+
+StabilityRun run_batch(BenchScene& scene, Reference const& reference, std::vector<double> const& events,
+                       RunParameters const& parameters, double machine, StabilityOptions const& options,
+                       CostTable const& costs) {
+    StabilityRun result;
+    result.batch = parameters.batch_framelets;
+    auto const method = make_method("framelet", {.viewport = parameters.viewport,
+                                                 .costs = costs,
+                                                 .machine = machine,
+                                                 .frames_per_second = parameters.frames_per_second,
+                                                 .bits_per_second = parameters.link.bits_per_second,
+                                                 .seed = parameters.seed,
+                                                 .delay_seconds = parameters.link.delay_seconds,
+                                                 .bias = parameters.bias,
+                                                 .batch_framelets = parameters.batch_framelets});
+    CycleLog log;
+    run_method(
+        scene, *method, parameters, machine,
+        [&](std::size_t index, Picture const& shown, double) {
+            result.times.push_back(reference_time(parameters, index));
+            result.errors.push_back(mean_squared_error(shown, reference.picture(index)));
+        },
+        [&](double start, ServerStep const& step) { log.add(start, *method->scheduler(), step.samples); });
+    result.cycles = log.entries();
+    result.conservation = measure_conservation(result.cycles, 0, parameters.seconds);
+    for (std::size_t i = 0; i < events.size(); ++i) {
+        EventRecord event{.time = events[i],
+                          .until = i + 1 < events.size() ? events[i + 1] : parameters.seconds,
+                          .settling = {},
+                          .hunting = {}};
+        // The picture of the event's own moment is not there yet: it belongs to what comes after it.
+        auto const first = std::ranges::lower_bound(result.times, event.time - 1e-9) - result.times.begin();
+        auto const last = std::ranges::lower_bound(result.times, event.until - 1e-9) - result.times.begin();
+        auto const part = [&](std::vector<double> const& all) {
+            return std::span(all).subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(last - first));
+        };
+        event.settling = measure_settling(part(result.times), part(result.errors), event.time, options.factor);
+        event.hunting =
+            measure_hunting(result.cycles, event.until - hunting_share * (event.until - event.time), event.until);
+        result.events.push_back(event);
+    }
+    return result;
+}
+
+json to_json(StabilityRun const& run) {
+    json result{{"batch", run.batch},
+                {"conservation",
+                 {{"samples", run.conservation.samples},
+                  {"budget", run.conservation.budget},
+                  {"largest_violation", run.conservation.largest_violation},
+                  {"violation_samples", run.conservation.violation_samples}}},
+                {"mse", run.errors}};
+    auto const or_null = [](std::optional<double> value) { return value ? json(*value) : json(); };
+    for (EventRecord const& event : run.events) {
+        result["events"].push_back({{"seconds", event.time},
+                                    {"final_mse", event.settling.final_level},
+                                    {"peak_mse", event.settling.peak},
+                                    {"first_seconds", or_null(event.settling.first)},
+                                    {"settled_seconds", or_null(event.settling.settled)},
+                                    {"overshoot", event.settling.overshoot},
+                                    {"hunting",
+                                     {{"cycles", event.hunting.cycles},
+                                      {"changed_share", event.hunting.changed_share},
+                                      {"price_octaves", event.hunting.price_octaves}}}});
+    }
+    return result;
+}
+
+void print_head(StabilityOptions const& options) {
+    std::printf("settled: error within %gx of its final level; hunting: the last half before the next event\n",
+                options.factor);
+    std::printf("%-9s %5s %6s %9s %9s %8s %10s %6s %7s %9s %9s\n", "scene", "batch", "event", "peak mse", "final mse",
+                "first ms", "settled ms", "over", "cycles", "tiling %", "price oct");
+}
+
+void print(StabilityRun const& run, std::string const& scene) {
+    auto const milliseconds = [](std::optional<double> seconds) {
+        char text[32];
+        std::snprintf(text, sizeof(text), "%.0f", 1e3 * seconds.value_or(0));
+        return seconds ? std::string(text) : std::string("never");
+    };
+    for (EventRecord const& event : run.events) {
+        std::printf("%-9s %5zu %6.2f %9.2e %9.2e %8s %10s %6.1f %7zu %9.1f %9.3f\n", scene.c_str(), run.batch,
+                    event.time, event.settling.peak, event.settling.final_level,
+                    milliseconds(event.settling.first).c_str(), milliseconds(event.settling.settled).c_str(),
+                    event.settling.overshoot, event.hunting.cycles, 100 * event.hunting.changed_share,
+                    event.hunting.price_octaves);
+    }
+    std::printf("%-9s %5zu samples rendered / budget %.3f, worst cycle %.2f (%.0f samples beyond)\n", scene.c_str(),
+                run.batch, run.conservation.samples / std::max(run.conservation.budget, 1.0),
+                run.conservation.largest_violation, run.conservation.violation_samples);
+    std::fflush(stdout); // whoever reads a pipe wants to see it grow
+}
+
+/// A vertical line at each event, from the least to the greatest value.
+void mark_events(std::vector<double> const& events, Curves& chart) {
+    double least = INFINITY, greatest = 0;
+    for (Curve const& curve : chart.curves) {
+        for (double const y : curve.y) {
+            least = y > 0 ? std::min(least, y) : least;
+            greatest = std::max(greatest, y);
+        }
+    }
+    Curve marks{"event", {}, {}};
+    for (double const event : events) {
+        marks.x.insert(marks.x.end(), {event, event, event});
+        marks.y.insert(marks.y.end(), {least, greatest, NAN});
+    }
+    chart.curves.push_back(std::move(marks));
+}
+
+void draw_charts(std::string const& scene, std::vector<StabilityRun> const& runs, std::vector<double> const& events,
+                 std::filesystem::path const& folder) {
+    std::filesystem::create_directories(folder);
+    Curves errors{.title = scene + ": error over time",
+                  .x_title = "seconds",
+                  .y_title = "mean squared error",
+                  .log_y = true,
+                  .points = false,
+                  .curves = {}};
+    Curves tilings{.title = scene + ": patches of the tiling that a cycle changes",
+                   .x_title = "seconds",
+                   .y_title = "share of the tiling [%]",
+                   .points = false,
+                   .curves = {}};
+    for (StabilityRun const& run : runs) {
+        std::string const name = std::to_string(run.batch) + " framelets";
+        errors.curves.push_back({name, run.times, run.errors});
+        Curve changes{name, {}, {}};
+        for (CycleEntry const& entry : run.cycles) {
+            if (entry.start >= 0) {
+                changes.x.push_back(entry.start);
+                changes.y.push_back(100 * static_cast<double>(entry.changed_patches) /
+                                    static_cast<double>(std::max<std::size_t>(entry.patches, 1)));
+            }
+        }
+        if (!changes.x.empty()) {
+            tilings.curves.push_back(std::move(changes));
+        }
+    }
+    mark_events(events, errors);
+    mark_events(events, tilings);
+    draw(errors, folder / ("stability-" + scene + "-error"));
+    draw(tilings, folder / ("stability-" + scene + "-tiling"));
+}
+
+SceneEntry const& find_scene(std::string const& name) {
+    auto const found = std::ranges::find(scene_table(), name, &SceneEntry::name);
+    if (found == scene_table().end()) {
+        throw InputError("the scene generator has no scene '" + name + "'");
+    }
+    return *found;
+}
+
+} // namespace
+
+std::vector<double> event_times(GltfDocument const& document, double duration) {
+    std::vector<double> events;
+    double last_motion = 0;
+    for (GltfTrack const& track : document.tracks) {
+        for (std::size_t key = 1; key < track.values.size(); ++key) {
+            if (track.values[key] == track.values[key - 1]) {
+                continue;
+            }
+            if (track.step) {
+                events.push_back(track.times[key]);
+            } else {
+                last_motion = std::max(last_motion, track.times[key]);
+            }
+        }
+    }
+    events.push_back(last_motion);
+    std::erase_if(events, [duration](double time) { return time <= 0 || time >= duration - 1e-6; });
+    std::ranges::sort(events);
+    auto const same = [](double a, double b) { return b - a < 1e-6; };
+    events.erase(std::unique(events.begin(), events.end(), same), events.end());
+    return events;
+}
+
+json measure_stability(std::filesystem::path const& folder, StabilityOptions const& options,
+                       StudyOptions const& study) {
+    json result{{"viewport", {study.run.viewport.width, study.run.viewport.height}},
+                {"reference_rate", study.run.reference_rate},
+                {"frames_per_second", study.run.frames_per_second},
+                {"factor", options.factor},
+                {"scenes", json::array()}};
+    print_head(options);
+    for (std::string const& name : options.scenes) {
+        SceneEntry const& entry = find_scene(name);
+        std::vector<double> const events = event_times(entry.make(), entry.duration);
+        if (events.empty()) {
+            throw InputError("nothing jumps or stops in the scene '" + name + "'");
+        }
+        auto const scene = load_bench_scene(folder / (name + ".glb"));
+        StudyOptions of_scene = study;
+        of_scene.run.seconds = entry.duration;
+        Reference const reference = reference_of(*scene, of_scene);
+        double const machine = machine_factor(*scene, of_scene.run, study.costs);
+        std::vector<StabilityRun> runs;
+        json figures{{"scene", name}, {"events", events}, {"runs", json::array()}};
+        for (std::size_t const batch : options.batches) {
+            of_scene.run.batch_framelets = batch;
+            runs.push_back(run_batch(*scene, reference, events, of_scene.run, machine, options, study.costs));
+            print(runs.back(), name);
+            figures["runs"].push_back(to_json(runs.back()));
+        }
+        result["scenes"].push_back(std::move(figures));
+        if (!study.charts.empty()) {
+            draw_charts(name, runs, events, study.charts);
+        }
+    }
+    return result;
+}
+
+} // namespace framelet::bench
