@@ -68,20 +68,10 @@ void select_inspections(PlaceField const& field, double now, Budget const& budge
     std::sort(scratch.begin(), scratch.end(), [&field](std::uint32_t a, std::uint32_t b) {
         return field[a].inspected != field[b].inspected ? field[a].inspected < field[b].inspected : a < b;
     });
-    // A batch must not have a tile twice: what is rendered as finely anyway is looked at by that.
-    std::vector<PlaceField::Range> looked_at;
-    for (Patch const& patch : patches) {
-        if (patch.depth >= field.plane().pixel_depth()) {
-            looked_at.push_back(field.range_of(patch.node));
-        }
-    }
     double samples = inspection_share * budget.samples_per_second * static_cast<double>(budget.cycle_seconds);
     for (std::uint32_t const index : scratch) {
         if (samples <= 0) {
             return;
-        }
-        if (std::ranges::any_of(looked_at, [index](auto const& r) { return index >= r.first && index < r.last; })) {
-            continue;
         }
         Patch const patch{{(1u << (2 * field.depth())) + index}, field.plane().pixel_depth()};
         if (std::find(patches.begin(), patches.end(), patch) == patches.end()) {

@@ -26,8 +26,7 @@ void select_patches(double samples, std::vector<RatedPatch>& rated);
 double inspection_period(PlaceField const& field, Budget const& budget);
 
 /// Appends a patch at one sample a pixel for places that have not been looked at for so long, within their twentieth of
-/// a cycle's samples, those that have waited longest first,
-/// but for those that a patch is already to look at. `scratch` is overwritten.
+/// a cycle's samples, those that have waited longest first. `scratch` is overwritten.
 void select_inspections(PlaceField const& field, double now, Budget const& budget, std::vector<std::uint32_t>& scratch,
                         std::vector<Patch>& patches);
 

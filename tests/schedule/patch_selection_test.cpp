@@ -7,11 +7,10 @@
 namespace framelet {
 namespace {
 
-TEST(Inspections, LookAtWhatNoPatchLooksAt) {
+TEST(Inspections, LookAtEveryPlaceAndTakeNoTileTwice) {
     PlaceField const field{ImagePlane({128, 128})};
-    Tile const first_quarter = Tile{1}.child(0);
     int const fine = field.plane().pixel_depth();
-    std::vector<Patch> patches{{first_quarter, fine}, {Tile{1}.child(1), fine - 1}};
+    std::vector<Patch> patches{{make_tile(field.depth(), 3, 5), fine}, {Tile{1}.child(1), fine - 1}};
     std::vector<std::uint32_t> scratch;
     select_inspections(field, 100, {.samples_per_second = 1e9, .cycle_seconds = 1}, scratch, patches);
 
