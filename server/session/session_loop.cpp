@@ -124,8 +124,10 @@ bool SessionLoop::render_session(Session& session, AdaptiveRefresh& refresh, Sce
     Laps laps;
     RefreshPlan const& plan = refresh.plan(wanted);
     record.stage_seconds.plan = laps.lap();
-    // Most plans only take what the last one left.
-    plan_seconds_ = std::max(record.stage_seconds.plan, 0.95 * plan_seconds_);
+    if (plan.is_new_cycle) {
+        constexpr double weight = 0.1;
+        plan_seconds_ += weight * (record.stage_seconds.plan - plan_seconds_);
+    }
     if (plan.tiles.empty() && plan.probes.empty()) {
         return false;
     }
@@ -137,10 +139,10 @@ bool SessionLoop::render_session(Session& session, AdaptiveRefresh& refresh, Sce
     record.stage_seconds.wait = laps.lap();
     send_batch(session, needed, state);
 
-    std::chrono::duration<double> const seconds = std::chrono::steady_clock::now() - start;
     if (!plan.tiles.empty()) {
+        // Planning left out: it takes as long for few samples, which would then seem to be dear.
         double const samples = static_cast<double>(plan.tiles.size() * framelet_samples);
-        rate_ = update_render_rate(rate_, samples, seconds.count());
+        rate_ = update_render_rate(rate_, samples, record.stage_seconds.render + record.stage_seconds.learn);
         samples_per_second_ = rate_.samples_per_second;
     }
     if (options_.recorder != nullptr) {
