@@ -202,7 +202,8 @@ void learn_motion(PlaceModel& place, Observation const& seen) {
     // Newer evidence counts more; what does not change at all is taken at its word.
     constexpr float trust = 0.7f;
     float const drift = drift_of_error(place, seen.level, change);
-    float const motion = drift / seen.seconds;
+    constexpr float least_seconds = 1e-4f; // so that it is finite
+    float const motion = drift / std::max(seen.seconds, least_seconds);
     place.motion = motion > 0 ? place.motion + trust * (motion - place.motion) : 0;
 }
 

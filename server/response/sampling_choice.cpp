@@ -8,11 +8,11 @@
 namespace framelet {
 namespace {
 
-/// x with 1 - exp(-x)(1 + x) = cost, by a table over sqrt(cost): x is nearly linear in that. In [0, 1).
+/// x with 1 - exp(-x)(1 + x) = cost, by a table over sqrt(cost), interpolated: x is nearly linear in that. In [0, 1).
 class BestPeriod {
 public:
     BestPeriod() {
-        for (std::size_t i = 0; i < steps; ++i) {
+        for (std::size_t i = 0; i <= steps; ++i) {
             double const root = static_cast<double>(i) / steps;
             double low = 0;
             double high = 40;
@@ -24,12 +24,14 @@ public:
         }
     }
     float operator()(float cost) const {
-        return periods_[std::min(static_cast<std::size_t>(std::sqrt(cost) * steps), steps - 1)];
+        float const place = std::sqrt(cost) * steps;
+        std::size_t const i = std::min(static_cast<std::size_t>(place), steps - 1);
+        return periods_[i] + (place - static_cast<float>(i)) * (periods_[i + 1] - periods_[i]);
     }
 
 private:
     static constexpr std::size_t steps = 1024;
-    std::array<float, steps> periods_{};
+    std::array<float, steps + 1> periods_{};
 };
 
 BestPeriod const best_period;
@@ -53,11 +55,13 @@ SamplingChoice choose_sampling(PlaceModel const& place, float life, SamplingPric
         float const wanted = share < 1 && rate > 0 ? best_period(share) / rate : life;
         float const period = std::clamp(wanted, price.least_period, std::max(life, price.least_period));
         float const x = rate * period;
-        float const mean_kept = x > 1e-3f ? (1 - std::exp(-x)) / x : 1 - 0.5f * x;
-        float const paid = unresolved + most - left * mean_kept + cost / period;
+        // 1 - (1 - exp(-x)) / x, which cancels where x is small.
+        float const mean_lost = x > 0.1f ? 1 - (1 - std::exp(-x)) / x : x * (0.5f - x * (1.0f / 6 - x / 24));
+        float const paid = unresolved + (most - left) + left * mean_lost + cost / period;
         if (paid < least) {
             least = paid;
-            best = {level, period, paid};
+            // What is shown knows no bias: without it again.
+            best = {level, period, unresolved_error(place, level) + (paid - unresolved) / time_weight};
         }
     }
     return best;
