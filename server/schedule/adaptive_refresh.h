@@ -52,6 +52,7 @@ private:
     bool goes_on(RefreshInput const& input) const;
     void advance(RefreshInput const& input);
     void plan_cycle(RefreshInput const& input);
+    double plan_inspections(RefreshInput const& input);
     void plan_patches(RefreshInput const& input, double samples);
     void plan_probes(double samples);
     void plan_completion(double samples);
@@ -62,6 +63,7 @@ private:
     double now_ = 0;
     double advanced_ = 0; ///< the time that the field stands for
     double still_since_ = 0; ///< when what is to be seen changed last
+    bool strayed_ = false; ///< something was rendered for another state than `seen_` since
     bool scene_moves_ = false;
     PlaceField field_;
     LumaHistory history_;
