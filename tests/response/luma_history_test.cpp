@@ -73,6 +73,23 @@ TEST(LumaHistory, RemembersAPicture) {
     EXPECT_GE(remembered, tiles.size() * 3 / 4);
 }
 
+/// Tiles of one sample a pixel and their descendants of 16: they do not drive each other out.
+TEST(LumaHistory, ParentsAndDescendantsStayTogether) {
+    LumaHistory history;
+    std::size_t remembered = 0;
+    for (int round = 0; round < 2; ++round) {
+        for (std::uint32_t i = 0; i < 208; ++i) {
+            Tile const tile = make_tile(4, i % 16, i / 16);
+            remembered += history.find(tile) != nullptr ? 1 : 0;
+            history.store({tile, 1.0 + round, 0, {}});
+            for (std::uint32_t k = 0; k < 16; ++k) {
+                history.store({{tile.code * 16 + k}, 1.0 + round, 0, {}});
+            }
+        }
+    }
+    EXPECT_GE(remembered, 200u);
+}
+
 TEST(LumaHistory, EveryByteCountsInTheContent) {
     std::mt19937 random(2);
     DisplayFramelet framelet = random_framelet(make_tile(3, 1, 2), random);
