@@ -1,5 +1,6 @@
 #include "server/response/luma_history.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 
@@ -12,19 +13,32 @@ LumaHistory::LumaHistory(std::size_t entries) : entries_(entries) {
     FRAMELET_CHECK(std::has_single_bit(entries));
 }
 
-std::size_t LumaHistory::slot(Tile tile) const {
+/// A tile has its choice of so many entries: with one only, a picture's tiles and their parents drive each other out
+/// long before the table is full.
+std::size_t LumaHistory::ways() const {
+    return std::min<std::size_t>(entries_.size(), 4);
+}
+
+std::size_t LumaHistory::first_slot(Tile tile) const {
     // Fibonacci hashing: neighbours along the Morton curve land far apart, and so do tiles and their parents.
     std::uint64_t const mixed = std::uint64_t{tile.code} * 0x9e3779b97f4a7c15u;
-    return static_cast<std::size_t>(mixed >> 32) & (entries_.size() - 1);
+    return (static_cast<std::size_t>(mixed >> 32) * ways()) & (entries_.size() - 1);
 }
 
 LumaHistory::Entry const* LumaHistory::find(Tile tile) const {
-    Entry const& entry = entries_[slot(tile)];
-    return entry.tile == tile ? &entry : nullptr;
+    auto const first = entries_.begin() + static_cast<std::ptrdiff_t>(first_slot(tile));
+    auto const last = first + static_cast<std::ptrdiff_t>(ways());
+    auto const found = std::find_if(first, last, [tile](Entry const& entry) { return entry.tile == tile; });
+    return found != last ? &*found : nullptr;
 }
 
 void LumaHistory::store(Entry const& entry) {
-    entries_[slot(entry.tile)] = entry;
+    // Its own entry, an empty one or the oldest.
+    auto const rank = [&entry](Entry const& e) { return e.tile == entry.tile ? 0 : e.tile == Tile{0} ? 1 : 2; };
+    auto const first = entries_.begin() + static_cast<std::ptrdiff_t>(first_slot(entry.tile));
+    *std::min_element(first, first + static_cast<std::ptrdiff_t>(ways()), [&rank](Entry const& a, Entry const& b) {
+        return rank(a) != rank(b) ? rank(a) < rank(b) : a.time < b.time;
+    }) = entry;
 }
 
 void LumaHistory::clear() {

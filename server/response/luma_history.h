@@ -29,7 +29,9 @@ public:
     std::size_t memory_bytes() const { return entries_.size() * sizeof(Entry); }
 
 private:
-    std::size_t slot(Tile tile) const;
+    /// The entries in which the tile may be.
+    std::size_t first_slot(Tile tile) const;
+    std::size_t ways() const;
 
     std::vector<Entry> entries_;
 };

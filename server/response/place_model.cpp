@@ -209,6 +209,8 @@ void learn_motion(PlaceModel& place, Observation const& seen) {
     change[coarsest > 0 ? coarsest - 1 : 0] += seen.mean_change;
     // Newer evidence counts more; what does not change at all is taken at its word.
     constexpr float trust = 0.7f;
+    constexpr float least_seconds = 1e-4f; // so that rates are finite
+    float const seconds = std::max(seen.seconds, least_seconds);
     // A finer band that was not sampled goes with the finest one that was, as it last did; that memory fades.
     constexpr float fading = 0.25f;
     std::array<float, sampling_levels> rates{};
@@ -219,7 +221,7 @@ void learn_motion(PlaceModel& place, Observation const& seen) {
             float const gone = std::min(change[band], most_energy);
             place.energy[band] = std::max(place.energy[band], to_energy(0.5f * gone / most_share));
             float const share = std::min(gone / (2 * place.energy[band]), most_share);
-            float const rate = -std::log1p(-share) / seen.seconds;
+            float const rate = -std::log1p(-share) / seconds;
             bool const passed = share >= 0.99f * most_share; // at least that fast
             rates[band] = passed ? std::max(rate, std::min(before, coarser))
                                  : before + (rate > 0 ? trust : 1.0f) * (rate - before);

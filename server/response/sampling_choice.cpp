@@ -8,11 +8,11 @@
 namespace framelet {
 namespace {
 
-/// x with 1 - exp(-x)(1 + x) = cost, by a table over sqrt(cost): x is nearly linear in that. In [0, 1).
+/// x with 1 - exp(-x)(1 + x) = cost, by a table over sqrt(cost), interpolated: x is nearly linear in that. In [0, 1).
 class BestPeriod {
 public:
     BestPeriod() {
-        for (std::size_t i = 0; i < steps; ++i) {
+        for (std::size_t i = 0; i <= steps; ++i) {
             double const root = static_cast<double>(i) / steps;
             double low = 0;
             double high = 40;
@@ -24,12 +24,14 @@ public:
         }
     }
     float operator()(float cost) const {
-        return periods_[std::min(static_cast<std::size_t>(std::sqrt(cost) * steps), steps - 1)];
+        float const place = std::sqrt(cost) * steps;
+        std::size_t const i = std::min(static_cast<std::size_t>(place), steps - 1);
+        return periods_[i] + (place - static_cast<float>(i)) * (periods_[i + 1] - periods_[i]);
     }
 
 private:
     static constexpr std::size_t steps = 1024;
-    std::array<float, steps> periods_{};
+    std::array<float, steps + 1> periods_{};
 };
 
 BestPeriod const best_period;
@@ -43,12 +45,12 @@ SamplingChoice choose_sampling(PlaceModel const& place, float life, SamplingPric
     float const longest = std::max(life, price.least_period);
     SamplingChoice best;
     float least = std::numeric_limits<float>::infinity();
-    /// What the level would cost at its best; false where it cannot be the best.
+    /// Weighs a level, unless what it leaves unresolved alone is too much already.
     auto const offer = [&](int level) {
         float const unresolved = space_weight * unresolved_error(place, level);
         float const cost = price.price * samples_per_pixel(level);
         if (unresolved + cost / longest >= least) {
-            return false;
+            return;
         }
         float period = longest;
         float paid = unresolved + cost / longest;
@@ -61,20 +63,24 @@ SamplingChoice choose_sampling(PlaceModel const& place, float life, SamplingPric
             float const wanted = share < 1 && rate > 0 ? best_period(share) / rate : longest;
             period = std::clamp(wanted, price.least_period, longest);
             float const x = rate * period;
-            float const mean_kept = x > 1e-3f ? (1 - std::exp(-x)) / x : 1 - 0.5f * x;
-            paid = unresolved + most - left * mean_kept + cost / period;
+            // 1 - (1 - exp(-x)) / x, which cancels where x is small.
+            float const mean_lost = x > 0.1f ? 1 - (1 - std::exp(-x)) / x : x * (0.5f - x * (1.0f / 6 - x / 24));
+            paid = unresolved + (most - left) + left * mean_lost + cost / period;
         }
         if (paid < least) {
             least = paid;
-            best = {level, period, paid, period < life};
+            // What is shown knows no bias: without it again.
+            float const due = unresolved / space_weight + (paid - unresolved) / time_weight;
+            best = {level, period, due, period < life};
         }
-        return true;
     };
-    // Coarser levels leave more unresolved, finer ones cost more: from the middle outwards, until that alone is too much.
+    // From the middle outwards: the best is mostly near, and what is far then need not be weighed.
     int const middle = std::clamp(pixel_level, least_level, most_level);
-    for (int level = middle; level >= least_level && offer(level); --level) {
+    for (int level = middle; level >= least_level; --level) {
+        offer(level);
     }
-    for (int level = middle + 1; level <= most_level && offer(level); ++level) {
+    for (int level = middle + 1; level <= most_level; ++level) {
+        offer(level);
     }
     return best;
 }

@@ -44,7 +44,7 @@ bool AdaptiveRefresh::is_finished(std::uint32_t index) const {
 }
 
 bool AdaptiveRefresh::is_complete(ViewState const& state) const {
-    return seen_ && same_picture(*seen_, state) &&
+    return seen_ && !strayed_ && same_picture(*seen_, state) &&
            std::all_of(field_.visible().begin(), field_.visible().end(),
                        [this](std::uint32_t index) { return is_finished(index); });
 }
@@ -60,7 +60,7 @@ void AdaptiveRefresh::advance(RefreshInput const& input) {
         scene_moves_ = false;
     } else {
         double const seconds = std::max(input.now - advanced_, 0.0);
-        if (!same_picture(*seen_, state)) {
+        if (strayed_ || !same_picture(*seen_, state)) {
             still_since_ = input.now;
         }
         scene_moves_ = seen_->scene_time != state.scene_time;
@@ -72,6 +72,7 @@ void AdaptiveRefresh::advance(RefreshInput const& input) {
         }
     }
     seen_ = state;
+    strayed_ = false;
     advanced_ = input.now;
 }
 
@@ -94,6 +95,7 @@ RefreshPlan const& AdaptiveRefresh::plan(RefreshInput const& input) {
         advance(input);
         plan_cycle(input);
     }
+    strayed_ = strayed_ || !same_picture(*seen_, input.state);
     now_ = input.now;
     take_batch(batch_limit(input));
     return plan_;
@@ -109,11 +111,24 @@ void AdaptiveRefresh::plan_cycle(RefreshInput const& input) {
     if (scene_moves_) {
         plan_probes(probe_share * samples);
         samples -= probe_cost * static_cast<double>(plan_.probes.size());
+        samples -= plan_inspections(input);
     }
     plan_patches(input, samples);
-    if (cycle_.empty()) {
+    if (rated_.empty() && samples > 0) {
         plan_completion(samples);
     }
+}
+
+/// Before all else of the cycle, so that they are not what is cut off when it takes longer than expected. Returns what
+/// they cost.
+double AdaptiveRefresh::plan_inspections(RefreshInput const& input) {
+    Budget const budget{input.samples_per_second, input.cycle_seconds, input.delivery_seconds, input.bias};
+    select_inspections(field_, advanced_, budget, suspects_, cycle_);
+    double tiles = 0;
+    for (Patch const& patch : cycle_) {
+        tiles += std::ldexp(1.0, 2 * (patch.depth - patch.node.depth()));
+    }
+    return tiles * framelet_samples;
 }
 
 /// The next patches of the cycle, as many as a batch may hold, at least one.
@@ -133,6 +148,10 @@ void AdaptiveRefresh::take_batch(std::size_t most_framelets) {
 }
 
 void AdaptiveRefresh::plan_patches(RefreshInput const& input, double samples) {
+    rated_.clear();
+    if (samples <= 0) {
+        return;
+    }
     double const batch_samples = static_cast<double>(batch_limit(input) * framelet_samples);
     double const rendering = std::min(batch_samples, samples) / input.samples_per_second;
     Budget const budget{samples / static_cast<double>(input.cycle_seconds), input.cycle_seconds,
@@ -145,11 +164,12 @@ void AdaptiveRefresh::plan_patches(RefreshInput const& input, double samples) {
     make_density_patches(field_.plane(), density_, field_.depth(), tiling_scratch_, cut_);
     rate_patches(field_, choices_, cut_, budget, rated_);
     select_patches(samples, rated_);
+    auto const inspections = static_cast<std::ptrdiff_t>(cycle_.size());
     for (RatedPatch const& entry : rated_) {
-        cycle_.push_back(entry.patch);
-    }
-    if (scene_moves_) {
-        select_inspections(field_, advanced_, budget, suspects_, cycle_);
+        auto const end = cycle_.begin() + inspections;
+        if (std::find(cycle_.begin(), end, entry.patch) == end) { // once is enough
+            cycle_.push_back(entry.patch);
+        }
     }
 }
 

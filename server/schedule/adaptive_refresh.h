@@ -24,7 +24,8 @@ struct RefreshInput {
     float cycle_seconds = least_cycle_seconds; ///< how often the response is worked out anew
     float delivery_seconds = 0; ///< from the end of its rendering until it shows
     float bias = 0;
-    std::size_t batch_framelets = 0; ///< most framelets of one batch; 0: what half a cycle has time for, so that it shows sooner
+    std::size_t batch_framelets =
+        0; ///< most framelets of one batch; 0: what half a cycle has time for, so that it shows sooner
 };
 
 /// What to render now.
@@ -66,6 +67,7 @@ private:
     bool goes_on(RefreshInput const& input) const;
     void advance(RefreshInput const& input);
     void plan_cycle(RefreshInput const& input);
+    double plan_inspections(RefreshInput const& input);
     void plan_patches(RefreshInput const& input, double samples);
     void plan_probes(double samples);
     void plan_completion(double samples);
@@ -76,6 +78,7 @@ private:
     double now_ = 0;
     double advanced_ = 0; ///< the time that the field stands for
     double still_since_ = 0; ///< when what is to be seen changed last
+    bool strayed_ = false; ///< something was rendered for another state than `seen_` since
     bool scene_moves_ = false;
     PlaceField field_;
     LumaHistory history_;

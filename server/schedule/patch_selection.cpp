@@ -21,18 +21,20 @@ void rate_patches(PlaceField const& field, Choices const& choices, std::vector<P
         PlaceField::Range const range = field.range_of(patch.node);
         int const level = field.level_of(patch.depth);
         double gain = 0;
+        bool spoils = false; // what is finer and still true
         for (std::uint32_t i = range.first; i < range.last; ++i) {
             if (field.pixels_of(i) == 0) {
                 continue;
             }
             Place const& place = field[i];
+            spoils = spoils || (place.level > level && place.drift == 0 && place.model.motion == 0);
             float const fresh = unresolved_error(place.model, level) +
                                 drift_error(place.model, level, place.model.motion * budget.latency);
             gain += static_cast<double>(field.pixels_of(i)) *
                     static_cast<double>(due_error(place, budget) - std::max(choices[i].due_error, fresh));
         }
         double const samples = framelet_samples * tile_count(patch);
-        rated.push_back({patch, samples, gain / samples});
+        rated.push_back({patch, samples, spoils ? 0 : gain / samples});
     }
 }
 

@@ -112,6 +112,9 @@ std::size_t steepest(LumaHistory::Entry const& entry, std::size_t first, std::si
 void note_probes(Place& place, ImagePlane const& plane, LumaHistory::Entry const& entry, std::size_t first,
                  std::size_t count, std::size_t wanted) {
     Viewport const viewport = plane.viewport();
+    if (wanted == 0) {
+        return;
+    }
     std::size_t const share = std::max<std::size_t>(count / wanted, 1);
     for (std::size_t i = 0; i < std::min(wanted, count) && place.probe_count < probes_per_place; ++i) {
         std::size_t const begin = first + i * share;
@@ -183,7 +186,8 @@ void learn_patch(PlaceField& field, Patch const& patch, std::span<DisplayFramele
         for (std::uint32_t i = range.first; i < range.last; ++i) {
             std::size_t const first = (i - range.first) * count;
             accumulate(sums[i - range.first], observe(level, luma, difference, seconds, first, count));
-            std::size_t const wanted = std::max<std::size_t>(probes_per_place / framelets.size(), 1);
+            std::size_t const wanted =
+                (f + 1) * probes_per_place / framelets.size() - f * probes_per_place / framelets.size();
             note_probes(field[i], field.plane(), entry, first, count, wanted);
             field[i].inverse_depth = mean_inverse_depth(rendered[f], first, count);
         }
@@ -194,7 +198,7 @@ void learn_patch(PlaceField& field, Patch const& patch, std::span<DisplayFramele
     bool known = all_same;
     for (std::uint32_t i = range.first; i < range.last; ++i) {
         Place const& place = field[i];
-        known = known && (field.pixels_of(i) == 0 || (place.level >= level && place.changed < place.rendered));
+        known = known && (field.pixels_of(i) == 0 || (place.level >= level && place.changed <= place.rendered));
     }
     for (std::uint32_t i = range.first; i < range.last; ++i) {
         Place& place = field[i];
@@ -214,6 +218,9 @@ void learn_patch(PlaceField& field, Patch const& patch, std::span<DisplayFramele
             hold(place, level, now);
         } else {
             place.drift = 0;
+            if (place.level == level) { // what is held is the very picture of now
+                place.rendered = now;
+            }
         }
     }
     std::fill(send.begin(), send.end(), known ? 0 : 1);

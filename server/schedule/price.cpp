@@ -64,8 +64,10 @@ float solve_price(PlaceField const& field, double now, Budget const& budget, flo
     for (int step = 0;; ++step) {
         choose_all(field, now, budget, price, choices);
         double const ratio = demand_of(field, budget, choices) / budget.samples_per_second;
-        // Demand falls about as the square root of the price, faster where it makes levels coarser.
-        float const factor = static_cast<float>(std::clamp(ratio * std::sqrt(ratio), 1.0 / 64, 64.0));
+        // Demand falls about as the square root of the price, faster where it makes levels coarser: far away in large
+        // steps, near by in small ones, that do not overshoot.
+        bool const near = ratio > 0.25 && ratio < 4;
+        float const factor = static_cast<float>(near ? ratio : std::clamp(ratio * std::sqrt(ratio), 1.0 / 64, 64.0));
         price = std::clamp(ratio > 0.8 && ratio < 1.2 ? price : price * factor, least_price, most_price);
         // What is left to correct is left to the next cycle, unless it is much.
         if (step == most_steps || (ratio > 0.5 && ratio < 2)) {

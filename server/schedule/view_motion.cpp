@@ -21,6 +21,9 @@ float view_displacement(ViewRays const& from, ViewRays const& to, Vec2 pixel, fl
         scale = glm::dot(relative, normal) / glm::dot(to.direction, normal);
         corner = to.direction;
     }
+    if (!perspective && glm::dot(relative, to.direction) < 0) {
+        return most_pixels;
+    }
     if (!(scale > 0)) {
         return perspective ? most_pixels : 0;
     }

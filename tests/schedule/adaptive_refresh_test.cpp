@@ -1,0 +1,263 @@
+#include "server/schedule/adaptive_refresh.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <malloc.h>
+#include <map>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "tests/schedule/synthetic_refresh.h"
+
+namespace framelet {
+namespace {
+
+constexpr Viewport small{256, 200};
+
+float flat(float, float, double) {
+    return 0.25f;
+}
+float texture(float x, float y, double) {
+    return smooth_noise(x / 5, y / 5);
+}
+/// 40 pixels a second to the right.
+float moving_texture(float x, float y, double time) {
+    return smooth_noise((x - static_cast<float>(40 * time)) / 5, y / 5);
+}
+
+bool is_all_finest(AdaptiveRefresh const& refresh) {
+    PlaceField const& field = refresh.field();
+    return std::all_of(field.visible().begin(), field.visible().end(),
+                       [&](std::uint32_t index) { return field[index].level == sampling_levels - 1; });
+}
+
+/// Seconds in which the whole picture can be rendered at the finest level.
+double finest_seconds(SyntheticRefresh const& synthetic) {
+    Viewport const viewport = synthetic.input.state.view.viewport;
+    ImagePlane const plane(viewport);
+    return static_cast<double>(uniform_tile_count(plane, plane.max_depth()) * framelet_samples) /
+           synthetic.input.samples_per_second;
+}
+
+TEST(AdaptiveRefresh, AStillSceneCompletes) {
+    for (auto* const shading : {flat, texture}) {
+        for (Viewport const viewport : {Viewport{1, 1}, {17, 5}, small, {1040, 40}}) {
+            SyntheticRefresh synthetic(viewport, shading);
+            synthetic.running = false;
+            double const seconds = synthetic.finish(60);
+            std::printf("still %dx%d: %.2f s, the finest picture alone takes %.2f s\n", viewport.width, viewport.height,
+                        seconds, finest_seconds(synthetic));
+            EXPECT_LT(seconds, 60);
+            EXPECT_TRUE(is_all_finest(synthetic.refresh));
+            EXPECT_TRUE(synthetic.refresh.is_complete(synthetic.input.state));
+            EXPECT_FALSE(synthetic.step());
+        }
+    }
+}
+
+/// What stood while the clock ran is known to the viewer; it has to be seen once more when the clock stops, but that
+/// has to end.
+TEST(AdaptiveRefresh, CompletesAfterTheClockStops) {
+    for (auto* const shading : {flat, texture}) {
+        SyntheticRefresh synthetic(small, shading);
+        synthetic.run(6);
+        synthetic.stop();
+        EXPECT_LT(synthetic.finish(30), 30);
+        EXPECT_TRUE(is_all_finest(synthetic.refresh));
+        EXPECT_TRUE(synthetic.refresh.is_complete(synthetic.input.state));
+    }
+}
+
+/// Away for one batch, at any point of a cycle: what was rendered there has to be rendered again here.
+TEST(AdaptiveRefresh, ACameraThatReturnsWithinACycleIsNotForgotten) {
+    int strays = 0;
+    for (int stray = 1; stray < 60; ++stray) {
+        SyntheticRefresh synthetic({64, 64}, texture);
+        synthetic.running = false;
+        synthetic.input.samples_per_second = 1e6;
+        synthetic.input.batch_framelets = 8;
+        std::set<Tile> owed;
+        for (int i = 0; i < 2000; ++i) {
+            synthetic.input.state.view.camera.position.x = i == stray ? 0.01f : 0;
+            if (!synthetic.step()) {
+                break;
+            }
+            for (Tile const tile : synthetic.tiles) {
+                if (i == stray && synthetic.patches.front().depth == ImagePlane({64, 64}).max_depth()) {
+                    owed.insert(tile);
+                } else {
+                    owed.erase(tile);
+                }
+            }
+            strays += i == stray && !owed.empty() ? 1 : 0;
+        }
+        EXPECT_TRUE(synthetic.refresh.is_complete(synthetic.input.state)) << stray;
+        EXPECT_TRUE(owed.empty()) << "away at batch " << stray << ": " << owed.size() << " tiles";
+    }
+    EXPECT_GT(strays, 5);
+}
+
+TEST(AdaptiveRefresh, WhatIsUnchangedIsNotSentAgain) {
+    for (bool const running : {false, true}) {
+        for (std::size_t const batch : {8u, 1024u}) {
+            SyntheticRefresh synthetic(small, texture);
+            synthetic.running = running;
+            synthetic.input.batch_framelets = batch;
+            std::map<Tile, int> times;
+            std::size_t late = 0;
+            double const end = 20;
+            synthetic.run(end, [&] {
+                for (DisplayFramelet const& framelet : synthetic.sent) {
+                    ++times[framelet.tile];
+                }
+                late += synthetic.input.now > 0.75 * end ? synthetic.sent.size() : 0;
+            });
+            int most = 0;
+            for (auto const& [tile, count] : times) {
+                most = std::max(most, count);
+            }
+            std::printf("unchanged, clock %s, batch %zu: a tile is sent at most %d times, %zu late\n",
+                        running ? "runs" : "stands", batch, most, late);
+            EXPECT_LE(most, running ? 2 : 1);
+            EXPECT_EQ(late, 0u);
+        }
+    }
+}
+
+/// A line a third of a pixel wide, between the samples of every level from one a pixel upwards but not of all of its
+/// length: it is slanted.
+TEST(AdaptiveRefresh, FindsAHairInWhatWasFlat) {
+    for (bool const was_flat : {true, false}) {
+        for (std::size_t const batch : {8u, 1024u}) {
+            double const appears = 8;
+            auto const hair = [](float x, float y) { return std::abs(x - 100.2f - 0.02f * y) < 0.17f; };
+            SyntheticRefresh synthetic(small, [&](float x, float y, double time) {
+                return time > appears && hair(x, y) ? 1.0f : was_flat ? 0.25f : 0.5f * texture(x, y, 0);
+            });
+            synthetic.input.batch_framelets = batch;
+            double found = 1e9;
+            double period = 0;
+            synthetic.run(appears + 8, [&] {
+                Budget const budget{synthetic.input.samples_per_second, synthetic.input.cycle_seconds, 0, 0};
+                period = inspection_period(synthetic.refresh.field(), budget);
+                for (DisplayFramelet const& framelet : synthetic.sent) {
+                    if (std::count(framelet.red.begin(), framelet.red.end(), 255) > 0) {
+                        found = std::min(found, synthetic.input.now - appears);
+                    }
+                }
+            });
+            std::printf("hair, %s, batch %zu: after %.2f s of %.2f\n", was_flat ? "flat" : "texture", batch, found,
+                        period);
+            EXPECT_LT(found, period + 0.1);
+        }
+    }
+}
+
+TEST(AdaptiveRefresh, EveryPlaceIsInspected) {
+    for (double const pictures_a_second : {1.0, 4.0, 30.0}) {
+        for (std::size_t const batch : {8u, 64u, 1024u}) {
+            SyntheticRefresh synthetic({256, 100}, moving_texture);
+            synthetic.input.samples_per_second = pictures_a_second * 256 * 100;
+            synthetic.input.batch_framelets = batch;
+            double oldest = 0;
+            Budget const budget{synthetic.input.samples_per_second, synthetic.input.cycle_seconds, 0, 0};
+            PlaceField const whole{ImagePlane({256, 100})};
+            double const period = inspection_period(whole, budget);
+            synthetic.run(3 * period, [&] {
+                PlaceField const& field = synthetic.refresh.field();
+                for (std::uint32_t const index : field.visible()) {
+                    double const inspected = std::max(field[index].inspected, 0.0);
+                    oldest = std::max(oldest, synthetic.input.now - inspected);
+                }
+            });
+            std::printf("inspections, %.0f pictures/s, batch %zu: oldest %.2f s, period %.2f\n", pictures_a_second,
+                        batch, oldest, period);
+            EXPECT_LT(oldest, 2 * period);
+        }
+    }
+}
+
+TEST(AdaptiveRefresh, ACycleCostsWhatItMay) {
+    for (auto* const shading : {texture, moving_texture}) {
+        SyntheticRefresh synthetic(small, shading);
+        double const samples = synthetic.input.samples_per_second * static_cast<double>(synthetic.input.cycle_seconds);
+        synthetic.run(10, [&] {
+            double largest = 0;
+            double cost = 2 * static_cast<double>(synthetic.probes);
+            for (Patch const& patch : synthetic.patches) {
+                double const one = framelet_samples * std::ldexp(1.0, 2 * (patch.depth - patch.node.depth()));
+                largest = std::max(largest, one);
+                cost += one;
+            }
+            ASSERT_LE(cost, samples + largest) << "at " << synthetic.input.now;
+        });
+    }
+}
+
+/// Steady motion: how much of the tiling changes from cycle to cycle, and how far the price does.
+TEST(AdaptiveRefresh, SettlesOnSteadyMotion) {
+    SyntheticRefresh synthetic(small, [](float x, float y, double time) {
+        return x < 100 ? moving_texture(x, y, time) : texture(x, y, 0); // both kinds
+    });
+    synthetic.input.samples_per_second = 8.0 * small.width * small.height;
+    synthetic.run(10);
+    std::vector<Patch> last;
+    double changed = 0;
+    int cycles = 0;
+    float least = 1e9f;
+    float most = 0;
+    TilingScratch scratch;
+    synthetic.run(4, [&] {
+        PlaceField const& field = synthetic.refresh.field();
+        std::vector<float> density(field.size());
+        for (std::uint32_t const index : field.visible()) {
+            density[index] = samples_per_pixel(synthetic.refresh.choices()[index].level);
+        }
+        std::vector<Patch> cut;
+        make_density_patches(field.plane(), density, field.depth(), scratch, cut);
+        if (!last.empty()) {
+            auto const is_new = [&](Patch const& patch) {
+                return std::find(last.begin(), last.end(), patch) == last.end();
+            };
+            changed +=
+                static_cast<double>(std::count_if(cut.begin(), cut.end(), is_new)) / static_cast<double>(cut.size());
+            ++cycles;
+        }
+        last = cut;
+        least = std::min(least, synthetic.refresh.price());
+        most = std::max(most, synthetic.refresh.price());
+    });
+    std::printf("steady motion: %.4f of the patches change a cycle, price %.3g .. %.3g\n", changed / cycles, least,
+                most);
+    EXPECT_LT(changed / cycles, 0.1);
+    EXPECT_LT(most / least, 10);
+}
+
+TEST(AdaptiveRefresh, SettlesAfterAStep) {
+    for (std::size_t const batch : {8u, 64u, 1024u}) {
+        SyntheticRefresh synthetic(small, moving_texture);
+        synthetic.input.samples_per_second = 8.0 * small.width * small.height;
+        synthetic.input.batch_framelets = batch;
+        synthetic.run(3);
+        synthetic.stop();
+        double const seconds = synthetic.finish(60);
+        std::printf("step, batch %zu: complete after %.2f s = %.0f cycles; the finest picture alone takes %.2f s\n",
+                    batch, seconds, seconds / static_cast<double>(synthetic.input.cycle_seconds),
+                    finest_seconds(synthetic));
+        EXPECT_LT(seconds, 1.5 * finest_seconds(synthetic));
+        EXPECT_TRUE(is_all_finest(synthetic.refresh));
+    }
+}
+
+TEST(AdaptiveRefresh, DoesNotGrow) {
+    SyntheticRefresh synthetic(small, moving_texture);
+    synthetic.input.batch_framelets = 64;
+    synthetic.run(10);
+    std::size_t const before = mallinfo2().uordblks;
+    synthetic.run(10);
+    EXPECT_LE(mallinfo2().uordblks, before + 16384);
+}
+
+} // namespace
+} // namespace framelet

@@ -1,0 +1,146 @@
+#include "server/schedule/place_field.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "tests/schedule/synthetic_refresh.h"
+
+namespace framelet {
+namespace {
+
+/// One patch of a picture, learnt.
+class Learner {
+public:
+    explicit Learner(Viewport viewport) : field(ImagePlane(viewport)) {}
+
+    /// Returns whether it is to be sent.
+    bool learn(Patch const& patch, double now, std::function<float(float, float)> const& shade) {
+        std::vector<Tile> tiles;
+        append_tiles(field.plane(), patch, tiles);
+        std::vector<DisplayFramelet> display(tiles.size());
+        std::vector<Framelet> rendered(tiles.size());
+        for (std::size_t t = 0; t < tiles.size(); ++t) {
+            display[t].tile = rendered[t].tile = tiles[t];
+            PixelRect const rect = field.plane().tile_rect(tiles[t]);
+            float const spacing = field.plane().sample_spacing(tiles[t]);
+            for (std::uint32_t i = 0; i < framelet_samples; ++i) {
+                float const x = static_cast<float>(rect.left) + (static_cast<float>(morton_x(i)) + 0.5f) * spacing;
+                float const y = static_cast<float>(rect.top) + (static_cast<float>(morton_y(i)) + 0.5f) * spacing;
+                display[t].red[i] = static_cast<std::uint8_t>(std::lround(255 * shade(x, y)));
+            }
+            display[t].green = display[t].blue = display[t].red;
+            rendered[t].depth.fill(4);
+        }
+        std::vector<std::uint8_t> send(tiles.size());
+        learn_patch(field, patch, display, rendered, now, history, send);
+        return send[0] != 0;
+    }
+    Patch patch(int level, std::uint32_t index = 0) const {
+        return {{(1u << (2 * field.depth())) + index}, field.depth_of(level)};
+    }
+
+    PlaceField field;
+    LumaHistory history;
+};
+
+float still(float x, float y) {
+    return smooth_noise(x / 5, y / 5);
+}
+
+TEST(PlaceField, PlacesCoverTheViewport) {
+    for (Viewport const viewport : {Viewport{1, 1}, {17, 5}, {1280, 720}, {16384, 100}}) {
+        PlaceField const field{ImagePlane(viewport)};
+        double pixels = 0;
+        for (std::uint32_t const index : field.visible()) {
+            pixels += double(field.pixels_of(index));
+        }
+        EXPECT_EQ(pixels, double(viewport.width) * viewport.height);
+    }
+}
+
+TEST(PlaceField, TheSameIsSentOnce) {
+    Learner learner({64, 64});
+    EXPECT_TRUE(learner.learn(learner.patch(3), 1, still));
+    EXPECT_FALSE(learner.learn(learner.patch(3), 2, still));
+    EXPECT_EQ(learner.field[0].rendered, 2) << "what is held is true of now";
+    EXPECT_EQ(learner.field[0].model.motion, 0);
+    EXPECT_TRUE(learner.learn(learner.patch(3), 3, [](float x, float y) { return still(x - 1, y); }));
+    EXPECT_GT(learner.field[0].model.motion, 0);
+    EXPECT_EQ(learner.field[0].changed, 3);
+    EXPECT_TRUE(learner.learn(learner.patch(5), 4, still));
+    EXPECT_EQ(learner.field[0].level, 5);
+    EXPECT_FALSE(learner.learn(learner.patch(5), 5, still));
+}
+
+/// Probes lie in all parts of a place, however many framelets it was rendered as.
+TEST(PlaceField, ProbesSpreadOverThePlace) {
+    for (Viewport const viewport : {Viewport{64, 64}, {1280, 720}, {4096, 4096}}) {
+        Learner learner(viewport);
+        for (int level = pixel_level; level < sampling_levels; ++level) {
+            learner.learn(learner.patch(level), level, still);
+            Place const& place = learner.field[0];
+            EXPECT_EQ(place.probe_count, probes_per_place);
+            std::array<int, 4> quarters{};
+            int const half = learner.field.place_side() / 2;
+            for (std::size_t i = 0; i < place.probe_count; ++i) {
+                Vec2 const at = place.probes[i].place;
+                int const x = at.x < static_cast<float>(half) ? 0 : 1;
+                int const y = at.y < static_cast<float>(half) ? 0 : 2;
+                ++quarters[static_cast<std::size_t>(x + y)];
+                EXPECT_FLOAT_EQ(place.probes[i].luma, static_cast<float>(std::lround(255 * still(at.x, at.y))) / 255);
+            }
+            EXPECT_EQ(quarters, (std::array{4, 4, 4, 4})) << viewport.width << " level " << level;
+        }
+    }
+}
+
+TEST(PlaceField, ProbesTellStandingFromMoving) {
+    Learner learner({64, 64});
+    learner.learn(learner.patch(3), 1, still);
+    Place place = learner.field[0];
+    std::vector<float> luma;
+    for (std::size_t i = 0; i < place.probe_count; ++i) {
+        luma.push_back(place.probes[i].luma);
+    }
+    place.drift = 3;
+    learn_probes(place, luma, 2);
+    EXPECT_EQ(place.drift, 0);
+    EXPECT_EQ(place.checked, 2);
+    EXPECT_LT(place.changed, 2);
+    luma[3] += 0.2f; // one is enough
+    learn_probes(place, luma, 2.5);
+    EXPECT_GT(place.drift, 0);
+    EXPECT_GT(place.model.motion, 0);
+    EXPECT_EQ(place.changed, 2.5);
+}
+
+TEST(PlaceField, DriftsAsItMovesAndIsBounded) {
+    Learner learner({64, 64});
+    for (std::uint32_t const index : learner.field.visible()) {
+        learner.learn(learner.patch(3, index), 1, still);
+    }
+    Camera const camera;
+    ViewRays const here = make_view_rays(camera, {64, 64});
+    Place& place = learner.field[0];
+    place.model.motion = 2;
+    drift_on(learner.field, here, here, false, 1);
+    EXPECT_EQ(place.drift, 0) << "nothing moves";
+    drift_on(learner.field, here, here, true, 0.5f);
+    EXPECT_FLOAT_EQ(place.drift, 1);
+    Camera moved;
+    moved.position.x = 0.1f;
+    float const before = learner.field[1].drift;
+    drift_on(learner.field, here, make_view_rays(moved, {64, 64}), false, 0.5f);
+    EXPECT_GT(learner.field[1].drift, before);
+    for (int n = 0; n < 1000; ++n) {
+        drift_on(learner.field, here, make_view_rays(moved, {64, 64}), true, 1);
+    }
+    EXPECT_TRUE(std::isfinite(place.drift));
+    EXPECT_LE(shown_error(place, 0), unresolved_error(place.model, 3) + drift_bounds(place.model, 3).most * 1.0001f);
+    invalidate(learner.field);
+    EXPECT_GT(shown_error(place, 0), 0.9f * drift_bounds(place.model, 3).most);
+}
+
+} // namespace
+} // namespace framelet
