@@ -43,6 +43,9 @@ public:
     /// True when the picture of `state` is complete: `plan` would return nothing.
     bool is_complete(ViewState const& state) const;
 
+    /// True when the last plan was for the same picture: nothing moves, and large batches cost no freshness.
+    bool is_still(ViewState const& state) const { return seen_ && same_picture(*seen_, state); }
+
     /// The next batch's work: of the cycle that was planned last while that lasts, or of a new one, so that small
     /// batches do not plan more often than large ones. Time does not go back.
     RefreshPlan const& plan(RefreshInput const& input);
