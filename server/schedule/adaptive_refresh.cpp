@@ -28,7 +28,10 @@ std::size_t batch_limit(RefreshInput const& input) {
     if (input.batch_framelets > 0) {
         return std::min(input.batch_framelets, max_batch_framelets);
     }
-    double const timely = 0.5 * input.samples_per_second * static_cast<double>(input.cycle_seconds) / framelet_samples;
+    // Half a cycle, so that it shows sooner; all of a long one, which is long because nothing moves.
+    double const share = input.cycle_seconds < most_cycle_seconds ? 0.5 : 2;
+    double const timely =
+        share * input.samples_per_second * static_cast<double>(input.cycle_seconds) / framelet_samples;
     return static_cast<std::size_t>(std::clamp(timely, 1.0, static_cast<double>(max_batch_framelets)));
 }
 
