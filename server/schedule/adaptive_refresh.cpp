@@ -24,12 +24,12 @@ bool is_cut(ViewState const& a, ViewState const& b, double seconds) {
            a.view.camera.projection != b.view.camera.projection;
 }
 
-std::size_t batch_limit(RefreshInput const& input) {
+/// `still`: nothing moves, so that a large batch costs no freshness.
+std::size_t batch_limit(RefreshInput const& input, bool still) {
     if (input.batch_framelets > 0) {
         return std::min(input.batch_framelets, max_batch_framelets);
     }
-    // Half a cycle, so that it shows sooner; all of a long one, which is long because nothing moves.
-    double const share = input.cycle_seconds < most_cycle_seconds ? 0.5 : 2;
+    double const share = still ? 2 : 0.5; // half a cycle shows sooner
     double const timely =
         share * input.samples_per_second * static_cast<double>(input.cycle_seconds) / framelet_samples;
     return static_cast<std::size_t>(std::clamp(timely, 1.0, static_cast<double>(max_batch_framelets)));
@@ -93,6 +93,7 @@ RefreshPlan const& AdaptiveRefresh::plan(RefreshInput const& input) {
     plan_.tiles.clear();
     plan_.probes.clear();
     plan_.probed.clear();
+    still_ = is_still(input.state);
     plan_.is_new_cycle = !goes_on(input);
     if (plan_.is_new_cycle) {
         advance(input);
@@ -100,7 +101,7 @@ RefreshPlan const& AdaptiveRefresh::plan(RefreshInput const& input) {
     }
     strayed_ = strayed_ || !same_picture(*seen_, input.state);
     now_ = input.now;
-    take_batch(batch_limit(input));
+    take_batch(batch_limit(input, still_));
     return plan_;
 }
 
@@ -155,7 +156,7 @@ void AdaptiveRefresh::plan_patches(RefreshInput const& input, double samples) {
     if (samples <= 0) {
         return;
     }
-    double const batch_samples = static_cast<double>(batch_limit(input) * framelet_samples);
+    double const batch_samples = static_cast<double>(batch_limit(input, still_) * framelet_samples);
     double const rendering = std::min(batch_samples, samples) / input.samples_per_second;
     Budget const budget{samples / static_cast<double>(input.cycle_seconds), input.cycle_seconds,
                         static_cast<float>(rendering) + input.delivery_seconds, input.bias};

@@ -24,8 +24,9 @@ struct RefreshInput {
     float cycle_seconds = least_cycle_seconds; ///< how often the response is worked out anew
     float delivery_seconds = 0; ///< from the end of its rendering until it shows
     float bias = 0;
-    std::size_t batch_framelets =
-        0; ///< most framelets of one batch; 0: what half a cycle has time for, so that it shows sooner
+    /// Most framelets of one batch; 0: what half a cycle has time for, so that it shows sooner, or all of it while
+    /// nothing moves.
+    std::size_t batch_framelets = 0;
 };
 
 /// What to render now.
@@ -83,6 +84,7 @@ private:
     double still_since_ = 0; ///< when what is to be seen changed last
     bool strayed_ = false; ///< something was rendered for another state than `seen_` since
     bool scene_moves_ = false;
+    bool still_ = false; ///< what is to be seen is what the last plan was for
     PlaceField field_;
     LumaHistory history_;
     Choices choices_;
