@@ -1,0 +1,31 @@
+// How a rigid body moves: poses at a fixed rate, a little ahead of the scene's clock.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/framelet_shape.h"
+
+namespace framelet {
+
+/// World from body: scale, then rotation, then translation. Bodies that shear are not rigid and have velocities instead.
+struct BodyPose {
+    Vec3 translation{0};
+    Quat rotation{1, 0, 0, 0};
+    Vec3 scale{1};
+
+    bool operator==(BodyPose const&) const = default;
+};
+
+/// Keys a second of scene time. Key k stands for the time k / body_keys_per_second.
+inline constexpr int body_keys_per_second = 60;
+
+struct BodyTrack {
+    BodyNumber body = static_body;
+    std::int64_t first_key = 0;
+    std::vector<BodyPose> keys;
+
+    bool operator==(BodyTrack const&) const = default;
+};
+
+} // namespace framelet

@@ -1,0 +1,55 @@
+// Where the samples of a framelet lie in the world and what carries them, so that a viewer can show them from another
+// camera at another time. A framelet is nearly always one or two planes, each on one rigid body: such a plane moves by
+// one homography, and its depth costs a few bytes for all of its samples.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "common/math.h"
+#include "common/tile.h"
+
+namespace framelet {
+
+/// What carries a sample: 0 is what never moves; others are numbered by the server and have a BodyTrack.
+using BodyNumber = std::uint16_t;
+inline constexpr BodyNumber static_body = 0;
+
+inline constexpr std::size_t max_layers = 3;
+
+/// A plane on one body. The inverse of the view depth (1 / metres, 0 at infinity) is affine on the image plane:
+/// at + dx * (x - left) + dy * (y - top), where (x, y) is in pixels and (left, top) the tile's upper left corner.
+struct Layer {
+    float at = 0, dx = 0, dy = 0;
+    float error = 0; ///< largest difference from the inverse depth of a sample that lies on it
+    BodyNumber body = static_body;
+    /// What deforms moves so besides (metres a second in the world, at the framelet's scene time); else 0.
+    Vec3 velocity{0};
+
+    bool operator==(Layer const&) const = default;
+};
+
+/// A sample that lies on no layer.
+struct LooseSample {
+    float inverse_depth = 0;
+    BodyNumber body = static_body;
+    Vec3 velocity{0}; ///< as of a layer
+
+    bool operator==(LooseSample const&) const = default;
+};
+
+struct FrameletShape {
+    static constexpr std::uint8_t loose = max_layers;
+
+    std::uint8_t layer_count = 0;
+    std::array<Layer, max_layers> layers;
+    /// In Morton order: which layer the sample lies on, or `loose`.
+    std::array<std::uint8_t, framelet_samples> layer_of{};
+    /// Those that are `loose`, in Morton order.
+    std::vector<LooseSample> loose_samples;
+
+    bool operator==(FrameletShape const&) const = default;
+};
+
+} // namespace framelet
