@@ -1,5 +1,8 @@
 #include "server/response/haar.h"
 
+#include <algorithm>
+#include <bit>
+
 #include "common/error.h"
 
 namespace framelet {
@@ -7,25 +10,6 @@ namespace {
 
 bool is_square(std::size_t count) {
     return std::has_single_bit(count) && std::countr_zero(count) % 2 == 0;
-}
-
-/// Sums of the squares of value(i) by octave, over all i > 0.
-template <class Value>
-OctaveEnergies sum_by_octave(Value&& value) {
-    OctaveEnergies sums{};
-    constexpr auto count = static_cast<std::size_t>(framelet_samples);
-    for (std::size_t octave = 0, stride = 1; octave < framelet_octaves; ++octave, stride *= 4) {
-        float sum = 0;
-        for (std::size_t i = 0; i < count; i += 4 * stride) {
-            float const x = value(i + stride);
-            float const y = value(i + 2 * stride);
-            float const xy = value(i + 3 * stride);
-            sum += x * x + y * y + xy * xy;
-        }
-        // A coefficient stands for 4^(octave + 1) samples.
-        sums[octave] = sum * static_cast<float>(4 * stride) / static_cast<float>(count);
-    }
-    return sums;
 }
 
 } // namespace
@@ -46,30 +30,20 @@ void haar_forward(std::span<float> samples) {
     }
 }
 
-void haar_inverse(std::span<float> coefficients) {
-    FRAMELET_CHECK(is_square(coefficients.size()));
-    for (std::size_t stride = coefficients.size() / 4; stride > 0; stride /= 4) {
-        for (std::size_t i = 0; i < coefficients.size(); i += 4 * stride) {
-            float const mean = coefficients[i];
-            float const x = coefficients[i + stride];
-            float const y = coefficients[i + 2 * stride];
-            float const xy = coefficients[i + 3 * stride];
-            coefficients[i] = (mean + x) + (y + xy);
-            coefficients[i + stride] = (mean - x) + (y - xy);
-            coefficients[i + 2 * stride] = (mean + x) - (y + xy);
-            coefficients[i + 3 * stride] = (mean - x) - (y - xy);
-        }
+float octave_energy(std::span<float const, framelet_samples> coefficients, std::size_t octave, std::size_t first,
+                    std::size_t count) {
+    std::size_t const stride = std::size_t{1} << (2 * octave);
+    std::size_t const block = 4 * stride; // a coefficient stands for as many samples
+    std::size_t const begin = first & ~(block - 1);
+    std::size_t const end = std::max(first + count, begin + block);
+    float sum = 0;
+    for (std::size_t i = begin; i < end; i += block) {
+        float const x = coefficients[i + stride];
+        float const y = coefficients[i + 2 * stride];
+        float const xy = coefficients[i + 3 * stride];
+        sum += x * x + y * y + xy * xy;
     }
-}
-
-OctaveEnergies octave_energies(std::span<float const, framelet_samples> coefficients) {
-    return sum_by_octave([&](std::size_t i) { return coefficients[i]; });
-}
-
-OctaveDifferences octave_differences(std::span<float const, framelet_samples> a,
-                                     std::span<float const, framelet_samples> b) {
-    float const mean = a[0] - b[0];
-    return {sum_by_octave([&](std::size_t i) { return a[i] - b[i]; }), mean * mean};
+    return sum * static_cast<float>(block) / static_cast<float>(end - begin);
 }
 
 } // namespace framelet

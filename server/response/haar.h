@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <span>
 
@@ -18,25 +17,14 @@ inline constexpr std::size_t framelet_octaves = 4;
 /// the four values of a block lie side by side; of a block at index i of octave o, the mean stays at i and the
 /// differences in x, in y and in both go to i + 4^o, i + 2 * 4^o and i + 3 * 4^o.
 void haar_forward(std::span<float> samples);
-void haar_inverse(std::span<float> coefficients);
 
-/// Octave of the coefficient at `index` > 0.
-constexpr std::size_t haar_octave(std::size_t index) {
-    return static_cast<std::size_t>(std::countr_zero(index)) / 2;
-}
+/// Mean energy of one octave of the coefficients [first, first + count), `count` a power of 4, or of the block that
+/// they lie in where the octave is coarser: what the octave adds to the mean square of the samples. Over a whole
+/// framelet the octaves and the square of the mean add up to the mean square (Parseval).
+float octave_energy(std::span<float const, framelet_samples> coefficients, std::size_t octave, std::size_t first,
+                    std::size_t count);
 
-/// Energy of each octave of a framelet: what the octave adds to the mean square of the samples. All of them and the
-/// square of the mean add up to the mean square (Parseval).
+/// Of each octave.
 using OctaveEnergies = std::array<float, framelet_octaves>;
-OctaveEnergies octave_energies(std::span<float const, framelet_samples> coefficients);
-
-/// Energy of each octave of the difference of two framelets, from their coefficients; `mean`: square of the difference
-/// of their means.
-struct OctaveDifferences {
-    OctaveEnergies octaves{};
-    float mean = 0;
-};
-OctaveDifferences octave_differences(std::span<float const, framelet_samples> a,
-                                     std::span<float const, framelet_samples> b);
 
 } // namespace framelet

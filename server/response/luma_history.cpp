@@ -47,10 +47,10 @@ void LumaHistory::clear() {
     }
 }
 
-LumaHistory::Entry make_entry(DisplayFramelet const& framelet, double time) {
-    LumaHistory::Entry entry;
+void fill_entry(LumaHistory::Entry& entry, DisplayFramelet const& framelet, double time) {
     entry.tile = framelet.tile;
     entry.time = time;
+    entry.content = 0;
     for (std::size_t i = 0; i < framelet_samples; ++i) {
         entry.luma[i] = display_luma(framelet.red[i], framelet.green[i], framelet.blue[i]);
     }
@@ -62,7 +62,6 @@ LumaHistory::Entry make_entry(DisplayFramelet const& framelet, double time) {
             entry.content ^= entry.content >> 32;
         }
     }
-    return entry;
 }
 
 } // namespace framelet

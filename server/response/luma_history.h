@@ -26,7 +26,6 @@ public:
     Entry const* find(Tile tile) const;
     void store(Entry const& entry);
     void clear();
-    std::size_t memory_bytes() const { return entries_.size() * sizeof(Entry); }
 
 private:
     /// The entries in which the tile may be.
@@ -36,7 +35,7 @@ private:
     std::vector<Entry> entries_;
 };
 
-/// `time`: when it was rendered.
-LumaHistory::Entry make_entry(DisplayFramelet const& framelet, double time);
+/// Makes it the framelet's. `time`: when it was rendered.
+void fill_entry(LumaHistory::Entry& entry, DisplayFramelet const& framelet, double time);
 
 } // namespace framelet

@@ -104,27 +104,6 @@ float drift_of_error(PlaceModel& place, int level, float error) {
     return high;
 }
 
-namespace {
-
-/// Mean energy of one octave of the coefficients [first, first + count), or of the block that they lie in.
-float octave_energy(std::span<float const, framelet_samples> coefficients, std::size_t octave, std::size_t first,
-                    std::size_t count) {
-    std::size_t const stride = std::size_t{1} << (2 * octave);
-    std::size_t const block = 4 * stride;
-    std::size_t const begin = first & ~(block - 1);
-    std::size_t const end = std::max(first + count, begin + block);
-    float sum = 0;
-    for (std::size_t i = begin; i < end; i += block) {
-        float const x = coefficients[i + stride];
-        float const y = coefficients[i + 2 * stride];
-        float const xy = coefficients[i + 3 * stride];
-        sum += x * x + y * y + xy * xy;
-    }
-    return sum * static_cast<float>(block) / static_cast<float>(end - begin);
-}
-
-} // namespace
-
 Observation observe(int level, std::span<float const, framelet_samples> luma,
                     std::optional<std::span<float const, framelet_samples>> change, float seconds, std::size_t first,
                     std::size_t count) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <tbb/parallel_for.h>
+
 #include "common/error.h"
 
 namespace framelet {
@@ -37,8 +39,9 @@ std::size_t batch_limit(RefreshInput const& input, bool still) {
 
 } // namespace
 
-float cycle_length(double plan_seconds) {
-    return std::clamp(static_cast<float>(40 * plan_seconds), least_cycle_seconds, most_cycle_seconds);
+float cycle_length(bool still, double plan_seconds) {
+    return still ? most_cycle_seconds
+                 : std::clamp(static_cast<float>(40 * plan_seconds), least_cycle_seconds, most_cycle_seconds);
 }
 
 bool AdaptiveRefresh::is_finished(std::uint32_t index) const {
@@ -130,7 +133,7 @@ double AdaptiveRefresh::plan_inspections(RefreshInput const& input) {
     select_inspections(field_, advanced_, budget, suspects_, cycle_);
     double tiles = 0;
     for (Patch const& patch : cycle_) {
-        tiles += std::ldexp(1.0, 2 * (patch.depth - patch.node.depth()));
+        tiles += tile_count(patch);
     }
     return tiles * framelet_samples;
 }
@@ -188,7 +191,7 @@ void AdaptiveRefresh::plan_completion(double samples) {
         }
         Patch const patch{{(1u << (2 * field_.depth())) + index}, field_.plane().max_depth()};
         cycle_.push_back(patch);
-        tiles += std::ldexp(1.0, 2 * (patch.depth - patch.node.depth()));
+        tiles += tile_count(patch);
         if (tiles * framelet_samples >= samples) {
             return;
         }
@@ -259,15 +262,50 @@ std::vector<std::uint8_t> const& AdaptiveRefresh::learn(std::span<DisplayFramele
         learn_probes(place, probe_luma.subspan(probe, place.probe_count), now_);
         probe += place.probe_count;
     }
-    send_.assign(framelets.size(), 1);
-    std::size_t first = 0;
+    examine(framelets, rendered);
+    std::size_t first_tile = 0;
+    std::size_t first_place = 0;
     for (std::size_t i = 0; i < plan_.patches.size(); ++i) {
-        std::size_t const count = plan_.tile_counts[i];
-        learn_patch(field_, plan_.patches[i], framelets.subspan(first, count), rendered.subspan(first, count), now_,
-                    history_, std::span(send_).subspan(first, count));
-        first += count;
+        auto const places = std::span(findings_).subspan(first_place, place_count(plan_.patches[i]));
+        bool const needed = learn_patch(field_, plan_.patches[i], places, same_[i] != 0, now_);
+        auto const to = send_.begin() + static_cast<std::ptrdiff_t>(first_tile);
+        std::fill(to, to + static_cast<std::ptrdiff_t>(plan_.tile_counts[i]), needed ? 1 : 0);
+        first_tile += plan_.tile_counts[i];
+        first_place += places.size();
+    }
+    for (LumaHistory::Entry const& entry : entries_) {
+        history_.store(entry);
     }
     return send_;
+}
+
+std::size_t AdaptiveRefresh::place_count(Patch const& patch) const {
+    PlaceField::Range const range = field_.range_of(patch.node);
+    return range.last - range.first;
+}
+
+/// What the framelets say, of all patches in parallel.
+void AdaptiveRefresh::examine(std::span<DisplayFramelet const> framelets, std::span<Framelet const> rendered) {
+    firsts_.clear();
+    std::size_t tiles = 0;
+    std::size_t places = 0;
+    for (std::size_t i = 0; i < plan_.patches.size(); ++i) {
+        firsts_.push_back({tiles, places});
+        tiles += plan_.tile_counts[i];
+        places += place_count(plan_.patches[i]);
+    }
+    send_.resize(tiles);
+    entries_.resize(tiles);
+    findings_.resize(places);
+    same_.resize(plan_.patches.size());
+    tbb::parallel_for(std::size_t{0}, plan_.patches.size(), [&](std::size_t i) {
+        Patch const& patch = plan_.patches[i];
+        auto const [tile, place] = firsts_[i];
+        std::size_t const count = plan_.tile_counts[i];
+        same_[i] = examine_patch(field_, patch, framelets.subspan(tile, count), rendered.subspan(tile, count), now_,
+                                 history_, std::span(entries_).subspan(tile, count),
+                                 std::span(findings_).subspan(place, place_count(patch)));
+    });
 }
 
 } // namespace framelet

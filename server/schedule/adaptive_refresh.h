@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "server/schedule/patch_selection.h"
+#include "server/schedule/place_learning.h"
 #include "server/schedule/view_state.h"
 
 namespace framelet {
@@ -14,8 +15,9 @@ namespace framelet {
 /// Bounds of a cycle's length.
 inline constexpr float least_cycle_seconds = 0.01f;
 inline constexpr float most_cycle_seconds = 0.05f;
-/// How long a cycle should be where planning one takes so long: planning may take a fortieth of it.
-float cycle_length(double plan_seconds);
+/// How long a cycle should be where planning one takes so long: planning may take a fortieth of it. `still`: nothing
+/// moves, so that a long one costs no freshness.
+float cycle_length(bool still, double plan_seconds);
 
 struct RefreshInput {
     ViewState state;
@@ -77,6 +79,8 @@ private:
     void plan_completion(double samples);
     void take_batch(std::size_t most_framelets);
     bool is_finished(std::uint32_t index) const;
+    std::size_t place_count(Patch const& patch) const;
+    void examine(std::span<DisplayFramelet const> framelets, std::span<Framelet const> rendered);
 
     std::optional<ViewState> seen_;
     double now_ = 0;
@@ -104,6 +108,10 @@ private:
     std::vector<RatedPatch> rated_;
     std::vector<std::uint32_t> suspects_;
     std::vector<double> suspicions_;
+    std::vector<LumaHistory::Entry> entries_; ///< of the framelets learnt from
+    std::vector<PlaceFindings> findings_; ///< of the places of their patches
+    std::vector<std::uint8_t> same_; ///< of the patches
+    std::vector<std::pair<std::size_t, std::size_t>> firsts_; ///< first tile and first place of each patch
 };
 
 } // namespace framelet

@@ -18,6 +18,11 @@ struct Patch {
     bool operator==(Patch const&) const = default;
 };
 
+/// Tiles of a patch, those outside the viewport included.
+constexpr double tile_count(Patch const& patch) {
+    return static_cast<double>(std::uint64_t{1} << (2 * (patch.depth - patch.node.depth())));
+}
+
 /// Which depth a field of density has: that of single pixels' framelets, but never more than `most_field_depth`, so
 /// that what is computed for each element does not grow with the picture.
 inline constexpr int most_field_depth = 6;

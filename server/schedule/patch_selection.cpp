@@ -8,10 +8,6 @@ namespace {
 constexpr double inspection_share = 0.05;
 constexpr double least_inspection_period = 2;
 
-double tile_count(Patch const& patch) {
-    return static_cast<double>(std::uint64_t{1} << (2 * (patch.depth - patch.node.depth())));
-}
-
 } // namespace
 
 void rate_patches(PlaceField const& field, Choices const& choices, std::vector<Patch> const& cut, Budget const& budget,

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "common/probe.h"
-#include "server/response/luma_history.h"
 #include "server/response/place_model.h"
 #include "server/response/sampling_choice.h"
 #include "server/schedule/density_tiling.h"
@@ -79,14 +78,5 @@ inline constexpr float bare_error = 0.25f;
 void drift_on(PlaceField& field, ViewRays const& from, ViewRays const& to, bool moving, float seconds);
 /// Nothing that is held is true any more (a cut, another exposure).
 void invalidate(PlaceField& field);
-
-/// Takes what was rendered of one patch into account. `framelets`: of its tiles, all the visible ones; `rendered`: the
-/// same with depth. `send` (same length): what the viewer needs: false where it holds the very same. `history` is
-/// brought up to date.
-void learn_patch(PlaceField& field, Patch const& patch, std::span<DisplayFramelet const> framelets,
-                 std::span<Framelet const> rendered, double now, LumaHistory& history, std::span<std::uint8_t> send);
-
-/// Takes the answers to a place's probes into account: their luma now.
-void learn_probes(Place& place, std::span<float const> luma, double now);
 
 } // namespace framelet

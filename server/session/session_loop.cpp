@@ -116,7 +116,7 @@ bool SessionLoop::render_session(Session& session, AdaptiveRefresh& refresh, Sce
     wanted.state = state;
     wanted.now = std::chrono::duration<double>(start.time_since_epoch()).count();
     wanted.samples_per_second = share * (rate_.samples_per_second > 0 ? rate_.samples_per_second : first_rate);
-    wanted.cycle_seconds = refresh.is_still(state) ? most_cycle_seconds : cycle_length(plan_seconds_);
+    wanted.cycle_seconds = cycle_length(refresh.is_still(state), plan_seconds_);
     wanted.delivery_seconds = static_cast<float>(0.5 * session.answer_seconds());
     wanted.bias = std::clamp(static_cast<float>(options_.bias) + input.settings.bias, -1.0f, 1.0f);
     wanted.batch_framelets = options_.batch_framelets;

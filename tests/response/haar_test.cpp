@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/response/haar_inverse.h"
+
 namespace framelet {
 namespace {
 
@@ -49,8 +51,8 @@ TEST(Haar, EnergiesAddUpToTheMeanSquare) {
         }
         haar_forward(samples);
         double energy = double(samples[0]) * samples[0];
-        for (float const octave : octave_energies(samples)) {
-            energy += octave;
+        for (std::size_t octave = 0; octave < framelet_octaves; ++octave) {
+            energy += double(octave_energy(samples, octave, 0, framelet_samples));
         }
         EXPECT_NEAR(energy, square, 1e-5);
     }
@@ -64,36 +66,26 @@ TEST(Haar, ACheckerboardIsAllInItsOctave) {
         }
         haar_forward(samples);
         EXPECT_FLOAT_EQ(samples[0], 0.5f);
-        OctaveEnergies expected{};
-        expected[octave] = 0.25f;
-        EXPECT_EQ(octave_energies(samples), expected);
+        for (std::uint32_t other = 0; other < framelet_octaves; ++other) {
+            EXPECT_EQ(octave_energy(samples, other, 0, framelet_samples), other == octave ? 0.25f : 0.0f);
+        }
     }
 }
 
-TEST(Haar, DifferencesAreTheEnergiesOfTheDifference) {
-    Samples a = random_samples(1);
-    Samples b = random_samples(2);
-    Samples difference;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        difference[i] = a[i] - b[i];
-    }
-    haar_forward(a);
-    haar_forward(b);
-    haar_forward(difference);
-    OctaveDifferences const found = octave_differences(a, b);
-    OctaveEnergies const expected = octave_energies(difference);
+/// Of a part, the octaves within it; of blocks larger than it, those that it lies in.
+TEST(Haar, EnergiesOfPartsAverageToThatOfTheWhole) {
+    Samples samples = random_samples(1);
+    haar_forward(samples);
     for (std::size_t octave = 0; octave < framelet_octaves; ++octave) {
-        EXPECT_NEAR(found.octaves[octave], expected[octave], 1e-6);
+        for (std::size_t const count : {1u, 4u, 16u, 64u, 256u}) {
+            float sum = 0;
+            for (std::size_t first = 0; first < samples.size(); first += count) {
+                sum += octave_energy(samples, octave, first, count);
+            }
+            float const mean = sum * static_cast<float>(count) / framelet_samples;
+            EXPECT_NEAR(mean, octave_energy(samples, octave, 0, framelet_samples), 1e-6) << octave << ' ' << count;
+        }
     }
-    EXPECT_NEAR(found.mean, difference[0] * difference[0], 1e-6);
-}
-
-TEST(Haar, OctaveOfAnIndex) {
-    EXPECT_EQ(haar_octave(1), 0u);
-    EXPECT_EQ(haar_octave(3), 0u);
-    EXPECT_EQ(haar_octave(8), 1u);
-    EXPECT_EQ(haar_octave(192), 3u);
-    EXPECT_EQ(haar_octave(193), 0u);
 }
 
 } // namespace

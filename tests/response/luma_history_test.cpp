@@ -90,6 +90,12 @@ TEST(LumaHistory, ParentsAndDescendantsStayTogether) {
     EXPECT_GE(remembered, 200u);
 }
 
+LumaHistory::Entry make_entry(DisplayFramelet const& framelet, double time) {
+    LumaHistory::Entry entry;
+    fill_entry(entry, framelet, time);
+    return entry;
+}
+
 TEST(LumaHistory, EveryByteCountsInTheContent) {
     std::mt19937 random(2);
     DisplayFramelet framelet = random_framelet(make_tile(3, 1, 2), random);

@@ -32,9 +32,14 @@ public:
             display[t].green = display[t].blue = display[t].red;
             rendered[t].depth.fill(4);
         }
-        std::vector<std::uint8_t> send(tiles.size());
-        learn_patch(field, patch, display, rendered, now, history, send);
-        return send[0] != 0;
+        std::vector<LumaHistory::Entry> entries(tiles.size());
+        PlaceField::Range const range = field.range_of(patch.node);
+        std::vector<PlaceFindings> places(range.last - range.first);
+        bool const same = examine_patch(field, patch, display, rendered, now, history, entries, places);
+        for (LumaHistory::Entry const& entry : entries) {
+            history.store(entry);
+        }
+        return learn_patch(field, patch, places, same, now);
     }
     Patch patch(int level, std::uint32_t index = 0) const {
         return {{(1u << (2 * field.depth())) + index}, field.depth_of(level)};

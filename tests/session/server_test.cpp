@@ -115,7 +115,9 @@ TEST(Server, CoarseFirstThenFinerThenConverged) {
 }
 
 TEST(Server, WaitsForAcknowledgements) {
-    RunningServer const server;
+    ServerOptions options;
+    options.loop.batch_framelets = 16; // so that the picture takes more batches than may be in flight, however fast
+    RunningServer const server(options);
     Conversation viewer(server.port());
     viewer.stream->send(Hello{});
     std::uint64_t batches = 0;

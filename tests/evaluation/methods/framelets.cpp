@@ -31,8 +31,7 @@ public:
         refresh.state = state;
         refresh.now = input.now;
         refresh.samples_per_second = rate_.samples_per_second > 0 ? rate_.samples_per_second : first_rate();
-        refresh.cycle_seconds =
-            refresh_.is_still(state) ? most_cycle_seconds : cycle_length(setup_.machine * plan_seconds());
+        refresh.cycle_seconds = cycle_length(refresh_.is_still(state), setup_.machine * plan_seconds());
         refresh.delivery_seconds = static_cast<float>(setup_.delay_seconds);
         refresh.batch_framelets = setup_.batch_framelets;
         refresh.bias = static_cast<float>(setup_.bias);

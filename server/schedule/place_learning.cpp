@@ -1,0 +1,199 @@
+#include "server/schedule/place_learning.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/error.h"
+
+namespace framelet {
+namespace {
+
+/// Where sample `i` of a tile lies, pixels.
+Vec2 sample_place(ImagePlane const& plane, Tile tile, std::size_t i) {
+    PixelRect const rect = plane.tile_rect(tile);
+    float const spacing = plane.sample_spacing(tile);
+    auto const sample = static_cast<std::uint32_t>(i);
+    return Vec2(rect.left, rect.top) + (Vec2(morton_x(sample), morton_y(sample)) + 0.5f) * spacing;
+}
+
+/// Spreads over [0, count).
+std::size_t scattered(std::uint32_t seed, std::size_t count) {
+    return (seed * 0x9e3779b9u >> 16) % count;
+}
+
+/// Of samples [first, last) the one that differs most from the next: where an edge is, the smallest motion shows.
+std::size_t steepest(LumaHistory::Entry const& entry, std::size_t first, std::size_t last) {
+    std::size_t found = first;
+    float most = -1;
+    for (std::size_t i = first; i < last; ++i) {
+        float const step = std::abs(entry.luma[i] - entry.luma[(i + 1) % framelet_samples]);
+        if (step > most) {
+            most = step;
+            found = i;
+        }
+    }
+    return found;
+}
+
+/// Notes some samples of a part of a framelet, one in each of equal shares of it: in turn the steepest and any one.
+void note_probes(PlaceFindings& place, ImagePlane const& plane, LumaHistory::Entry const& entry, std::size_t first,
+                 std::size_t count, std::size_t wanted) {
+    Viewport const viewport = plane.viewport();
+    if (wanted == 0) {
+        return;
+    }
+    std::size_t const share = std::max<std::size_t>(count / wanted, 1);
+    for (std::size_t i = 0; i < std::min(wanted, count) && place.probe_count < probes_per_place; ++i) {
+        std::size_t const begin = first + i * share;
+        std::size_t const sample = place.probe_count % 2 == 0
+                                       ? steepest(entry, begin, begin + share)
+                                       : begin + scattered(entry.tile.code + static_cast<std::uint32_t>(i), share);
+        Vec2 const at = sample_place(plane, entry.tile, sample);
+        if (at.x < static_cast<float>(viewport.width) && at.y < static_cast<float>(viewport.height)) {
+            place.probes[place.probe_count++] = {at, plane.sample_spacing(entry.tile), entry.luma[sample]};
+        }
+    }
+}
+
+float mean_inverse_depth(Framelet const& framelet, std::size_t first, std::size_t count) {
+    float sum = 0;
+    for (std::size_t i = first; i < first + count; ++i) {
+        sum += 1 / std::max(framelet.depth[i], 1e-6f); // infinity gives 0
+    }
+    return sum / static_cast<float>(count);
+}
+
+/// What the viewer holds from now on, unless it held better that is still true.
+void hold(Place& place, int level, double now) {
+    place.level = level;
+    place.rendered = now;
+    place.drift = 0;
+}
+
+bool is_change(Observation const& seen) {
+    constexpr float noise = 1e-6f; // a quarter of a display step, squared
+    float change = seen.mean_change;
+    for (float const octave : seen.change) {
+        change += octave;
+    }
+    return seen.has_change && change > noise;
+}
+
+} // namespace
+
+bool examine_patch(PlaceField const& field, Patch const& patch, std::span<DisplayFramelet const> framelets,
+                   std::span<Framelet const> rendered, double now, LumaHistory const& history,
+                   std::span<LumaHistory::Entry> entries, std::span<PlaceFindings> places) {
+    FRAMELET_CHECK(framelets.size() == rendered.size() && framelets.size() == entries.size() && !framelets.empty());
+    FRAMELET_CHECK(framelet_samples % places.size() == 0);
+    int const level = field.level_of(patch.depth);
+    std::size_t const count = framelet_samples / places.size();
+    std::array<float, framelet_samples> luma;
+    std::array<float, framelet_samples> change;
+    std::fill(places.begin(), places.end(), PlaceFindings{});
+    bool same = true;
+    for (std::size_t f = 0; f < framelets.size(); ++f) {
+        LumaHistory::Entry& entry = entries[f];
+        fill_entry(entry, framelets[f], now);
+        luma = entry.luma;
+        haar_forward(luma);
+        std::optional<std::span<float const, framelet_samples>> difference;
+        float seconds = 0;
+        LumaHistory::Entry const* const before = history.find(entry.tile);
+        if (before != nullptr) {
+            for (std::size_t i = 0; i < change.size(); ++i) {
+                change[i] = entry.luma[i] - before->luma[i];
+            }
+            haar_forward(change);
+            difference = std::span<float const, framelet_samples>(change);
+            seconds = static_cast<float>(now - before->time);
+        }
+        same = same && before != nullptr && before->content == entry.content;
+        std::size_t const wanted =
+            (f + 1) * probes_per_place / framelets.size() - f * probes_per_place / framelets.size();
+        std::size_t first = 0;
+        for (PlaceFindings& place : places) {
+            accumulate(place.seen, observe(level, luma, difference, seconds, first, count));
+            note_probes(place, field.plane(), entry, first, count, wanted);
+            place.inverse_depth += mean_inverse_depth(rendered[f], first, count);
+            first += count;
+        }
+    }
+    for (PlaceFindings& place : places) {
+        place.seen = mean_of(place.seen, static_cast<int>(framelets.size()));
+        place.inverse_depth /= static_cast<float>(framelets.size());
+    }
+    return same;
+}
+
+bool learn_patch(PlaceField& field, Patch const& patch, std::span<PlaceFindings const> places, bool same, double now) {
+    int const level = field.level_of(patch.depth);
+    PlaceField::Range const range = field.range_of(patch.node);
+    FRAMELET_CHECK(places.size() == range.last - range.first);
+    // The viewer has it, or better, and that has not been seen to change: nothing to send.
+    bool known = same;
+    for (std::uint32_t i = range.first; i < range.last; ++i) {
+        Place const& place = field[i];
+        known = known && (field.pixels_of(i) == 0 || (place.level >= level && place.changed <= place.rendered));
+    }
+    for (std::uint32_t i = range.first; i < range.last; ++i) {
+        Place& place = field[i];
+        PlaceFindings const& found = places[i - range.first];
+        place.probes = found.probes;
+        place.probe_count = found.probe_count;
+        place.inverse_depth = found.inverse_depth;
+        learn(place.model, found.seen);
+        if (found.seen.has_change) {
+            place.settled = !is_change(found.seen);
+        }
+        if (is_change(found.seen) || place.rendered == never) {
+            place.changed = now;
+        }
+        place.checked = now;
+        if (level >= pixel_level) {
+            place.inspected = now;
+        }
+        if (!known) {
+            hold(place, level, now);
+        } else {
+            place.drift = 0;
+            if (place.level == level) { // what is held is the very picture of now
+                place.rendered = now;
+            }
+        }
+    }
+    return !known;
+}
+
+void learn_probes(Place& place, std::span<float const> luma, double now) {
+    FRAMELET_CHECK(luma.size() == place.probe_count && place.level >= 0);
+    constexpr float step = 1.0f / 255;
+    // The steepest samples say whether there is a change; how large it is on the whole the others know.
+    constexpr float steep_weight = 1.0f / 16;
+    float sum = 0;
+    float weights = 0;
+    for (std::size_t i = 0; i < luma.size(); ++i) {
+        float const difference = std::abs(luma[i] - place.probes[i].luma);
+        float const weight = i % 2 == 0 ? steep_weight : 1 - steep_weight;
+        sum += difference > 0.5f * step ? weight * difference * difference : 0;
+        weights += weight;
+    }
+    float const error = luma.empty() ? 0 : sum / weights;
+    if (error > 0) {
+        float const drift = drift_of_error(place.model, place.level, error);
+        place.drift = std::max(place.drift, drift);
+        auto const seconds = static_cast<float>(now - place.checked);
+        place.model.motion = std::max(place.model.motion, seconds > 0 ? drift / seconds : 0);
+        place.changed = now;
+        place.settled = false;
+    } else {
+        // Too few samples to say so of all of it, unless its last rendering did.
+        constexpr float least_motion = 0.5f;
+        float const kept = place.settled || place.model.motion < least_motion ? 0 : 0.5f;
+        place.drift *= kept;
+        place.model.motion *= kept;
+    }
+    place.checked = now;
+}
+
+} // namespace framelet

@@ -1,0 +1,34 @@
+// Learning from what was rendered, in two steps: what the framelets of a patch say of its places (for all patches in
+// parallel), and then what the server knows of them from now on. In: framelets, probes. Out: the field, brought up to
+// date, and whether the viewer needs what was rendered.
+#pragma once
+
+#include <span>
+
+#include "server/response/luma_history.h"
+#include "server/schedule/place_field.h"
+
+namespace framelet {
+
+/// What was seen of one place.
+struct PlaceFindings {
+    Observation seen;
+    std::array<Probe, probes_per_place> probes{};
+    std::size_t probe_count = 0;
+    float inverse_depth = 0; ///< mean, 1/metres
+};
+
+/// Of one patch. `framelets`: of its tiles, all the visible ones; `rendered`: the same with depth. Fills `entries` (a
+/// framelet each) and `places` (a place of the patch each). Returns whether all of it is what `history` remembers.
+bool examine_patch(PlaceField const& field, Patch const& patch, std::span<DisplayFramelet const> framelets,
+                   std::span<Framelet const> rendered, double now, LumaHistory const& history,
+                   std::span<LumaHistory::Entry> entries, std::span<PlaceFindings> places);
+
+/// Takes the findings of a patch into account. `same`: what `examine_patch` returned. Returns whether the viewer needs
+/// the patch: false where it holds the very same.
+bool learn_patch(PlaceField& field, Patch const& patch, std::span<PlaceFindings const> places, bool same, double now);
+
+/// Takes the answers to a place's probes into account: their luma now.
+void learn_probes(Place& place, std::span<float const> luma, double now);
+
+} // namespace framelet
