@@ -25,14 +25,6 @@ constexpr float most_pace = 1e3f;
 /// Of its bound, that a change is taken for at most: beyond, all that is known is that it has passed.
 constexpr float most_share = 0.9f;
 
-float energy_above(PlaceModel const& place, int level) {
-    float sum = tail * place.energy.back();
-    for (int band = level + 1; band < sampling_levels; ++band) {
-        sum += place.energy[static_cast<std::size_t>(band)];
-    }
-    return sum;
-}
-
 /// Bands finer than a pixel are averaged away on the display and cannot become untrue.
 std::size_t shown_band(int level) {
     return static_cast<std::size_t>(std::min(level, pixel_level));
@@ -54,20 +46,38 @@ PlaceModel unknown_place() {
     return place;
 }
 
+LevelErrors level_errors(PlaceModel const& place) {
+    LevelErrors errors;
+    float unsampled = tail * place.energy.back(); // finer than the level
+    float missing = 0; // of that, what a pixel could show
+    for (int level = sampling_levels - 1; level >= 0; --level) {
+        auto const l = static_cast<std::size_t>(level);
+        // From a pixel on, the mean over its samples.
+        errors.unresolved[l] =
+            level >= pixel_level ? unsampled / samples_per_pixel(level) : missing + alias_share * unsampled;
+        unsampled += place.energy[l];
+        missing += level <= pixel_level ? place.energy[l] : 0;
+    }
+    DriftBounds sum;
+    for (std::size_t level = 0; level < errors.drift.size(); ++level) {
+        if (level == shown_band(static_cast<int>(level))) {
+            sum.most += 2 * place.energy[level];
+            sum.growth += 2 * place.energy[level] * place.pace[level];
+        }
+        errors.drift[level] = sum;
+    }
+    return errors;
+}
+
 float unresolved_error(PlaceModel const& place, int level) {
-    float const unsampled = energy_above(place, level);
-    if (level >= pixel_level) { // the mean over the samples of a pixel
-        return unsampled / samples_per_pixel(level);
-    }
-    float missing = 0;
-    for (int band = level + 1; band <= pixel_level; ++band) {
-        missing += place.energy[static_cast<std::size_t>(band)];
-    }
-    return missing + alias_share * unsampled;
+    return level_errors(place).unresolved[static_cast<std::size_t>(level)];
 }
 
 float drift_error(PlaceModel const& place, int level, float drift) {
     float sum = 0;
+    if (!(drift > 0)) {
+        return sum;
+    }
     for (std::size_t band = 0; band <= shown_band(level); ++band) {
         sum += 2 * place.energy[band] * (1 - std::exp(-drift * place.pace[band]));
     }
@@ -75,12 +85,7 @@ float drift_error(PlaceModel const& place, int level, float drift) {
 }
 
 DriftBounds drift_bounds(PlaceModel const& place, int level) {
-    DriftBounds bounds;
-    for (std::size_t band = 0; band <= shown_band(level); ++band) {
-        bounds.most += 2 * place.energy[band];
-        bounds.growth += 2 * place.energy[band] * place.pace[band];
-    }
-    return bounds;
+    return level_errors(place).drift[static_cast<std::size_t>(level)];
 }
 
 float drift_of_error(PlaceModel& place, int level, float error) {

@@ -65,6 +65,13 @@ struct DriftBounds {
 };
 DriftBounds drift_bounds(PlaceModel const& place, int level);
 
+/// `unresolved_error` and `drift_bounds` of every level.
+struct LevelErrors {
+    std::array<float, sampling_levels> unresolved{};
+    std::array<DriftBounds, sampling_levels> drift{};
+};
+LevelErrors level_errors(PlaceModel const& place);
+
 /// The drift at which `drift_error` is `error`. Where the bands have too little energy for so much error, band 0 is
 /// given more: something has come that they knew nothing of.
 float drift_of_error(PlaceModel& place, int level, float error);

@@ -43,11 +43,12 @@ SamplingChoice choose_sampling(PlaceModel const& place, float life, SamplingPric
     float const time_weight = price.bias == 0 ? 1 : std::exp2(2 * price.bias);
     float const space_weight = 1 / time_weight;
     float const longest = std::max(life, price.least_period);
+    LevelErrors const errors = level_errors(place);
     SamplingChoice best;
     float least = std::numeric_limits<float>::infinity();
     /// Weighs a level, unless what it leaves unresolved alone is too much already.
     auto const offer = [&](int level) {
-        float const unresolved = space_weight * unresolved_error(place, level);
+        float const unresolved = space_weight * errors.unresolved[static_cast<std::size_t>(level)];
         float const cost = price.price * samples_per_pixel(level);
         if (unresolved + cost / longest >= least) {
             return;
@@ -55,7 +56,7 @@ SamplingChoice choose_sampling(PlaceModel const& place, float life, SamplingPric
         float period = longest;
         float paid = unresolved + cost / longest;
         if (place.motion > 0) {
-            DriftBounds const bounds = drift_bounds(place, level);
+            DriftBounds const bounds = errors.drift[static_cast<std::size_t>(level)];
             float const most = time_weight * bounds.most;
             float const rate = place.motion * bounds.growth / bounds.most; // 1/s, of the one exponential
             float const left = most * std::exp(-rate * price.latency); // what a refresh can save, fresh as it comes

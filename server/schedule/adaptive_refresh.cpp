@@ -163,13 +163,14 @@ void AdaptiveRefresh::plan_patches(RefreshInput const& input, double samples) {
     double const rendering = std::min(batch_samples, samples) / input.samples_per_second;
     Budget const budget{samples / static_cast<double>(input.cycle_seconds), input.cycle_seconds,
                         static_cast<float>(rendering) + input.delivery_seconds, input.bias};
-    price_ = solve_price(field_, advanced_, budget, price_, choices_);
+    find_due_errors(field_, budget, due_errors_);
+    price_ = solve_price(field_, advanced_, budget, due_errors_, price_, choices_);
     density_.assign(field_.size(), 0);
     for (std::uint32_t const index : field_.visible()) {
         density_[index] = samples_per_pixel(choices_[index].level);
     }
     make_density_patches(field_.plane(), density_, field_.depth(), tiling_scratch_, cut_);
-    rate_patches(field_, choices_, cut_, budget, rated_);
+    rate_patches(field_, choices_, due_errors_, cut_, budget, rated_);
     select_patches(samples, rated_);
     auto const inspections = static_cast<std::ptrdiff_t>(cycle_.size());
     for (RatedPatch const& entry : rated_) {

@@ -102,6 +102,7 @@ private:
     std::vector<std::uint8_t> send_;
 
     // Scratch.
+    std::vector<float> due_errors_;
     std::vector<float> density_;
     TilingScratch tiling_scratch_;
     std::vector<Patch> cut_;

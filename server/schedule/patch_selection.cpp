@@ -10,8 +10,8 @@ constexpr double least_inspection_period = 2;
 
 } // namespace
 
-void rate_patches(PlaceField const& field, Choices const& choices, std::vector<Patch> const& cut, Budget const& budget,
-                  std::vector<RatedPatch>& rated) {
+void rate_patches(PlaceField const& field, Choices const& choices, std::span<float const> due,
+                  std::vector<Patch> const& cut, Budget const& budget, std::vector<RatedPatch>& rated) {
     rated.clear();
     for (Patch const& patch : cut) {
         PlaceField::Range const range = field.range_of(patch.node);
@@ -24,10 +24,10 @@ void rate_patches(PlaceField const& field, Choices const& choices, std::vector<P
             }
             Place const& place = field[i];
             spoils = spoils || (place.level > level && place.drift == 0 && place.model.motion == 0);
-            float const fresh = unresolved_error(place.model, level) +
-                                drift_error(place.model, level, place.model.motion * budget.latency);
+            float const drift = place.model.motion * budget.latency;
+            float const fresh = unresolved_error(place.model, level) + drift_error(place.model, level, drift);
             gain += static_cast<double>(field.pixels_of(i)) *
-                    static_cast<double>(due_error(place, budget) - std::max(choices[i].due_error, fresh));
+                    static_cast<double>(due[i] - std::max(choices[i].due_error, fresh));
         }
         double const samples = framelet_samples * tile_count(patch);
         rated.push_back({patch, samples, spoils ? 0 : gain / samples});

@@ -14,9 +14,9 @@ struct RatedPatch {
     double urgency = 0; ///< error that waiting costs, summed over pixels, for each sample; above 0: due
 };
 
-/// Replaces `rated` by every patch of the cut, with its urgency.
-void rate_patches(PlaceField const& field, Choices const& choices, std::vector<Patch> const& cut, Budget const& budget,
-                  std::vector<RatedPatch>& rated);
+/// Replaces `rated` by every patch of the cut, with its urgency. `due`: what `find_due_errors` gives.
+void rate_patches(PlaceField const& field, Choices const& choices, std::span<float const> due,
+                  std::vector<Patch> const& cut, Budget const& budget, std::vector<RatedPatch>& rated);
 
 /// Keeps what is due, the most urgent first, until `samples` are spent.
 void select_patches(double samples, std::vector<RatedPatch>& rated);

@@ -21,23 +21,32 @@ std::size_t scattered(std::uint32_t seed, std::size_t count) {
     return (seed * 0x9e3779b9u >> 16) % count;
 }
 
-/// Of samples [first, last) the one that differs most from the next: where an edge is, the smallest motion shows.
-std::size_t steepest(LumaHistory::Entry const& entry, std::size_t first, std::size_t last) {
-    std::size_t found = first;
-    float most = -1;
-    for (std::size_t i = first; i < last; ++i) {
-        float const step = std::abs(entry.luma[i] - entry.luma[(i + 1) % framelet_samples]);
-        if (step > most) {
-            most = step;
-            found = i;
-        }
+/// How much each sample differs from the next one along the curve: where an edge is, the smallest motion shows.
+std::array<float, framelet_samples> steps_of(LumaHistory::Entry const& entry) {
+    std::array<float, framelet_samples> steps;
+    for (std::size_t i = 0; i + 1 < steps.size(); ++i) {
+        steps[i] = std::abs(entry.luma[i] - entry.luma[i + 1]);
     }
-    return found;
+    steps.back() = std::abs(entry.luma.back() - entry.luma.front());
+    return steps;
+}
+
+/// Of samples [first, last) the steepest.
+std::size_t steepest(std::array<float, framelet_samples> const& steps, std::size_t first, std::size_t last) {
+    float most = 0;
+    for (std::size_t i = first; i < last; ++i) {
+        most = std::max(most, steps[i]);
+    }
+    while (first + 1 < last && steps[first] < most) {
+        ++first;
+    }
+    return first;
 }
 
 /// Notes some samples of a part of a framelet, one in each of equal shares of it: in turn the steepest and any one.
-void note_probes(PlaceFindings& place, ImagePlane const& plane, LumaHistory::Entry const& entry, std::size_t first,
-                 std::size_t count, std::size_t wanted) {
+void note_probes(PlaceFindings& place, ImagePlane const& plane, LumaHistory::Entry const& entry,
+                 std::array<float, framelet_samples> const& steps, std::size_t first, std::size_t count,
+                 std::size_t wanted) {
     Viewport const viewport = plane.viewport();
     if (wanted == 0) {
         return;
@@ -46,7 +55,7 @@ void note_probes(PlaceFindings& place, ImagePlane const& plane, LumaHistory::Ent
     for (std::size_t i = 0; i < std::min(wanted, count) && place.probe_count < probes_per_place; ++i) {
         std::size_t const begin = first + i * share;
         std::size_t const sample = place.probe_count % 2 == 0
-                                       ? steepest(entry, begin, begin + share)
+                                       ? steepest(steps, begin, begin + share)
                                        : begin + scattered(entry.tile.code + static_cast<std::uint32_t>(i), share);
         Vec2 const at = sample_place(plane, entry.tile, sample);
         if (at.x < static_cast<float>(viewport.width) && at.y < static_cast<float>(viewport.height)) {
@@ -111,10 +120,11 @@ bool examine_patch(PlaceField const& field, Patch const& patch, std::span<Displa
         same = same && before != nullptr && before->content == entry.content;
         std::size_t const wanted =
             (f + 1) * probes_per_place / framelets.size() - f * probes_per_place / framelets.size();
+        std::array<float, framelet_samples> const steps = steps_of(entry);
         std::size_t first = 0;
         for (PlaceFindings& place : places) {
             accumulate(place.seen, observe(level, luma, difference, seconds, first, count));
-            note_probes(place, field.plane(), entry, first, count, wanted);
+            note_probes(place, field.plane(), entry, steps, first, count, wanted);
             place.inverse_depth += mean_inverse_depth(rendered[f], first, count);
             first += count;
         }

@@ -34,11 +34,15 @@ void choose_all(PlaceField const& field, double now, Budget const& budget, float
 
 } // namespace
 
-float due_error(Place const& place, Budget const& budget) {
-    return shown_error(place, place.model.motion * budget.latency);
+void find_due_errors(PlaceField const& field, Budget const& budget, std::vector<float>& due) {
+    due.resize(field.size());
+    for (std::uint32_t const index : field.visible()) {
+        Place const& place = field[index];
+        due[index] = shown_error(place, place.model.motion * budget.latency);
+    }
 }
 
-double demand_of(PlaceField const& field, Budget const& budget, Choices const& choices) {
+double demand_of(PlaceField const& field, Budget const& budget, std::span<float const> due, Choices const& choices) {
     double steady = 0;
     double stale = 0;
     double coarse = 0;
@@ -47,7 +51,7 @@ double demand_of(PlaceField const& field, Budget const& budget, Choices const& c
         SamplingChoice const& choice = choices[index];
         double const samples = static_cast<double>(field.pixels_of(index) * samples_per_pixel(choice.level));
         steady += choice.recurring ? samples / static_cast<double>(choice.period) : 0;
-        float const error = due_error(place, budget);
+        float const error = due[index];
         if (error > choice.due_error) {
             bool const is_true = place.level >= 0 && unresolved_error(place.model, place.level) > 0.5f * error;
             (is_true ? coarse : stale) += samples;
@@ -57,13 +61,14 @@ double demand_of(PlaceField const& field, Budget const& budget, Choices const& c
            coarse / coarse_seconds;
 }
 
-float solve_price(PlaceField const& field, double now, Budget const& budget, float last_price, Choices& choices) {
+float solve_price(PlaceField const& field, double now, Budget const& budget, std::span<float const> due,
+                  float last_price, Choices& choices) {
     choices.resize(field.size());
     constexpr int most_steps = 4;
     float price = std::clamp(last_price, least_price, most_price);
     for (int step = 0;; ++step) {
         choose_all(field, now, budget, price, choices);
-        double const ratio = demand_of(field, budget, choices) / budget.samples_per_second;
+        double const ratio = demand_of(field, budget, due, choices) / budget.samples_per_second;
         // Demand falls about as the square root of the price, faster where it makes levels coarser: far away in large
         // steps, near by in small ones, that do not overshoot.
         bool const near = ratio > 0.25 && ratio < 4;

@@ -3,6 +3,7 @@
 // there is. This conserves the budget: the integral of density over space and time.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "server/schedule/place_field.h"
@@ -22,12 +23,14 @@ using Choices = std::vector<SamplingChoice>;
 /// Finds the price at which the choices use the budget, from the last cycle's price, and the choices. Returns the
 /// price. What is due already counts as if it were to be done within a few cycles, so that a cut makes samples dear,
 /// and the first picture coarse.
-float solve_price(PlaceField const& field, double now, Budget const& budget, float last_price, Choices& choices);
+/// `due`: what `find_due_errors` gives.
+float solve_price(PlaceField const& field, double now, Budget const& budget, std::span<float const> due,
+                  float last_price, Choices& choices);
 
 /// Samples a second that the choices ask for.
-double demand_of(PlaceField const& field, Budget const& budget, Choices const& choices);
+double demand_of(PlaceField const& field, Budget const& budget, std::span<float const> due, Choices const& choices);
 
-/// Error that a place shows by the time at which a refresh would come.
-float due_error(Place const& place, Budget const& budget);
+/// For every visible place, by Morton index, the error that it shows by the time at which a refresh would come.
+void find_due_errors(PlaceField const& field, Budget const& budget, std::vector<float>& due);
 
 } // namespace framelet

@@ -9,14 +9,13 @@
 #include "common/framelet_cache.h"
 #include "common/reconstruction.h"
 #include "protocol/batch_codec.h"
-#include "server/render/probe_renderer.h"
-#include "server/schedule/adaptive_refresh.h"
 #include "tests/evaluation/codecs/h264_codec.h"
 #include "tests/evaluation/codecs/jpeg_codec.h"
 #include "tests/evaluation/methods/kd_leaves.h"
 #include "tests/evaluation/methods/tsar_server.h"
 #include "tests/evaluation/methods/tsar_viewer.h"
 #include "tests/evaluation/methods/whole_frame.h"
+#include "tests/evaluation/response_cost.h"
 #include "tests/evaluation/stopwatch.h"
 
 namespace framelet::bench {
@@ -129,37 +128,11 @@ void calibrate_framelets(BenchScene& scene, ImagePlane const& plane, int rounds,
 }
 
 /// The response on a scene that moves, as a server of ten frames a second sees it.
-void calibrate_response(BenchScene& scene, ImagePlane const& plane, int rounds, CostTable& costs) {
-    AdaptiveRefresh refresh;
-    std::vector<double> planning, learning;
-    std::vector<Framelet> rendered;
-    std::vector<DisplayFramelet> display;
-    ProbeRenderer probes;
-    RefreshInput input;
-    double const pixels = static_cast<double>(plane.viewport().width) * plane.viewport().height;
-    input.samples_per_second = 10 * pixels;
-    for (int cycle = 0; cycle < 10 + 5 * rounds; ++cycle) {
-        input.now = cycle * static_cast<double>(input.cycle_seconds);
-        pose_at(scene, input.now);
-        input.state = {{1, scene.camera, plane.viewport()}, scene.exposure, input.now};
-        RefreshPlan const* plan = nullptr;
-        double const planned = seconds_of([&] { plan = &refresh.plan(input); });
-        rendered.resize(plan->tiles.size());
-        render_framelets(*scene.render_scene, scene.camera, plane, plan->tiles, 0, rendered);
-        probes.render(*scene.render_scene, scene.camera, plane.viewport(), scene.exposure, plan->probes);
-        display.clear();
-        for (Framelet const& framelet : rendered) {
-            display.push_back(to_display(framelet, scene.exposure));
-        }
-        double const learnt = seconds_of([&] { refresh.learn(display, rendered, probes.luma()); });
-        if (cycle >= 10 && !rendered.empty()) {
-            planning.push_back(1e9 * planned / static_cast<double>(refresh.field().visible().size()));
-            learning.push_back(1e9 * learnt / static_cast<double>(rendered.size() * framelet_samples));
-        }
-    }
-    pose_at(scene, 0);
-    costs.plan_place = median(planning);
-    costs.learn_sample = median(learning);
+void calibrate_response(BenchScene& scene, Viewport viewport, int rounds, CostTable& costs) {
+    double const rate = 10.0 * viewport.width * viewport.height;
+    ResponseCost const cost = response_cost(scene, viewport, rate, 0.1 * rounds);
+    costs.plan_place = 1e9 * cost.plan / static_cast<double>(cost.cycles * cost.places);
+    costs.learn_sample = 1e9 * cost.learn / static_cast<double>(cost.samples);
 }
 
 void calibrate_afr(Viewport viewport, int rounds, CostTable& costs) {
@@ -270,7 +243,7 @@ CostTable calibrate(BenchScene& scene, Viewport viewport, int rounds) {
     std::vector<Framelet> rendered;
     calibrate_rendering(scene, plane, rounds, rendered, costs);
     calibrate_framelets(scene, plane, rounds, rendered, costs);
-    calibrate_response(scene, plane, rounds, costs);
+    calibrate_response(scene, viewport, rounds, costs);
     calibrate_afr(viewport, rounds, costs);
     calibrate_density_response(plane, rendered, rounds, costs);
     calibrate_blending(scene, plane, rendered, rounds, costs);

@@ -17,6 +17,7 @@
 #include "tests/evaluation/calibrate.h"
 #include "tests/evaluation/estimators/estimator_verbs.h"
 #include "tests/evaluation/limits.h"
+#include "tests/evaluation/response_cost.h"
 #include "tests/evaluation/sensitivity.h"
 #include "tests/evaluation/stability.h"
 #include "tests/evaluation/table.h"
@@ -287,6 +288,20 @@ int main(int argc, char** argv) {
                  }
                  return framelet::bench::measure_limits(scene, limits);
              }));
+    add_verb(
+        "response", "What response, tiling and selection cost for pictures of 256 to 4096 pixels",
+        [](CLI::App& verb, Options& o) {
+            add_scene_options(verb, o);
+            verb.add_option("--charts", o.study.charts, "Draw charts into this folder");
+        },
+        with_scene([&options](BenchScene& scene) {
+            framelet::bench::ResponseStudy sizes{.charts = options.study.charts};
+            if (options.quick) {
+                sizes.sides = {256, 1024};
+                sizes.seconds = 0.3;
+            }
+            return framelet::bench::measure_response(scene, sizes);
+        }));
     add_estimator_verb("estimators", "Cost of error estimators against their agreement with the ideal density",
                        framelet::bench::compare_estimators);
     add_estimator_verb("fit", "Fits the templates of the error estimators", framelet::bench::fit_estimators);

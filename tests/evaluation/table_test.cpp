@@ -71,7 +71,8 @@ TEST(Table, BatchesHaveNoMoreFrameletsThanTheRunSays) {
         std::size_t most = 0;
         for (int step = 0; step < 6; ++step) {
             pose_at(*scene, 0.1 * step);
-            auto const message = method->produce({*scene, 0.1 * step, 0.1 * step, {1, scene->camera, {128, 128}}, 0, {}}).message;
+            auto const message =
+                method->produce({*scene, 0.1 * step, 0.1 * step, {1, scene->camera, {128, 128}}, 0, {}}).message;
             most = std::max(most, std::get<EncodedBatch>(decode_message(message)).tiles.size());
         }
         return most;

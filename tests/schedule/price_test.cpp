@@ -34,6 +34,12 @@ PlaceField random_field(Viewport viewport, std::mt19937& random) {
     return field;
 }
 
+std::vector<float> due_errors(PlaceField const& field, Budget const& budget) {
+    std::vector<float> due;
+    find_due_errors(field, budget, due);
+    return due;
+}
+
 TEST(Price, DemandIsTheBudget) {
     std::mt19937 random(1);
     double least = 1e9;
@@ -46,11 +52,12 @@ TEST(Price, DemandIsTheBudget) {
         double const pixels = double(viewport.width) * viewport.height;
         Budget const budget{pixels * std::exp2(std::uniform_real_distribution<double>(-1, 6)(random)), 0.02f, 0.03f, 0};
         Choices choices;
+        std::vector<float> const due = due_errors(field, budget);
         float price = 1e-6f;
         for (int cycle = 0; cycle < 12; ++cycle) {
-            price = solve_price(field, 10, budget, price, choices);
+            price = solve_price(field, 10, budget, due, price, choices);
         }
-        double const ratio = demand_of(field, budget, choices) / budget.samples_per_second;
+        double const ratio = demand_of(field, budget, due, choices) / budget.samples_per_second;
         if (price <= 1e-12f) { // everything at its best costs less than there is
             EXPECT_LE(ratio, 1.25);
             ++bounded;
@@ -61,7 +68,7 @@ TEST(Price, DemandIsTheBudget) {
         EXPECT_GT(ratio, 0.5) << n;
         EXPECT_LT(ratio, 2) << n;
         // And there it stays: one cycle more moves it little.
-        float const next = solve_price(field, 10, budget, price, choices);
+        float const next = solve_price(field, 10, budget, due, price, choices);
         if (ratio > 0.8 && ratio < 1.2) {
             EXPECT_EQ(next, price) << n;
         } else {
@@ -81,14 +88,14 @@ TEST(Price, ABacklogIsDear) {
     Choices choices;
     float held = 1e-6f;
     for (int cycle = 0; cycle < 12; ++cycle) {
-        held = solve_price(field, 10, budget, held, choices);
+        held = solve_price(field, 10, budget, due_errors(field, budget), held, choices);
     }
     for (std::uint32_t const index : field.visible()) {
         field[index].level = -1;
     }
     float bare = held;
     for (int cycle = 0; cycle < 12; ++cycle) {
-        bare = solve_price(field, 10, budget, bare, choices);
+        bare = solve_price(field, 10, budget, due_errors(field, budget), bare, choices);
     }
     EXPECT_GT(bare, 1.5f * held);
 }
@@ -105,7 +112,8 @@ TEST(Price, SelectionStopsAtTheBudget) {
         Budget const budget{pixels * std::exp2(static_cast<double>(random() % 8)), 0.02f, 0.03f, 0};
         double const samples = budget.samples_per_second * static_cast<double>(budget.cycle_seconds);
         Choices choices;
-        solve_price(field, 10, budget, 1e-6f, choices);
+        std::vector<float> const due = due_errors(field, budget);
+        solve_price(field, 10, budget, due, 1e-6f, choices);
         std::vector<float> density(field.size());
         for (std::uint32_t const index : field.visible()) {
             density[index] = samples_per_pixel(choices[index].level);
@@ -114,7 +122,7 @@ TEST(Price, SelectionStopsAtTheBudget) {
         std::vector<Patch> cut;
         make_density_patches(field.plane(), density, field.depth(), scratch, cut);
         std::vector<RatedPatch> rated;
-        rate_patches(field, choices, cut, budget, rated);
+        rate_patches(field, choices, due, cut, budget, rated);
         EXPECT_EQ(rated.size(), cut.size());
         select_patches(samples, rated);
         double spent = 0;
