@@ -113,7 +113,8 @@ void AdaptiveRefresh::plan_cycle(RefreshInput const& input) {
     cycle_.clear();
     next_ = 0;
     ++cycle_count_;
-    cycle_budget_ = input.samples_per_second * static_cast<double>(input.cycle_seconds);
+    cycle_seconds_ = static_cast<double>(input.cycle_seconds);
+    cycle_budget_ = input.samples_per_second * cycle_seconds_;
     double samples = cycle_budget_;
     if (scene_moves_) {
         plan_probes(probe_share * samples);

@@ -62,12 +62,13 @@ public:
     PlaceField const& field() const { return field_; }
     Choices const& choices() const { return choices_; }
     float price() const { return price_; }
-    /// The cycle that was planned last: how many there have been, its tiling, the patches to render, and the samples
-    /// that it has time for.
+    /// The cycle that was planned last: how many there have been, its tiling, the patches to render, the samples
+    /// that it has time for, and its length.
     std::uint64_t cycle_count() const { return cycle_count_; }
     std::vector<Patch> const& cut() const { return cut_; }
     std::vector<Patch> const& cycle() const { return cycle_; }
     double cycle_budget() const { return cycle_budget_; }
+    double cycle_seconds() const { return cycle_seconds_; }
 
 private:
     bool goes_on(RefreshInput const& input) const;
@@ -96,6 +97,7 @@ private:
     double planned_ = never; ///< when the cycle was planned
     std::uint64_t cycle_count_ = 0;
     double cycle_budget_ = 0; ///< samples
+    double cycle_seconds_ = 0;
     std::vector<Patch> cycle_; ///< patches of the cycle
     std::size_t next_ = 0; ///< of these
     RefreshPlan plan_;

@@ -42,7 +42,7 @@ void find_due_errors(PlaceField const& field, Budget const& budget, std::vector<
     }
 }
 
-double demand_of(PlaceField const& field, Budget const& budget, std::span<float const> due, Choices const& choices) {
+Demand demand_of(PlaceField const& field, Budget const& budget, std::span<float const> due, Choices const& choices) {
     double steady = 0;
     double stale = 0;
     double coarse = 0;
@@ -57,8 +57,8 @@ double demand_of(PlaceField const& field, Budget const& budget, std::span<float 
             (is_true ? coarse : stale) += samples;
         }
     }
-    return std::max(steady, stale / (stale_cycles * static_cast<double>(budget.cycle_seconds))) +
-           coarse / coarse_seconds;
+    return {std::max(steady, stale / (stale_cycles * static_cast<double>(budget.cycle_seconds))),
+            coarse / coarse_seconds};
 }
 
 float solve_price(PlaceField const& field, double now, Budget const& budget, std::span<float const> due,
@@ -68,11 +68,15 @@ float solve_price(PlaceField const& field, double now, Budget const& budget, std
     float price = std::clamp(last_price, least_price, most_price);
     for (int step = 0;; ++step) {
         choose_all(field, now, budget, price, choices);
-        double const ratio = demand_of(field, budget, due, choices) / budget.samples_per_second;
+        Demand const demand = demand_of(field, budget, due, choices);
+        double ratio = (demand.pressing + demand.refining) / budget.samples_per_second;
+        if (ratio > 1) { // refinement can wait
+            ratio = std::max(demand.pressing / budget.samples_per_second, 1.0);
+        }
         // Demand falls about as the square root of the price, faster where it makes levels coarser: far away in large
-        // steps, near by in small ones, that do not overshoot.
+        // steps, near by in small ones, that do not overshoot. Downwards a level at most, so that none is left out.
         bool const near = ratio > 0.25 && ratio < 4;
-        float const factor = static_cast<float>(near ? ratio : std::clamp(ratio * std::sqrt(ratio), 1.0 / 64, 64.0));
+        float const factor = static_cast<float>(near ? ratio : std::clamp(ratio * std::sqrt(ratio), 0.25, 64.0));
         price = std::clamp(ratio > 0.8 && ratio < 1.2 ? price : price * factor, least_price, most_price);
         // What is left to correct is left to the next cycle, unless it is much.
         if (step == most_steps || (ratio > 0.5 && ratio < 2)) {

@@ -22,13 +22,17 @@ using Choices = std::vector<SamplingChoice>;
 
 /// Finds the price at which the choices use the budget, from the last cycle's price, and the choices. Returns the
 /// price. What is due already counts as if it were to be done within a few cycles, so that a cut makes samples dear,
-/// and the first picture coarse.
+/// and the first picture coarse. While nothing moves the price only falls, so that a tiling only gets finer.
 /// `due`: what `find_due_errors` gives.
 float solve_price(PlaceField const& field, double now, Budget const& budget, std::span<float const> due,
                   float last_price, Choices& choices);
 
 /// Samples a second that the choices ask for.
-double demand_of(PlaceField const& field, Budget const& budget, std::span<float const> due, Choices const& choices);
+struct Demand {
+    double pressing = 0; ///< for what moves, or is no longer true
+    double refining = 0; ///< for what is true and coarse: it can wait and makes nothing dearer
+};
+Demand demand_of(PlaceField const& field, Budget const& budget, std::span<float const> due, Choices const& choices);
 
 /// For every visible place, by Morton index, the error that it shows by the time at which a refresh would come.
 void find_due_errors(PlaceField const& field, Budget const& budget, std::vector<float>& due);

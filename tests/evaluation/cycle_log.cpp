@@ -23,7 +23,8 @@ void CycleLog::add(double start, AdaptiveRefresh const& refresh, std::uint64_t s
         std::ranges::sort(cut, before);
         auto const kept = std::ranges::count_if(
             cut, [this](Patch const& patch) { return std::ranges::binary_search(cut_, patch, before); });
-        entries_.push_back({start, refresh.cycle_budget(), 0, static_cast<double>(refresh.price()), cut.size(),
+        entries_.push_back({start, refresh.cycle_budget() / refresh.cycle_seconds(), 0,
+                            static_cast<double>(refresh.price()), cut.size(),
                             cut.size() - static_cast<std::size_t>(kept)});
         cut_ = std::move(cut);
     }
@@ -50,15 +51,24 @@ Hunting measure_hunting(std::vector<CycleEntry> const& entries, double from, dou
 
 Conservation measure_conservation(std::vector<CycleEntry> const& entries, double from, double until) {
     Conservation result;
-    for (CycleEntry const& entry : entries) {
-        if (!is_within(entry, from, until)) {
+    for (std::size_t first = 0; first + 1 < entries.size(); ++first) {
+        if (!is_within(entries[first], from, until)) {
             continue;
         }
-        result.samples += entry.samples;
-        result.budget += entry.budget;
-        if (entry.samples > result.largest_violation * entry.budget) {
-            result.largest_violation = entry.samples / entry.budget;
-            result.violation_samples = entry.samples - entry.budget;
+        // A cycle lasts until the next one starts; of the last one nobody knows.
+        double samples = 0;
+        double budget = 0;
+        for (std::size_t i = first; i + 1 < entries.size(); ++i) {
+            samples += entries[i].samples;
+            budget += entries[i].rate * (entries[i + 1].start - entries[i].start);
+            if (i == first) {
+                result.samples += samples;
+                result.budget += budget;
+            }
+            if (entries[i + 1].start - entries[first].start >= least_window) {
+                result.largest_share = std::max(result.largest_share, samples / budget);
+                break;
+            }
         }
     }
     return result;

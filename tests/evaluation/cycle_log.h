@@ -11,7 +11,7 @@ namespace framelet::bench {
 
 struct CycleEntry {
     double start = 0; ///< seconds
-    double budget = 0; ///< samples that it had time for
+    double rate = 0; ///< samples a second that the renderer was found to make
     double samples = 0; ///< rendered, probes included
     double price = 0;
     std::size_t patches = 0; ///< of the tiling
@@ -39,12 +39,13 @@ struct Hunting {
 };
 Hunting measure_hunting(std::vector<CycleEntry> const& entries, double from, double until);
 
-/// Samples against budget over cycles that start in [from, until).
+/// Samples against what the renderer can do in the time, over cycles that start in [from, until). Conservation of the
+/// density's integral: nowhere above 1 but for what a rate is misjudged.
 struct Conservation {
     double samples = 0, budget = 0;
-    double largest_violation = 0; ///< most samples / budget of a cycle
-    double violation_samples = 0; ///< samples beyond the budget of that cycle
+    double largest_share = 0; ///< most samples / budget of cycles in a row that last for `least_window` or longer
 };
+inline constexpr double least_window = 0.1; ///< seconds
 Conservation measure_conservation(std::vector<CycleEntry> const& entries, double from, double until);
 
 } // namespace framelet::bench

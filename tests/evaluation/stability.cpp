@@ -83,8 +83,7 @@ json to_json(StabilityRun const& run) {
                 {"conservation",
                  {{"samples", run.conservation.samples},
                   {"budget", run.conservation.budget},
-                  {"largest_violation", run.conservation.largest_violation},
-                  {"violation_samples", run.conservation.violation_samples}}},
+                  {"largest_share", run.conservation.largest_share}}},
                 {"mse", run.errors}};
     auto const or_null = [](std::optional<double> value) { return value ? json(*value) : json(); };
     for (EventRecord const& event : run.events) {
@@ -122,9 +121,9 @@ void print(StabilityRun const& run, std::string const& scene) {
                     event.settling.overshoot, event.hunting.cycles, 100 * event.hunting.changed_share,
                     event.hunting.price_octaves);
     }
-    std::printf("%-9s %5zu samples rendered / budget %.3f, worst cycle %.2f (%.0f samples beyond)\n", scene.c_str(),
-                run.batch, run.conservation.samples / std::max(run.conservation.budget, 1.0),
-                run.conservation.largest_violation, run.conservation.violation_samples);
+    std::printf("%-9s %5zu samples rendered / what there was time for: %.3f, worst tenth of a second %.3f\n",
+                scene.c_str(), run.batch, run.conservation.samples / std::max(run.conservation.budget, 1.0),
+                run.conservation.largest_share);
     std::fflush(stdout); // whoever reads a pipe wants to see it grow
 }
 

@@ -60,10 +60,13 @@ TEST(CycleLog, HuntingAndConservationAreMeansOverTheirTime) {
     EXPECT_EQ(measure_hunting(entries, 3, 4).changed_share, 0);
     EXPECT_EQ(measure_hunting(entries, 5, 9).cycles, 0u);
     Conservation const conservation = measure_conservation(entries, 0, 4);
-    EXPECT_DOUBLE_EQ(conservation.samples, 420);
-    EXPECT_DOUBLE_EQ(conservation.budget, 400);
-    EXPECT_DOUBLE_EQ(conservation.largest_violation, 1.5);
-    EXPECT_DOUBLE_EQ(conservation.violation_samples, 50);
+    EXPECT_DOUBLE_EQ(conservation.samples, 340) << "the last one has not ended";
+    EXPECT_DOUBLE_EQ(conservation.budget, 300);
+    EXPECT_DOUBLE_EQ(conservation.largest_share, 1.5);
+    // Short cycles make up for each other within a tenth of a second.
+    std::vector<CycleEntry> const hasty{
+        {0, 1000, 30, 1, 1, 0}, {0.04, 1000, 90, 1, 1, 0}, {0.08, 1000, 10, 1, 1, 0}, {0.2, 1000, 0, 1, 1, 0}};
+    EXPECT_DOUBLE_EQ(measure_conservation(hasty, 0, 1).largest_share, 130.0 / 200);
 }
 
 TEST(EventTimes, AreThoseOfTheGenerator) {
@@ -101,8 +104,8 @@ TEST(Stability, EveryEventIsToldOfAndTheBudgetIsKept) {
                 }
             }
             EXPECT_GT(run["conservation"]["samples"], 0);
-            // What is rendered last may be a patch of a place's 16 finest tiles, and no more.
-            EXPECT_LE(run["conservation"]["violation_samples"].get<double>(), 17 * framelet_samples);
+            // The rate is of what has been rendered lately: a dearer part of the picture makes it a little too great.
+            EXPECT_LE(run["conservation"]["largest_share"].get<double>(), 1.1);
         }
     }
     options.scenes = {"no such scene"};
