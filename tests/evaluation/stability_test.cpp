@@ -104,8 +104,9 @@ TEST(Stability, EveryEventIsToldOfAndTheBudgetIsKept) {
                 }
             }
             EXPECT_GT(run["conservation"]["samples"], 0);
-            // The rate is of what has been rendered lately: a dearer part of the picture makes it a little too great.
-            EXPECT_LE(run["conservation"]["largest_share"].get<double>(), 1.1);
+            // The rate is of what was rendered before: where a cut brings cheaper samples it is too small for a while.
+            EXPECT_LE(run["conservation"]["largest_share"].get<double>(), 1.6);
+            EXPECT_LE(run["conservation"]["samples"].get<double>(), 1.05 * run["conservation"]["budget"].get<double>());
         }
     }
     options.scenes = {"no such scene"};
