@@ -207,6 +207,7 @@ json compare_codecs(CodecStudy const& study) {
             }
         }
         if (!study.charts.empty()) {
+            std::filesystem::create_directories(study.charts);
             draw_chart(scene->name, rows, "sample_psnr", "PSNR of samples [dB]",
                        study.charts / ("codec_" + scene->name + "_samples"));
             draw_chart(scene->name, rows, "picture_psnr", "PSNR of the picture [dB]",
