@@ -43,12 +43,17 @@ struct NumberedView {
 /// Most framelets that one batch may carry: 8 Mi samples.
 inline constexpr std::size_t max_batch_framelets = 32768;
 
+/// How a framelet was coded: 0 without loss, else with quantisation steps that grow with the number.
+inline constexpr std::uint8_t exact_quality = 0;
+inline constexpr std::uint8_t coarsest_quality = 127;
+
 /// The framelets of one server cycle: one camera, one scene time.
 struct Batch {
     std::uint64_t number = 0; ///< counts up by one within a session, from 1
     NumberedView view;
     SceneTime scene_time = 0;
     std::vector<DisplayFramelet> framelets;
+    std::vector<std::uint8_t> quality{}; ///< of each framelet, 0..coarsest_quality; empty: all are exact
 
     bool operator==(Batch const&) const = default;
 };

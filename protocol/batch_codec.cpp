@@ -10,59 +10,18 @@
 #include <zstd.h>
 
 #include "common/error.h"
+#include "protocol/plane_codec.h"
 
 namespace framelet {
 namespace {
 
-using Samples = std::array<std::uint8_t, framelet_samples>;
-
 /// Framelets that are compressed together, and apart from the others: enough for the compressor to learn from, few
 /// enough to stay in the cache and to give every core some.
 constexpr std::size_t group_framelets = 128;
-constexpr auto framelet_bytes = std::size_t{3} * framelet_samples;
 constexpr int compression_level = 1;
 constexpr std::size_t length_bytes = 4;
 /// First bytes of a zstd frame (RFC 8878); other kinds of frames that the library knows are not part of the format.
 constexpr std::array<std::uint8_t, 4> zstd_magic{0x28, 0xb5, 0x2f, 0xfd};
-
-constexpr std::array<Samples DisplayFramelet::*, 3> planes{&DisplayFramelet::red, &DisplayFramelet::green,
-                                                           &DisplayFramelet::blue};
-
-constexpr std::array<std::uint8_t, framelet_samples> make_morton_of_raster() {
-    std::array<std::uint8_t, framelet_samples> table{};
-    for (std::uint32_t i = 0; i < framelet_samples; ++i) {
-        table[i] = static_cast<std::uint8_t>(morton_index(i % framelet_side, i / framelet_side));
-    }
-    return table;
-}
-constexpr auto morton_of_raster = make_morton_of_raster();
-
-/// 256 samples in Morton order to 256 differences in raster order, modulo 256: to the left neighbour, in the first
-/// column to the upper one.
-void difference(Samples const& samples, std::uint8_t* out) {
-    std::uint8_t above = 0;
-    for (std::size_t row = 0; row < framelet_samples; row += framelet_side) {
-        std::uint8_t previous = above;
-        above = samples[morton_of_raster[row]];
-        for (std::size_t i = row; i < row + framelet_side; ++i) {
-            std::uint8_t const sample = samples[morton_of_raster[i]];
-            out[i] = static_cast<std::uint8_t>(sample - previous);
-            previous = sample;
-        }
-    }
-}
-
-void undo_difference(std::uint8_t const* in, Samples& samples) {
-    std::uint8_t above = 0;
-    for (std::size_t row = 0; row < framelet_samples; row += framelet_side) {
-        std::uint8_t previous = above;
-        for (std::size_t i = row; i < row + framelet_side; ++i) {
-            previous = static_cast<std::uint8_t>(previous + in[i]);
-            samples[morton_of_raster[i]] = previous;
-        }
-        above = samples[morton_of_raster[row]];
-    }
-}
 
 std::size_t group_count(std::size_t framelets) {
     return (framelets + group_framelets - 1) / group_framelets;
@@ -103,12 +62,14 @@ std::vector<ByteView> split_payload(ByteView payload, std::size_t groups) {
     return frames;
 }
 
-/// Refuses all but one zstd frame that says it holds `size` bytes.
-void check_frame(ByteView frame, std::size_t size) {
+/// Refuses all but one zstd frame that says how many bytes it holds, and these a number that `is_possible`.
+template <typename IsPossible>
+void check_frame(ByteView frame, IsPossible const& is_possible) {
     if (frame.size() < zstd_magic.size() || std::memcmp(frame.data(), zstd_magic.data(), zstd_magic.size()) != 0) {
         throw ProtocolError("a group of a batch is not a zstd frame");
     }
-    if (ZSTD_getFrameContentSize(frame.data(), frame.size()) != size) {
+    // Where the size is unknown or the header damaged this is near 2^64.
+    if (!is_possible(ZSTD_getFrameContentSize(frame.data(), frame.size()))) {
         throw ProtocolError("a group of a batch does not hold what its tiles need");
     }
     if (ZSTD_findFrameCompressedSize(frame.data(), frame.size()) != frame.size()) {
@@ -119,43 +80,72 @@ void check_frame(ByteView frame, std::size_t size) {
 struct Worker {
     std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> compressor{nullptr, ZSTD_freeCCtx};
     std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> decompressor{nullptr, ZSTD_freeDCtx};
-    std::vector<std::uint8_t> differences = std::vector<std::uint8_t>(group_framelets * framelet_bytes);
+    std::vector<std::uint8_t> content;
+    PlaneCodec planes;
 
-    /// Returns the length of the frame written to `out`.
-    std::size_t encode(std::span<DisplayFramelet const> group, std::span<std::byte> out) {
-        std::uint8_t* to = differences.data();
-        for (auto const plane : planes) {
+    /// Returns the length of the frame written to `out`. `quality` may be empty: without loss, in encoding 1.
+    std::size_t encode(std::span<DisplayFramelet const> group, std::span<std::uint8_t const> quality,
+                       std::span<std::byte> out) {
+        if (!quality.empty()) {
+            return compress(planes.encode(group, quality), out);
+        }
+        content.resize(group.size() * exact_framelet_bytes);
+        std::uint8_t* to = content.data();
+        for_each_plane([&](auto const plane) {
             for (DisplayFramelet const& framelet : group) {
                 difference(framelet.*plane, to);
                 to += framelet_samples;
             }
-        }
+        });
+        return compress(std::array{std::span<std::uint8_t const>(content)}, out);
+    }
+
+    /// One frame; each part begins a block of its own, so that it has its own statistics.
+    template <std::size_t count>
+    std::size_t compress(std::array<std::span<std::uint8_t const>, count> const& parts, std::span<std::byte> out) {
         if (!compressor) {
             compressor.reset(ZSTD_createCCtx());
             FRAMELET_CHECK(compressor != nullptr);
+            ZSTD_CCtx_setParameter(compressor.get(), ZSTD_c_compressionLevel, compression_level);
         }
-        std::size_t const length = ZSTD_compressCCtx(compressor.get(), out.data(), out.size(), differences.data(),
-                                                     group.size() * framelet_bytes, compression_level);
-        FRAMELET_CHECK(!ZSTD_isError(length));
-        return length;
+        std::size_t size = 0;
+        for (auto const part : parts) {
+            size += part.size();
+        }
+        ZSTD_CCtx_reset(compressor.get(), ZSTD_reset_session_only);
+        ZSTD_CCtx_setPledgedSrcSize(compressor.get(), size);
+        ZSTD_outBuffer to{out.data(), out.size(), 0};
+        for (std::size_t i = 0; i < count; ++i) {
+            ZSTD_inBuffer from{parts[i].data(), parts[i].size(), 0};
+            std::size_t const left =
+                ZSTD_compressStream2(compressor.get(), &to, &from, i + 1 < count ? ZSTD_e_flush : ZSTD_e_end);
+            FRAMELET_CHECK(left == 0);
+        }
+        return to.pos;
     }
 
-    void decode(ByteView frame, std::span<DisplayFramelet> group) {
+    /// `quality` may be empty, as above. The frame has been checked.
+    void decode(ByteView frame, std::span<DisplayFramelet> group, std::span<std::uint8_t> quality) {
         if (!decompressor) {
             decompressor.reset(ZSTD_createDCtx());
             FRAMELET_CHECK(decompressor != nullptr);
         }
-        std::size_t const size = group.size() * framelet_bytes;
-        if (ZSTD_decompressDCtx(decompressor.get(), differences.data(), size, frame.data(), frame.size()) != size) {
+        std::size_t const size = ZSTD_getFrameContentSize(frame.data(), frame.size());
+        content.resize(size);
+        if (ZSTD_decompressDCtx(decompressor.get(), content.data(), size, frame.data(), frame.size()) != size) {
             throw ProtocolError("a group of a batch cannot be decompressed");
         }
-        std::uint8_t const* from = differences.data();
-        for (auto const plane : planes) {
+        if (!quality.empty()) {
+            planes.decode(content, group, quality);
+            return;
+        }
+        std::uint8_t const* from = content.data();
+        for_each_plane([&](auto const plane) {
             for (DisplayFramelet& framelet : group) {
                 undo_difference(from, framelet.*plane);
                 from += framelet_samples;
             }
-        }
+        });
     }
 };
 
@@ -166,6 +156,12 @@ void for_each_group(std::size_t framelets, Body const& body) {
         std::size_t const first = group * group_framelets;
         body(group, first, std::min(group_framelets, framelets - first));
     });
+}
+
+/// Of a list that has something for every framelet or for none.
+template <typename Value>
+std::span<Value> part_of(std::span<Value> all, std::size_t first, std::size_t size) {
+    return all.empty() ? all : all.subspan(first, size);
 }
 
 } // namespace
@@ -184,18 +180,24 @@ BatchCodec& BatchCodec::operator=(BatchCodec&&) noexcept = default;
 EncodedBatch BatchCodec::encode(Batch const& batch) {
     std::size_t const count = batch.framelets.size();
     FRAMELET_CHECK(count <= max_batch_framelets);
+    FRAMELET_CHECK(batch.quality.empty() || batch.quality.size() == count);
     std::size_t const groups = group_count(count);
-    std::size_t const slot = ZSTD_compressBound(group_framelets * framelet_bytes);
+    // Three blocks more than one pass needs.
+    std::size_t const slot = ZSTD_compressBound(batch.quality.empty() ? group_framelets * exact_framelet_bytes
+                                                                      : most_plane_bytes(group_framelets)) +
+                             64;
     if (scratch_->frames.size() < groups * slot) {
         scratch_->frames.resize(groups * slot);
     }
     scratch_->lengths.resize(groups);
     for_each_group(count, [&](std::size_t group, std::size_t first, std::size_t size) {
         scratch_->lengths[group] = scratch_->workers.local().encode(
-            std::span(batch.framelets).subspan(first, size), std::span(scratch_->frames).subspan(group * slot, slot));
+            std::span(batch.framelets).subspan(first, size), part_of(std::span(batch.quality), first, size),
+            std::span(scratch_->frames).subspan(group * slot, slot));
     });
 
     EncodedBatch encoded{batch.number, batch.view, batch.scene_time, {}, {}};
+    encoded.encoding = batch.quality.empty() ? SampleEncoding::exact : SampleEncoding::haar;
     encoded.tiles.reserve(count);
     for (DisplayFramelet const& framelet : batch.framelets) {
         encoded.tiles.push_back(framelet.tile);
@@ -221,18 +223,23 @@ Batch BatchCodec::decode(EncodedBatch const& encoded) {
         throw ProtocolError("a batch has more than 32768 framelets");
     }
     std::vector<ByteView> const frames = split_payload(encoded.payload, group_count(count));
+    bool const is_exact = encoded.encoding == SampleEncoding::exact;
     for (std::size_t group = 0; group < frames.size(); ++group) {
         std::size_t const first = group * group_framelets;
-        check_frame(frames[group], std::min(group_framelets, count - first) * framelet_bytes);
+        std::size_t const size = std::min(group_framelets, count - first);
+        check_frame(frames[group], [&](unsigned long long bytes) {
+            return is_exact ? bytes == size * exact_framelet_bytes : bytes <= most_plane_bytes(size);
+        });
     }
-    // Memory is asked for only now: the frames have said that they fill it.
+    // Memory is asked for only now: the frames have said that they fill it, or how much less they hold.
     Batch batch{encoded.number, encoded.view, encoded.scene_time, std::vector<DisplayFramelet>(count)};
+    batch.quality.resize(is_exact ? 0 : count);
     for_each_group(count, [&](std::size_t group, std::size_t first, std::size_t size) {
         std::span const framelets = std::span(batch.framelets).subspan(first, size);
         for (std::size_t i = 0; i < size; ++i) {
             framelets[i].tile = encoded.tiles[first + i];
         }
-        scratch_->workers.local().decode(frames[group], framelets);
+        scratch_->workers.local().decode(frames[group], framelets, part_of(std::span(batch.quality), first, size));
     });
     return batch;
 }

@@ -1,4 +1,4 @@
-// Samples of a batch to bytes and back: planes, left difference, zstd. Encoder and decoder of one thing in one file.
+// Samples of a batch to bytes and back: groups of framelets, each in planes of its own, and zstd.
 #pragma once
 
 #include <memory>
@@ -16,6 +16,8 @@ public:
     BatchCodec(BatchCodec&&) noexcept;
     BatchCodec& operator=(BatchCodec&&) noexcept;
 
+    /// Without loss where the batch has no qualities; else each framelet with its own, and `decode` gives what the
+    /// viewer will see.
     EncodedBatch encode(Batch const& batch);
     /// Throws ProtocolError where the payload is not exactly what the tiles ask for.
     Batch decode(EncodedBatch const& encoded);

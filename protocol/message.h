@@ -80,6 +80,12 @@ struct Welcome {
     ClockState clock;
 };
 
+/// How the samples of a batch are coded.
+enum class SampleEncoding : std::uint8_t {
+    exact = 1, ///< all without loss
+    haar = 2, ///< each with a quality of its own
+};
+
 /// A batch as it travels: tiles in the clear, samples compressed by `batch_codec`.
 struct EncodedBatch {
     std::uint64_t number = 0;
@@ -87,6 +93,7 @@ struct EncodedBatch {
     SceneTime scene_time = 0;
     std::vector<Tile> tiles;
     Bytes payload;
+    SampleEncoding encoding = SampleEncoding::exact;
     bool operator==(EncodedBatch const&) const = default;
 };
 

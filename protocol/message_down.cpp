@@ -89,7 +89,8 @@ char const* problem(Welcome const& value) {
 Offset<wire::Batch> write(Builder& builder, EncodedBatch const& value) {
     auto const data =
         builder.CreateVector(reinterpret_cast<std::uint8_t const*>(value.payload.data()), value.payload.size());
-    auto const section = wire::CreateSection(builder, wire::Content::colour, wire::Encoding::planes_left_zstd, data);
+    auto const section =
+        wire::CreateSection(builder, wire::Content::colour, static_cast<wire::Encoding>(value.encoding), data);
     auto const sections = builder.CreateVector(&section, 1);
     std::uint32_t* codes = nullptr;
     auto const tiles = builder.CreateUninitializedVector(value.tiles.size(), &codes);
@@ -106,13 +107,14 @@ EncodedBatch read(wire::Batch const& wire) {
     if (section.content() != wire::Content::colour) {
         throw ProtocolError("a batch's section holds something unknown");
     }
-    if (section.encoding() != wire::Encoding::planes_left_zstd) {
+    if (section.encoding() != wire::Encoding::planes_left_zstd && section.encoding() != wire::Encoding::haar_zstd) {
         throw ProtocolError("a batch's samples are in an unknown encoding");
     }
     if (wire.tiles()->size() > max_batch_framelets) {
         throw ProtocolError("a batch has more than 32768 framelets");
     }
     EncodedBatch value;
+    value.encoding = static_cast<SampleEncoding>(section.encoding());
     value.number = wire.number();
     value.view = read(*wire.view());
     value.scene_time = wire.scene_time();

@@ -15,6 +15,7 @@
 
 #include "common/error.h"
 #include "tests/evaluation/calibrate.h"
+#include "tests/evaluation/codec/codec_study.h"
 #include "tests/evaluation/estimators/estimator_verbs.h"
 #include "tests/evaluation/limits.h"
 #include "tests/evaluation/response_cost.h"
@@ -55,6 +56,7 @@ struct Options {
     std::vector<std::string> table_scenes;
     framelet::bench::StudyOptions study;
     framelet::bench::EstimatorStudy estimators;
+    framelet::bench::CodecStudy codec;
     framelet::bench::WallOptions wall{.server_threads =
                                           std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1)};
 };
@@ -165,6 +167,16 @@ void add_stability_options(CLI::App& verb, Options& options) {
         ->capture_default_str();
 }
 
+void add_codec_options(CLI::App& verb, Options& options) {
+    add_output_options(verb, options);
+    verb.add_option("--scene", options.codec.scenes, "Scene files (default: the five vehicle scenes)");
+    verb.add_option("--fps", options.codec.corpus.frames_per_second,
+                    "Samples a second, in whole pictures at one sample a pixel")
+        ->check(CLI::Range(0.1, 1000.0))
+        ->capture_default_str();
+    verb.add_option("--charts", options.codec.charts, "Draw charts into this folder");
+}
+
 void add_wall_options(CLI::App& verb, Options& options) {
     add_study_options(verb, options);
     add_link_options(verb, options);
@@ -212,6 +224,21 @@ json table(Options& options) {
 json stability(Options& options) {
     settle(options, options.quick ? Scale{.size = 96, .rate = 20} : Scale{.size = 256, .rate = 40});
     return framelet::bench::measure_stability(source / "scenes", options.stability, options.study);
+}
+
+json codec(Options& options) {
+    framelet::bench::CodecStudy& study = options.codec;
+    if (study.scenes.empty()) {
+        for (auto const* scene : {"approach", "chase", "crossing", "fixed", "flyby"}) {
+            study.scenes.push_back(source / ("scenes/vehicle_" + std::string(scene) + ".glb"));
+        }
+    }
+    if (options.quick) {
+        study.corpus.viewport = {640, 360};
+        study.corpus.moments = 1;
+        study.rounds = 1;
+    }
+    return compare_codecs(study);
 }
 
 json calibrate(BenchScene& scene, bool quick) {
@@ -280,6 +307,8 @@ int main(int argc, char** argv) {
              study(framelet::bench::sensitivity));
     add_verb("calibrate", "What every stage costs on this machine", add_scene_options,
              with_scene([&options](BenchScene& scene) { return calibrate(scene, options.quick); }));
+    add_verb("codec", "Bytes of a sample against the error of what is decoded, for each way of coding framelets",
+             add_codec_options, [&options] { return codec(options); });
     add_verb("limits", "Each stage against its bare limit", add_scene_options,
              with_scene([&options](BenchScene& scene) {
                  framelet::bench::LimitsOptions limits;

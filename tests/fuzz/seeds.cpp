@@ -1,0 +1,91 @@
+// fuzz_seeds FOLDER: well-formed inputs of every fuzz target, one folder each.
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <random>
+
+#include "protocol/batch_codec.h"
+#include "protocol/plane_codec.h"
+
+namespace {
+
+using namespace framelet;
+
+/// Slopes, an edge, and noise of growing strength; `quality` of the framelets counts up from the first.
+Batch make_batch(std::size_t count, std::uint8_t first_quality) {
+    std::mt19937 random(static_cast<std::uint32_t>(count));
+    Batch batch;
+    batch.number = 1;
+    batch.view.viewport = {256, 256};
+    for (std::size_t i = 0; i < count; ++i) {
+        DisplayFramelet& framelet = batch.framelets.emplace_back();
+        framelet.tile = make_tile(4, static_cast<std::uint32_t>(i % 16), static_cast<std::uint32_t>(i / 16));
+        for (std::uint32_t k = 0; k < framelet_samples; ++k) {
+            unsigned const noise = static_cast<unsigned>(random()) % static_cast<unsigned>(8 * i + 1);
+            framelet.red[k] = static_cast<std::uint8_t>(8 * morton_x(k) + noise);
+            framelet.green[k] = static_cast<std::uint8_t>(morton_x(k) + morton_y(k) > 12 ? 200 : 30);
+            framelet.blue[k] = static_cast<std::uint8_t>(100 + noise);
+        }
+        batch.quality.push_back(static_cast<std::uint8_t>((first_quality + 9 * i) % (coarsest_quality + 1)));
+    }
+    return batch;
+}
+
+void write(std::filesystem::path const& file, std::vector<std::uint8_t> const& bytes) {
+    std::filesystem::create_directories(file.parent_path());
+    std::ofstream(file, std::ios::binary)
+        .write(reinterpret_cast<char const*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+}
+
+void append(std::vector<std::uint8_t>& out, ByteView bytes) {
+    for (std::byte const byte : bytes) {
+        out.push_back(std::to_integer<std::uint8_t>(byte));
+    }
+}
+
+void write_batch(std::filesystem::path const& folder, Batch const& batch, std::string const& name) {
+    EncodedBatch const encoded = BatchCodec().encode(batch);
+    std::vector<std::uint8_t> payload{static_cast<std::uint8_t>(encoded.tiles.size()),
+                                      static_cast<std::uint8_t>(encoded.tiles.size() >> 8),
+                                      static_cast<std::uint8_t>(static_cast<int>(encoded.encoding) - 1)};
+    append(payload, encoded.payload);
+    write(folder / "batch" / name, payload);
+    std::vector<std::uint8_t> body;
+    append(body, encode_message(encoded));
+    write(folder / "message" / ("batch_" + name), body);
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    if (argc != 2) {
+        std::cerr << "usage: fuzz_seeds FOLDER\n";
+        return 2;
+    }
+    std::filesystem::path const folder = argv[1];
+    for (std::size_t const count : {0u, 1u, 3u, 20u, 140u}) {
+        Batch batch = make_batch(count, 1);
+        write_batch(folder, batch, "lossy_" + std::to_string(count));
+        if (count < 128) {
+            PlaneCodec codec;
+            std::vector<std::uint8_t> content{static_cast<std::uint8_t>(count)};
+            for (auto const part : codec.encode(batch.framelets, batch.quality)) {
+                content.insert(content.end(), part.begin(), part.end());
+            }
+            write(folder / "planes" / std::to_string(count), content);
+        }
+        batch.quality.clear();
+        write_batch(folder, batch, "exact_" + std::to_string(count));
+    }
+    int number = 0;
+    SceneCameraInfo const camera{"camera", {}};
+    for (Message const& message :
+         {Message(Hello{protocol_version, "secret"}), Message(CameraUpdate{}), Message(ViewerSettings{1, 0}),
+          Message(ClockRequest{}), Message(Ack{3, 4, 5}), Message(Welcome{1, "s", "n", {}, {}, {camera}, 2, {}}),
+          Message(Status{}), Message(Failure{"text"})}) {
+        std::vector<std::uint8_t> body;
+        append(body, encode_message(message));
+        write(folder / "message" / std::to_string(number++), body);
+    }
+    return 0;
+}

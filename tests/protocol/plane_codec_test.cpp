@@ -1,0 +1,245 @@
+#include "protocol/plane_codec.h"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "common/error.h"
+#include "protocol/batch_codec.h"
+#include "protocol/haar_transform.h"
+
+namespace framelet {
+namespace {
+
+using Bytes8 = std::vector<std::uint8_t>;
+
+DisplayFramelet make_framelet(std::mt19937& random, int kind) {
+    DisplayFramelet framelet;
+    for (std::uint32_t k = 0; k < framelet_samples; ++k) {
+        auto const x = static_cast<int>(morton_x(k)), y = static_cast<int>(morton_y(k));
+        auto const sample = [&](int channel) {
+            int const smooth = 128 + static_cast<int>(90 * std::sin(0.2 * x + channel) * std::cos(0.15 * y));
+            int const edge = x + y > 14 ? 230 : 20;
+            int const noise = static_cast<int>(random() % 256);
+            return static_cast<std::uint8_t>(kind == 0 ? smooth : kind == 1 ? edge : noise);
+        };
+        framelet.red[k] = sample(0);
+        framelet.green[k] = sample(1);
+        framelet.blue[k] = sample(2);
+    }
+    return framelet;
+}
+
+std::vector<DisplayFramelet> make_framelets(std::size_t count) {
+    std::mt19937 random(static_cast<std::uint32_t>(count));
+    std::vector<DisplayFramelet> framelets;
+    for (std::size_t i = 0; i < count; ++i) {
+        framelets.push_back(make_framelet(random, static_cast<int>(i % 3)));
+    }
+    return framelets;
+}
+
+Bytes8 joined(PlaneParts const& parts) {
+    Bytes8 bytes;
+    for (auto const part : parts) {
+        bytes.insert(bytes.end(), part.begin(), part.end());
+    }
+    return bytes;
+}
+
+double mean_square_error(DisplayFramelet const& a, DisplayFramelet const& b) {
+    double sum = 0;
+    for_each_plane([&](auto const plane) {
+        for (std::size_t i = 0; i < framelet_samples; ++i) {
+            double const difference = double((a.*plane)[i]) - double((b.*plane)[i]);
+            sum += difference * difference;
+        }
+    });
+    return sum / (3 * framelet_samples);
+}
+
+/// PROTOCOL.md's example: a red of 16 x in the left half and of 128 elsewhere, green 100, blue 50, quality 8.
+DisplayFramelet documented_framelet() {
+    DisplayFramelet framelet;
+    for (std::uint32_t k = 0; k < framelet_samples; ++k) {
+        framelet.red[k] = static_cast<std::uint8_t>(std::min(16 * morton_x(k), 128u));
+    }
+    framelet.green.fill(100);
+    framelet.blue.fill(50);
+    return framelet;
+}
+
+TEST(HaarTransform, KnownValues) {
+    std::array<std::int16_t, 4> four{40, 20, 12, 8};
+    std::int16_t mean = 0;
+    haar_forward(four.data(), &mean, 1);
+    EXPECT_EQ(mean, 20);
+    EXPECT_EQ(four, (std::array<std::int16_t, 4>{20, 6, 10, 4}));
+    four[0] = 99; // not read
+    haar_inverse(&mean, four.data(), 1);
+    EXPECT_EQ(four, (std::array<std::int16_t, 4>{40, 20, 12, 8}));
+}
+
+TEST(HaarTransform, AllNumbersOfPlacesAreAlike) {
+    std::mt19937 random(1);
+    std::array<std::int16_t, 4 * 7> values, single;
+    for (auto& value : values) {
+        value = static_cast<std::int16_t>(random());
+    }
+    single = values;
+    std::array<std::int16_t, 7> means, single_means;
+    haar_forward(values.data(), means.data(), 7);
+    for (std::size_t i = 0; i < 7; ++i) {
+        haar_forward(&single[4 * i], &single_means[i], 1);
+    }
+    EXPECT_EQ(values, single);
+    EXPECT_EQ(means, single_means);
+    haar_inverse(means.data(), values.data(), 7);
+    for (std::size_t i = 0; i < 7; ++i) {
+        haar_inverse(&means[i], &single[4 * i], 1);
+    }
+    EXPECT_EQ(values, single);
+}
+
+TEST(PlaneCodec, ExactFrameletsAmongOthersStayExact) {
+    auto const framelets = make_framelets(128);
+    Bytes8 quality(framelets.size()), decoded_quality(framelets.size());
+    for (std::size_t i = 0; i < quality.size(); ++i) {
+        quality[i] = static_cast<std::uint8_t>(i % 2 == 0 ? exact_quality : i % (coarsest_quality + 1u));
+    }
+    PlaneCodec codec;
+    Bytes8 const bytes = joined(codec.encode(framelets, quality));
+    std::vector<DisplayFramelet> decoded(framelets.size());
+    codec.decode(bytes, decoded, decoded_quality);
+    EXPECT_EQ(decoded_quality, quality);
+    for (std::size_t i = 0; i < quality.size(); i += 2) {
+        EXPECT_EQ(decoded[i], framelets[i]) << i;
+    }
+}
+
+TEST(PlaneCodec, ErrorFollowsTheQuality) {
+    auto const framelets = make_framelets(3);
+    PlaneCodec codec;
+    for (std::uint8_t q = 1; q <= coarsest_quality; ++q) {
+        Bytes8 quality(framelets.size(), q);
+        std::vector<DisplayFramelet> decoded(framelets.size());
+        codec.decode(joined(codec.encode(framelets, quality)), decoded, quality);
+        for (std::size_t i = 0; i < framelets.size(); ++i) {
+            // An orthonormal detail is off by 0.66 steps at most, its square by 0.44; Y, Co, Cg count 3, 2, 3 times,
+            // the step of Co is 1.25 times as long. Rounding of a sample adds at most a half.
+            double const bound = 0.44 * q * q * (3 + 2 * 1.5625 + 3) / 3;
+            EXPECT_LE(std::sqrt(mean_square_error(framelets[i], decoded[i])), std::sqrt(bound) + 1) << int{q};
+        }
+    }
+}
+
+TEST(PlaneCodec, UniformFrameletsCostSevenBytesAndAreNearlyExact) {
+    std::vector<DisplayFramelet> framelets(100);
+    for (std::size_t i = 0; i < framelets.size(); ++i) {
+        framelets[i].red.fill(static_cast<std::uint8_t>(2 * i));
+        framelets[i].green.fill(static_cast<std::uint8_t>(255 - i));
+        framelets[i].blue.fill(7);
+    }
+    Bytes8 quality(framelets.size(), 16);
+    PlaneCodec codec;
+    Bytes8 const bytes = joined(codec.encode(framelets, quality));
+    EXPECT_EQ(bytes.size(), 12 + 7 * framelets.size());
+    std::vector<DisplayFramelet> decoded(framelets.size());
+    codec.decode(bytes, decoded, quality);
+    for (std::size_t i = 0; i < framelets.size(); ++i) {
+        EXPECT_LE(mean_square_error(framelets[i], decoded[i]), 4) << i; // half a step of a mean is half a level
+    }
+}
+
+TEST(PlaneCodec, GoldenBytes) {
+    // As PROTOCOL.md has it.
+    Bytes8 const golden{0x08, 0xab, 0x22, 0x1d, 0xff, 0x00, 0x00, 0x12, 0x00, 0x00, 0x00, 0x21, 0x00, 0x00, 0x00, 0x24,
+                        0x00, 0x00, 0x00, 0xee, 0xff, 0xf8, 0xff, 0xf8, 0xff, 0xe3, 0xff, 0xf3, 0xff, 0xf3, 0xff, 0x12,
+                        0x00, 0x08, 0x00, 0x08, 0x00, 0x00, 0x20, 0x50, 0x53, 0x23, 0x23, 0x23, 0xe3, 0x23, 0x23, 0x23,
+                        0xe0, 0x20, 0x50, 0x55, 0x25, 0x25, 0x25, 0xe5, 0x25, 0x25, 0x25, 0xe0, 0x20, 0x50, 0x54, 0x24,
+                        0x24, 0x24, 0xe4, 0x24, 0x24, 0x24, 0xf3, 0xf2, 0xc1, 0x21, 0x21, 0x21, 0x21, 0x21, 0x21, 0x21,
+                        0x21, 0x21, 0x21, 0x21, 0x21, 0x21, 0x21, 0x21, 0xf1, 0xf0, 0x51, 0x21, 0x21, 0x21, 0x21, 0x21,
+                        0x21, 0x21, 0x21, 0x21, 0x21, 0x21, 0x21, 0x21, 0x21, 0x21};
+    Bytes8 quality{8};
+    std::array const framelets{documented_framelet()};
+    PlaneCodec codec;
+    EXPECT_EQ(joined(codec.encode(framelets, quality)), golden);
+    std::array<DisplayFramelet, 1> decoded;
+    codec.decode(golden, decoded, quality);
+    EXPECT_EQ(quality[0], 8);
+    constexpr std::array<int, 16> red{3, 13, 34, 44, 68, 78, 99, 109, 128, 128, 128, 128, 128, 128, 128, 128};
+    constexpr std::array<int, 16> blue{55, 45, 56, 46, 54, 44, 55, 45, 50, 50, 50, 50, 50, 50, 50, 50};
+    for (std::uint32_t k = 0; k < framelet_samples; ++k) {
+        EXPECT_EQ(decoded[0].red[k], red[morton_x(k)]) << k;
+        EXPECT_EQ(decoded[0].green[k], 100) << k;
+        EXPECT_EQ(decoded[0].blue[k], blue[morton_x(k)]) << k;
+    }
+}
+
+TEST(PlaneCodec, GarbageIsRefusedOrDecoded) {
+    auto const framelets = make_framelets(30);
+    Bytes8 quality(framelets.size());
+    for (std::size_t i = 0; i < quality.size(); ++i) {
+        quality[i] = static_cast<std::uint8_t>(i);
+    }
+    PlaneCodec codec;
+    Bytes8 const good = joined(codec.encode(framelets, quality));
+    std::vector<DisplayFramelet> decoded(framelets.size());
+    std::mt19937 random(1);
+    std::size_t refused = 0;
+    for (int i = 0; i < 3000; ++i) {
+        Bytes8 bad = good;
+        if (i % 3 == 0) {
+            bad.resize(random() % bad.size());
+            bad.shrink_to_fit();
+        } else {
+            for (int flips = 0; flips < 3; ++flips) {
+                bad[random() % bad.size()] ^= static_cast<std::uint8_t>(1u << (random() % 8));
+            }
+        }
+        try {
+            codec.decode(bad, decoded, quality);
+        } catch (ProtocolError const&) {
+            ++refused;
+        }
+    }
+    EXPECT_GT(refused, 1000u);
+    Bytes8 bad = good;
+    bad[0] = coarsest_quality + 1;
+    EXPECT_THROW(codec.decode(bad, decoded, quality), ProtocolError);
+    bad = good;
+    bad.push_back(0);
+    EXPECT_THROW(codec.decode(bad, decoded, quality), ProtocolError);
+}
+
+TEST(BatchCodec, QualitiesAndEncodingTravel) {
+    Batch batch;
+    batch.number = 1;
+    batch.view.viewport = {1024, 1024};
+    batch.framelets = make_framelets(300);
+    for (std::size_t i = 0; i < batch.framelets.size(); ++i) {
+        batch.framelets[i].tile = make_tile(6, static_cast<std::uint32_t>(i % 64), static_cast<std::uint32_t>(i / 64));
+        batch.quality.push_back(static_cast<std::uint8_t>(i % 5 == 0 ? 0 : 12));
+    }
+    BatchCodec codec;
+    auto const received = std::get<EncodedBatch>(decode_message(encode_message(codec.encode(batch))));
+    EXPECT_EQ(received.encoding, SampleEncoding::haar);
+    Batch const decoded = codec.decode(received);
+    EXPECT_EQ(decoded.quality, batch.quality);
+    for (std::size_t i = 0; i < batch.framelets.size(); ++i) {
+        EXPECT_EQ(decoded.framelets[i].tile, batch.framelets[i].tile);
+        EXPECT_TRUE(i % 5 != 0 || decoded.framelets[i] == batch.framelets[i]) << i;
+    }
+    // Framelets of an exact batch do not fit the other encoding, nor the other way round.
+    EncodedBatch other = received;
+    other.encoding = SampleEncoding::exact;
+    EXPECT_THROW(codec.decode(other), ProtocolError);
+    batch.quality.clear();
+    other = codec.encode(batch);
+    other.encoding = SampleEncoding::haar;
+    EXPECT_THROW(codec.decode(other), ProtocolError);
+}
+
+} // namespace
+} // namespace framelet
