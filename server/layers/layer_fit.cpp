@@ -1,0 +1,240 @@
+#include "server/layers/layer_fit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "server/layers/plane_search.h"
+
+namespace framelet {
+namespace {
+
+/// Kinds of samples that are told apart in a framelet; those of more are loose.
+constexpr std::size_t most_groups = 8;
+/// Closer to the eye than this, metres, nothing is told apart.
+constexpr float least_depth = 1e-6f;
+
+/// Samples that may share a layer: of one body, or what deforms, or the sky.
+struct Group {
+    BodyNumber body = static_body;
+    bool flows = false, sky = false;
+
+    bool operator==(Group const&) const = default;
+};
+
+BodyNumber body_of(Framelet const& framelet, int sample) {
+    return framelet.body.empty() ? static_body : framelet.body[static_cast<std::size_t>(sample)];
+}
+
+Vec3 velocity_of(Framelet const& framelet, int sample) {
+    return framelet.velocity.empty() ? Vec3(0) : framelet.velocity[static_cast<std::size_t>(sample)];
+}
+
+/// The grid's plane as the layer states it: in pixels from the tile's corner.
+Layer layer_of_plane(GridPlane const& plane, Group const& group, float spacing) {
+    constexpr float middle = 0.5f * framelet_side;
+    Layer layer;
+    layer.at = plane.centre - middle * plane.dx - middle * plane.dy;
+    layer.dx = plane.dx / spacing;
+    layer.dy = plane.dy / spacing;
+    layer.body = group.body;
+    return layer;
+}
+
+class Fitter {
+public:
+    Fitter(Framelet const& framelet, float spacing, LayerTolerance const& tolerance);
+
+    FrameletShape fit() {
+        if (!(is_uniform() && fit_one())) {
+            shape_.layer_of.fill(FrameletShape::loose);
+            make_groups();
+            fit_groups();
+            collect_loose();
+        }
+        return std::move(shape_);
+    }
+
+private:
+    bool is_uniform() const {
+        bool const one_body = std::ranges::all_of(framelet_.body, [&](BodyNumber b) { return b == framelet_.body[0]; });
+        return one_body && framelet_.velocity.empty();
+    }
+    bool fit_one();
+    void make_groups();
+    void fit_groups();
+    int candidates_of(std::size_t group);
+    void agree_on_velocity();
+    void add_layer(Group const& group);
+    void collect_loose();
+
+    Framelet const& framelet_;
+    float spacing_, tolerance_, velocity_tolerance_;
+    GridFloats values_; ///< inverse depths
+    std::array<Group, most_groups> groups_;
+    std::size_t group_count_ = 0;
+    std::array<std::uint8_t, framelet_samples> group_of_; ///< Morton order; `most_groups` where it is in none
+    GridFloats candidates_;
+    FoundPlane found_;
+    Vec3 velocity_{0}; ///< of what was found
+    FrameletShape shape_;
+};
+
+Fitter::Fitter(Framelet const& framelet, float spacing, LayerTolerance const& tolerance)
+    : framelet_(framelet), spacing_(spacing), velocity_tolerance_(tolerance.velocity * std::max(1.0f, spacing)) {
+    std::array<float, framelet_samples> inverse;
+    for (std::size_t i = 0; i < framelet_samples; ++i) {
+        float const depth = framelet.depth[i];
+        inverse[i] = 1 / (depth > least_depth ? depth : least_depth);
+    }
+    for (int i = 0; i < framelet_samples; ++i) {
+        values_[block_order(i)] = inverse[static_cast<std::size_t>(i)];
+    }
+    constexpr float resolution = 1e-6f; // of sums of single-precision numbers
+    tolerance_ = std::max(tolerance.inverse_depth * std::max(1.0f, spacing), resolution * greatest(values_));
+}
+
+bool Fitter::fit_one() {
+    if (!find_plane_of_all(values_, tolerance_, found_)) {
+        return false;
+    }
+    add_layer({body_of(framelet_, 0), false, false});
+    return true;
+}
+
+void Fitter::make_groups() {
+    for (int i = 0; i < framelet_samples; ++i) {
+        bool const sky = values_[block_order(i)] == 0;
+        Group const group = sky ? Group{static_body, false, true}
+                                : Group{body_of(framelet_, i), velocity_of(framelet_, i) != Vec3(0), false};
+        std::size_t g = 0;
+        while (g < group_count_ && groups_[g] != group) {
+            ++g;
+        }
+        if (g == group_count_ && g < most_groups) {
+            groups_[group_count_++] = group;
+        }
+        group_of_[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(g);
+    }
+}
+
+/// Samples of the group that are on no layer yet; returns how many.
+int Fitter::candidates_of(std::size_t group) {
+    int count = 0;
+    for (std::size_t i = 0; i < framelet_samples; ++i) {
+        bool const is_one = group_of_[i] == group && shape_.layer_of[i] == FrameletShape::loose;
+        candidates_[block_order(static_cast<int>(i))] = is_one ? 1.0f : 0.0f;
+        count += is_one ? 1 : 0;
+    }
+    return count;
+}
+
+/// Keeps the members that move nearly as they do on average.
+void Fitter::agree_on_velocity() {
+    Vec3 sum(0);
+    for (int i = 0; i < framelet_samples; ++i) {
+        sum += velocity_of(framelet_, i) * found_.members[block_order(i)];
+    }
+    velocity_ = sum / static_cast<float>(std::max(found_.count, 1));
+    found_.count = 0;
+    for (int i = 0; i < framelet_samples; ++i) {
+        float& member = found_.members[block_order(i)];
+        float const off = glm::length(velocity_of(framelet_, i) - velocity_) * values_[block_order(i)];
+        member = member != 0 && off <= velocity_tolerance_ ? 1.0f : 0.0f;
+        found_.count += member != 0 ? 1 : 0;
+    }
+}
+
+/// The largest group gives the next layer, until there are enough or nothing is left that makes one.
+void Fitter::fit_groups() {
+    std::array<int, most_groups> left{};
+    for (std::uint8_t const group : group_of_) {
+        if (group < most_groups) {
+            ++left[group];
+        }
+    }
+    while (shape_.layer_count < max_layers) {
+        auto const largest = std::ranges::max_element(left);
+        if (*largest < least_plane_samples) {
+            break;
+        }
+        auto const g = static_cast<std::size_t>(largest - left.begin());
+        Group const& group = groups_[g];
+        candidates_of(g);
+        find_plane(values_, candidates_, tolerance_, found_);
+        velocity_ = Vec3(0);
+        if (group.flows && found_.count > 0) {
+            agree_on_velocity();
+        }
+        if (found_.count < least_plane_samples) {
+            *largest = 0; // what is left of it stays loose
+            continue;
+        }
+        add_layer(group);
+        *largest -= found_.count;
+    }
+}
+
+void Fitter::add_layer(Group const& group) {
+    Layer layer = layer_of_plane(found_.plane, group, spacing_);
+    layer.velocity = velocity_;
+    float least = INFINITY, most = -INFINITY;
+    for (int i = 0; i < framelet_samples; ++i) {
+        int const at = block_order(i);
+        float const x = (grid_coordinates.x[at] + 0.5f * framelet_side) * spacing_;
+        float const y = (grid_coordinates.y[at] + 0.5f * framelet_side) * spacing_;
+        float const off = values_[at] - (layer.at + layer.dx * x + layer.dy * y);
+        bool const member = found_.members[at] != 0;
+        least = member && off < least ? off : least;
+        most = member && off > most ? off : most;
+        std::uint8_t& of = shape_.layer_of[static_cast<std::size_t>(i)];
+        of = member ? shape_.layer_count : of;
+    }
+    layer.at += 0.5f * (least + most);
+    // Another order of the same operations rounds otherwise.
+    constexpr float rounding = 1e-6f;
+    float const side = spacing_ * framelet_side;
+    float const magnitude = std::abs(layer.at) + side * (std::abs(layer.dx) + std::abs(layer.dy));
+    layer.error = 0.5f * (most - least) + rounding * (magnitude + 0.5f * (most - least));
+    shape_.layers[shape_.layer_count++] = layer;
+}
+
+void Fitter::collect_loose() {
+    for (int i = 0; i < framelet_samples; ++i) {
+        if (shape_.layer_of[static_cast<std::size_t>(i)] == FrameletShape::loose) {
+            shape_.loose_samples.push_back({values_[block_order(i)], body_of(framelet_, i), velocity_of(framelet_, i)});
+        }
+    }
+}
+
+} // namespace
+
+LayerTolerance layer_tolerance(float median_depth, ViewRays const& rays) {
+    constexpr float pixels = 0.25f, parallax = 20, seconds = 0.1f;
+    return {pixels / (parallax * median_depth), pixels * glm::length(rays.direction_dx) / seconds};
+}
+
+float median_depth(std::span<Framelet const> framelets) {
+    constexpr std::size_t step = 17; // odd: every place in the blocks is met
+    std::vector<float> depths;
+    for (Framelet const& framelet : framelets) {
+        for (std::size_t i = 0; i < framelet_samples; i += step) {
+            if (std::isfinite(framelet.depth[i])) {
+                depths.push_back(framelet.depth[i]);
+            }
+        }
+    }
+    if (depths.empty()) {
+        return 1;
+    }
+    auto const middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+    std::ranges::nth_element(depths, middle);
+    return std::max(*middle, least_depth);
+}
+
+FrameletShape fit_layers(Framelet const& framelet, ImagePlane const& plane, LayerTolerance const& tolerance) {
+    return Fitter(framelet, plane.sample_spacing(framelet.tile), tolerance).fit();
+}
+
+} // namespace framelet
