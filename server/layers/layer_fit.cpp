@@ -211,8 +211,8 @@ void Fitter::collect_loose() {
 } // namespace
 
 LayerTolerance layer_tolerance(float median_depth, ViewRays const& rays) {
-    constexpr float pixels = 0.25f, parallax = 20, seconds = 0.1f;
-    return {pixels / (parallax * median_depth), pixels * glm::length(rays.direction_dx) / seconds};
+    constexpr float parallax = 20, seconds = 0.1f;
+    return {tolerated_pixels / (parallax * median_depth), tolerated_pixels * glm::length(rays.direction_dx) / seconds};
 }
 
 float median_depth(std::span<Framelet const> framelets) {

@@ -10,6 +10,9 @@
 
 namespace framelet {
 
+/// How far off a sample may be shown.
+inline constexpr float tolerated_pixels = 0.25f;
+
 /// How far off its layer a sample may be, for samples a pixel apart or closer; coarser ones may be off in proportion.
 struct LayerTolerance {
     /// 1 / metres. A sample that is off by e moves by e * (translation in metres) * (focal length in pixels) pixels.
@@ -18,7 +21,7 @@ struct LayerTolerance {
     float velocity = 0;
 };
 
-/// A quarter of a pixel, while the camera moves so far that what is at `median_depth` (metres, > 0) moves by 20 pixels,
+/// `tolerated_pixels`, while the camera moves so far that what is at `median_depth` (metres, > 0) moves by 20 pixels,
 /// and what deforms moves on for a tenth of a second.
 LayerTolerance layer_tolerance(float median_depth, ViewRays const& rays);
 

@@ -16,6 +16,7 @@
 #include "common/error.h"
 #include "tests/evaluation/calibrate.h"
 #include "tests/evaluation/estimators/estimator_verbs.h"
+#include "tests/evaluation/layer_study.h"
 #include "tests/evaluation/limits.h"
 #include "tests/evaluation/sensitivity.h"
 #include "tests/evaluation/stability.h"
@@ -54,6 +55,7 @@ struct Options {
     std::vector<std::string> table_scenes;
     framelet::bench::StudyOptions study;
     framelet::bench::EstimatorStudy estimators;
+    framelet::bench::LayerStudy layers;
     framelet::bench::WallOptions wall{.server_threads =
                                           std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1)};
 };
@@ -164,6 +166,14 @@ void add_stability_options(CLI::App& verb, Options& options) {
         ->capture_default_str();
 }
 
+void add_layer_options(CLI::App& verb, Options& options) {
+    add_output_options(verb, options);
+    verb.add_option("--scene", options.layers.scenes, "Scene files to measure with (default: all of the project's)");
+    verb.add_option("--pixels", options.layers.pixels, "How far off a sample may be shown")
+        ->check(CLI::Range(0.01, 16.0))
+        ->capture_default_str();
+}
+
 void add_wall_options(CLI::App& verb, Options& options) {
     add_study_options(verb, options);
     add_link_options(verb, options);
@@ -211,6 +221,23 @@ json table(Options& options) {
 json stability(Options& options) {
     settle(options, options.quick ? Scale{.size = 96, .rate = 20} : Scale{.size = 256, .rate = 40});
     return framelet::bench::measure_stability(source / "scenes", options.stability, options.study);
+}
+
+json layers(Options& options) {
+    auto& study = options.layers;
+    if (study.scenes.empty()) {
+        for (auto const& entry : std::filesystem::directory_iterator(source / "scenes")) {
+            if (entry.path().extension() == ".glb") {
+                study.scenes.push_back(entry.path());
+            }
+        }
+        std::ranges::sort(study.scenes);
+    }
+    if (options.quick) {
+        study.viewport = {640, 360};
+        study.times = 2;
+    }
+    return framelet::bench::measure_layers(study);
 }
 
 json calibrate(BenchScene& scene, bool quick) {
@@ -277,6 +304,8 @@ int main(int argc, char** argv) {
              study(framelet::bench::prepare_reference));
     add_verb("sensitivity", "How tsar answers to steeper and flatter templates of its error estimate", add_run_options,
              study(framelet::bench::sensitivity));
+    add_verb("layers", "How many planes framelets are, how far off those show samples, and what finding them costs",
+             add_layer_options, [&options] { return layers(options); });
     add_verb("calibrate", "What every stage costs on this machine", add_scene_options,
              with_scene([&options](BenchScene& scene) { return calibrate(scene, options.quick); }));
     add_verb("limits", "Each stage against its bare limit", add_scene_options,
