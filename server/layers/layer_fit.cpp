@@ -44,16 +44,18 @@ Layer layer_of_plane(GridPlane const& plane, Group const& group, float spacing) 
 
 class Fitter {
 public:
-    Fitter(Framelet const& framelet, float spacing, LayerTolerance const& tolerance);
+    Fitter(Framelet const& framelet, float spacing, LayerTolerance const& tolerance, FrameletShape& shape);
 
-    FrameletShape fit() {
+    void fit() {
+        shape_.layer_count = 0;
+        shape_.layers = {};
+        shape_.loose_samples.clear();
         if (!(is_uniform() && fit_one())) {
-            shape_.layer_of.fill(FrameletShape::loose);
+            layer_of_.fill(FrameletShape::loose);
             make_groups();
             fit_groups();
-            collect_loose();
+            collect();
         }
-        return std::move(shape_);
     }
 
 private:
@@ -64,25 +66,27 @@ private:
     bool fit_one();
     void make_groups();
     void fit_groups();
-    int candidates_of(std::size_t group);
+    void set_candidates(std::size_t group);
     void agree_on_velocity();
     void add_layer(Group const& group);
-    void collect_loose();
+    void collect();
 
     Framelet const& framelet_;
     float spacing_, tolerance_, velocity_tolerance_;
     GridFloats values_; ///< inverse depths
     std::array<Group, most_groups> groups_;
     std::size_t group_count_ = 0;
-    std::array<std::uint8_t, framelet_samples> group_of_; ///< Morton order; `most_groups` where it is in none
+    /// In block order as all grids here. Group: `most_groups` where a sample is in none.
+    std::array<std::uint8_t, framelet_samples> group_of_, layer_of_;
     GridFloats candidates_;
     FoundPlane found_;
     Vec3 velocity_{0}; ///< of what was found
-    FrameletShape shape_;
+    FrameletShape& shape_;
 };
 
-Fitter::Fitter(Framelet const& framelet, float spacing, LayerTolerance const& tolerance)
-    : framelet_(framelet), spacing_(spacing), velocity_tolerance_(tolerance.velocity * std::max(1.0f, spacing)) {
+Fitter::Fitter(Framelet const& framelet, float spacing, LayerTolerance const& tolerance, FrameletShape& shape)
+    : framelet_(framelet), spacing_(spacing), velocity_tolerance_(tolerance.velocity * std::max(1.0f, spacing)),
+      shape_(shape) {
     std::array<float, framelet_samples> inverse;
     for (std::size_t i = 0; i < framelet_samples; ++i) {
         float const depth = framelet.depth[i];
@@ -100,10 +104,18 @@ bool Fitter::fit_one() {
         return false;
     }
     add_layer({body_of(framelet_, 0), false, false});
+    shape_.layer_of.fill(0);
     return true;
 }
 
 void Fitter::make_groups() {
+    if (framelet_.body.empty() && framelet_.velocity.empty()) {
+        groups_ = {Group{}, Group{static_body, false, true}};
+        for (int i = 0; i < framelet_samples; ++i) {
+            group_of_[static_cast<std::size_t>(i)] = values_[i] == 0 ? 1 : 0;
+        }
+        return;
+    }
     for (int i = 0; i < framelet_samples; ++i) {
         bool const sky = values_[block_order(i)] == 0;
         Group const group = sky ? Group{static_body, false, true}
@@ -115,19 +127,16 @@ void Fitter::make_groups() {
         if (g == group_count_ && g < most_groups) {
             groups_[group_count_++] = group;
         }
-        group_of_[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(g);
+        group_of_[static_cast<std::size_t>(block_order(i))] = static_cast<std::uint8_t>(g);
     }
 }
 
-/// Samples of the group that are on no layer yet; returns how many.
-int Fitter::candidates_of(std::size_t group) {
-    int count = 0;
+/// Samples of the group that are on no layer yet.
+void Fitter::set_candidates(std::size_t group) {
     for (std::size_t i = 0; i < framelet_samples; ++i) {
-        bool const is_one = group_of_[i] == group && shape_.layer_of[i] == FrameletShape::loose;
-        candidates_[block_order(static_cast<int>(i))] = is_one ? 1.0f : 0.0f;
-        count += is_one ? 1 : 0;
+        bool const is_one = (group_of_[i] == group) & (layer_of_[i] == FrameletShape::loose);
+        candidates_.value[i] = is_one ? 1.0f : 0.0f;
     }
-    return count;
 }
 
 /// Keeps the members that move nearly as they do on average.
@@ -161,7 +170,7 @@ void Fitter::fit_groups() {
         }
         auto const g = static_cast<std::size_t>(largest - left.begin());
         Group const& group = groups_[g];
-        candidates_of(g);
+        set_candidates(g);
         find_plane(values_, candidates_, tolerance_, found_);
         velocity_ = Vec3(0);
         if (group.flows && found_.count > 0) {
@@ -177,32 +186,26 @@ void Fitter::fit_groups() {
 }
 
 void Fitter::add_layer(Group const& group) {
+    Range const range = residual_range(values_, found_.members, found_.plane);
+    found_.plane.centre += range.middle();
     Layer layer = layer_of_plane(found_.plane, group, spacing_);
     layer.velocity = velocity_;
-    float least = INFINITY, most = -INFINITY;
-    for (int i = 0; i < framelet_samples; ++i) {
-        int const at = block_order(i);
-        float const x = (grid_coordinates.x[at] + 0.5f * framelet_side) * spacing_;
-        float const y = (grid_coordinates.y[at] + 0.5f * framelet_side) * spacing_;
-        float const off = values_[at] - (layer.at + layer.dx * x + layer.dy * y);
-        bool const member = found_.members[at] != 0;
-        least = member && off < least ? off : least;
-        most = member && off > most ? off : most;
-        std::uint8_t& of = shape_.layer_of[static_cast<std::size_t>(i)];
-        of = member ? shape_.layer_count : of;
-    }
-    layer.at += 0.5f * (least + most);
-    // Another order of the same operations rounds otherwise.
-    constexpr float rounding = 1e-6f;
+    // The same plane in other coordinates, or in another order of operations, rounds otherwise.
+    constexpr float rounding = 2e-6f;
     float const side = spacing_ * framelet_side;
     float const magnitude = std::abs(layer.at) + side * (std::abs(layer.dx) + std::abs(layer.dy));
-    layer.error = 0.5f * (most - least) + rounding * (magnitude + 0.5f * (most - least));
+    layer.error = range.half_width() + rounding * (magnitude + range.half_width());
+    for (std::size_t i = 0; i < framelet_samples; ++i) {
+        layer_of_[i] = found_.members.value[i] != 0 ? shape_.layer_count : layer_of_[i];
+    }
     shape_.layers[shape_.layer_count++] = layer;
 }
 
-void Fitter::collect_loose() {
+void Fitter::collect() {
     for (int i = 0; i < framelet_samples; ++i) {
-        if (shape_.layer_of[static_cast<std::size_t>(i)] == FrameletShape::loose) {
+        std::uint8_t const layer = layer_of_[static_cast<std::size_t>(block_order(i))];
+        shape_.layer_of[static_cast<std::size_t>(i)] = layer;
+        if (layer == FrameletShape::loose) {
             shape_.loose_samples.push_back({values_[block_order(i)], body_of(framelet_, i), velocity_of(framelet_, i)});
         }
     }
@@ -233,8 +236,9 @@ float median_depth(std::span<Framelet const> framelets) {
     return std::max(*middle, least_depth);
 }
 
-FrameletShape fit_layers(Framelet const& framelet, ImagePlane const& plane, LayerTolerance const& tolerance) {
-    return Fitter(framelet, plane.sample_spacing(framelet.tile), tolerance).fit();
+void fit_layers(Framelet const& framelet, ImagePlane const& plane, LayerTolerance const& tolerance,
+                FrameletShape& shape) {
+    Fitter(framelet, plane.sample_spacing(framelet.tile), tolerance, shape).fit();
 }
 
 } // namespace framelet

@@ -30,7 +30,8 @@ float median_depth(std::span<Framelet const> framelets);
 
 /// Up to `max_layers` layers, the samples that none of them takes being loose. The inverse depth of every sample of a
 /// layer is within its `error` of the layer, and that within the tolerance, or what single precision resolves. Finite
-/// for any depths > 0. The sky is at inverse depth 0.
-FrameletShape fit_layers(Framelet const& framelet, ImagePlane const& plane, LayerTolerance const& tolerance);
+/// for any depths > 0. The sky is at inverse depth 0. `shape` is overwritten; its memory is used again.
+void fit_layers(Framelet const& framelet, ImagePlane const& plane, LayerTolerance const& tolerance,
+                FrameletShape& shape);
 
 } // namespace framelet
