@@ -17,13 +17,15 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double later_seconds = 0.1;
+constexpr float later_seconds = 0.1f;
 constexpr float parallax_pixels = 20, yaw_radians = 0.0872665f;
 
 /// Counts over all views of a scene.
 struct Counts {
     double tiles = 0, sky = 0, one_plane = 0, few_planes = 0, no_loose = 0;
-    double samples = 0, loose = 0, flowing = 0, reflecting = 0, off = 0;
+    double samples = 0, loose = 0, flowing = 0, reflecting = 0;
+    double off = 0, off_later = 0; ///< samples shown too far off, at once and a tenth of a second later
+    double packed_bytes = 0; ///< of the shapes, before any compression
     double layers = 0;
     float farthest = 0; ///< pixels
     std::vector<double> nanoseconds; ///< a sample, three figures a view
@@ -32,9 +34,11 @@ struct Counts {
 /// Where samples are shown from another camera at another time.
 class Reprojection {
 public:
-    Reprojection(SceneBodies const& bodies, ScenePose const& now, ScenePose const& later, Camera const& from,
-                 Viewport viewport, float move)
-        : from_(from), rays_(make_view_rays(from, viewport)), pixels_per_unit_(1 / glm::length(rays_.direction_dx)) {
+    /// Both poses are of the bodies; what no body carries moves on for `seconds`.
+    Reprojection(SceneBodies const& bodies, ScenePose const& now, ScenePose const& later, float seconds,
+                 Camera const& from, Viewport viewport, float move)
+        : from_(from), seconds_(seconds), rays_(make_view_rays(from, viewport)),
+          pixels_per_unit_(1 / glm::length(rays_.direction_dx)) {
         eye_ = from.position + from.right() * move;
         Quat const turned = from.orientation * glm::angleAxis(yaw_radians, Vec3(0, 1, 0));
         axes_ = Mat3(turned * Vec3(1, 0, 0), turned * Vec3(0, -1, 0), turned * Vec3(0, 0, -1));
@@ -55,7 +59,7 @@ public:
                 Vec3 const in_body = (glm::conjugate(now.rotation) * (point - now.translation)) / now.scale;
                 point = later.rotation * (later.scale * in_body) + later.translation;
             }
-            towards = (point + velocity * static_cast<float>(later_seconds) - eye_) * inverse_depth;
+            towards = (point + velocity * seconds_ - eye_) * inverse_depth;
         }
         Vec3 const p = towards * axes_;
         return p.z > 0.05f ? Vec2(p) * (pixels_per_unit_ / p.z) : Vec2(NAN); // behind the eye, or nearly
@@ -63,6 +67,7 @@ public:
 
 private:
     Camera from_;
+    float seconds_;
     ViewRays rays_;
     float pixels_per_unit_;
     Vec3 eye_;
@@ -72,7 +77,7 @@ private:
 
 /// Largest distance between where a framelet's samples are shown by their layers and by themselves, pixels.
 float largest_error(Framelet const& framelet, FrameletShape const& shape, ImagePlane const& plane,
-                    Reprojection const& reprojection, float allowed, Counts& counts) {
+                    Reprojection const& reprojection, float allowed, double& off) {
     PixelRect const rect = plane.tile_rect(framelet.tile);
     float const spacing = plane.sample_spacing(framelet.tile);
     float largest = 0;
@@ -88,9 +93,25 @@ float largest_error(Framelet const& framelet, FrameletShape const& shape, ImageP
         float const error = glm::distance(reprojection.shown(place, by_layer, layer.body, layer.velocity),
                                           reprojection.shown(place, 1 / framelet.depth[i], layer.body, velocity));
         largest = std::max(largest, std::isnan(error) ? 0.0f : error);
-        counts.off += error > allowed ? 1 : 0;
+        off += error > allowed ? 1 : 0;
     }
     return largest;
+}
+
+/// A byte for the number of layers; five 16-bit numbers each; a bit or two a sample where there are several kinds of
+/// samples; 16 bits a loose one. Velocities as three 16-bit numbers.
+double packed_bytes(FrameletShape const& shape) {
+    constexpr double layer_bytes = 10, velocity_bytes = 6;
+    double bytes = 1;
+    for (std::size_t l = 0; l < shape.layer_count; ++l) {
+        bytes += layer_bytes + (shape.layers[l].velocity != Vec3(0) ? velocity_bytes : 0);
+    }
+    std::size_t const kinds = shape.layer_count + (shape.loose_samples.empty() ? 0u : 1u);
+    bytes += kinds <= 1 ? 0 : kinds == 2 ? framelet_samples / 8 : framelet_samples / 4;
+    for (LooseSample const& sample : shape.loose_samples) {
+        bytes += 2 + (sample.velocity != Vec3(0) ? velocity_bytes : 0);
+    }
+    return bytes;
 }
 
 void count(Framelet const& framelet, FrameletShape const& shape, float error, float allowed, Counts& counts) {
@@ -107,6 +128,7 @@ void count(Framelet const& framelet, FrameletShape const& shape, float error, fl
         std::ranges::count_if(framelet.velocity, [](Vec3 const& velocity) { return velocity != Vec3(0); }));
     counts.reflecting += static_cast<double>(framelet.reflects.count());
     counts.layers += shape.layer_count;
+    counts.packed_bytes += packed_bytes(shape);
     counts.farthest = std::max(counts.farthest, error);
 }
 
@@ -129,10 +151,13 @@ void measure_view(BenchScene& scene, Camera const& camera, LayerStudy const& stu
     }
     float const move = parallax_pixels * depth * glm::length(rays.direction_dx);
     ScenePose const later = evaluate_pose(scene.scene, scene.clips, scene.pose.time + later_seconds);
-    Reprojection const reprojection(scene.render_scene->bodies(), scene.pose, later, camera, study.viewport, move);
+    SceneBodies const& bodies = scene.render_scene->bodies();
+    Reprojection const at_once(bodies, scene.pose, scene.pose, 0, camera, study.viewport, move);
+    Reprojection const in_motion(bodies, scene.pose, later, later_seconds, camera, study.viewport, move);
     auto const allowed = static_cast<float>(study.pixels);
     for (std::size_t i = 0; i < framelets.size(); ++i) {
-        float const error = largest_error(framelets[i], shapes[i], plane, reprojection, allowed, counts);
+        float const error = largest_error(framelets[i], shapes[i], plane, at_once, allowed, counts.off);
+        largest_error(framelets[i], shapes[i], plane, in_motion, allowed, counts.off_later);
         count(framelets[i], shapes[i], error, allowed, counts);
     }
 }
@@ -158,7 +183,7 @@ Counts measure_scene(BenchScene& scene, LayerStudy const& study) {
 json measure_layers(LayerStudy const& study) {
     std::printf("%dx%d, a sample per pixel, %g pixels\n", study.viewport.width, study.viewport.height, study.pixels);
     std::printf("%-18s bodies   sky  1 plane  <=2 planes  no loose  loose samples  velocity  mirror  layers  farthest "
-                "[px]     off  ns/sample\n",
+                "[px]    off  off later  bytes  ns/sample\n",
                 "");
     json rows;
     for (std::filesystem::path const& file : study.scenes) {
@@ -179,14 +204,17 @@ json measure_layers(LayerStudy const& study) {
                           {"layers_per_tile", c.layers / c.tiles},
                           {"farthest_pixels", c.farthest},
                           {"samples_off", c.off / c.samples},
+                          {"samples_off_later", c.off_later / c.samples},
+                          {"packed_bytes_per_sample", c.packed_bytes / c.samples},
                           {"fit_ns_per_sample", median(c.nanoseconds)}};
         auto const percent = [&](char const* key) { return 100 * row[key].get<double>(); };
-        std::printf(
-            "%-18s %6zu %4.0f%% %7.1f%% %10.1f%% %8.1f%% %13.2f%% %8.1f%% %6.1f%% %7.2f %13.2f %6.3f%% %10.2f\n",
-            scene->name.c_str(), bodies, percent("sky_tiles"), percent("one_plane_of_non_sky"),
-            percent("sky_or_two_planes"), percent("tiles_without_loose"), percent("loose_samples"),
-            percent("samples_with_velocity"), percent("mirror_samples"), c.layers / c.tiles, c.farthest,
-            percent("samples_off"), row["fit_ns_per_sample"].get<double>());
+        std::printf("%-18s %6zu %4.0f%% %7.1f%% %10.1f%% %8.1f%% %13.2f%% %8.1f%% %6.1f%% %7.2f %13.2f %5.2f%% %9.2f%% "
+                    "%6.3f %10.2f\n",
+                    scene->name.c_str(), bodies, percent("sky_tiles"), percent("one_plane_of_non_sky"),
+                    percent("sky_or_two_planes"), percent("tiles_without_loose"), percent("loose_samples"),
+                    percent("samples_with_velocity"), percent("mirror_samples"), c.layers / c.tiles, c.farthest,
+                    percent("samples_off"), percent("samples_off_later"), row["packed_bytes_per_sample"].get<double>(),
+                    row["fit_ns_per_sample"].get<double>());
         std::fflush(stdout);
         rows.push_back(row);
     }

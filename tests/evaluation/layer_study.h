@@ -19,8 +19,8 @@ struct LayerStudy {
 };
 
 /// Fits layers to the framelets of a sample per pixel, then shows every sample from a camera that has moved so far that
-/// what is at median depth moves by 20 pixels and has turned by 5 degrees, a tenth of a second later: by its layer, and
-/// by its own depth and motion. Throws InputError.
+/// what is at median depth moves by 20 pixels and has turned by 5 degrees, at once and a tenth of a second later: by
+/// its layer, and by its own depth and motion. Throws InputError.
 nlohmann::json measure_layers(LayerStudy const& study);
 
 } // namespace framelet::bench
