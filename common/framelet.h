@@ -2,10 +2,12 @@
 #pragma once
 
 #include <array>
+#include <bitset>
 #include <cstdint>
 #include <vector>
 
 #include "common/camera.h"
+#include "common/framelet_shape.h"
 #include "common/tile.h"
 
 namespace framelet {
@@ -21,6 +23,12 @@ struct Framelet {
     std::array<float, framelet_samples> red, green, blue;
     /// View depth, metres along the camera's forward axis; +infinity where nothing was hit.
     std::array<float, framelet_samples> depth;
+    /// What carries each sample. Empty: the static body carries them all.
+    std::vector<BodyNumber> body;
+    /// Of samples on what deforms: metres a second in the world at the scene time; 0 of all others. Empty: all are 0.
+    std::vector<Vec3> velocity;
+    /// Bit i: sample i shows a mirror reflection, which moves otherwise than the surface that it is seen in.
+    std::bitset<framelet_samples> reflects;
 };
 
 /// The same samples as the viewer needs them: tone-mapped, sRGB-encoded, in Morton order.

@@ -7,6 +7,7 @@
 
 #include "common/error.h"
 #include "server/render/flush_denormals.h"
+#include "server/render/sample_motion.h"
 #include "server/render/tracing.h"
 
 namespace framelet {
@@ -66,6 +67,9 @@ std::uint32_t render_framelet(RenderScene const& scene, ViewRays const& view, Im
     TracedPacket traced{};
     std::uint32_t segments = 0;
     out.tile = tile;
+    out.body.clear();
+    out.velocity.clear();
+    out.reflects.reset();
     for (int first = 0; first < framelet_samples; first += lanes) {
         auto const place = [&](int i) {
             std::uint32_t const sample = static_cast<std::uint32_t>(first + i);
@@ -80,6 +84,12 @@ std::uint32_t render_framelet(RenderScene const& scene, ViewRays const& view, Im
             out.green[sample] = traced.radiance.y[i];
             out.blue[sample] = traced.radiance.z[i];
             out.depth[sample] = traced.depth[i];
+        }
+        if (traced.reflects != 0) {
+            out.reflects |= std::bitset<framelet_samples>(traced.reflects) << static_cast<std::size_t>(first);
+        }
+        if (scene.prepared().moves) {
+            add_motion(scene.prepared(), traced, first, out);
         }
     }
     return segments;

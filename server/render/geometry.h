@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "common/framelet_shape.h"
 #include "server/render/material.h"
 #include "server/scene/animation.h"
 
@@ -16,6 +17,7 @@ struct Geometry {
     std::span<Vec3> positions;
     std::span<Vec3 const> normals;
     std::span<Vec4 const> tangents; ///< empty where there are none
+    std::span<Vec3 const> velocities; ///< of the vertices, world metres a second; empty where it does not deform
 };
 
 /// Opacity at a point of a triangle: base colour's alpha, map and vertex colour multiplied.
@@ -31,6 +33,10 @@ struct Instance {
     Vec3 translation{0};
     Mat3 normal_matrix{1}; ///< inverse transpose of `linear`
     float handedness = 1; ///< -1 where the transform mirrors: the winding then reads clockwise in the world
+    BodyNumber body = static_body;
+    bool flows = false; ///< its samples have velocities, of the vertices or of the transform:
+    Mat3 linear_rate{0}; ///< of `linear`, per second
+    Vec3 translation_rate{0};
 };
 
 } // namespace framelet

@@ -18,6 +18,7 @@ struct PreparedScene {
     std::vector<RenderLight> lights;
     Environment environment = Environment::uniform(Vec3(0));
     SplitSumTable split_sum;
+    bool moves = false; ///< something moves: tracing keeps which surface gives a sample its depth
     bool see_through = false; ///< some material lets rays pass: without, no ray is ever continued behind a surface
 };
 

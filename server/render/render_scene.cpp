@@ -202,6 +202,7 @@ void RenderScene::set_pose(ScenePose const& pose) {
     if (!move.empty() || !reshape.empty()) {
         prepared_->bvh.commit();
     }
+    update_velocities();
 }
 
 void RenderScene::update_lights() {

@@ -7,6 +7,7 @@
 
 #include "server/render/environment.h"
 #include "server/scene/animation.h"
+#include "server/scene/bodies.h"
 #include "server/scene/scene.h"
 #include "server/scene/scene_import.h"
 
@@ -17,8 +18,8 @@ struct PreparedScene;
 class RenderScene {
 public:
     /// Builds every BVH and mip chain, in the pose that the scene has without its clips. `scene` must outlive this.
-    /// Light: an `environment` adds to the scene's lights. Without one, a scene without lights gets the default sky and a
-    /// sun; one with a sun of its own the sky of that brightness; one with other lights only, dim uniform light.
+    /// Light: an `environment` adds to the scene's lights. Without one, a scene without lights gets the default sky and
+    /// a sun; one with a sun of its own the sky of that brightness; one with other lights only, dim uniform light.
     RenderScene(Scene const& scene, std::optional<Environment> environment, Progress const& progress = {});
     ~RenderScene();
     RenderScene(RenderScene const&) = delete;
@@ -27,6 +28,11 @@ public:
     /// Moves instances, refits what deforms. Costs nothing but a comparison for what does not move. Not while anything
     /// renders. `pose` must be of this scene.
     void set_pose(ScenePose const& pose);
+
+    /// From now on framelets say which bodies carry their samples and how fast those move that no body carries, while
+    /// these clips play. Not while anything renders. At first nothing plays: everything is static.
+    void set_clips(std::span<Index const> clips);
+    SceneBodies const& bodies() const { return bodies_; }
 
     PreparedScene const& prepared() const { return *prepared_; }
 
@@ -48,12 +54,18 @@ private:
     bool moved(Placement const& placement, ScenePose const& pose) const;
     bool reshaped(Placement const& placement, ScenePose const& pose) const;
     void update_lights();
+    void update_velocities();
+    void set_vertex_velocities(Placement const& placement, ScenePose const& other, float per_second);
 
     Scene const& scene_;
     std::unique_ptr<PreparedScene> prepared_;
     std::vector<Placement> placements_;
     std::vector<MeshVertices> deformed_; ///< normals and tangents of deforming meshes live here
     ScenePose pose_;
+    std::vector<Index> clips_;
+    SceneBodies bodies_;
+    std::vector<std::vector<std::vector<Vec3>>> velocities_; ///< by deforming mesh, primitive and vertex
+    DeformedVertices elsewhen_; ///< scratch
 };
 
 } // namespace framelet

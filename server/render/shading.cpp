@@ -149,10 +149,12 @@ void shade(PreparedScene const& scene, SurfacePacket const& s, LaneMask active, 
     }
     out.radiance = s.emissive;
     out.segments = 0;
+    out.reflects = 0;
     LaneMask const lit = active & ~s.unlit;
     if (lit != 0) {
         AmbientPacket ambient;
         add_environment(scene, s, lobes, lit, bounces > 0, ambient, out.radiance);
+        out.reflects = ambient.traced_lanes;
         if (ambient.traced_lanes != 0) {
             out.segments += add_reflections(scene, s, ambient, bounces, out.radiance);
         }

@@ -10,6 +10,7 @@ namespace framelet {
 struct ShadedPacket {
     LaneVec3 radiance; ///< of the surface, already weighed by its alpha
     LaneVec3 passed; ///< share of what lies behind that is seen through it; set only where the scene is see-through
+    LaneMask reflects; ///< lanes for which a mirror reflection was traced
     std::uint32_t segments; ///< rays traced for it
 };
 

@@ -36,20 +36,33 @@ void add_background(PreparedScene const& scene, RayPacket const& rays, LaneMask 
         out.radiance.set(i, out.radiance.get(i) + through * scene.environment.background(direction, spread));
         if (mean(through) > state.weight[i]) {
             out.depth[i] = INFINITY;
+            out.surface.instance[i] = no_instance;
         }
     });
 }
 
+void keep_surface(HitPacket const& hits, int i, TracedPacket& out) {
+    out.surface.t[i] = hits.t[i];
+    out.surface.u[i] = hits.u[i];
+    out.surface.v[i] = hits.v[i];
+    out.surface.triangle[i] = hits.triangle[i];
+    out.surface.geometry[i] = hits.geometry[i];
+    out.surface.instance[i] = hits.instance[i];
+}
+
 /// Composites opaque surfaces: what they send is all that is seen.
-void add_opaque(ShadedPacket const& shaded, HitPacket const& hits, LaneMask present, TracedPacket& out) {
+void add_opaque(ShadedPacket const& shaded, HitPacket const& hits, LaneMask present, bool moves, TracedPacket& out) {
     for_each_lane(present, [&](int i) {
         out.radiance.set(i, shaded.radiance.get(i));
         out.depth[i] = hits.t[i];
     });
+    if (moves) {
+        for_each_lane(present, [&](int i) { keep_surface(hits, i, out); });
+    }
 }
 
 /// Composites surfaces that may be see-through; returns the lanes in which something behind them is still seen.
-LaneMask add_layer(ShadedPacket const& shaded, HitPacket const& hits, LaneMask present, Compositing& state,
+LaneMask add_layer(ShadedPacket const& shaded, HitPacket const& hits, LaneMask present, bool moves, Compositing& state,
                    TracedPacket& out) {
     LaneMask passed = 0;
     for_each_lane(present, [&](int i) {
@@ -61,6 +74,9 @@ LaneMask add_layer(ShadedPacket const& shaded, HitPacket const& hits, LaneMask p
         if (weight > state.weight[i]) {
             state.weight[i] = weight;
             out.depth[i] = hits.t[i];
+            if (moves) {
+                keep_surface(hits, i, out);
+            }
         }
         passed |= static_cast<LaneMask>(mean(behind) > least_throughput ? 1u : 0u) << i;
     });
@@ -75,9 +91,11 @@ void trace(PreparedScene const& scene, RayPacket& rays, LaneMask active, Footpri
     state.throughput.fill(Vec3(1));
     state.weight.fill(0);
     out.segments = 0;
+    out.reflects = 0;
     for_each_lane(active, [&](int i) {
         out.radiance.set(i, Vec3(0));
         out.depth[i] = INFINITY;
+        out.surface.instance[i] = no_instance;
     });
     HitPacket hits{};
     SurfacePacket surfaces{}; // lanes that meet nothing are computed along with the others: on zeros
@@ -95,10 +113,11 @@ void trace(PreparedScene const& scene, RayPacket& rays, LaneMask active, Footpri
         if (present != 0) {
             shade(scene, surfaces, present, bounces, shaded);
             out.segments += shaded.segments;
+            out.reflects |= shaded.reflects;
             if (scene.see_through) {
-                passed |= add_layer(shaded, hits, present, state, out);
+                passed |= add_layer(shaded, hits, present, scene.moves, state, out);
             } else {
-                add_opaque(shaded, hits, present, out);
+                add_opaque(shaded, hits, present, scene.moves, out);
             }
         }
         LaneMask const culled = hit & ~present;

@@ -6,9 +6,13 @@
 
 namespace framelet {
 
+inline constexpr std::uint32_t no_instance = ~0u;
+
 struct TracedPacket {
     LaneVec3 radiance; ///< finite, >= 0
     LaneFloats depth; ///< ray parameter of the surface that contributes most; +infinity where that is the background
+    HitPacket surface; ///< that surface, where something in the scene moves; instance `no_instance`: the background
+    LaneMask reflects = 0; ///< lanes that show a traced mirror reflection
     std::uint32_t segments = 0; ///< rays traced for it, shadow and mirror rays included
 };
 

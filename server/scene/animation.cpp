@@ -7,6 +7,7 @@
 
 #include "common/error.h"
 #include "server/scene/keyframes.h"
+#include "server/scene/vector_math.h"
 
 namespace framelet {
 namespace {
@@ -87,6 +88,24 @@ Mat4 matrix_of(Transform const& transform) {
     return matrix;
 }
 
+Transform transform_of(Mat4 const& matrix) {
+    Transform result;
+    result.translation = Vec3(matrix[3]);
+    Mat3 axes(matrix);
+    for (int c = 0; c < 3; ++c) {
+        result.scale[c] = glm::length(axes[c]);
+        axes[c] = unit_or(axes[c], Vec3(0));
+    }
+    if (glm::dot(glm::cross(axes[0], axes[1]), axes[2]) < 0) {
+        result.scale.x = -result.scale.x;
+        axes[0] = -axes[0];
+    }
+    Quat const rotation = glm::quat_cast(axes);
+    float const length = glm::length(rotation);
+    result.rotation = length > 0 ? rotation / length : Quat(1, 0, 0, 0);
+    return result;
+}
+
 std::vector<Index> default_clips(Scene const& scene) {
     std::vector<bool> taken(scene.nodes.size());
     std::vector<Index> clips;
@@ -138,16 +157,21 @@ ScenePose evaluate_pose(Scene const& scene, std::span<Index const> clips, SceneT
     return pose;
 }
 
-std::vector<bool> moving_nodes(Scene const& scene, std::span<Index const> clips) {
-    std::vector<bool> moving(scene.nodes.size());
+std::vector<bool> animated_nodes(Scene const& scene, std::span<Index const> clips) {
+    std::vector<bool> animated(scene.nodes.size());
     for (Index const clip : clips) {
         for (AnimationChannel const& channel : scene.clips[static_cast<std::size_t>(clip)].channels) {
             auto const node = static_cast<std::size_t>(channel.node);
             if (channel.property != AnimatedProperty::morph_weights && !changes_nothing(scene.nodes[node], channel)) {
-                moving[node] = true;
+                animated[node] = true;
             }
         }
     }
+    return animated;
+}
+
+std::vector<bool> moving_nodes(Scene const& scene, std::span<Index const> clips) {
+    std::vector<bool> moving = animated_nodes(scene, clips);
     for (std::size_t i = 0; i < moving.size(); ++i) { // parents come first
         Index const parent = scene.nodes[i].parent;
         moving[i] = moving[i] || (parent != none && moving[static_cast<std::size_t>(parent)]);

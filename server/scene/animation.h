@@ -19,11 +19,17 @@ struct ScenePose {
 /// T * R * S.
 Mat4 matrix_of(Transform const& transform);
 
+/// Takes a matrix apart into translation, rotation and scale; shear is lost.
+Transform transform_of(Mat4 const& matrix);
+
 /// The clips that play together: the first one, and every later one that moves nothing an earlier one moves.
 std::vector<Index> default_clips(Scene const& scene);
 
 /// Evaluates the clips at `time`; each loops with its own duration. Rotations are interpolated along the shorter arc.
 ScenePose evaluate_pose(Scene const& scene, std::span<Index const> clips, SceneTime time);
+
+/// True for every node whose own transform one of the clips can change.
+std::vector<bool> animated_nodes(Scene const& scene, std::span<Index const> clips);
 
 /// True for every node whose world transform one of the clips can change.
 std::vector<bool> moving_nodes(Scene const& scene, std::span<Index const> clips);

@@ -1,30 +1,11 @@
 #include <algorithm>
 
 #include "common/error.h"
+#include "server/scene/animation.h"
 #include "server/scene/finish_parts.h"
-#include "server/scene/vector_math.h"
 
 namespace framelet {
 namespace {
-
-/// Takes a matrix apart into translation, rotation and scale; shear is lost.
-Transform decompose(Mat4 const& matrix) {
-    Transform result;
-    result.translation = Vec3(matrix[3]);
-    Mat3 axes(matrix);
-    for (int c = 0; c < 3; ++c) {
-        result.scale[c] = glm::length(axes[c]);
-        axes[c] = unit_or(axes[c], Vec3(0));
-    }
-    if (glm::dot(glm::cross(axes[0], axes[1]), axes[2]) < 0) {
-        result.scale.x = -result.scale.x;
-        axes[0] = -axes[0];
-    }
-    Quat const rotation = glm::quat_cast(axes);
-    float const length = glm::length(rotation);
-    result.rotation = length > 0 ? rotation / length : Quat(1, 0, 0, 0);
-    return result;
-}
 
 /// Drops keys whose time does not increase.
 std::size_t drop_repeated_keys(AnimationChannel& channel) {
@@ -66,7 +47,7 @@ bool finish_channel(Scene& scene, AnimationClip const& clip, AnimationChannel& c
             return false;
         }
     } else if (node.matrix) {
-        node.local = decompose(*node.matrix);
+        node.local = transform_of(*node.matrix);
         node.matrix.reset();
     }
     return true;

@@ -17,6 +17,7 @@
 #include "tests/evaluation/calibrate.h"
 #include "tests/evaluation/codec/codec_study.h"
 #include "tests/evaluation/estimators/estimator_verbs.h"
+#include "tests/evaluation/layer_study.h"
 #include "tests/evaluation/limits.h"
 #include "tests/evaluation/response_cost.h"
 #include "tests/evaluation/sensitivity.h"
@@ -57,6 +58,7 @@ struct Options {
     framelet::bench::StudyOptions study;
     framelet::bench::EstimatorStudy estimators;
     framelet::bench::CodecStudy codec;
+    framelet::bench::LayerStudy layers;
     framelet::bench::WallOptions wall{.server_threads =
                                           std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1)};
 };
@@ -177,6 +179,14 @@ void add_codec_options(CLI::App& verb, Options& options) {
     verb.add_option("--charts", options.codec.charts, "Draw charts into this folder");
 }
 
+void add_layer_options(CLI::App& verb, Options& options) {
+    add_output_options(verb, options);
+    verb.add_option("--scene", options.layers.scenes, "Scene files to measure with (default: all of the project's)");
+    verb.add_option("--pixels", options.layers.pixels, "How far off a sample may be shown")
+        ->check(CLI::Range(0.01, 16.0))
+        ->capture_default_str();
+}
+
 void add_wall_options(CLI::App& verb, Options& options) {
     add_study_options(verb, options);
     add_link_options(verb, options);
@@ -239,6 +249,23 @@ json codec(Options& options) {
         study.rounds = 1;
     }
     return compare_codecs(study);
+}
+
+json layers(Options& options) {
+    auto& study = options.layers;
+    if (study.scenes.empty()) {
+        for (auto const& entry : std::filesystem::directory_iterator(source / "scenes")) {
+            if (entry.path().extension() == ".glb") {
+                study.scenes.push_back(entry.path());
+            }
+        }
+        std::ranges::sort(study.scenes);
+    }
+    if (options.quick) {
+        study.viewport = {640, 360};
+        study.times = 2;
+    }
+    return framelet::bench::measure_layers(study);
 }
 
 json calibrate(BenchScene& scene, bool quick) {
@@ -305,6 +332,8 @@ int main(int argc, char** argv) {
              study(framelet::bench::prepare_reference));
     add_verb("sensitivity", "How tsar answers to steeper and flatter templates of its error estimate", add_run_options,
              study(framelet::bench::sensitivity));
+    add_verb("layers", "How many planes framelets are, how far off those show samples, and what finding them costs",
+             add_layer_options, [&options] { return layers(options); });
     add_verb("calibrate", "What every stage costs on this machine", add_scene_options,
              with_scene([&options](BenchScene& scene) { return calibrate(scene, options.quick); }));
     add_verb("codec", "Bytes of a sample against the error of what is decoded, for each way of coding framelets",

@@ -1,0 +1,244 @@
+#include "server/layers/layer_fit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "server/layers/plane_search.h"
+
+namespace framelet {
+namespace {
+
+/// Kinds of samples that are told apart in a framelet; those of more are loose.
+constexpr std::size_t most_groups = 8;
+/// Closer to the eye than this, metres, nothing is told apart.
+constexpr float least_depth = 1e-6f;
+
+/// Samples that may share a layer: of one body, or what deforms, or the sky.
+struct Group {
+    BodyNumber body = static_body;
+    bool flows = false, sky = false;
+
+    bool operator==(Group const&) const = default;
+};
+
+BodyNumber body_of(Framelet const& framelet, int sample) {
+    return framelet.body.empty() ? static_body : framelet.body[static_cast<std::size_t>(sample)];
+}
+
+Vec3 velocity_of(Framelet const& framelet, int sample) {
+    return framelet.velocity.empty() ? Vec3(0) : framelet.velocity[static_cast<std::size_t>(sample)];
+}
+
+/// The grid's plane as the layer states it: in pixels from the tile's corner.
+Layer layer_of_plane(GridPlane const& plane, Group const& group, float spacing) {
+    constexpr float middle = 0.5f * framelet_side;
+    Layer layer;
+    layer.at = plane.centre - middle * plane.dx - middle * plane.dy;
+    layer.dx = plane.dx / spacing;
+    layer.dy = plane.dy / spacing;
+    layer.body = group.body;
+    return layer;
+}
+
+class Fitter {
+public:
+    Fitter(Framelet const& framelet, float spacing, LayerTolerance const& tolerance, FrameletShape& shape);
+
+    void fit() {
+        shape_.layer_count = 0;
+        shape_.layers = {};
+        shape_.loose_samples.clear();
+        if (!(is_uniform() && fit_one())) {
+            layer_of_.fill(FrameletShape::loose);
+            make_groups();
+            fit_groups();
+            collect();
+        }
+    }
+
+private:
+    bool is_uniform() const {
+        bool const one_body = std::ranges::all_of(framelet_.body, [&](BodyNumber b) { return b == framelet_.body[0]; });
+        return one_body && framelet_.velocity.empty();
+    }
+    bool fit_one();
+    void make_groups();
+    void fit_groups();
+    void set_candidates(std::size_t group);
+    void agree_on_velocity();
+    void add_layer(Group const& group);
+    void collect();
+
+    Framelet const& framelet_;
+    float spacing_, tolerance_, velocity_tolerance_;
+    GridFloats values_; ///< inverse depths
+    std::array<Group, most_groups> groups_;
+    std::size_t group_count_ = 0;
+    /// In block order as all grids here. Group: `most_groups` where a sample is in none.
+    std::array<std::uint8_t, framelet_samples> group_of_, layer_of_;
+    GridFloats candidates_;
+    FoundPlane found_;
+    Vec3 velocity_{0}; ///< of what was found
+    FrameletShape& shape_;
+};
+
+Fitter::Fitter(Framelet const& framelet, float spacing, LayerTolerance const& tolerance, FrameletShape& shape)
+    : framelet_(framelet), spacing_(spacing), velocity_tolerance_(tolerance.velocity * std::max(1.0f, spacing)),
+      shape_(shape) {
+    std::array<float, framelet_samples> inverse;
+    for (std::size_t i = 0; i < framelet_samples; ++i) {
+        float const depth = framelet.depth[i];
+        inverse[i] = 1 / (depth > least_depth ? depth : least_depth);
+    }
+    for (int i = 0; i < framelet_samples; ++i) {
+        values_[block_order(i)] = inverse[static_cast<std::size_t>(i)];
+    }
+    constexpr float resolution = 1e-6f; // of sums of single-precision numbers
+    tolerance_ = std::max(tolerance.inverse_depth * std::max(1.0f, spacing), resolution * greatest(values_));
+}
+
+bool Fitter::fit_one() {
+    if (!find_plane_of_all(values_, tolerance_, found_)) {
+        return false;
+    }
+    add_layer({body_of(framelet_, 0), false, false});
+    shape_.layer_of.fill(0);
+    return true;
+}
+
+void Fitter::make_groups() {
+    if (framelet_.body.empty() && framelet_.velocity.empty()) {
+        groups_ = {Group{}, Group{static_body, false, true}};
+        for (int i = 0; i < framelet_samples; ++i) {
+            group_of_[static_cast<std::size_t>(i)] = values_[i] == 0 ? 1 : 0;
+        }
+        return;
+    }
+    for (int i = 0; i < framelet_samples; ++i) {
+        bool const sky = values_[block_order(i)] == 0;
+        Group const group = sky ? Group{static_body, false, true}
+                                : Group{body_of(framelet_, i), velocity_of(framelet_, i) != Vec3(0), false};
+        std::size_t g = 0;
+        while (g < group_count_ && groups_[g] != group) {
+            ++g;
+        }
+        if (g == group_count_ && g < most_groups) {
+            groups_[group_count_++] = group;
+        }
+        group_of_[static_cast<std::size_t>(block_order(i))] = static_cast<std::uint8_t>(g);
+    }
+}
+
+/// Samples of the group that are on no layer yet.
+void Fitter::set_candidates(std::size_t group) {
+    for (std::size_t i = 0; i < framelet_samples; ++i) {
+        bool const is_one = (group_of_[i] == group) & (layer_of_[i] == FrameletShape::loose);
+        candidates_.value[i] = is_one ? 1.0f : 0.0f;
+    }
+}
+
+/// Keeps the members that move nearly as they do on average.
+void Fitter::agree_on_velocity() {
+    Vec3 sum(0);
+    for (int i = 0; i < framelet_samples; ++i) {
+        sum += velocity_of(framelet_, i) * found_.members[block_order(i)];
+    }
+    velocity_ = sum / static_cast<float>(std::max(found_.count, 1));
+    found_.count = 0;
+    for (int i = 0; i < framelet_samples; ++i) {
+        float& member = found_.members[block_order(i)];
+        float const off = glm::length(velocity_of(framelet_, i) - velocity_) * values_[block_order(i)];
+        member = member != 0 && off <= velocity_tolerance_ ? 1.0f : 0.0f;
+        found_.count += member != 0 ? 1 : 0;
+    }
+}
+
+/// The largest group gives the next layer, until there are enough or nothing is left that makes one.
+void Fitter::fit_groups() {
+    std::array<int, most_groups> left{};
+    for (std::uint8_t const group : group_of_) {
+        if (group < most_groups) {
+            ++left[group];
+        }
+    }
+    while (shape_.layer_count < max_layers) {
+        auto const largest = std::ranges::max_element(left);
+        if (*largest < least_plane_samples) {
+            break;
+        }
+        auto const g = static_cast<std::size_t>(largest - left.begin());
+        Group const& group = groups_[g];
+        set_candidates(g);
+        find_plane(values_, candidates_, tolerance_, found_);
+        velocity_ = Vec3(0);
+        if (group.flows && found_.count > 0) {
+            agree_on_velocity();
+        }
+        if (found_.count < least_plane_samples) {
+            *largest = 0; // what is left of it stays loose
+            continue;
+        }
+        add_layer(group);
+        *largest -= found_.count;
+    }
+}
+
+void Fitter::add_layer(Group const& group) {
+    Range const range = residual_range(values_, found_.members, found_.plane);
+    found_.plane.centre += range.middle();
+    Layer layer = layer_of_plane(found_.plane, group, spacing_);
+    layer.velocity = velocity_;
+    // The same plane in other coordinates, or in another order of operations, rounds otherwise.
+    constexpr float rounding = 2e-6f;
+    float const side = spacing_ * framelet_side;
+    float const magnitude = std::abs(layer.at) + side * (std::abs(layer.dx) + std::abs(layer.dy));
+    layer.error = range.half_width() + rounding * (magnitude + range.half_width());
+    for (std::size_t i = 0; i < framelet_samples; ++i) {
+        layer_of_[i] = found_.members.value[i] != 0 ? shape_.layer_count : layer_of_[i];
+    }
+    shape_.layers[shape_.layer_count++] = layer;
+}
+
+void Fitter::collect() {
+    for (int i = 0; i < framelet_samples; ++i) {
+        std::uint8_t const layer = layer_of_[static_cast<std::size_t>(block_order(i))];
+        shape_.layer_of[static_cast<std::size_t>(i)] = layer;
+        if (layer == FrameletShape::loose) {
+            shape_.loose_samples.push_back({values_[block_order(i)], body_of(framelet_, i), velocity_of(framelet_, i)});
+        }
+    }
+}
+
+} // namespace
+
+LayerTolerance layer_tolerance(float median_depth, ViewRays const& rays) {
+    constexpr float parallax = 20, seconds = 0.1f;
+    return {tolerated_pixels / (parallax * median_depth), tolerated_pixels * glm::length(rays.direction_dx) / seconds};
+}
+
+float median_depth(std::span<Framelet const> framelets) {
+    constexpr std::size_t step = 17; // odd: every place in the blocks is met
+    std::vector<float> depths;
+    for (Framelet const& framelet : framelets) {
+        for (std::size_t i = 0; i < framelet_samples; i += step) {
+            if (std::isfinite(framelet.depth[i])) {
+                depths.push_back(framelet.depth[i]);
+            }
+        }
+    }
+    if (depths.empty()) {
+        return 1;
+    }
+    auto const middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+    std::ranges::nth_element(depths, middle);
+    return std::max(*middle, least_depth);
+}
+
+void fit_layers(Framelet const& framelet, ImagePlane const& plane, LayerTolerance const& tolerance,
+                FrameletShape& shape) {
+    Fitter(framelet, plane.sample_spacing(framelet.tile), tolerance, shape).fit();
+}
+
+} // namespace framelet

@@ -1,0 +1,37 @@
+// From the depths and bodies of a framelet's samples to the few planes they lie on (ALGORITHMS section 7).
+// In: a framelet, how far off a layer may be. Out: its shape. The inverse of the view depth of a plane is affine on the
+// image plane of a perspective camera.
+#pragma once
+
+#include <span>
+
+#include "common/framelet.h"
+#include "common/framelet_shape.h"
+
+namespace framelet {
+
+/// How far off a sample may be shown.
+inline constexpr float tolerated_pixels = 0.25f;
+
+/// How far off its layer a sample may be, for samples a pixel apart or closer; coarser ones may be off in proportion.
+struct LayerTolerance {
+    /// 1 / metres. A sample that is off by e moves by e * (translation in metres) * (focal length in pixels) pixels.
+    float inverse_depth = 0;
+    /// Speed times inverse depth, 1 / seconds, by which what deforms may move otherwise than its layer.
+    float velocity = 0;
+};
+
+/// `tolerated_pixels`, while the camera moves so far that what is at `median_depth` (metres, > 0) moves by 20 pixels,
+/// and what deforms moves on for a tenth of a second.
+LayerTolerance layer_tolerance(float median_depth, ViewRays const& rays);
+
+/// Median of the finite depths in the framelets, from a part of their samples; 1 where there are none.
+float median_depth(std::span<Framelet const> framelets);
+
+/// Up to `max_layers` layers, the samples that none of them takes being loose. The inverse depth of every sample of a
+/// layer is within its `error` of the layer, and that within the tolerance, or what single precision resolves. Finite
+/// for any depths > 0. The sky is at inverse depth 0. `shape` is overwritten; its memory is used again.
+void fit_layers(Framelet const& framelet, ImagePlane const& plane, LayerTolerance const& tolerance,
+                FrameletShape& shape);
+
+} // namespace framelet

@@ -1,0 +1,88 @@
+// Bodies and velocities of the instances.
+#include <cmath>
+
+#include "server/render/prepared_scene.h"
+#include "server/render/render_scene.h"
+
+namespace framelet {
+namespace {
+
+/// Seconds to another moment from which velocities at `time` are taken: shortly after it, or before it where a clip
+/// starts over in between.
+double to_other_moment(Scene const& scene, std::span<Index const> clips, SceneTime time) {
+    constexpr double interval = 1.0 / 120;
+    for (Index const clip : clips) {
+        double const duration = scene.clips[static_cast<std::size_t>(clip)].duration;
+        if (duration > 2 * interval) {
+            double const since_start = time - duration * std::floor(time / duration);
+            if (since_start + interval >= duration) {
+                return -interval;
+            }
+        }
+    }
+    return interval;
+}
+
+} // namespace
+
+void RenderScene::set_clips(std::span<Index const> clips) {
+    clips_.assign(clips.begin(), clips.end());
+    bodies_ = find_bodies(scene_, clips_);
+    prepared_->moves = bodies_.any_moves() || bodies_.any_flows();
+    velocities_.resize(deformed_.size());
+    for (Placement const& placement : placements_) {
+        Instance& instance = prepared_->instances[placement.instance];
+        instance.body = bodies_.body_of_node[placement.node];
+        instance.flows = bodies_.flows[placement.node];
+    }
+    update_velocities();
+}
+
+void RenderScene::update_velocities() {
+    if (!bodies_.any_flows()) {
+        return;
+    }
+    double const seconds = to_other_moment(scene_, clips_, pose_.time);
+    ScenePose const other = evaluate_pose(scene_, clips_, pose_.time + seconds);
+    float const per_second = static_cast<float>(1 / seconds);
+    for (Placement const& placement : placements_) {
+        if (!bodies_.flows[placement.node]) {
+            continue;
+        }
+        Instance& instance = prepared_->instances[placement.instance];
+        bool const deforms = reshaped(placement, other);
+        for (Geometry& geometry : prepared_->meshes[placement.mesh]) {
+            geometry.velocities = {};
+        }
+        instance.linear_rate = Mat3(0);
+        instance.translation_rate = Vec3(0);
+        if (deforms) {
+            set_vertex_velocities(placement, other, per_second);
+        } else if (moved(placement, other)) {
+            Mat4 const& now = pose_.world_from_node[placement.node];
+            Mat4 const& then = other.world_from_node[placement.node];
+            instance.linear_rate = (Mat3(then) - Mat3(now)) * per_second;
+            instance.translation_rate = Vec3(then[3] - now[3]) * per_second;
+        }
+    }
+}
+
+void RenderScene::set_vertex_velocities(Placement const& placement, ScenePose const& other, float per_second) {
+    std::vector<Geometry>& geometries = prepared_->meshes[placement.mesh];
+    std::vector<std::vector<Vec3>>& velocities = velocities_[placement.deformed];
+    velocities.resize(geometries.size());
+    Mat4 const now = placement.skin ? Mat4(1) : pose_.world_from_node[placement.node];
+    Mat4 const then = placement.skin ? Mat4(1) : other.world_from_node[placement.node];
+    for (std::size_t i = 0; i < geometries.size(); ++i) {
+        Geometry& geometry = geometries[i];
+        deform(*geometry.source, other.morph_weights[placement.node], placement.skin, other, elsewhen_);
+        velocities[i].resize(geometry.positions.size());
+        for (std::size_t v = 0; v < geometry.positions.size(); ++v) {
+            Vec4 const to = then * Vec4(elsewhen_.positions[v], 1), from = now * Vec4(geometry.positions[v], 1);
+            velocities[i][v] = Vec3(to - from) * per_second;
+        }
+        geometry.velocities = velocities[i];
+    }
+}
+
+} // namespace framelet

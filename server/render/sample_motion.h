@@ -1,0 +1,13 @@
+// What carries the samples of a framelet: bodies by number, and velocities where nothing rigid does.
+// In: traced packets. Out: a framelet's bodies and velocities, which stay empty where nothing moves.
+#pragma once
+
+#include "common/framelet.h"
+#include "server/render/tracing.h"
+
+namespace framelet {
+
+/// Adds the motion of the packet's lanes, samples `first` .. `first` + 15 of the framelet.
+void add_motion(PreparedScene const& scene, TracedPacket const& traced, int first, Framelet& out);
+
+} // namespace framelet
