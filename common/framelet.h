@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/camera.h"
+#include "common/framelet_shape.h"
 #include "common/tile.h"
 
 namespace framelet {
@@ -49,6 +50,8 @@ struct Batch {
     NumberedView view;
     SceneTime scene_time = 0;
     std::vector<DisplayFramelet> framelets;
+    /// One for each framelet; none at all where the viewer has no use for them.
+    std::vector<FrameletShape> shapes;
 
     bool operator==(Batch const&) const = default;
 };

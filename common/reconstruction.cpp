@@ -49,8 +49,8 @@ std::uint32_t pixel_at(TransferTables const& tables, std::int32_t red, std::int3
 
 LinearColor sample_at(TransferTables const& tables, CachedFramelet const& framelet, int x, int y) {
     std::size_t const i = static_cast<std::size_t>(y) * row_stride + static_cast<std::size_t>(x);
-    return {tables.linear[framelet.samples[0][i]], tables.linear[framelet.samples[1][i]],
-            tables.linear[framelet.samples[2][i]]};
+    PackedSample const sample = framelet.samples[i];
+    return {tables.linear[red_of(sample)], tables.linear[green_of(sample)], tables.linear[blue_of(sample)]};
 }
 
 /// The mean of n x n samples.
@@ -188,16 +188,17 @@ void paint_coarse(TransferTables const& tables, FrameletCache const& cache, Cach
 
 void paint_pixels(CachedFramelet const& framelet, Block& block) {
     for (std::size_t i = 0; i < framelet_samples; ++i) {
-        block[i] = pixel_of(framelet.samples[0][i], framelet.samples[1][i], framelet.samples[2][i]);
+        PackedSample const sample = framelet.samples[i];
+        block[i] = pixel_of(red_of(sample), green_of(sample), blue_of(sample));
     }
 }
 
 /// Out of line: inlined next to arithmetic, the table look-ups get entangled in it by the vectoriser.
 [[gnu::noinline]] void to_linear(TransferTables const& tables,
-                                 std::array<std::uint8_t, framelet_samples> const& samples,
+                                 std::array<PackedSample, framelet_samples> const& samples, std::size_t color,
                                  std::array<float, framelet_samples>& out) {
     for (std::size_t i = 0; i < framelet_samples; ++i) {
-        out[i] = tables.linear[samples[i]];
+        out[i] = tables.linear[samples[i] >> 8 * color & 255u];
     }
 }
 
@@ -210,7 +211,7 @@ void paint_fine(TransferTables const& tables, CachedFramelet const& framelet, in
     std::array<std::array<std::int32_t, pixels * pixels>, 3> steps;
     std::array<float, framelet_samples> linear;
     for (std::size_t color = 0; color < 3; ++color) {
-        to_linear(tables, framelet.samples[color], linear);
+        to_linear(tables, framelet.samples, color, linear);
         for (std::size_t y = 0; y < pixels; ++y) {
             std::array<float, side> columns{}; // sums of the n rows
             for (std::size_t j = 0; j < n; ++j) {

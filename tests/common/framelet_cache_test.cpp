@@ -119,7 +119,7 @@ TEST(FrameletCache, OlderBatchNeverReplacesNewer) {
     EXPECT_EQ(cache.insert(make_batch(plane, 4, {constant_framelet(plane, tile, 40)})), 0u);
     EXPECT_EQ(cache.insert(make_batch(plane, 4, {constant_framelet(plane, tile.child(2), 40)})), 0u);
     EXPECT_EQ(cache.insert(make_batch(plane, 4, {constant_framelet(plane, tile.parent(), 40)})), 1u);
-    EXPECT_EQ(cache.find(plane.pixel_depth(), 1, 2)->samples[0][0], 50);
+    EXPECT_EQ(cache.find(plane.pixel_depth(), 1, 2)->samples[0] & 255u, 50u);
     EXPECT_EQ(cache.insert(make_batch(plane, 6, {constant_framelet(plane, tile.parent(), 60)})), 1u);
     EXPECT_EQ(cache.find(plane.pixel_depth(), 1, 2), nullptr);
     EXPECT_EQ(cache.framelet_count(), 1u);
@@ -136,8 +136,8 @@ TEST(FrameletCache, SamplesAreInRows) {
     CachedFramelet const* const held = cache.find(plane.pixel_depth(), 0, 0);
     ASSERT_NE(held, nullptr);
     for (std::size_t i = 0; i < framelet_samples; ++i) {
-        EXPECT_EQ(held->samples[0][i], i % 16);
-        EXPECT_EQ(held->samples[1][i], i / 16);
+        EXPECT_EQ(red_of(held->samples[i]), i % 16);
+        EXPECT_EQ(green_of(held->samples[i]), i / 16);
     }
 }
 
