@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "common/block_flags.h"
 #include "common/error.h"
 
 namespace framelet {
@@ -239,25 +240,10 @@ void FrameletCache::mark_neighbours(Tile tile, Moment const& moment) {
 
 void FrameletCache::take_changed(std::vector<PixelRect>& changed) {
     changed.clear();
-    if (!has_changes_) {
-        return;
+    if (has_changes_) {
+        take_flagged(changed_blocks_, level(plane_.pixel_depth()).columns, plane_.viewport(), changed);
+        has_changes_ = false;
     }
-    Level const& blocks = level(plane_.pixel_depth());
-    Viewport const viewport = plane_.viewport();
-    for (int row = 0; row < blocks.rows; ++row) {
-        std::uint8_t* const flags =
-            changed_blocks_.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(blocks.columns);
-        std::uint8_t* const end = flags + blocks.columns;
-        for (std::uint8_t* first = std::find(flags, end, 1); first != end;) {
-            std::uint8_t* const last = std::find(first, end, 0);
-            std::fill(first, last, std::uint8_t{0});
-            changed.push_back({static_cast<int>(first - flags) * block_side, row * block_side,
-                               std::min(static_cast<int>(last - flags) * block_side, viewport.width),
-                               std::min((row + 1) * block_side, viewport.height)});
-            first = std::find(last, end, 1);
-        }
-    }
-    has_changes_ = false;
 }
 
 double FrameletCache::covered_area(int depth, int column, int row) const {

@@ -328,6 +328,10 @@ void reconstruct(FrameletCache const& cache, std::span<PixelRect const> changed,
     });
 }
 
+void reconstruct_block(FrameletCache const& cache, int column, int row, Picture& picture) {
+    paint_block_row(transfer_tables(), cache, column, column + 1, row, picture);
+}
+
 void reconstruct_all(FrameletCache const& cache, Picture& picture) {
     Viewport const viewport = cache.plane().viewport();
     PixelRect const everything{0, 0, viewport.width, viewport.height};
