@@ -32,15 +32,17 @@ struct Grid {
     }
 };
 
-/// The mean of those of four that are about as far as the farthest.
+/// The weighted mean of those of four that are about as far as the farthest.
 struct FarthestOfFour {
     std::array<float, 4> take;
     float scale;
     float farthest;
 
-    explicit FarthestOfFour(float a, float b, float c, float d) : farthest(std::min(std::min(a, b), std::min(c, d))) {
+    FarthestOfFour(std::array<float, 4> const& weights, float a, float b, float c, float d)
+        : farthest(std::min(std::min(a, b), std::min(c, d))) {
         float const limit = farthest * foreground_share + foreground_least;
-        take = {a <= limit ? 1.0f : 0.0f, b <= limit ? 1.0f : 0.0f, c <= limit ? 1.0f : 0.0f, d <= limit ? 1.0f : 0.0f};
+        take = {a <= limit ? weights[0] : 0.0f, b <= limit ? weights[1] : 0.0f, c <= limit ? weights[2] : 0.0f,
+                d <= limit ? weights[3] : 0.0f};
         scale = 1 / (take[0] + take[1] + take[2] + take[3]);
     }
     float mean(float a, float b, float c, float d) const {
@@ -49,7 +51,7 @@ struct FarthestOfFour {
 };
 
 FarMean farthest_mean(FarMean const& a, FarMean const& b, FarMean const& c, FarMean const& d) {
-    FarthestOfFour const four(a.inverse_depth, b.inverse_depth, c.inverse_depth, d.inverse_depth);
+    FarthestOfFour const four({1, 1, 1, 1}, a.inverse_depth, b.inverse_depth, c.inverse_depth, d.inverse_depth);
     return {four.mean(a.red, b.red, c.red, d.red), four.mean(a.green, b.green, c.green, d.green),
             four.mean(a.blue, b.blue, c.blue, d.blue), four.farthest};
 }
@@ -61,8 +63,8 @@ void pull(Grid<2 * n> const& fine, Grid<n>& coarse) {
             auto const to = static_cast<std::size_t>(y * n + x);
             auto const from = static_cast<std::size_t>(4 * y * n + 2 * x);
             std::size_t const below = from + 2 * n;
-            FarthestOfFour const four(fine.inverse_depth[from], fine.inverse_depth[from + 1], fine.inverse_depth[below],
-                                      fine.inverse_depth[below + 1]);
+            FarthestOfFour const four({1, 1, 1, 1}, fine.inverse_depth[from], fine.inverse_depth[from + 1],
+                                      fine.inverse_depth[below], fine.inverse_depth[below + 1]);
             coarse.red[to] = four.mean(fine.red[from], fine.red[from + 1], fine.red[below], fine.red[below + 1]);
             coarse.green[to] =
                 four.mean(fine.green[from], fine.green[from + 1], fine.green[below], fine.green[below + 1]);
@@ -76,11 +78,14 @@ bool is_nothing(float inverse_depth) {
     return inverse_depth >= FarMean::nothing;
 }
 
-/// Between the four coarse cells around a fine one. What is still nothing (no picture at all) stays nothing.
+/// Interpolates between those of the four coarse cells around a fine one that are about as far as the farthest. What is
+/// still nothing (no picture at all) stays nothing.
 FarMean between(FarMean const& own, FarMean const& beside, FarMean const& above, FarMean const& across) {
-    auto const mix = [](float a, float b, float c, float d) { return (9 * a + 3 * b + 3 * c + d) * (1 / 16.0f); };
-    return {mix(own.red, beside.red, above.red, across.red), mix(own.green, beside.green, above.green, across.green),
-            mix(own.blue, beside.blue, above.blue, across.blue), own.inverse_depth};
+    FarthestOfFour const four({9, 3, 3, 1}, own.inverse_depth, beside.inverse_depth, above.inverse_depth,
+                              across.inverse_depth);
+    return {four.mean(own.red, beside.red, above.red, across.red),
+            four.mean(own.green, beside.green, above.green, across.green),
+            four.mean(own.blue, beside.blue, above.blue, across.blue), four.farthest};
 }
 
 /// Gives fine cells with nothing in them a value. `parent` and `other` are the coarse column (or row) that a fine one
