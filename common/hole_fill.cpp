@@ -89,11 +89,11 @@ FarMean between(FarMean const& own, FarMean const& beside, FarMean const& above,
 }
 
 /// Gives fine cells with nothing in them a value. `parent` and `other` are the coarse column (or row) that a fine one
-/// lies in and the nearest other one.
-template <int n, int m, class Parent, class Other>
+/// lies in and the nearest other one. Cells within the margin are not needed.
+template <int margin, int n, int m, class Parent, class Other>
 void push(Grid<m> const& coarse, Grid<n>& fine, Parent const& parent, Other const& other) {
-    for (int y = 0; y < n; ++y) {
-        for (int x = 0; x < n; ++x) {
+    for (int y = margin; y < n - margin; ++y) {
+        for (int x = margin; x < n - margin; ++x) {
             auto const to = static_cast<std::size_t>(y * n + x);
             if (is_nothing(fine.inverse_depth[to])) {
                 auto const at = [&](int column, int row) {
@@ -106,34 +106,34 @@ void push(Grid<m> const& coarse, Grid<n>& fine, Parent const& parent, Other cons
     }
 }
 
-template <int n>
+template <int margin, int n>
 void push(Grid<n / 2> const& coarse, Grid<n>& fine) {
-    push(
+    push<margin>(
         coarse, fine, [](int i) { return i / 2; },
         [](int i) { return std::clamp(i / 2 + (i % 2 == 0 ? -1 : 1), 0, n / 2 - 1); });
 }
 
 /// Pixels around a block, half a block more on each side.
 void read_window(std::span<float const> inverse_depth, Picture const& picture, int left, int top, Grid<32>& window) {
-    for (int y = 0; y < 32; ++y) {
-        for (int x = 0; x < 32; ++x) {
-            int const px = left + x;
-            int const py = top + y;
-            auto const to = static_cast<std::size_t>(y * 32 + x);
-            window.put(to, {});
-            if (px < 0 || py < 0 || px >= picture.width || py >= picture.height) {
-                continue;
-            }
-            std::size_t const from =
-                static_cast<std::size_t>(py) * static_cast<std::size_t>(picture.width) + static_cast<std::size_t>(px);
-            if (inverse_depth[from] > hole_depth) {
-                std::uint8_t const* const pixel = picture.rgba.data() + 4 * from;
-                auto const square = [](std::uint8_t byte) {
-                    auto const value = static_cast<float>(byte);
-                    return value * value;
-                };
-                window.put(to, {square(pixel[0]), square(pixel[1]), square(pixel[2]), inverse_depth[from]});
-            }
+    for (auto* const plane : {&window.red, &window.green, &window.blue}) {
+        plane->fill(0);
+    }
+    window.inverse_depth.fill(FarMean::nothing);
+    int const first = std::max(-left, 0);
+    int const last = std::min(32, picture.width - left);
+    for (int y = std::max(-top, 0); y < std::min(32, picture.height - top); ++y) {
+        std::size_t const from = static_cast<std::size_t>(top + y) * static_cast<std::size_t>(picture.width) +
+                                 static_cast<std::size_t>(left + first);
+        float const* const depth = inverse_depth.data() + from;
+        std::uint8_t const* const pixel = picture.rgba.data() + 4 * from;
+        for (int x = 0; x < last - first; ++x) {
+            auto const to = static_cast<std::size_t>(y * 32 + first + x);
+            float const shows = depth[x] > hole_depth ? 1.0f : 0.0f;
+            auto const square = [shows](int byte) { return shows * static_cast<float>(byte * byte); };
+            window.red[to] = square(pixel[4 * x]);
+            window.green[to] = square(pixel[4 * x + 1]);
+            window.blue[to] = square(pixel[4 * x + 2]);
+            window.inverse_depth[to] = depth[x] > hole_depth ? depth[x] : FarMean::nothing;
         }
     }
 }
@@ -246,11 +246,11 @@ void fill_holes(FarMeans const& means, std::span<float const> inverse_depth, int
             blocks.put(static_cast<std::size_t>(y * 3 + x), means.at(column + x - 1, row + y - 1));
         }
     }
-    push(
+    push<0>(
         blocks, eights, [](int i) { return (i + 1) / 2; }, [](int i) { return (i + 1) / 2 + (i % 2 == 0 ? 1 : -1); });
-    push(eights, fours);
-    push(fours, twos);
-    push(twos, pixels);
+    push<1>(eights, fours);
+    push<3>(fours, twos);
+    push<block_side / 2>(twos, pixels);
     std::uint8_t const uncovered = srgb_byte_from_linear(uncovered_light);
     for (int y = 0; y < std::min(block_side, picture.height - top); ++y) {
         std::uint8_t* pixel = picture.row(top + y) + 4 * left;

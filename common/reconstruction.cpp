@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstring>
 
 #include <tbb/parallel_for.h>
@@ -21,17 +20,6 @@ constexpr int deepest_apron_levels = 2;
 /// Pixels of one block, each as its four bytes lie in a picture.
 using Block = std::array<std::uint32_t, row_stride * row_stride>;
 
-/// Where a colour's byte stands in a pixel that is one number.
-constexpr bool little = std::endian::native == std::endian::little;
-constexpr int red_shift = little ? 0 : 24;
-constexpr int green_shift = little ? 8 : 16;
-constexpr int blue_shift = little ? 16 : 8;
-constexpr std::uint32_t opaque = 255u << (little ? 24 : 0);
-
-constexpr std::uint32_t pixel_of(std::uint32_t red, std::uint32_t green, std::uint32_t blue) {
-    return red << red_shift | green << green_shift | blue << blue_shift | opaque;
-}
-
 struct LinearColor {
     float red = 0, green = 0, blue = 0;
 };
@@ -43,8 +31,8 @@ std::int32_t step_of(float linear) {
 }
 
 std::uint32_t pixel_at(TransferTables const& tables, std::int32_t red, std::int32_t green, std::int32_t blue) {
-    return pixel_of(tables.encoded[static_cast<std::size_t>(red)], tables.encoded[static_cast<std::size_t>(green)],
-                    tables.encoded[static_cast<std::size_t>(blue)]);
+    return picture_pixel(tables.encoded[static_cast<std::size_t>(red)], tables.encoded[static_cast<std::size_t>(green)],
+                         tables.encoded[static_cast<std::size_t>(blue)]);
 }
 
 LinearColor sample_at(TransferTables const& tables, CachedFramelet const& framelet, int x, int y) {
@@ -189,7 +177,7 @@ void paint_coarse(TransferTables const& tables, FrameletCache const& cache, Cach
 void paint_pixels(CachedFramelet const& framelet, Block& block) {
     for (std::size_t i = 0; i < framelet_samples; ++i) {
         PackedSample const sample = framelet.samples[i];
-        block[i] = pixel_of(red_of(sample), green_of(sample), blue_of(sample));
+        block[i] = picture_pixel(red_of(sample), green_of(sample), blue_of(sample));
     }
 }
 

@@ -75,23 +75,14 @@ std::uint32_t byte_of(float square) {
 }
 
 void write_colors(WarpedBlock const& block, int left, int top, Picture& picture) {
-    std::array<std::uint32_t, WarpedBlock::pixels> red, green, blue;
+    std::array<std::uint32_t, WarpedBlock::pixels> colors;
     for (std::size_t i = 0; i < WarpedBlock::pixels; ++i) {
-        red[i] = byte_of(block.squares[0][i]);
-        green[i] = byte_of(block.squares[1][i]);
-        blue[i] = byte_of(block.squares[2][i]);
+        colors[i] =
+            picture_pixel(byte_of(block.squares[0][i]), byte_of(block.squares[1][i]), byte_of(block.squares[2][i]));
     }
-    int const width = std::min(side, picture.width - left);
-    int const height = std::min(side, picture.height - top);
-    for (int y = 0; y < height; ++y) {
-        std::uint8_t* pixel = picture.row(top + y) + 4 * left;
-        auto from = static_cast<std::size_t>(y * side);
-        for (int x = 0; x < width; ++x, ++from, pixel += 4) {
-            pixel[0] = static_cast<std::uint8_t>(red[from]);
-            pixel[1] = static_cast<std::uint8_t>(green[from]);
-            pixel[2] = static_cast<std::uint8_t>(blue[from]);
-            pixel[3] = 255;
-        }
+    auto const bytes = static_cast<std::size_t>(std::min(side, picture.width - left)) * sizeof colors[0];
+    for (int y = 0; y < std::min(side, picture.height - top); ++y) {
+        std::memcpy(picture.row(top + y) + 4 * left, &colors[static_cast<std::size_t>(y * side)], bytes);
     }
 }
 
@@ -150,8 +141,9 @@ void Reprojector::show(FrameletCache const& cache, std::span<PixelRect const> ch
     std::atomic<bool> any = false;
     tbb::parallel_for(0, plan_.rows(), [&](int row) {
         bool painted = false;
+        std::vector<PatchView> patches;
         for (int column = 0; column < columns; ++column) {
-            painted |= update_block(cache, camera, scene_time, column, row, picture);
+            painted |= update_block(cache, camera, scene_time, column, row, patches, picture);
         }
         if (painted) {
             any.store(true, std::memory_order_relaxed);
@@ -165,8 +157,7 @@ void Reprojector::show(FrameletCache const& cache, std::span<PixelRect const> ch
 }
 
 bool Reprojector::update_block(FrameletCache const& cache, Camera const& camera, SceneTime scene_time, int column,
-                               int row, Picture& picture) {
-    thread_local std::vector<PatchView> patches;
+                               int row, std::vector<PatchView>& patches, Picture& picture) {
     auto const index =
         static_cast<std::size_t>(row) * static_cast<std::size_t>(plan_.columns()) + static_cast<std::size_t>(column);
     plan_.block(index, patches);

@@ -54,7 +54,7 @@ private:
     void start_moving(Viewport viewport, std::size_t blocks);
     /// True when it had to be painted.
     bool update_block(FrameletCache const& cache, Camera const& camera, SceneTime scene_time, int column, int row,
-                      Picture& picture);
+                      std::vector<PatchView>& patches, Picture& picture);
     void fill(Picture& picture);
 
     bool has_shown_ = false;

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace framelet {
 
 namespace {
 
 constexpr int side = WarpedBlock::side;
+constexpr int lanes = side / 2; ///< pixels of a row that are worked on together: patches seldom begin where blocks do
 constexpr std::size_t pixels = WarpedBlock::pixels;
 
 /// Share of an interpolation that must come from a layer's own samples for it to cover what lies behind it.
@@ -24,10 +26,10 @@ struct Layers {
 };
 
 struct Candidate {
-    alignas(64) std::array<float, side> red, green, blue, weight, inverse_depth;
+    alignas(64) std::array<float, lanes> red, green, blue, weight, inverse_depth;
 };
 
-/// Lets a row of candidates compete with what a row of the block has. Of two that cover firmly or both do not, the
+/// Lets candidates compete with what half a row of the block has. Of two that cover firmly or both do not, the
 /// clearly nearer one wins; else the one that was there, which is newer. Those of one group on one surface add up.
 void merge_row(Candidate const& row, std::int32_t group, std::int32_t patch, float tolerance, std::size_t first,
                Layers& layers) {
@@ -39,7 +41,7 @@ void merge_row(Candidate const& row, std::int32_t group, std::int32_t patch, flo
     std::int32_t* const groups = layers.group.data() + first;
     std::int32_t* const patches = layers.patch.data() + first;
 #pragma GCC ivdep // rows of distinct arrays
-    for (int i = 0; i < side; ++i) {
+    for (int i = 0; i < lanes; ++i) {
         auto const k = static_cast<std::size_t>(i);
         float const own = row.weight[k];
         float const depth = row.inverse_depth[k];
@@ -68,7 +70,8 @@ float square(std::uint32_t byte) {
     return value * value;
 }
 
-/// The samples of a patch at a row of pixels of which the first is (x, y) from the centre of the box's first pixel.
+/// The samples of a patch at half a row of pixels of which the first is (x, y) from the centre of the box's first
+/// pixel.
 void sample_row(Patch const& patch, float x, float y, float first, float last, Candidate& out) {
     float const u0 = patch.at[0] + y * patch.dy[0] + x * patch.dx[0];
     float const v0 = patch.at[1] + y * patch.dy[1] + x * patch.dx[1];
@@ -80,7 +83,7 @@ void sample_row(Patch const& patch, float x, float y, float first, float last, C
     std::int32_t const end = n - 1;
     auto const outside = static_cast<float>(n);
     std::uint32_t const layer = patch.layer;
-    for (int i = 0; i < side; ++i) {
+    for (int i = 0; i < lanes; ++i) {
         auto const k = static_cast<std::size_t>(i);
         auto const step = static_cast<float>(i);
         float const inverse_z = z0 + step * dz;
@@ -127,14 +130,19 @@ void sample_row(Patch const& patch, float x, float y, float first, float last, C
 }
 
 void paint_layer(Patch const& patch, std::int32_t index, int left, int top, Layers& layers) {
-    Candidate row;
+    Candidate half;
     int const last_row = std::min(patch.box.bottom - top, side);
-    auto const first = static_cast<float>(patch.box.left - left);
-    auto const last = static_cast<float>(patch.box.right - left);
-    for (int y = std::max(patch.box.top - top, 0); y < last_row; ++y) {
-        sample_row(patch, static_cast<float>(left - patch.box.left), static_cast<float>(top + y - patch.box.top), first,
-                   last, row);
-        merge_row(row, patch.group, index, patch.tolerance, static_cast<std::size_t>(y * side), layers);
+    for (int x = 0; x < side; x += lanes) {
+        auto const first = static_cast<float>(patch.box.left - left - x);
+        auto const last = static_cast<float>(patch.box.right - left - x);
+        if (first >= lanes || last <= 0) {
+            continue;
+        }
+        for (int y = std::max(patch.box.top - top, 0); y < last_row; ++y) {
+            sample_row(patch, static_cast<float>(left + x - patch.box.left),
+                       static_cast<float>(top + y - patch.box.top), first, last, half);
+            merge_row(half, patch.group, index, patch.tolerance, static_cast<std::size_t>(y * side + x), layers);
+        }
     }
 }
 
@@ -148,19 +156,24 @@ void paint_splat(Splat const& splat, Patch const& patch, std::int32_t index, int
     if (x + splat.spacing < 0 || x - splat.spacing > side - 1) {
         return;
     }
-    Candidate row;
-    for (int j = first_row; j <= last_row; ++j) {
-        float const wy = std::max(1 - std::abs(static_cast<float>(j) - y) * scale, 0.0f);
-        for (int i = 0; i < side; ++i) {
-            auto const k = static_cast<std::size_t>(i);
-            float const weight = wy * std::max(1 - std::abs(static_cast<float>(i) - x) * scale, 0.0f);
-            row.weight[k] = weight;
-            row.red[k] = weight * square(red_of(splat.sample));
-            row.green[k] = weight * square(green_of(splat.sample));
-            row.blue[k] = weight * square(blue_of(splat.sample));
-            row.inverse_depth[k] = splat.inverse_depth;
+    Candidate half;
+    for (int from = 0; from < side; from += lanes) {
+        if (x + splat.spacing < static_cast<float>(from) || x - splat.spacing > static_cast<float>(from + lanes - 1)) {
+            continue;
         }
-        merge_row(row, patch.group, index, 0, static_cast<std::size_t>(j * side), layers);
+        for (int j = first_row; j <= last_row; ++j) {
+            float const wy = std::max(1 - std::abs(static_cast<float>(j) - y) * scale, 0.0f);
+            for (int i = 0; i < lanes; ++i) {
+                auto const k = static_cast<std::size_t>(i);
+                float const weight = wy * std::max(1 - std::abs(static_cast<float>(from + i) - x) * scale, 0.0f);
+                half.weight[k] = weight;
+                half.red[k] = weight * square(red_of(splat.sample));
+                half.green[k] = weight * square(green_of(splat.sample));
+                half.blue[k] = weight * square(blue_of(splat.sample));
+                half.inverse_depth[k] = splat.inverse_depth;
+            }
+            merge_row(half, patch.group, index, 0, static_cast<std::size_t>(j * side + from), layers);
+        }
     }
 }
 
@@ -173,14 +186,22 @@ void finish(std::span<PatchView const> patches, Layers const& layers, int width,
         block.squares[2][i] = scale * layers.blue[i];
         block.inverse_depth[i] = layers.weight[i] > 0 ? layers.inverse_depth[i] : hole_depth;
     }
-    block.holes = 0;
+    std::vector<float> times(patches.size() + 1), stretches(patches.size() + 1); // by patch + 1; 0 for none
+    for (std::size_t i = 0; i < patches.size(); ++i) {
+        times[i + 1] = static_cast<float>(patches[i].patch->scene_time);
+        stretches[i + 1] = patches[i].patch->stretch;
+    }
+    float const* const time = times.data();
+    float const* const stretch = stretches.data();
     for (std::size_t i = 0; i < pixels; ++i) {
-        bool const shows = layers.patch[i] >= 0;
-        bool const visible = static_cast<int>(i) % side < width && static_cast<int>(i) / side < height;
-        Patch const* const patch = shows ? patches[static_cast<std::size_t>(layers.patch[i])].patch : nullptr;
-        block.scene_time[i] = shows ? static_cast<float>(patch->scene_time) : 0;
-        block.stretch[i] = shows ? patch->stretch : 0;
-        block.holes += visible && !shows ? 1 : 0;
+        block.scene_time[i] = time[layers.patch[i] + 1];
+        block.stretch[i] = stretch[layers.patch[i] + 1];
+    }
+    block.holes = 0;
+    for (int y = 0; y < std::min(height, side); ++y) {
+        for (int x = 0; x < std::min(width, side); ++x) {
+            block.holes += layers.patch[static_cast<std::size_t>(y * side + x)] < 0 ? 1 : 0;
+        }
     }
 }
 

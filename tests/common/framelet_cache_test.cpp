@@ -141,6 +141,35 @@ TEST(FrameletCache, SamplesAreInRows) {
     }
 }
 
+TEST(FrameletCache, ViewsAreKnownAsLongAsTheirFrameletsAreHeld) {
+    ImagePlane const plane(Viewport{64, 64});
+    FrameletCache cache(plane);
+    auto const insert = [&](std::uint64_t number, std::uint32_t column, BodyNumber body) {
+        Batch batch =
+            make_batch(plane, number, {constant_framelet(plane, make_tile(plane.pixel_depth(), column, 0), 9)});
+        batch.view.number = number;
+        batch.view.camera.position.x = static_cast<float>(number);
+        FrameletShape shape;
+        shape.layer_count = 1;
+        shape.layers[0].body = body;
+        batch.shapes = {shape};
+        cache.insert(batch);
+    };
+    auto const view_at = [&](int column) { return cache.views()[cache.find(plane.pixel_depth(), column, 0)->view]; };
+    insert(1, 0, static_body);
+    insert(2, 1, 7);
+    EXPECT_EQ(view_at(0).camera.position.x, 1);
+    EXPECT_EQ(view_at(1).camera.position.x, 2);
+    EXPECT_EQ(view_at(0).moving_framelets, 0u);
+    EXPECT_EQ(view_at(1).moving_framelets, 1u);
+    for (std::uint64_t number = 3; number < 20; ++number) {
+        insert(number, static_cast<std::uint32_t>(number % 2), static_body);
+        EXPECT_EQ(view_at(static_cast<int>(number % 2)).number, number);
+        EXPECT_EQ(view_at(static_cast<int>(number % 2)).framelets, 1u);
+        EXPECT_LE(cache.views().size(), 3u);
+    }
+}
+
 TEST(FrameletCache, ChangesAreRectanglesOfBlocksAndAreTakenOnce) {
     ImagePlane const plane(Viewport{100, 60});
     FrameletCache cache(plane);
