@@ -72,7 +72,7 @@ float square(std::uint32_t byte) {
 
 /// The samples of a patch at half a row of pixels of which the first is (x, y) from the centre of the box's first
 /// pixel.
-void sample_row(Patch const& patch, float x, float y, float first, float last, Candidate& out) {
+void sample_row(WarpPatch const& patch, float x, float y, float first, float last, Candidate& out) {
     float const u0 = patch.at[0] + y * patch.dy[0] + x * patch.dx[0];
     float const v0 = patch.at[1] + y * patch.dy[1] + x * patch.dx[1];
     float const z0 = patch.at[2] + y * patch.dy[2] + x * patch.dx[2];
@@ -129,7 +129,7 @@ void sample_row(Patch const& patch, float x, float y, float first, float last, C
     }
 }
 
-void paint_layer(Patch const& patch, std::int32_t index, int left, int top, Layers& layers) {
+void paint_layer(WarpPatch const& patch, std::int32_t index, int left, int top, Layers& layers) {
     Candidate half;
     int const last_row = std::min(patch.box.bottom - top, side);
     for (int x = 0; x < side; x += lanes) {
@@ -147,7 +147,7 @@ void paint_layer(Patch const& patch, std::int32_t index, int left, int top, Laye
 }
 
 /// Loose samples: a tent each, as wide as its neighbours are far.
-void paint_splat(Splat const& splat, Patch const& patch, std::int32_t index, int left, int top, Layers& layers) {
+void paint_splat(Splat const& splat, WarpPatch const& patch, std::int32_t index, int left, int top, Layers& layers) {
     float const x = splat.x - static_cast<float>(left) - 0.5f;
     float const y = splat.y - static_cast<float>(top) - 0.5f;
     float const scale = 1 / splat.spacing;
@@ -219,7 +219,7 @@ void paint_warped_block(std::span<PatchView const> patches, int column, int row,
     layers.group.fill(-1);
     layers.patch.fill(-1);
     for (std::size_t i = 0; i < patches.size(); ++i) {
-        Patch const& patch = *patches[i].patch;
+        WarpPatch const& patch = *patches[i].patch;
         auto const index = static_cast<std::int32_t>(i);
         if (patch.layer == FrameletShape::loose) {
             for (std::uint32_t k = 0; k < patch.splats; ++k) {

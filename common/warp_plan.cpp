@@ -39,7 +39,7 @@ private:
     std::uint64_t state_ = 0x243f6a8885a308d3u;
 };
 
-std::uint64_t signature_of(Patch const& patch, std::span<Splat const> splats) {
+std::uint64_t signature_of(WarpPatch const& patch, std::span<Splat const> splats) {
     Signature out;
     out.add(patch.batch);
     out.add(std::uint64_t{patch.place});
@@ -70,9 +70,9 @@ public:
         : cache_(cache), display_(display), display_rays_(make_view_rays(display, cache.plane().viewport())),
           time_(time), motions_(motions) {}
 
-    void add(CachedFramelet const& framelet, std::vector<Patch>& patches, std::vector<Splat>& splats) {
+    void add(CachedFramelet const& framelet, std::vector<WarpPatch>& patches, std::vector<Splat>& splats) {
         HeldShape const& shape = framelet.shape;
-        Patch common;
+        WarpPatch common;
         common.side = shape.side;
         common.grid = shape.side == framelet_side ? framelet.samples.data() : shape.reduced.data();
         common.group = static_cast<std::int32_t>(framelet.view) * 16 + framelet.tile.depth();
@@ -85,7 +85,7 @@ public:
             if (layer.last_column < layer.first_column) {
                 continue;
             }
-            Patch patch = common;
+            WarpPatch patch = common;
             patch.layer = i;
             patch.place = framelet.tile.code * 4 + i;
             turn_to(framelet.view, layer.layer.body, layer.layer.velocity);
@@ -135,7 +135,7 @@ private:
         return spacing_ * (glm::dvec2(layer.last_column, layer.last_row) + 1.5);
     }
 
-    bool place_still(HeldLayer const& held, Patch& patch) const {
+    bool place_still(HeldLayer const& held, WarpPatch& patch) const {
         glm::dvec2 const corner(rect_.left, rect_.top);
         glm::dmat3 to_display(1);
         to_display[2] = glm::dvec3(corner, 1);
@@ -154,7 +154,7 @@ private:
         return true;
     }
 
-    bool place(HeldLayer const& held, Patch& patch) const {
+    bool place(HeldLayer const& held, WarpPatch& patch) const {
         auto const plane = make_plane_transform(transform_, held.layer, {rect_.left, rect_.top});
         if (!plane) {
             return false;
@@ -172,7 +172,7 @@ private:
         return true;
     }
 
-    void set_maps(PlaneTransform const& plane, Patch& patch) const {
+    void set_maps(PlaneTransform const& plane, WarpPatch& patch) const {
         glm::dmat3 to_samples(1);
         to_samples[0].x = to_samples[1].y = 1 / spacing_;
         to_samples[2] = glm::dvec3(-0.5, -0.5, 1);
@@ -190,7 +190,7 @@ private:
         patch.inverse_depth_dy = static_cast<float>(plane.inverse_depth.y);
     }
 
-    void add_splats(CachedFramelet const& framelet, Patch& patch, std::vector<Splat>& splats) {
+    void add_splats(CachedFramelet const& framelet, WarpPatch& patch, std::vector<Splat>& splats) {
         Viewport const viewport = cache_.plane().viewport();
         double left = viewport.width, top = viewport.height, right = 0, bottom = 0;
         bool still = true;
@@ -280,7 +280,7 @@ void WarpPlan::make_bins() {
     std::size_t const blocks = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
     first_entry_.assign(blocks + 1, 0);
     for (Chunk const& chunk : chunks_) {
-        for (Patch const& patch : chunk.patches) {
+        for (WarpPatch const& patch : chunk.patches) {
             for_each_block(patch.box, columns_, [&](std::size_t block) { ++first_entry_[block + 1]; });
         }
     }
@@ -291,7 +291,7 @@ void WarpPlan::make_bins() {
     next_entry_.assign(first_entry_.begin(), first_entry_.end() - 1);
     for (std::size_t i = 0; i < chunks_.size(); ++i) {
         std::uint32_t entry = static_cast<std::uint32_t>(i) * patches_per_chunk;
-        for (Patch const& patch : chunks_[i].patches) {
+        for (WarpPatch const& patch : chunks_[i].patches) {
             for_each_block(patch.box, columns_, [&](std::size_t block) { entries_[next_entry_[block]++] = entry; });
             ++entry;
         }

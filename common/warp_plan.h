@@ -14,7 +14,7 @@
 namespace framelet {
 
 /// A layer of a framelet in the display picture, or its loose samples.
-struct Patch {
+struct WarpPatch {
     /// Homogeneous sample coordinates (u / z, v / z, 1 / z) of the moving grid at the centre of the box's first pixel,
     /// and what a pixel to the right and one down add. Sample (i, j) lies at u = i, v = j.
     std::array<float, 3> at{}, dx{}, dy{};
@@ -44,7 +44,7 @@ struct Splat {
 
 /// A patch and the splats of its chunk.
 struct PatchView {
-    Patch const* patch = nullptr;
+    WarpPatch const* patch = nullptr;
     Splat const* splats = nullptr;
 };
 
@@ -63,7 +63,7 @@ public:
 
 private:
     struct Chunk {
-        std::vector<Patch> patches;
+        std::vector<WarpPatch> patches;
         std::vector<Splat> splats;
     };
 
