@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/body_track.h"
 #include "common/camera.h"
 #include "common/framelet_shape.h"
 #include "common/tile.h"
@@ -62,6 +63,10 @@ struct Batch {
     SceneTime scene_time = 0;
     std::vector<DisplayFramelet> framelets;
     std::vector<std::uint8_t> quality{}; ///< of each framelet, 0..coarsest_quality; empty: all are exact
+    /// One for each framelet; none at all where the viewer has no use for them.
+    std::vector<FrameletShape> shapes{};
+    /// How the bodies of the shapes move: what the viewer has not been told yet.
+    std::vector<BodyTrack> tracks{};
 
     bool operator==(Batch const&) const = default;
 };

@@ -1,9 +1,9 @@
 #include "common/framelet_cache.h"
 
 #include <algorithm>
-#include <cstring>
 #include <limits>
 
+#include "common/block_flags.h"
 #include "common/error.h"
 
 namespace framelet {
@@ -14,20 +14,8 @@ int ceil_div(int value, int divisor) {
     return (value + divisor - 1) / divisor;
 }
 
-/// Where in rows the samples 2i and 2i + 1 in Morton order lie: they are neighbours.
-constexpr auto pair_places = [] {
-    std::array<std::uint8_t, framelet_samples / 2> out{};
-    for (std::uint32_t i = 0; i < framelet_samples; i += 2) {
-        out[i / 2] = static_cast<std::uint8_t>(framelet_side * morton_y(i) + morton_x(i));
-    }
-    return out;
-}();
-
-void rows_from_morton(std::array<std::uint8_t, framelet_samples> const& morton,
-                      std::array<std::uint8_t, framelet_samples>& rows) {
-    for (std::size_t i = 0; i < pair_places.size(); ++i) {
-        std::memcpy(&rows[pair_places[i]], &morton[2 * i], 2);
-    }
+std::size_t bytes_behind(HeldShape const& shape) {
+    return shape.loose.capacity() * sizeof(HeldLoose);
 }
 
 } // namespace
@@ -63,15 +51,36 @@ std::uint64_t FrameletCache::covered_below(int depth, int column, int row) const
 std::size_t FrameletCache::insert(Batch const& batch) {
     FRAMELET_CHECK(batch.view.viewport == plane_.viewport());
     FRAMELET_CHECK(batch.number > 0); // 0 stands for bare
+    FRAMELET_CHECK(batch.shapes.empty() || batch.shapes.size() == batch.framelets.size());
     Moment const moment{batch.number, batch.view.number, batch.scene_time};
+    std::uint32_t const view = view_of(batch);
     std::size_t taken = 0;
-    for (DisplayFramelet const& framelet : batch.framelets) {
-        taken += insert_one(framelet, moment) ? 1 : 0;
+    for (std::size_t i = 0; i < batch.framelets.size(); ++i) {
+        FrameletShape const* const shape = batch.shapes.empty() ? nullptr : &batch.shapes[i];
+        taken += insert_one(batch.framelets[i], shape, moment, view) ? 1 : 0;
     }
     return taken;
 }
 
-bool FrameletCache::insert_one(DisplayFramelet const& framelet, Moment const& moment) {
+/// The entry for the batch's camera and scene time.
+std::uint32_t FrameletCache::view_of(Batch const& batch) {
+    std::size_t index = views_.size();
+    for (std::size_t i = views_.size(); i-- > 0;) {
+        if (views_[i].framelets == 0) {
+            index = i;
+        } else if (views_[i].number == batch.view.number && views_[i].scene_time == batch.scene_time) {
+            return static_cast<std::uint32_t>(i);
+        }
+    }
+    if (index == views_.size()) {
+        views_.emplace_back();
+    }
+    views_[index] = {batch.view.number, batch.view.camera, batch.scene_time};
+    return static_cast<std::uint32_t>(index);
+}
+
+bool FrameletCache::insert_one(DisplayFramelet const& framelet, FrameletShape const* shape, Moment const& moment,
+                               std::uint32_t view) {
     FRAMELET_CHECK(plane_.accepts(framelet.tile));
     int const depth = framelet.tile.depth();
     int const column = static_cast<int>(framelet.tile.column());
@@ -89,9 +98,12 @@ bool FrameletCache::insert_one(DisplayFramelet const& framelet, Moment const& mo
     CachedFramelet& cached = held(own.slot);
     cached.tile = framelet.tile;
     cached.moment = moment;
-    rows_from_morton(framelet.red, cached.samples[0]);
-    rows_from_morton(framelet.green, cached.samples[1]);
-    rows_from_morton(framelet.blue, cached.samples[2]);
+    cached.view = view;
+    shape_bytes_ -= bytes_behind(cached.shape);
+    hold(framelet, shape, 1 << std::max(depth - plane_.pixel_depth(), 0), cached.samples, cached.shape);
+    shape_bytes_ += bytes_behind(cached.shape);
+    ++views_[view].framelets;
+    views_[view].moving_framelets += cached.shape.moves ? 1 : 0;
     refresh(depth, column, row);
     for (int d = depth - 1; d >= plane_.min_depth(); --d) {
         refresh(d, column >> (depth - d), row >> (depth - d));
@@ -133,8 +145,11 @@ void FrameletCache::drop_older_below(int depth, int column, int row, std::uint64
 }
 
 void FrameletCache::drop(Node& owner) {
-    CachedFramelet const& gone = held(owner.slot);
+    CachedFramelet& gone = held(owner.slot);
     mark_neighbours(gone.tile, gone.moment); // those that interpolated with it
+    --views_[gone.view].framelets;
+    views_[gone.view].moving_framelets -= gone.shape.moves ? 1 : 0;
+    gone.tile = {0};
     free_slots_.push_back(owner.slot);
     owner.slot = no_slot;
     --count_;
@@ -225,25 +240,10 @@ void FrameletCache::mark_neighbours(Tile tile, Moment const& moment) {
 
 void FrameletCache::take_changed(std::vector<PixelRect>& changed) {
     changed.clear();
-    if (!has_changes_) {
-        return;
+    if (has_changes_) {
+        take_flagged(changed_blocks_, level(plane_.pixel_depth()).columns, plane_.viewport(), changed);
+        has_changes_ = false;
     }
-    Level const& blocks = level(plane_.pixel_depth());
-    Viewport const viewport = plane_.viewport();
-    for (int row = 0; row < blocks.rows; ++row) {
-        std::uint8_t* const flags =
-            changed_blocks_.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(blocks.columns);
-        std::uint8_t* const end = flags + blocks.columns;
-        for (std::uint8_t* first = std::find(flags, end, 1); first != end;) {
-            std::uint8_t* const last = std::find(first, end, 0);
-            std::fill(first, last, std::uint8_t{0});
-            changed.push_back({static_cast<int>(first - flags) * block_side, row * block_side,
-                               std::min(static_cast<int>(last - flags) * block_side, viewport.width),
-                               std::min((row + 1) * block_side, viewport.height)});
-            first = std::find(last, end, 1);
-        }
-    }
-    has_changes_ = false;
 }
 
 double FrameletCache::covered_area(int depth, int column, int row) const {
@@ -282,7 +282,8 @@ double FrameletCache::coverage() const {
 
 std::size_t FrameletCache::memory_bytes() const {
     return chunks_.size() * sizeof(Chunk) + nodes_.capacity() * sizeof(Node) +
-           free_slots_.capacity() * sizeof(std::int32_t) + changed_blocks_.capacity();
+           free_slots_.capacity() * sizeof(std::int32_t) + views_.capacity() * sizeof(HeldView) +
+           changed_blocks_.capacity() + shape_bytes_;
 }
 
 } // namespace framelet

@@ -6,10 +6,12 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "common/framelet.h"
+#include "common/held_shape.h"
 
 namespace framelet {
 
@@ -25,16 +27,30 @@ constexpr bool same_moment(Moment const& a, Moment const& b) {
     return a.camera == b.camera && (a.batch == b.batch || a.scene_time == b.scene_time);
 }
 
+/// A camera and a scene time of which framelets are held.
+struct HeldView {
+    std::uint64_t number = 0; ///< the camera's
+    Camera camera;
+    SceneTime scene_time = 0;
+    std::uint32_t framelets = 0; ///< held; 0: the entry is free
+    std::uint32_t moving_framelets = 0; ///< those of them that show something other than `static_body` at rest
+};
+
 /// A framelet as it is held: samples in rows, sample (i, j) at [16 * j + i].
 struct CachedFramelet {
-    Tile tile;
+    Tile tile{0};
+    std::uint32_t view = 0; ///< in the cache's `views`
     Moment moment;
-    std::array<std::array<std::uint8_t, framelet_samples>, 3> samples; ///< red, green, blue; sRGB-encoded
+    HeldShape shape;
+    std::array<PackedSample, framelet_samples> samples;
 };
 
 /// The newest framelets of one viewport. A place shows the framelet of the highest batch number that covers it; of two
 /// of the same batch, the finer one. A framelet of which nothing shows is dropped, so at most one framelet is held for
-/// each 4x4 pixels of the viewport. Changes are counted in blocks of 16x16 pixels, aligned to the picture's corner.
+/// each 4x4 pixels of the viewport. Cameras make no difference to what is dropped: places are those of each framelet's
+/// own image plane, since the newest camera is never far from the one that is displayed, and the only framelet of a
+/// place is never dropped. At most 1.9 KB are held for each 4x4 pixels (109 MB at 1280x720). Changes are counted in
+/// blocks of 16x16 pixels, aligned to the picture's corner.
 class FrameletCache {
 public:
     static constexpr int block_side = framelet_side;
@@ -47,6 +63,9 @@ public:
     /// batch's viewport must be the cache's and every tile one that the plane accepts. Work is proportional to the
     /// batch; nothing is allocated unless more framelets are held than ever before.
     std::size_t insert(Batch const& batch);
+
+    /// The cameras and scene times of which framelets are held, and free entries.
+    std::span<HeldView const> views() const { return views_; }
 
     /// Replaces `changed` by the rectangles whose pixels may differ since the last call: disjoint, each one block high
     /// (fewer pixels at the viewport's lower edge), rows from the top.
@@ -70,6 +89,12 @@ public:
         }
         std::int32_t const slot = node(depth, column, row).slot;
         return slot == no_slot ? nullptr : &held(slot);
+    }
+    /// All that is held, in no particular order: places from 0 to `slot_count()` - 1, null where there is nothing.
+    std::size_t slot_count() const { return chunks_.size() * std::tuple_size_v<Chunk>; }
+    CachedFramelet const* at_slot(std::size_t slot) const {
+        CachedFramelet const& found = held(static_cast<std::int32_t>(slot));
+        return found.tile.code == 0 ? nullptr : &found;
     }
     /// The lowest batch number that shows through where only the tiles below this one are looked at; 0 where they leave
     /// a part of it bare. The tile must be visible.
@@ -106,7 +131,9 @@ private:
     }
     CachedFramelet& held(std::int32_t slot) { return const_cast<CachedFramelet&>(std::as_const(*this).held(slot)); }
 
-    bool insert_one(DisplayFramelet const& framelet, Moment const& moment);
+    bool insert_one(DisplayFramelet const& framelet, FrameletShape const* shape, Moment const& moment,
+                    std::uint32_t view);
+    std::uint32_t view_of(Batch const& batch);
     bool is_hidden(int depth, int column, int row, std::uint64_t batch) const;
     void drop_older_below(int depth, int column, int row, std::uint64_t batch);
     void drop(Node& node);
@@ -122,6 +149,8 @@ private:
     std::vector<Node> nodes_;
     std::vector<std::unique_ptr<Chunk>> chunks_;
     std::vector<std::int32_t> free_slots_;
+    std::vector<HeldView> views_;
+    std::size_t shape_bytes_ = 0; ///< what the shapes hold besides
     std::vector<std::uint8_t> changed_blocks_; ///< a byte for each block, in rows
     std::size_t count_ = 0;
     bool has_changes_ = false;

@@ -1,6 +1,7 @@
 // Pictures in memory. Rows from the top, pixels interleaved, no padding.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -24,6 +25,12 @@ struct Picture {
         return rgba.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width) * 4;
     }
 };
+
+/// A pixel of a picture as one number: its bytes lie in memory as the picture's do.
+constexpr std::uint32_t picture_pixel(std::uint32_t red, std::uint32_t green, std::uint32_t blue) {
+    return std::endian::native == std::endian::little ? red | green << 8 | blue << 16 | 255u << 24
+                                                      : red << 24 | green << 16 | blue << 8 | 255u;
+}
 
 /// Linear float RGB.
 struct FloatImage {

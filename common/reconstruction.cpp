@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstring>
 
 #include <tbb/parallel_for.h>
@@ -21,17 +20,6 @@ constexpr int deepest_apron_levels = 2;
 /// Pixels of one block, each as its four bytes lie in a picture.
 using Block = std::array<std::uint32_t, row_stride * row_stride>;
 
-/// Where a colour's byte stands in a pixel that is one number.
-constexpr bool little = std::endian::native == std::endian::little;
-constexpr int red_shift = little ? 0 : 24;
-constexpr int green_shift = little ? 8 : 16;
-constexpr int blue_shift = little ? 16 : 8;
-constexpr std::uint32_t opaque = 255u << (little ? 24 : 0);
-
-constexpr std::uint32_t pixel_of(std::uint32_t red, std::uint32_t green, std::uint32_t blue) {
-    return red << red_shift | green << green_shift | blue << blue_shift | opaque;
-}
-
 struct LinearColor {
     float red = 0, green = 0, blue = 0;
 };
@@ -43,14 +31,14 @@ std::int32_t step_of(float linear) {
 }
 
 std::uint32_t pixel_at(TransferTables const& tables, std::int32_t red, std::int32_t green, std::int32_t blue) {
-    return pixel_of(tables.encoded[static_cast<std::size_t>(red)], tables.encoded[static_cast<std::size_t>(green)],
-                    tables.encoded[static_cast<std::size_t>(blue)]);
+    return picture_pixel(tables.encoded[static_cast<std::size_t>(red)], tables.encoded[static_cast<std::size_t>(green)],
+                         tables.encoded[static_cast<std::size_t>(blue)]);
 }
 
 LinearColor sample_at(TransferTables const& tables, CachedFramelet const& framelet, int x, int y) {
     std::size_t const i = static_cast<std::size_t>(y) * row_stride + static_cast<std::size_t>(x);
-    return {tables.linear[framelet.samples[0][i]], tables.linear[framelet.samples[1][i]],
-            tables.linear[framelet.samples[2][i]]};
+    PackedSample const sample = framelet.samples[i];
+    return {tables.linear[red_of(sample)], tables.linear[green_of(sample)], tables.linear[blue_of(sample)]};
 }
 
 /// The mean of n x n samples.
@@ -188,16 +176,17 @@ void paint_coarse(TransferTables const& tables, FrameletCache const& cache, Cach
 
 void paint_pixels(CachedFramelet const& framelet, Block& block) {
     for (std::size_t i = 0; i < framelet_samples; ++i) {
-        block[i] = pixel_of(framelet.samples[0][i], framelet.samples[1][i], framelet.samples[2][i]);
+        PackedSample const sample = framelet.samples[i];
+        block[i] = picture_pixel(red_of(sample), green_of(sample), blue_of(sample));
     }
 }
 
 /// Out of line: inlined next to arithmetic, the table look-ups get entangled in it by the vectoriser.
 [[gnu::noinline]] void to_linear(TransferTables const& tables,
-                                 std::array<std::uint8_t, framelet_samples> const& samples,
+                                 std::array<PackedSample, framelet_samples> const& samples, std::size_t color,
                                  std::array<float, framelet_samples>& out) {
     for (std::size_t i = 0; i < framelet_samples; ++i) {
-        out[i] = tables.linear[samples[i]];
+        out[i] = tables.linear[samples[i] >> 8 * color & 255u];
     }
 }
 
@@ -210,7 +199,7 @@ void paint_fine(TransferTables const& tables, CachedFramelet const& framelet, in
     std::array<std::array<std::int32_t, pixels * pixels>, 3> steps;
     std::array<float, framelet_samples> linear;
     for (std::size_t color = 0; color < 3; ++color) {
-        to_linear(tables, framelet.samples[color], linear);
+        to_linear(tables, framelet.samples, color, linear);
         for (std::size_t y = 0; y < pixels; ++y) {
             std::array<float, side> columns{}; // sums of the n rows
             for (std::size_t j = 0; j < n; ++j) {
@@ -325,6 +314,10 @@ void reconstruct(FrameletCache const& cache, std::span<PixelRect const> changed,
             tbb::parallel_for(top, bottom, [&](int row) { paint_block_row(tables, cache, left, right, row, picture); });
         }
     });
+}
+
+void reconstruct_block(FrameletCache const& cache, int column, int row, Picture& picture) {
+    paint_block_row(transfer_tables(), cache, column, column + 1, row, picture);
 }
 
 void reconstruct_all(FrameletCache const& cache, Picture& picture) {

@@ -23,6 +23,9 @@ inline constexpr float uncovered_light = 0.05f;
 /// Runs in parallel over rows of blocks.
 void reconstruct(FrameletCache const& cache, std::span<PixelRect const> changed, Picture& picture);
 
+/// The same for the block of 16x16 pixels in one column and row.
+void reconstruct_block(FrameletCache const& cache, int column, int row, Picture& picture);
+
 /// The same for the whole viewport.
 void reconstruct_all(FrameletCache const& cache, Picture& picture);
 

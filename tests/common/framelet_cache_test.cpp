@@ -119,7 +119,7 @@ TEST(FrameletCache, OlderBatchNeverReplacesNewer) {
     EXPECT_EQ(cache.insert(make_batch(plane, 4, {constant_framelet(plane, tile, 40)})), 0u);
     EXPECT_EQ(cache.insert(make_batch(plane, 4, {constant_framelet(plane, tile.child(2), 40)})), 0u);
     EXPECT_EQ(cache.insert(make_batch(plane, 4, {constant_framelet(plane, tile.parent(), 40)})), 1u);
-    EXPECT_EQ(cache.find(plane.pixel_depth(), 1, 2)->samples[0][0], 50);
+    EXPECT_EQ(cache.find(plane.pixel_depth(), 1, 2)->samples[0] & 255u, 50u);
     EXPECT_EQ(cache.insert(make_batch(plane, 6, {constant_framelet(plane, tile.parent(), 60)})), 1u);
     EXPECT_EQ(cache.find(plane.pixel_depth(), 1, 2), nullptr);
     EXPECT_EQ(cache.framelet_count(), 1u);
@@ -136,8 +136,37 @@ TEST(FrameletCache, SamplesAreInRows) {
     CachedFramelet const* const held = cache.find(plane.pixel_depth(), 0, 0);
     ASSERT_NE(held, nullptr);
     for (std::size_t i = 0; i < framelet_samples; ++i) {
-        EXPECT_EQ(held->samples[0][i], i % 16);
-        EXPECT_EQ(held->samples[1][i], i / 16);
+        EXPECT_EQ(red_of(held->samples[i]), i % 16);
+        EXPECT_EQ(green_of(held->samples[i]), i / 16);
+    }
+}
+
+TEST(FrameletCache, ViewsAreKnownAsLongAsTheirFrameletsAreHeld) {
+    ImagePlane const plane(Viewport{64, 64});
+    FrameletCache cache(plane);
+    auto const insert = [&](std::uint64_t number, std::uint32_t column, BodyNumber body) {
+        Batch batch =
+            make_batch(plane, number, {constant_framelet(plane, make_tile(plane.pixel_depth(), column, 0), 9)});
+        batch.view.number = number;
+        batch.view.camera.position.x = static_cast<float>(number);
+        FrameletShape shape;
+        shape.layer_count = 1;
+        shape.layers[0].body = body;
+        batch.shapes = {shape};
+        cache.insert(batch);
+    };
+    auto const view_at = [&](int column) { return cache.views()[cache.find(plane.pixel_depth(), column, 0)->view]; };
+    insert(1, 0, static_body);
+    insert(2, 1, 7);
+    EXPECT_EQ(view_at(0).camera.position.x, 1);
+    EXPECT_EQ(view_at(1).camera.position.x, 2);
+    EXPECT_EQ(view_at(0).moving_framelets, 0u);
+    EXPECT_EQ(view_at(1).moving_framelets, 1u);
+    for (std::uint64_t number = 3; number < 20; ++number) {
+        insert(number, static_cast<std::uint32_t>(number % 2), static_body);
+        EXPECT_EQ(view_at(static_cast<int>(number % 2)).number, number);
+        EXPECT_EQ(view_at(static_cast<int>(number % 2)).framelets, 1u);
+        EXPECT_LE(cache.views().size(), 3u);
     }
 }
 

@@ -14,6 +14,7 @@
 #include "common/color.h"
 #include "common/framelet_cache.h"
 #include "common/reconstruction.h"
+#include "common/reprojector.h"
 #include "protocol/batch_codec.h"
 #include "server/schedule/tiling.h"
 #include "server/session/server.h"
@@ -121,6 +122,12 @@ json measure_stages(BenchScene& scene, LimitsOptions const& options) {
         cache.take_changed(changed);
         reconstruct(cache, changed, picture);
     });
+    Reprojector reprojector;
+    Camera turned = scene.camera;
+    result["reproject"] = measure_stage(options.rounds, pixels, picture.rgba.size(), [&] {
+        turned.orientation = glm::normalize(glm::angleAxis(0.01f, Vec3(0, 1, 0)) * turned.orientation);
+        reprojector.show(cache, {}, turned, 0, {}, picture, changed);
+    });
     return result;
 }
 
@@ -143,11 +150,13 @@ json measure_limits(BenchScene& scene, LimitsOptions const& options) {
                 server["server_samples_per_second"].get<double>() / 1e6, server["ratio"].get<double>(),
                 server["bytes_per_sample"].get<double>());
     std::printf("one thread                    ns a sample   memcpy   times memcpy\n");
-    for (auto const* stage : {"display", "encode", "decode", "cache", "reconstruct"}) {
+    for (auto const* stage : {"display", "encode", "decode", "cache", "reconstruct", "reproject"}) {
         json const& figures = result["stages"][stage];
         std::printf("  %-28s %8.2f %8.2f %10.1f%s\n", stage, figures["ns"].get<double>(),
                     figures["memcpy_ns"].get<double>(), figures["times_memcpy"].get<double>(),
-                    std::strcmp(stage, "reconstruct") == 0 ? "   (a pixel, insertion included)" : "");
+                    std::strcmp(stage, "reconstruct") == 0 ? "   (a pixel, insertion included)"
+                    : std::strcmp(stage, "reproject") == 0 ? "   (a pixel, one layer a framelet, camera turning)"
+                                                           : "");
     }
     return result;
 }

@@ -1,0 +1,79 @@
+#include "common/body_motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <glm/gtc/quaternion.hpp>
+#include <glm/matrix.hpp>
+
+namespace framelet {
+
+namespace {
+
+/// Linear part and offset of world from body.
+Motion placement(BodyPose const& pose) {
+    glm::dmat3 linear = glm::mat3_cast(glm::normalize(glm::dquat(pose.rotation)));
+    for (int axis = 0; axis < 3; ++axis) {
+        linear[axis] *= static_cast<double>(pose.scale[axis]);
+    }
+    return {linear, glm::dvec3(pose.translation)};
+}
+
+bool is_finite(Motion const& motion) {
+    double sum = motion.offset.x + motion.offset.y + motion.offset.z;
+    for (int column = 0; column < 3; ++column) {
+        sum += motion.linear[column].x + motion.linear[column].y + motion.linear[column].z;
+    }
+    return std::isfinite(sum);
+}
+
+} // namespace
+
+BodyPose pose_at(BodyTrack const& track, SceneTime time) {
+    if (track.keys.empty()) {
+        return {};
+    }
+    auto const last = static_cast<double>(track.keys.size() - 1);
+    double const place = std::clamp(time * body_keys_per_second - static_cast<double>(track.first_key), 0.0,
+                                    last + max_pose_extrapolation_seconds * body_keys_per_second);
+    double const before = std::floor(std::min(place, std::max(last - 1, 0.0)));
+    auto const index = static_cast<std::size_t>(before);
+    BodyPose const& a = track.keys[index];
+    BodyPose const& b = track.keys[std::min(index + 1, track.keys.size() - 1)];
+    if (a == b || place == before) {
+        return a;
+    }
+    auto const weight = static_cast<float>(place - before);
+    BodyPose out;
+    out.translation = a.translation + weight * (b.translation - a.translation);
+    out.rotation = glm::normalize(glm::slerp(a.rotation, b.rotation, weight));
+    out.scale = a.scale + weight * (b.scale - a.scale);
+    return out;
+}
+
+Motion motion_between(BodyTrack const& track, SceneTime from, SceneTime to) {
+    BodyPose const before = pose_at(track, from);
+    BodyPose const after = pose_at(track, to);
+    if (before == after) {
+        return {};
+    }
+    Motion const source = placement(before);
+    Motion const target = placement(after);
+    Motion out;
+    out.linear = target.linear * glm::inverse(source.linear);
+    out.offset = target.offset - out.linear * source.offset;
+    return is_finite(out) ? out : Motion{};
+}
+
+void BodyMotions::set(BodyTrack track) {
+    BodyNumber const body = track.body;
+    tracks_.insert_or_assign(body, std::move(track));
+}
+
+Motion BodyMotions::between(BodyNumber body, SceneTime from, SceneTime to) const {
+    auto const found = tracks_.find(body);
+    return found == tracks_.end() ? Motion{} : motion_between(found->second, from, to);
+}
+
+} // namespace framelet

@@ -1,0 +1,48 @@
+// Where bodies are at any scene time, from their tracks, and how each has moved between two times.
+#pragma once
+
+#include <glm/ext/matrix_double3x3.hpp>
+#include <glm/ext/vector_double3.hpp>
+#include <unordered_map>
+
+#include "common/body_track.h"
+#include "common/framelet.h"
+
+namespace framelet {
+
+/// How much later than its last key a body is moved on as it moved between the last two. Beyond that, and before the
+/// first key, it rests.
+inline constexpr SceneTime max_pose_extrapolation_seconds = 0.1;
+
+/// World at one time to world at another: x -> linear * x + offset, metres.
+struct Motion {
+    glm::dmat3 linear{1};
+    glm::dvec3 offset{0};
+
+    bool operator==(Motion const&) const = default;
+};
+
+/// Translation and scale interpolated linearly between the keys, rotation along the shorter arc. No keys: at rest in
+/// the origin.
+BodyPose pose_at(BodyTrack const& track, SceneTime time);
+
+/// The motion that takes a point of the body from where it is at `from` to where it is at `to`. Exactly none where the
+/// poses are equal; none where a scale of 0 leaves it undefined.
+Motion motion_between(BodyTrack const& track, SceneTime from, SceneTime to);
+
+/// The tracks of all bodies that a viewer knows.
+class BodyMotions {
+public:
+    /// Replaces what was known of that body.
+    void set(BodyTrack track);
+    void clear() { tracks_.clear(); }
+    bool empty() const { return tracks_.empty(); }
+
+    /// None for bodies that have no track, `static_body` among them.
+    Motion between(BodyNumber body, SceneTime from, SceneTime to) const;
+
+private:
+    std::unordered_map<BodyNumber, BodyTrack> tracks_;
+};
+
+} // namespace framelet

@@ -1,0 +1,60 @@
+// How a viewer holds what a framelet shows: colour and layer of each sample in one word, the layers with the box of
+// their samples, what is loose. Framelets finer than pixels have a second grid of one sample a pixel, for when they
+// move. In: what a batch brings. Out: arrays to read samples from.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "common/framelet.h"
+#include "common/framelet_shape.h"
+
+namespace framelet {
+
+/// Bytes, lowest first: red, green, blue (sRGB-encoded), layer (or `FrameletShape::loose`).
+using PackedSample = std::uint32_t;
+
+constexpr std::uint32_t red_of(PackedSample sample) {
+    return sample & 255u;
+}
+constexpr std::uint32_t green_of(PackedSample sample) {
+    return sample >> 8 & 255u;
+}
+constexpr std::uint32_t blue_of(PackedSample sample) {
+    return sample >> 16 & 255u;
+}
+constexpr std::uint32_t layer_of(PackedSample sample) {
+    return sample >> 24;
+}
+
+/// A layer and the columns and rows of the moving grid between which its samples lie, last ones included; empty
+/// (`last_column` < `first_column`) where it has none.
+struct HeldLayer {
+    Layer layer;
+    std::int8_t first_column = 0, first_row = 0, last_column = -1, last_row = -1;
+};
+
+/// A loose sample of the moving grid.
+struct HeldLoose {
+    LooseSample sample;
+    std::uint8_t place = 0; ///< in the grid, in rows
+};
+
+struct HeldShape {
+    std::uint8_t layer_count = 0;
+    /// Samples along a side of the moving grid: 16, or as many as the tile has pixels if it is finer than they are.
+    std::uint8_t side = framelet_side;
+    bool moves = false; ///< something in it is on a body or deforms
+    std::array<HeldLayer, max_layers> layers;
+    std::vector<HeldLoose> loose; ///< in rows of the moving grid
+    std::array<PackedSample, framelet_samples / 4> reduced; ///< the moving grid in rows where `side` is not 16
+};
+
+/// Fills `samples` (in rows) and `held`, whose memory is used again. No shape: all is infinitely far. The tile has
+/// `samples_per_pixel` samples along a pixel's side (1 if it is no finer than pixels); the moving grid then has the
+/// mean, in linear light, of those samples of a pixel that lie on the layer most of them lie on.
+void hold(DisplayFramelet const& framelet, FrameletShape const* shape, int samples_per_pixel,
+          std::array<PackedSample, framelet_samples>& samples, HeldShape& held);
+
+} // namespace framelet

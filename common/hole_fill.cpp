@@ -1,0 +1,273 @@
+#include "common/hole_fill.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "common/color.h"
+#include "common/reconstruction.h"
+
+namespace framelet {
+
+namespace {
+
+constexpr int block_side = WarpedBlock::side;
+
+/// What is so much nearer than the farthest of its neighbours does not spread: a share and, for the sky, 1 / metres.
+constexpr float foreground_share = 1.15f;
+constexpr float foreground_least = 1e-4f;
+
+/// n x n cells in rows.
+template <int n>
+struct Grid {
+    static constexpr std::size_t cells = static_cast<std::size_t>(n * n);
+    alignas(64) std::array<float, cells> red, green, blue, inverse_depth;
+
+    FarMean mean(std::size_t i) const { return {red[i], green[i], blue[i], inverse_depth[i]}; }
+    void put(std::size_t i, FarMean const& mean) {
+        red[i] = mean.red;
+        green[i] = mean.green;
+        blue[i] = mean.blue;
+        inverse_depth[i] = mean.inverse_depth;
+    }
+};
+
+/// The weighted mean of those of four that are about as far as the farthest.
+struct FarthestOfFour {
+    std::array<float, 4> take;
+    float scale;
+    float farthest;
+
+    FarthestOfFour(std::array<float, 4> const& weights, float a, float b, float c, float d)
+        : farthest(std::min(std::min(a, b), std::min(c, d))) {
+        float const limit = farthest * foreground_share + foreground_least;
+        take = {a <= limit ? weights[0] : 0.0f, b <= limit ? weights[1] : 0.0f, c <= limit ? weights[2] : 0.0f,
+                d <= limit ? weights[3] : 0.0f};
+        scale = 1 / (take[0] + take[1] + take[2] + take[3]);
+    }
+    float mean(float a, float b, float c, float d) const {
+        return scale * ((take[0] * a + take[1] * b) + (take[2] * c + take[3] * d));
+    }
+};
+
+FarMean farthest_mean(FarMean const& a, FarMean const& b, FarMean const& c, FarMean const& d) {
+    FarthestOfFour const four({1, 1, 1, 1}, a.inverse_depth, b.inverse_depth, c.inverse_depth, d.inverse_depth);
+    return {four.mean(a.red, b.red, c.red, d.red), four.mean(a.green, b.green, c.green, d.green),
+            four.mean(a.blue, b.blue, c.blue, d.blue), four.farthest};
+}
+
+template <int n>
+void pull(Grid<2 * n> const& fine, Grid<n>& coarse) {
+    for (int y = 0; y < n; ++y) {
+        for (int x = 0; x < n; ++x) {
+            auto const to = static_cast<std::size_t>(y * n + x);
+            auto const from = static_cast<std::size_t>(4 * y * n + 2 * x);
+            std::size_t const below = from + 2 * n;
+            FarthestOfFour const four({1, 1, 1, 1}, fine.inverse_depth[from], fine.inverse_depth[from + 1],
+                                      fine.inverse_depth[below], fine.inverse_depth[below + 1]);
+            coarse.red[to] = four.mean(fine.red[from], fine.red[from + 1], fine.red[below], fine.red[below + 1]);
+            coarse.green[to] =
+                four.mean(fine.green[from], fine.green[from + 1], fine.green[below], fine.green[below + 1]);
+            coarse.blue[to] = four.mean(fine.blue[from], fine.blue[from + 1], fine.blue[below], fine.blue[below + 1]);
+            coarse.inverse_depth[to] = four.farthest;
+        }
+    }
+}
+
+bool is_nothing(float inverse_depth) {
+    return inverse_depth >= FarMean::nothing;
+}
+
+/// Interpolates between those of the four coarse cells around a fine one that are about as far as the farthest. What is
+/// still nothing (no picture at all) stays nothing.
+FarMean between(FarMean const& own, FarMean const& beside, FarMean const& above, FarMean const& across) {
+    FarthestOfFour const four({9, 3, 3, 1}, own.inverse_depth, beside.inverse_depth, above.inverse_depth,
+                              across.inverse_depth);
+    return {four.mean(own.red, beside.red, above.red, across.red),
+            four.mean(own.green, beside.green, above.green, across.green),
+            four.mean(own.blue, beside.blue, above.blue, across.blue), four.farthest};
+}
+
+/// Gives fine cells with nothing in them a value. `parent` and `other` are the coarse column (or row) that a fine one
+/// lies in and the nearest other one. Cells within the margin are not needed.
+template <int margin, int n, int m, class Parent, class Other>
+void push(Grid<m> const& coarse, Grid<n>& fine, Parent const& parent, Other const& other) {
+    for (int y = margin; y < n - margin; ++y) {
+        for (int x = margin; x < n - margin; ++x) {
+            auto const to = static_cast<std::size_t>(y * n + x);
+            if (is_nothing(fine.inverse_depth[to])) {
+                auto const at = [&](int column, int row) {
+                    return coarse.mean(static_cast<std::size_t>(row * m + column));
+                };
+                fine.put(to, between(at(parent(x), parent(y)), at(other(x), parent(y)), at(parent(x), other(y)),
+                                     at(other(x), other(y))));
+            }
+        }
+    }
+}
+
+template <int margin, int n>
+void push(Grid<n / 2> const& coarse, Grid<n>& fine) {
+    push<margin>(
+        coarse, fine, [](int i) { return i / 2; },
+        [](int i) { return std::clamp(i / 2 + (i % 2 == 0 ? -1 : 1), 0, n / 2 - 1); });
+}
+
+/// Pixels around a block, half a block more on each side.
+void read_window(std::span<float const> inverse_depth, Picture const& picture, int left, int top, Grid<32>& window) {
+    for (auto* const plane : {&window.red, &window.green, &window.blue}) {
+        plane->fill(0);
+    }
+    window.inverse_depth.fill(FarMean::nothing);
+    int const first = std::max(-left, 0);
+    int const last = std::min(32, picture.width - left);
+    for (int y = std::max(-top, 0); y < std::min(32, picture.height - top); ++y) {
+        std::size_t const from = static_cast<std::size_t>(top + y) * static_cast<std::size_t>(picture.width) +
+                                 static_cast<std::size_t>(left + first);
+        float const* const depth = inverse_depth.data() + from;
+        std::uint8_t const* const pixel = picture.rgba.data() + 4 * from;
+        for (int x = 0; x < last - first; ++x) {
+            auto const to = static_cast<std::size_t>(y * 32 + first + x);
+            float const shows = depth[x] > hole_depth ? 1.0f : 0.0f;
+            auto const square = [shows](int byte) { return shows * static_cast<float>(byte * byte); };
+            window.red[to] = square(pixel[4 * x]);
+            window.green[to] = square(pixel[4 * x + 1]);
+            window.blue[to] = square(pixel[4 * x + 2]);
+            window.inverse_depth[to] = depth[x] > hole_depth ? depth[x] : FarMean::nothing;
+        }
+    }
+}
+
+std::uint8_t byte_of(float square) {
+    return static_cast<std::uint8_t>(std::clamp(std::sqrt(square) + 0.5f, 0.0f, 255.0f));
+}
+
+} // namespace
+
+FarMean far_mean(WarpedBlock const& block) {
+    Grid<4> fours;
+    if (block.holes == 0) {
+        for (int y = 0; y < 4; ++y) {
+            for (int x = 0; x < 4; ++x) {
+                auto const from = static_cast<std::size_t>((4 * y + 1) * block_side + 4 * x + 1);
+                bool const shows = block.inverse_depth[from] > hole_depth; // it may be outside of the viewport
+                fours.put(static_cast<std::size_t>(y * 4 + x),
+                          shows ? FarMean{block.squares[0][from], block.squares[1][from], block.squares[2][from],
+                                          block.inverse_depth[from]}
+                                : FarMean{});
+            }
+        }
+    } else {
+        Grid<16> whole;
+        whole.red = block.squares[0];
+        whole.green = block.squares[1];
+        whole.blue = block.squares[2];
+        for (std::size_t i = 0; i < WarpedBlock::pixels; ++i) {
+            whole.inverse_depth[i] = block.inverse_depth[i] > hole_depth ? block.inverse_depth[i] : FarMean::nothing;
+        }
+        Grid<8> eights;
+        pull(whole, eights);
+        pull(eights, fours);
+    }
+    Grid<2> twos;
+    Grid<1> one;
+    pull(fours, twos);
+    pull(twos, one);
+    return one.mean(0);
+}
+
+FarMean const& FarMeans::Level::at(int column, int row) const {
+    auto const x = static_cast<std::size_t>(std::clamp(column, 0, columns - 1));
+    auto const y = static_cast<std::size_t>(std::clamp(row, 0, rows - 1));
+    return means[y * static_cast<std::size_t>(columns) + x];
+}
+
+FarMean const& FarMeans::at(int column, int row) const {
+    return levels_.front().at(column, row);
+}
+
+void FarMeans::pull(Level const& fine, Level& coarse) const {
+    coarse.columns = (fine.columns + 1) / 2;
+    coarse.rows = (fine.rows + 1) / 2;
+    coarse.means.clear();
+    for (int y = 0; y < fine.rows; y += 2) {
+        for (int x = 0; x < fine.columns; x += 2) {
+            coarse.means.push_back(
+                farthest_mean(fine.at(x, y), fine.at(x + 1, y), fine.at(x, y + 1), fine.at(x + 1, y + 1)));
+        }
+    }
+}
+
+void FarMeans::push(Level const& coarse, Level& fine) const {
+    std::size_t i = 0;
+    for (int y = 0; y < fine.rows; ++y) {
+        for (int x = 0; x < fine.columns; ++x, ++i) {
+            if (is_nothing(fine.means[i].inverse_depth)) {
+                int const beside = x / 2 + (x % 2 == 0 ? -1 : 1);
+                int const above = y / 2 + (y % 2 == 0 ? -1 : 1);
+                fine.means[i] = between(coarse.at(x / 2, y / 2), coarse.at(beside, y / 2), coarse.at(x / 2, above),
+                                        coarse.at(beside, above));
+            }
+        }
+    }
+}
+
+void FarMeans::make(std::span<FarMean const> blocks, int columns, int rows) {
+    std::size_t count = 1;
+    for (int side = std::max(columns, rows); side > 1; side = (side + 1) / 2) {
+        ++count;
+    }
+    levels_.resize(count);
+    levels_[0].columns = columns;
+    levels_[0].rows = rows;
+    levels_[0].means.assign(blocks.begin(), blocks.end());
+    for (std::size_t i = 1; i < count; ++i) {
+        pull(levels_[i - 1], levels_[i]);
+    }
+    for (std::size_t i = count - 1; i > 0; --i) {
+        push(levels_[i], levels_[i - 1]);
+    }
+}
+
+void fill_holes(FarMeans const& means, std::span<float const> inverse_depth, int column, int row, Picture& picture) {
+    Grid<32> pixels;
+    Grid<16> twos;
+    Grid<8> fours;
+    Grid<4> eights;
+    Grid<3> blocks;
+    int const left = column * block_side;
+    int const top = row * block_side;
+    read_window(inverse_depth, picture, left - block_side / 2, top - block_side / 2, pixels);
+    pull(pixels, twos);
+    pull(twos, fours);
+    pull(fours, eights);
+    for (int y = 0; y < 3; ++y) {
+        for (int x = 0; x < 3; ++x) {
+            blocks.put(static_cast<std::size_t>(y * 3 + x), means.at(column + x - 1, row + y - 1));
+        }
+    }
+    push<0>(
+        blocks, eights, [](int i) { return (i + 1) / 2; }, [](int i) { return (i + 1) / 2 + (i % 2 == 0 ? 1 : -1); });
+    push<1>(eights, fours);
+    push<3>(fours, twos);
+    push<block_side / 2>(twos, pixels);
+    std::uint8_t const uncovered = srgb_byte_from_linear(uncovered_light);
+    for (int y = 0; y < std::min(block_side, picture.height - top); ++y) {
+        std::uint8_t* pixel = picture.row(top + y) + 4 * left;
+        std::size_t from = static_cast<std::size_t>(top + y) * static_cast<std::size_t>(picture.width) +
+                           static_cast<std::size_t>(left);
+        for (int x = 0; x < std::min(block_side, picture.width - left); ++x, ++from, pixel += 4) {
+            if (inverse_depth[from] > hole_depth) {
+                continue;
+            }
+            FarMean const mean = pixels.mean(static_cast<std::size_t>((y + block_side / 2) * 32 + x + block_side / 2));
+            bool const known = !is_nothing(mean.inverse_depth);
+            pixel[0] = known ? byte_of(mean.red) : uncovered;
+            pixel[1] = known ? byte_of(mean.green) : uncovered;
+            pixel[2] = known ? byte_of(mean.blue) : uncovered;
+            pixel[3] = 255;
+        }
+    }
+}
+
+} // namespace framelet

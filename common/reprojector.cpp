@@ -1,0 +1,217 @@
+#include "common/reprojector.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstring>
+
+#include <tbb/parallel_for.h>
+
+#include "common/block_flags.h"
+#include "common/error.h"
+#include "common/reconstruction.h"
+#include "common/reprojection.h"
+
+namespace framelet {
+
+namespace {
+
+constexpr int side = WarpedBlock::side;
+
+/// Nothing of a framelet of this view leaves its place; of those that hold something moving only if no time has passed.
+bool is_in_place(HeldView const& view, bool moves, Camera const& camera, SceneTime scene_time) {
+    bool const same_camera = view.camera == camera || !is_reprojectable(view.camera) || !is_reprojectable(camera);
+    return same_camera && (!moves || view.scene_time == scene_time);
+}
+
+bool is_all_in_place(FrameletCache const& cache, Camera const& camera, SceneTime scene_time) {
+    return std::ranges::all_of(cache.views(), [&](HeldView const& view) {
+        return view.framelets == 0 || is_in_place(view, view.moving_framelets > 0, camera, scene_time);
+    });
+}
+
+/// True when the block is covered and all framelets of its place are in place.
+bool is_block_in_place(FrameletCache const& cache, Camera const& camera, SceneTime scene_time, int column, int row) {
+    ImagePlane const& plane = cache.plane();
+    int const depth = plane.pixel_depth();
+    auto const is_fine = [&](CachedFramelet const* framelet) {
+        return framelet == nullptr ||
+               is_in_place(cache.views()[framelet->view], framelet->shape.moves, camera, scene_time);
+    };
+    bool is_covered = cache.covered_below(depth, column, row) > 0;
+    for (int d = plane.min_depth(); d <= depth; ++d) {
+        CachedFramelet const* const framelet = cache.find(d, column >> (depth - d), row >> (depth - d));
+        is_covered |= framelet != nullptr;
+        if (!is_fine(framelet)) {
+            return false;
+        }
+    }
+    for (int d = depth + 1; d <= plane.max_depth(); ++d) {
+        int const n = 1 << (d - depth);
+        for (int i = 0; i < n * n; ++i) {
+            if (!is_fine(cache.find(d, n * column + i % n, n * row + i / n))) {
+                return false;
+            }
+        }
+    }
+    return is_covered;
+}
+
+std::uint64_t combine(std::uint64_t state, std::uint64_t value) {
+    state = (state ^ value) * 0x9e3779b97f4a7c15u;
+    return state ^ state >> 32;
+}
+
+std::uint64_t signature_of(std::span<PatchView const> patches, bool in_place) {
+    std::uint64_t state = in_place ? 2 : 1;
+    for (PatchView const& view : patches) {
+        state = combine(state, view.patch->signature);
+    }
+    return state;
+}
+
+std::uint32_t byte_of(float square) {
+    return static_cast<std::uint32_t>(static_cast<std::int32_t>(std::sqrt(square) + 0.5f));
+}
+
+void write_colors(WarpedBlock const& block, int left, int top, Picture& picture) {
+    std::array<std::uint32_t, WarpedBlock::pixels> colors;
+    for (std::size_t i = 0; i < WarpedBlock::pixels; ++i) {
+        colors[i] =
+            picture_pixel(byte_of(block.squares[0][i]), byte_of(block.squares[1][i]), byte_of(block.squares[2][i]));
+    }
+    auto const bytes = static_cast<std::size_t>(std::min(side, picture.width - left)) * sizeof colors[0];
+    for (int y = 0; y < std::min(side, picture.height - top); ++y) {
+        std::memcpy(picture.row(top + y) + 4 * left, &colors[static_cast<std::size_t>(y * side)], bytes);
+    }
+}
+
+void write_plane(std::array<float, WarpedBlock::pixels> const& from, int left, int top, Viewport viewport,
+                 std::vector<float>& plane) {
+    auto const bytes = static_cast<std::size_t>(std::min(side, viewport.width - left)) * sizeof(float);
+    for (int y = 0; y < std::min(side, viewport.height - top); ++y) {
+        std::memcpy(&plane[static_cast<std::size_t>(top + y) * static_cast<std::size_t>(viewport.width) +
+                           static_cast<std::size_t>(left)],
+                    &from[static_cast<std::size_t>(y * side)], bytes);
+    }
+}
+
+} // namespace
+
+void Reprojector::show_exact(FrameletCache const& cache, std::span<PixelRect const> changed, Picture& picture,
+                             std::vector<PixelRect>& repainted) {
+    if (has_shown_ && is_exact_) {
+        reconstruct(cache, changed, picture);
+        repainted.assign(changed.begin(), changed.end());
+    } else {
+        reconstruct_all(cache, picture);
+        repainted.assign(1, {0, 0, picture.width, picture.height});
+    }
+    is_exact_ = true;
+    hole_share_ = 0;
+}
+
+/// After an exact picture no block is known to be as the plan says.
+void Reprojector::start_moving(Viewport viewport, std::size_t blocks) {
+    if (is_exact_ || blocks_.size() != blocks) {
+        blocks_.assign(blocks, {});
+    }
+    auto const pixels = static_cast<std::size_t>(viewport.width) * static_cast<std::size_t>(viewport.height);
+    for (auto* const plane : {&confidence_.inverse_depth, &confidence_.scene_time, &confidence_.stretch}) {
+        plane->resize(pixels);
+    }
+    block_means_.resize(blocks);
+    painted_.resize(blocks);
+    is_exact_ = false;
+}
+
+void Reprojector::show(FrameletCache const& cache, std::span<PixelRect const> changed, Camera const& camera,
+                       SceneTime scene_time, BodyMotions const& motions, Picture& picture,
+                       std::vector<PixelRect>& repainted) {
+    Viewport const viewport = cache.plane().viewport();
+    FRAMELET_CHECK(picture.width == viewport.width && picture.height == viewport.height);
+    if (is_all_in_place(cache, camera, scene_time)) {
+        show_exact(cache, changed, picture, repainted);
+        has_shown_ = true;
+        return;
+    }
+    plan_.make(cache, camera, scene_time, motions);
+    int const columns = plan_.columns();
+    start_moving(viewport, static_cast<std::size_t>(columns) * static_cast<std::size_t>(plan_.rows()));
+    std::atomic<bool> any = false;
+    tbb::parallel_for(0, plan_.rows(), [&](int row) {
+        bool painted = false;
+        std::vector<PatchView> patches;
+        for (int column = 0; column < columns; ++column) {
+            painted |= update_block(cache, camera, scene_time, column, row, patches, picture);
+        }
+        if (painted) {
+            any.store(true, std::memory_order_relaxed);
+        }
+    });
+    if (any) {
+        fill(picture);
+    }
+    take_flagged(painted_, columns, viewport, repainted);
+    has_shown_ = true;
+}
+
+bool Reprojector::update_block(FrameletCache const& cache, Camera const& camera, SceneTime scene_time, int column,
+                               int row, std::vector<PatchView>& patches, Picture& picture) {
+    auto const index =
+        static_cast<std::size_t>(row) * static_cast<std::size_t>(plan_.columns()) + static_cast<std::size_t>(column);
+    plan_.block(index, patches);
+    bool const in_place = std::ranges::all_of(patches, [](PatchView const& view) { return view.patch->is_still; }) &&
+                          is_block_in_place(cache, camera, scene_time, column, row);
+    std::uint64_t const signature = signature_of(patches, in_place);
+    if (signature == blocks_[index].signature) {
+        return false;
+    }
+    Viewport const viewport = cache.plane().viewport();
+    int const left = column * side;
+    int const top = row * side;
+    WarpedBlock block;
+    paint_warped_block(patches, column, row, viewport, block);
+    if (in_place) {
+        block.holes = 0;
+        for (float& inverse_depth : block.inverse_depth) {
+            inverse_depth = std::max(inverse_depth, 0.0f);
+        }
+        reconstruct_block(cache, column, row, picture);
+    } else {
+        write_colors(block, left, top, picture);
+    }
+    write_plane(block.inverse_depth, left, top, viewport, confidence_.inverse_depth);
+    write_plane(block.scene_time, left, top, viewport, confidence_.scene_time);
+    write_plane(block.stretch, left, top, viewport, confidence_.stretch);
+    block_means_[index] = far_mean(block);
+    blocks_[index] = {signature, block.holes};
+    painted_[index] = 1;
+    return true;
+}
+
+/// Holes depend on all that surrounds them, so all of them are filled again.
+void Reprojector::fill(Picture& picture) {
+    std::int64_t holes = 0;
+    for (BlockState const& block : blocks_) {
+        holes += block.holes;
+    }
+    hole_share_ = static_cast<double>(holes) / (static_cast<double>(picture.width) * picture.height);
+    if (holes == 0) {
+        return;
+    }
+    int const columns = plan_.columns();
+    means_.make(block_means_, columns, plan_.rows());
+    tbb::parallel_for(0, plan_.rows(), [&](int row) {
+        for (int column = 0; column < columns; ++column) {
+            auto const index =
+                static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
+            if (blocks_[index].holes > 0) {
+                fill_holes(means_, confidence_.inverse_depth, column, row, picture);
+                painted_[index] = 1;
+            }
+        }
+    });
+}
+
+} // namespace framelet

@@ -1,0 +1,90 @@
+#include "common/body_motion.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
+
+namespace framelet {
+namespace {
+
+constexpr double key_seconds = 1.0 / body_keys_per_second;
+
+/// Turns about +Y at `speed` (radians a second) around an axle that moves along +X at 2 metres a second.
+BodyTrack wheel(float speed, std::int64_t first_key, int keys) {
+    BodyTrack track{7, first_key, {}};
+    for (int i = 0; i < keys; ++i) {
+        auto const time = static_cast<float>(first_key + i) / body_keys_per_second;
+        track.keys.push_back({Vec3(2 * time, 1, 0), glm::angleAxis(speed * time, Vec3(0, 1, 0)), Vec3(1)});
+    }
+    return track;
+}
+
+glm::dvec3 move(Motion const& motion, glm::dvec3 point) {
+    return motion.linear * point + motion.offset;
+}
+
+TEST(BodyMotion, KeysAreMetAndBetweenThemRotationIsUniform) {
+    BodyTrack const track = wheel(3, 30, 10);
+    for (int i = 0; i < 10; ++i) {
+        EXPECT_EQ(pose_at(track, (30 + i) * key_seconds).translation.x,
+                  track.keys[static_cast<std::size_t>(i)].translation.x);
+    }
+    for (double time = 0.5; time < 0.65; time += 0.0037) {
+        BodyPose const pose = pose_at(track, time);
+        EXPECT_NEAR(pose.translation.x, 2 * time, 1e-6);
+        EXPECT_NEAR(glm::angle(pose.rotation), 3 * time, 1e-5);
+    }
+}
+
+TEST(BodyMotion, TimeIsClampedBeforeTheKeysAndExtrapolatedALittleAfterThem) {
+    BodyTrack const track = wheel(3, 30, 10); // keys end at 0.65 s
+    EXPECT_EQ(pose_at(track, 0), track.keys.front());
+    EXPECT_NEAR(pose_at(track, 0.7).translation.x, 1.4f, 1e-5f);
+    EXPECT_NEAR(glm::angle(pose_at(track, 0.7).rotation), 2.1f, 1e-4f);
+    float const farthest = 2 * (0.65f + static_cast<float>(max_pose_extrapolation_seconds));
+    EXPECT_NEAR(pose_at(track, 1).translation.x, farthest, 1e-5f);
+    EXPECT_EQ(pose_at(track, 1), pose_at(track, 1e300));
+    EXPECT_EQ(pose_at(track, -1e300), track.keys.front());
+}
+
+TEST(BodyMotion, ShorterArcIsTakenWhateverTheSignOfTheQuaternions) {
+    BodyTrack track = wheel(3, 0, 2);
+    BodyPose const expected = pose_at(track, key_seconds / 2);
+    track.keys[1].rotation = -track.keys[1].rotation;
+    BodyPose const pose = pose_at(track, key_seconds / 2);
+    EXPECT_NEAR(std::abs(glm::dot(pose.rotation, expected.rotation)), 1, 1e-6);
+}
+
+TEST(BodyMotion, MovesPointsOfTheBody) {
+    BodyTrack const track = wheel(3, 0, 120);
+    double const from = 0.4, to = 1.1;
+    for (double const angle : {0.0, 1.0, 2.5}) {
+        auto const place = [&](double time) {
+            double const a = 3 * time + angle;
+            return glm::dvec3(2 * time + std::cos(a), 1, -std::sin(a));
+        };
+        EXPECT_LT(glm::distance(move(motion_between(track, from, to), place(from)), place(to)), 1e-5);
+    }
+}
+
+TEST(BodyMotion, RestIsExactlyNoMotion) {
+    BodyTrack track{3, 0, {4, {Vec3(1.1f, 2.2f, 3.3f), glm::angleAxis(0.3f, Vec3(0.6f, 0.8f, 0)), Vec3(1.7f)}}};
+    EXPECT_EQ(motion_between(track, 0.01, 0.04), Motion{});
+    BodyMotions motions;
+    EXPECT_EQ(motions.between(static_body, 0, 1), Motion{});
+    motions.set(wheel(1, 0, 60));
+    EXPECT_EQ(motions.between(8, 0, 1), Motion{});
+    EXPECT_EQ(motions.between(7, 0.5, 0.5), Motion{});
+    EXPECT_NE(motions.between(7, 0.25, 0.5), Motion{});
+}
+
+TEST(BodyMotion, DegenerateTracksAreFinite) {
+    EXPECT_EQ(pose_at({}, 3), BodyPose{});
+    BodyTrack flat = wheel(1, 0, 2);
+    flat.keys[0].scale = Vec3(1, 0, 1);
+    EXPECT_EQ(motion_between(flat, 0, 1), Motion{});
+    EXPECT_EQ(pose_at({1, 5, {BodyPose{Vec3(1)}}}, 1).translation, Vec3(1));
+}
+
+} // namespace
+} // namespace framelet
