@@ -66,9 +66,22 @@ Motion motion_between(BodyTrack const& track, SceneTime from, SceneTime to) {
     return is_finite(out) ? out : Motion{};
 }
 
-void BodyMotions::set(BodyTrack track) {
-    BodyNumber const body = track.body;
-    tracks_.insert_or_assign(body, std::move(track));
+void BodyMotions::extend(BodyTrack const& track) {
+    BodyTrack& known = tracks_[track.body];
+    known.body = track.body;
+    auto const end = known.first_key + static_cast<std::int64_t>(known.keys.size());
+    if (track.first_key >= known.first_key && track.first_key <= end) {
+        known.keys.resize(static_cast<std::size_t>(track.first_key - known.first_key));
+    } else {
+        known.keys.clear();
+        known.first_key = track.first_key;
+    }
+    known.keys.insert(known.keys.end(), track.keys.begin(), track.keys.end());
+    if (known.keys.size() > max_track_keys) {
+        std::size_t const surplus = known.keys.size() - max_track_keys;
+        known.keys.erase(known.keys.begin(), known.keys.begin() + static_cast<std::ptrdiff_t>(surplus));
+        known.first_key += static_cast<std::int64_t>(surplus);
+    }
 }
 
 Motion BodyMotions::between(BodyNumber body, SceneTime from, SceneTime to) const {

@@ -72,7 +72,7 @@ TEST(BodyMotion, RestIsExactlyNoMotion) {
     EXPECT_EQ(motion_between(track, 0.01, 0.04), Motion{});
     BodyMotions motions;
     EXPECT_EQ(motions.between(static_body, 0, 1), Motion{});
-    motions.set(wheel(1, 0, 60));
+    motions.extend(wheel(1, 0, 60));
     EXPECT_EQ(motions.between(8, 0, 1), Motion{});
     EXPECT_EQ(motions.between(7, 0.5, 0.5), Motion{});
     EXPECT_NE(motions.between(7, 0.25, 0.5), Motion{});

@@ -171,7 +171,7 @@ TEST(Reprojector, BodiesAndWhatDeformsMove) {
         auto const time = static_cast<float>(i) / body_keys_per_second;
         track.keys.push_back({Vec3(0.6f * time, 0, 0), glm::angleAxis(0.7f * time, Vec3(0, 0, 1)), Vec3(1)});
     }
-    scene.motions.set(track);
+    scene.motions.extend(track);
     scene.quads[2].body = 5;
     scene.quads[1].velocity = {0.4, 0, 0.1};
     for (Camera const& display :
@@ -312,7 +312,7 @@ TEST(Reprojector, NewerWinsOnOneSurfaceNearerWinsElse) {
 TEST(Reprojector, IncrementalEqualsWholeAndThreadsMakeNoDifference) {
     ImagePlane const plane(viewport);
     AnalyticScene scene = room();
-    scene.motions.set({5, 0, {BodyPose{}, BodyPose{Vec3(0.3f, 0, 0)}, BodyPose{Vec3(0.5f, 0.1f, 0)}}});
+    scene.motions.extend({5, 0, {BodyPose{}, BodyPose{Vec3(0.3f, 0, 0)}, BodyPose{Vec3(0.5f, 0.1f, 0)}}});
     scene.quads[2].body = 5;
     std::mt19937 random(12);
     FrameletCache cache(plane);

@@ -18,6 +18,7 @@ std::unique_ptr<BenchScene> load_bench_scene(std::filesystem::path const& file, 
     loaded->clips = default_clips(loaded->scene);
     loaded->duration = animation_duration(loaded->scene, loaded->clips);
     loaded->render_scene = std::make_unique<RenderScene>(loaded->scene, std::nullopt);
+    loaded->render_scene->set_clips(loaded->clips);
     loaded->pose = evaluate_pose(loaded->scene, loaded->clips, 0);
     loaded->render_scene->set_pose(loaded->pose);
     loaded->scene_camera = cameras > 0 ? camera : none;

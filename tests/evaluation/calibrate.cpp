@@ -8,7 +8,9 @@
 #include "common/color.h"
 #include "common/framelet_cache.h"
 #include "common/reconstruction.h"
+#include "common/reprojector.h"
 #include "protocol/batch_codec.h"
+#include "server/layers/shape_feed.h"
 #include "tests/evaluation/codecs/h264_codec.h"
 #include "tests/evaluation/codecs/jpeg_codec.h"
 #include "tests/evaluation/methods/kd_leaves.h"
@@ -124,6 +126,35 @@ void calibrate_framelets(BenchScene& scene, ImagePlane const& plane, int rounds,
         for (DisplayFramelet const& framelet : batch.framelets) {
             place_framelet(framelet, plane, picture);
         }
+    });
+}
+
+/// Shapes of whole framelets, and the picture that another camera sees of them.
+void calibrate_reprojection(BenchScene const& scene, ImagePlane const& plane, int rounds,
+                            std::vector<Framelet> const& rendered, CostTable& costs) {
+    Viewport const viewport = plane.viewport();
+    Batch batch;
+    batch.number = 1;
+    batch.view = {1, scene.camera, viewport};
+    for (Framelet const& framelet : rendered) {
+        batch.framelets.push_back(to_display(framelet, scene.exposure));
+    }
+    ShapeFeed feed;
+    std::vector<std::uint8_t> const all(rendered.size(), 1);
+    ViewRays const rays = make_view_rays(scene.camera, viewport);
+    costs.shape_sample = cost(rounds, static_cast<double>(rendered.size() * framelet_samples),
+                              [&] { feed.fit(rendered, all, rays, plane, batch.shapes); });
+    FrameletCache cache(plane);
+    cache.insert(batch);
+    Picture picture(viewport.width, viewport.height);
+    std::vector<PixelRect> changed, repainted;
+    cache.take_changed(changed);
+    Reprojector reprojector;
+    Camera camera = scene.camera;
+    costs.reproject_pixel = cost(rounds, static_cast<double>(viewport.width) * viewport.height, [&] {
+        camera.position += 0.01f * camera.right();
+        reprojector.show(cache, changed, camera, 0, {}, picture, repainted);
+        changed.clear();
     });
 }
 
@@ -243,6 +274,7 @@ CostTable calibrate(BenchScene& scene, Viewport viewport, int rounds) {
     std::vector<Framelet> rendered;
     calibrate_rendering(scene, plane, rounds, rendered, costs);
     calibrate_framelets(scene, plane, rounds, rendered, costs);
+    calibrate_reprojection(scene, plane, rounds, rendered, costs);
     calibrate_response(scene, viewport, rounds, costs);
     calibrate_afr(viewport, rounds, costs);
     calibrate_density_response(plane, rendered, rounds, costs);

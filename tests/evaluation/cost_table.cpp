@@ -22,6 +22,8 @@ constexpr std::array<std::pair<char const*, double CostTable::*>, 21> fields{{
     {"cache_sample", &CostTable::cache_sample},
     {"reconstruct_pixel", &CostTable::reconstruct_pixel},
     {"reconstruct_fine_sample", &CostTable::reconstruct_fine_sample},
+    {"reproject_pixel", &CostTable::reproject_pixel},
+    {"shape_sample", &CostTable::shape_sample},
     {"place_pixel", &CostTable::place_pixel},
     {"afr_sample", &CostTable::afr_sample},
     {"estimate_sample", &CostTable::estimate_sample},

@@ -21,6 +21,8 @@ struct CostTable {
     double cache_sample = 0; ///< insertion into the framelet cache
     double reconstruct_pixel = 0; ///< from samples not finer than a pixel
     double reconstruct_fine_sample = 0; ///< one sample finer than a pixel
+    double reproject_pixel = 0; ///< from samples of another camera or time
+    double shape_sample = 0; ///< fitting and coding where a framelet's samples lie
     double place_pixel = 0; ///< writing a received pixel to where it belongs
     double afr_sample = 0; ///< adaptive frameless rendering's choice and statistics of one sample
     double estimate_sample = 0; ///< sample-rate error by streaming Haar transform

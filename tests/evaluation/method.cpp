@@ -15,13 +15,14 @@ struct KnownMethod {
     bool batches = false;
 };
 
-constexpr std::array<KnownMethod, 7> known_methods{{
+constexpr std::array<KnownMethod, 8> known_methods{{
     {"framed", make_framed},
     {"framed+jpeg", make_framed_jpeg},
     {"framed+h264", make_framed_h264},
     {"frameless", make_frameless},
     {"afr", make_afr},
     {"tsar", make_tsar, true},
+    {"framelet-unwarped", make_framelet_unwarped, true},
     {"framelet", make_framelet, true},
 }};
 

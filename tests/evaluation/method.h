@@ -83,6 +83,8 @@ public:
     /// Messages come once each and in order.
     virtual ViewerStep consume(std::vector<std::byte> const& message) = 0;
     virtual Picture const& picture() const = 0;
+    /// The viewer's picture anew for a camera and a scene time, by those that do so without a message.
+    virtual ViewerStep present(NumberedView const&, SceneTime) { return {}; }
     /// Scene time of what the picture shows, mean over its pixels.
     virtual double mean_sample_time() const = 0;
     /// For looking at what it decides; null for methods that have none.

@@ -11,6 +11,8 @@ namespace {
 
 /// How often a server that has nothing to do looks again.
 constexpr double idle_seconds = 0.002;
+/// Of a viewer's display, pictures a second.
+constexpr double display_rate = 60;
 
 void add(StageSeconds& sum, StageSeconds const& step, double server, double viewer) {
     sum.render += server * step.render;
@@ -23,22 +25,48 @@ void add(StageSeconds& sum, StageSeconds const& step, double server, double view
 /// Hands the picture out at every reference time that passes.
 class Spectator {
 public:
-    Spectator(RunParameters const& parameters, OnReferenceTime const& on_reference_time)
-        : parameters_(parameters), count_(reference_count(parameters)), on_reference_time_(on_reference_time) {}
+    Spectator(BenchScene const& scene, Method& method, RunParameters const& parameters, double viewer_machine,
+              OnReferenceTime const& on_reference_time)
+        : scene_(scene), method_(method), parameters_(parameters), viewer_machine_(viewer_machine),
+          count_(reference_count(parameters)), on_reference_time_(on_reference_time) {}
+
+    /// Until `end` the viewer goes on with what it has.
+    void watch(double end) {
+        while (next_ < count_ && reference_time(parameters_, next_) < end) {
+            // What is seen at a time was begun when the picture before it was done.
+            double const now = reference_time(parameters_, next_);
+            double const begun = std::max(0.0, now - last_.seconds.viewer() * viewer_machine_);
+            last_ = method_.present({1, camera_at(scene_, begun), parameters_.viewport}, begun);
+            presenting_ += viewer_machine_ * last_.seconds.viewer() * display_rate / parameters_.reference_rate;
+            hand_out(method_.picture(), method_.mean_sample_time());
+        }
+    }
 
     /// Until `end` the viewer shows this.
     void watch(double end, Picture const& shown, double sample_time) {
         while (next_ < count_ && reference_time(parameters_, next_) < end) {
-            double const age = reference_time(parameters_, next_) - sample_time;
-            on_reference_time_(next_++, shown, age);
+            hand_out(shown, sample_time);
         }
     }
 
+    /// CPU seconds of pictures without a message.
+    double presenting() const { return presenting_; }
+
 private:
+    void hand_out(Picture const& shown, double sample_time) {
+        double const age = reference_time(parameters_, next_) - sample_time;
+        on_reference_time_(next_++, shown, age);
+    }
+
+    BenchScene const& scene_;
+    Method& method_;
     RunParameters const& parameters_;
+    double const viewer_machine_;
     std::size_t const count_;
     OnReferenceTime const& on_reference_time_;
     std::size_t next_ = 0;
+    ViewerStep last_;
+    double presenting_ = 0;
 };
 
 } // namespace
@@ -76,9 +104,9 @@ double machine_factor(BenchScene& scene, RunParameters const& parameters, CostTa
 RunResult run_method(BenchScene& scene, Method& method, RunParameters const& parameters, double machine,
                      OnReferenceTime const& on_reference_time, OnStep const& on_step) {
     SimulatedLink link(parameters.link);
-    Spectator spectator(parameters, on_reference_time);
     bool const shared = parameters.counting == Counting::total;
     double const viewer_machine = shared ? machine : 1;
+    Spectator spectator(scene, method, parameters, viewer_machine, on_reference_time);
     RunResult result;
     double now = -lead_seconds(parameters);
     double viewer_free = now;
@@ -129,6 +157,7 @@ RunResult run_method(BenchScene& scene, Method& method, RunParameters const& par
         SimulatedLink::Delivery const delivery = link.send(now, step.message.size());
 
         double const begin = std::max(delivery.arrived, viewer_free);
+        spectator.watch(begin);
         double const sample_time = method.mean_sample_time();
         shown = method.picture();
         ViewerStep const viewed = method.consume(step.message);
@@ -152,7 +181,8 @@ RunResult run_method(BenchScene& scene, Method& method, RunParameters const& par
             result.displayed.push_back(displayed);
         }
     }
-    spectator.watch(INFINITY, method.picture(), method.mean_sample_time());
+    spectator.watch(INFINITY);
+    result.cpu.reconstruct += spectator.presenting();
     result.mean_delay /= std::max<double>(1, static_cast<double>(result.messages));
     return result;
 }

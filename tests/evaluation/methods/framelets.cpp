@@ -1,8 +1,11 @@
 // `framelet`: the project's own server and viewer as they stand, the very stages that the programs run.
+// `framelet-unwarped`: the same with the viewer's reprojection switched off.
 #include "common/color.h"
 #include "common/framelet_cache.h"
 #include "common/reconstruction.h"
+#include "common/reprojector.h"
 #include "protocol/batch_codec.h"
+#include "server/layers/shape_feed.h"
 #include "server/render/probe_renderer.h"
 #include "server/schedule/adaptive_refresh.h"
 #include "server/schedule/render_rate.h"
@@ -15,14 +18,15 @@ namespace {
 
 class Framelets final : public Method {
 public:
-    explicit Framelets(MethodSetup const& setup)
-        : setup_(setup), cache_(ImagePlane(setup.viewport)), picture_(setup.viewport.width, setup.viewport.height),
-          cells_((setup.viewport.width + cell - 1) / cell),
+    Framelets(MethodSetup const& setup, bool reprojects)
+        : setup_(setup), reprojects_(reprojects), cache_(ImagePlane(setup.viewport)),
+          picture_(setup.viewport.width, setup.viewport.height), cells_((setup.viewport.width + cell - 1) / cell),
           times_(static_cast<std::size_t>(cells_) *
                  static_cast<std::size_t>((setup.viewport.height + cell - 1) / cell)) {}
 
     ServerStep produce(StepInput const& input) override {
-        SceneTime const time = input.scene.duration > 0 ? input.time : 0;
+        moves_ = input.scene.duration > 0;
+        SceneTime const time = moves_ ? input.time : 0;
         ViewState const state{input.view, input.scene.exposure, time};
         if (refresh_.is_complete(state)) {
             return {};
@@ -65,10 +69,16 @@ public:
                 batch_.framelets.push_back(display_[i]);
             }
         }
-        step.seconds.encode =
-            1e-9 * (samples * setup_.costs.display_sample +
-                    static_cast<double>(batch_.framelets.size() * framelet_samples) * setup_.costs.encode_sample);
+        double const sent = static_cast<double>(batch_.framelets.size() * framelet_samples);
+        step.seconds.encode = 1e-9 * (samples * setup_.costs.display_sample + sent * setup_.costs.encode_sample);
         if (!batch_.framelets.empty()) {
+            if (reprojects_) {
+                shapes_.fit(rendered_, send, make_view_rays(input.view.camera, setup_.viewport),
+                            ImagePlane(setup_.viewport), batch_.shapes);
+                shapes_.track(input.scene.scene, input.scene.clips, input.scene.render_scene->bodies(), time,
+                              batch_.tracks);
+                step.seconds.encode += 1e-9 * sent * setup_.costs.shape_sample;
+            }
             batch_.number = ++number_;
             batch_.view = input.view;
             batch_.scene_time = time;
@@ -80,11 +90,8 @@ public:
     ViewerStep consume(std::vector<std::byte> const& message) override {
         Batch const batch = codec_.decode(std::get<EncodedBatch>(decode_message(message)));
         cache_.insert(batch);
-        cache_.take_changed(changed_);
-        reconstruct(cache_, changed_, picture_);
-        double pixels = 0;
-        for (PixelRect const& rect : changed_) {
-            pixels += static_cast<double>(rect.width()) * rect.height();
+        for (BodyTrack const& track : batch.tracks) {
+            motions_.extend(track);
         }
         double fine = 0;
         for (DisplayFramelet const& framelet : batch.framelets) {
@@ -94,8 +101,24 @@ public:
         double const samples = static_cast<double>(batch.framelets.size() * framelet_samples);
         ViewerStep step;
         step.seconds.decode = 1e-9 * samples * (setup_.costs.decode_sample + setup_.costs.cache_sample);
-        step.seconds.reconstruct =
-            1e-9 * (pixels * setup_.costs.reconstruct_pixel + fine * setup_.costs.reconstruct_fine_sample);
+        if (!reprojects_) {
+            cache_.take_changed(changed_);
+            reconstruct(cache_, changed_, picture_);
+            step.seconds.reconstruct = 1e-9 * (pixels_of(changed_) * setup_.costs.reconstruct_pixel +
+                                               fine * setup_.costs.reconstruct_fine_sample);
+        }
+        return step;
+    }
+
+    ViewerStep present(NumberedView const& view, SceneTime time) override {
+        ViewerStep step;
+        if (reprojects_) {
+            cache_.take_changed(changed_);
+            reprojector_.show(cache_, changed_, view.camera, moves_ ? time : 0, motions_, picture_, repainted_);
+            step.seconds.reconstruct =
+                1e-9 * pixels_of(repainted_) *
+                (reprojector_.is_exact() ? setup_.costs.reconstruct_pixel : setup_.costs.reproject_pixel);
+        }
         return step;
     }
 
@@ -122,6 +145,14 @@ private:
         return 1e-9 * static_cast<double>(refresh_.field().visible().size()) * setup_.costs.plan_place;
     }
 
+    static double pixels_of(std::vector<PixelRect> const& rects) {
+        double pixels = 0;
+        for (PixelRect const& rect : rects) {
+            pixels += static_cast<double>(rect.width()) * rect.height();
+        }
+        return pixels;
+    }
+
     static constexpr int cell = framelet_side >> finest_levels; ///< side of the finest tile, pixels
 
     void stamp(PixelRect const& rect, double time) {
@@ -133,17 +164,22 @@ private:
     }
 
     MethodSetup const setup_;
+    bool const reprojects_;
+    bool moves_ = false; ///< the scene
     AdaptiveRefresh refresh_;
     RenderRate rate_;
     std::vector<Framelet> rendered_;
     std::vector<DisplayFramelet> display_;
     ProbeRenderer probes_;
+    ShapeFeed shapes_;
     Batch batch_;
     std::uint64_t number_ = 0;
     BatchCodec codec_;
 
     FrameletCache cache_;
-    std::vector<PixelRect> changed_;
+    BodyMotions motions_;
+    Reprojector reprojector_;
+    std::vector<PixelRect> changed_, repainted_;
     Picture picture_;
     int const cells_; ///< in a row
     std::vector<double> times_; ///< scene time shown in each cell
@@ -152,7 +188,11 @@ private:
 } // namespace
 
 std::unique_ptr<Method> make_framelet(MethodSetup const& setup) {
-    return std::make_unique<Framelets>(setup);
+    return std::make_unique<Framelets>(setup, true);
+}
+
+std::unique_ptr<Method> make_framelet_unwarped(MethodSetup const& setup) {
+    return std::make_unique<Framelets>(setup, false);
 }
 
 } // namespace framelet::bench

@@ -1,0 +1,37 @@
+// What a viewer that moves its framelets is told of them beside their colours: where their samples lie, and how the
+// bodies move that carry them. In: rendered framelets, the scene and its time. Out: shapes and tracks of a batch.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/framelet.h"
+#include "server/layers/layer_fit.h"
+#include "server/scene/bodies.h"
+
+namespace framelet {
+
+/// How far ahead of a batch its viewer knows where bodies will be, seconds of scene time: what a slow link needs.
+inline constexpr SceneTime tracked_ahead_seconds = 0.3;
+
+/// One viewer's.
+class ShapeFeed {
+public:
+    /// Shapes of those framelets for which `send` (same length) is not 0, in order. Runs in parallel.
+    void fit(std::span<Framelet const> rendered, std::span<std::uint8_t const> send, ViewRays const& rays,
+             ImagePlane const& plane, std::vector<FrameletShape>& shapes);
+
+    /// The keys of all bodies until `tracked_ahead_seconds` after `time` that have not been given out yet; from `time`
+    /// on where that has jumped.
+    void track(Scene const& scene, std::span<Index const> clips, SceneBodies const& bodies, SceneTime time,
+               std::vector<BodyTrack>& tracks);
+
+private:
+    float median_depth_ = 0; ///< of what was rendered lately, metres; 0: nothing was
+    std::int64_t first_key_ = 0;
+    std::int64_t end_key_ = 0; ///< behind the last one given out
+    std::vector<std::size_t> sent_; ///< which of the framelets
+};
+
+} // namespace framelet
