@@ -11,6 +11,7 @@
 #include "common/error.h"
 #include "common/framelet_cache.h"
 #include "common/reconstruction.h"
+#include "common/reprojector.h"
 #include "protocol/batch_codec.h"
 
 namespace framelet {
@@ -67,7 +68,12 @@ struct ClientCore::Impl {
     std::uint64_t shown_generation = 0;
     std::uint8_t const* shown_pixels = nullptr; ///< recognises the caller's picture
     std::uint64_t last_batch = 0;
-    Camera shown_camera;
+    Camera shown_camera; ///< of the newest batch
+    SceneTime shown_time = 0;
+    bool reproject = true;
+    BodyMotions motions;
+    Reprojector reprojector;
+    std::vector<PixelRect> arrived; ///< scratch: where batches have changed something
     Status status;
     Clock::time_point status_time = start;
     std::optional<std::string> end_reason;
@@ -178,8 +184,12 @@ struct ClientCore::Impl {
             return;
         }
         shown_camera = batch.view.camera;
+        shown_time = batch.scene_time;
         Clock::time_point const before = Clock::now();
         cache->insert(batch);
+        for (BodyTrack const& track : batch.tracks) {
+            motions.extend(track);
+        }
         statistics.insert_seconds += seconds_between(before, Clock::now());
         if (statistics.full_picture_seconds < 0 && first_camera_time && cache->coverage() >= 1) {
             statistics.full_picture_seconds = seconds_between(*first_camera_time, Clock::now());
@@ -194,6 +204,15 @@ struct ClientCore::Impl {
             out.time = std::max(0.0, out.time + elapsed * static_cast<double>(out.speed));
         }
         return out;
+    }
+
+    /// What the picture is to be of: the newest camera and the present. Where the server moves the camera, what its
+    /// newest batch shows. Under the lock.
+    std::pair<Camera, SceneTime> wanted_picture() const {
+        if (view.scene_camera >= 0) {
+            return {shown_camera, shown_time};
+        }
+        return {view.view.camera, connection->welcome().animation_duration > 0 ? clock_now().time : 0};
     }
 
     /// Under the lock.
@@ -242,6 +261,13 @@ void ClientCore::set_view(Camera const& camera, Viewport viewport, int scene_cam
 }
 
 void ClientCore::set_settings(ViewerSettings const& settings) {
+    {
+        std::lock_guard const lock(impl_->mutex);
+        if (impl_->reproject != settings.reproject) {
+            impl_->reproject = settings.reproject;
+            impl_->shown_pixels = nullptr; // all of it anew
+        }
+    }
     impl_->connection->send(settings);
 }
 
@@ -274,15 +300,22 @@ bool ClientCore::update_picture(Picture& picture, std::vector<PixelRect>& change
     core.cache->take_changed(changed);
     if (whole) {
         picture = Picture(viewport.width, viewport.height);
+        core.reprojector = Reprojector();
         changed.assign(1, {0, 0, viewport.width, viewport.height});
         core.shown_generation = core.cache_generation;
         core.shown_pixels = picture.rgba.data();
     }
+    Clock::time_point const before = Clock::now();
+    if (core.reproject) {
+        auto const [camera, time] = core.wanted_picture();
+        core.arrived.swap(changed);
+        core.reprojector.show(*core.cache, core.arrived, camera, time, core.motions, picture, changed);
+    } else {
+        reconstruct(*core.cache, changed, picture);
+    }
     if (changed.empty()) {
         return false;
     }
-    Clock::time_point const before = Clock::now();
-    reconstruct(*core.cache, changed, picture);
     Clock::time_point const after = Clock::now();
     for (PixelRect const& rect : changed) {
         core.statistics.pixels += static_cast<std::uint64_t>(rect.width()) * static_cast<std::uint64_t>(rect.height());

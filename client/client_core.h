@@ -68,9 +68,10 @@ public:
     /// `clock` answers as if it were granted, until the server says how it is.
     void request_clock(ClockRequest const& request);
 
-    /// Brings `picture` up to date; true when it changed. `changed` gets the rectangles that may differ. While nothing
-    /// has come for a new viewport, the picture stays as it is, in its old size. A picture that is not the one of the
-    /// last call is written as a whole.
+    /// Brings `picture` up to date with what has come, and with the newest camera and the present scene time: what is
+    /// held is moved to where it belongs now (`ViewerSettings::reproject`). Call it for every display frame. True when
+    /// it changed. `changed` gets the rectangles that may differ. While nothing has come for a new viewport, the
+    /// picture stays as it is, in its old size. A picture that is not the one of the last call is written as a whole.
     bool update_picture(Picture& picture, std::vector<PixelRect>& changed);
 
     /// Draws the outlines of the framelets that are held into a copy of the picture that `update_picture` made, as

@@ -77,8 +77,8 @@ void BodyMotions::extend(BodyTrack const& track) {
         known.first_key = track.first_key;
     }
     known.keys.insert(known.keys.end(), track.keys.begin(), track.keys.end());
-    if (known.keys.size() > max_track_keys) {
-        std::size_t const surplus = known.keys.size() - max_track_keys;
+    if (known.keys.size() > kept_track_keys) {
+        std::size_t const surplus = known.keys.size() - kept_track_keys;
         known.keys.erase(known.keys.begin(), known.keys.begin() + static_cast<std::ptrdiff_t>(surplus));
         known.first_key += static_cast<std::int64_t>(surplus);
     }

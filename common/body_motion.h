@@ -15,7 +15,7 @@ namespace framelet {
 inline constexpr SceneTime max_pose_extrapolation_seconds = 0.1;
 
 /// Keys that a viewer keeps of a body: half a minute.
-inline constexpr std::size_t max_track_keys = 30 * body_keys_per_second;
+inline constexpr std::size_t kept_track_keys = 30 * body_keys_per_second;
 
 /// World at one time to world at another: x -> linear * x + offset, metres.
 struct Motion {
@@ -37,7 +37,7 @@ Motion motion_between(BodyTrack const& track, SceneTime from, SceneTime to);
 class BodyMotions {
 public:
     /// Takes in keys of a body. They replace those of the same times and later; keys that neither overlap nor follow
-    /// what is known replace all of it. Of each body the last `max_track_keys` are kept.
+    /// what is known replace all of it. Of each body the last `kept_track_keys` are kept.
     void extend(BodyTrack const& track);
     void clear() { tracks_.clear(); }
     bool empty() const { return tracks_.empty(); }

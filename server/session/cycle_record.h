@@ -25,7 +25,7 @@ struct CycleRecord {
     std::array<std::uint64_t, sampling_levels + 1> places_by_level{}; ///< of what the viewer holds; first: bare
     double mean_shown_error = 0; ///< over the viewport's pixels
     struct {
-        double plan = 0, render = 0, learn = 0;
+        double plan = 0, render = 0, learn = 0, shape = 0;
         double wait = 0; ///< until the batch before is encoded
     } stage_seconds;
 };

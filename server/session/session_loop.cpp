@@ -46,6 +46,7 @@ SessionLoop::SessionLoop(Scene const& scene, std::vector<Index> clips, RenderSce
     : scene_(scene), clips_(std::move(clips)), animated_(animation_duration(scene, clips_) > 0),
       render_scene_(render_scene), clock_(clock), options_(options), events_(std::move(events)),
       pose_(evaluate_pose(scene, clips_, 0)), encoding_(std::make_unique<Encoding>()) {
+    render_scene_.set_clips(clips_);
     render_scene_.set_pose(pose_);
 }
 
@@ -90,12 +91,13 @@ bool SessionLoop::cycle(Sessions const& sessions, WallTime now) {
     double const share = 1 / static_cast<double>(sessions.size());
     bool rendered = false;
     for (auto const& session : sessions) {
-        rendered |= render_session(*session, refreshes_[session->id()], time, share);
+        rendered |= render_session(*session, viewers_[session->id()], time, share);
     }
     return rendered;
 }
 
-bool SessionLoop::render_session(Session& session, AdaptiveRefresh& refresh, SceneTime time, double share) {
+bool SessionLoop::render_session(Session& session, Viewer& viewer, SceneTime time, double share) {
+    AdaptiveRefresh& refresh = viewer.refresh;
     SessionInput const input = session.newest_input();
     if (!input.camera) {
         return false;
@@ -135,6 +137,12 @@ bool SessionLoop::render_session(Session& session, AdaptiveRefresh& refresh, Sce
     record.stage_seconds.render = laps.lap();
     auto const& needed = refresh.learn(display_, rendered_, probes_.luma());
     record.stage_seconds.learn = laps.lap();
+    shapes_.clear();
+    tracks_.clear();
+    if (session.takes_shapes() && std::ranges::count(needed, 0) < std::ssize(needed)) { // else nothing is sent
+        describe_shapes(viewer, needed, state);
+    }
+    record.stage_seconds.shape = laps.lap();
     finish_encoding();
     record.stage_seconds.wait = laps.lap();
     send_batch(session, needed, state);
@@ -142,7 +150,8 @@ bool SessionLoop::render_session(Session& session, AdaptiveRefresh& refresh, Sce
     if (!plan.tiles.empty()) {
         // Planning left out: it takes as long for few samples, which would then seem to be dear.
         double const samples = static_cast<double>(plan.tiles.size() * framelet_samples);
-        rate_ = update_render_rate(rate_, samples, record.stage_seconds.render + record.stage_seconds.learn);
+        rate_ = update_render_rate(
+            rate_, samples, record.stage_seconds.render + record.stage_seconds.learn + record.stage_seconds.shape);
         samples_per_second_ = rate_.samples_per_second;
     }
     if (options_.recorder != nullptr) {
@@ -171,6 +180,12 @@ void SessionLoop::render_plan(RefreshPlan const& plan, ViewState const& state) {
                       [&](std::size_t i) { display_[i] = to_display(rendered_[i], state.exposure); });
 }
 
+void SessionLoop::describe_shapes(Viewer& viewer, std::vector<std::uint8_t> const& needed, ViewState const& state) {
+    ViewRays const rays = make_view_rays(state.view.camera, state.view.viewport);
+    viewer.shapes.fit(rendered_, needed, rays, ImagePlane(state.view.viewport), shapes_);
+    viewer.shapes.track(scene_, clips_, render_scene_.bodies(), state.scene_time, tracks_);
+}
+
 void SessionLoop::send_batch(Session& session, std::vector<std::uint8_t> const& needed, ViewState const& state) {
     Batch& batch = encoding_->batch;
     batch.framelets.clear();
@@ -185,6 +200,8 @@ void SessionLoop::send_batch(Session& session, std::vector<std::uint8_t> const& 
     batch.number = session.begin_batch();
     batch.view = state.view;
     batch.scene_time = state.scene_time;
+    batch.shapes.swap(shapes_);
+    batch.tracks.swap(tracks_);
     encoding_->session = session.shared_from_this();
     encoding_->task.run([encoding = encoding_.get()] { encoding->run(); });
 }
@@ -213,7 +230,7 @@ void SessionLoop::forget_ended(Sessions const& sessions) {
     auto const is_open = [&sessions](std::uint64_t id) {
         return std::any_of(sessions.begin(), sessions.end(), [id](auto const& session) { return session->id() == id; });
     };
-    std::erase_if(refreshes_, [&](auto const& entry) { return !is_open(entry.first); });
+    std::erase_if(viewers_, [&](auto const& entry) { return !is_open(entry.first); });
 }
 
 void SessionLoop::wake() {

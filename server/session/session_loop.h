@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "protocol/batch_codec.h"
+#include "server/layers/shape_feed.h"
 #include "server/render/probe_renderer.h"
 #include "server/schedule/adaptive_refresh.h"
 #include "server/schedule/render_rate.h"
@@ -59,7 +60,14 @@ public:
 private:
     void pose_scene(SceneTime time);
     NumberedView resolve_camera(CameraUpdate const& camera) const;
-    bool render_session(Session& session, AdaptiveRefresh& refresh, SceneTime time, double share);
+    /// What is kept of a viewer from batch to batch.
+    struct Viewer {
+        AdaptiveRefresh refresh;
+        ShapeFeed shapes;
+    };
+
+    bool render_session(Session& session, Viewer& viewer, SceneTime time, double share);
+    void describe_shapes(Viewer& viewer, std::vector<std::uint8_t> const& needed, ViewState const& state);
     void render_plan(RefreshPlan const& plan, ViewState const& state);
     void send_batch(Session& session, std::vector<std::uint8_t> const& needed, ViewState const& state);
     void finish_encoding();
@@ -74,12 +82,14 @@ private:
     Events const events_;
 
     ScenePose pose_;
-    std::map<std::uint64_t, AdaptiveRefresh> refreshes_; ///< by session
+    std::map<std::uint64_t, Viewer> viewers_; ///< by session
     RenderRate rate_;
     double plan_seconds_ = 0; ///< what planning a cycle takes
     ProbeRenderer probes_;
     std::vector<Framelet> rendered_;
     std::vector<DisplayFramelet> display_;
+    std::vector<FrameletShape> shapes_; ///< of those that are sent
+    std::vector<BodyTrack> tracks_;
 
     struct Encoding;
     std::unique_ptr<Encoding> encoding_;
