@@ -2,92 +2,29 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
-#include <string>
+#include <bit>
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
-#include <zstd.h>
 
 #include "common/error.h"
 #include "protocol/plane_codec.h"
+#include "protocol/shape_codec.h"
+#include "protocol/zstd_frames.h"
 
 namespace framelet {
 namespace {
 
-/// Framelets that are compressed together, and apart from the others: enough for the compressor to learn from, few
-/// enough to stay in the cache and to give every core some.
-constexpr std::size_t group_framelets = 128;
-constexpr int compression_level = 1;
-constexpr std::size_t length_bytes = 4;
-/// First bytes of a zstd frame (RFC 8878); other kinds of frames that the library knows are not part of the format.
-constexpr std::array<std::uint8_t, 4> zstd_magic{0x28, 0xb5, 0x2f, 0xfd};
-
-std::size_t group_count(std::size_t framelets) {
-    return (framelets + group_framelets - 1) / group_framelets;
-}
-
-void put_length(std::byte* out, std::size_t length) {
-    for (std::size_t i = 0; i < length_bytes; ++i) {
-        out[i] = static_cast<std::byte>(length >> (8 * i));
-    }
-}
-
-std::size_t get_length(std::byte const* in) {
-    std::size_t length = 0;
-    for (std::size_t i = 0; i < length_bytes; ++i) {
-        length |= std::to_integer<std::size_t>(in[i]) << (8 * i);
-    }
-    return length;
-}
-
-/// The frames of the groups, where the lengths in front of them say they are. Nothing is decompressed yet.
-std::vector<ByteView> split_payload(ByteView payload, std::size_t groups) {
-    if (payload.size() < groups * length_bytes) {
-        throw ProtocolError("a batch's payload is too short for its tiles");
-    }
-    std::vector<ByteView> frames;
-    ByteView rest = payload.subspan(groups * length_bytes);
-    for (std::size_t group = 0; group < groups; ++group) {
-        std::size_t const length = get_length(&payload[group * length_bytes]);
-        if (length > rest.size()) {
-            throw ProtocolError("a batch's payload is shorter than its groups");
-        }
-        frames.push_back(rest.first(length));
-        rest = rest.subspan(length);
-    }
-    if (!rest.empty()) {
-        throw ProtocolError("a batch's payload is longer than its groups");
-    }
-    return frames;
-}
-
-/// Refuses all but one zstd frame that says how many bytes it holds, and these a number that `is_possible`.
-template <typename IsPossible>
-void check_frame(ByteView frame, IsPossible const& is_possible) {
-    if (frame.size() < zstd_magic.size() || std::memcmp(frame.data(), zstd_magic.data(), zstd_magic.size()) != 0) {
-        throw ProtocolError("a group of a batch is not a zstd frame");
-    }
-    // Where the size is unknown or the header damaged this is near 2^64.
-    if (!is_possible(ZSTD_getFrameContentSize(frame.data(), frame.size()))) {
-        throw ProtocolError("a group of a batch does not hold what its tiles need");
-    }
-    if (ZSTD_findFrameCompressedSize(frame.data(), frame.size()) != frame.size()) {
-        throw ProtocolError("a group of a batch is not exactly one zstd frame");
-    }
-}
-
 struct Worker {
-    std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> compressor{nullptr, ZSTD_freeCCtx};
-    std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> decompressor{nullptr, ZSTD_freeDCtx};
+    FrameCodec frames;
     std::vector<std::uint8_t> content;
     PlaneCodec planes;
+    ShapeCodec shapes;
 
     /// Returns the length of the frame written to `out`. `quality` may be empty: without loss, in encoding 1.
     std::size_t encode(std::span<DisplayFramelet const> group, std::span<std::uint8_t const> quality,
                        std::span<std::byte> out) {
         if (!quality.empty()) {
-            return compress(planes.encode(group, quality), out);
+            return frames.compress(planes.encode(group, quality), out);
         }
         content.resize(group.size() * exact_framelet_bytes);
         std::uint8_t* to = content.data();
@@ -97,49 +34,17 @@ struct Worker {
                 to += framelet_samples;
             }
         });
-        return compress(std::array{std::span<std::uint8_t const>(content)}, out);
-    }
-
-    /// One frame; each part begins a block of its own, so that it has its own statistics.
-    template <std::size_t count>
-    std::size_t compress(std::array<std::span<std::uint8_t const>, count> const& parts, std::span<std::byte> out) {
-        if (!compressor) {
-            compressor.reset(ZSTD_createCCtx());
-            FRAMELET_CHECK(compressor != nullptr);
-            ZSTD_CCtx_setParameter(compressor.get(), ZSTD_c_compressionLevel, compression_level);
-        }
-        std::size_t size = 0;
-        for (auto const part : parts) {
-            size += part.size();
-        }
-        ZSTD_CCtx_reset(compressor.get(), ZSTD_reset_session_only);
-        ZSTD_CCtx_setPledgedSrcSize(compressor.get(), size);
-        ZSTD_outBuffer to{out.data(), out.size(), 0};
-        for (std::size_t i = 0; i < count; ++i) {
-            ZSTD_inBuffer from{parts[i].data(), parts[i].size(), 0};
-            std::size_t const left =
-                ZSTD_compressStream2(compressor.get(), &to, &from, i + 1 < count ? ZSTD_e_flush : ZSTD_e_end);
-            FRAMELET_CHECK(left == 0);
-        }
-        return to.pos;
+        return frames.compress(std::array{std::span<std::uint8_t const>(content)}, out);
     }
 
     /// `quality` may be empty, as above. The frame has been checked.
     void decode(ByteView frame, std::span<DisplayFramelet> group, std::span<std::uint8_t> quality) {
-        if (!decompressor) {
-            decompressor.reset(ZSTD_createDCtx());
-            FRAMELET_CHECK(decompressor != nullptr);
-        }
-        std::size_t const size = ZSTD_getFrameContentSize(frame.data(), frame.size());
-        content.resize(size);
-        if (ZSTD_decompressDCtx(decompressor.get(), content.data(), size, frame.data(), frame.size()) != size) {
-            throw ProtocolError("a group of a batch cannot be decompressed");
-        }
+        auto const bytes = frames.decompress(frame);
         if (!quality.empty()) {
-            planes.decode(content, group, quality);
+            planes.decode(bytes, group, quality);
             return;
         }
-        std::uint8_t const* from = content.data();
+        std::uint8_t const* from = bytes.data();
         for_each_plane([&](auto const plane) {
             for (DisplayFramelet& framelet : group) {
                 undo_difference(from, framelet.*plane);
@@ -147,16 +52,24 @@ struct Worker {
             }
         });
     }
-};
 
-/// Calls `body(group, first framelet, count)` for every group, in parallel.
-template <typename Body>
-void for_each_group(std::size_t framelets, Body const& body) {
-    tbb::parallel_for(std::size_t{0}, group_count(framelets), [&](std::size_t group) {
-        std::size_t const first = group * group_framelets;
-        body(group, first, std::min(group_framelets, framelets - first));
-    });
-}
+    Bytes encode_shapes(std::span<FrameletShape const> group, std::span<DisplayFramelet const> framelets,
+                        ImagePlane const& plane) {
+        std::array<std::uint8_t, group_framelets> side_bits;
+        std::transform(framelets.begin(), framelets.end(), side_bits.begin(), [&](DisplayFramelet const& framelet) {
+            auto const side = static_cast<unsigned>(plane.tile_side(framelet.tile));
+            return static_cast<std::uint8_t>(std::bit_width(side | 1u) - 1);
+        });
+        ShapeParts const parts = shapes.encode(group, std::span(side_bits).first(group.size()));
+        std::size_t size = 0;
+        for (auto const part : parts) {
+            size += part.size();
+        }
+        Bytes frame(most_frame_bytes(size));
+        frame.resize(frames.compress(parts, frame));
+        return frame;
+    }
+};
 
 /// Of a list that has something for every framelet or for none.
 template <typename Value>
@@ -169,7 +82,6 @@ std::span<Value> part_of(std::span<Value> all, std::size_t first, std::size_t si
 struct BatchCodec::Scratch {
     tbb::enumerable_thread_specific<Worker> workers;
     std::vector<std::byte> frames; ///< of all groups, each in a slot of the largest size it may need
-    std::vector<std::size_t> lengths;
 };
 
 BatchCodec::BatchCodec() : scratch_(std::make_unique<Scratch>()) {}
@@ -181,40 +93,41 @@ EncodedBatch BatchCodec::encode(Batch const& batch) {
     std::size_t const count = batch.framelets.size();
     FRAMELET_CHECK(count <= max_batch_framelets);
     FRAMELET_CHECK(batch.quality.empty() || batch.quality.size() == count);
+    FRAMELET_CHECK(batch.shapes.empty() || batch.shapes.size() == count);
     std::size_t const groups = group_count(count);
-    // Three blocks more than one pass needs.
-    std::size_t const slot = ZSTD_compressBound(batch.quality.empty() ? group_framelets * exact_framelet_bytes
-                                                                      : most_plane_bytes(group_framelets)) +
-                             64;
+    std::size_t const slot = most_frame_bytes(batch.quality.empty() ? group_framelets * exact_framelet_bytes
+                                                                    : most_plane_bytes(group_framelets));
     if (scratch_->frames.size() < groups * slot) {
         scratch_->frames.resize(groups * slot);
     }
-    scratch_->lengths.resize(groups);
+    std::vector<ByteView> frames(groups);
     for_each_group(count, [&](std::size_t group, std::size_t first, std::size_t size) {
-        scratch_->lengths[group] = scratch_->workers.local().encode(
-            std::span(batch.framelets).subspan(first, size), part_of(std::span(batch.quality), first, size),
-            std::span(scratch_->frames).subspan(group * slot, slot));
+        std::span const out = std::span(scratch_->frames).subspan(group * slot, slot);
+        frames[group] = out.first(scratch_->workers.local().encode(
+            std::span(batch.framelets).subspan(first, size), part_of(std::span(batch.quality), first, size), out));
     });
 
-    EncodedBatch encoded{batch.number, batch.view, batch.scene_time, {}, {}};
+    EncodedBatch encoded{batch.number, batch.view, batch.scene_time, {}, join_frames(frames)};
     encoded.encoding = batch.quality.empty() ? SampleEncoding::exact : SampleEncoding::haar;
     encoded.tiles.reserve(count);
     for (DisplayFramelet const& framelet : batch.framelets) {
         encoded.tiles.push_back(framelet.tile);
     }
-    std::size_t total = groups * length_bytes;
-    for (std::size_t const length : scratch_->lengths) {
-        total += length;
+    if (!batch.shapes.empty()) {
+        encoded.shapes = encode_shapes(batch);
     }
-    encoded.payload.reserve(total);
-    encoded.payload.resize(groups * length_bytes);
-    for (std::size_t group = 0; group < groups; ++group) {
-        std::size_t const length = scratch_->lengths[group];
-        put_length(&encoded.payload[group * length_bytes], length);
-        auto const frame = scratch_->frames.begin() + static_cast<std::ptrdiff_t>(group * slot);
-        encoded.payload.insert(encoded.payload.end(), frame, frame + static_cast<std::ptrdiff_t>(length));
-    }
+    encoded.tracks = batch.tracks;
     return encoded;
+}
+
+Bytes BatchCodec::encode_shapes(Batch const& batch) {
+    ImagePlane const plane(batch.view.viewport);
+    std::vector<Bytes> contents(group_count(batch.shapes.size()));
+    for_each_group(batch.shapes.size(), [&](std::size_t group, std::size_t first, std::size_t size) {
+        contents[group] = scratch_->workers.local().encode_shapes(
+            std::span(batch.shapes).subspan(first, size), std::span(batch.framelets).subspan(first, size), plane);
+    });
+    return join_frames(std::vector<ByteView>(contents.begin(), contents.end()));
 }
 
 Batch BatchCodec::decode(EncodedBatch const& encoded) {
@@ -222,14 +135,13 @@ Batch BatchCodec::decode(EncodedBatch const& encoded) {
     if (count > max_batch_framelets) {
         throw ProtocolError("a batch has more than 32768 framelets");
     }
-    std::vector<ByteView> const frames = split_payload(encoded.payload, group_count(count));
+    std::vector<ByteView> const frames = split_frames(encoded.payload, group_count(count));
     bool const is_exact = encoded.encoding == SampleEncoding::exact;
     for (std::size_t group = 0; group < frames.size(); ++group) {
         std::size_t const first = group * group_framelets;
         std::size_t const size = std::min(group_framelets, count - first);
-        check_frame(frames[group], [&](unsigned long long bytes) {
-            return is_exact ? bytes == size * exact_framelet_bytes : bytes <= most_plane_bytes(size);
-        });
+        std::size_t const exact = size * exact_framelet_bytes;
+        check_frame(frames[group], is_exact ? exact : 0, is_exact ? exact : most_plane_bytes(size));
     }
     // Memory is asked for only now: the frames have said that they fill it, or how much less they hold.
     Batch batch{encoded.number, encoded.view, encoded.scene_time, std::vector<DisplayFramelet>(count)};
@@ -241,7 +153,25 @@ Batch BatchCodec::decode(EncodedBatch const& encoded) {
         }
         scratch_->workers.local().decode(frames[group], framelets, part_of(std::span(batch.quality), first, size));
     });
+    if (!encoded.shapes.empty()) {
+        batch.shapes = decode_shapes(encoded);
+    }
+    batch.tracks = encoded.tracks;
     return batch;
+}
+
+std::vector<FrameletShape> BatchCodec::decode_shapes(EncodedBatch const& encoded) {
+    std::size_t const count = encoded.tiles.size();
+    std::vector<ByteView> const frames = split_frames(encoded.shapes, group_count(count));
+    for (std::size_t group = 0; group < frames.size(); ++group) {
+        check_frame(frames[group], 0, most_shape_bytes(std::min(group_framelets, count - group * group_framelets)));
+    }
+    std::vector<FrameletShape> shapes(count);
+    for_each_group(count, [&](std::size_t group, std::size_t first, std::size_t size) {
+        ShapeCodec::decode(scratch_->workers.local().frames.decompress(frames[group]),
+                           std::span(shapes).subspan(first, size));
+    });
+    return shapes;
 }
 
 } // namespace framelet

@@ -1,4 +1,4 @@
-// Samples of a batch to bytes and back: groups of framelets, each in planes of its own, and zstd.
+// Samples and shapes of a batch to bytes and back: groups of framelets, each in planes of its own, and zstd.
 #pragma once
 
 #include <memory>
@@ -17,13 +17,17 @@ public:
     BatchCodec& operator=(BatchCodec&&) noexcept;
 
     /// Without loss where the batch has no qualities; else each framelet with its own, and `decode` gives what the
-    /// viewer will see.
+    /// viewer will see. Shapes always lose a little (`shape_quantisation.h`).
     EncodedBatch encode(Batch const& batch);
-    /// Throws ProtocolError where the payload is not exactly what the tiles ask for.
+    /// Throws ProtocolError where payload and shapes are not exactly what the tiles ask for.
     Batch decode(EncodedBatch const& encoded);
 
 private:
     struct Scratch;
+
+    Bytes encode_shapes(Batch const& batch);
+    std::vector<FrameletShape> decode_shapes(EncodedBatch const& encoded);
+
     std::unique_ptr<Scratch> scratch_;
 };
 

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <span>
 
+#include "protocol/byte_cursor.h"
+
 namespace framelet {
 
 /// Largest level that a token holds itself; greater ones are escapes of two bytes.
@@ -35,14 +37,6 @@ private:
     std::uint8_t* begin_;
     std::uint8_t* next_;
     std::size_t run_ = 0;
-};
-
-/// Bytes that are read from their front.
-struct ByteCursor {
-    std::uint8_t const* next = nullptr;
-    std::uint8_t const* end = nullptr;
-
-    std::size_t left() const { return static_cast<std::size_t>(end - next); }
 };
 
 class TokenReader {

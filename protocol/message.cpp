@@ -16,7 +16,8 @@ constexpr flatbuffers::uoffset_t max_tables = 4 * max_scene_cameras;
 
 std::size_t size_hint(Message const& message) {
     auto const* const batch = std::get_if<EncodedBatch>(&message);
-    return batch == nullptr ? 1024 : 1024 + batch->payload.size() + batch->tiles.size() * sizeof(Tile);
+    return batch == nullptr ? 1024
+                            : 1024 + batch->payload.size() + batch->shapes.size() + batch->tiles.size() * sizeof(Tile);
 }
 
 template <typename Table>

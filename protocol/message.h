@@ -22,10 +22,18 @@ inline constexpr std::uint16_t protocol_version = 1;
 // --- upstream
 // ---------------------------------------------------------------------------------------------------------
 
+/// What a viewer can read; a server sends nothing else. Sums of these; bits that a server does not know are left out.
+namespace coding {
+inline constexpr std::uint32_t exact_colour = 1; ///< every viewer can
+inline constexpr std::uint32_t haar_colour = 2; ///< framelets with a quality
+inline constexpr std::uint32_t shapes_and_tracks = 4;
+} // namespace coding
+
 /// First message of a connection.
 struct Hello {
     std::uint16_t version = protocol_version;
     std::string token; ///< empty where the server asks for none
+    std::uint32_t codings = coding::exact_colour;
     bool operator==(Hello const&) const = default;
 };
 
@@ -40,6 +48,9 @@ struct CameraUpdate {
 struct ViewerSettings {
     float exposure_ev = 0; ///< stops, added to the server's own exposure, [-16, 16]
     float bias = 0; ///< -1 (spatial fidelity) .. 1 (temporal)
+    /// Whether it moves samples to where they are seen later; false: it shows them where they were rendered, and has no
+    /// use for shapes.
+    bool reproject = true;
     bool operator==(ViewerSettings const&) const = default;
 };
 
@@ -86,7 +97,10 @@ enum class SampleEncoding : std::uint8_t {
     haar = 2, ///< each with a quality of its own
 };
 
-/// A batch as it travels: tiles in the clear, samples compressed by `batch_codec`.
+/// Most bodies of which one batch tells how they move, and most keys of one of them.
+inline constexpr std::size_t max_batch_tracks = 4096, max_track_keys = 1024;
+
+/// A batch as it travels: tiles and tracks in the clear, samples and shapes compressed by `batch_codec`.
 struct EncodedBatch {
     std::uint64_t number = 0;
     NumberedView view;
@@ -94,6 +108,8 @@ struct EncodedBatch {
     std::vector<Tile> tiles;
     Bytes payload;
     SampleEncoding encoding = SampleEncoding::exact;
+    Bytes shapes{}; ///< of all framelets; empty: the viewer has no use for them
+    std::vector<BodyTrack> tracks{};
     bool operator==(EncodedBatch const&) const = default;
 };
 

@@ -25,6 +25,16 @@ bool has_duplicate(std::vector<Tile> tiles) {
     return std::adjacent_find(tiles.begin(), tiles.end()) != tiles.end();
 }
 
+Offset<wire::Section> write_section(Builder& builder, wire::Content content, wire::Encoding encoding, ByteView bytes) {
+    auto const data = builder.CreateVector(reinterpret_cast<std::uint8_t const*>(bytes.data()), bytes.size());
+    return wire::CreateSection(builder, content, encoding, data);
+}
+
+Bytes read_bytes(wire::Section const& section) {
+    auto const* const data = reinterpret_cast<std::byte const*>(section.data()->data());
+    return {data, data + section.data()->size()};
+}
+
 } // namespace
 
 Offset<wire::Welcome> write(Builder& builder, Welcome const& value) {
@@ -87,28 +97,36 @@ char const* problem(Welcome const& value) {
 }
 
 Offset<wire::Batch> write(Builder& builder, EncodedBatch const& value) {
-    auto const data =
-        builder.CreateVector(reinterpret_cast<std::uint8_t const*>(value.payload.data()), value.payload.size());
-    auto const section =
-        wire::CreateSection(builder, wire::Content::colour, static_cast<wire::Encoding>(value.encoding), data);
-    auto const sections = builder.CreateVector(&section, 1);
+    std::vector<Offset<wire::Section>> list{
+        write_section(builder, wire::Content::colour, static_cast<wire::Encoding>(value.encoding), value.payload)};
+    if (!value.shapes.empty()) {
+        list.push_back(write_section(builder, wire::Content::shape, wire::Encoding::layers_zstd, value.shapes));
+    }
+    auto const sections = builder.CreateVector(list);
+    Offset<TrackList> const tracks = value.tracks.empty() ? Offset<TrackList>() : write(builder, value.tracks);
     std::uint32_t* codes = nullptr;
     auto const tiles = builder.CreateUninitializedVector(value.tiles.size(), &codes);
     std::transform(value.tiles.begin(), value.tiles.end(), codes, [](Tile tile) { return tile.code; });
     auto const view = write(builder, value.view);
-    return wire::CreateBatch(builder, value.number, view, value.scene_time, tiles, sections);
+    return wire::CreateBatch(builder, value.number, view, value.scene_time, tiles, sections, tracks);
 }
 
 EncodedBatch read(wire::Batch const& wire) {
-    if (wire.sections()->size() != 1) {
-        throw ProtocolError("a batch has " + std::to_string(wire.sections()->size()) + " sections instead of one");
+    std::size_t const sections = wire.sections()->size();
+    if (sections != 1 && sections != 2) {
+        throw ProtocolError("a batch has " + std::to_string(sections) + " sections instead of one or two");
     }
     wire::Section const& section = *wire.sections()->Get(0);
-    if (section.content() != wire::Content::colour) {
+    wire::Section const* const shapes = sections == 2 ? wire.sections()->Get(1) : nullptr;
+    if (section.content() != wire::Content::colour ||
+        (shapes != nullptr && shapes->content() != wire::Content::shape)) {
         throw ProtocolError("a batch's section holds something unknown");
     }
     if (section.encoding() != wire::Encoding::planes_left_zstd && section.encoding() != wire::Encoding::haar_zstd) {
         throw ProtocolError("a batch's samples are in an unknown encoding");
+    }
+    if (shapes != nullptr && shapes->encoding() != wire::Encoding::layers_zstd) {
+        throw ProtocolError("a batch's shapes are in an unknown encoding");
     }
     if (wire.tiles()->size() > max_batch_framelets) {
         throw ProtocolError("a batch has more than 32768 framelets");
@@ -122,8 +140,13 @@ EncodedBatch read(wire::Batch const& wire) {
     for (std::uint32_t const code : *wire.tiles()) {
         value.tiles.push_back({code});
     }
-    auto const* const data = reinterpret_cast<std::byte const*>(section.data()->data());
-    value.payload.assign(data, data + section.data()->size());
+    value.payload = read_bytes(section);
+    if (shapes != nullptr) {
+        value.shapes = read_bytes(*shapes);
+    }
+    if (wire.tracks() != nullptr) {
+        value.tracks = read(*wire.tracks());
+    }
     return value;
 }
 
@@ -144,7 +167,7 @@ char const* problem(EncodedBatch const& value) {
     if (!std::all_of(value.tiles.begin(), value.tiles.end(), [&](Tile tile) { return plane.accepts(tile); })) {
         return "a batch has a tile that its viewport does not have";
     }
-    return has_duplicate(value.tiles) ? "a batch has the same tile twice" : nullptr;
+    return has_duplicate(value.tiles) ? "a batch has the same tile twice" : problem(value.tracks);
 }
 
 Offset<wire::Status> write(Builder& builder, Status const& value) {

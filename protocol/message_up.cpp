@@ -4,11 +4,11 @@
 namespace framelet {
 
 Offset<wire::Hello> write(Builder& builder, Hello const& value) {
-    return wire::CreateHello(builder, value.version, write_text(builder, value.token, max_token_bytes));
+    return wire::CreateHello(builder, value.version, write_text(builder, value.token, max_token_bytes), value.codings);
 }
 
 Hello read(wire::Hello const& wire) {
-    return {wire.version(), read_text(wire.token(), max_token_bytes)};
+    return {wire.version(), read_text(wire.token(), max_token_bytes), wire.codings()};
 }
 
 char const* problem(Hello const&) {
@@ -31,11 +31,11 @@ char const* problem(CameraUpdate const& value) {
 }
 
 Offset<wire::ViewerSettings> write(Builder& builder, ViewerSettings const& value) {
-    return wire::CreateViewerSettings(builder, value.exposure_ev, value.bias);
+    return wire::CreateViewerSettings(builder, value.exposure_ev, value.bias, value.reproject);
 }
 
 ViewerSettings read(wire::ViewerSettings const& wire) {
-    return {wire.exposure_ev(), wire.bias()};
+    return {wire.exposure_ev(), wire.bias(), wire.reproject()};
 }
 
 char const* problem(ViewerSettings const& value) {

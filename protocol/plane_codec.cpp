@@ -15,19 +15,9 @@ void put_length(std::uint8_t* out, std::size_t length) {
     }
 }
 
-/// The next `size` bytes. ProtocolError where there are fewer.
-std::span<std::uint8_t const> take(ByteCursor& bytes, std::size_t size) {
-    if (size > bytes.left()) {
-        throw ProtocolError("a group of a batch is shorter than its parts");
-    }
-    std::span<std::uint8_t const> const part{bytes.next, size};
-    bytes.next += size;
-    return part;
-}
-
 std::size_t take_length(ByteCursor& bytes) {
     std::size_t length = 0;
-    auto const field = take(bytes, length_bytes);
+    auto const field = bytes.take(length_bytes);
     for (std::size_t i = 0; i < length_bytes; ++i) {
         length |= std::size_t{field[i]} << (8 * i);
     }
@@ -70,13 +60,13 @@ void PlaneCodec::decode(std::span<std::uint8_t const> bytes, std::span<DisplayFr
                         std::span<std::uint8_t> quality) {
     FRAMELET_CHECK(framelets.size() == quality.size());
     ByteCursor rest{bytes.data(), bytes.data() + bytes.size()};
-    auto const qualities = take(rest, quality.size());
+    auto const qualities = rest.take(quality.size());
     if (std::any_of(qualities.begin(), qualities.end(), [](std::uint8_t q) { return q > coarsest_quality; })) {
         throw ProtocolError("a batch has a framelet of an unknown quality");
     }
     std::copy(qualities.begin(), qualities.end(), quality.begin());
     auto const exact = static_cast<std::size_t>(std::count(quality.begin(), quality.end(), exact_quality));
-    std::uint8_t const* planes = take(rest, exact * exact_framelet_bytes).data();
+    std::uint8_t const* planes = rest.take(exact * exact_framelet_bytes).data();
     for_each_plane([&](auto const plane) {
         for (std::size_t i = 0; i < framelets.size(); ++i) {
             if (quality[i] == exact_quality) {
@@ -85,13 +75,13 @@ void PlaneCodec::decode(std::span<std::uint8_t const> bytes, std::span<DisplayFr
             }
         }
     });
-    auto const means = take(rest, mean_bytes * (framelets.size() - exact));
+    auto const means = rest.take(mean_bytes * (framelets.size() - exact));
     std::size_t const escape_bytes = take_length(rest);
     std::size_t const coarse_bytes = take_length(rest);
     std::size_t const fine_bytes = take_length(rest);
-    auto const escapes = take(rest, escape_bytes);
-    auto const coarse = take(rest, coarse_bytes);
-    auto const fine = take(rest, fine_bytes);
+    auto const escapes = rest.take(escape_bytes);
+    auto const coarse = rest.take(coarse_bytes);
+    auto const fine = rest.take(fine_bytes);
     HaarReader haar(means, escapes, coarse, fine);
     for (std::size_t i = 0; i < framelets.size(); ++i) {
         if (quality[i] != exact_quality) {

@@ -96,6 +96,15 @@ public:
         return shuffled;
     }
 
+    BodyTrack track(BodyNumber body) {
+        BodyTrack track{body, static_cast<std::int64_t>(number(-1e15, 1e15)), {}};
+        track.keys.resize(integer(1, 20));
+        for (BodyPose& key : track.keys) {
+            key = {vector(), camera().orientation, vector()};
+        }
+        return track;
+    }
+
     EncodedBatch batch() {
         EncodedBatch batch;
         batch.number = any64() | 1u;
@@ -106,17 +115,23 @@ public:
         for (std::byte& byte : batch.payload) {
             byte = static_cast<std::byte>(generator_());
         }
+        if (coin()) {
+            batch.shapes.resize(integer(1, 100), std::byte{7});
+            for (std::uint64_t i = integer(0, 5); i > 0; --i) {
+                batch.tracks.push_back(track(static_cast<BodyNumber>(10000 * i + integer(0, 9999))));
+            }
+        }
         return batch;
     }
 
     Message message() {
         switch (integer(0, 8)) {
         case 0:
-            return Hello{static_cast<std::uint16_t>(any64()), text(4096)};
+            return Hello{static_cast<std::uint16_t>(any64()), text(4096), any32()};
         case 1:
             return CameraUpdate{view(), static_cast<int>(number(-1, 4095))};
         case 2:
-            return ViewerSettings{small(-16, 16), small(-1, 1)};
+            return ViewerSettings{small(-16, 16), small(-1, 1), coin()};
         case 3:
             return ClockRequest{static_cast<std::uint8_t>(integer(0, 7)), clock()};
         case 4:

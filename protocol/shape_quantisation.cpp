@@ -1,0 +1,72 @@
+#include "protocol/shape_quantisation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/error.h"
+
+namespace framelet {
+namespace {
+
+constexpr int unit_bias = 128;
+
+double rounded(double value, UnitCode unit) {
+    return unit == 0 ? 0 : std::nearbyint(value / unit_of(unit));
+}
+
+} // namespace
+
+double unit_of(UnitCode code) {
+    return code == 0 ? 0 : std::ldexp(1.0, code - unit_bias);
+}
+
+UnitCode unit_above(double value) {
+    FRAMELET_CHECK(value >= 0 && value < most_shape_number);
+    if (value == 0) {
+        return 0;
+    }
+    int exponent = 0;
+    std::frexp(value, &exponent);
+    return static_cast<UnitCode>(std::clamp(exponent + unit_bias, 1, int{largest_unit}));
+}
+
+LayerCode quantise(Layer const& layer, int side_bits) {
+    constexpr double error_units = 16, plane_units = 1 << 14;
+    double const side = std::ldexp(1.0, side_bits);
+    double const at = layer.at, dx = layer.dx, dy = layer.dy, error = layer.error;
+    double const magnitude = std::abs(at) + side * (std::abs(dx) + std::abs(dy));
+    LayerCode code;
+    code.unit = unit_above(std::max(error / error_units, magnitude / plane_units));
+    code.at = static_cast<std::int16_t>(rounded(at, code.unit));
+    code.dx = static_cast<std::int16_t>(rounded(dx * side, code.unit));
+    code.dy = static_cast<std::int16_t>(rounded(dy * side, code.unit));
+    if (code.unit != 0) {
+        Layer const plane = dequantise(code, side_bits);
+        double const off =
+            std::abs(at - static_cast<double>(plane.at)) +
+            side * (std::abs(dx - static_cast<double>(plane.dx)) + std::abs(dy - static_cast<double>(plane.dy)));
+        code.error = static_cast<std::uint8_t>(std::ceil((error + off) / unit_of(code.unit)));
+    }
+    return code;
+}
+
+Layer dequantise(LayerCode const& code, int side_bits) {
+    double const unit = unit_of(code.unit);
+    double const gradient = std::ldexp(unit, -side_bits);
+    Layer layer;
+    layer.at = static_cast<float>(code.at * unit);
+    layer.dx = static_cast<float>(code.dx * gradient);
+    layer.dy = static_cast<float>(code.dy * gradient);
+    layer.error = static_cast<float>(code.error * unit);
+    return layer;
+}
+
+std::uint16_t quantise_inverse_depth(float inverse_depth, UnitCode unit) {
+    return static_cast<std::uint16_t>(rounded(static_cast<double>(inverse_depth), unit));
+}
+
+std::int16_t quantise_velocity(float velocity, UnitCode unit) {
+    return static_cast<std::int16_t>(rounded(static_cast<double>(velocity), unit));
+}
+
+} // namespace framelet

@@ -1,0 +1,43 @@
+// Layers and what is loose in 16-bit numbers, each in a unit that is a power of two, and back. PROTOCOL.md says how the
+// bytes are arranged. In: numbers below `most_shape_number` in magnitude. Out: codes, and the very numbers that a
+// reader makes of them.
+#pragma once
+
+#include <cstdint>
+
+#include "common/framelet_shape.h"
+
+namespace framelet {
+
+/// Inverse depths (over a whole tile), errors and velocities that can be sent are below this, 1 / metres and metres a
+/// second.
+inline constexpr double most_shape_number = 1099511627776.0; // 2^40
+
+/// 0: the unit is 0, and so is what is stated in it; else the unit is 2^(code - 128).
+using UnitCode = std::uint8_t;
+inline constexpr UnitCode largest_unit = 168;
+double unit_of(UnitCode code);
+/// The smallest unit above a value >= 0, with bounds.
+UnitCode unit_above(double value);
+
+struct LayerCode {
+    UnitCode unit = 0;
+    std::uint8_t error = 0; ///< units
+    std::int16_t at = 0; ///< units
+    std::int16_t dx = 0, dy = 0; ///< units along the tile's side
+};
+
+/// `side_bits`: the tile's side is 2^side_bits pixels. The decoded plane is within 3/2 units of the layer anywhere on
+/// the tile, and its error is the layer's and the distance between the two planes, rounded up: whatever is within the
+/// layer's error of the layer is within the decoded error of the decoded plane. The unit is at most the larger of an
+/// eighth of the layer's error and 2^-13 of its largest inverse depth.
+LayerCode quantise(Layer const& layer, int side_bits);
+/// Without body and velocity.
+Layer dequantise(LayerCode const& code, int side_bits);
+
+/// Units, rounded; both for values that `unit_above` the largest of them / `largest` was asked for.
+inline constexpr double largest_inverse_depth_code = 65535, largest_velocity_code = 32767;
+std::uint16_t quantise_inverse_depth(float inverse_depth, UnitCode unit);
+std::int16_t quantise_velocity(float velocity, UnitCode unit);
+
+} // namespace framelet

@@ -1,0 +1,56 @@
+// Random well-formed shapes for property tests. In: a seeded generator. Out: shapes with every number of layers, loose
+// samples or none, magnitudes over many decades.
+#pragma once
+
+#include <cmath>
+#include <random>
+
+#include "common/framelet_shape.h"
+
+namespace framelet {
+
+class RandomShapes {
+public:
+    explicit RandomShapes(std::uint64_t seed) : generator_(seed) {}
+
+    std::uint32_t integer(std::uint32_t lowest, std::uint32_t highest) {
+        return std::uniform_int_distribution<std::uint32_t>(lowest, highest)(generator_);
+    }
+    float number(float lowest, float highest) {
+        return integer(0, 7) == 0 ? 0 : std::uniform_real_distribution<float>(lowest, highest)(generator_);
+    }
+    BodyNumber body() { return static_cast<BodyNumber>(integer(0, 2) == 0 ? integer(0, 65535) : integer(0, 2)); }
+    Vec3 velocity(bool deforms) {
+        return deforms ? Vec3(number(-90, 90), number(-9, 9), number(-0.5f, 0.5f)) : Vec3(0);
+    }
+
+    FrameletShape shape(bool deforms) {
+        FrameletShape shape;
+        shape.layer_count = static_cast<std::uint8_t>(integer(0, max_layers));
+        float const scale = std::exp(number(-20, 12));
+        for (std::size_t l = 0; l < shape.layer_count; ++l) {
+            shape.layers[l] = {scale * number(-1, 1),
+                               scale * number(-0.1f, 0.1f),
+                               scale * number(-0.1f, 0.1f),
+                               scale * number(0, 1e-3f),
+                               body(),
+                               velocity(deforms)};
+        }
+        bool const has_loose = shape.layer_count == 0 || integer(0, 1) == 1;
+        std::uint32_t const kinds = shape.layer_count + (has_loose ? 1u : 0u);
+        std::uint32_t kind = 0;
+        for (std::uint8_t& layer : shape.layer_of) {
+            kind = integer(0, 5) == 0 ? integer(0, kinds - 1) : kind;
+            layer = kind < shape.layer_count ? static_cast<std::uint8_t>(kind) : FrameletShape::loose;
+            if (layer == FrameletShape::loose) {
+                shape.loose_samples.push_back({scale * number(0, 1), body(), velocity(deforms)});
+            }
+        }
+        return shape;
+    }
+
+private:
+    std::mt19937_64 generator_;
+};
+
+} // namespace framelet

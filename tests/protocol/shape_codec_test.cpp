@@ -1,0 +1,244 @@
+#include "protocol/shape_codec.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "common/error.h"
+#include "protocol/shape_quantisation.h"
+#include "random_shape.h"
+
+namespace framelet {
+namespace {
+
+using Plain = std::vector<std::uint8_t>;
+
+Plain bytes_of(std::span<FrameletShape const> shapes, std::span<std::uint8_t const> side_bits) {
+    ShapeCodec codec;
+    Plain bytes;
+    for (auto const part : codec.encode(shapes, side_bits)) {
+        bytes.insert(bytes.end(), part.begin(), part.end());
+    }
+    return bytes;
+}
+
+std::vector<FrameletShape> shapes_of(Plain const& bytes, std::size_t count) {
+    std::vector<FrameletShape> shapes(count);
+    ShapeCodec::decode(bytes, shapes);
+    return shapes;
+}
+
+std::string refusal(Plain const& bytes, std::size_t count) {
+    try {
+        shapes_of(bytes, count);
+        return "accepted";
+    } catch (ProtocolError const& error) {
+        return error.what();
+    }
+}
+
+double value_at(Layer const& layer, double x, double y) {
+    return static_cast<double>(layer.at) + static_cast<double>(layer.dx) * x + static_cast<double>(layer.dy) * y;
+}
+
+float largest(Vec3 const& v) {
+    return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
+
+/// Everything that one framelet's shape may lose. `fastest`: of its group.
+void expect_close(FrameletShape const& in, FrameletShape const& out, int side_bits, float fastest) {
+    ASSERT_EQ(in.layer_count, out.layer_count);
+    ASSERT_EQ(in.layer_of, out.layer_of);
+    ASSERT_EQ(in.loose_samples.size(), out.loose_samples.size());
+    double const side = std::ldexp(1.0, side_bits);
+    float const velocity_off = fastest / 32767 + 1e-30f;
+    for (std::size_t l = 0; l < in.layer_count; ++l) {
+        Layer const& a = in.layers[l];
+        Layer const& b = out.layers[l];
+        EXPECT_EQ(a.body, b.body);
+        EXPECT_LE(largest(a.velocity - b.velocity), velocity_off);
+        double const error = static_cast<double>(a.error);
+        double const magnitude = std::abs(static_cast<double>(a.at)) +
+                                 side * (std::abs(static_cast<double>(a.dx)) + std::abs(static_cast<double>(a.dy)));
+        double const unit = std::max(error / 8, std::ldexp(magnitude, -13)) + 1e-37;
+        for (double const x : {0.0, side}) {
+            for (double const y : {0.0, side}) {
+                double const off = std::abs(value_at(a, x, y) - value_at(b, x, y));
+                EXPECT_LE(off, 1.5 * unit);
+                EXPECT_LE(off + error, static_cast<double>(b.error)) << "what lies on the layer still lies on it";
+            }
+        }
+        EXPECT_LE(static_cast<double>(b.error), error + 2.5 * unit);
+    }
+    float nearest = 0;
+    for (LooseSample const& sample : in.loose_samples) {
+        nearest = std::max(nearest, sample.inverse_depth);
+    }
+    for (std::size_t i = 0; i < in.loose_samples.size(); ++i) {
+        EXPECT_EQ(in.loose_samples[i].body, out.loose_samples[i].body);
+        EXPECT_NEAR(in.loose_samples[i].inverse_depth, out.loose_samples[i].inverse_depth, nearest / 65535 + 1e-37f);
+        EXPECT_GE(out.loose_samples[i].inverse_depth, 0);
+        EXPECT_LE(largest(in.loose_samples[i].velocity - out.loose_samples[i].velocity), velocity_off);
+    }
+}
+
+TEST(ShapeCodec, RoundTripsLoseNoMoreThanStated) {
+    for (std::uint64_t seed = 0; seed < 200; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        RandomShapes random(seed);
+        bool const deforms = random.integer(0, 1) == 1;
+        std::vector<FrameletShape> shapes(random.integer(0, 40));
+        std::vector<std::uint8_t> side_bits;
+        float fastest = 0;
+        for (FrameletShape& shape : shapes) {
+            shape = random.shape(deforms);
+            side_bits.push_back(static_cast<std::uint8_t>(random.integer(2, 7)));
+            for (std::size_t l = 0; l < shape.layer_count; ++l) {
+                fastest = std::max(fastest, largest(shape.layers[l].velocity));
+            }
+            for (LooseSample const& sample : shape.loose_samples) {
+                fastest = std::max(fastest, largest(sample.velocity));
+            }
+        }
+        Plain const bytes = bytes_of(shapes, side_bits);
+        EXPECT_LE(bytes.size(), most_shape_bytes(shapes.size()));
+        std::vector<FrameletShape> const out = shapes_of(bytes, shapes.size());
+        for (std::size_t i = 0; i < shapes.size(); ++i) {
+            expect_close(shapes[i], out[i], side_bits[i], fastest);
+        }
+        EXPECT_EQ(bytes_of(shapes, side_bits), bytes);
+    }
+}
+
+TEST(ShapeCodec, ExtremesStayFinite) {
+    for (float const scale : {0.0f, 1e-45f, 1e-38f, 1e-30f, 1.0f, 1e9f}) {
+        for (std::uint8_t const side_bits : {std::uint8_t{0}, std::uint8_t{7}}) {
+            FrameletShape shape;
+            shape.layer_count = 1;
+            shape.layers[0] = {scale, -scale, scale, scale, 65535, {scale, -scale, 0}};
+            FrameletShape const out = shapes_of(bytes_of({&shape, 1}, {&side_bits, 1}), 1)[0];
+            Layer const& layer = out.layers[0];
+            for (float const value : {layer.at, layer.dx, layer.dy, layer.error, layer.velocity.x}) {
+                EXPECT_TRUE(std::isfinite(value));
+            }
+            EXPECT_GE(layer.error, scale);
+        }
+    }
+}
+
+TEST(ShapeCodec, WhatIsOneLayerCostsTwelveBytes) {
+    FrameletShape shape;
+    shape.layer_count = 1;
+    std::vector const shapes(128, shape);
+    std::vector<std::uint8_t> const side_bits(128, 4);
+    EXPECT_EQ(bytes_of(shapes, side_bits).size(), 1 + 128u * 12);
+}
+
+/// The example of PROTOCOL.md: columns 0..3 on the first layer, 4..14 on the second, the last column loose.
+FrameletShape documented_shape() {
+    FrameletShape shape;
+    shape.layer_count = 2;
+    shape.layers[0] = {0.5f, 0.0078125f, -0.015625f, 0.001f, static_body, Vec3(0)};
+    shape.layers[1] = {0.25f, 0, 0, 0, 258, Vec3(0)};
+    for (std::uint32_t i = 0; i < framelet_samples; ++i) {
+        std::uint32_t const x = morton_x(i);
+        shape.layer_of[i] = x < 4 ? 0 : x < 15 ? 1 : FrameletShape::loose;
+        if (x == 15) {
+            shape.loose_samples.push_back({morton_y(i) == 0 ? 1.0f : 0.5f, 3, Vec3(0)});
+        }
+    }
+    return shape;
+}
+
+Plain documented_bytes() {
+    Plain golden{0x06, 0x04, 0x00}; // two layers and loose samples; side of 16 pixels; no velocities
+    for (int const byte : {0x73, 0x71, 9,    0,    0x00, 0x00, 0x10, 0x20, 0x00, 0x00,
+                           0x04, 0x00, 0x00, 0x00, 0xf8, 0x00, 0x00, 0x02, 0x00, 0x01}) {
+        golden.push_back(static_cast<std::uint8_t>(byte));
+    }
+    golden.insert(golden.end(), {0xf0, 0x7f});
+    golden.insert(golden.end(), 30, 0);
+    golden.insert(golden.end(), {0x00, 0x80});
+    golden.insert(golden.end(), 30, 0);
+    golden.push_back(0x71);
+    golden.insert(golden.end(), {0x00, 0x00});
+    golden.insert(golden.end(), 14, 0);
+    golden.insert(golden.end(), {0x80, 0xc0});
+    golden.insert(golden.end(), 14, 0);
+    golden.insert(golden.end(), 16, 3);
+    golden.insert(golden.end(), 16, 0);
+    return golden;
+}
+
+TEST(ShapeCodec, GoldenBytes) {
+    FrameletShape const shape = documented_shape();
+    std::uint8_t const side_bits = 4;
+    EXPECT_EQ(bytes_of({&shape, 1}, {&side_bits, 1}), documented_bytes());
+    FrameletShape expected = shape;
+    expected.layers[0].error = 9 * 0x1p-13f;
+    EXPECT_EQ(shapes_of(documented_bytes(), 1)[0], expected);
+}
+
+TEST(ShapeCodec, WhatIsNotAllowedIsRefused) {
+    Plain const good = documented_bytes();
+    auto const with = [&](std::size_t at, int byte) {
+        Plain bytes = good;
+        bytes[at] = static_cast<std::uint8_t>(byte);
+        return refusal(bytes, 1);
+    };
+    EXPECT_NE(with(0, 0).find("number of layers"), std::string::npos);
+    EXPECT_NE(with(0, 8).find("number of layers"), std::string::npos);
+    EXPECT_NE(with(1, 32).find("larger"), std::string::npos);
+    EXPECT_NE(with(2, 169).find("unit"), std::string::npos);
+    EXPECT_NE(with(3, 169).find("unit"), std::string::npos);
+    EXPECT_NE(with(87, 169).find("unit"), std::string::npos);
+    EXPECT_NE(with(23 + 32, 1).find("does not have"), std::string::npos) << "kind 2 + 1";
+    Plain none = good;
+    none[23 + 33] = 0;
+    EXPECT_NE(refusal(none, 1).find("announces"), std::string::npos);
+    Plain more = good;
+    more.push_back(0);
+    EXPECT_NE(refusal(more, 1).find("longer"), std::string::npos);
+    EXPECT_NE(refusal({}, 0).find("shorter"), std::string::npos);
+    EXPECT_EQ(refusal({0}, 0), "accepted");
+}
+
+TEST(ShapeCodec, EveryTruncationIsRefused) {
+    RandomShapes random(5);
+    std::vector<FrameletShape> shapes;
+    for (int i = 0; i < 6; ++i) {
+        shapes.push_back(random.shape(true));
+    }
+    std::vector<std::uint8_t> const side_bits(shapes.size(), 4);
+    Plain const whole = bytes_of(shapes, side_bits);
+    for (std::size_t size = 0; size < whole.size(); ++size) {
+        EXPECT_NE(refusal(Plain(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)), 6), "accepted");
+    }
+}
+
+TEST(ShapeCodec, DamagedBytesAreRefusedOrGiveWhatCanBeSentAgain) {
+    std::size_t accepted = 0, refused = 0;
+    for (std::uint64_t seed = 0; seed < 4000; ++seed) {
+        RandomShapes random(seed);
+        std::vector<FrameletShape> shapes{random.shape(seed % 2 == 0), random.shape(false)};
+        std::vector<std::uint8_t> const side_bits(shapes.size(), 4);
+        Plain bytes = bytes_of(shapes, side_bits);
+        for (std::uint32_t flips = random.integer(1, 3); flips > 0; --flips) {
+            auto const end = static_cast<std::uint32_t>(random.integer(0, 1) == 0 ? 40 : bytes.size());
+            bytes[random.integer(0, std::min<std::uint32_t>(end, static_cast<std::uint32_t>(bytes.size())) - 1)] =
+                static_cast<std::uint8_t>(random.integer(0, 255));
+        }
+        if (refusal(bytes, 2) == "accepted") {
+            ++accepted;
+            std::vector<FrameletShape> const out = shapes_of(bytes, 2);
+            EXPECT_LE(bytes_of(out, std::vector<std::uint8_t>(2, 7)).size(), most_shape_bytes(2));
+        } else {
+            ++refused;
+        }
+    }
+    EXPECT_GT(accepted, 500u);
+    EXPECT_GT(refused, 500u);
+}
+
+} // namespace
+} // namespace framelet
