@@ -116,7 +116,8 @@ struct ServerConnection::Impl {
         };
         // The greeting is small; batches may be large, once we know who talks to us.
         stream->start(std::move(events), max_upstream_message_bytes);
-        stream->send(Hello{protocol_version, options.token});
+        stream->send(Hello{protocol_version, options.token,
+                           coding::exact_colour | coding::haar_colour | coding::shapes_and_tracks});
     }
 
     void receive(Message message) {

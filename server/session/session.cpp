@@ -147,6 +147,7 @@ void Session::receive_hello(Message const& message) {
     {
         std::scoped_lock const lock(mutex_);
         open_ = true;
+        input_.codings = hello->codings;
     }
     stream_->send(std::get<Welcome>(std::move(answer)));
     events_.changed();

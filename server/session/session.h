@@ -20,7 +20,10 @@ namespace framelet {
 struct SessionInput {
     std::optional<CameraUpdate> camera;
     ViewerSettings settings;
+    std::uint32_t codings = coding::exact_colour; ///< that it can read
     std::uint64_t version = 0; ///< counts every change, that of the shared clock as well
+
+    bool takes_shapes() const { return settings.reproject && (codings & coding::shapes_and_tracks) != 0; }
 };
 
 class Session : public std::enable_shared_from_this<Session> {

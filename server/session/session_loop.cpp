@@ -139,7 +139,7 @@ bool SessionLoop::render_session(Session& session, Viewer& viewer, SceneTime tim
     record.stage_seconds.learn = laps.lap();
     shapes_.clear();
     tracks_.clear();
-    if (session.takes_shapes() && std::ranges::count(needed, 0) < std::ssize(needed)) { // else nothing is sent
+    if (input.takes_shapes() && std::ranges::count(needed, 0) < std::ssize(needed)) { // else nothing is sent
         describe_shapes(viewer, needed, state);
     }
     record.stage_seconds.shape = laps.lap();
