@@ -4,12 +4,14 @@
 #include <cmath>
 #include <vector>
 
+#include "common/patch_sampling.h"
+
 namespace framelet {
 
 namespace {
 
 constexpr int side = WarpedBlock::side;
-constexpr int lanes = side / 2; ///< pixels of a row that are worked on together: patches seldom begin where blocks do
+constexpr int lanes = sampling_lanes;
 constexpr std::size_t pixels = WarpedBlock::pixels;
 
 /// Share of an interpolation that must come from a layer's own samples for it to cover what lies behind it.
@@ -23,10 +25,6 @@ constexpr float same_surface = 0.01f;
 struct Layers {
     alignas(64) std::array<float, pixels> red, green, blue, weight, inverse_depth;
     alignas(64) std::array<std::int32_t, pixels> group, patch;
-};
-
-struct Candidate {
-    alignas(64) std::array<float, lanes> red, green, blue, weight, inverse_depth;
 };
 
 /// Lets candidates compete with what half a row of the block has. Of two that cover firmly or both do not, the
@@ -65,70 +63,6 @@ void merge_row(Candidate const& row, std::int32_t group, std::int32_t patch, flo
     }
 }
 
-float square(std::uint32_t byte) {
-    auto const value = static_cast<float>(static_cast<std::int32_t>(byte));
-    return value * value;
-}
-
-/// The samples of a patch at half a row of pixels of which the first is (x, y) from the centre of the box's first
-/// pixel.
-void sample_row(WarpPatch const& patch, float x, float y, float first, float last, Candidate& out) {
-    float const u0 = patch.at[0] + y * patch.dy[0] + x * patch.dx[0];
-    float const v0 = patch.at[1] + y * patch.dy[1] + x * patch.dx[1];
-    float const z0 = patch.at[2] + y * patch.dy[2] + x * patch.dx[2];
-    float const w0 = patch.inverse_depth + y * patch.inverse_depth_dy + x * patch.inverse_depth_dx;
-    float const du = patch.dx[0], dv = patch.dx[1], dz = patch.dx[2], dw = patch.inverse_depth_dx;
-    PackedSample const* const grid = patch.grid;
-    std::int32_t const n = patch.side;
-    std::int32_t const end = n - 1;
-    auto const outside = static_cast<float>(n);
-    std::uint32_t const layer = patch.layer;
-    for (int i = 0; i < lanes; ++i) {
-        auto const k = static_cast<std::size_t>(i);
-        auto const step = static_cast<float>(i);
-        float const inverse_z = z0 + step * dz;
-        float const z = 1 / inverse_z;
-        float u = (u0 + step * du) * z;
-        float v = (v0 + step * dv) * z;
-        bool const inside =
-            (inverse_z > 0) & (step >= first) & (step < last) & (u > -1) & (u < outside) & (v > -1) & (v < outside);
-        u = inside ? u : 0;
-        v = inside ? v : 0;
-        float const fu = std::floor(u);
-        float const fv = std::floor(v);
-        auto const iu = static_cast<std::int32_t>(fu);
-        auto const iv = static_cast<std::int32_t>(fv);
-        float const right = u - fu;
-        float const below = v - fv;
-        std::int32_t const x0 = std::max(iu, 0);
-        std::int32_t const x1 = std::min(iu + 1, end);
-        std::int32_t const y0 = std::max(iv, 0) * n;
-        std::int32_t const y1 = std::min(iv + 1, end) * n;
-        float const scale = inside ? 1.0f : 0.0f;
-        float const wx0 = iu >= 0 ? 1 - right : 0.0f;
-        float const wx1 = iu < end ? right : 0.0f;
-        float const wy0 = iv >= 0 ? scale - scale * below : 0.0f;
-        float const wy1 = iv < end ? scale * below : 0.0f;
-        PackedSample const s00 = grid[y0 + x0];
-        PackedSample const s10 = grid[y0 + x1];
-        PackedSample const s01 = grid[y1 + x0];
-        PackedSample const s11 = grid[y1 + x1];
-        float const a00 = layer_of(s00) == layer ? wx0 * wy0 : 0.0f;
-        float const a10 = layer_of(s10) == layer ? wx1 * wy0 : 0.0f;
-        float const a01 = layer_of(s01) == layer ? wx0 * wy1 : 0.0f;
-        float const a11 = layer_of(s11) == layer ? wx1 * wy1 : 0.0f;
-        out.weight[k] = (a00 + a10) + (a01 + a11);
-        out.red[k] = (a00 * square(red_of(s00)) + a10 * square(red_of(s10))) +
-                     (a01 * square(red_of(s01)) + a11 * square(red_of(s11)));
-        out.green[k] = (a00 * square(green_of(s00)) + a10 * square(green_of(s10))) +
-                       (a01 * square(green_of(s01)) + a11 * square(green_of(s11)));
-        out.blue[k] = (a00 * square(blue_of(s00)) + a10 * square(blue_of(s10))) +
-                      (a01 * square(blue_of(s01)) + a11 * square(blue_of(s11)));
-        float const depth = w0 + step * dw;
-        out.inverse_depth[k] = depth > 0 ? depth : 0.0f;
-    }
-}
-
 void paint_layer(WarpPatch const& patch, std::int32_t index, int left, int top, Layers& layers) {
     Candidate half;
     int const last_row = std::min(patch.box.bottom - top, side);
@@ -139,8 +73,8 @@ void paint_layer(WarpPatch const& patch, std::int32_t index, int left, int top, 
             continue;
         }
         for (int y = std::max(patch.box.top - top, 0); y < last_row; ++y) {
-            sample_row(patch, static_cast<float>(left + x - patch.box.left),
-                       static_cast<float>(top + y - patch.box.top), first, last, half);
+            sample_patch(patch, static_cast<float>(left + x - patch.box.left),
+                         static_cast<float>(top + y - patch.box.top), first, last, half);
             merge_row(half, patch.group, index, patch.tolerance, static_cast<std::size_t>(y * side + x), layers);
         }
     }

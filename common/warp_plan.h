@@ -3,53 +3,22 @@
 // time, motions. Out: the plan, from which every block is painted on its own.
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "common/body_motion.h"
+#include "common/fine_merge.h"
 #include "common/framelet_cache.h"
+#include "common/warp_patch.h"
 
 namespace framelet {
 
-/// A layer of a framelet in the display picture, or its loose samples.
-struct WarpPatch {
-    /// Homogeneous sample coordinates (u / z, v / z, 1 / z) of the moving grid at the centre of the box's first pixel,
-    /// and what a pixel to the right and one down add. Sample (i, j) lies at u = i, v = j.
-    std::array<float, 3> at{}, dx{}, dy{};
-    float inverse_depth = 0, inverse_depth_dx = 0, inverse_depth_dy = 0; ///< the same of the display's, 1 / metres
-    float tolerance = 0; ///< by which inverse depths may differ though they mean the same
-    float stretch = 1; ///< display area of a pixel of the source, at the middle
-    PixelRect box; ///< that holds all of it, clipped to the viewport
-    PackedSample const* grid = nullptr;
-    std::int32_t side = 0; ///< of the grid
-    std::uint32_t layer = 0; ///< or FrameletShape::loose
-    std::int32_t group = 0; ///< same view, same scene time, same spacing: its samples are interpolated with the others'
-    std::uint32_t first_splat = 0, splats = 0; ///< of loose samples, in the chunk
-    std::uint32_t place = 0; ///< by tile and layer: orders patches of one batch
-    std::uint64_t batch = 0;
-    SceneTime scene_time = 0;
-    std::uint64_t signature = 0; ///< differs where what is painted may differ
-    bool is_still = false; ///< its samples lie on their own pixels
-};
-
-/// A loose sample in the display picture.
-struct Splat {
-    float x = 0, y = 0; ///< pixels
-    float inverse_depth = 0; ///< in the display
-    float spacing = 0; ///< distance of its neighbours, pixels of the display
-    PackedSample sample = 0;
-};
-
-/// A patch and the splats of its chunk.
-struct PatchView {
-    WarpPatch const* patch = nullptr;
-    Splat const* splats = nullptr;
-};
-
 class WarpPlan {
 public:
+    /// As many patches are kept for a block, on the average. Where a camera goes so near that there would be more, the
+    /// newest ones are.
+    static constexpr std::size_t most_patches_per_block = 256;
+
     /// Replaces the plan. Runs in parallel; allocates only where more is held than ever before.
     void make(FrameletCache const& cache, Camera const& display, SceneTime display_time, BodyMotions const& motions);
 
@@ -65,12 +34,20 @@ private:
     struct Chunk {
         std::vector<WarpPatch> patches;
         std::vector<Splat> splats;
+        std::vector<MergedFramelet> merged; ///< that some of the patches show
     };
 
+    void merge_blocks(FrameletCache const& cache, std::size_t first, std::size_t last, FrameletWarp& warp,
+                      Chunk& chunk);
+    bool is_merged(ImagePlane const& plane, Tile tile) const;
+    void limit_entries();
     void make_bins();
 
     int columns_ = 0, rows_ = 0;
-    std::vector<Chunk> chunks_;
+    std::vector<Chunk> chunks_; ///< of slots, then of blocks
+    /// By block: bit 0 where the framelets one level finer than pixels are merged, bit 1 + i where those two levels
+    /// finer are in quarter i.
+    std::vector<std::uint8_t> merged_;
     std::vector<std::uint32_t> first_entry_; ///< by block; one more at the end
     std::vector<std::uint32_t> next_entry_;
     std::vector<std::uint32_t> entries_; ///< chunk * patches_per_chunk + patch

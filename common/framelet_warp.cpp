@@ -1,0 +1,285 @@
+#include "common/framelet_warp.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+namespace framelet {
+
+namespace {
+
+/// A sample nearer to the display camera than this share of its depth in the source is not drawn.
+constexpr double nearest = 1e-3;
+
+/// No splat is smaller (between pixels' centres it would vanish) or larger than this, pixels.
+constexpr double smallest_splat = 0.75;
+constexpr double largest_splat = 32;
+
+/// Inverse depths that differ by less than this share are the same for all that looks at them.
+constexpr double one_surface = 2e-3;
+
+/// Numbers as large as this, and what is not a number, do not get into a patch.
+constexpr double largest = 1e18;
+
+/// Order-dependent hash of what a patch is made of.
+class Signature {
+public:
+    void add(std::uint64_t value) {
+        state_ = (state_ ^ value) * 0x9e3779b97f4a7c15u;
+        state_ ^= state_ >> 32;
+    }
+    void add(float value) { add(std::uint64_t{std::bit_cast<std::uint32_t>(value)}); }
+    std::uint64_t value() const { return state_; }
+
+private:
+    std::uint64_t state_ = 0x243f6a8885a308d3u;
+};
+
+std::uint64_t signature_of(WarpPatch const& patch, std::uint64_t content, std::span<Splat const> splats) {
+    Signature out;
+    out.add(content);
+    out.add(std::uint64_t{patch.place} << 32 | static_cast<std::uint32_t>(patch.side));
+    for (int i = 0; i < 3; ++i) {
+        auto const k = static_cast<std::size_t>(i);
+        out.add(patch.at[k]);
+        out.add(patch.dx[k]);
+        out.add(patch.dy[k]);
+    }
+    out.add(patch.inverse_depth);
+    out.add(patch.inverse_depth_dx);
+    out.add(patch.inverse_depth_dy);
+    out.add(std::uint64_t(static_cast<std::uint32_t>(patch.box.left)) << 32 |
+            static_cast<std::uint32_t>(patch.box.top));
+    for (Splat const& splat : splats) {
+        out.add(splat.x);
+        out.add(splat.y);
+        out.add(splat.inverse_depth);
+        out.add(splat.spacing);
+    }
+    return out.value();
+}
+
+bool is_usable(Layer const& layer) {
+    auto const is_small = [](float value) { return std::abs(value) < static_cast<float>(largest); };
+    return is_small(layer.at) && is_small(layer.dx) && is_small(layer.dy) && is_small(layer.error) &&
+           is_small(layer.velocity.x) && is_small(layer.velocity.y) && is_small(layer.velocity.z);
+}
+
+bool is_usable(WarpPatch const& patch) {
+    bool usable = true;
+    for (float const value : {patch.at[0], patch.at[1], patch.at[2], patch.dx[0], patch.dx[1], patch.dx[2], patch.dy[0],
+                              patch.dy[1], patch.dy[2], patch.inverse_depth, patch.inverse_depth_dx,
+                              patch.inverse_depth_dy, patch.tolerance, patch.stretch}) {
+        usable &= std::abs(value) < static_cast<float>(largest);
+    }
+    return usable;
+}
+
+} // namespace
+
+FrameletWarp::FrameletWarp(FrameletCache const& cache, Camera const& display, SceneTime time,
+                           BodyMotions const& motions)
+    : cache_(cache), display_(display), display_rays_(make_view_rays(display, cache.plane().viewport())), time_(time),
+      motions_(motions) {}
+
+void FrameletWarp::add(CachedFramelet const& framelet, std::vector<WarpPatch>& patches, std::vector<Splat>& splats) {
+    HeldShape const& shape = framelet.shape;
+    WarpPatch common;
+    common.side = shape.side;
+    common.grid = shape.side == framelet_side ? framelet.samples.data() : shape.reduced.data();
+    common.group = static_cast<std::int32_t>(framelet.view) * 16 + framelet.tile.depth();
+    common.batch = framelet.moment.batch;
+    common.scene_time = framelet.moment.scene_time;
+    common.is_whole = shape.layer_count == 1 && shape.loose.empty();
+    rect_ = cache_.plane().tile_rect(framelet.tile);
+    spacing_ = static_cast<double>(rect_.width()) / shape.side;
+    for (std::uint32_t i = 0; i < shape.layer_count; ++i) {
+        WarpPatch patch = common;
+        patch.layer = i;
+        patch.place = framelet.tile.code * 4 + i;
+        add_layer(framelet.view, shape.layers[i], framelet.moment.batch, patch, patches);
+    }
+    if (!shape.loose.empty()) {
+        common.layer = FrameletShape::loose;
+        common.place = framelet.tile.code * 4 + FrameletShape::loose;
+        common.first_splat = static_cast<std::uint32_t>(splats.size());
+        add_splats(framelet, common, splats);
+        common.splats = static_cast<std::uint32_t>(splats.size()) - common.first_splat;
+        if (!common.box.empty()) {
+            common.signature =
+                signature_of(common, framelet.moment.batch, std::span(splats).subspan(common.first_splat));
+            patches.push_back(common);
+        }
+    }
+}
+
+void FrameletWarp::add(MergedFramelet const& merged, std::vector<WarpPatch>& patches) {
+    CachedFramelet const& first = *merged.first;
+    WarpPatch patch;
+    patch.side = merged.side;
+    patch.group = static_cast<std::int32_t>(first.view) * 16 + first.tile.depth();
+    patch.batch = merged.newest_batch;
+    patch.scene_time = first.moment.scene_time;
+    patch.is_whole = true;
+    patch.place = first.tile.code * 4;
+    rect_ = cache_.plane().tile_rect(merged.tile);
+    spacing_ = 1;
+    add_layer(first.view, merged.layer, merged.signature, patch, patches);
+}
+
+void FrameletWarp::add_layer(std::uint32_t view, HeldLayer const& layer, std::uint64_t content, WarpPatch& patch,
+                             std::vector<WarpPatch>& patches) {
+    if (layer.last_column < layer.first_column || !is_usable(layer.layer)) {
+        return;
+    }
+    turn_to(view, layer.layer.body, layer.layer.velocity);
+    if ((is_still_ ? place_still(layer, patch) : place(layer, patch)) && is_usable(patch)) {
+        patch.signature = signature_of(patch, content, {});
+        patches.push_back(patch);
+    }
+}
+
+double FrameletWarp::inverse_depth_within(double pixels, CachedFramelet const& framelet) {
+    Layer const& layer = framelet.shape.layers[0].layer;
+    turn_to(framelet.view, layer.body, layer.velocity);
+    if (is_still_) {
+        return 0;
+    }
+    PixelRect const rect = cache_.plane().tile_rect(framelet.tile);
+    glm::dvec2 const middle = 0.5 * glm::dvec2(rect.width(), rect.height());
+    double const w = layer.at + layer.dx * middle.x + layer.dy * middle.y;
+    double const z = transform_.map(rect.left + middle.x, rect.top + middle.y, w).z;
+    // What is shown at X moves by (parallax.xy - X parallax.z) / z for each 1 / metre.
+    Viewport const viewport = cache_.plane().viewport();
+    glm::dvec3 const& parallax = transform_.parallax;
+    double const x = std::max(std::abs(parallax.x), std::abs(parallax.x - viewport.width * parallax.z));
+    double const y = std::max(std::abs(parallax.y), std::abs(parallax.y - viewport.height * parallax.z));
+    double const share = pixels * std::max(z, nearest) / std::max(std::hypot(x, y), 1 / largest);
+    double const within = std::min(share, one_surface * w);
+    return within > 0 ? within : 0;
+}
+
+void FrameletWarp::turn_to(std::uint32_t view, BodyNumber body, Vec3 const& velocity) {
+    if (has_transform_ && view == view_ && body == body_ && velocity == velocity_) {
+        return;
+    }
+    has_transform_ = true;
+    view_ = view;
+    body_ = body;
+    velocity_ = velocity;
+    HeldView const& from = cache_.views()[view];
+    Motion const motion = body == static_body ? Motion{} : motions_.between(body, from.scene_time, time_);
+    glm::dvec3 const drift = (time_ - from.scene_time) * glm::dvec3(velocity);
+    is_still_ = !is_reprojectable(from.camera) || !is_reprojectable(display_) ||
+                (from.camera == display_ && motion == Motion{} && drift == glm::dvec3(0));
+    transform_ = is_still_ ? ViewTransform{}
+                           : make_view_transform(make_view_rays(from.camera, cache_.plane().viewport()), display_rays_,
+                                                 motion, drift);
+    lens_ratio_ = std::sqrt(std::abs(glm::determinant(transform_.far)));
+}
+
+/// Where the layer's samples and half a sample's cell more reach, pixels from the tile's corner.
+glm::dvec2 FrameletWarp::low(HeldLayer const& layer) const {
+    return spacing_ * (glm::dvec2(layer.first_column, layer.first_row) - 0.5);
+}
+
+glm::dvec2 FrameletWarp::high(HeldLayer const& layer) const {
+    return spacing_ * (glm::dvec2(layer.last_column, layer.last_row) + 1.5);
+}
+
+bool FrameletWarp::place_still(HeldLayer const& held, WarpPatch& patch) const {
+    glm::dvec2 const corner(rect_.left, rect_.top);
+    glm::dmat3 to_display(1);
+    to_display[2] = glm::dvec3(corner, 1);
+    patch.box = display_box(to_display, low(held), high(held), cache_.plane().viewport());
+    if (patch.box.empty()) {
+        return false;
+    }
+    PlaneTransform plane;
+    plane.to_source = glm::dmat3(1);
+    plane.to_source[2] = glm::dvec3(-corner, 1);
+    plane.inverse_depth =
+        glm::dvec3(held.layer.dx, held.layer.dy, held.layer.at - held.layer.dx * corner.x - held.layer.dy * corner.y);
+    patch.is_still = true;
+    set_maps(plane, patch);
+    patch.tolerance = held.layer.error;
+    return true;
+}
+
+bool FrameletWarp::place(HeldLayer const& held, WarpPatch& patch) const {
+    auto const plane = make_plane_transform(transform_, held.layer, {rect_.left, rect_.top});
+    if (!plane) {
+        return false;
+    }
+    patch.box = display_box(plane->to_display, low(held), high(held), cache_.plane().viewport());
+    if (patch.box.empty()) {
+        return false;
+    }
+    set_maps(*plane, patch);
+    glm::dvec3 const middle((patch.box.left + patch.box.right) / 2.0, (patch.box.top + patch.box.bottom) / 2.0, 1);
+    double const inverse_z = std::max((plane->to_source * middle).z, nearest);
+    patch.tolerance = static_cast<float>(held.layer.error * inverse_z);
+    patch.stretch =
+        static_cast<float>(std::abs(glm::determinant(plane->to_display)) * inverse_z * inverse_z * inverse_z);
+    return true;
+}
+
+void FrameletWarp::set_maps(PlaneTransform const& plane, WarpPatch& patch) const {
+    glm::dmat3 to_samples(1);
+    to_samples[0].x = to_samples[1].y = 1 / spacing_;
+    to_samples[2] = glm::dvec3(-0.5, -0.5, 1);
+    glm::dmat3 const map = to_samples * plane.to_source;
+    glm::dvec3 const first(patch.box.left + 0.5, patch.box.top + 0.5, 1);
+    glm::dvec3 const at = map * first;
+    for (int i = 0; i < 3; ++i) {
+        auto const k = static_cast<std::size_t>(i);
+        patch.at[k] = static_cast<float>(at[i]);
+        patch.dx[k] = static_cast<float>(map[0][i]);
+        patch.dy[k] = static_cast<float>(map[1][i]);
+    }
+    patch.inverse_depth = static_cast<float>(glm::dot(plane.inverse_depth, first));
+    patch.inverse_depth_dx = static_cast<float>(plane.inverse_depth.x);
+    patch.inverse_depth_dy = static_cast<float>(plane.inverse_depth.y);
+}
+
+void FrameletWarp::add_splats(CachedFramelet const& framelet, WarpPatch& patch, std::vector<Splat>& splats) {
+    Viewport const viewport = cache_.plane().viewport();
+    double left = viewport.width, top = viewport.height, right = 0, bottom = 0;
+    bool still = true;
+    for (HeldLoose const& loose : framelet.shape.loose) {
+        turn_to(framelet.view, loose.sample.body, loose.sample.velocity);
+        still = still && is_still_;
+        double const w = std::max(static_cast<double>(loose.sample.inverse_depth), 0.0);
+        glm::dvec3 const at = transform_.map(rect_.left + (loose.place % patch.side + 0.5) * spacing_,
+                                             rect_.top + (loose.place / patch.side + 0.5) * spacing_, w);
+        if (!(at.z > nearest)) {
+            continue;
+        }
+        double const x = at.x / at.z;
+        double const y = at.y / at.z;
+        double const spacing = std::clamp(spacing_ * lens_ratio_ / at.z, smallest_splat, largest_splat);
+        if (!(x + spacing > 0 && y + spacing > 0 && x - spacing < viewport.width && y - spacing < viewport.height)) {
+            continue;
+        }
+        double const inverse_depth = w / at.z;
+        if (!(inverse_depth < largest)) {
+            continue;
+        }
+        splats.push_back({static_cast<float>(x), static_cast<float>(y), static_cast<float>(inverse_depth),
+                          static_cast<float>(spacing), patch.grid[loose.place]});
+        left = std::min(left, x - spacing);
+        top = std::min(top, y - spacing);
+        right = std::max(right, x + spacing);
+        bottom = std::max(bottom, y + spacing);
+        patch.stretch = static_cast<float>(spacing * spacing / (spacing_ * spacing_));
+    }
+    patch.is_still = still;
+    patch.box = {static_cast<int>(std::max(std::floor(left), 0.0)), static_cast<int>(std::max(std::floor(top), 0.0)),
+                 std::min(static_cast<int>(std::ceil(right)), viewport.width),
+                 std::min(static_cast<int>(std::ceil(bottom)), viewport.height)};
+}
+
+} // namespace framelet

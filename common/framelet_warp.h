@@ -1,0 +1,69 @@
+// Where one framelet shows in the picture of another camera at another time. In: a framelet, display camera and time,
+// motions. Out: a patch for each of its layers, a splat for each of its loose samples.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/body_motion.h"
+#include "common/reprojection.h"
+#include "common/warp_patch.h"
+
+namespace framelet {
+
+/// Framelets finer than pixels that show one plane, as one of `side` x `side` samples a pixel apart.
+struct MergedFramelet {
+    Tile tile; ///< that they are below
+    CachedFramelet const* first = nullptr; ///< of them; the others have its view and its depth
+    HeldLayer layer; ///< the pixels are from the corner of `tile`
+    std::int32_t side = 0;
+    std::uint64_t newest_batch = 0;
+    std::uint64_t signature = 0; ///< differs where what is held differs
+    std::array<PackedSample, framelet_samples> grid; ///< in rows
+};
+
+/// Transforms one framelet after the other; neighbours mostly share view and body. What is not finite or too large for
+/// single precision does not show.
+class FrameletWarp {
+public:
+    FrameletWarp(FrameletCache const& cache, Camera const& display, SceneTime time, BodyMotions const& motions);
+
+    void add(CachedFramelet const& framelet, std::vector<WarpPatch>& patches, std::vector<Splat>& splats);
+    /// The patch's `grid` is left to be set.
+    void add(MergedFramelet const& merged, std::vector<WarpPatch>& patches);
+
+    /// By how much inverse depths may differ from the framelet's first layer so that nobody sees it: shown less than so
+    /// many pixels off, anywhere in the picture, and as good as equal. 0 where it stays in its place or is the sky.
+    double inverse_depth_within(double pixels, CachedFramelet const& framelet);
+
+private:
+    void turn_to(std::uint32_t view, BodyNumber body, Vec3 const& velocity);
+    glm::dvec2 low(HeldLayer const& layer) const;
+    glm::dvec2 high(HeldLayer const& layer) const;
+    void add_layer(std::uint32_t view, HeldLayer const& layer, std::uint64_t content, WarpPatch& patch,
+                   std::vector<WarpPatch>& patches);
+    bool place_still(HeldLayer const& held, WarpPatch& patch) const;
+    bool place(HeldLayer const& held, WarpPatch& patch) const;
+    void set_maps(PlaneTransform const& plane, WarpPatch& patch) const;
+    void add_splats(CachedFramelet const& framelet, WarpPatch& patch, std::vector<Splat>& splats);
+
+    FrameletCache const& cache_;
+    Camera const& display_;
+    ViewRays display_rays_;
+    SceneTime time_;
+    BodyMotions const& motions_;
+
+    PixelRect rect_; // of the framelet at hand
+    double spacing_ = 1; // of its moving grid
+
+    bool has_transform_ = false;
+    std::uint32_t view_ = 0;
+    BodyNumber body_ = static_body;
+    Vec3 velocity_{0};
+    bool is_still_ = false;
+    ViewTransform transform_;
+    double lens_ratio_ = 1;
+};
+
+} // namespace framelet

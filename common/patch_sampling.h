@@ -1,0 +1,33 @@
+// The samples of a layer at a few pixels of a row: bilinear interpolation between those that lie on the layer. In: a
+// patch, a place in the picture. Out: weighted sums that compete for the pixels.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "common/warp_plan.h"
+
+namespace framelet {
+
+/// Pixels of a row that are worked on together: half a block, since patches seldom begin where blocks do.
+inline constexpr int sampling_lanes = FrameletCache::block_side / 2;
+
+/// What a patch or a splat shows at each of them: sums of weights and weighted sums of squares of bytes.
+struct Candidate {
+    template <class T>
+    using Lanes = std::array<T, static_cast<std::size_t>(sampling_lanes)>;
+
+    alignas(64) Lanes<float> red, green, blue, weight, inverse_depth;
+};
+
+/// The square of a byte, which stands for linear light.
+inline float square(std::uint32_t byte) {
+    auto const value = static_cast<float>(static_cast<std::int32_t>(byte));
+    return value * value;
+}
+
+/// At pixels of which the first lies (x, y) from the centre of the box's first pixel; lanes from `first` on and before
+/// `last` are in the box, others get no weight.
+void sample_patch(WarpPatch const& patch, float x, float y, float first, float last, Candidate& out);
+
+} // namespace framelet

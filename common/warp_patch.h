@@ -1,0 +1,47 @@
+// What a plan consists of: where a layer of a framelet or its loose samples show in the display picture.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "common/framelet_cache.h"
+
+namespace framelet {
+
+/// A layer of a framelet in the display picture, or its loose samples.
+struct WarpPatch {
+    /// Homogeneous sample coordinates (u / z, v / z, 1 / z) of the moving grid at the centre of the box's first pixel,
+    /// and what a pixel to the right and one down add. Sample (i, j) lies at u = i, v = j.
+    std::array<float, 3> at{}, dx{}, dy{};
+    float inverse_depth = 0, inverse_depth_dx = 0, inverse_depth_dy = 0; ///< the same of the display's, 1 / metres
+    float tolerance = 0; ///< by which inverse depths may differ though they mean the same
+    float stretch = 1; ///< display area of a pixel of the source, at the middle
+    PixelRect box; ///< that holds all of it, clipped to the viewport
+    PackedSample const* grid = nullptr;
+    std::int32_t side = 0; ///< of the grid
+    std::uint32_t layer = 0; ///< or FrameletShape::loose
+    std::int32_t group = 0; ///< same view, same scene time, same spacing: its samples are interpolated with the others'
+    std::uint32_t first_splat = 0, splats = 0; ///< of loose samples, in the chunk
+    std::uint32_t place = 0; ///< by tile and layer: orders patches of one batch
+    std::uint64_t batch = 0;
+    SceneTime scene_time = 0;
+    std::uint64_t signature = 0; ///< differs where what is painted may differ
+    bool is_whole = false; ///< all samples of the grid lie on this layer
+    bool is_still = false; ///< its samples lie on their own pixels
+};
+
+/// A loose sample in the display picture.
+struct Splat {
+    float x = 0, y = 0; ///< pixels
+    float inverse_depth = 0; ///< in the display
+    float spacing = 0; ///< distance of its neighbours, pixels of the display
+    PackedSample sample = 0;
+};
+
+/// A patch and the splats of its chunk.
+struct PatchView {
+    WarpPatch const* patch = nullptr;
+    Splat const* splats = nullptr;
+};
+
+} // namespace framelet
