@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "common/error.h"
 
@@ -10,8 +11,12 @@ namespace {
 
 constexpr int unit_bias = 128;
 
-double rounded(double value, UnitCode unit) {
-    return unit == 0 ? 0 : std::nearbyint(value / unit_of(unit));
+/// In units, as near as the type holds.
+template <typename Number>
+Number rounded(double value, UnitCode unit) {
+    using Limits = std::numeric_limits<Number>;
+    double const units = unit == 0 ? 0 : std::nearbyint(value / unit_of(unit));
+    return static_cast<Number>(std::clamp<double>(units, Limits::lowest(), Limits::max()));
 }
 
 } // namespace
@@ -21,7 +26,7 @@ double unit_of(UnitCode code) {
 }
 
 UnitCode unit_above(double value) {
-    FRAMELET_CHECK(value >= 0 && value < most_shape_number);
+    FRAMELET_CHECK(value >= 0 && std::isfinite(value));
     if (value == 0) {
         return 0;
     }
@@ -37,15 +42,15 @@ LayerCode quantise(Layer const& layer, int side_bits) {
     double const magnitude = std::abs(at) + side * (std::abs(dx) + std::abs(dy));
     LayerCode code;
     code.unit = unit_above(std::max(error / error_units, magnitude / plane_units));
-    code.at = static_cast<std::int16_t>(rounded(at, code.unit));
-    code.dx = static_cast<std::int16_t>(rounded(dx * side, code.unit));
-    code.dy = static_cast<std::int16_t>(rounded(dy * side, code.unit));
+    code.at = rounded<std::int16_t>(at, code.unit);
+    code.dx = rounded<std::int16_t>(dx * side, code.unit);
+    code.dy = rounded<std::int16_t>(dy * side, code.unit);
     if (code.unit != 0) {
         Layer const plane = dequantise(code, side_bits);
         double const off =
             std::abs(at - static_cast<double>(plane.at)) +
             side * (std::abs(dx - static_cast<double>(plane.dx)) + std::abs(dy - static_cast<double>(plane.dy)));
-        code.error = static_cast<std::uint8_t>(std::ceil((error + off) / unit_of(code.unit)));
+        code.error = static_cast<std::uint8_t>(std::min(std::ceil((error + off) / unit_of(code.unit)), 255.0));
     }
     return code;
 }
@@ -62,11 +67,11 @@ Layer dequantise(LayerCode const& code, int side_bits) {
 }
 
 std::uint16_t quantise_inverse_depth(float inverse_depth, UnitCode unit) {
-    return static_cast<std::uint16_t>(rounded(static_cast<double>(inverse_depth), unit));
+    return rounded<std::uint16_t>(static_cast<double>(inverse_depth), unit);
 }
 
 std::int16_t quantise_velocity(float velocity, UnitCode unit) {
-    return static_cast<std::int16_t>(rounded(static_cast<double>(velocity), unit));
+    return rounded<std::int16_t>(static_cast<double>(velocity), unit);
 }
 
 } // namespace framelet

@@ -9,15 +9,11 @@
 
 namespace framelet {
 
-/// Inverse depths (over a whole tile), errors and velocities that can be sent are below this, 1 / metres and metres a
-/// second.
-inline constexpr double most_shape_number = 1099511627776.0; // 2^40
-
 /// 0: the unit is 0, and so is what is stated in it; else the unit is 2^(code - 128).
 using UnitCode = std::uint8_t;
 inline constexpr UnitCode largest_unit = 168;
 double unit_of(UnitCode code);
-/// The smallest unit above a value >= 0, with bounds.
+/// The smallest unit above a value > 0 within 2^-127 .. 2^40; 0 for 0.
 UnitCode unit_above(double value);
 
 struct LayerCode {
@@ -35,7 +31,7 @@ LayerCode quantise(Layer const& layer, int side_bits);
 /// Without body and velocity.
 Layer dequantise(LayerCode const& code, int side_bits);
 
-/// Units, rounded; both for values that `unit_above` the largest of them / `largest` was asked for.
+/// Units, rounded. The unit is that above the largest of all values that share it, divided by these.
 inline constexpr double largest_inverse_depth_code = 65535, largest_velocity_code = 32767;
 std::uint16_t quantise_inverse_depth(float inverse_depth, UnitCode unit);
 std::int16_t quantise_velocity(float velocity, UnitCode unit);

@@ -3,10 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
+#include "protocol/batch_codec.h"
 #include "server/layers/layer_fit.h"
 #include "server/schedule/tiling.h"
 #include "tests/evaluation/bench_scene.h"
@@ -25,7 +29,7 @@ struct Counts {
     double tiles = 0, sky = 0, one_plane = 0, few_planes = 0, no_loose = 0;
     double samples = 0, loose = 0, flowing = 0, reflecting = 0;
     double off = 0, off_later = 0; ///< samples shown too far off, at once and a tenth of a second later
-    double packed_bytes = 0; ///< of the shapes, before any compression
+    double wire_bytes = 0; ///< of the shapes
     double layers = 0;
     float farthest = 0; ///< pixels
     std::vector<double> nanoseconds; ///< a sample, three figures a view
@@ -98,20 +102,15 @@ float largest_error(Framelet const& framelet, FrameletShape const& shape, ImageP
     return largest;
 }
 
-/// A byte for the number of layers; five 16-bit numbers each; a bit or two a sample where there are several kinds of
-/// samples; 16 bits a loose one. Velocities as three 16-bit numbers.
-double packed_bytes(FrameletShape const& shape) {
-    constexpr double layer_bytes = 10, velocity_bytes = 6;
-    double bytes = 1;
-    for (std::size_t l = 0; l < shape.layer_count; ++l) {
-        bytes += layer_bytes + (shape.layers[l].velocity != Vec3(0) ? velocity_bytes : 0);
+/// What the shapes of a batch take on the wire.
+double wire_bytes(std::span<Framelet const> framelets, std::vector<FrameletShape> shapes, Viewport viewport) {
+    Batch batch;
+    batch.view.viewport = viewport;
+    for (Framelet const& framelet : framelets) {
+        batch.framelets.emplace_back().tile = framelet.tile;
     }
-    std::size_t const kinds = shape.layer_count + (shape.loose_samples.empty() ? 0u : 1u);
-    bytes += kinds <= 1 ? 0 : kinds == 2 ? framelet_samples / 8 : framelet_samples / 4;
-    for (LooseSample const& sample : shape.loose_samples) {
-        bytes += 2 + (sample.velocity != Vec3(0) ? velocity_bytes : 0);
-    }
-    return bytes;
+    batch.shapes = std::move(shapes);
+    return static_cast<double>(BatchCodec().encode(batch).shapes.size());
 }
 
 void count(Framelet const& framelet, FrameletShape const& shape, float error, float allowed, Counts& counts) {
@@ -128,7 +127,6 @@ void count(Framelet const& framelet, FrameletShape const& shape, float error, fl
         std::ranges::count_if(framelet.velocity, [](Vec3 const& velocity) { return velocity != Vec3(0); }));
     counts.reflecting += static_cast<double>(framelet.reflects.count());
     counts.layers += shape.layer_count;
-    counts.packed_bytes += packed_bytes(shape);
     counts.farthest = std::max(counts.farthest, error);
 }
 
@@ -160,6 +158,7 @@ void measure_view(BenchScene& scene, Camera const& camera, LayerStudy const& stu
         largest_error(framelets[i], shapes[i], plane, in_motion, allowed, counts.off_later);
         count(framelets[i], shapes[i], error, allowed, counts);
     }
+    counts.wire_bytes += wire_bytes(framelets, std::move(shapes), study.viewport);
 }
 
 Counts measure_scene(BenchScene& scene, LayerStudy const& study) {
@@ -205,7 +204,7 @@ json measure_layers(LayerStudy const& study) {
                           {"farthest_pixels", c.farthest},
                           {"samples_off", c.off / c.samples},
                           {"samples_off_later", c.off_later / c.samples},
-                          {"packed_bytes_per_sample", c.packed_bytes / c.samples},
+                          {"wire_bytes_per_sample", c.wire_bytes / c.samples},
                           {"fit_ns_per_sample", median(c.nanoseconds)}};
         auto const percent = [&](char const* key) { return 100 * row[key].get<double>(); };
         std::printf("%-18s %6zu %4.0f%% %7.1f%% %10.1f%% %8.1f%% %13.2f%% %8.1f%% %6.1f%% %7.2f %13.2f %5.2f%% %9.2f%% "
@@ -213,7 +212,7 @@ json measure_layers(LayerStudy const& study) {
                     scene->name.c_str(), bodies, percent("sky_tiles"), percent("one_plane_of_non_sky"),
                     percent("sky_or_two_planes"), percent("tiles_without_loose"), percent("loose_samples"),
                     percent("samples_with_velocity"), percent("mirror_samples"), c.layers / c.tiles, c.farthest,
-                    percent("samples_off"), percent("samples_off_later"), row["packed_bytes_per_sample"].get<double>(),
+                    percent("samples_off"), percent("samples_off_later"), row["wire_bytes_per_sample"].get<double>(),
                     row["fit_ns_per_sample"].get<double>());
         std::fflush(stdout);
         rows.push_back(row);

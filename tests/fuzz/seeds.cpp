@@ -6,6 +6,7 @@
 
 #include "protocol/batch_codec.h"
 #include "protocol/plane_codec.h"
+#include "protocol/shape_codec.h"
 
 namespace {
 
@@ -29,6 +30,22 @@ Batch make_batch(std::size_t count, std::uint8_t first_quality) {
         batch.quality.push_back(static_cast<std::uint8_t>((first_quality + 9 * i) % (coarsest_quality + 1)));
     }
     return batch;
+}
+
+/// An edge between two layers, one of them on a moving body, and something loose.
+void add_shapes(Batch& batch) {
+    for (std::size_t i = 0; i < batch.framelets.size(); ++i) {
+        FrameletShape& shape = batch.shapes.emplace_back();
+        shape.layer_count = 2;
+        shape.layers[0] = {0.25f, 0.001f, 0, 0.0001f, static_body, Vec3(0)};
+        shape.layers[1] = {0.5f, 0, 0.002f, 0.0001f, 1, Vec3(i % 2 == 0 ? 1 : 0)};
+        for (std::uint32_t k = 0; k < framelet_samples; ++k) {
+            shape.layer_of[k] = morton_x(k) < 1 + i % 15 ? 0 : 1;
+        }
+        shape.layer_of[i % framelet_samples] = FrameletShape::loose;
+        shape.loose_samples.push_back({1, 1, Vec3(0)});
+    }
+    batch.tracks.push_back({1, 60, {BodyPose{}, BodyPose{{1, 0, 0}, {1, 0, 0, 0}, {1, 1, 1}}}});
 }
 
 void write(std::filesystem::path const& file, std::vector<std::uint8_t> const& bytes) {
@@ -76,6 +93,16 @@ int main(int argc, char** argv) {
         }
         batch.quality.clear();
         write_batch(folder, batch, "exact_" + std::to_string(count));
+        add_shapes(batch);
+        write_batch(folder, batch, "shapes_" + std::to_string(count));
+        if (count < 128) {
+            ShapeCodec codec;
+            std::vector<std::uint8_t> content{static_cast<std::uint8_t>(count)};
+            for (auto const part : codec.encode(batch.shapes, std::vector<std::uint8_t>(count, 4))) {
+                content.insert(content.end(), part.begin(), part.end());
+            }
+            write(folder / "shapes" / std::to_string(count), content);
+        }
     }
     int number = 0;
     SceneCameraInfo const camera{"camera", {}};
