@@ -11,7 +11,7 @@
 namespace framelet::bench {
 namespace {
 
-constexpr std::array<std::pair<char const*, double CostTable::*>, 21> fields{{
+constexpr std::array<std::pair<char const*, double CostTable::*>, 23> fields{{
     {"coherent_segment", &CostTable::coherent_segment},
     {"incoherent_segment", &CostTable::incoherent_segment},
     {"display_sample", &CostTable::display_sample},
