@@ -97,12 +97,13 @@ private:
     __m256i low_, high_;
 };
 
+bool are_equal(Lanes<std::int32_t> const& values) {
+    __m256i const all = _mm256_load_si256(reinterpret_cast<__m256i const*>(values.data()));
+    return _mm256_movemask_epi8(_mm256_cmpeq_epi32(all, _mm256_set1_epi32(values[0]))) == -1;
+}
+
 void look_up(WarpPatch const& patch, Places const& places, Samples& out) {
-    std::int32_t differs = 0;
-    for (std::size_t k = 1; k < lanes; ++k) {
-        differs |= (places.above[k] ^ places.above[0]) | (places.below[k] ^ places.below[0]);
-    }
-    if (differs != 0 || patch.side < lanes) {
+    if (!are_equal(places.above) || !are_equal(places.below) || patch.side < lanes) {
         gather(patch.grid, places, out);
         return;
     }

@@ -399,6 +399,39 @@ TEST(Reprojector, StrangeCamerasAndShapesGiveNumbers) {
     }
 }
 
+TEST(Reprojector, NoShapeLeavesWhatIsNotANumber) {
+    ImagePlane const plane(viewport);
+    std::mt19937 random(7);
+    std::array const strange{NAN, INFINITY, -INFINITY, 3e38f, -3e38f, 1e17f, 1e-40f, 0.0f};
+    auto const any = [&] { return strange[random() % strange.size()]; };
+    AnalyticScene const scene = room();
+    Camera aside = front();
+    aside.position.x += 0.2f;
+    for (int round = 0; round < 24; ++round) {
+        int const levels = round % 4 - 1;
+        Batch batch =
+            scene.batch(plane, 1, front(), 0, visible_tiles(plane, plane.pixel_depth() + levels), round % 5 == 0);
+        for (FrameletShape& shape : batch.shapes) {
+            for (Layer& layer : shape.layers) {
+                std::array const fields{&layer.at,    &layer.dx,         &layer.dy,
+                                        &layer.error, &layer.velocity.x, &layer.velocity.y};
+                *fields[random() % fields.size()] = any();
+            }
+            for (LooseSample& loose : shape.loose_samples) {
+                (random() % 2 == 0 ? loose.inverse_depth : loose.velocity.z) = any();
+            }
+        }
+        FrameletCache cache(plane);
+        cache.insert(batch);
+        Shown const shown = show(cache, round % 3 == 0 ? front() : aside, 0.1);
+        for (std::size_t i = 0; i < shown.confidence.inverse_depth.size(); ++i) {
+            ASSERT_TRUE(std::isfinite(shown.confidence.inverse_depth[i]));
+            ASSERT_TRUE(std::isfinite(shown.confidence.stretch[i]));
+            ASSERT_TRUE(std::isfinite(shown.confidence.scene_time[i]));
+        }
+    }
+}
+
 TEST(Reprojector, NothingSeenIsUncoveredAndOrthographicStays) {
     AnalyticScene const scene = room();
     Camera away = front();

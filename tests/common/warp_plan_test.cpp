@@ -1,0 +1,69 @@
+#include "common/warp_plan.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/common/analytic_scene.h"
+#include "tests/common/synthetic_framelets.h"
+
+namespace framelet {
+namespace {
+
+constexpr Viewport viewport{320, 192};
+
+Camera front() {
+    return look_at(Vec3(0, 0, 5), Vec3(0, 0, 0), Vec3(0, 1, 0), 0.8f);
+}
+
+AnalyticScene wall() {
+    AnalyticScene scene;
+    scene.quads.push_back({{-8, -8, 0}, {16, 0, 0}, {0, 16, 0}, [](double, double) { return Color{90, 90, 90}; }});
+    return scene;
+}
+
+/// Every framelet flies right before the camera, where it is larger than the picture.
+TEST(WarpPlan, HoldsBoundedlyManyPatchesAndTheNewestOnes) {
+    ImagePlane const plane(viewport);
+    FrameletCache cache(plane);
+    ViewRays const rays = make_view_rays(front(), viewport);
+    std::vector<Tile> const tiles = visible_tiles(plane, plane.pixel_depth() + 1);
+    std::uint64_t number = 0;
+    for (Tile const tile : tiles) {
+        Batch batch = wall().batch(plane, ++number, front(), 0, {tile});
+        PixelRect const rect = plane.tile_rect(tile);
+        Vec3 const towards = rays.direction + rays.direction_dx * (static_cast<float>(rect.left) + 4) +
+                             rays.direction_dy * (static_cast<float>(rect.top) + 4);
+        batch.shapes[0].layers[0].velocity = Vec3(0, 0, -0.02f) - 5.0f * towards;
+        cache.insert(batch);
+    }
+    WarpPlan plan;
+    plan.make(cache, front(), 1, {});
+    auto const blocks = static_cast<std::size_t>(plan.columns() * plan.rows());
+    ASSERT_GT(tiles.size(), 2 * WarpPlan::most_patches_per_block);
+    EXPECT_LE(plan.entry_count(), WarpPlan::most_patches_per_block * blocks);
+    EXPECT_GT(plan.entry_count(), WarpPlan::most_patches_per_block * blocks / 2);
+    std::vector<PatchView> patches;
+    for (std::size_t i = 0; i < blocks; ++i) {
+        plan.block(i, patches);
+        ASSERT_FALSE(patches.empty());
+        ASSERT_EQ(patches[0].patch->batch, number);
+    }
+}
+
+TEST(WarpPlan, FineFrameletsOfOnePlaneAreOnePatchABlock) {
+    ImagePlane const plane(viewport);
+    Camera aside = front();
+    aside.position.x += 0.1f;
+    std::size_t entries = 0;
+    for (int levels = 0; levels <= finest_levels; ++levels) {
+        FrameletCache cache(plane);
+        cache.insert(wall().batch(plane, 1, front(), 0, visible_tiles(plane, plane.pixel_depth() + levels)));
+        WarpPlan plan;
+        plan.make(cache, aside, 0, {});
+        EXPECT_GT(plan.entry_count(), 0u);
+        EXPECT_TRUE(levels == 0 || plan.entry_count() == entries) << levels;
+        entries = plan.entry_count();
+    }
+}
+
+} // namespace
+} // namespace framelet
