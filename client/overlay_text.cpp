@@ -53,6 +53,7 @@ TextRows help_rows() {
         {"] and [", "brighter, darker"},
         {"F2 or Tab", "statistics"},
         {"F3", "outlines of framelets, fresh ones bright"},
+        {"F4", "move what is held to where it is now, or not"},
         {"F11 or Alt+Enter", "full screen"},
         {"F12", "screenshot (PNG, in the current folder)"},
         {"F1", "this help"},

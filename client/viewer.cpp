@@ -24,9 +24,10 @@ constexpr double idle_seconds = 0.25;
 
 } // namespace
 
-Viewer::Viewer(Window& window, ConnectionOptions connection, std::unique_ptr<ClientCore> core, float exposure_ev)
+Viewer::Viewer(Window& window, ConnectionOptions connection, std::unique_ptr<ClientCore> core,
+               ViewerSettings const& settings)
     : window_(window), connection_(std::move(connection)), overlay_(window.handle(), window.content_scale()),
-      exposure_ev_(exposure_ev) {
+      settings_(settings) {
     adopt(std::move(core));
     say("F1: help");
 }
@@ -49,7 +50,7 @@ void Viewer::adopt(std::unique_ptr<ClientCore> core) {
     scene_camera_ = same_scene ? scene_camera_ : core_->start_scene_camera();
     lost_.clear();
     meter_ = RateMeter();
-    core_->set_settings({exposure_ev_, 0});
+    core_->set_settings(settings_);
     window_.set_title(welcome.scene_name + " - framelet-viewer");
 }
 
@@ -191,6 +192,11 @@ void Viewer::apply(Command command) {
         show_outlines_ = !show_outlines_;
         outlines_toggled_ = true;
         break;
+    case Command::toggle_reprojection:
+        settings_.reproject = !settings_.reproject;
+        core_->set_settings(settings_);
+        say(settings_.reproject ? "moved to where it is now" : "shown where it was rendered");
+        break;
     case Command::screenshot:
         save_screenshot();
         break;
@@ -232,10 +238,10 @@ void Viewer::leave_scene_camera() {
 }
 
 void Viewer::change_exposure(float stops) {
-    exposure_ev_ = std::clamp(exposure_ev_ + stops, -largest_exposure, largest_exposure);
-    core_->set_settings({exposure_ev_, 0});
+    settings_.exposure_ev = std::clamp(settings_.exposure_ev + stops, -largest_exposure, largest_exposure);
+    core_->set_settings(settings_);
     std::ostringstream text;
-    text << "exposure " << std::showpos << exposure_ev_ << " EV";
+    text << "exposure " << std::showpos << settings_.exposure_ev << " EV";
     say(text.str());
 }
 

@@ -17,7 +17,8 @@ namespace framelet {
 class Viewer {
 public:
     /// `core` is connected and wakes the window on news.
-    Viewer(Window& window, ConnectionOptions connection, std::unique_ptr<ClientCore> core, float exposure_ev);
+    Viewer(Window& window, ConnectionOptions connection, std::unique_ptr<ClientCore> core,
+           ViewerSettings const& settings);
 
     /// Until the user quits. Returns the program's exit code: 1 where the server was gone.
     int run();
@@ -49,7 +50,7 @@ private:
     std::unique_ptr<ClientCore> core_;
     std::optional<CameraController> controller_;
     int scene_camera_ = -1;
-    float exposure_ev_;
+    ViewerSettings settings_;
     std::string lost_; ///< why there is no session; empty while there is one
     std::future<std::unique_ptr<ClientCore>> reconnecting_;
 

@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
     std::string size = "1280x720";
     bool fullscreen = false;
     float exposure = 0;
+    bool unwarped = false;
 
     CLI::App app("Shows a scene that framelet-server renders. F1 in the window lists the keys.", "framelet-viewer");
     app.set_version_flag("--version", "framelet-viewer " FRAMELET_VERSION);
@@ -23,6 +24,8 @@ int main(int argc, char** argv) {
     app.add_flag("--fullscreen", fullscreen, "Fill the screen");
     app.add_option("--exposure", exposure, "Stops brighter (or darker: negative) than the server's exposure")
         ->check(CLI::Range(-16.0, 16.0));
+    app.add_flag("--no-reprojection", unwarped,
+                 "Show pixels where they were rendered: nothing is moved to where it is by now");
 
     Viewport viewport;
     ConnectionOptions connection;
@@ -37,7 +40,7 @@ int main(int argc, char** argv) {
     }
     try {
         Window window("framelet-viewer", viewport);
-        Viewer viewer(window, connection, Viewer::connect(connection), exposure);
+        Viewer viewer(window, connection, Viewer::connect(connection), {exposure, 0, !unwarped});
         window.show();
         if (fullscreen) {
             window.toggle_fullscreen();

@@ -33,6 +33,7 @@ enum class Command {
     toggle_help,
     toggle_statistics,
     toggle_outlines,
+    toggle_reprojection,
     screenshot,
     scene_camera, ///< the first; `scene_camera` + n is the n-th more, up to 8 more
 };

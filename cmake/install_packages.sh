@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs the Debian packages of cmake/packages.txt that are missing. Quiet and quick where none is.
+# Installs the Debian packages of cmake/packages.txt, and of the lists named as arguments, that are missing. Quiet and
+# quick where none is.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 missing=()
@@ -7,7 +8,7 @@ while read -r package; do
     if ! dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed'; then
         missing+=("$package")
     fi
-done < <(grep -v '^#' "$here/packages.txt" | grep -v '^$')
+done < <(cat "$here/packages.txt" "${@/#/$here/}" | grep -v '^#' | grep -v '^$')
 [ ${#missing[@]} -eq 0 ] && exit 0
 
 echo "installing ${#missing[@]} Debian packages: ${missing[*]}"
