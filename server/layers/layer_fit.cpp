@@ -220,11 +220,13 @@ LayerTolerance layer_tolerance(float median_depth, ViewRays const& rays) {
 
 float median_depth(std::span<Framelet const> framelets) {
     constexpr std::size_t step = 17; // odd: every place in the blocks is met
+    constexpr std::size_t most_framelets = 64;
+    std::size_t const stride = std::max<std::size_t>(framelets.size() / most_framelets, 1);
     std::vector<float> depths;
-    for (Framelet const& framelet : framelets) {
+    for (std::size_t f = 0; f < framelets.size(); f += stride) {
         for (std::size_t i = 0; i < framelet_samples; i += step) {
-            if (std::isfinite(framelet.depth[i])) {
-                depths.push_back(framelet.depth[i]);
+            if (std::isfinite(framelets[f].depth[i])) {
+                depths.push_back(framelets[f].depth[i]);
             }
         }
     }

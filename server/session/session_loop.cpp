@@ -171,8 +171,11 @@ bool SessionLoop::render_session(Session& session, Viewer& viewer, SceneTime tim
 }
 
 void SessionLoop::render_plan(RefreshPlan const& plan, ViewState const& state) {
-    rendered_.resize(plan.tiles.size());
-    display_.resize(plan.tiles.size());
+    std::size_t const count = plan.tiles.size();
+    rendered_pool_.resize(std::max(rendered_pool_.size(), count));
+    display_pool_.resize(std::max(display_pool_.size(), count));
+    rendered_ = std::span(rendered_pool_).first(count);
+    display_ = std::span(display_pool_).first(count);
     Camera const& camera = state.view.camera;
     render_framelets(render_scene_, camera, ImagePlane(state.view.viewport), plan.tiles, 0, rendered_);
     probes_.render(render_scene_, camera, state.view.viewport, state.exposure, plan.probes);

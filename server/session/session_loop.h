@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <vector>
 
 #include "protocol/batch_codec.h"
@@ -86,8 +87,10 @@ private:
     RenderRate rate_;
     double plan_seconds_ = 0; ///< what planning a cycle takes
     ProbeRenderer probes_;
-    std::vector<Framelet> rendered_;
-    std::vector<DisplayFramelet> display_;
+    std::vector<Framelet> rendered_pool_; ///< as many as a batch ever had: making room for them costs time
+    std::vector<DisplayFramelet> display_pool_;
+    std::span<Framelet> rendered_; ///< of the last plan
+    std::span<DisplayFramelet> display_;
     std::vector<FrameletShape> shapes_; ///< of those that are sent
     std::vector<BodyTrack> tracks_;
 

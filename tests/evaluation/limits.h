@@ -10,7 +10,7 @@ namespace framelet::bench {
 
 struct LimitsOptions {
     Viewport viewport{1280, 720};
-    int rounds = 5; ///< each stage and its limit in turn; medians are reported
+    int rounds = 9; ///< each stage and its limit in turn; medians are reported
 };
 
 /// Prints a table to stdout and returns the same figures.
