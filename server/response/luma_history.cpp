@@ -4,7 +4,6 @@
 #include <bit>
 #include <cstring>
 
-#include "common/color.h"
 #include "common/error.h"
 
 namespace framelet {
@@ -52,7 +51,7 @@ void fill_entry(LumaHistory::Entry& entry, DisplayFramelet const& framelet, doub
     entry.time = time;
     entry.content = 0;
     for (std::size_t i = 0; i < framelet_samples; ++i) {
-        entry.luma[i] = display_luma(framelet.red[i], framelet.green[i], framelet.blue[i]);
+        entry.luma[i] = static_cast<std::uint16_t>(framelet.red[i] + 2 * framelet.green[i] + framelet.blue[i]);
     }
     for (auto const* plane : {&framelet.red, &framelet.green, &framelet.blue}) {
         for (std::size_t i = 0; i < framelet_samples; i += sizeof(std::uint64_t)) {

@@ -12,11 +12,14 @@ namespace framelet {
 
 class LumaHistory {
 public:
+    /// `display_luma` in whole numbers: R + 2 G + B.
+    static constexpr int luma_steps = 4 * 255;
+
     struct Entry {
         Tile tile{0}; ///< 0: empty
         double time = 0; ///< seconds, on the clock of whoever stores
         std::uint64_t content = 0; ///< hash of the samples' colours: equal ones mean equal pictures
-        std::array<float, framelet_samples> luma{}; ///< in Morton order
+        std::array<std::uint16_t, framelet_samples> luma{}; ///< [0, luma_steps], in Morton order
     };
 
     /// `entries`: a power of 2; more than that many tiles are never remembered.

@@ -21,19 +21,26 @@ std::size_t scattered(std::uint32_t seed, std::size_t count) {
     return (seed * 0x9e3779b9u >> 16) % count;
 }
 
+float luma_at(LumaHistory::Entry const& entry, std::size_t sample) {
+    return static_cast<float>(entry.luma[sample]) / LumaHistory::luma_steps;
+}
+
+using Steps = std::array<std::uint16_t, framelet_samples>;
+
 /// How much each sample differs from the next one along the curve: where an edge is, the smallest motion shows.
-std::array<float, framelet_samples> steps_of(LumaHistory::Entry const& entry) {
-    std::array<float, framelet_samples> steps;
+Steps steps_of(LumaHistory::Entry const& entry) {
+    auto const step = [](int a, int b) { return static_cast<std::uint16_t>(std::abs(a - b)); };
+    Steps steps;
     for (std::size_t i = 0; i + 1 < steps.size(); ++i) {
-        steps[i] = std::abs(entry.luma[i] - entry.luma[i + 1]);
+        steps[i] = step(entry.luma[i], entry.luma[i + 1]);
     }
-    steps.back() = std::abs(entry.luma.back() - entry.luma.front());
+    steps.back() = step(entry.luma.back(), entry.luma.front());
     return steps;
 }
 
 /// Of samples [first, last) the steepest.
-std::size_t steepest(std::array<float, framelet_samples> const& steps, std::size_t first, std::size_t last) {
-    float most = 0;
+std::size_t steepest(Steps const& steps, std::size_t first, std::size_t last) {
+    std::uint16_t most = 0;
     for (std::size_t i = first; i < last; ++i) {
         most = std::max(most, steps[i]);
     }
@@ -44,9 +51,8 @@ std::size_t steepest(std::array<float, framelet_samples> const& steps, std::size
 }
 
 /// Notes some samples of a part of a framelet, one in each of equal shares of it: in turn the steepest and any one.
-void note_probes(PlaceFindings& place, ImagePlane const& plane, LumaHistory::Entry const& entry,
-                 std::array<float, framelet_samples> const& steps, std::size_t first, std::size_t count,
-                 std::size_t wanted) {
+void note_probes(PlaceFindings& place, ImagePlane const& plane, LumaHistory::Entry const& entry, Steps const& steps,
+                 std::size_t first, std::size_t count, std::size_t wanted) {
     Viewport const viewport = plane.viewport();
     if (wanted == 0) {
         return;
@@ -59,7 +65,7 @@ void note_probes(PlaceFindings& place, ImagePlane const& plane, LumaHistory::Ent
                                        : begin + scattered(entry.tile.code + static_cast<std::uint32_t>(i), share);
         Vec2 const at = sample_place(plane, entry.tile, sample);
         if (at.x < static_cast<float>(viewport.width) && at.y < static_cast<float>(viewport.height)) {
-            place.probes[place.probe_count++] = {at, plane.sample_spacing(entry.tile), entry.luma[sample]};
+            place.probes[place.probe_count++] = {at, plane.sample_spacing(entry.tile), luma_at(entry, sample)};
         }
     }
 }
@@ -104,14 +110,16 @@ bool examine_patch(PlaceField const& field, Patch const& patch, std::span<Displa
     for (std::size_t f = 0; f < framelets.size(); ++f) {
         LumaHistory::Entry& entry = entries[f];
         fill_entry(entry, framelets[f], now);
-        luma = entry.luma;
+        for (std::size_t i = 0; i < luma.size(); ++i) {
+            luma[i] = luma_at(entry, i);
+        }
         haar_forward(luma);
         std::optional<std::span<float const, framelet_samples>> difference;
         float seconds = 0;
         LumaHistory::Entry const* const before = history.find(entry.tile);
         if (before != nullptr) {
             for (std::size_t i = 0; i < change.size(); ++i) {
-                change[i] = entry.luma[i] - before->luma[i];
+                change[i] = static_cast<float>(entry.luma[i] - before->luma[i]) / LumaHistory::luma_steps;
             }
             haar_forward(change);
             difference = std::span<float const, framelet_samples>(change);
@@ -120,7 +128,7 @@ bool examine_patch(PlaceField const& field, Patch const& patch, std::span<Displa
         same = same && before != nullptr && before->content == entry.content;
         std::size_t const wanted =
             (f + 1) * probes_per_place / framelets.size() - f * probes_per_place / framelets.size();
-        std::array<float, framelet_samples> const steps = steps_of(entry);
+        Steps const steps = steps_of(entry);
         std::size_t first = 0;
         for (PlaceFindings& place : places) {
             accumulate(place.seen, observe(level, luma, difference, seconds, first, count));

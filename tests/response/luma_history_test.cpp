@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "common/color.h"
+
 namespace framelet {
 namespace {
 
@@ -30,7 +32,7 @@ TEST(LumaHistory, CollisionsForgetAndNeverLie) {
             LumaHistory::Entry entry;
             entry.tile = tile;
             entry.time = i;
-            entry.luma[17] = static_cast<float>(i);
+            entry.luma[17] = static_cast<std::uint16_t>(i);
             history.store(entry);
             stored[tile] = i;
             auto const* const found = history.find(tile);
@@ -39,7 +41,7 @@ TEST(LumaHistory, CollisionsForgetAndNeverLie) {
             if (auto const* const known = history.find(other)) {
                 ASSERT_EQ(known->tile, other);
                 ASSERT_EQ(known->time, stored.at(other));
-                ASSERT_EQ(known->luma[17], static_cast<float>(known->time));
+                ASSERT_EQ(known->luma[17], static_cast<std::uint16_t>(known->time));
             }
         }
         for (auto const& [tile, time] : stored) {
@@ -104,8 +106,8 @@ TEST(LumaHistory, EveryByteCountsInTheContent) {
     EXPECT_EQ(entry.time, 5);
     EXPECT_EQ(make_entry(framelet, 6).content, entry.content) << "time is no content";
     for (std::size_t i = 0; i < framelet_samples; ++i) {
-        EXPECT_FLOAT_EQ(entry.luma[i],
-                        static_cast<float>(framelet.red[i] + 2 * framelet.green[i] + framelet.blue[i]) / 1020);
+        EXPECT_FLOAT_EQ(static_cast<float>(entry.luma[i]) / LumaHistory::luma_steps,
+                        display_luma(framelet.red[i], framelet.green[i], framelet.blue[i]));
         for (auto* const plane : {&framelet.red, &framelet.green, &framelet.blue}) {
             std::uint8_t const byte = (*plane)[i];
             (*plane)[i] ^= static_cast<std::uint8_t>(1u << (random() % 8));
