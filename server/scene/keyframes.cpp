@@ -51,7 +51,9 @@ void sample_channel(AnimationChannel const& channel, float seconds, std::span<fl
         float const* const to = from + width;
         float const interval = times[key + 1] - times[key];
         float const t = (seconds - times[key]) / interval;
-        if (spline) {
+        if (!spline && std::equal(from, to, to)) { // what rests must rest to the last bit
+            std::copy_n(from, n, out.begin());
+        } else if (spline) {
             interpolate_spline(from, to, t, interval, out);
         } else if (rotation) {
             store_quaternion(glm::slerp(load_quaternion(from), load_quaternion(to), t), out);

@@ -97,6 +97,7 @@ RefreshPlan const& AdaptiveRefresh::plan(RefreshInput const& input) {
     plan_.probes.clear();
     plan_.probed.clear();
     still_ = is_still(input.state);
+    reprojects_ = input.reprojects;
     plan_.is_new_cycle = !goes_on(input);
     if (plan_.is_new_cycle) {
         advance(input);
@@ -304,9 +305,14 @@ void AdaptiveRefresh::examine(std::span<DisplayFramelet const> framelets, std::s
         Patch const& patch = plan_.patches[i];
         auto const [tile, place] = firsts_[i];
         std::size_t const count = plan_.tile_counts[i];
-        same_[i] = examine_patch(field_, patch, framelets.subspan(tile, count), rendered.subspan(tile, count), now_,
-                                 history_, std::span(entries_).subspan(tile, count),
-                                 std::span(findings_).subspan(place, place_count(patch)));
+        auto const on_body = [](Framelet const& framelet) {
+            return std::ranges::any_of(framelet.body, [](BodyNumber body) { return body != static_body; });
+        };
+        bool const same = examine_patch(field_, patch, framelets.subspan(tile, count), rendered.subspan(tile, count),
+                                        now_, history_, std::span(entries_).subspan(tile, count),
+                                        std::span(findings_).subspan(place, place_count(patch)));
+        // The same picture may be of a body that has moved, and that the viewer has moved away.
+        same_[i] = same && !(reprojects_ && std::ranges::any_of(rendered.subspan(tile, count), on_body));
     });
 }
 

@@ -26,6 +26,7 @@ struct RefreshInput {
     float cycle_seconds = least_cycle_seconds; ///< how often the response is worked out anew
     float delivery_seconds = 0; ///< from the end of its rendering until it shows
     float bias = 0;
+    bool reprojects = false; ///< the viewer: what lies on a moving body does not stay where it was rendered
     /// Most framelets of one batch; 0: what half a cycle has time for, so that it shows sooner, or all of it while
     /// nothing moves.
     std::size_t batch_framelets = 0;
@@ -89,6 +90,7 @@ private:
     double still_since_ = 0; ///< when what is to be seen changed last
     bool strayed_ = false; ///< something was rendered for another state than `seen_` since
     bool scene_moves_ = false;
+    bool reprojects_ = false;
     bool still_ = false; ///< what is to be seen is what the last plan was for
     PlaceField field_;
     LumaHistory history_;

@@ -122,6 +122,7 @@ bool SessionLoop::render_session(Session& session, Viewer& viewer, SceneTime tim
     wanted.delivery_seconds = static_cast<float>(0.5 * session.answer_seconds());
     wanted.bias = std::clamp(static_cast<float>(options_.bias) + input.settings.bias, -1.0f, 1.0f);
     wanted.batch_framelets = options_.batch_framelets;
+    wanted.reprojects = input.takes_shapes();
     CycleRecord record;
     Laps laps;
     RefreshPlan const& plan = refresh.plan(wanted);

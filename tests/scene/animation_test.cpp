@@ -48,6 +48,22 @@ TEST(Keyframes, CubicSplineScalesTangentsByTheInterval) {
     EXPECT_FLOAT_EQ(first_of(square, 1.5f), 2.25f);
 }
 
+/// Pictures of what rests are told from moving ones by their cameras' and bodies' bits.
+TEST(Keyframes, RestIsExact) {
+    AnimationChannel const channel{0,
+                                   AnimatedProperty::rotation,
+                                   Interpolation::linear,
+                                   4,
+                                   {0, 1},
+                                   {0.1f, -0.7f, 0.3f, 0.64f, 0.1f, -0.7f, 0.3f, 0.64f}};
+    std::array<float, 4> first{}, q{};
+    sample_channel(channel, 0, first);
+    for (int i = 1; i <= 100; ++i) {
+        sample_channel(channel, static_cast<float>(i) / 100, q);
+        EXPECT_EQ(q, first);
+    }
+}
+
 TEST(Keyframes, RotationsTakeTheShorterArcAndStayUnit) {
     float const h = std::sqrt(0.5f);
     // The second key is a quarter turn about y, written with the opposite sign.

@@ -39,6 +39,7 @@ public:
         refresh.delivery_seconds = static_cast<float>(setup_.delay_seconds);
         refresh.batch_framelets = setup_.batch_framelets;
         refresh.bias = static_cast<float>(setup_.bias);
+        refresh.reprojects = reprojects_;
         RefreshPlan const& plan = refresh_.plan(refresh);
         if (plan.tiles.empty() && plan.probes.empty()) {
             return {};
