@@ -39,8 +39,6 @@ public:
     /// Takes in keys of a body. They replace those of the same times and later; keys that neither overlap nor follow
     /// what is known replace all of it. Of each body the last `kept_track_keys` are kept.
     void extend(BodyTrack const& track);
-    void clear() { tracks_.clear(); }
-    bool empty() const { return tracks_.empty(); }
 
     /// None for bodies that have no track, `static_body` among them.
     Motion between(BodyNumber body, SceneTime from, SceneTime to) const;

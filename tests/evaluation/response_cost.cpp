@@ -24,7 +24,7 @@ double cpu_seconds(auto&& work) {
     return cpu_seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
 }
 
-/// Samples a second that one thread renders at one sample a pixel.
+/// Samples a second that one thread renders and encodes.
 double one_thread_rate(BenchScene& scene) {
     ResponseCost const cost = response_cost(scene, {256, 256}, 1e6, 0.2);
     return static_cast<double>(cost.samples) / (cost.render + cost.encode);
