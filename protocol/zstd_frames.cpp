@@ -9,6 +9,8 @@ namespace framelet {
 namespace {
 
 constexpr int compression_level = 1;
+/// Shorter repetitions, bytes, are left to the entropy stage: in differences of neighbours they are chance.
+constexpr int least_match = 7;
 constexpr std::size_t length_bytes = 4;
 /// First bytes of a zstd frame (RFC 8878); other kinds of frames that the library knows are not part of the format.
 constexpr std::array<std::uint8_t, 4> zstd_magic{0x28, 0xb5, 0x2f, 0xfd};
@@ -83,6 +85,13 @@ std::size_t FrameCodec::compress(std::span<std::span<std::uint8_t const> const> 
         compressor_.reset(ZSTD_createCCtx());
         FRAMELET_CHECK(compressor_ != nullptr);
         ZSTD_CCtx_setParameter(compressor_.get(), ZSTD_c_compressionLevel, compression_level);
+        ZSTD_CCtx_setParameter(compressor_.get(), ZSTD_c_minMatch, least_match);
+    }
+    if (parts.size() == 1) { // in one call it copies nothing
+        std::size_t const written =
+            ZSTD_compress2(compressor_.get(), out.data(), out.size(), parts[0].data(), parts[0].size());
+        FRAMELET_CHECK(!ZSTD_isError(written));
+        return written;
     }
     std::size_t size = 0;
     for (auto const part : parts) {

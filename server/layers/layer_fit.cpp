@@ -68,7 +68,8 @@ private:
     void fit_groups();
     void set_candidates(std::size_t group);
     void agree_on_velocity();
-    void add_layer(Group const& group);
+    void add_found(Group const& group);
+    void add_layer(GridPlane const& plane, float half_width, Group const& group);
     void collect();
 
     Framelet const& framelet_;
@@ -92,18 +93,17 @@ Fitter::Fitter(Framelet const& framelet, float spacing, LayerTolerance const& to
         float const depth = framelet.depth[i];
         inverse[i] = 1 / (depth > least_depth ? depth : least_depth);
     }
-    for (int i = 0; i < framelet_samples; ++i) {
-        values_[block_order(i)] = inverse[static_cast<std::size_t>(i)];
-    }
+    to_block_order(inverse, values_);
     constexpr float resolution = 1e-6f; // of sums of single-precision numbers
     tolerance_ = std::max(tolerance.inverse_depth * std::max(1.0f, spacing), resolution * greatest(values_));
 }
 
 bool Fitter::fit_one() {
-    if (!find_plane_of_all(values_, tolerance_, found_)) {
+    FittedPlane const fitted = fit_plane_to_all(values_);
+    if (!(fitted.half_width <= tolerance_)) {
         return false;
     }
-    add_layer({body_of(framelet_, 0), false, false});
+    add_layer(fitted.plane, fitted.half_width, {body_of(framelet_, 0), false, false});
     shape_.layer_of.fill(0);
     return true;
 }
@@ -157,12 +157,11 @@ void Fitter::agree_on_velocity() {
 
 /// The largest group gives the next layer, until there are enough or nothing is left that makes one.
 void Fitter::fit_groups() {
-    std::array<int, most_groups> left{};
+    std::array<int, most_groups + 1> counts{};
     for (std::uint8_t const group : group_of_) {
-        if (group < most_groups) {
-            ++left[group];
-        }
+        ++counts[group];
     }
+    std::span const left = std::span(counts).first<most_groups>();
     while (shape_.layer_count < max_layers) {
         auto const largest = std::ranges::max_element(left);
         if (*largest < least_plane_samples) {
@@ -180,32 +179,41 @@ void Fitter::fit_groups() {
             *largest = 0; // what is left of it stays loose
             continue;
         }
-        add_layer(group);
+        add_found(group);
         *largest -= found_.count;
     }
 }
 
-void Fitter::add_layer(Group const& group) {
+/// Those that were found, with even errors to both sides.
+void Fitter::add_found(Group const& group) {
     Range const range = residual_range(values_, found_.members, found_.plane);
     found_.plane.centre += range.middle();
-    Layer layer = layer_of_plane(found_.plane, group, spacing_);
+    std::uint8_t const layer = shape_.layer_count; // a copy: bytes written below might alias the original
+    for (std::size_t i = 0; i < framelet_samples; ++i) {
+        layer_of_[i] = found_.members.value[i] != 0 ? layer : layer_of_[i];
+    }
+    add_layer(found_.plane, range.half_width(), group);
+}
+
+void Fitter::add_layer(GridPlane const& plane, float half_width, Group const& group) {
+    Layer layer = layer_of_plane(plane, group, spacing_);
     layer.velocity = velocity_;
     // The same plane in other coordinates, or in another order of operations, rounds otherwise.
     constexpr float rounding = 2e-6f;
     float const side = spacing_ * framelet_side;
     float const magnitude = std::abs(layer.at) + side * (std::abs(layer.dx) + std::abs(layer.dy));
-    layer.error = range.half_width() + rounding * (magnitude + range.half_width());
-    for (std::size_t i = 0; i < framelet_samples; ++i) {
-        layer_of_[i] = found_.members.value[i] != 0 ? shape_.layer_count : layer_of_[i];
-    }
+    layer.error = half_width + rounding * (magnitude + half_width);
     shape_.layers[shape_.layer_count++] = layer;
 }
 
 void Fitter::collect() {
+    for (std::size_t block = 0; block < grid_blocks; ++block) {
+        for (std::size_t i = 0; i < block_samples; ++i) {
+            shape_.layer_of[block * block_samples + i] = layer_of_[i * grid_blocks + block];
+        }
+    }
     for (int i = 0; i < framelet_samples; ++i) {
-        std::uint8_t const layer = layer_of_[static_cast<std::size_t>(block_order(i))];
-        shape_.layer_of[static_cast<std::size_t>(i)] = layer;
-        if (layer == FrameletShape::loose) {
+        if (shape_.layer_of[static_cast<std::size_t>(i)] == FrameletShape::loose) {
             shape_.loose_samples.push_back({values_[block_order(i)], body_of(framelet_, i), velocity_of(framelet_, i)});
         }
     }

@@ -16,93 +16,124 @@ constexpr GridCoordinates make_grid_coordinates() {
     return grid;
 }
 
-/// One accumulator a lane; lanes are blocks.
-struct alignas(64) Lanes {
-    float lane[grid_blocks]{};
+/// Eight blocks side by side. Spelt out because loops that end in sums over lanes do not become good vector code.
+using Lanes = float __attribute__((vector_size(32), may_alias));
+constexpr int lanes = sizeof(Lanes) / sizeof(float);
 
-    float sum() const {
-        float total = 0;
-        for (float const value : lane) {
-            total += value;
-        }
-        return total;
-    }
-};
-
-struct LaneMoments {
-    Lanes n, x, y, xx, xy, yy, w, wx, wy;
-};
-
-void add_up(GridFloats const& values, GridFloats const& weights, LaneMoments& sums) {
-    for (int first = 0; first < framelet_samples; first += grid_blocks) {
-        for (int b = 0; b < grid_blocks; ++b) {
-            int const i = first + b;
-            float const weight = weights[i], x = grid_coordinates.x[i], y = grid_coordinates.y[i];
-            float const value = weight * values[i];
-            sums.n.lane[b] += weight;
-            sums.x.lane[b] += weight * x;
-            sums.y.lane[b] += weight * y;
-            sums.xx.lane[b] += weight * (x * x);
-            sums.xy.lane[b] += weight * (x * y);
-            sums.yy.lane[b] += weight * (y * y);
-            sums.w.lane[b] += value;
-            sums.wx.lane[b] += value * x;
-            sums.wy.lane[b] += value * y;
-        }
-    }
+Lanes lanes_at(GridFloats const& values, int i) {
+    return *reinterpret_cast<Lanes const*>(values.value + i);
 }
 
-Moments total_of(LaneMoments const& sums) {
-    return {sums.n.sum(),  sums.x.sum(), sums.y.sum(),  sums.xx.sum(), sums.xy.sum(),
-            sums.yy.sum(), sums.w.sum(), sums.wx.sum(), sums.wy.sum()};
+float sum(Lanes const& values) {
+    return ((values[0] + values[4]) + (values[1] + values[5])) + ((values[2] + values[6]) + (values[3] + values[7]));
+}
+float least_of(Lanes const& values) {
+    float least = values[0];
+    for (int lane = 1; lane < lanes; ++lane) {
+        least = values[lane] < least ? values[lane] : least;
+    }
+    return least;
+}
+float greatest_of(Lanes const& values) {
+    return -least_of(-values);
+}
+
+Lanes residuals(GridFloats const& values, GridPlane const& plane, int i) {
+    return lanes_at(values, i) -
+           (plane.centre + plane.dx * lanes_at(grid_coordinates.x, i) + plane.dy * lanes_at(grid_coordinates.y, i));
+}
+
+struct LaneMoments {
+    Lanes n{}, x{}, y{}, xx{}, xy{}, yy{}, w{}, wx{}, wy{};
+};
+
+/// Sums of the blocks from `first`, eight of them.
+LaneMoments add_up(GridFloats const& values, GridFloats const& weights, int first) {
+    LaneMoments sums;
+    for (int i = first; i < framelet_samples; i += grid_blocks) {
+        Lanes const x = lanes_at(grid_coordinates.x, i), y = lanes_at(grid_coordinates.y, i);
+        Lanes const weight = lanes_at(weights, i), value = weight * lanes_at(values, i);
+        Lanes const weight_x = weight * x, weight_y = weight * y;
+        sums.n += weight;
+        sums.x += weight_x;
+        sums.y += weight_y;
+        sums.xx += weight_x * x;
+        sums.xy += weight_x * y;
+        sums.yy += weight_y * y;
+        sums.w += value;
+        sums.wx += value * x;
+        sums.wy += value * y;
+    }
+    return sums;
+}
+
+/// Sums over the whole grid.
+Moments moments_of_all(GridFloats const& values) {
+    constexpr float variance = (framelet_side * framelet_side - 1) / 12.0f; // of a coordinate
+    constexpr float spread = framelet_samples * variance;
+    Lanes w{}, wx{}, wy{};
+    for (int i = 0; i < framelet_samples; i += lanes) {
+        Lanes const value = lanes_at(values, i);
+        w += value;
+        wx += value * lanes_at(grid_coordinates.x, i);
+        wy += value * lanes_at(grid_coordinates.y, i);
+    }
+    return {framelet_samples, 0, 0, spread, 0, spread, sum(w), sum(wx), sum(wy)};
 }
 
 } // namespace
 
 constinit GridCoordinates const grid_coordinates = make_grid_coordinates();
 
-float greatest(GridFloats const& values) {
-    Lanes most;
-    for (int first = 0; first < framelet_samples; first += grid_blocks) {
-        for (int b = 0; b < grid_blocks; ++b) {
-            float const value = values[first + b];
-            most.lane[b] = value > most.lane[b] ? value : most.lane[b];
+void to_block_order(std::array<float, framelet_samples> const& morton, GridFloats& out) {
+    for (int block = 0; block < grid_blocks; ++block) {
+        for (int i = 0; i < block_samples; ++i) {
+            out[i * grid_blocks + block] = morton[static_cast<std::size_t>(block * block_samples + i)];
         }
     }
-    return *std::max_element(most.lane, most.lane + grid_blocks);
+}
+
+float greatest(GridFloats const& values) {
+    Lanes most{};
+    for (int i = 0; i < framelet_samples; i += lanes) {
+        Lanes const value = lanes_at(values, i);
+        most = value > most ? value : most;
+    }
+    return greatest_of(most);
 }
 
 Moments moments_of(GridFloats const& values, GridFloats const& weights) {
-    LaneMoments sums;
-    add_up(values, weights, sums);
-    return total_of(sums);
+    Moments total;
+    for (int first = 0; first < grid_blocks; first += lanes) {
+        LaneMoments const s = add_up(values, weights, first);
+        total.n += sum(s.n);
+        total.x += sum(s.x);
+        total.y += sum(s.y);
+        total.xx += sum(s.xx);
+        total.xy += sum(s.xy);
+        total.yy += sum(s.yy);
+        total.w += sum(s.w);
+        total.wx += sum(s.wx);
+        total.wy += sum(s.wy);
+    }
+    return total;
 }
 
 BlockMoments block_moments_of(GridFloats const& values, GridFloats const& weights) {
-    LaneMoments s;
-    add_up(values, weights, s);
     BlockMoments out;
-    for (std::size_t b = 0; b < grid_blocks; ++b) {
-        out.block[b] = {s.n.lane[b],  s.x.lane[b], s.y.lane[b],  s.xx.lane[b], s.xy.lane[b],
-                        s.yy.lane[b], s.w.lane[b], s.wx.lane[b], s.wy.lane[b]};
-    }
-    out.total = total_of(s);
-    return out;
-}
-
-Moments moments_of_all(GridFloats const& values) {
-    constexpr float variance = (framelet_side * framelet_side - 1) / 12.0f; // of a coordinate
-    Lanes w, wx, wy;
-    for (int first = 0; first < framelet_samples; first += grid_blocks) {
-        for (int b = 0; b < grid_blocks; ++b) {
-            float const value = values[first + b];
-            w.lane[b] += value;
-            wx.lane[b] += value * grid_coordinates.x[first + b];
-            wy.lane[b] += value * grid_coordinates.y[first + b];
+    Moments& total = out.total;
+    for (int first = 0; first < grid_blocks; first += lanes) {
+        LaneMoments const s = add_up(values, weights, first);
+        for (int lane = 0; lane < lanes; ++lane) {
+            Moments& block = out.block[static_cast<std::size_t>(first + lane)];
+            block = {s.n[lane],  s.x[lane], s.y[lane],  s.xx[lane], s.xy[lane],
+                     s.yy[lane], s.w[lane], s.wx[lane], s.wy[lane]};
+            total = {total.n + block.n,   total.x + block.x,   total.y + block.y,
+                     total.xx + block.xx, total.xy + block.xy, total.yy + block.yy,
+                     total.w + block.w,   total.wx + block.wx, total.wy + block.wy};
         }
     }
-    constexpr float spread = framelet_samples * variance;
-    return {framelet_samples, 0, 0, spread, 0, spread, w.sum(), wx.sum(), wy.sum()};
+    return out;
 }
 
 GridPlane least_squares(Moments const& m) {
@@ -130,36 +161,45 @@ GridPlane least_squares(Moments const& m) {
 }
 
 Range residual_range(GridFloats const& values, GridFloats const& weights, GridPlane const& plane) {
-    Lanes least, most;
-    std::fill_n(least.lane, grid_blocks, INFINITY);
-    std::fill_n(most.lane, grid_blocks, -INFINITY);
-    for (int first = 0; first < framelet_samples; first += grid_blocks) {
-        for (int b = 0; b < grid_blocks; ++b) {
-            float const off = residual(values, plane, first + b);
-            bool const counts = weights[first + b] != 0;
-            float const low = counts ? off : INFINITY, high = counts ? off : -INFINITY;
-            least.lane[b] = low < least.lane[b] ? low : least.lane[b];
-            most.lane[b] = high > most.lane[b] ? high : most.lane[b];
-        }
+    Lanes const none = Lanes{} + INFINITY;
+    Lanes least = none, most = -none;
+    for (int i = 0; i < framelet_samples; i += lanes) {
+        Lanes const off = residuals(values, plane, i);
+        auto const counts = lanes_at(weights, i) != 0;
+        Lanes const low = counts ? off : none, high = counts ? off : -none;
+        least = low < least ? low : least;
+        most = high > most ? high : most;
     }
-    Range const range{*std::min_element(least.lane, least.lane + grid_blocks),
-                      *std::max_element(most.lane, most.lane + grid_blocks)};
+    Range const range{least_of(least), greatest_of(most)};
     return range.least <= range.most ? range : Range{};
+}
+
+FittedPlane fit_plane_to_all(GridFloats const& values) {
+    FittedPlane fitted{least_squares(moments_of_all(values))};
+    Lanes least = residuals(values, fitted.plane, 0), most = least;
+    for (int i = lanes; i < framelet_samples; i += lanes) {
+        Lanes const off = residuals(values, fitted.plane, i);
+        least = off < least ? off : least;
+        most = off > most ? off : most;
+    }
+    Range const range{least_of(least), greatest_of(most)};
+    fitted.plane.centre += range.middle();
+    fitted.half_width = range.half_width();
+    return fitted;
 }
 
 int find_members(GridFloats const& values, GridFloats const& weights, GridPlane const& plane, float tolerance,
                  GridFloats& members) {
-    Lanes counts;
-    for (int first = 0; first < framelet_samples; first += grid_blocks) {
-        for (int b = 0; b < grid_blocks; ++b) {
-            int const i = first + b;
-            float const off = residual(values, plane, i);
-            bool const near = (off <= tolerance) & (off >= -tolerance) & (weights[i] != 0);
-            members[i] = near ? 1.0f : 0.0f;
-            counts.lane[b] += members[i];
-        }
+    Lanes const one = Lanes{} + 1;
+    Lanes counts{};
+    for (int i = 0; i < framelet_samples; i += lanes) {
+        Lanes const off = residuals(values, plane, i);
+        auto const near = (off <= tolerance) & (off >= -tolerance) & (lanes_at(weights, i) != 0);
+        Lanes const member = near ? one : Lanes{};
+        *reinterpret_cast<Lanes*>(members.value + i) = member;
+        counts += member;
     }
-    return static_cast<int>(counts.sum());
+    return static_cast<int>(sum(counts));
 }
 
 } // namespace framelet

@@ -25,6 +25,8 @@ constexpr int block_order(int morton) {
     return (morton % block_samples) * grid_blocks + morton / block_samples;
 }
 
+void to_block_order(std::array<float, framelet_samples> const& morton, GridFloats& out);
+
 /// Column and row of the sample at a place in block order, from the middle of the grid: -7.5 .. 7.5.
 struct GridCoordinates {
     GridFloats x, y;
@@ -58,9 +60,6 @@ struct BlockMoments {
 /// Sums with weights: 0 leaves a sample out.
 Moments moments_of(GridFloats const& values, GridFloats const& weights);
 BlockMoments block_moments_of(GridFloats const& values, GridFloats const& weights);
-/// Sums over the whole grid.
-Moments moments_of_all(GridFloats const& values);
-
 /// The least-squares plane. Across the direction in which the samples do not spread it is level. Finite for finite
 /// sums.
 GridPlane least_squares(Moments const& moments);
@@ -73,6 +72,13 @@ struct Range {
     float middle() const { return 0.5f * (most + least); }
 };
 Range residual_range(GridFloats const& values, GridFloats const& weights, GridPlane const& plane);
+
+/// The least-squares plane of the whole grid, moved so that it is as far off to both sides.
+struct FittedPlane {
+    GridPlane plane;
+    float half_width = 0; ///< how far
+};
+FittedPlane fit_plane_to_all(GridFloats const& values);
 
 /// Sets `members` to 1 where a sample of non-zero weight is within `tolerance` of the plane, else to 0. Returns how
 /// many there are.

@@ -91,15 +91,6 @@ bool take_all(GridFloats const& values, GridFloats const& candidates, Moments co
     return true;
 }
 
-constexpr GridFloats make_ones() {
-    GridFloats ones{};
-    for (float& one : ones.value) {
-        one = 1;
-    }
-    return ones;
-}
-constexpr GridFloats ones = make_ones();
-
 } // namespace
 
 void find_plane(GridFloats const& values, GridFloats const& candidates, float tolerance, FoundPlane& found) {
@@ -116,11 +107,6 @@ void find_plane(GridFloats const& values, GridFloats const& candidates, float to
     if (found.count < least_plane_samples) {
         found.count = 0;
     }
-}
-
-bool find_plane_of_all(GridFloats const& values, float tolerance, FoundPlane& found) {
-    Range range;
-    return take_all(values, ones, moments_of_all(values), tolerance, found, range);
 }
 
 } // namespace framelet

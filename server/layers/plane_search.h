@@ -20,7 +20,4 @@ inline constexpr int least_plane_samples = 8;
 /// off are dropped again and again. A count of 0 where none takes `least_plane_samples`.
 void find_plane(GridFloats const& values, GridFloats const& candidates, float tolerance, FoundPlane& found);
 
-/// The same for all samples of the grid and one plane. Returns false where they do not lie on one.
-bool find_plane_of_all(GridFloats const& values, float tolerance, FoundPlane& found);
-
 } // namespace framelet

@@ -178,10 +178,13 @@ void SessionLoop::render_plan(RefreshPlan const& plan, ViewState const& state) {
     rendered_ = std::span(rendered_pool_).first(count);
     display_ = std::span(display_pool_).first(count);
     Camera const& camera = state.view.camera;
-    render_framelets(render_scene_, camera, ImagePlane(state.view.viewport), plan.tiles, 0, rendered_);
+    ImagePlane const plane(state.view.viewport);
+    ViewRays const rays = make_view_rays(camera, state.view.viewport);
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+        render_framelet(render_scene_, rays, plane, plan.tiles[i], 0, rendered_[i]);
+        display_[i] = to_display(rendered_[i], state.exposure); // while the samples are in the cache
+    });
     probes_.render(render_scene_, camera, state.view.viewport, state.exposure, plan.probes);
-    tbb::parallel_for(std::size_t{0}, rendered_.size(),
-                      [&](std::size_t i) { display_[i] = to_display(rendered_[i], state.exposure); });
 }
 
 void SessionLoop::describe_shapes(Viewer& viewer, std::vector<std::uint8_t> const& needed, ViewState const& state) {

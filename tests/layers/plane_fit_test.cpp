@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -40,12 +41,20 @@ TEST(PlaneFit, BlockOrderIsAPermutationWithBlocksAsLanes) {
     EXPECT_EQ(grid_coordinates.x[block_order(0)], -7.5f);
     EXPECT_EQ(grid_coordinates.y[block_order(framelet_samples - 1)], 7.5f);
     EXPECT_EQ(block_order(block_samples), 1) << "first sample of the second block";
+    std::array<float, framelet_samples> morton;
+    std::iota(morton.begin(), morton.end(), 0.0f);
+    GridFloats ordered;
+    to_block_order(morton, ordered);
+    for (int i = 0; i < framelet_samples; ++i) {
+        EXPECT_EQ(ordered[block_order(i)], static_cast<float>(i));
+    }
 }
 
 TEST(PlaneFit, FindsAPlaneFromAnyPartOfIt) {
     GridPlane const plane{0.4f, 0.003f, -0.011f};
     GridFloats const values = values_of(plane);
-    expect_near(least_squares(moments_of_all(values)), plane);
+    expect_near(fit_plane_to_all(values).plane, plane);
+    EXPECT_NEAR(fit_plane_to_all(values).half_width, 0, 1e-6f);
     expect_near(least_squares(moments_of(values, where([](float, float) { return true; }))), plane);
     expect_near(least_squares(moments_of(values, where([](float x, float y) { return x + 2 * y > 11; }))), plane);
     BlockMoments const blocks = block_moments_of(values, where([](float, float) { return true; }));
@@ -88,6 +97,11 @@ TEST(PlaneFit, RangeAndMembersAgree) {
     GridFloats members;
     EXPECT_EQ(find_members(values, weights, plane, farthest, members), 12 * framelet_side);
     EXPECT_EQ(find_members(values, weights, plane, 0.999f * farthest, members), 12 * framelet_side - 1);
+    auto const all = where([](float, float) { return true; });
+    FittedPlane const fitted = fit_plane_to_all(values);
+    Range const rest = residual_range(values, all, fitted.plane);
+    EXPECT_NEAR(rest.middle(), 0, 1e-5f);
+    EXPECT_NEAR(rest.half_width(), fitted.half_width, 1e-5f);
     EXPECT_EQ(residual_range(values, where([](float, float) { return false; }), plane).half_width(), 0);
     EXPECT_EQ(greatest(values), *std::max_element(values.value, values.value + framelet_samples));
 }
