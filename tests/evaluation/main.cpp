@@ -14,6 +14,7 @@
 #include <spdlog/spdlog.h>
 
 #include "common/error.h"
+#include "tests/evaluation/antialiasing.h"
 #include "tests/evaluation/calibrate.h"
 #include "tests/evaluation/codec/codec_study.h"
 #include "tests/evaluation/estimators/estimator_verbs.h"
@@ -59,6 +60,7 @@ struct Options {
     framelet::bench::EstimatorStudy estimators;
     framelet::bench::CodecStudy codec;
     framelet::bench::LayerStudy layers;
+    framelet::bench::AntialiasingStudy antialiasing;
     framelet::bench::WallOptions wall{.server_threads =
                                           std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1)};
 };
@@ -187,6 +189,12 @@ void add_layer_options(CLI::App& verb, Options& options) {
         ->capture_default_str();
 }
 
+void add_antialiasing_options(CLI::App& verb, Options& options) {
+    add_output_options(verb, options);
+    verb.add_option("--scene", options.antialiasing.scenes,
+                    "Scene files to measure with (default: all of the project's)");
+}
+
 void add_wall_options(CLI::App& verb, Options& options) {
     add_study_options(verb, options);
     add_link_options(verb, options);
@@ -251,15 +259,32 @@ json codec(Options& options) {
     return compare_codecs(study);
 }
 
+std::vector<std::filesystem::path> bundled_scenes() {
+    std::vector<std::filesystem::path> files;
+    for (auto const& entry : std::filesystem::directory_iterator(source / "scenes")) {
+        if (entry.path().extension() == ".glb") {
+            files.push_back(entry.path());
+        }
+    }
+    std::ranges::sort(files);
+    return files;
+}
+
+json antialiasing(Options& options) {
+    auto& study = options.antialiasing;
+    if (study.scenes.empty()) {
+        study.scenes = bundled_scenes();
+    }
+    if (options.quick) {
+        study.viewport = {256, 256};
+    }
+    return framelet::bench::compare_sample_places(study);
+}
+
 json layers(Options& options) {
     auto& study = options.layers;
     if (study.scenes.empty()) {
-        for (auto const& entry : std::filesystem::directory_iterator(source / "scenes")) {
-            if (entry.path().extension() == ".glb") {
-                study.scenes.push_back(entry.path());
-            }
-        }
-        std::ranges::sort(study.scenes);
+        study.scenes = bundled_scenes();
     }
     if (options.quick) {
         study.viewport = {640, 360};
@@ -332,6 +357,8 @@ int main(int argc, char** argv) {
              study(framelet::bench::prepare_reference));
     add_verb("sensitivity", "How tsar answers to steeper and flatter templates of its error estimate", add_run_options,
              study(framelet::bench::sensitivity));
+    add_verb("antialiasing", "What regular and jittered samples give for the same number of them",
+             add_antialiasing_options, [&options] { return antialiasing(options); });
     add_verb("layers", "How many planes framelets are, how far off those show samples, and what finding them costs",
              add_layer_options, [&options] { return layers(options); });
     add_verb("calibrate", "What every stage costs on this machine", add_scene_options,

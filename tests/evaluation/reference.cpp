@@ -118,8 +118,8 @@ Reference::Reference(BenchScene& scene, ReferenceParameters const& p, std::files
     std::size_t rendered = 0;
     for (std::size_t i = 0; i < count_; ++i) {
         if (stale || !std::filesystem::exists(file(i))) {
-            // Under another name first: what is stopped half way leaves no half picture behind.
-            auto const unfinished = folder_ / "unfinished.png";
+            // Under a name of this process first: what is stopped half way, or runs twice, leaves no half picture.
+            auto const unfinished = folder_ / printed("unfinished-%d.png", static_cast<int>(getpid()));
             write_picture(unfinished, render(i));
             std::filesystem::rename(unfinished, file(i));
             ++rendered;
