@@ -2,7 +2,7 @@
 
 #include "common/cpu_clock.h"
 #include "common/error.h"
-#include "common/image_io.h"
+#include "common/png_writer.h"
 
 namespace framelet {
 
@@ -11,8 +11,8 @@ namespace fs = std::filesystem;
 FramePattern::FramePattern(std::string const& text) {
     auto const fail = [&] {
         return InputError("cannot use \"" + text +
-                          "\" as output: write a file name with one %04d (any number of digits up to 9) where the "
-                          "frame's number goes, as in frames/%04d.png");
+                          "\" as output: give the name of a .png file; one %04d in it (any number of digits up to 9) "
+                          "stands for the frame's number, as in frames/%04d.png");
     };
     std::size_t const percent = text.find('%');
     before_ = text.substr(0, percent);
@@ -35,7 +35,7 @@ FramePattern::FramePattern(std::string const& text) {
         }
         after_ = text.substr(place + 1);
     }
-    if (text.find('\0') != std::string::npos || path(0).extension().empty()) {
+    if (text.find('\0') != std::string::npos || path(0).extension() != ".png") {
         throw fail();
     }
 }
@@ -100,7 +100,7 @@ void FrameWriter::finish() {
     stop();
     throw_if_failed();
     if (last_) {
-        write_picture(pattern_.path(0), *last_);
+        write_png(pattern_.path(0), *last_);
     }
 }
 
@@ -140,7 +140,7 @@ void FrameWriter::run() {
 void FrameWriter::write(Frame const& frame) {
     fs::path const file = pattern_.path(frame.number);
     if (frame.picture) {
-        write_picture(file, *frame.picture);
+        write_png(file, *frame.picture);
     } else {
         fs::copy_file(pattern_.path(frame.number - 1), file, fs::copy_options::overwrite_existing);
     }

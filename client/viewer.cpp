@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "common/error.h"
-#include "common/image_io.h"
+#include "common/png_writer.h"
 
 namespace framelet {
 
@@ -256,7 +256,7 @@ void Viewer::save_screenshot() {
     std::ostringstream name;
     name << "framelet-" << std::put_time(&local, "%Y%m%d-%H%M%S") << ".png";
     try {
-        write_picture(name.str(), picture_);
+        write_png(name.str(), picture_);
         say("saved " + name.str());
     } catch (InputError const& error) {
         say(error.what());

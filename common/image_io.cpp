@@ -107,21 +107,4 @@ FloatImage read_float_image(std::filesystem::path const& file) {
     return image;
 }
 
-void write_picture(std::filesystem::path const& file, Picture const& picture) {
-    std::string const name = file.string();
-    auto const output = OIIO::ImageOutput::create(name);
-    std::vector<std::uint8_t> rgb(picture.rgba.size() / 4 * 3);
-    for (std::size_t i = 0; i < picture.rgba.size() / 4; ++i) {
-        std::copy_n(&picture.rgba[i * 4], 3, &rgb[i * 3]);
-    }
-    OIIO::ImageSpec spec(picture.width, picture.height, 3, OIIO::TypeDesc::UINT8);
-    spec.attribute("oiio:ColorSpace", "sRGB");
-    spec.attribute("png:compressionLevel", 3);
-    if (!output || !output->open(name, spec) || !output->write_image(OIIO::TypeDesc::UINT8, rgb.data()) ||
-        !output->close()) {
-        std::string const why = output ? output->geterror() : OIIO::geterror();
-        throw InputError("cannot write image '" + name + "': " + why.substr(0, why.find('\n')));
-    }
-}
-
 } // namespace framelet

@@ -1,4 +1,4 @@
-// Image files in and out, through OpenImageIO. Every failure is an InputError that names the file.
+// Image files in, through OpenImageIO. Every failure is an InputError that names the file.
 #pragma once
 
 #include <filesystem>
@@ -19,8 +19,5 @@ Picture read_picture(std::span<std::byte const> bytes, std::string const& name);
 /// Reads a linear float picture (.hdr, .exr; 8-bit formats are sRGB-decoded). NaN, Inf and negatives become finite >=
 /// 0.
 FloatImage read_float_image(std::filesystem::path const& file);
-
-/// Writes RGB (alpha dropped); the format follows the name's ending (.png, .jpg, ...).
-void write_picture(std::filesystem::path const& file, Picture const& picture);
 
 } // namespace framelet

@@ -7,7 +7,7 @@
 #include <spdlog/spdlog.h>
 
 #include "common/error.h"
-#include "common/image_io.h"
+#include "common/png_writer.h"
 #include "server/schedule/field_picture.h"
 
 namespace framelet {
@@ -109,7 +109,7 @@ void Recorder::write(Entry const& entry) {
         std::snprintf(file.data(), file.size(), "%llu-%06llu-%s.png",
                       static_cast<unsigned long long>(entry.record.session),
                       static_cast<unsigned long long>(entry.record.cycle), name);
-        write_picture(folder_ / file.data(), draw_field(shown.field, shown.choices, shown.cut, view));
+        write_png(folder_ / file.data(), draw_field(shown.field, shown.choices, shown.cut, view));
     }
 }
 

@@ -42,8 +42,9 @@ TEST(FramePattern, NumbersFiles) {
 }
 
 TEST(FramePattern, RefusesAllElse) {
-    for (char const* const text : {"", "%s.png", "%n.png", "%04d%d.png", "%.png", "%04", "%0d.png", "%00d.png",
-                                   "%12d.png", "%-4d.png", "%%.png", "a/%04x.png", "frames", "%04d", "a.png/"}) {
+    for (char const* const text :
+         {"", "%s.png", "%n.png", "%04d%d.png", "%.png", "%04", "%0d.png", "%00d.png", "%12d.png", "%-4d.png", "%%.png",
+          "a/%04x.png", "frames", "f.jpg", "%04d", "a.png/"}) {
         EXPECT_THROW(FramePattern{text}, InputError) << text;
     }
 }
@@ -76,7 +77,8 @@ TEST_F(FrameWriterTest, SaysThatItCannotWrite) {
     fs::create_directories(folder_);
     std::ofstream(folder_ / "file") << "in the way";
     EXPECT_THROW(FrameWriter(FramePattern((folder_ / "file" / "%d.png").string())), InputError);
-    FrameWriter writer(FramePattern((folder_ / "%d.nonsense").string()));
+    fs::create_directories(folder_ / "0.png");
+    FrameWriter writer(FramePattern((folder_ / "%d.png").string()));
     writer.add(grey(1), true);
     EXPECT_THROW(writer.finish(), InputError);
 }

@@ -1,4 +1,5 @@
 #include "common/image_io.h"
+#include "common/png_writer.h"
 
 #include <filesystem>
 #include <fstream>
@@ -16,7 +17,7 @@ TEST(ImageIo, PngRoundTripIsExact) {
         picture.rgba[i] = i % 4 == 3 ? 255 : static_cast<std::uint8_t>(i * 31);
     }
     auto const file = std::filesystem::temp_directory_path() / "framelet_image_io_test.png";
-    write_picture(file, picture);
+    write_png(file, picture);
     EXPECT_EQ(read_picture(file), picture);
 
     std::ifstream stream(file, std::ios::binary);
@@ -35,7 +36,9 @@ TEST(ImageIo, FailuresNameTheFile) {
             EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
         }
     }
-    EXPECT_THROW(write_picture("/nonexistent/picture.png", Picture(2, 2)), InputError);
+    for (auto const* name : {"/nonexistent/picture.png", "/dev/full"}) { // no folder, no room
+        EXPECT_THROW(write_png(name, Picture(2, 2)), InputError) << name;
+    }
     EXPECT_THROW(read_picture(std::as_bytes(std::span("no image")), "garbage.png"), InputError);
 }
 

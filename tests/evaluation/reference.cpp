@@ -10,6 +10,7 @@
 
 #include "common/color.h"
 #include "common/image_io.h"
+#include "common/png_writer.h"
 
 namespace framelet::bench {
 namespace {
@@ -120,7 +121,7 @@ Reference::Reference(BenchScene& scene, ReferenceParameters const& p, std::files
         if (stale || !std::filesystem::exists(file(i))) {
             // Under a name of this process first: what is stopped half way, or runs twice, leaves no half picture.
             auto const unfinished = folder_ / printed("unfinished-%d.png", static_cast<int>(getpid()));
-            write_picture(unfinished, render(i));
+            write_png(unfinished, render(i));
             std::filesystem::rename(unfinished, file(i));
             ++rendered;
             // A terminal gets a line that counts up, a log one line a quarter.

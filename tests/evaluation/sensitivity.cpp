@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "common/image_io.h"
+#include "common/png_writer.h"
 #include "tests/evaluation/measures/measures.h"
 #include "tests/evaluation/methods/tsar.h"
 
@@ -134,8 +134,8 @@ void draw_sheets(std::vector<Cell> const& grid, std::filesystem::path const& fol
         pictures.push_back(&cell.picture);
         tilings.push_back(&cell.tiling);
     }
-    write_picture(folder / (scene + "-sensitivity.png"), contact_sheet(pictures));
-    write_picture(folder / (scene + "-sensitivity-tiling.png"), contact_sheet(tilings));
+    write_png(folder / (scene + "-sensitivity.png"), contact_sheet(pictures));
+    write_png(folder / (scene + "-sensitivity-tiling.png"), contact_sheet(tilings));
 }
 
 json to_json(EnergyTemplate const& line) {

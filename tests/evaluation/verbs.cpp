@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "common/image_io.h"
+#include "common/png_writer.h"
 #include "tests/evaluation/charts/charts.h"
 #include "tests/evaluation/charts/side_by_side.h"
 #include "tests/evaluation/comparison.h"
@@ -29,7 +29,7 @@ void draw_comparison(Comparison const& comparison, std::filesystem::path const& 
         shown.push_back({record.method, record.sample});
     }
     draw(chart, folder / (comparison.scene + "-error"));
-    write_picture(folder / (comparison.scene + "-side-by-side.png"), side_by_side(comparison.reference_sample, shown));
+    write_png(folder / (comparison.scene + "-side-by-side.png"), side_by_side(comparison.reference_sample, shown));
 }
 
 /// One curve a method: a point for each of the runs.

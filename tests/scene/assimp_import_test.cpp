@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "common/error.h"
-#include "common/image_io.h"
+#include "common/png_writer.h"
 #include "gltf_writer.h"
 #include "server/scene/animation.h"
 #include "server/scene/scene_finish.h"
@@ -18,7 +18,7 @@ TEST(ObjImport, MaterialsBecomeMetallicRoughness) {
     Picture picture(2, 2);
     picture.rgba.assign(16, 255);
     picture.rgba[0] = 0;
-    write_picture(folder.path() / "colour.png", picture);
+    write_png(folder.path() / "colour.png", picture);
     folder.write("a.mtl", "newmtl shiny\nKd 0.5 0.25 0\nKs 1 1 1\nNs 123\nKe 2 0 0\nd 0.5\nillum 2\n"
                           "newmtl dull\nKd 1 1 1\nKs 0 0 0\nNs 500\nmap_Kd colour.png\n"
                           "newmtl broken\nmap_Kd textures\\nowhere.png\n");
@@ -77,11 +77,11 @@ TEST(ObjImport, OpacityMapsGoIntoTheBaseColour) {
     TemporaryFolder const folder;
     Picture picture(4, 4);
     picture.rgba.assign(64, 255);
-    write_picture(folder.path() / "colour.png", picture);
+    write_png(folder.path() / "colour.png", picture);
     for (std::size_t i = 0; i < 8 * 4; ++i) {
         picture.rgba[i] = i % 4 == 3 ? 255 : 0; // the upper half is black: transparent
     }
-    write_picture(folder.path() / "mask.png", picture);
+    write_png(folder.path() / "mask.png", picture);
     folder.write("a.mtl", "newmtl leaf\nmap_Kd colour.png\nmap_d mask.png\n");
     Scene const scene = import_scene(folder.write("a.obj", "mtllib a.mtl\nusemtl leaf\n" + quad + "f 1/1 2/2 3/3\n"));
     Material const& leaf = scene.materials.at(static_cast<std::size_t>(scene.meshes[0].primitives[0].material));

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "common/error.h"
-#include "common/image_io.h"
+#include "common/png_writer.h"
 #include "gltf_writer.h"
 #include "server/scene/animation.h"
 
@@ -107,7 +107,7 @@ TEST(GltfImport, MaterialsTexturesAndExtensions) {
     TemporaryFolder const folder;
     Picture picture(2, 1);
     picture.rgba = {255, 0, 0, 255, 0, 0, 255, 255};
-    write_picture(folder.path() / "a picture.png", picture);
+    write_png(folder.path() / "a picture.png", picture);
     GltfWriter writer;
     writer.array(triangle_positions, "VEC3");
     std::string const text = writer.json(
