@@ -1,14 +1,16 @@
 #!/usr/bin/env bash
-# Installs the Debian packages of cmake/packages.txt, and of the lists named as arguments, that are missing. Quiet and
-# quick where none is.
+# Installs the Debian packages that are missing of cmake/packages_viewer.txt, cmake/packages.txt and the lists named as
+# arguments; with --viewer those of the first list alone. Quiet and quick where none is.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+lists=(packages_viewer.txt)
+[ "${1:-}" = --viewer ] || lists+=(packages.txt "$@")
 missing=()
 while read -r package; do
     if ! dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed'; then
         missing+=("$package")
     fi
-done < <(cat "$here/packages.txt" "${@/#/$here/}" | grep -v '^#' | grep -v '^$')
+done < <(cat "${lists[@]/#/$here/}" | grep -v '^#' | grep -v '^$')
 [ ${#missing[@]} -eq 0 ] && exit 0
 
 echo "installing ${#missing[@]} Debian packages: ${missing[*]}"
