@@ -2,17 +2,26 @@
 
 #include "common/cpu_clock.h"
 #include "common/error.h"
-#include "common/png_writer.h"
+#include "common/picture_writer.h"
 
 namespace framelet {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+void write_picture(fs::path const& file, Picture const& picture) {
+    file.extension() == ".ppm" ? write_ppm(file, picture) : write_png(file, picture);
+}
+
+} // namespace
+
 FramePattern::FramePattern(std::string const& text) {
     auto const fail = [&] {
-        return InputError("cannot use \"" + text +
-                          "\" as output: give the name of a .png file; one %04d in it (any number of digits up to 9) "
-                          "stands for the frame's number, as in frames/%04d.png");
+        return InputError(
+            "cannot use \"" + text +
+            "\" as output: give the name of a .png or .ppm file; one %04d in it (any number of digits up to 9) "
+            "stands for the frame's number, as in frames/%04d.png");
     };
     std::size_t const percent = text.find('%');
     before_ = text.substr(0, percent);
@@ -35,7 +44,7 @@ FramePattern::FramePattern(std::string const& text) {
         }
         after_ = text.substr(place + 1);
     }
-    if (text.find('\0') != std::string::npos || path(0).extension() != ".png") {
+    if (text.find('\0') != std::string::npos || (path(0).extension() != ".png" && path(0).extension() != ".ppm")) {
         throw fail();
     }
 }
@@ -100,7 +109,7 @@ void FrameWriter::finish() {
     stop();
     throw_if_failed();
     if (last_) {
-        write_png(pattern_.path(0), *last_);
+        write_picture(pattern_.path(0), *last_);
     }
 }
 
@@ -140,7 +149,7 @@ void FrameWriter::run() {
 void FrameWriter::write(Frame const& frame) {
     fs::path const file = pattern_.path(frame.number);
     if (frame.picture) {
-        write_png(file, *frame.picture);
+        write_picture(file, *frame.picture);
     } else {
         fs::copy_file(pattern_.path(frame.number - 1), file, fs::copy_options::overwrite_existing);
     }

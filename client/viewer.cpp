@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "common/error.h"
-#include "common/png_writer.h"
+#include "common/picture_writer.h"
 
 namespace framelet {
 

@@ -218,7 +218,8 @@ int main(int argc, char** argv) {
     app.add_option("--rate", options.rate, "Display frames a second (default 60; with numbered files 10)")
         ->check(CLI::Range(0.1, 1000.0));
     app.add_option("--output", options.output,
-                   "Picture file for each frame, as in frames/%04d.png; without a number: for the last frame");
+                   "Picture file for each frame, as in frames/%04d.png (or .ppm: larger, quicker); without a number: "
+                   "for the last frame");
     app.add_option("--frames", options.frames_file,
                    "Write a line of JSON for each frame to this file: when it was shown, the scene's time, bytes, CPU");
     app.add_flag("--overlay", options.overlay,

@@ -1,5 +1,5 @@
 #include "common/image_io.h"
-#include "common/png_writer.h"
+#include "common/picture_writer.h"
 
 #include <filesystem>
 #include <fstream>
@@ -11,7 +11,7 @@
 namespace framelet {
 namespace {
 
-TEST(ImageIo, PngRoundTripIsExact) {
+TEST(ImageIo, RoundTripsAreExact) {
     Picture picture(37, 19);
     for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
         picture.rgba[i] = i % 4 == 3 ? 255 : static_cast<std::uint8_t>(i * 31);
@@ -19,6 +19,10 @@ TEST(ImageIo, PngRoundTripIsExact) {
     auto const file = std::filesystem::temp_directory_path() / "framelet_image_io_test.png";
     write_png(file, picture);
     EXPECT_EQ(read_picture(file), picture);
+    auto const plain = std::filesystem::path(file).replace_extension(".ppm");
+    write_ppm(plain, picture);
+    EXPECT_EQ(read_picture(plain), picture);
+    std::filesystem::remove(plain);
 
     std::ifstream stream(file, std::ios::binary);
     std::string const bytes{std::istreambuf_iterator<char>(stream), {}};
@@ -38,6 +42,7 @@ TEST(ImageIo, FailuresNameTheFile) {
     }
     for (auto const* name : {"/nonexistent/picture.png", "/dev/full"}) { // no folder, no room
         EXPECT_THROW(write_png(name, Picture(2, 2)), InputError) << name;
+        EXPECT_THROW(write_ppm(name, Picture(2, 2)), InputError) << name;
     }
     EXPECT_THROW(read_picture(std::as_bytes(std::span("no image")), "garbage.png"), InputError);
 }

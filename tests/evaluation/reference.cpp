@@ -10,7 +10,7 @@
 
 #include "common/color.h"
 #include "common/image_io.h"
-#include "common/png_writer.h"
+#include "common/picture_writer.h"
 
 namespace framelet::bench {
 namespace {

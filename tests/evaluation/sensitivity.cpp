@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "common/png_writer.h"
+#include "common/picture_writer.h"
 #include "tests/evaluation/measures/measures.h"
 #include "tests/evaluation/methods/tsar.h"
 

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "common/png_writer.h"
+#include "common/picture_writer.h"
 #include "tests/evaluation/charts/charts.h"
 #include "tests/evaluation/charts/side_by_side.h"
 #include "tests/evaluation/comparison.h"

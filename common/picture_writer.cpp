@@ -1,4 +1,4 @@
-#include "common/png_writer.h"
+#include "common/picture_writer.h"
 
 #include <cerrno>
 #include <csetjmp>
@@ -63,24 +63,44 @@ bool write_all(Writer const& writer, std::FILE* stream, Picture const& picture) 
     return true;
 }
 
+InputError failure(std::filesystem::path const& file, std::string const& why) {
+    return InputError("cannot write image '" + file.string() + "': " + why);
+}
+
+/// Opens the file, lets `write` fill it (a failure's text, or none) and closes it again.
+template <typename Write>
+void write_file(std::filesystem::path const& file, Write const& write) {
+    std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "wb"), std::fclose);
+    if (!stream) {
+        throw failure(file, std::strerror(errno));
+    }
+    std::string const why = write(stream.get());
+    if (!why.empty()) {
+        throw failure(file, why);
+    }
+    if (std::fclose(stream.release()) != 0) {
+        throw failure(file, std::strerror(errno));
+    }
+}
+
 } // namespace
 
 void write_png(std::filesystem::path const& file, Picture const& picture) {
-    auto const fail = [&](std::string const& why) {
-        return InputError("cannot write image '" + file.string() + "': " + why);
-    };
-    std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "wb"), std::fclose);
-    if (!stream) {
-        throw fail(std::strerror(errno));
+    write_file(file, [&](std::FILE* stream) -> std::string {
+        Complaint complaint;
+        Writer const writer(complaint);
+        return write_all(writer, stream, picture) ? "" : complaint.text;
+    });
+}
+
+void write_ppm(std::filesystem::path const& file, Picture const& picture) {
+    std::string content = "P6\n" + std::to_string(picture.width) + " " + std::to_string(picture.height) + "\n255\n";
+    for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
+        content.append(reinterpret_cast<char const*>(&picture.rgba[i]), 3);
     }
-    Complaint complaint;
-    Writer const writer(complaint);
-    if (!write_all(writer, stream.get(), picture)) {
-        throw fail(complaint.text);
-    }
-    if (std::fclose(stream.release()) != 0) {
-        throw fail(std::strerror(errno));
-    }
+    write_file(file, [&](std::FILE* stream) -> std::string {
+        return std::fwrite(content.data(), 1, content.size(), stream) == content.size() ? "" : std::strerror(errno);
+    });
 }
 
 } // namespace framelet
