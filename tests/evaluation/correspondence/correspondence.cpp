@@ -225,7 +225,7 @@ void compare(Surfaces const& before, Surfaces const& after, ExactMotion const& b
     }
 }
 
-/// A flight for scenes in which nothing moves.
+/// A flight for scenes that have no camera of their own.
 Camera flown(Camera camera, float median_depth, double seconds) {
     constexpr float depths_a_second = 0.5f;
     constexpr float radians_a_second = 0.5235988f;
@@ -255,7 +255,7 @@ void measure_from(BenchScene& scene, CorrespondenceStudy const& study, SceneTime
         SceneTime const later = time + study.ahead[i];
         pose_at(scene, later);
         Camera const moved =
-            scene.duration > 0 ? scene.camera : flown(camera, median_depth(before.framelets), study.ahead[i]);
+            scene.scene_camera != none ? scene.camera : flown(camera, median_depth(before.framelets), study.ahead[i]);
         Surfaces const after = render_surfaces(scene, moved, study.viewport);
         WarpPlan plans[2];
         for (int shift = 0; shift < 2; ++shift) {
