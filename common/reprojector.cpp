@@ -117,9 +117,7 @@ void Reprojector::start_moving(Viewport viewport, std::size_t blocks) {
         blocks_.assign(blocks, {});
     }
     auto const pixels = static_cast<std::size_t>(viewport.width) * static_cast<std::size_t>(viewport.height);
-    for (auto* const plane : {&confidence_.inverse_depth, &confidence_.scene_time, &confidence_.stretch}) {
-        plane->resize(pixels);
-    }
+    inverse_depth_.resize(pixels);
     block_means_.resize(blocks);
     painted_.resize(blocks);
     is_exact_ = false;
@@ -181,9 +179,7 @@ bool Reprojector::update_block(FrameletCache const& cache, Camera const& camera,
     } else {
         write_colors(block, left, top, picture);
     }
-    write_plane(block.inverse_depth, left, top, viewport, confidence_.inverse_depth);
-    write_plane(block.scene_time, left, top, viewport, confidence_.scene_time);
-    write_plane(block.stretch, left, top, viewport, confidence_.stretch);
+    write_plane(block.inverse_depth, left, top, viewport, inverse_depth_);
     block_means_[index] = far_mean(block);
     blocks_[index] = {signature, block.holes};
     painted_[index] = 1;
@@ -207,7 +203,7 @@ void Reprojector::fill(Picture& picture) {
             auto const index =
                 static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
             if (blocks_[index].holes > 0) {
-                fill_holes(means_, confidence_.inverse_depth, column, row, picture);
+                fill_holes(means_, inverse_depth_, column, row, picture);
                 painted_[index] = 1;
             }
         }
