@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 
 #include "common/color.h"
+#include "common/patch_sampling.h"
 #include "common/reconstruction.h"
 
 namespace framelet {
@@ -89,19 +91,24 @@ FarMean between(FarMean const& own, FarMean const& beside, FarMean const& above,
 }
 
 /// Gives fine cells with nothing in them a value. `parent` and `other` are the coarse column (or row) that a fine one
-/// lies in and the nearest other one. Cells within the margin are not needed.
+/// lies in and the nearest other one. Cells within the margin are not needed. (No branch depends on a cell: most of a
+/// row is worked on together.)
 template <int margin, int n, int m, class Parent, class Other>
 void push(Grid<m> const& coarse, Grid<n>& fine, Parent const& parent, Other const& other) {
     for (int y = margin; y < n - margin; ++y) {
+        int const own_row = parent(y) * m;
+        int const other_row = other(y) * m;
         for (int x = margin; x < n - margin; ++x) {
             auto const to = static_cast<std::size_t>(y * n + x);
-            if (is_nothing(fine.inverse_depth[to])) {
-                auto const at = [&](int column, int row) {
-                    return coarse.mean(static_cast<std::size_t>(row * m + column));
-                };
-                fine.put(to, between(at(parent(x), parent(y)), at(other(x), parent(y)), at(parent(x), other(y)),
-                                     at(other(x), other(y))));
-            }
+            FarMean const mean = between(coarse.mean(static_cast<std::size_t>(own_row + parent(x))),
+                                         coarse.mean(static_cast<std::size_t>(own_row + other(x))),
+                                         coarse.mean(static_cast<std::size_t>(other_row + parent(x))),
+                                         coarse.mean(static_cast<std::size_t>(other_row + other(x))));
+            bool const nothing = is_nothing(fine.inverse_depth[to]);
+            fine.red[to] = nothing ? mean.red : fine.red[to];
+            fine.green[to] = nothing ? mean.green : fine.green[to];
+            fine.blue[to] = nothing ? mean.blue : fine.blue[to];
+            fine.inverse_depth[to] = nothing ? mean.inverse_depth : fine.inverse_depth[to];
         }
     }
 }
@@ -124,22 +131,28 @@ void read_window(std::span<float const> inverse_depth, Picture const& picture, i
     for (int y = std::max(-top, 0); y < std::min(32, picture.height - top); ++y) {
         std::size_t const from = static_cast<std::size_t>(top + y) * static_cast<std::size_t>(picture.width) +
                                  static_cast<std::size_t>(left + first);
-        float const* const depth = inverse_depth.data() + from;
-        std::uint8_t const* const pixel = picture.rgba.data() + 4 * from;
-        for (int x = 0; x < last - first; ++x) {
-            auto const to = static_cast<std::size_t>(y * 32 + first + x);
-            float const shows = depth[x] > hole_depth ? 1.0f : 0.0f;
-            auto const square = [shows](int byte) { return shows * static_cast<float>(byte * byte); };
-            window.red[to] = square(pixel[4 * x]);
-            window.green[to] = square(pixel[4 * x + 1]);
-            window.blue[to] = square(pixel[4 * x + 2]);
-            window.inverse_depth[to] = depth[x] > hole_depth ? depth[x] : FarMean::nothing;
+        alignas(64) std::array<std::uint32_t, 32> colors{};
+        alignas(64) std::array<float, 32> depths;
+        depths.fill(hole_depth);
+        auto const count = static_cast<std::size_t>(last - first);
+        auto const start = static_cast<std::size_t>(first);
+        std::memcpy(&colors[start], picture.rgba.data() + 4 * from, 4 * count);
+        std::memcpy(&depths[start], inverse_depth.data() + from, 4 * count);
+        auto const to = static_cast<std::size_t>(y * 32);
+        for (std::size_t x = 0; x < 32; ++x) {
+            bool const shows = depths[x] > hole_depth;
+            std::uint32_t const color = shows ? colors[x] : 0u;
+            window.red[to + x] = square(red_of(color));
+            window.green[to + x] = square(green_of(color));
+            window.blue[to + x] = square(blue_of(color));
+            window.inverse_depth[to + x] = shows ? depths[x] : FarMean::nothing;
         }
     }
 }
 
-std::uint8_t byte_of(float square) {
-    return static_cast<std::uint8_t>(std::clamp(std::sqrt(square) + 0.5f, 0.0f, 255.0f));
+std::uint32_t byte_of(float square) {
+    return static_cast<std::uint32_t>(
+        static_cast<std::int32_t>(std::min(std::sqrt(std::max(square, 0.0f)) + 0.5f, 255.0f)));
 }
 
 } // namespace
@@ -251,21 +264,24 @@ void fill_holes(FarMeans const& means, std::span<float const> inverse_depth, int
     push<1>(eights, fours);
     push<3>(fours, twos);
     push<block_side / 2>(twos, pixels);
-    std::uint8_t const uncovered = srgb_byte_from_linear(uncovered_light);
+    std::uint32_t const gray = srgb_byte_from_linear(uncovered_light);
+    std::uint32_t const uncovered = picture_pixel(gray, gray, gray);
+    int const width = std::min(block_side, picture.width - left);
     for (int y = 0; y < std::min(block_side, picture.height - top); ++y) {
-        std::uint8_t* pixel = picture.row(top + y) + 4 * left;
-        std::size_t from = static_cast<std::size_t>(top + y) * static_cast<std::size_t>(picture.width) +
-                           static_cast<std::size_t>(left);
-        for (int x = 0; x < std::min(block_side, picture.width - left); ++x, ++from, pixel += 4) {
-            if (inverse_depth[from] > hole_depth) {
-                continue;
+        auto const window = static_cast<std::size_t>((y + block_side / 2) * 32 + block_side / 2);
+        std::array<std::uint32_t, block_side> colors;
+        for (std::size_t x = 0; x < block_side; ++x) {
+            FarMean const mean = pixels.mean(window + x);
+            std::uint32_t const color = picture_pixel(byte_of(mean.red), byte_of(mean.green), byte_of(mean.blue));
+            colors[x] = is_nothing(mean.inverse_depth) ? uncovered : color;
+        }
+        float const* const depth =
+            inverse_depth.data() + static_cast<std::size_t>(top + y) * static_cast<std::size_t>(picture.width) + left;
+        std::uint8_t* const pixel = picture.row(top + y) + 4 * left;
+        for (int x = 0; x < width; ++x) {
+            if (!(depth[x] > hole_depth)) {
+                std::memcpy(pixel + 4 * x, &colors[static_cast<std::size_t>(x)], sizeof colors[0]);
             }
-            FarMean const mean = pixels.mean(static_cast<std::size_t>((y + block_side / 2) * 32 + x + block_side / 2));
-            bool const known = !is_nothing(mean.inverse_depth);
-            pixel[0] = known ? byte_of(mean.red) : uncovered;
-            pixel[1] = known ? byte_of(mean.green) : uncovered;
-            pixel[2] = known ? byte_of(mean.blue) : uncovered;
-            pixel[3] = 255;
         }
     }
 }

@@ -18,6 +18,10 @@ namespace {
 
 constexpr int side = WarpedBlock::side;
 
+/// Where less than this share of what is held would show (after a cut), the rest being made up, all of it stays where
+/// it was rendered: that is nearer to what comes (measured on cuts of one scene).
+constexpr double least_kept = 0.1;
+
 /// Nothing of a framelet of this view leaves its place; of those that hold something moving only if no time has passed.
 bool is_in_place(HeldView const& view, bool moves, Camera const& camera, SceneTime scene_time) {
     bool const same_camera = view.camera == camera || !is_reprojectable(view.camera) || !is_reprojectable(camera);
@@ -30,13 +34,34 @@ bool is_all_in_place(FrameletCache const& cache, Camera const& camera, SceneTime
     });
 }
 
+/// Also true where bodies that could move have come to rest.
+bool is_in_place(CachedFramelet const& framelet, HeldView const& view, Camera const& camera, SceneTime scene_time,
+                 BodyMotions const& motions) {
+    if (is_in_place(view, framelet.shape.moves, camera, scene_time)) {
+        return true;
+    }
+    if (!is_in_place(view, false, camera, scene_time)) {
+        return false;
+    }
+    auto const rests = [&](BodyNumber body, Vec3 const& velocity) {
+        return velocity == Vec3(0) &&
+               (body == static_body || motions.between(body, view.scene_time, scene_time) == Motion{});
+    };
+    HeldShape const& shape = framelet.shape;
+    return std::all_of(shape.layers.begin(), shape.layers.begin() + shape.layer_count,
+                       [&](HeldLayer const& held) { return rests(held.layer.body, held.layer.velocity); }) &&
+           std::ranges::all_of(shape.loose,
+                               [&](HeldLoose const& loose) { return rests(loose.sample.body, loose.sample.velocity); });
+}
+
 /// True when the block is covered and all framelets of its place are in place.
-bool is_block_in_place(FrameletCache const& cache, Camera const& camera, SceneTime scene_time, int column, int row) {
+bool is_block_in_place(FrameletCache const& cache, Camera const& camera, SceneTime scene_time,
+                       BodyMotions const& motions, int column, int row) {
     ImagePlane const& plane = cache.plane();
     int const depth = plane.pixel_depth();
     auto const is_fine = [&](CachedFramelet const* framelet) {
         return framelet == nullptr ||
-               is_in_place(cache.views()[framelet->view], framelet->shape.moves, camera, scene_time);
+               is_in_place(*framelet, cache.views()[framelet->view], camera, scene_time, motions);
     };
     bool is_covered = cache.covered_below(depth, column, row) > 0;
     for (int d = plane.min_depth(); d <= depth; ++d) {
@@ -141,12 +166,23 @@ void Reprojector::show(FrameletCache const& cache, std::span<PixelRect const> ch
         bool painted = false;
         std::vector<PatchView> patches;
         for (int column = 0; column < columns; ++column) {
-            painted |= update_block(cache, camera, scene_time, column, row, patches, picture);
+            painted |= update_block(cache, camera, scene_time, motions, column, row, patches, picture);
         }
         if (painted) {
             any.store(true, std::memory_order_relaxed);
         }
     });
+    if (any) {
+        count_holes(picture);
+    }
+    if (1 - hole_share_ < least_kept * cache.coverage()) {
+        blocks_.clear(); // no block is as the plan says
+        std::ranges::fill(painted_, std::uint8_t{0});
+        reconstruct_all(cache, picture);
+        repainted.assign(1, {0, 0, picture.width, picture.height});
+        has_shown_ = true;
+        return;
+    }
     if (any) {
         fill(picture);
     }
@@ -154,13 +190,14 @@ void Reprojector::show(FrameletCache const& cache, std::span<PixelRect const> ch
     has_shown_ = true;
 }
 
-bool Reprojector::update_block(FrameletCache const& cache, Camera const& camera, SceneTime scene_time, int column,
-                               int row, std::vector<PatchView>& patches, Picture& picture) {
+bool Reprojector::update_block(FrameletCache const& cache, Camera const& camera, SceneTime scene_time,
+                               BodyMotions const& motions, int column, int row, std::vector<PatchView>& patches,
+                               Picture& picture) {
     auto const index =
         static_cast<std::size_t>(row) * static_cast<std::size_t>(plan_.columns()) + static_cast<std::size_t>(column);
     plan_.block(index, patches);
     bool const in_place = std::ranges::all_of(patches, [](PatchView const& view) { return view.patch->is_still; }) &&
-                          is_block_in_place(cache, camera, scene_time, column, row);
+                          is_block_in_place(cache, camera, scene_time, motions, column, row);
     std::uint64_t const signature = signature_of(patches, in_place);
     if (signature == blocks_[index].signature) {
         return false;
@@ -186,14 +223,17 @@ bool Reprojector::update_block(FrameletCache const& cache, Camera const& camera,
     return true;
 }
 
-/// Holes depend on all that surrounds them, so all of them are filled again.
-void Reprojector::fill(Picture& picture) {
+void Reprojector::count_holes(Picture const& picture) {
     std::int64_t holes = 0;
     for (BlockState const& block : blocks_) {
         holes += block.holes;
     }
     hole_share_ = static_cast<double>(holes) / (static_cast<double>(picture.width) * picture.height);
-    if (holes == 0) {
+}
+
+/// Holes depend on all that surrounds them, so all of them are filled again.
+void Reprojector::fill(Picture& picture) {
+    if (hole_share_ == 0) {
         return;
     }
     int const columns = plan_.columns();

@@ -24,7 +24,8 @@ public:
     ///
     /// Where all that is held was taken with this camera and nothing in it has moved since, this is `reconstruct`, byte
     /// by byte; so is every block for which that holds while others move. Samples of or for an orthographic camera stay
-    /// on their pixels. Only blocks whose samples or their places differ from the last call's are painted.
+    /// on their pixels. So does everything where the camera has cut: where nearly nothing of what is held would show in
+    /// the new view. Only blocks whose samples or their places differ from the last call's are painted.
     void show(FrameletCache const& cache, std::span<PixelRect const> changed, Camera const& camera,
               SceneTime scene_time, BodyMotions const& motions, Picture& picture, std::vector<PixelRect>& repainted);
 
@@ -46,8 +47,10 @@ private:
                     std::vector<PixelRect>& repainted);
     void start_moving(Viewport viewport, std::size_t blocks);
     /// True when it had to be painted.
-    bool update_block(FrameletCache const& cache, Camera const& camera, SceneTime scene_time, int column, int row,
-                      std::vector<PatchView>& patches, Picture& picture);
+    bool update_block(FrameletCache const& cache, Camera const& camera, SceneTime scene_time,
+                      BodyMotions const& motions, int column, int row, std::vector<PatchView>& patches,
+                      Picture& picture);
+    void count_holes(Picture const& picture);
     void fill(Picture& picture);
 
     bool has_shown_ = false;

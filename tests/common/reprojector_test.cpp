@@ -1,5 +1,6 @@
 #include "common/reprojector.h"
 
+#include <algorithm>
 #include <map>
 #include <random>
 
@@ -182,6 +183,45 @@ TEST(Reprojector, BodiesAndWhatDeformsMove) {
         EXPECT_GE(got.right_depth, 0.998 * got.seen);
         EXPECT_GE(got.half, 0.995 * got.compared);
         EXPECT_GE(got.tenth, 0.90 * got.compared);
+    }
+}
+
+TEST(Reprojector, BodiesThatHaveComeToRestAreExact) {
+    AnalyticScene scene = room();
+    BodyTrack track{5, 0, {}};
+    for (int i = 0; i <= 60; ++i) { // moves until 0.5 s
+        auto const time = static_cast<float>(std::min(i, 30)) / body_keys_per_second;
+        track.keys.push_back({Vec3(0.6f * time, 0, 0), glm::angleAxis(0.7f * time, Vec3(0, 0, 1)), Vec3(1)});
+    }
+    scene.motions.extend(track);
+    scene.quads[2].body = 5;
+    FrameletCache const cache = filled(scene, front(), 2, 0.55);
+    Picture exact(viewport.width, viewport.height);
+    reconstruct_all(cache, exact);
+    EXPECT_EQ(show(cache, front(), 0.9, scene.motions).picture, exact);
+    EXPECT_NE(show(cache, front(), 0.2, scene.motions).picture, exact);
+}
+
+TEST(Reprojector, AfterACutWhatIsHeldStaysWhereItIs) {
+    AnalyticScene const scene = room();
+    FrameletCache const cache = filled(scene, front(), 0);
+    Picture unmoved(viewport.width, viewport.height);
+    reconstruct_all(cache, unmoved);
+    Camera away = front();
+    away.orientation = glm::angleAxis(3.0f, Vec3(0, 1, 0)) * away.orientation;
+    Camera aside = front();
+    aside.orientation = glm::angleAxis(0.3f, Vec3(0, 1, 0)) * aside.orientation;
+    Reprojector reprojector;
+    Picture picture(viewport.width, viewport.height);
+    std::vector<PixelRect> repainted;
+    for (Camera const& camera : {aside, away, away, aside, front(), away}) {
+        reprojector.show(cache, {}, camera, 0, {}, picture, repainted);
+        if (camera == aside) {
+            EXPECT_EQ(picture, show(cache, aside, 0).picture);
+        } else {
+            EXPECT_EQ(picture, unmoved);
+            EXPECT_EQ(reprojector.hole_share(), camera == away ? 1 : 0);
+        }
     }
 }
 
@@ -427,14 +467,8 @@ TEST(Reprojector, NoShapeLeavesWhatIsNotANumber) {
     }
 }
 
-TEST(Reprojector, NothingSeenIsUncoveredAndOrthographicStays) {
+TEST(Reprojector, OrthographicStays) {
     AnalyticScene const scene = room();
-    Camera away = front();
-    away.orientation = glm::normalize(glm::angleAxis(3.0f, Vec3(0, 1, 0)) * away.orientation);
-    Shown const shown = show(filled(scene, front(), 0), away, 0);
-    EXPECT_EQ(shown.picture.row(50)[4 * 50], srgb_byte_from_linear(uncovered_light));
-    EXPECT_EQ(shown.hole_share, 1);
-
     Camera orthographic = front();
     orthographic.projection = Projection::orthographic;
     orthographic.vertical_extent = 5;
