@@ -90,25 +90,45 @@ FarMean between(FarMean const& own, FarMean const& beside, FarMean const& above,
             four.mean(own.blue, beside.blue, above.blue, across.blue), four.farthest};
 }
 
+/// Cells of a coarse row, one for each of the n cells of a finer one.
+template <int n>
+struct Row {
+    alignas(64) std::array<float, static_cast<std::size_t>(n)> red, green, blue, inverse_depth;
+
+    template <int m, class Column>
+    Row(Grid<m> const& coarse, int row, Column const& column) {
+        for (int x = 0; x < n; ++x) {
+            auto const from = static_cast<std::size_t>(row * m + column(x));
+            auto const to = static_cast<std::size_t>(x);
+            red[to] = coarse.red[from];
+            green[to] = coarse.green[from];
+            blue[to] = coarse.blue[from];
+            inverse_depth[to] = coarse.inverse_depth[from];
+        }
+    }
+};
+
 /// Gives fine cells with nothing in them a value. `parent` and `other` are the coarse column (or row) that a fine one
-/// lies in and the nearest other one. Cells within the margin are not needed. (No branch depends on a cell: most of a
-/// row is worked on together.)
+/// lies in and the nearest other one. Cells within the margin are not needed. (No branch depends on a cell: eight are
+/// worked on at a time.)
 template <int margin, int n, int m, class Parent, class Other>
 void push(Grid<m> const& coarse, Grid<n>& fine, Parent const& parent, Other const& other) {
     for (int y = margin; y < n - margin; ++y) {
-        int const own_row = parent(y) * m;
-        int const other_row = other(y) * m;
-        for (int x = margin; x < n - margin; ++x) {
-            auto const to = static_cast<std::size_t>(y * n + x);
-            FarMean const mean = between(coarse.mean(static_cast<std::size_t>(own_row + parent(x))),
-                                         coarse.mean(static_cast<std::size_t>(own_row + other(x))),
-                                         coarse.mean(static_cast<std::size_t>(other_row + parent(x))),
-                                         coarse.mean(static_cast<std::size_t>(other_row + other(x))));
-            bool const nothing = is_nothing(fine.inverse_depth[to]);
-            fine.red[to] = nothing ? mean.red : fine.red[to];
-            fine.green[to] = nothing ? mean.green : fine.green[to];
-            fine.blue[to] = nothing ? mean.blue : fine.blue[to];
-            fine.inverse_depth[to] = nothing ? mean.inverse_depth : fine.inverse_depth[to];
+        Row<n> const own(coarse, parent(y), parent), beside(coarse, parent(y), other);
+        Row<n> const above(coarse, other(y), parent), across(coarse, other(y), other);
+        for (std::size_t x = margin; x < n - margin; ++x) {
+            FarthestOfFour const four({9, 3, 3, 1}, own.inverse_depth[x], beside.inverse_depth[x],
+                                      above.inverse_depth[x], across.inverse_depth[x]);
+            std::size_t const to = static_cast<std::size_t>(y * n) + x;
+            float const there = fine.inverse_depth[to];
+            bool const nothing = is_nothing(there);
+            float const red = four.mean(own.red[x], beside.red[x], above.red[x], across.red[x]);
+            float const green = four.mean(own.green[x], beside.green[x], above.green[x], across.green[x]);
+            float const blue = four.mean(own.blue[x], beside.blue[x], above.blue[x], across.blue[x]);
+            fine.red[to] = nothing ? red : fine.red[to];
+            fine.green[to] = nothing ? green : fine.green[to];
+            fine.blue[to] = nothing ? blue : fine.blue[to];
+            fine.inverse_depth[to] = nothing ? four.farthest : there;
         }
     }
 }

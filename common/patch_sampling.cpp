@@ -28,8 +28,7 @@ struct Samples {
     alignas(64) Lanes<PackedSample> above_left, above_right, below_left, below_right;
 };
 
-/// False where all weights are 0.
-bool find_places(WarpPatch const& patch, float x, float y, float first, float last, Places& out) {
+void find_places(WarpPatch const& patch, float x, float y, float first, float last, Places& out) {
     float const u0 = patch.at[0] + y * patch.dy[0] + x * patch.dx[0];
     float const v0 = patch.at[1] + y * patch.dy[1] + x * patch.dx[1];
     float const z0 = patch.at[2] + y * patch.dy[2] + x * patch.dx[2];
@@ -37,7 +36,6 @@ bool find_places(WarpPatch const& patch, float x, float y, float first, float la
     std::int32_t const n = patch.side;
     std::int32_t const end = n - 1;
     auto const outside = static_cast<float>(n);
-    std::int32_t any = 0;
     for (int i = 0; i < lanes; ++i) {
         auto const k = static_cast<std::size_t>(i);
         auto const step = static_cast<float>(i);
@@ -59,14 +57,12 @@ bool find_places(WarpPatch const& patch, float x, float y, float first, float la
         out.right[k] = std::min(iu + 1, end);
         out.above[k] = std::min(std::max(iv, 0), end) * n;
         out.below[k] = std::min(iv + 1, end) * n;
-        any |= inside ? 1 : 0;
         float const scale = inside ? 1.0f : 0.0f;
         out.left_weight[k] = iu >= 0 ? 1 - (u - fu) : 0.0f;
         out.right_weight[k] = iu < end ? u - fu : 0.0f;
         out.above_weight[k] = iv >= 0 ? scale - scale * (v - fv) : 0.0f;
         out.below_weight[k] = iv < end ? scale * (v - fv) : 0.0f;
     }
-    return any != 0;
 }
 
 void gather(PackedSample const* grid, Places const& places, Samples& out) {
@@ -154,12 +150,10 @@ void interpolate(std::uint32_t layer, Places const& places, Samples const& sampl
 
 } // namespace
 
-bool sample_patch(WarpPatch const& patch, float x, float y, float first, float last, Candidate& out) {
+void sample_patch(WarpPatch const& patch, float x, float y, float first, float last, Candidate& out) {
     Places places;
     Samples samples;
-    if (!find_places(patch, x, y, first, last, places)) {
-        return false;
-    }
+    find_places(patch, x, y, first, last, places);
     look_up(patch, places, samples);
     if (patch.is_whole) {
         interpolate<true>(patch.layer, places, samples, out);
@@ -171,7 +165,6 @@ bool sample_patch(WarpPatch const& patch, float x, float y, float first, float l
         float const depth = w0 + static_cast<float>(i) * patch.inverse_depth_dx;
         out.inverse_depth[static_cast<std::size_t>(i)] = depth > 0 ? depth : 0.0f;
     }
-    return true;
 }
 
 } // namespace framelet

@@ -26,8 +26,8 @@ inline float square(std::uint32_t byte) {
     return value * value;
 }
 
-/// False, with `out` in any state, where no pixel gets any weight. At pixels of which the first lies (x, y) from the
-/// centre of the box's first pixel; lanes from `first` on and before `last` are in the box, others get no weight.
-bool sample_patch(WarpPatch const& patch, float x, float y, float first, float last, Candidate& out);
+/// At pixels of which the first lies (x, y) from the centre of the box's first pixel; lanes from `first` on and before
+/// `last` are in the box, others get no weight.
+void sample_patch(WarpPatch const& patch, float x, float y, float first, float last, Candidate& out);
 
 } // namespace framelet

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 
 #include <tbb/parallel_for.h>
@@ -99,26 +100,34 @@ std::uint32_t byte_of(float square) {
     return static_cast<std::uint32_t>(static_cast<std::int32_t>(std::sqrt(square) + 0.5f));
 }
 
+/// Copies a block of four-byte values into a plane of the viewport's size.
+void copy_rows(void const* block, Viewport viewport, int left, int top, void* plane) {
+    constexpr std::size_t row_bytes = 4 * side;
+    auto const* from = static_cast<std::byte const*>(block);
+    std::size_t const pitch = 4 * static_cast<std::size_t>(viewport.width);
+    std::byte* to = static_cast<std::byte*>(plane) + static_cast<std::size_t>(top) * pitch + 4 * left;
+    std::size_t const bytes = 4 * static_cast<std::size_t>(std::min(side, viewport.width - left));
+    for (int y = 0; y < std::min(side, viewport.height - top); ++y, from += row_bytes, to += pitch) {
+        if (bytes == row_bytes) {
+            std::memcpy(to, from, row_bytes); // of a size that the compiler knows
+        } else {
+            std::memcpy(to, from, bytes);
+        }
+    }
+}
+
 void write_colors(WarpedBlock const& block, int left, int top, Picture& picture) {
     std::array<std::uint32_t, WarpedBlock::pixels> colors;
     for (std::size_t i = 0; i < WarpedBlock::pixels; ++i) {
         colors[i] =
             picture_pixel(byte_of(block.squares[0][i]), byte_of(block.squares[1][i]), byte_of(block.squares[2][i]));
     }
-    auto const bytes = static_cast<std::size_t>(std::min(side, picture.width - left)) * sizeof colors[0];
-    for (int y = 0; y < std::min(side, picture.height - top); ++y) {
-        std::memcpy(picture.row(top + y) + 4 * left, &colors[static_cast<std::size_t>(y * side)], bytes);
-    }
+    copy_rows(colors.data(), {picture.width, picture.height}, left, top, picture.rgba.data());
 }
 
 void write_plane(std::array<float, WarpedBlock::pixels> const& from, int left, int top, Viewport viewport,
                  std::vector<float>& plane) {
-    auto const bytes = static_cast<std::size_t>(std::min(side, viewport.width - left)) * sizeof(float);
-    for (int y = 0; y < std::min(side, viewport.height - top); ++y) {
-        std::memcpy(&plane[static_cast<std::size_t>(top + y) * static_cast<std::size_t>(viewport.width) +
-                           static_cast<std::size_t>(left)],
-                    &from[static_cast<std::size_t>(y * side)], bytes);
-    }
+    copy_rows(from.data(), viewport, left, top, plane.data());
 }
 
 } // namespace

@@ -69,10 +69,9 @@ void paint_layer(WarpPatch const& patch, int left, int top, Layers& layers) {
             continue;
         }
         for (int y = std::max(patch.box.top - top, 0); y < last_row; ++y) {
-            if (sample_patch(patch, static_cast<float>(left + x - patch.box.left),
-                             static_cast<float>(top + y - patch.box.top), first, last, half)) {
-                merge_row(half, patch.group, patch.tolerance, static_cast<std::size_t>(y * side + x), layers);
-            }
+            sample_patch(patch, static_cast<float>(left + x - patch.box.left),
+                         static_cast<float>(top + y - patch.box.top), first, last, half);
+            merge_row(half, patch.group, patch.tolerance, static_cast<std::size_t>(y * side + x), layers);
         }
     }
 }
