@@ -52,10 +52,22 @@ struct FarthestOfFour {
     }
 };
 
-FarMean farthest_mean(FarMean const& a, FarMean const& b, FarMean const& c, FarMean const& d) {
-    FarthestOfFour const four({1, 1, 1, 1}, a.inverse_depth, b.inverse_depth, c.inverse_depth, d.inverse_depth);
-    return {four.mean(a.red, b.red, c.red, d.red), four.mean(a.green, b.green, c.green, d.green),
-            four.mean(a.blue, b.blue, c.blue, d.blue), four.farthest};
+/// The weighted mean of those of four that there are: over large squares the farthest one would be the sky.
+FarMean known_mean(std::array<float, 4> const& weights, std::array<FarMean const*, 4> const& means) {
+    FarMean sum{0, 0, 0, 0};
+    float total = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+        FarMean const& mean = *means[i];
+        float const weight = mean.inverse_depth >= FarMean::nothing ? 0.0f : weights[i];
+        sum.red += weight * mean.red;
+        sum.green += weight * mean.green;
+        sum.blue += weight * mean.blue;
+        sum.inverse_depth += weight * (weight > 0 ? mean.inverse_depth : 0.0f);
+        total += weight;
+    }
+    float const scale = 1 / total;
+    return total > 0 ? FarMean{scale * sum.red, scale * sum.green, scale * sum.blue, scale * sum.inverse_depth}
+                     : FarMean{};
 }
 
 template <int n>
@@ -80,16 +92,6 @@ bool is_nothing(float inverse_depth) {
     return inverse_depth >= FarMean::nothing;
 }
 
-/// Interpolates between those of the four coarse cells around a fine one that are about as far as the farthest. What is
-/// still nothing (no picture at all) stays nothing.
-FarMean between(FarMean const& own, FarMean const& beside, FarMean const& above, FarMean const& across) {
-    FarthestOfFour const four({9, 3, 3, 1}, own.inverse_depth, beside.inverse_depth, above.inverse_depth,
-                              across.inverse_depth);
-    return {four.mean(own.red, beside.red, above.red, across.red),
-            four.mean(own.green, beside.green, above.green, across.green),
-            four.mean(own.blue, beside.blue, above.blue, across.blue), four.farthest};
-}
-
 /// Cells of a coarse row, one for each of the n cells of a finer one.
 template <int n>
 struct Row {
@@ -108,9 +110,10 @@ struct Row {
     }
 };
 
-/// Gives fine cells with nothing in them a value. `parent` and `other` are the coarse column (or row) that a fine one
-/// lies in and the nearest other one. Cells within the margin are not needed. (No branch depends on a cell: eight are
-/// worked on at a time.)
+/// Gives fine cells with nothing in them a value: interpolated between those of the four coarse cells around them that
+/// are about as far as the farthest. What is still nothing (no picture at all) stays nothing. `parent` and `other` are
+/// the coarse column (or row) that a fine one lies in and the nearest other one. Cells within the margin are not
+/// needed. (No branch depends on a cell: eight are worked on at a time.)
 template <int margin, int n, int m, class Parent, class Other>
 void push(Grid<m> const& coarse, Grid<n>& fine, Parent const& parent, Other const& other) {
     for (int y = margin; y < n - margin; ++y) {
@@ -225,8 +228,8 @@ void FarMeans::pull(Level const& fine, Level& coarse) const {
     coarse.means.clear();
     for (int y = 0; y < fine.rows; y += 2) {
         for (int x = 0; x < fine.columns; x += 2) {
-            coarse.means.push_back(
-                farthest_mean(fine.at(x, y), fine.at(x + 1, y), fine.at(x, y + 1), fine.at(x + 1, y + 1)));
+            coarse.means.push_back(known_mean(
+                {1, 1, 1, 1}, {&fine.at(x, y), &fine.at(x + 1, y), &fine.at(x, y + 1), &fine.at(x + 1, y + 1)}));
         }
     }
 }
@@ -238,8 +241,8 @@ void FarMeans::push(Level const& coarse, Level& fine) const {
             if (is_nothing(fine.means[i].inverse_depth)) {
                 int const beside = x / 2 + (x % 2 == 0 ? -1 : 1);
                 int const above = y / 2 + (y % 2 == 0 ? -1 : 1);
-                fine.means[i] = between(coarse.at(x / 2, y / 2), coarse.at(beside, y / 2), coarse.at(x / 2, above),
-                                        coarse.at(beside, above));
+                fine.means[i] = known_mean({9, 3, 3, 1}, {&coarse.at(x / 2, y / 2), &coarse.at(beside, y / 2),
+                                                          &coarse.at(x / 2, above), &coarse.at(beside, above)});
             }
         }
     }
