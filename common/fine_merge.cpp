@@ -11,6 +11,9 @@ namespace {
 /// Children along a side of what is merged.
 constexpr int most_children = 1 << finest_levels;
 
+/// Samples copied at a time; the side of a child is a multiple of it.
+constexpr int run = framelet_side >> finest_levels;
+
 using Children = std::array<CachedFramelet const*, static_cast<std::size_t>(most_children* most_children)>;
 
 bool belong_together(CachedFramelet const& a, CachedFramelet const& b) {
@@ -96,9 +99,12 @@ bool merge_fine(FrameletCache const& cache, Tile over, int depth, double toleran
         merged.newest_batch = std::max(merged.newest_batch, child.moment.batch);
         merged.signature = (merged.signature + child.moment.batch) * 0x9e3779b97f4a7c15u;
         for (int y = 0; y < side; ++y) {
-            std::memcpy(&merged.grid[static_cast<std::size_t>((i / n * side + y) * merged.side + i % n * side)],
-                        &child.shape.reduced[static_cast<std::size_t>(y * side)],
-                        static_cast<std::size_t>(side) * sizeof(PackedSample));
+            PackedSample const* const from = &child.shape.reduced[static_cast<std::size_t>(y * side)];
+            PackedSample* const to =
+                &merged.grid[static_cast<std::size_t>((i / n * side + y) * merged.side + i % n * side)];
+            for (int x = 0; x < side; x += run) {
+                std::memcpy(to + x, from + x, run * sizeof(PackedSample));
+            }
         }
     }
     return true;

@@ -70,9 +70,9 @@ bool is_usable(Layer const& layer) {
 
 bool is_usable(WarpPatch const& patch) {
     bool usable = true;
-    for (float const value : {patch.at[0], patch.at[1], patch.at[2], patch.dx[0], patch.dx[1], patch.dx[2], patch.dy[0],
-                              patch.dy[1], patch.dy[2], patch.inverse_depth, patch.inverse_depth_dx,
-                              patch.inverse_depth_dy, patch.tolerance, patch.stretch}) {
+    for (float const value :
+         {patch.at[0], patch.at[1], patch.at[2], patch.dx[0], patch.dx[1], patch.dx[2], patch.dy[0], patch.dy[1],
+          patch.dy[2], patch.inverse_depth, patch.inverse_depth_dx, patch.inverse_depth_dy, patch.tolerance}) {
         usable &= std::abs(value) < static_cast<float>(largest);
     }
     return usable;
@@ -92,7 +92,6 @@ void FrameletWarp::add(CachedFramelet const& framelet, std::vector<WarpPatch>& p
     common.grid = shape.side == framelet_side ? framelet.samples.data() : shape.reduced.data();
     common.group = static_cast<std::int32_t>(framelet.view) * 16 + framelet.tile.depth();
     common.batch = framelet.moment.batch;
-    common.scene_time = framelet.moment.scene_time;
     common.is_whole = shape.layer_count == 1 && shape.loose.empty();
     rect_ = cache_.plane().tile_rect(framelet.tile);
     spacing_ = static_cast<double>(rect_.width()) / shape.side;
@@ -122,7 +121,6 @@ void FrameletWarp::add(MergedFramelet const& merged, std::vector<WarpPatch>& pat
     patch.side = merged.side;
     patch.group = static_cast<std::int32_t>(first.view) * 16 + first.tile.depth();
     patch.batch = merged.newest_batch;
-    patch.scene_time = first.moment.scene_time;
     patch.is_whole = true;
     patch.place = first.tile.code * 4;
     rect_ = cache_.plane().tile_rect(merged.tile);
@@ -222,8 +220,6 @@ bool FrameletWarp::place(HeldLayer const& held, WarpPatch& patch) const {
     glm::dvec3 const middle((patch.box.left + patch.box.right) / 2.0, (patch.box.top + patch.box.bottom) / 2.0, 1);
     double const inverse_z = std::max((plane->to_source * middle).z, nearest);
     patch.tolerance = static_cast<float>(held.layer.error * inverse_z);
-    patch.stretch =
-        static_cast<float>(std::abs(glm::determinant(plane->to_display)) * inverse_z * inverse_z * inverse_z);
     return true;
 }
 
@@ -274,7 +270,6 @@ void FrameletWarp::add_splats(CachedFramelet const& framelet, WarpPatch& patch, 
         top = std::min(top, y - spacing);
         right = std::max(right, x + spacing);
         bottom = std::max(bottom, y + spacing);
-        patch.stretch = static_cast<float>(spacing * spacing / (spacing_ * spacing_));
     }
     patch.is_still = still;
     patch.box = {static_cast<int>(std::max(std::floor(left), 0.0)), static_cast<int>(std::max(std::floor(top), 0.0)),

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 
 #include "common/color.h"
+#include "common/patch_sampling.h"
 #include "common/reconstruction.h"
 
 namespace framelet {
@@ -50,10 +52,22 @@ struct FarthestOfFour {
     }
 };
 
-FarMean farthest_mean(FarMean const& a, FarMean const& b, FarMean const& c, FarMean const& d) {
-    FarthestOfFour const four({1, 1, 1, 1}, a.inverse_depth, b.inverse_depth, c.inverse_depth, d.inverse_depth);
-    return {four.mean(a.red, b.red, c.red, d.red), four.mean(a.green, b.green, c.green, d.green),
-            four.mean(a.blue, b.blue, c.blue, d.blue), four.farthest};
+/// The weighted mean of those of four that there are: over large squares the farthest one would be the sky.
+FarMean known_mean(std::array<float, 4> const& weights, std::array<FarMean const*, 4> const& means) {
+    FarMean sum{0, 0, 0, 0};
+    float total = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+        FarMean const& mean = *means[i];
+        float const weight = mean.inverse_depth >= FarMean::nothing ? 0.0f : weights[i];
+        sum.red += weight * mean.red;
+        sum.green += weight * mean.green;
+        sum.blue += weight * mean.blue;
+        sum.inverse_depth += weight * (weight > 0 ? mean.inverse_depth : 0.0f);
+        total += weight;
+    }
+    float const scale = 1 / total;
+    return total > 0 ? FarMean{scale * sum.red, scale * sum.green, scale * sum.blue, scale * sum.inverse_depth}
+                     : FarMean{};
 }
 
 template <int n>
@@ -78,30 +92,46 @@ bool is_nothing(float inverse_depth) {
     return inverse_depth >= FarMean::nothing;
 }
 
-/// Interpolates between those of the four coarse cells around a fine one that are about as far as the farthest. What is
-/// still nothing (no picture at all) stays nothing.
-FarMean between(FarMean const& own, FarMean const& beside, FarMean const& above, FarMean const& across) {
-    FarthestOfFour const four({9, 3, 3, 1}, own.inverse_depth, beside.inverse_depth, above.inverse_depth,
-                              across.inverse_depth);
-    return {four.mean(own.red, beside.red, above.red, across.red),
-            four.mean(own.green, beside.green, above.green, across.green),
-            four.mean(own.blue, beside.blue, above.blue, across.blue), four.farthest};
-}
+/// Cells of a coarse row, one for each of the n cells of a finer one.
+template <int n>
+struct Row {
+    alignas(64) std::array<float, static_cast<std::size_t>(n)> red, green, blue, inverse_depth;
 
-/// Gives fine cells with nothing in them a value. `parent` and `other` are the coarse column (or row) that a fine one
-/// lies in and the nearest other one. Cells within the margin are not needed.
+    template <int m, class Column>
+    Row(Grid<m> const& coarse, int row, Column const& column) {
+        for (int x = 0; x < n; ++x) {
+            auto const from = static_cast<std::size_t>(row * m + column(x));
+            auto const to = static_cast<std::size_t>(x);
+            red[to] = coarse.red[from];
+            green[to] = coarse.green[from];
+            blue[to] = coarse.blue[from];
+            inverse_depth[to] = coarse.inverse_depth[from];
+        }
+    }
+};
+
+/// Gives fine cells with nothing in them a value: interpolated between those of the four coarse cells around them that
+/// are about as far as the farthest. What is still nothing (no picture at all) stays nothing. `parent` and `other` are
+/// the coarse column (or row) that a fine one lies in and the nearest other one. Cells within the margin are not
+/// needed. (No branch depends on a cell: eight are worked on at a time.)
 template <int margin, int n, int m, class Parent, class Other>
 void push(Grid<m> const& coarse, Grid<n>& fine, Parent const& parent, Other const& other) {
     for (int y = margin; y < n - margin; ++y) {
-        for (int x = margin; x < n - margin; ++x) {
-            auto const to = static_cast<std::size_t>(y * n + x);
-            if (is_nothing(fine.inverse_depth[to])) {
-                auto const at = [&](int column, int row) {
-                    return coarse.mean(static_cast<std::size_t>(row * m + column));
-                };
-                fine.put(to, between(at(parent(x), parent(y)), at(other(x), parent(y)), at(parent(x), other(y)),
-                                     at(other(x), other(y))));
-            }
+        Row<n> const own(coarse, parent(y), parent), beside(coarse, parent(y), other);
+        Row<n> const above(coarse, other(y), parent), across(coarse, other(y), other);
+        for (std::size_t x = margin; x < n - margin; ++x) {
+            FarthestOfFour const four({9, 3, 3, 1}, own.inverse_depth[x], beside.inverse_depth[x],
+                                      above.inverse_depth[x], across.inverse_depth[x]);
+            std::size_t const to = static_cast<std::size_t>(y * n) + x;
+            float const there = fine.inverse_depth[to];
+            bool const nothing = is_nothing(there);
+            float const red = four.mean(own.red[x], beside.red[x], above.red[x], across.red[x]);
+            float const green = four.mean(own.green[x], beside.green[x], above.green[x], across.green[x]);
+            float const blue = four.mean(own.blue[x], beside.blue[x], above.blue[x], across.blue[x]);
+            fine.red[to] = nothing ? red : fine.red[to];
+            fine.green[to] = nothing ? green : fine.green[to];
+            fine.blue[to] = nothing ? blue : fine.blue[to];
+            fine.inverse_depth[to] = nothing ? four.farthest : there;
         }
     }
 }
@@ -124,22 +154,28 @@ void read_window(std::span<float const> inverse_depth, Picture const& picture, i
     for (int y = std::max(-top, 0); y < std::min(32, picture.height - top); ++y) {
         std::size_t const from = static_cast<std::size_t>(top + y) * static_cast<std::size_t>(picture.width) +
                                  static_cast<std::size_t>(left + first);
-        float const* const depth = inverse_depth.data() + from;
-        std::uint8_t const* const pixel = picture.rgba.data() + 4 * from;
-        for (int x = 0; x < last - first; ++x) {
-            auto const to = static_cast<std::size_t>(y * 32 + first + x);
-            float const shows = depth[x] > hole_depth ? 1.0f : 0.0f;
-            auto const square = [shows](int byte) { return shows * static_cast<float>(byte * byte); };
-            window.red[to] = square(pixel[4 * x]);
-            window.green[to] = square(pixel[4 * x + 1]);
-            window.blue[to] = square(pixel[4 * x + 2]);
-            window.inverse_depth[to] = depth[x] > hole_depth ? depth[x] : FarMean::nothing;
+        alignas(64) std::array<std::uint32_t, 32> colors{};
+        alignas(64) std::array<float, 32> depths;
+        depths.fill(hole_depth);
+        auto const count = static_cast<std::size_t>(last - first);
+        auto const start = static_cast<std::size_t>(first);
+        std::memcpy(&colors[start], picture.rgba.data() + 4 * from, 4 * count);
+        std::memcpy(&depths[start], inverse_depth.data() + from, 4 * count);
+        auto const to = static_cast<std::size_t>(y * 32);
+        for (std::size_t x = 0; x < 32; ++x) {
+            bool const shows = depths[x] > hole_depth;
+            std::uint32_t const color = shows ? colors[x] : 0u;
+            window.red[to + x] = square(red_of(color));
+            window.green[to + x] = square(green_of(color));
+            window.blue[to + x] = square(blue_of(color));
+            window.inverse_depth[to + x] = shows ? depths[x] : FarMean::nothing;
         }
     }
 }
 
-std::uint8_t byte_of(float square) {
-    return static_cast<std::uint8_t>(std::clamp(std::sqrt(square) + 0.5f, 0.0f, 255.0f));
+std::uint32_t byte_of(float square) {
+    return static_cast<std::uint32_t>(
+        static_cast<std::int32_t>(std::min(std::sqrt(std::max(square, 0.0f)) + 0.5f, 255.0f)));
 }
 
 } // namespace
@@ -192,8 +228,8 @@ void FarMeans::pull(Level const& fine, Level& coarse) const {
     coarse.means.clear();
     for (int y = 0; y < fine.rows; y += 2) {
         for (int x = 0; x < fine.columns; x += 2) {
-            coarse.means.push_back(
-                farthest_mean(fine.at(x, y), fine.at(x + 1, y), fine.at(x, y + 1), fine.at(x + 1, y + 1)));
+            coarse.means.push_back(known_mean(
+                {1, 1, 1, 1}, {&fine.at(x, y), &fine.at(x + 1, y), &fine.at(x, y + 1), &fine.at(x + 1, y + 1)}));
         }
     }
 }
@@ -205,8 +241,8 @@ void FarMeans::push(Level const& coarse, Level& fine) const {
             if (is_nothing(fine.means[i].inverse_depth)) {
                 int const beside = x / 2 + (x % 2 == 0 ? -1 : 1);
                 int const above = y / 2 + (y % 2 == 0 ? -1 : 1);
-                fine.means[i] = between(coarse.at(x / 2, y / 2), coarse.at(beside, y / 2), coarse.at(x / 2, above),
-                                        coarse.at(beside, above));
+                fine.means[i] = known_mean({9, 3, 3, 1}, {&coarse.at(x / 2, y / 2), &coarse.at(beside, y / 2),
+                                                          &coarse.at(x / 2, above), &coarse.at(beside, above)});
             }
         }
     }
@@ -251,21 +287,24 @@ void fill_holes(FarMeans const& means, std::span<float const> inverse_depth, int
     push<1>(eights, fours);
     push<3>(fours, twos);
     push<block_side / 2>(twos, pixels);
-    std::uint8_t const uncovered = srgb_byte_from_linear(uncovered_light);
+    std::uint32_t const gray = srgb_byte_from_linear(uncovered_light);
+    std::uint32_t const uncovered = picture_pixel(gray, gray, gray);
+    int const width = std::min(block_side, picture.width - left);
     for (int y = 0; y < std::min(block_side, picture.height - top); ++y) {
-        std::uint8_t* pixel = picture.row(top + y) + 4 * left;
-        std::size_t from = static_cast<std::size_t>(top + y) * static_cast<std::size_t>(picture.width) +
-                           static_cast<std::size_t>(left);
-        for (int x = 0; x < std::min(block_side, picture.width - left); ++x, ++from, pixel += 4) {
-            if (inverse_depth[from] > hole_depth) {
-                continue;
+        auto const window = static_cast<std::size_t>((y + block_side / 2) * 32 + block_side / 2);
+        std::array<std::uint32_t, block_side> colors;
+        for (std::size_t x = 0; x < block_side; ++x) {
+            FarMean const mean = pixels.mean(window + x);
+            std::uint32_t const color = picture_pixel(byte_of(mean.red), byte_of(mean.green), byte_of(mean.blue));
+            colors[x] = is_nothing(mean.inverse_depth) ? uncovered : color;
+        }
+        float const* const depth =
+            inverse_depth.data() + static_cast<std::size_t>(top + y) * static_cast<std::size_t>(picture.width) + left;
+        std::uint8_t* const pixel = picture.row(top + y) + 4 * left;
+        for (int x = 0; x < width; ++x) {
+            if (!(depth[x] > hole_depth)) {
+                std::memcpy(pixel + 4 * x, &colors[static_cast<std::size_t>(x)], sizeof colors[0]);
             }
-            FarMean const mean = pixels.mean(static_cast<std::size_t>((y + block_side / 2) * 32 + x + block_side / 2));
-            bool const known = !is_nothing(mean.inverse_depth);
-            pixel[0] = known ? byte_of(mean.red) : uncovered;
-            pixel[1] = known ? byte_of(mean.green) : uncovered;
-            pixel[2] = known ? byte_of(mean.blue) : uncovered;
-            pixel[3] = 255;
         }
     }
 }

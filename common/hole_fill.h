@@ -26,7 +26,7 @@ struct FarMean {
 /// The mean for a block as painted. (Where it has no holes, of every sixteenth pixel.)
 FarMean far_mean(WarpedBlock const& block);
 
-/// Means of a picture's blocks and of ever larger squares of blocks.
+/// Means of a picture's blocks and of ever larger squares of blocks; among those no depth is preferred.
 class FarMeans {
 public:
     /// `columns` x `rows` blocks in rows. Squares of which nothing shows get their colour from larger ones.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 
 #include <tbb/parallel_for.h>
@@ -18,6 +19,10 @@ namespace {
 
 constexpr int side = WarpedBlock::side;
 
+/// Where less than this share of what is held would show (after a cut), the rest being made up, all of it stays where
+/// it was rendered: that is nearer to what comes (measured on cuts of one scene).
+constexpr double least_kept = 0.1;
+
 /// Nothing of a framelet of this view leaves its place; of those that hold something moving only if no time has passed.
 bool is_in_place(HeldView const& view, bool moves, Camera const& camera, SceneTime scene_time) {
     bool const same_camera = view.camera == camera || !is_reprojectable(view.camera) || !is_reprojectable(camera);
@@ -30,13 +35,34 @@ bool is_all_in_place(FrameletCache const& cache, Camera const& camera, SceneTime
     });
 }
 
+/// Also true where bodies that could move have come to rest.
+bool is_in_place(CachedFramelet const& framelet, HeldView const& view, Camera const& camera, SceneTime scene_time,
+                 BodyMotions const& motions) {
+    if (is_in_place(view, framelet.shape.moves, camera, scene_time)) {
+        return true;
+    }
+    if (!is_in_place(view, false, camera, scene_time)) {
+        return false;
+    }
+    auto const rests = [&](BodyNumber body, Vec3 const& velocity) {
+        return velocity == Vec3(0) &&
+               (body == static_body || motions.between(body, view.scene_time, scene_time) == Motion{});
+    };
+    HeldShape const& shape = framelet.shape;
+    return std::all_of(shape.layers.begin(), shape.layers.begin() + shape.layer_count,
+                       [&](HeldLayer const& held) { return rests(held.layer.body, held.layer.velocity); }) &&
+           std::ranges::all_of(shape.loose,
+                               [&](HeldLoose const& loose) { return rests(loose.sample.body, loose.sample.velocity); });
+}
+
 /// True when the block is covered and all framelets of its place are in place.
-bool is_block_in_place(FrameletCache const& cache, Camera const& camera, SceneTime scene_time, int column, int row) {
+bool is_block_in_place(FrameletCache const& cache, Camera const& camera, SceneTime scene_time,
+                       BodyMotions const& motions, int column, int row) {
     ImagePlane const& plane = cache.plane();
     int const depth = plane.pixel_depth();
     auto const is_fine = [&](CachedFramelet const* framelet) {
         return framelet == nullptr ||
-               is_in_place(cache.views()[framelet->view], framelet->shape.moves, camera, scene_time);
+               is_in_place(*framelet, cache.views()[framelet->view], camera, scene_time, motions);
     };
     bool is_covered = cache.covered_below(depth, column, row) > 0;
     for (int d = plane.min_depth(); d <= depth; ++d) {
@@ -74,26 +100,34 @@ std::uint32_t byte_of(float square) {
     return static_cast<std::uint32_t>(static_cast<std::int32_t>(std::sqrt(square) + 0.5f));
 }
 
+/// Copies a block of four-byte values into a plane of the viewport's size.
+void copy_rows(void const* block, Viewport viewport, int left, int top, void* plane) {
+    constexpr std::size_t row_bytes = 4 * side;
+    auto const* from = static_cast<std::byte const*>(block);
+    std::size_t const pitch = 4 * static_cast<std::size_t>(viewport.width);
+    std::byte* to = static_cast<std::byte*>(plane) + static_cast<std::size_t>(top) * pitch + 4 * left;
+    std::size_t const bytes = 4 * static_cast<std::size_t>(std::min(side, viewport.width - left));
+    for (int y = 0; y < std::min(side, viewport.height - top); ++y, from += row_bytes, to += pitch) {
+        if (bytes == row_bytes) {
+            std::memcpy(to, from, row_bytes); // of a size that the compiler knows
+        } else {
+            std::memcpy(to, from, bytes);
+        }
+    }
+}
+
 void write_colors(WarpedBlock const& block, int left, int top, Picture& picture) {
     std::array<std::uint32_t, WarpedBlock::pixels> colors;
     for (std::size_t i = 0; i < WarpedBlock::pixels; ++i) {
         colors[i] =
             picture_pixel(byte_of(block.squares[0][i]), byte_of(block.squares[1][i]), byte_of(block.squares[2][i]));
     }
-    auto const bytes = static_cast<std::size_t>(std::min(side, picture.width - left)) * sizeof colors[0];
-    for (int y = 0; y < std::min(side, picture.height - top); ++y) {
-        std::memcpy(picture.row(top + y) + 4 * left, &colors[static_cast<std::size_t>(y * side)], bytes);
-    }
+    copy_rows(colors.data(), {picture.width, picture.height}, left, top, picture.rgba.data());
 }
 
 void write_plane(std::array<float, WarpedBlock::pixels> const& from, int left, int top, Viewport viewport,
                  std::vector<float>& plane) {
-    auto const bytes = static_cast<std::size_t>(std::min(side, viewport.width - left)) * sizeof(float);
-    for (int y = 0; y < std::min(side, viewport.height - top); ++y) {
-        std::memcpy(&plane[static_cast<std::size_t>(top + y) * static_cast<std::size_t>(viewport.width) +
-                           static_cast<std::size_t>(left)],
-                    &from[static_cast<std::size_t>(y * side)], bytes);
-    }
+    copy_rows(from.data(), viewport, left, top, plane.data());
 }
 
 } // namespace
@@ -117,9 +151,7 @@ void Reprojector::start_moving(Viewport viewport, std::size_t blocks) {
         blocks_.assign(blocks, {});
     }
     auto const pixels = static_cast<std::size_t>(viewport.width) * static_cast<std::size_t>(viewport.height);
-    for (auto* const plane : {&confidence_.inverse_depth, &confidence_.scene_time, &confidence_.stretch}) {
-        plane->resize(pixels);
-    }
+    inverse_depth_.resize(pixels);
     block_means_.resize(blocks);
     painted_.resize(blocks);
     is_exact_ = false;
@@ -143,12 +175,23 @@ void Reprojector::show(FrameletCache const& cache, std::span<PixelRect const> ch
         bool painted = false;
         std::vector<PatchView> patches;
         for (int column = 0; column < columns; ++column) {
-            painted |= update_block(cache, camera, scene_time, column, row, patches, picture);
+            painted |= update_block(cache, camera, scene_time, motions, column, row, patches, picture);
         }
         if (painted) {
             any.store(true, std::memory_order_relaxed);
         }
     });
+    if (any) {
+        count_holes(picture);
+    }
+    if (1 - hole_share_ < least_kept * cache.coverage()) {
+        blocks_.clear(); // no block is as the plan says
+        std::ranges::fill(painted_, std::uint8_t{0});
+        reconstruct_all(cache, picture);
+        repainted.assign(1, {0, 0, picture.width, picture.height});
+        has_shown_ = true;
+        return;
+    }
     if (any) {
         fill(picture);
     }
@@ -156,13 +199,14 @@ void Reprojector::show(FrameletCache const& cache, std::span<PixelRect const> ch
     has_shown_ = true;
 }
 
-bool Reprojector::update_block(FrameletCache const& cache, Camera const& camera, SceneTime scene_time, int column,
-                               int row, std::vector<PatchView>& patches, Picture& picture) {
+bool Reprojector::update_block(FrameletCache const& cache, Camera const& camera, SceneTime scene_time,
+                               BodyMotions const& motions, int column, int row, std::vector<PatchView>& patches,
+                               Picture& picture) {
     auto const index =
         static_cast<std::size_t>(row) * static_cast<std::size_t>(plan_.columns()) + static_cast<std::size_t>(column);
     plan_.block(index, patches);
     bool const in_place = std::ranges::all_of(patches, [](PatchView const& view) { return view.patch->is_still; }) &&
-                          is_block_in_place(cache, camera, scene_time, column, row);
+                          is_block_in_place(cache, camera, scene_time, motions, column, row);
     std::uint64_t const signature = signature_of(patches, in_place);
     if (signature == blocks_[index].signature) {
         return false;
@@ -181,23 +225,24 @@ bool Reprojector::update_block(FrameletCache const& cache, Camera const& camera,
     } else {
         write_colors(block, left, top, picture);
     }
-    write_plane(block.inverse_depth, left, top, viewport, confidence_.inverse_depth);
-    write_plane(block.scene_time, left, top, viewport, confidence_.scene_time);
-    write_plane(block.stretch, left, top, viewport, confidence_.stretch);
+    write_plane(block.inverse_depth, left, top, viewport, inverse_depth_);
     block_means_[index] = far_mean(block);
     blocks_[index] = {signature, block.holes};
     painted_[index] = 1;
     return true;
 }
 
-/// Holes depend on all that surrounds them, so all of them are filled again.
-void Reprojector::fill(Picture& picture) {
+void Reprojector::count_holes(Picture const& picture) {
     std::int64_t holes = 0;
     for (BlockState const& block : blocks_) {
         holes += block.holes;
     }
     hole_share_ = static_cast<double>(holes) / (static_cast<double>(picture.width) * picture.height);
-    if (holes == 0) {
+}
+
+/// Holes depend on all that surrounds them, so all of them are filled again.
+void Reprojector::fill(Picture& picture) {
+    if (hole_share_ == 0) {
         return;
     }
     int const columns = plan_.columns();
@@ -207,7 +252,7 @@ void Reprojector::fill(Picture& picture) {
             auto const index =
                 static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
             if (blocks_[index].holes > 0) {
-                fill_holes(means_, confidence_.inverse_depth, column, row, picture);
+                fill_holes(means_, inverse_depth_, column, row, picture);
                 painted_[index] = 1;
             }
         }

@@ -1,6 +1,5 @@
 // The picture from any camera at any scene time, from what is held (002, 003; ALGORITHMS: one homography a layer). In:
-// cache, what changed in it, camera, time, motions of bodies. Out: the picture, which parts of it changed, and how far
-// each pixel can be trusted.
+// cache, what changed in it, camera, time, motions of bodies. Out: the picture, and which parts of it changed.
 #pragma once
 
 #include <cstdint>
@@ -15,13 +14,6 @@
 
 namespace framelet {
 
-/// How far a pixel can be trusted, in planes of the picture's size.
-struct Confidence {
-    std::vector<float> inverse_depth; ///< 1 / metres; `hole_depth` where the colour is only filled in
-    std::vector<float> scene_time; ///< at which the sample was taken, seconds; 0 in holes
-    std::vector<float> stretch; ///< display area of a pixel of the sample's own view; 0 in holes
-};
-
 /// Moves pictures. Keeps what it needs to know next time which blocks stay as they are; what it shows is a function of
 /// its arguments only, whatever it showed before and however many threads there are.
 class Reprojector {
@@ -32,14 +24,16 @@ public:
     ///
     /// Where all that is held was taken with this camera and nothing in it has moved since, this is `reconstruct`, byte
     /// by byte; so is every block for which that holds while others move. Samples of or for an orthographic camera stay
-    /// on their pixels. Only blocks whose samples or their places differ from the last call's are painted.
+    /// on their pixels. So does everything where the camera has cut: where nearly nothing of what is held would show in
+    /// the new view. Only blocks whose samples or their places differ from the last call's are painted.
     void show(FrameletCache const& cache, std::span<PixelRect const> changed, Camera const& camera,
               SceneTime scene_time, BodyMotions const& motions, Picture& picture, std::vector<PixelRect>& repainted);
 
-    /// True when the last picture was `reconstruct`'s as a whole. `confidence` is not kept up then: every sample is in
-    /// its place.
+    /// True when the last picture was `reconstruct`'s as a whole.
     bool is_exact() const { return is_exact_; }
-    Confidence const& confidence() const { return confidence_; }
+    /// A plane of the picture's size, 1 / metres; `hole_depth` where the colour is only filled in. Not kept up while
+    /// the picture is exact.
+    std::span<float const> inverse_depth() const { return inverse_depth_; }
     /// Pixels of the last picture that nothing shows, in [0, 1]; 0 where it is exact.
     double hole_share() const { return hole_share_; }
 
@@ -53,8 +47,10 @@ private:
                     std::vector<PixelRect>& repainted);
     void start_moving(Viewport viewport, std::size_t blocks);
     /// True when it had to be painted.
-    bool update_block(FrameletCache const& cache, Camera const& camera, SceneTime scene_time, int column, int row,
-                      std::vector<PatchView>& patches, Picture& picture);
+    bool update_block(FrameletCache const& cache, Camera const& camera, SceneTime scene_time,
+                      BodyMotions const& motions, int column, int row, std::vector<PatchView>& patches,
+                      Picture& picture);
+    void count_holes(Picture const& picture);
     void fill(Picture& picture);
 
     bool has_shown_ = false;
@@ -65,7 +61,7 @@ private:
     std::vector<FarMean> block_means_;
     std::vector<std::uint8_t> painted_; ///< a flag for each block
     FarMeans means_;
-    Confidence confidence_;
+    std::vector<float> inverse_depth_;
 };
 
 } // namespace framelet

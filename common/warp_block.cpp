@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "common/patch_sampling.h"
 
@@ -24,20 +23,18 @@ constexpr float same_surface = 0.01f;
 /// What is in front at each pixel so far.
 struct Layers {
     alignas(64) std::array<float, pixels> red, green, blue, weight, inverse_depth;
-    alignas(64) std::array<std::int32_t, pixels> group, patch;
+    alignas(64) std::array<std::int32_t, pixels> group;
 };
 
 /// Lets candidates compete with what half a row of the block has. Of two that cover firmly or both do not, the
 /// clearly nearer one wins; else the one that was there, which is newer. Those of one group on one surface add up.
-void merge_row(Candidate const& row, std::int32_t group, std::int32_t patch, float tolerance, std::size_t first,
-               Layers& layers) {
+void merge_row(Candidate const& row, std::int32_t group, float tolerance, std::size_t first, Layers& layers) {
     float* const red = layers.red.data() + first;
     float* const green = layers.green.data() + first;
     float* const blue = layers.blue.data() + first;
     float* const weight = layers.weight.data() + first;
     float* const inverse_depth = layers.inverse_depth.data() + first;
     std::int32_t* const groups = layers.group.data() + first;
-    std::int32_t* const patches = layers.patch.data() + first;
 #pragma GCC ivdep // rows of distinct arrays
     for (int i = 0; i < lanes; ++i) {
         auto const k = static_cast<std::size_t>(i);
@@ -59,11 +56,10 @@ void merge_row(Candidate const& row, std::int32_t group, std::int32_t patch, flo
         bool const replaces = wins & !joins;
         inverse_depth[k] = replaces ? depth : there;
         groups[k] = replaces ? group : groups[k];
-        patches[k] = replaces ? patch : patches[k];
     }
 }
 
-void paint_layer(WarpPatch const& patch, std::int32_t index, int left, int top, Layers& layers) {
+void paint_layer(WarpPatch const& patch, int left, int top, Layers& layers) {
     Candidate half;
     int const last_row = std::min(patch.box.bottom - top, side);
     for (int x = 0; x < side; x += lanes) {
@@ -75,13 +71,13 @@ void paint_layer(WarpPatch const& patch, std::int32_t index, int left, int top, 
         for (int y = std::max(patch.box.top - top, 0); y < last_row; ++y) {
             sample_patch(patch, static_cast<float>(left + x - patch.box.left),
                          static_cast<float>(top + y - patch.box.top), first, last, half);
-            merge_row(half, patch.group, index, patch.tolerance, static_cast<std::size_t>(y * side + x), layers);
+            merge_row(half, patch.group, patch.tolerance, static_cast<std::size_t>(y * side + x), layers);
         }
     }
 }
 
 /// Loose samples: a tent each, as wide as its neighbours are far.
-void paint_splat(Splat const& splat, WarpPatch const& patch, std::int32_t index, int left, int top, Layers& layers) {
+void paint_splat(Splat const& splat, std::int32_t group, int left, int top, Layers& layers) {
     float const x = splat.x - static_cast<float>(left) - 0.5f;
     float const y = splat.y - static_cast<float>(top) - 0.5f;
     float const scale = 1 / splat.spacing;
@@ -106,13 +102,13 @@ void paint_splat(Splat const& splat, WarpPatch const& patch, std::int32_t index,
                 half.blue[k] = weight * square(blue_of(splat.sample));
                 half.inverse_depth[k] = splat.inverse_depth;
             }
-            merge_row(half, patch.group, index, 0, static_cast<std::size_t>(j * side + from), layers);
+            merge_row(half, group, 0, static_cast<std::size_t>(j * side + from), layers);
         }
     }
 }
 
-/// Divides by the weights and looks up where each pixel's sample came from.
-void finish(std::span<PatchView const> patches, Layers const& layers, int width, int height, WarpedBlock& block) {
+/// Divides by the weights.
+void finish(Layers const& layers, int width, int height, WarpedBlock& block) {
     for (std::size_t i = 0; i < pixels; ++i) {
         float const scale = layers.weight[i] > 0 ? 1 / layers.weight[i] : 0.0f;
         block.squares[0][i] = scale * layers.red[i];
@@ -120,21 +116,10 @@ void finish(std::span<PatchView const> patches, Layers const& layers, int width,
         block.squares[2][i] = scale * layers.blue[i];
         block.inverse_depth[i] = layers.weight[i] > 0 ? layers.inverse_depth[i] : hole_depth;
     }
-    std::vector<float> times(patches.size() + 1), stretches(patches.size() + 1); // by patch + 1; 0 for none
-    for (std::size_t i = 0; i < patches.size(); ++i) {
-        times[i + 1] = static_cast<float>(patches[i].patch->scene_time);
-        stretches[i + 1] = patches[i].patch->stretch;
-    }
-    float const* const time = times.data();
-    float const* const stretch = stretches.data();
-    for (std::size_t i = 0; i < pixels; ++i) {
-        block.scene_time[i] = time[layers.patch[i] + 1];
-        block.stretch[i] = stretch[layers.patch[i] + 1];
-    }
     block.holes = 0;
     for (int y = 0; y < std::min(height, side); ++y) {
         for (int x = 0; x < std::min(width, side); ++x) {
-            block.holes += layers.patch[static_cast<std::size_t>(y * side + x)] < 0 ? 1 : 0;
+            block.holes += layers.weight[static_cast<std::size_t>(y * side + x)] > 0 ? 0 : 1;
         }
     }
 }
@@ -151,19 +136,17 @@ void paint_warped_block(std::span<PatchView const> patches, int column, int row,
     }
     layers.inverse_depth.fill(hole_depth);
     layers.group.fill(-1);
-    layers.patch.fill(-1);
-    for (std::size_t i = 0; i < patches.size(); ++i) {
-        WarpPatch const& patch = *patches[i].patch;
-        auto const index = static_cast<std::int32_t>(i);
+    for (PatchView const& view : patches) {
+        WarpPatch const& patch = *view.patch;
         if (patch.layer == FrameletShape::loose) {
             for (std::uint32_t k = 0; k < patch.splats; ++k) {
-                paint_splat(patches[i].splats[patch.first_splat + k], patch, index, left, top, layers);
+                paint_splat(view.splats[patch.first_splat + k], patch.group, left, top, layers);
             }
         } else {
-            paint_layer(patch, index, left, top, layers);
+            paint_layer(patch, left, top, layers);
         }
     }
-    finish(patches, layers, viewport.width - left, viewport.height - top, block);
+    finish(layers, viewport.width - left, viewport.height - top, block);
 }
 
 } // namespace framelet

@@ -1,6 +1,6 @@
 // Paints one block of a moved picture from its patches: samples of one layer are interpolated with each other, never
-// with another layer's; what is nearer hides, what is newer wins. In: patches, newest first. Out: colour, inverse depth
-// and confidence of 16x16 pixels.
+// with another layer's; what is nearer hides, what is newer wins. In: patches, newest first. Out: colour and inverse
+// depth of 16x16 pixels.
 #pragma once
 
 #include <array>
@@ -23,8 +23,6 @@ struct WarpedBlock {
     /// them nearly as on light (at most 0.04 of full light away), and bytes come back exactly.
     std::array<std::array<float, pixels>, 3> squares;
     std::array<float, pixels> inverse_depth; ///< 1 / metres; `hole_depth` in holes, where the colour is 0
-    std::array<float, pixels> scene_time; ///< of the sample; 0 in holes
-    std::array<float, pixels> stretch; ///< display area of a pixel of the source; 0 in holes
     int holes = 0;
 };
 

@@ -15,7 +15,6 @@ struct WarpPatch {
     std::array<float, 3> at{}, dx{}, dy{};
     float inverse_depth = 0, inverse_depth_dx = 0, inverse_depth_dy = 0; ///< the same of the display's, 1 / metres
     float tolerance = 0; ///< by which inverse depths may differ though they mean the same
-    float stretch = 1; ///< display area of a pixel of the source, at the middle
     PixelRect box; ///< that holds all of it, clipped to the viewport
     PackedSample const* grid = nullptr;
     std::int32_t side = 0; ///< of the grid
@@ -24,7 +23,6 @@ struct WarpPatch {
     std::uint32_t first_splat = 0, splats = 0; ///< of loose samples, in the chunk
     std::uint32_t place = 0; ///< by tile and layer: orders patches of one batch
     std::uint64_t batch = 0;
-    SceneTime scene_time = 0;
     std::uint64_t signature = 0; ///< differs where what is painted may differ
     bool is_whole = false; ///< all samples of the grid lie on this layer
     bool is_still = false; ///< its samples lie on their own pixels

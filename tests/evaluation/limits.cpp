@@ -131,6 +131,50 @@ json measure_reprojection(BenchScene& scene, LimitsOptions const& options, int l
     });
 }
 
+/// The viewer alone on all threads: a fifth of the picture arrives for each one shown, the camera moves all the time.
+json measure_viewer(BenchScene& scene, LimitsOptions const& options) {
+    constexpr std::size_t parts = 5;
+    constexpr int pictures = 30; // a round
+    ImagePlane const plane(options.viewport);
+    Tiling const tiling = make_uniform_tiling(plane, plane.pixel_depth());
+    std::vector<Framelet> rendered(tiling.tiles.size());
+    render_framelets(*scene.render_scene, scene.camera, plane, tiling.tiles, 0, rendered);
+    float const depth = median_depth(rendered);
+    LayerTolerance const tolerance = layer_tolerance(depth, make_view_rays(scene.camera, options.viewport));
+    BatchCodec codec;
+    std::array<EncodedBatch, parts> encoded;
+    for (std::size_t part = 0; part < parts; ++part) {
+        Batch batch;
+        batch.number = 1;
+        batch.view = {1, scene.camera, options.viewport};
+        for (std::size_t i = part; i < rendered.size(); i += parts) {
+            batch.framelets.push_back(to_display(rendered[i], scene.exposure));
+            fit_layers(rendered[i], plane, tolerance, batch.shapes.emplace_back());
+        }
+        encoded[part] = codec.encode(batch);
+    }
+    FrameletCache cache(plane);
+    Reprojector reprojector;
+    Picture picture(options.viewport.width, options.viewport.height);
+    std::vector<PixelRect> arrived, changed;
+    std::uint64_t shown = 0;
+    std::vector<double> rates;
+    for (int round = 0; round < options.rounds; ++round) {
+        rates.push_back(pictures / seconds_of([&] {
+                            for (int i = 0; i < pictures; ++i) {
+                                Batch batch = codec.decode(encoded[++shown % parts]);
+                                batch.number = shown;
+                                cache.insert(batch);
+                                cache.take_changed(arrived);
+                                Camera camera = scene.camera;
+                                camera.position += 1e-3f * static_cast<float>(i + 1) * depth * scene.camera.right();
+                                reprojector.show(cache, arrived, camera, 0, {}, picture, changed);
+                            }
+                        }));
+    }
+    return {{"pictures_per_second", median(rates)}};
+}
+
 json measure_stages(BenchScene& scene, LimitsOptions const& options) {
     ImagePlane const plane(options.viewport);
     Tiling const tiling = make_uniform_tiling(plane, plane.pixel_depth());
@@ -187,6 +231,7 @@ json measure_limits(BenchScene& scene, LimitsOptions const& options) {
     for (std::size_t i = 0; i < reprojections.size(); ++i) {
         result["stages"][reprojections[i]] = measure_reprojection(scene, options, static_cast<int>(i) - 1);
     }
+    result["viewer"] = measure_viewer(scene, options);
 
     json const& server = result["server"];
     std::printf("%s, %dx%d, %d threads, medians of %d rounds\n\n", scene.name.c_str(), options.viewport.width,
@@ -196,6 +241,8 @@ json measure_limits(BenchScene& scene, LimitsOptions const& options) {
     std::printf("  whole server                %8.2f   %.3f of the bare loop, %.2f B/sample on the wire\n\n",
                 server["server_samples_per_second"].get<double>() / 1e6, server["ratio"].get<double>(),
                 server["bytes_per_sample"].get<double>());
+    std::printf("viewer, all threads           %8.1f pictures a second while a fifth of each arrives\n\n",
+                result["viewer"]["pictures_per_second"].get<double>());
     std::printf("one thread                    ns a sample   memcpy   times memcpy\n");
     auto const print = [&](char const* stage, char const* remark) {
         json const& figures = result["stages"][stage];

@@ -17,6 +17,7 @@
 #include "tests/evaluation/antialiasing.h"
 #include "tests/evaluation/calibrate.h"
 #include "tests/evaluation/codec/codec_study.h"
+#include "tests/evaluation/correspondence/correspondence.h"
 #include "tests/evaluation/estimators/estimator_verbs.h"
 #include "tests/evaluation/layer_study.h"
 #include "tests/evaluation/limits.h"
@@ -61,6 +62,7 @@ struct Options {
     framelet::bench::CodecStudy codec;
     framelet::bench::LayerStudy layers;
     framelet::bench::AntialiasingStudy antialiasing;
+    framelet::bench::CorrespondenceStudy correspondence;
     framelet::bench::WallOptions wall{.server_threads =
                                           std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1)};
 };
@@ -195,6 +197,17 @@ void add_antialiasing_options(CLI::App& verb, Options& options) {
                     "Scene files to measure with (default: all of the project's)");
 }
 
+void add_correspondence_options(CLI::App& verb, Options& options) {
+    auto& study = options.correspondence;
+    add_output_options(verb, options);
+    verb.add_option("--scene", study.scenes, "Scene files to measure with (default: globe, windmill, the vehicles)");
+    verb.add_option("--camera", study.camera, "Which of their cameras, from 0")->capture_default_str();
+    verb.add_option("--ahead", study.ahead, "Seconds that pictures are moved ahead")
+        ->delimiter(',')
+        ->check(CLI::Range(0.0, 10.0))
+        ->capture_default_str();
+}
+
 void add_wall_options(CLI::App& verb, Options& options) {
     add_study_options(verb, options);
     add_link_options(verb, options);
@@ -281,6 +294,21 @@ json antialiasing(Options& options) {
     return framelet::bench::compare_sample_places(study);
 }
 
+json correspondence(Options& options) {
+    auto& study = options.correspondence;
+    if (study.scenes.empty()) {
+        for (auto const* scene : {"globe", "windmill", "vehicle_approach", "vehicle_chase", "vehicle_crossing",
+                                  "vehicle_fixed", "vehicle_flyby"}) {
+            study.scenes.push_back(source / ("scenes/" + std::string(scene) + ".glb"));
+        }
+    }
+    if (options.quick) {
+        study.viewport = {640, 360};
+        study.times = 1;
+    }
+    return framelet::bench::measure_correspondence(study);
+}
+
 json layers(Options& options) {
     auto& study = options.layers;
     if (study.scenes.empty()) {
@@ -361,6 +389,8 @@ int main(int argc, char** argv) {
              add_antialiasing_options, [&options] { return antialiasing(options); });
     add_verb("layers", "How many planes framelets are, how far off those show samples, and what finding them costs",
              add_layer_options, [&options] { return layers(options); });
+    add_verb("correspondence", "How far off the viewer shows what it moves", add_correspondence_options,
+             [&options] { return correspondence(options); });
     add_verb("calibrate", "What every stage costs on this machine", add_scene_options,
              with_scene([&options](BenchScene& scene) { return calibrate(scene, options.quick); }));
     add_verb("codec", "Bytes of a sample against the error of what is decoded, for each way of coding framelets",

@@ -1,0 +1,307 @@
+#include "tests/evaluation/correspondence/correspondence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include <glm/geometric.hpp>
+#include <nlohmann/json.hpp>
+
+#include "common/framelet_cache.h"
+#include "common/warp_block.h"
+#include "protocol/batch_codec.h"
+#include "server/layers/layer_fit.h"
+#include "server/schedule/tiling.h"
+#include "tests/evaluation/bench_scene.h"
+#include "tests/evaluation/correspondence/exact_motion.h"
+#include "tests/evaluation/correspondence/place_code.h"
+
+namespace framelet::bench {
+namespace {
+
+using nlohmann::json;
+
+/// Pixels from a discontinuity that belong to a silhouette.
+constexpr int silhouette_pixels = 2;
+
+/// A second difference of inverse depth of more than this share of it is a step.
+constexpr float step_share = 0.02f;
+
+/// Inverse depths that differ by this share more than their neighbours do are of two surfaces.
+constexpr float same_surface = 0.01f;
+
+/// What every pixel of a picture shows.
+struct Surfaces {
+    Viewport viewport;
+    std::vector<Framelet> framelets;
+    std::vector<float> inverse_depth;
+    std::vector<BodyNumber> body;
+    std::vector<Vec3> velocity;
+    std::vector<std::uint8_t> silhouette; ///< within `silhouette_pixels` of a discontinuity
+
+    std::size_t index(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(viewport.width) + static_cast<std::size_t>(x);
+    }
+};
+
+void mark_silhouettes(Surfaces& surfaces) {
+    auto const [width, height] = surfaces.viewport;
+    auto const is_step = [&](std::size_t before, std::size_t at, std::size_t after) {
+        float const a = surfaces.inverse_depth[before], b = surfaces.inverse_depth[at],
+                    c = surfaces.inverse_depth[after];
+        return surfaces.body[at] != surfaces.body[after] || std::abs(a - 2 * b + c) > step_share * std::max({a, b, c});
+    };
+    surfaces.silhouette.assign(surfaces.body.size(), 0);
+    for (int y = 1; y + 1 < height; ++y) {
+        for (int x = 1; x + 1 < width; ++x) {
+            std::size_t const at = surfaces.index(x, y);
+            if (!is_step(at - 1, at, at + 1) && !is_step(surfaces.index(x, y - 1), at, surfaces.index(x, y + 1))) {
+                continue;
+            }
+            for (int j = std::max(y - silhouette_pixels, 0); j <= std::min(y + silhouette_pixels, height - 1); ++j) {
+                for (int i = std::max(x - silhouette_pixels, 0); i <= std::min(x + silhouette_pixels, width - 1); ++i) {
+                    surfaces.silhouette[surfaces.index(i, j)] = 1;
+                }
+            }
+        }
+    }
+}
+
+Surfaces render_surfaces(BenchScene& scene, Camera const& camera, Viewport viewport) {
+    ImagePlane const plane(viewport);
+    Tiling const tiling = make_uniform_tiling(plane, plane.pixel_depth());
+    Surfaces out{viewport, {}, {}, {}, {}, {}};
+    out.framelets.resize(tiling.tiles.size());
+    render_framelets(*scene.render_scene, camera, plane, tiling.tiles, 0, out.framelets);
+    auto const pixels = static_cast<std::size_t>(viewport.width) * static_cast<std::size_t>(viewport.height);
+    out.inverse_depth.resize(pixels);
+    out.body.resize(pixels);
+    out.velocity.resize(pixels);
+    for (Framelet const& framelet : out.framelets) {
+        PixelRect const rect = plane.tile_rect(framelet.tile);
+        for (std::uint32_t i = 0; i < framelet_samples; ++i) {
+            int const x = rect.left + static_cast<int>(morton_x(i));
+            int const y = rect.top + static_cast<int>(morton_y(i));
+            if (x < viewport.width && y < viewport.height) {
+                out.inverse_depth[out.index(x, y)] = 1 / framelet.depth[i];
+                out.body[out.index(x, y)] = framelet.body.empty() ? static_body : framelet.body[i];
+                out.velocity[out.index(x, y)] = framelet.velocity.empty() ? Vec3(0) : framelet.velocity[i];
+            }
+        }
+    }
+    mark_silhouettes(out);
+    return out;
+}
+
+/// True where the picture shows that surface there: its inverse depth is among those of the pixels around.
+bool shows(Surfaces const& surfaces, ExactMotion::Place const& place, BodyNumber body) {
+    auto const [width, height] = surfaces.viewport;
+    Vec2 const pixel = place.pixel;
+    if (!(pixel.x >= 0.5f && pixel.y >= 0.5f && pixel.x <= static_cast<float>(width) - 0.5f &&
+          pixel.y <= static_cast<float>(height) - 0.5f)) {
+        return false;
+    }
+    float least = INFINITY, most = -INFINITY;
+    int const x = static_cast<int>(pixel.x);
+    int const y = static_cast<int>(pixel.y);
+    if (surfaces.body[surfaces.index(std::min(x, width - 1), std::min(y, height - 1))] != body) {
+        return false;
+    }
+    for (int j = std::max(y - 1, 0); j <= std::min(y + 1, height - 1); ++j) {
+        for (int i = std::max(x - 1, 0); i <= std::min(x + 1, width - 1); ++i) {
+            if (surfaces.body[surfaces.index(i, j)] == body) {
+                least = std::min(least, surfaces.inverse_depth[surfaces.index(i, j)]);
+                most = std::max(most, surfaces.inverse_depth[surfaces.index(i, j)]);
+            }
+        }
+    }
+    float const margin = same_surface * place.inverse_depth;
+    return place.inverse_depth >= least - margin && place.inverse_depth <= most + margin;
+}
+
+/// What a viewer holds of a picture whose colours are the pixels' places.
+void hold_places(Surfaces const& surfaces, BenchScene const& scene, Camera const& camera, int shift,
+                 FrameletCache& cache, std::vector<BodyTrack> const& tracks, BodyMotions& motions) {
+    ImagePlane const plane(surfaces.viewport);
+    LayerTolerance const tolerance =
+        layer_tolerance(median_depth(surfaces.framelets), make_view_rays(camera, surfaces.viewport));
+    Batch batch;
+    batch.number = 1;
+    batch.view = {1, camera, surfaces.viewport};
+    batch.scene_time = scene.pose.time;
+    batch.tracks = tracks;
+    batch.shapes.resize(surfaces.framelets.size());
+    for (std::size_t k = 0; k < surfaces.framelets.size(); ++k) {
+        DisplayFramelet& out = batch.framelets.emplace_back();
+        out.tile = surfaces.framelets[k].tile;
+        PixelRect const rect = plane.tile_rect(out.tile);
+        out.blue.fill(0);
+        for (std::uint32_t i = 0; i < framelet_samples; ++i) {
+            out.red[i] = place_byte(rect.left + static_cast<int>(morton_x(i)), shift);
+            out.green[i] = place_byte(rect.top + static_cast<int>(morton_y(i)), shift);
+        }
+        fit_layers(surfaces.framelets[k], plane, tolerance, batch.shapes[k]);
+    }
+    BatchCodec codec;
+    Batch const arrived = codec.decode(codec.encode(batch));
+    cache.insert(arrived);
+    for (BodyTrack const& track : arrived.tracks) {
+        motions.extend(track);
+    }
+}
+
+struct Counts {
+    double pixels = 0, visible = 0, tenth = 0, half = 0, one = 0, holes = 0;
+
+    void add(float error) {
+        ++visible;
+        tenth += error <= 0.1f ? 1 : 0;
+        half += error <= 0.5f ? 1 : 0;
+        one += error <= 1.0f ? 1 : 0;
+    }
+    double share(double count) const { return visible > 0 ? count / visible : 1; }
+    json to_json() const {
+        return {{"visible", visible},
+                {"within_0.1", share(tenth)},
+                {"within_0.5", share(half)},
+                {"within_1", share(one)},
+                {"holes", share(holes)}};
+    }
+};
+
+struct Found {
+    Counts all, silhouettes;
+    double pixels = 0; ///< also those that were not visible
+    double holes = 0; ///< also among those
+};
+
+void compare(Surfaces const& before, Surfaces const& after, ExactMotion const& back, WarpPlan const (&plans)[2],
+             Found& found) {
+    constexpr int side = WarpedBlock::side;
+    Viewport const viewport = after.viewport;
+    std::vector<PatchView> patches;
+    for (std::size_t b = 0;
+         b < static_cast<std::size_t>(plans[0].columns()) * static_cast<std::size_t>(plans[0].rows()); ++b) {
+        int const column = static_cast<int>(b) % plans[0].columns();
+        int const row = static_cast<int>(b) / plans[0].columns();
+        WarpedBlock blocks[2];
+        for (int shift = 0; shift < 2; ++shift) {
+            plans[shift].block(b, patches);
+            paint_warped_block(patches, column, row, viewport, blocks[shift]);
+        }
+        for (int i = 0; i < side * side; ++i) {
+            int const x = column * side + i % side;
+            int const y = row * side + i / side;
+            if (x >= viewport.width || y >= viewport.height) {
+                continue;
+            }
+            auto const k = static_cast<std::size_t>(i);
+            std::size_t const at = after.index(x, y);
+            Vec2 const pixel = Vec2(x, y) + 0.5f;
+            bool const is_hole = blocks[0].inverse_depth[k] == hole_depth;
+            ++found.pixels;
+            found.holes += is_hole ? 1 : 0;
+            ExactMotion::Place const exact =
+                back.shown(pixel, after.inverse_depth[at], after.body[at], after.velocity[at]);
+            if (!shows(before, exact, after.body[at])) {
+                continue;
+            }
+            int const shift_x = steady_shift(exact.pixel.x);
+            int const shift_y = steady_shift(exact.pixel.y);
+            Vec2 const taken(place_of(blocks[shift_x].squares[0][k], shift_x, exact.pixel.x),
+                             place_of(blocks[shift_y].squares[1][k], shift_y, exact.pixel.y));
+            float const error = is_hole ? INFINITY : glm::distance(taken, exact.pixel);
+            bool const is_silhouette =
+                after.silhouette[at] != 0 ||
+                before.silhouette[before.index(std::min(static_cast<int>(exact.pixel.x), viewport.width - 1),
+                                               std::min(static_cast<int>(exact.pixel.y), viewport.height - 1))] != 0;
+            found.all.add(error);
+            found.all.holes += is_hole ? 1 : 0;
+            if (is_silhouette) {
+                found.silhouettes.add(error);
+                found.silhouettes.holes += is_hole ? 1 : 0;
+            }
+        }
+    }
+}
+
+/// A flight for scenes that have no camera of their own.
+Camera flown(Camera camera, float median_depth, double seconds) {
+    constexpr float depths_a_second = 0.5f;
+    constexpr float radians_a_second = 0.5235988f;
+    auto const s = static_cast<float>(seconds);
+    camera.position += depths_a_second * median_depth * s * camera.right();
+    camera.orientation = glm::normalize(glm::angleAxis(radians_a_second * s, Vec3(0, 1, 0)) * camera.orientation);
+    return camera;
+}
+
+void measure_from(BenchScene& scene, CorrespondenceStudy const& study, SceneTime time, std::vector<Found>& found) {
+    ImagePlane const plane(study.viewport);
+    pose_at(scene, time);
+    Camera const camera = scene.camera;
+    ScenePose const pose = scene.pose;
+    SceneBodies const& bodies = scene.render_scene->bodies();
+    Surfaces const before = render_surfaces(scene, camera, study.viewport);
+    auto const first_key = static_cast<std::int64_t>(std::floor(time * body_keys_per_second));
+    double const farthest = *std::ranges::max_element(study.ahead);
+    auto const keys = static_cast<std::size_t>(std::ceil(farthest * body_keys_per_second)) + 2;
+    std::vector<BodyTrack> const tracks = body_tracks(scene.scene, scene.clips, bodies, first_key, keys);
+    FrameletCache caches[2]{FrameletCache(plane), FrameletCache(plane)};
+    BodyMotions motions;
+    for (int shift = 0; shift < 2; ++shift) {
+        hold_places(before, scene, camera, shift, caches[shift], tracks, motions);
+    }
+    for (std::size_t i = 0; i < study.ahead.size(); ++i) {
+        SceneTime const later = time + study.ahead[i];
+        pose_at(scene, later);
+        Camera const moved =
+            scene.scene_camera != none ? scene.camera : flown(camera, median_depth(before.framelets), study.ahead[i]);
+        Surfaces const after = render_surfaces(scene, moved, study.viewport);
+        WarpPlan plans[2];
+        for (int shift = 0; shift < 2; ++shift) {
+            plans[shift].make(caches[shift], moved, later, motions);
+        }
+        ExactMotion const back(bodies, {scene.pose, moved}, {pose, camera}, study.viewport);
+        compare(before, after, back, plans, found[i]);
+    }
+}
+
+} // namespace
+
+json measure_correspondence(CorrespondenceStudy const& study) {
+    std::printf("%dx%d, a sample per pixel; share of the pixels that were visible already, %%\n", study.viewport.width,
+                study.viewport.height);
+    std::printf("%-18s ahead [ms]  visible   <= 0.1   <= 0.5     <= 1    holes | silhouettes   <= 0.1   <= 0.5     <= 1"
+                "    holes | holes of all\n",
+                "");
+    json rows = json::array();
+    for (std::filesystem::path const& file : study.scenes) {
+        auto const scene = load_bench_scene(file, study.camera);
+        std::vector<Found> found(study.ahead.size());
+        int const times = scene->duration > 0 ? study.times : 1;
+        for (int k = 0; k < times; ++k) {
+            measure_from(*scene, study, scene->duration * (k + 0.5) / times, found);
+        }
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            Found const& f = found[i];
+            auto const percent = [](Counts const& counts, double count) { return 100 * counts.share(count); };
+            std::printf("%-18s %10.1f %8.2f %8.2f %8.2f %8.2f %8.3f | %11.2f %8.2f %8.2f %8.2f %8.3f | %8.2f\n",
+                        scene->name.c_str(), 1e3 * study.ahead[i], 100 * f.all.visible / f.pixels,
+                        percent(f.all, f.all.tenth), percent(f.all, f.all.half), percent(f.all, f.all.one),
+                        percent(f.all, f.all.holes), 100 * f.silhouettes.visible / f.pixels,
+                        percent(f.silhouettes, f.silhouettes.tenth), percent(f.silhouettes, f.silhouettes.half),
+                        percent(f.silhouettes, f.silhouettes.one), percent(f.silhouettes, f.silhouettes.holes),
+                        100 * f.holes / f.pixels);
+            std::fflush(stdout);
+            rows.push_back({{"scene", scene->name},
+                            {"ahead_seconds", study.ahead[i]},
+                            {"visible", f.all.visible / f.pixels},
+                            {"all", f.all.to_json()},
+                            {"silhouettes", f.silhouettes.to_json()},
+                            {"holes_of_all_pixels", f.holes / f.pixels}});
+        }
+    }
+    return rows;
+}
+
+} // namespace framelet::bench

@@ -1,0 +1,43 @@
+#include "tests/evaluation/correspondence/exact_motion.h"
+
+#include <cmath>
+
+#include <glm/matrix.hpp>
+
+namespace framelet::bench {
+
+namespace {
+
+/// View depth over inverse depth's counterpart below which a place is as good as behind the eye.
+constexpr float nearest = 0.05f;
+
+} // namespace
+
+ExactMotion::ExactMotion(SceneBodies const& bodies, SceneView const& from, SceneView const& to, Viewport viewport)
+    : seconds_(static_cast<float>(to.pose.time - from.pose.time)), rays_(make_view_rays(from.camera, viewport)) {
+    ViewRays const rays = make_view_rays(to.camera, viewport);
+    eye_ = rays.origin;
+    to_pixels_ = glm::inverse(Mat3(rays.direction_dx, rays.direction_dy, rays.direction));
+    for (std::size_t body = 0; body < bodies.frames.size(); ++body) {
+        auto const number = static_cast<BodyNumber>(body);
+        poses_.emplace_back(body_pose(bodies, from.pose, number), body_pose(bodies, to.pose, number));
+    }
+}
+
+ExactMotion::Place ExactMotion::shown(Vec2 place, float inverse_depth, BodyNumber body, Vec3 const& velocity) const {
+    Vec3 const direction = rays_.direction + rays_.direction_dx * place.x + rays_.direction_dy * place.y;
+    Vec3 towards = direction; // times the inverse depth
+    if (inverse_depth > 0) {
+        Vec3 point = rays_.origin + direction / inverse_depth;
+        if (body != static_body) {
+            auto const& [before, after] = poses_[body];
+            Vec3 const in_body = (glm::conjugate(before.rotation) * (point - before.translation)) / before.scale;
+            point = after.rotation * (after.scale * in_body) + after.translation;
+        }
+        towards = (point + velocity * seconds_ - eye_) * inverse_depth;
+    }
+    Vec3 const p = to_pixels_ * towards;
+    return p.z > nearest ? Place{Vec2(p) / p.z, inverse_depth / p.z} : Place{};
+}
+
+} // namespace framelet::bench
