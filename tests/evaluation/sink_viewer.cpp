@@ -51,7 +51,7 @@ SinkRecord watch_until_converged(std::uint16_t port, Camera const& camera, Viewp
                    },
                    {}},
                   max_message_bytes);
-    stream->send(Hello{protocol_version, {}, coding::exact_colour | coding::haar_colour | coding::shapes_and_tracks});
+    stream->send(Hello{protocol_version, {}, coding::all});
     io.run();
     if (!lost.empty()) {
         throw ConnectionError("the measured server ended the connection: " + lost);
