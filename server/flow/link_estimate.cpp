@@ -32,12 +32,12 @@ constexpr double draining_share = 0.8;
 /// The next batch may be begun so long before its time comes, and one that is late may make up for so much.
 constexpr double slack_seconds = 0.01;
 /// A batch may take so long on the link, seconds, or so much of the window.
-constexpr double batch_seconds = 0.01, batch_share = 0.125, first_batch_share = 0.5;
-constexpr double first_used_share = 0.25;
+constexpr double batch_seconds = 0.01, batch_share = 0.125, first_batch_share = 0.25;
+constexpr double first_used_share = 0.2;
 /// Over what time the measured rate is a mean, and the most that one batch counts for, seconds: a stall is no rate.
 constexpr double rate_memory = 0.1, most_weight = 0.1;
 constexpr double least_rate = 1e3, most_rate = 1e12;
-constexpr double first_window = 16e3, least_window = 4e3;
+constexpr double first_window = 32e3, least_window = 4e3;
 /// Before the first batch: without loss, and its shape.
 constexpr double first_bytes_per_sample = 1.3;
 /// Of a new value in a running mean.
@@ -63,7 +63,7 @@ double WindowedMinimum::least() const {
     return std::min(older_, newer_);
 }
 
-LinkEstimate::LinkEstimate() : window_(first_window) {}
+LinkEstimate::LinkEstimate() : window_(first_window), bytes_per_sample_(first_bytes_per_sample) {}
 
 LinkState LinkEstimate::state() const {
     double const base = base_.least();
@@ -85,8 +85,7 @@ bool LinkEstimate::has_room(double now) const {
 }
 
 void LinkEstimate::begin(double samples) {
-    double const each = bytes_per_sample_ > 0 ? bytes_per_sample_ : first_bytes_per_sample;
-    flights_.push_back({samples, each * samples, {}});
+    flights_.push_back({samples, bytes_per_sample_ * samples, {}});
     in_flight_ += flights_.back().bytes;
     was_full_ = was_full_ || is_full();
 }
@@ -107,7 +106,7 @@ void LinkEstimate::sent(std::uint64_t batch, double now, double bytes) {
     }
     if (flight.samples > 0) {
         double const each = bytes / flight.samples;
-        bytes_per_sample_ += (bytes_per_sample_ > 0 ? news : 1) * (each - bytes_per_sample_);
+        bytes_per_sample_ += news * (each - bytes_per_sample_);
     }
 }
 

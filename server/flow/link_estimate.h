@@ -16,7 +16,7 @@ namespace framelet {
 struct LinkState {
     /// Infinite: it has not been felt yet.
     double bytes_per_second = std::numeric_limits<double>::infinity();
-    double bytes_per_sample = 0; ///< of what was sent lately, with everything that goes with it; 0: nothing was sent
+    double bytes_per_sample = 0; ///< of what was sent lately, or will be first, with everything that goes with it
     double delivery_seconds = 0; ///< from sending until a batch has arrived, lately
     double base_seconds = 0; ///< the shortest round trip lately
     double batch_bytes = 0; ///< most of one batch that still shows soon
@@ -93,7 +93,7 @@ private:
     bool queued_ = false; ///< a queue stands
     double growth_ = 1; ///< of the rate, at the next step upwards
     double grown_ = 0; ///< when the rate was raised last, or had to fall
-    double bytes_per_sample_ = 0;
+    double bytes_per_sample_;
     double delivery_seconds_ = 0;
     double queueing_seconds_ = 0;
 };

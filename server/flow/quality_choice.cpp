@@ -41,7 +41,7 @@ std::uint8_t QualityChoice::choose(LinkState const& link, double samples_per_sec
 
 double bounded_rate(LinkState const& link, double samples_per_second) {
     if (!(link.bytes_per_sample > 0)) {
-        return samples_per_second;
+        return samples_per_second; // nothing but empty messages
     }
     return std::min(samples_per_second, std::max(1.0, link_share * link.bytes_per_second / link.bytes_per_sample));
 }
