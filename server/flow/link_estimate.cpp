@@ -37,6 +37,8 @@ constexpr double first_used_share = 0.2;
 /// Over what time the measured rate is a mean, and the most that one batch counts for, seconds: a stall is no rate.
 constexpr double rate_memory = 0.1, most_weight = 0.1;
 constexpr double least_rate = 1e3, most_rate = 1e12;
+/// A shorter round trip says nothing of a link: there is hardly one.
+constexpr double least_round_trip = 0.002;
 constexpr double first_window = 32e3, least_window = 4e3;
 /// Before the first batch: without loss, and its shape.
 constexpr double first_bytes_per_sample = 1.3;
@@ -66,13 +68,21 @@ double WindowedMinimum::least() const {
 LinkEstimate::LinkEstimate() : window_(first_window), bytes_per_sample_(first_bytes_per_sample) {}
 
 LinkState LinkEstimate::state() const {
+    LinkState state;
+    state.bytes_per_sample = bytes_per_sample_;
+    state.delivery_seconds = delivery_seconds_;
+    state.queueing_seconds = queueing_seconds_;
     double const base = base_.least();
-    return {starting_ ? infinity : rate_,
-            bytes_per_sample_,
-            delivery_seconds_,
-            std::isfinite(base) ? base : 0,
-            starting_ ? first_batch_share * window_ : std::max(batch_seconds * rate_, batch_share * window_),
-            queueing_seconds_};
+    bool const is_answered = std::isfinite(base);
+    state.base_seconds = is_answered ? base : 0;
+    if (!starting_) {
+        state.bytes_per_second = rate_;
+        state.batch_bytes = std::max(batch_seconds * rate_, batch_share * window_);
+    } else {
+        state.bytes_per_second = held_up_ && is_answered ? window_ / std::max(base, least_round_trip) : infinity;
+        state.batch_bytes = base < least_round_trip ? infinity : first_batch_share * window_;
+    }
+    return state;
 }
 
 /// While no queue has been met, a part of the window suffices to try a larger one: the renderer may have no more.
@@ -96,6 +106,7 @@ void LinkEstimate::sent(std::uint64_t batch, double now, double bytes) {
     }
     Flight& flight = flights_[static_cast<std::size_t>(batch - acknowledged_ - 1)];
     in_flight_ += bytes - flight.bytes;
+    held_up_ = held_up_ || in_flight_ >= window_;
     flight.bytes = bytes;
     flight.sent = now;
     was_full_ = was_full_ || is_full();
@@ -183,6 +194,7 @@ void LinkEstimate::adapt(double now, double bytes, double queue) {
         if (queue < most_queue) {
             window_ += was_full_ ? bytes : 0;
             was_full_ = is_full();
+            held_up_ = held_up_ && in_flight_ >= 0.5 * window_;
             return;
         }
         starting_ = false;

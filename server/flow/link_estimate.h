@@ -14,7 +14,7 @@
 namespace framelet {
 
 struct LinkState {
-    /// Infinite: it has not been felt yet.
+    /// Infinite: it has not been felt yet. At first, while the window is still being found, what that allows.
     double bytes_per_second = std::numeric_limits<double>::infinity();
     double bytes_per_sample = 0; ///< of what was sent lately, or will be first, with everything that goes with it
     double delivery_seconds = 0; ///< from sending until a batch has arrived, lately
@@ -85,6 +85,7 @@ private:
     std::deque<Waited> waited_; ///< lately
     double busy_bytes_ = 0, busy_seconds_ = 0; ///< while the link was busy, older ones counting less
 
+    bool held_up_ = false; ///< the window left no room for more, lately
     bool starting_ = true; ///< no queue has been met
     double rate_ = 0; ///< bytes a second, once a queue has been met
     double ceiling_ = 0; ///< the rate before it fell last
