@@ -46,13 +46,10 @@ double bounded_rate(LinkState const& link, double samples_per_second) {
     return std::min(samples_per_second, std::max(1.0, link_share * link.bytes_per_second / link.bytes_per_sample));
 }
 
-std::size_t bounded_batch(LinkState const& link, std::size_t wanted) {
-    if (!(link.bytes_per_sample > 0)) {
-        return wanted;
-    }
-    double const framelets = link.batch_bytes / (link.bytes_per_sample * framelet_samples);
-    auto const most = static_cast<std::size_t>(std::clamp(framelets, 1.0, static_cast<double>(max_batch_framelets)));
-    return wanted == 0 ? most : std::min(wanted, most);
+std::size_t bounded_batch(LinkState const& link) {
+    double const most = static_cast<double>(max_batch_framelets);
+    double const bytes = link.bytes_per_sample * framelet_samples;
+    return static_cast<std::size_t>(bytes > 0 ? std::clamp(link.batch_bytes / bytes, 1.0, most) : most);
 }
 
 } // namespace framelet

@@ -26,7 +26,7 @@ private:
 /// Samples a second that renderer and link both have time for.
 double bounded_rate(LinkState const& link, double samples_per_second);
 
-/// Most framelets of a batch; 0: as many as one likes. `wanted`: the same, as somebody wishes it.
-std::size_t bounded_batch(LinkState const& link, std::size_t wanted);
+/// Most framelets of a batch that the link takes at once, at least one.
+std::size_t bounded_batch(LinkState const& link);
 
 } // namespace framelet

@@ -130,7 +130,8 @@ bool SessionLoop::render_session(Session& session, Viewer& viewer, SceneTime tim
     wanted.cycle_seconds = cycle_length(still, plan_seconds_);
     wanted.delivery_seconds = static_cast<float>(link.delivery_seconds);
     wanted.bias = std::clamp(static_cast<float>(options_.bias) + input.settings.bias, -1.0f, 1.0f);
-    wanted.batch_framelets = bounded_batch(link, options_.batch_framelets);
+    wanted.batch_framelets = options_.batch_framelets;
+    wanted.link_framelets = bounded_batch(link);
     wanted.reprojects = input.takes_shapes();
     CycleRecord record;
     Laps laps;
@@ -188,7 +189,7 @@ bool SessionLoop::send_exactly(Session& session, Viewer& viewer, SessionInput co
         return false;
     }
     constexpr std::size_t most_framelets = 1024;
-    viewer.lossy.list(bounded_batch(session.link(), most_framelets), lossy_tiles_);
+    viewer.lossy.list(std::min(bounded_batch(session.link()), most_framelets), lossy_tiles_);
     render_plan(lossy_tiles_, {}, state);
     needed_.assign(lossy_tiles_.size(), 1);
     choose_qualities(ImagePlane(state.view.viewport), lossy_tiles_, needed_, exact_quality, true, viewer.lossy,

@@ -43,7 +43,8 @@ public:
         refresh.samples_per_second = bounded_rate(link, rendered);
         refresh.cycle_seconds = cycle_length(still, setup_.machine * plan_seconds());
         refresh.delivery_seconds = static_cast<float>(link.delivery_seconds);
-        refresh.batch_framelets = bounded_batch(link, setup_.batch_framelets);
+        refresh.batch_framelets = setup_.batch_framelets;
+        refresh.link_framelets = bounded_batch(link);
         refresh.bias = static_cast<float>(setup_.bias);
         refresh.reprojects = reprojects_;
         RefreshPlan const& plan = refresh_.plan(refresh);
@@ -141,7 +142,7 @@ private:
     /// What the viewer was sent with loss once more, as the server does when the picture is complete.
     ServerStep send_exactly(StepInput const& input, SceneTime time) {
         constexpr std::size_t most_framelets = 1024;
-        lossy_.list(bounded_batch(link_.state(), most_framelets), lossy_tiles_);
+        lossy_.list(std::min(bounded_batch(link_.state()), most_framelets), lossy_tiles_);
         ServerStep step;
         std::uint64_t const segments = render(input, lossy_tiles_);
         step.samples = lossy_tiles_.size() * framelet_samples;
