@@ -116,8 +116,7 @@ struct ServerConnection::Impl {
         };
         // The greeting is small; batches may be large, once we know who talks to us.
         stream->start(std::move(events), max_upstream_message_bytes);
-        stream->send(Hello{protocol_version, options.token,
-                           coding::exact_colour | coding::haar_colour | coding::shapes_and_tracks});
+        stream->send(Hello{protocol_version, options.token, coding::all});
     }
 
     void receive(Message message) {

@@ -7,6 +7,10 @@
 #include <sstream>
 #include <type_traits>
 
+#if __has_include(<netinet/tcp.h>)
+#include <netinet/tcp.h>
+#endif
+
 #include <boost/asio/dispatch.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/read.hpp>
@@ -27,6 +31,8 @@ using SecureStream = asio::ssl::stream<Socket>;
 using Error = boost::system::error_code;
 
 constexpr std::size_t prefix_bytes = 4;
+/// What the system may hold before it has a place on the way: more would only grow old there.
+[[maybe_unused]] constexpr int most_unsent_bytes = 128 << 10;
 constexpr std::chrono::seconds handshake_time{10};
 constexpr std::chrono::seconds ending_time{1};
 
@@ -61,6 +67,10 @@ public:
           ending_timer_(executor_), role_(role), peer_(address_of(stream_.lowest_layer())) {
         Error ignored; // the peer may be gone already; reading will find out
         stream_.lowest_layer().set_option(asio::ip::tcp::no_delay(true), ignored);
+#ifdef TCP_NOTSENT_LOWAT
+        using UnsentBytes = asio::detail::socket_option::integer<IPPROTO_TCP, TCP_NOTSENT_LOWAT>;
+        stream_.lowest_layer().set_option(UnsentBytes(most_unsent_bytes), ignored);
+#endif
     }
 
     void start(Handlers handlers, std::size_t max_body) override {
@@ -81,18 +91,24 @@ public:
         }
     }
 
-    void set_max_body(std::size_t max_body) override { max_body_ = max_body; }
-
-    void send(Message const& message) override {
-        if (detached_) {
-            return;
-        }
-        Bytes bytes = frame_of(message);
-        outbox_.announce(bytes.size());
-        asio::post(executor_, [self = self(), bytes = std::move(bytes)]() mutable { self->enqueue(std::move(bytes)); });
+    void set_max_body(std::size_t max_body) override {
+        max_body_ = max_body;
     }
 
-    std::size_t unsent_bytes() const override { return outbox_.unsent(); }
+    std::size_t send(Message const& message) override {
+        if (detached_) {
+            return 0;
+        }
+        Bytes bytes = frame_of(message);
+        std::size_t const size = bytes.size();
+        outbox_.announce(size);
+        asio::post(executor_, [self = self(), bytes = std::move(bytes)]() mutable { self->enqueue(std::move(bytes)); });
+        return size;
+    }
+
+    std::size_t unsent_bytes() const override {
+        return outbox_.unsent();
+    }
 
     void close_after_sending() override {
         take_handlers();
@@ -104,10 +120,14 @@ public:
         asio::dispatch(executor_, [self = self()] { self->finish(); });
     }
 
-    std::string peer() const override { return peer_; }
+    std::string peer() const override {
+        return peer_;
+    }
 
 private:
-    std::shared_ptr<Connection> self() { return std::static_pointer_cast<Connection>(shared_from_this()); }
+    std::shared_ptr<Connection> self() {
+        return std::static_pointer_cast<Connection>(shared_from_this());
+    }
 
     std::shared_ptr<Handlers> handlers() {
         std::scoped_lock const lock(handlers_mutex_);

@@ -30,7 +30,7 @@ public:
         std::function<void(std::size_t bytes)> on_sent;
     };
 
-    /// Plain TCP. Sets TCP_NODELAY.
+    /// Plain TCP. Sets TCP_NODELAY, and where there is TCP_NOTSENT_LOWAT keeps what waits in the system short.
     static std::shared_ptr<FramedStream> plain(Socket socket);
     /// TLS as the server or as the client; `host` is the name or the address that the
     /// certificate is checked against (InputError where it is neither).
@@ -45,9 +45,9 @@ public:
     /// such that break the protocol end the connection; the peer is sent a Failure that says why.
     virtual void start(Handlers handlers, std::size_t max_body) = 0;
     virtual void set_max_body(std::size_t max_body) = 0;
-    /// Queues a message; does nothing once the connection has ended. Messages of one thread stay in order. From any
-    /// thread.
-    virtual void send(Message const& message) = 0;
+    /// Queues a message and returns its bytes, prefix included; does nothing, and returns 0, once the connection has
+    /// ended. Messages of one thread stay in order. From any thread.
+    virtual std::size_t send(Message const& message) = 0;
     /// Bytes queued or handed to the socket and not yet taken by it. From any thread.
     virtual std::size_t unsent_bytes() const = 0;
     /// Sends what is queued (for at most a second), then ends; what still arrives is not looked at. From any thread.

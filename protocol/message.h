@@ -27,6 +27,7 @@ namespace coding {
 inline constexpr std::uint32_t exact_colour = 1; ///< every viewer can
 inline constexpr std::uint32_t haar_colour = 2; ///< framelets with a quality
 inline constexpr std::uint32_t shapes_and_tracks = 4;
+inline constexpr std::uint32_t all = exact_colour | haar_colour | shapes_and_tracks; ///< that this version knows
 } // namespace coding
 
 /// First message of a connection.

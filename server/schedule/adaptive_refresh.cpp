@@ -29,12 +29,13 @@ bool is_cut(ViewState const& a, ViewState const& b, double seconds) {
 /// `still`: nothing moves, so that a large batch costs no freshness.
 std::size_t batch_limit(RefreshInput const& input, bool still) {
     if (input.batch_framelets > 0) {
-        return std::min(input.batch_framelets, max_batch_framelets);
+        return std::min({input.batch_framelets, input.link_framelets, max_batch_framelets});
     }
     double const share = still ? 2 : 0.5; // half a cycle shows sooner
     double const timely =
         share * input.samples_per_second * static_cast<double>(input.cycle_seconds) / framelet_samples;
-    return static_cast<std::size_t>(std::clamp(timely, 1.0, static_cast<double>(max_batch_framelets)));
+    return static_cast<std::size_t>(
+        std::clamp(timely, 1.0, static_cast<double>(std::min(input.link_framelets, max_batch_framelets))));
 }
 
 } // namespace

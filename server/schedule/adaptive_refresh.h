@@ -30,6 +30,7 @@ struct RefreshInput {
     /// Most framelets of one batch; 0: what half a cycle has time for, so that it shows sooner, or all of it while
     /// nothing moves.
     std::size_t batch_framelets = 0;
+    std::size_t link_framelets = max_batch_framelets; ///< most that the link takes at once
 };
 
 /// What to render now.

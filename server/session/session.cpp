@@ -5,6 +5,13 @@
 #include "common/error.h"
 
 namespace framelet {
+namespace {
+
+double seconds_of(std::chrono::steady_clock::time_point time) {
+    return std::chrono::duration<double>(time.time_since_epoch()).count();
+}
+
+} // namespace
 
 Session::Session(std::uint64_t id, std::shared_ptr<FramedStream> stream, Events events)
     : id_(id), stream_(std::move(stream)), events_(std::move(events)) {}
@@ -38,10 +45,11 @@ SessionInput Session::newest_input() const {
 
 bool Session::has_room() const {
     std::scoped_lock const lock(mutex_);
-    return open_ && last_batch_ - last_ack_ < max_batches_in_flight;
+    return open_ && last_batch_ - last_ack_ < max_batches_in_flight &&
+           link_.has_room(seconds_of(std::chrono::steady_clock::now()));
 }
 
-std::uint64_t Session::begin_batch() {
+std::uint64_t Session::begin_batch(double samples) {
     std::scoped_lock const lock(mutex_);
     FRAMELET_CHECK(last_batch_ - last_ack_ < max_batches_in_flight);
     auto const now = std::chrono::steady_clock::now();
@@ -49,19 +57,30 @@ std::uint64_t Session::begin_batch() {
         last_progress_ = now;
     }
     ++last_batch_;
-    begun_[last_batch_ % max_batches_in_flight] = now;
+    link_.begin(samples);
     return last_batch_;
 }
 
-double Session::answer_seconds() const {
+LinkState Session::link() const {
     std::scoped_lock const lock(mutex_);
-    return answer_seconds_;
+    return link_.state();
 }
 
 void Session::send(Message const& message) {
     if (is_open()) {
         stream_->send(message);
     }
+}
+
+void Session::send_batch(EncodedBatch batch) {
+    if (!is_open()) {
+        return;
+    }
+    std::uint64_t const number = batch.number;
+    double const now = seconds_of(std::chrono::steady_clock::now());
+    std::size_t const bytes = stream_->send(std::move(batch)); // the answer may be here before this returns
+    std::scoped_lock const lock(mutex_);
+    link_.sent(number, now, static_cast<double>(bytes));
 }
 
 void Session::invalidate() {
@@ -119,9 +138,11 @@ void Session::receive(Message message) {
             }
             last_ack_ = ack->batch;
             last_progress_ = std::chrono::steady_clock::now();
-            std::chrono::duration<double> const taken = last_progress_ - begun_[last_ack_ % max_batches_in_flight];
-            constexpr double weight = 0.125;
-            answer_seconds_ += (answer_seconds_ > 0 ? weight : 1) * (taken.count() - answer_seconds_);
+            std::optional<double> received;
+            if (ack->received_us != 0) {
+                received = 1e-6 * static_cast<double>(ack->received_us);
+            }
+            link_.acknowledged(ack->batch, seconds_of(last_progress_), received);
         }
         events_.changed();
     } else if (auto const* const failure = std::get_if<Failure>(&message)) {

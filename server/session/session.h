@@ -2,7 +2,6 @@
 // io thread feeds it, the render loop reads its newest input and hands it batches.
 #pragma once
 
-#include <array>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -13,6 +12,7 @@
 
 #include "protocol/framed_stream.h"
 #include "protocol/message.h"
+#include "server/flow/link_estimate.h"
 
 namespace framelet {
 
@@ -23,6 +23,7 @@ struct SessionInput {
     std::uint32_t codings = coding::exact_colour; ///< that it can read
     std::uint64_t version = 0; ///< counts every change, that of the shared clock as well
 
+    bool takes_loss() const { return (codings & coding::haar_colour) != 0; }
     bool takes_shapes() const { return settings.reproject && (codings & coding::shapes_and_tracks) != 0; }
 };
 
@@ -56,13 +57,15 @@ public:
     // From any thread:
     bool is_open() const;
     SessionInput newest_input() const;
-    /// True while another batch may be sent.
+    /// True while another batch may be sent: there are few in flight, and the link is not full.
     bool has_room() const;
-    /// Takes a place in flight for one batch and gives its number, from 1. Only while there is room.
-    std::uint64_t begin_batch();
-    /// From `begin_batch` until the viewer has answered, seconds, lately.
-    double answer_seconds() const;
+    /// Takes a place in flight for one batch of so many samples and gives its number, from 1. Only while there is room.
+    std::uint64_t begin_batch(double samples);
     void send(Message const& message);
+    /// The same for a batch that was begun; what becomes of it tells of the link.
+    void send_batch(EncodedBatch batch);
+    /// What is known of the way to the viewer.
+    LinkState link() const;
     /// The picture may have to change for a reason that is not in the input (the clock was set).
     void invalidate();
     /// What the loop has done for this viewer: with the input of this version nothing is left to refine, or something
@@ -90,8 +93,7 @@ private:
     std::uint64_t last_ack_ = 0;
     std::uint64_t converged_version_ = 0; ///< of the input that there is nothing left to refine for; 0: none
     std::chrono::steady_clock::time_point last_progress_;
-    std::array<std::chrono::steady_clock::time_point, max_batches_in_flight> begun_; ///< by batch number
-    double answer_seconds_ = 0; ///< running mean
+    LinkEstimate link_;
 };
 
 } // namespace framelet

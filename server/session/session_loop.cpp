@@ -38,7 +38,7 @@ struct SessionLoop::Encoding {
     Batch batch;
     std::shared_ptr<Session> session;
 
-    void run() { session->send(codec.encode(batch)); }
+    void run() { session->send_batch(codec.encode(batch)); }
 };
 
 SessionLoop::SessionLoop(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene,
@@ -73,7 +73,7 @@ void SessionLoop::run() {
         bool const playing = animated_ && clock_.state(std::chrono::steady_clock::now()).playing && !sessions.empty();
         std::unique_lock lock(mutex_);
         auto const woken = [this] { return wake_ || stop_; };
-        if (playing) {
+        if (playing || waits_for_room_) { // the link's time passes without a word from it
             woken_.wait_for(lock, std::chrono::milliseconds(5), woken);
         } else {
             woken_.wait(lock, woken);
@@ -88,6 +88,7 @@ bool SessionLoop::cycle(Sessions const& sessions, WallTime now) {
     }
     SceneTime const time = animated_ ? clock_.state(now).time : 0;
     pose_scene(time);
+    waits_for_room_ = false;
     double const share = 1 / static_cast<double>(sessions.size());
     bool rendered = false;
     for (auto const& session : sessions) {
@@ -105,23 +106,32 @@ bool SessionLoop::render_session(Session& session, Viewer& viewer, SceneTime tim
     ViewState const state{resolve_camera(*input.camera), options_.exposure * std::exp2(input.settings.exposure_ev),
                           time};
     if (refresh.is_complete(state)) {
+        if (!viewer.lossy.empty()) {
+            return send_exactly(session, viewer, input, state);
+        }
         if (session.report(input.version, true)) {
             events_.convergence_changed();
         }
         return false;
     }
     if (!session.has_room()) {
+        waits_for_room_ = true;
         return false;
     }
     auto const start = std::chrono::steady_clock::now();
     RefreshInput wanted;
     wanted.state = state;
     wanted.now = std::chrono::duration<double>(start.time_since_epoch()).count();
-    wanted.samples_per_second = share * (rate_.samples_per_second > 0 ? rate_.samples_per_second : first_rate);
-    wanted.cycle_seconds = cycle_length(refresh.is_still(state), plan_seconds_);
-    wanted.delivery_seconds = static_cast<float>(0.5 * session.answer_seconds());
+    LinkState const link = session.link();
+    double const rendered = share * (rate_.samples_per_second > 0 ? rate_.samples_per_second : first_rate);
+    std::uint8_t const quality = input.takes_loss() ? viewer.choice.choose(link, rendered, wanted.now) : exact_quality;
+    bool const still = refresh.is_still(state);
+    wanted.samples_per_second = bounded_rate(link, rendered);
+    wanted.cycle_seconds = cycle_length(still, plan_seconds_);
+    wanted.delivery_seconds = static_cast<float>(link.delivery_seconds);
     wanted.bias = std::clamp(static_cast<float>(options_.bias) + input.settings.bias, -1.0f, 1.0f);
     wanted.batch_framelets = options_.batch_framelets;
+    wanted.link_framelets = bounded_batch(link);
     wanted.reprojects = input.takes_shapes();
     CycleRecord record;
     Laps laps;
@@ -134,19 +144,20 @@ bool SessionLoop::render_session(Session& session, Viewer& viewer, SceneTime tim
     if (plan.tiles.empty() && plan.probes.empty()) {
         return false;
     }
-    render_plan(plan, state);
+    render_plan(plan.tiles, plan.probes, state);
     record.stage_seconds.render = laps.lap();
-    auto const& needed = refresh.learn(display_, rendered_, probes_.luma());
+    needed_ = refresh.learn(display_, rendered_, probes_.luma());
     record.stage_seconds.learn = laps.lap();
+    choose_qualities(ImagePlane(state.view.viewport), plan.tiles, needed_, quality, still, viewer.lossy, qualities_);
     shapes_.clear();
     tracks_.clear();
-    if (input.takes_shapes() && std::ranges::count(needed, 0) < std::ssize(needed)) { // else nothing is sent
-        describe_shapes(viewer, needed, state);
+    if (input.takes_shapes() && std::ranges::count(needed_, 0) < std::ssize(needed_)) { // else nothing is sent
+        describe_shapes(viewer, needed_, state);
     }
     record.stage_seconds.shape = laps.lap();
     finish_encoding();
     record.stage_seconds.wait = laps.lap();
-    send_batch(session, needed, state);
+    send_batch(session, state);
 
     if (!plan.tiles.empty()) {
         // Planning left out: it takes as long for few samples, which would then seem to be dear.
@@ -161,18 +172,40 @@ bool SessionLoop::render_session(Session& session, Viewer& viewer, SceneTime tim
         record.samples_rendered = plan.tiles.size() * framelet_samples;
         record.probes = plan.probes.size();
         record.framelets_sent =
-            static_cast<std::uint64_t>(std::ranges::count_if(needed, [](auto n) { return n != 0; }));
-        record.framelets_unchanged = needed.size() - record.framelets_sent;
+            static_cast<std::uint64_t>(std::ranges::count_if(needed_, [](auto n) { return n != 0; }));
+        record.framelets_unchanged = needed_.size() - record.framelets_sent;
         options_.recorder->add(record, refresh, wanted.now);
     }
-    if (session.report(input.version, refresh.is_complete(state))) {
+    if (session.report(input.version, refresh.is_complete(state) && viewer.lossy.empty())) {
         events_.convergence_changed();
     }
     return true;
 }
 
-void SessionLoop::render_plan(RefreshPlan const& plan, ViewState const& state) {
-    std::size_t const count = plan.tiles.size();
+/// The picture is complete, but for what the viewer was sent with loss: some of that once more.
+bool SessionLoop::send_exactly(Session& session, Viewer& viewer, SessionInput const& input, ViewState const& state) {
+    if (!session.has_room()) {
+        waits_for_room_ = true;
+        return false;
+    }
+    constexpr std::size_t most_framelets = 1024;
+    viewer.lossy.list(std::min(bounded_batch(session.link()), most_framelets), lossy_tiles_);
+    render_plan(lossy_tiles_, {}, state);
+    needed_.assign(lossy_tiles_.size(), 1);
+    choose_qualities(ImagePlane(state.view.viewport), lossy_tiles_, needed_, exact_quality, true, viewer.lossy,
+                     qualities_);
+    shapes_.clear();
+    tracks_.clear();
+    if (input.takes_shapes()) {
+        describe_shapes(viewer, needed_, state);
+    }
+    finish_encoding();
+    send_batch(session, state);
+    return true;
+}
+
+void SessionLoop::render_plan(std::span<Tile const> tiles, std::span<Probe const> probes, ViewState const& state) {
+    std::size_t const count = tiles.size();
     rendered_pool_.resize(std::max(rendered_pool_.size(), count));
     display_pool_.resize(std::max(display_pool_.size(), count));
     rendered_ = std::span(rendered_pool_).first(count);
@@ -181,10 +214,10 @@ void SessionLoop::render_plan(RefreshPlan const& plan, ViewState const& state) {
     ImagePlane const plane(state.view.viewport);
     ViewRays const rays = make_view_rays(camera, state.view.viewport);
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-        render_framelet(render_scene_, rays, plane, plan.tiles[i], 0, rendered_[i]);
+        render_framelet(render_scene_, rays, plane, tiles[i], 0, rendered_[i]);
         display_[i] = to_display(rendered_[i], state.exposure); // while the samples are in the cache
     });
-    probes_.render(render_scene_, camera, state.view.viewport, state.exposure, plan.probes);
+    probes_.render(render_scene_, camera, state.view.viewport, state.exposure, probes);
 }
 
 void SessionLoop::describe_shapes(Viewer& viewer, std::vector<std::uint8_t> const& needed, ViewState const& state) {
@@ -193,18 +226,19 @@ void SessionLoop::describe_shapes(Viewer& viewer, std::vector<std::uint8_t> cons
     viewer.shapes.track(scene_, clips_, render_scene_.bodies(), state.scene_time, tracks_);
 }
 
-void SessionLoop::send_batch(Session& session, std::vector<std::uint8_t> const& needed, ViewState const& state) {
+void SessionLoop::send_batch(Session& session, ViewState const& state) {
     Batch& batch = encoding_->batch;
     batch.framelets.clear();
     for (std::size_t i = 0; i < display_.size(); ++i) {
-        if (needed[i] != 0) {
+        if (needed_[i] != 0) {
             batch.framelets.push_back(display_[i]);
         }
     }
     if (batch.framelets.empty() || !session.is_open()) {
         return;
     }
-    batch.number = session.begin_batch();
+    batch.number = session.begin_batch(static_cast<double>(batch.framelets.size() * framelet_samples));
+    batch.quality = qualities_;
     batch.view = state.view;
     batch.scene_time = state.scene_time;
     batch.shapes.swap(shapes_);

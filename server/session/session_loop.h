@@ -13,6 +13,8 @@
 #include <vector>
 
 #include "protocol/batch_codec.h"
+#include "server/flow/lossy_places.h"
+#include "server/flow/quality_choice.h"
 #include "server/layers/shape_feed.h"
 #include "server/render/probe_renderer.h"
 #include "server/schedule/adaptive_refresh.h"
@@ -65,12 +67,15 @@ private:
     struct Viewer {
         AdaptiveRefresh refresh;
         ShapeFeed shapes;
+        QualityChoice choice;
+        LossyPlaces lossy;
     };
 
     bool render_session(Session& session, Viewer& viewer, SceneTime time, double share);
     void describe_shapes(Viewer& viewer, std::vector<std::uint8_t> const& needed, ViewState const& state);
-    void render_plan(RefreshPlan const& plan, ViewState const& state);
-    void send_batch(Session& session, std::vector<std::uint8_t> const& needed, ViewState const& state);
+    bool send_exactly(Session& session, Viewer& viewer, SessionInput const& input, ViewState const& state);
+    void render_plan(std::span<Tile const> tiles, std::span<Probe const> probes, ViewState const& state);
+    void send_batch(Session& session, ViewState const& state);
     void finish_encoding();
     void forget_ended(Sessions const& sessions);
 
@@ -91,7 +96,11 @@ private:
     std::vector<DisplayFramelet> display_pool_;
     std::span<Framelet> rendered_; ///< of the last plan
     std::span<DisplayFramelet> display_;
+    std::vector<std::uint8_t> needed_; ///< whether the viewer gets it, of each
+    std::vector<std::uint8_t> qualities_; ///< of those that are sent; empty: all are exact
     std::vector<FrameletShape> shapes_; ///< of those that are sent
+    std::vector<Tile> lossy_tiles_; ///< scratch
+    bool waits_for_room_ = false; ///< a viewer, in this cycle
     std::vector<BodyTrack> tracks_;
 
     struct Encoding;

@@ -10,6 +10,7 @@
 #include "common/reconstruction.h"
 #include "common/reprojector.h"
 #include "protocol/batch_codec.h"
+#include "server/flow/quality_choice.h"
 #include "server/layers/shape_feed.h"
 #include "tests/evaluation/codecs/h264_codec.h"
 #include "tests/evaluation/codecs/jpeg_codec.h"
@@ -89,6 +90,11 @@ void calibrate_framelets(BenchScene& scene, ImagePlane const& plane, int rounds,
     Batch decoded;
     costs.encode_sample = cost(rounds, samples, [&] { encoded = codec.encode(batch); });
     costs.decode_sample = cost(rounds, samples, [&] { decoded = codec.decode(encoded); });
+    Batch lossy = batch;
+    lossy.quality.assign(batch.framelets.size(), most_loss);
+    EncodedBatch lossy_encoded;
+    costs.encode_lossy_sample = cost(rounds, samples, [&] { lossy_encoded = codec.encode(lossy); });
+    costs.decode_lossy_sample = cost(rounds, samples, [&] { lossy = codec.decode(lossy_encoded); });
 
     FrameletCache cache(plane);
     Picture picture(viewport.width, viewport.height);

@@ -11,7 +11,7 @@
 namespace framelet::bench {
 namespace {
 
-constexpr std::array<std::pair<char const*, double CostTable::*>, 23> fields{{
+constexpr std::array<std::pair<char const*, double CostTable::*>, 25> fields{{
     {"coherent_segment", &CostTable::coherent_segment},
     {"incoherent_segment", &CostTable::incoherent_segment},
     {"display_sample", &CostTable::display_sample},
@@ -19,6 +19,8 @@ constexpr std::array<std::pair<char const*, double CostTable::*>, 23> fields{{
     {"learn_sample", &CostTable::learn_sample},
     {"encode_sample", &CostTable::encode_sample},
     {"decode_sample", &CostTable::decode_sample},
+    {"encode_lossy_sample", &CostTable::encode_lossy_sample},
+    {"decode_lossy_sample", &CostTable::decode_lossy_sample},
     {"cache_sample", &CostTable::cache_sample},
     {"reconstruct_pixel", &CostTable::reconstruct_pixel},
     {"reconstruct_fine_sample", &CostTable::reconstruct_fine_sample},

@@ -89,6 +89,12 @@ public:
     virtual double mean_sample_time() const = 0;
     /// For looking at what it decides; null for methods that have none.
     virtual AdaptiveRefresh const* scheduler() const { return nullptr; }
+    /// A message of so many bytes has been handed to the link.
+    virtual void sent(double /*now*/, double /*bytes*/) {}
+    /// The viewer's answer to the oldest message without one has come: when that had arrived.
+    virtual void answered(double /*now*/, double /*arrived*/) {}
+    /// False while it leaves the link the time to carry what was sent.
+    virtual bool has_room(double /*now*/) const { return true; }
     /// How far it may be ahead of the viewer; one more message is rendered meanwhile.
     virtual Window window() const { return {}; }
 };

@@ -113,7 +113,7 @@ RunResult run_method(BenchScene& scene, Method& method, RunParameters const& par
     Window const window = method.window();
     std::deque<double> in_flight; // when each message no longer counts
     struct Answer {
-        double when;
+        double when = 0, arrived = 0;
         DeliveredMessage message;
     };
     std::deque<Answer> answers;
@@ -127,10 +127,14 @@ RunResult run_method(BenchScene& scene, Method& method, RunParameters const& par
             now = in_flight.front();
             continue;
         }
-        delivered.clear();
         while (!answers.empty() && answers.front().when <= now) {
+            method.answered(answers.front().when, answers.front().arrived);
             delivered.push_back(answers.front().message);
             answers.pop_front();
+        }
+        if (!method.has_room(now)) {
+            now = answers.empty() ? now + idle_seconds : std::min(now + idle_seconds, answers.front().when);
+            continue;
         }
         SceneTime const time = std::max(0.0, now);
         pose_at(scene, time);
@@ -140,6 +144,7 @@ RunResult run_method(BenchScene& scene, Method& method, RunParameters const& par
                                   : scene.camera;
         StepInput const input{scene, time, now, {1, camera, parameters.viewport}, link.backlog_bytes(now), delivered};
         ServerStep const step = method.produce(input);
+        delivered.clear();
         double const started = now;
         if (on_step) {
             on_step(started, step);
@@ -155,6 +160,7 @@ RunResult run_method(BenchScene& scene, Method& method, RunParameters const& par
             continue;
         }
         SimulatedLink::Delivery const delivery = link.send(now, step.message.size());
+        method.sent(now, static_cast<double>(step.message.size()));
 
         double const begin = std::max(delivery.arrived, viewer_free);
         spectator.watch(begin);
@@ -166,8 +172,9 @@ RunResult run_method(BenchScene& scene, Method& method, RunParameters const& par
         viewer_free = displayed;
         double const delay = parameters.link.delay_seconds;
         in_flight.push_back(displayed + (window.beyond_round_trip ? -delay : delay));
-        answers.push_back(
-            {displayed + delay, {static_cast<double>(step.message.size()), delivery.departed - delivery.begun}});
+        answers.push_back({displayed + delay,
+                           delivery.arrived,
+                           {static_cast<double>(step.message.size()), delivery.departed - delivery.begun}});
         if (shared) {
             now += machine * viewed.seconds.viewer();
         }
@@ -179,6 +186,7 @@ RunResult run_method(BenchScene& scene, Method& method, RunParameters const& par
             ++result.messages;
             result.mean_delay += displayed - started;
             result.displayed.push_back(displayed);
+            result.deliveries.push_back({now, static_cast<double>(step.message.size()), delivery.begun - now});
         }
     }
     spectator.watch(INFINITY);

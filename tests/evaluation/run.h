@@ -50,6 +50,11 @@ struct RunResult {
     std::uint64_t bytes = 0;
     std::uint64_t messages = 0;
     std::vector<double> displayed; ///< times at which the picture changed
+    /// What was sent when, and how long it waited for what was before it.
+    struct Delivery {
+        double sent = 0, bytes = 0, queueing = 0;
+    };
+    std::vector<Delivery> deliveries;
     double mean_delay = 0; ///< from the start of a step until its picture shows, seconds
 };
 

@@ -29,7 +29,7 @@ SinkRecord watch_until_converged(std::uint16_t port, Camera const& camera, Viewp
         }
         return false;
     };
-    visit(port, coding::exact_colour | coding::haar_colour | coding::shapes_and_tracks, receive);
+    visit(port, coding::all, receive);
     record.seconds = std::chrono::duration<double>(last - start).count();
     return record;
 }

@@ -9,6 +9,7 @@
 #include "tests/evaluation/charts/charts.h"
 #include "tests/evaluation/charts/side_by_side.h"
 #include "tests/evaluation/comparison.h"
+#include "tests/evaluation/link_trials.h"
 
 namespace framelet::bench {
 namespace {
@@ -161,15 +162,7 @@ json link_study(BenchScene& scene, StudyOptions const& options) {
     json result;
     result["rate"] = rate_sweep(scene, options);
     result["delay"] = delay_sweep(scene, options);
-    StudyOptions stalled = options;
-    if (stalled.run.link.bits_per_second == 0) {
-        stalled.run.link.bits_per_second = 20e6;
-    }
-    stalled.run.link.jitter_seconds = 0.01;
-    stalled.run.link.stalls = {{0.4 * options.run.seconds, 0.2 * options.run.seconds}};
-    stalled.charts = options.charts.empty() ? options.charts : options.charts / "stall";
-    std::printf("\nthrough a stall from %g to %g s\n", 0.4 * options.run.seconds, 0.6 * options.run.seconds);
-    result["stall"] = compare(scene, stalled);
+    result["trials"] = link_trials(scene, reference_of(scene, options), options);
     return result;
 }
 

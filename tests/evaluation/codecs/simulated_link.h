@@ -23,8 +23,8 @@ struct LinkParameters {
     double bits_per_second = 0; ///< 0: unlimited
     double delay_seconds = 0; ///< one way
     double jitter_seconds = 0; ///< more delay, uniform from 0 to this
-    std::vector<Stall> stalls; ///< in order of time, disjoint
-    std::vector<RateStep> rate_steps; ///< in order of time
+    std::vector<Stall> stalls{}; ///< in order of time, disjoint
+    std::vector<RateStep> rate_steps{}; ///< in order of time
     std::uint64_t seed = 1;
 };
 

@@ -5,6 +5,8 @@
 #include "common/reconstruction.h"
 #include "common/reprojector.h"
 #include "protocol/batch_codec.h"
+#include "server/flow/lossy_places.h"
+#include "server/flow/quality_choice.h"
 #include "server/layers/shape_feed.h"
 #include "server/render/probe_renderer.h"
 #include "server/schedule/adaptive_refresh.h"
@@ -29,15 +31,20 @@ public:
         SceneTime const time = moves_ ? input.time : 0;
         ViewState const state{input.view, input.scene.exposure, time};
         if (refresh_.is_complete(state)) {
-            return {};
+            return lossy_.empty() ? ServerStep() : send_exactly(input, time);
         }
         RefreshInput refresh;
         refresh.state = state;
         refresh.now = input.now;
-        refresh.samples_per_second = rate_.samples_per_second > 0 ? rate_.samples_per_second : first_rate();
-        refresh.cycle_seconds = cycle_length(refresh_.is_still(state), setup_.machine * plan_seconds());
-        refresh.delivery_seconds = static_cast<float>(setup_.delay_seconds);
+        LinkState const link = link_.state();
+        double const rendered = rate_.samples_per_second > 0 ? rate_.samples_per_second : first_rate();
+        std::uint8_t const quality = choice_.choose(link, rendered, input.now);
+        bool const still = refresh_.is_still(state);
+        refresh.samples_per_second = bounded_rate(link, rendered);
+        refresh.cycle_seconds = cycle_length(still, setup_.machine * plan_seconds());
+        refresh.delivery_seconds = static_cast<float>(link.delivery_seconds);
         refresh.batch_framelets = setup_.batch_framelets;
+        refresh.link_framelets = bounded_batch(link);
         refresh.bias = static_cast<float>(setup_.bias);
         refresh.reprojects = reprojects_;
         RefreshPlan const& plan = refresh_.plan(refresh);
@@ -45,9 +52,7 @@ public:
             return {};
         }
         ServerStep step;
-        rendered_.resize(plan.tiles.size());
-        std::uint64_t const segments = render_framelets(*input.scene.render_scene, input.view.camera,
-                                                        ImagePlane(setup_.viewport), plan.tiles, 0, rendered_);
+        std::uint64_t const segments = render(input, plan.tiles);
         std::uint64_t const probe_segments = probes_.render(*input.scene.render_scene, input.view.camera,
                                                             setup_.viewport, input.scene.exposure, plan.probes);
         step.samples = plan.tiles.size() * framelet_samples + plan.probes.size();
@@ -59,34 +64,17 @@ public:
             rate_ = update_render_rate(rate_, static_cast<double>(step.samples), setup_.machine * step.seconds.render);
         }
 
-        display_.clear();
-        for (Framelet const& framelet : rendered_) {
-            display_.push_back(to_display(framelet, input.scene.exposure));
-        }
-        auto const& send = refresh_.learn(display_, rendered_, probes_.luma());
-        batch_.framelets.clear();
-        for (std::size_t i = 0; i < display_.size(); ++i) {
-            if (send[i] != 0) {
-                batch_.framelets.push_back(display_[i]);
-            }
-        }
-        double const sent = static_cast<double>(batch_.framelets.size() * framelet_samples);
-        step.seconds.encode = 1e-9 * (samples * setup_.costs.display_sample + sent * setup_.costs.encode_sample);
-        if (!batch_.framelets.empty()) {
-            if (reprojects_) {
-                shapes_.fit(rendered_, send, make_view_rays(input.view.camera, setup_.viewport),
-                            ImagePlane(setup_.viewport), batch_.shapes);
-                shapes_.track(input.scene.scene, input.scene.clips, input.scene.render_scene->bodies(), time,
-                              batch_.tracks);
-                step.seconds.encode += 1e-9 * sent * setup_.costs.shape_sample;
-            }
-            batch_.number = ++number_;
-            batch_.view = input.view;
-            batch_.scene_time = time;
-            step.message = encode_message(codec_.encode(batch_));
-        }
+        send_ = refresh_.learn(display_, rendered_, probes_.luma());
+        send(input, time, plan.tiles, quality, still, step);
         return step;
     }
+
+    void sent(double now, double bytes) override {
+        link_.begin(static_cast<double>(batch_.framelets.size() * framelet_samples));
+        link_.sent(number_, now, bytes);
+    }
+    void answered(double now, double arrived) override { link_.acknowledged(++answered_, now, arrived); }
+    bool has_room(double now) const override { return link_.has_room(now); }
 
     ViewerStep consume(std::vector<std::byte> const& message) override {
         Batch const batch = codec_.decode(std::get<EncodedBatch>(decode_message(message)));
@@ -101,7 +89,8 @@ public:
         }
         double const samples = static_cast<double>(batch.framelets.size() * framelet_samples);
         ViewerStep step;
-        step.seconds.decode = 1e-9 * samples * (setup_.costs.decode_sample + setup_.costs.cache_sample);
+        double const decoding = batch.quality.empty() ? setup_.costs.decode_sample : setup_.costs.decode_lossy_sample;
+        step.seconds.decode = 1e-9 * samples * (decoding + setup_.costs.cache_sample);
         if (!reprojects_) {
             cache_.take_changed(changed_);
             reconstruct(cache_, changed_, picture_);
@@ -138,6 +127,61 @@ public:
     Window window() const override { return {Session::max_batches_in_flight, false}; }
 
 private:
+    /// Renders and displays; returns the segments that it took.
+    std::uint64_t render(StepInput const& input, std::span<Tile const> tiles) {
+        rendered_.resize(tiles.size());
+        std::uint64_t const segments = render_framelets(*input.scene.render_scene, input.view.camera,
+                                                        ImagePlane(setup_.viewport), tiles, 0, rendered_);
+        display_.clear();
+        for (Framelet const& framelet : rendered_) {
+            display_.push_back(to_display(framelet, input.scene.exposure));
+        }
+        return segments;
+    }
+
+    /// What the viewer was sent with loss once more, as the server does when the picture is complete.
+    ServerStep send_exactly(StepInput const& input, SceneTime time) {
+        constexpr std::size_t most_framelets = 1024;
+        lossy_.list(std::min(bounded_batch(link_.state()), most_framelets), lossy_tiles_);
+        ServerStep step;
+        std::uint64_t const segments = render(input, lossy_tiles_);
+        step.samples = lossy_tiles_.size() * framelet_samples;
+        step.seconds.render = 1e-9 * static_cast<double>(segments) * setup_.costs.coherent_segment;
+        send_.assign(lossy_tiles_.size(), 1);
+        send(input, time, lossy_tiles_, exact_quality, true, step);
+        return step;
+    }
+
+    /// The message of what was rendered, and what making it costs.
+    void send(StepInput const& input, SceneTime time, std::span<Tile const> tiles, std::uint8_t quality, bool finish,
+              ServerStep& step) {
+        ImagePlane const plane(setup_.viewport);
+        choose_qualities(plane, tiles, send_, quality, finish, lossy_, batch_.quality);
+        batch_.framelets.clear();
+        for (std::size_t i = 0; i < display_.size(); ++i) {
+            if (send_[i] != 0) {
+                batch_.framelets.push_back(display_[i]);
+            }
+        }
+        double const samples = static_cast<double>(tiles.size() * framelet_samples);
+        double const sent = static_cast<double>(batch_.framelets.size() * framelet_samples);
+        double const coding = batch_.quality.empty() ? setup_.costs.encode_sample : setup_.costs.encode_lossy_sample;
+        step.seconds.encode = 1e-9 * (samples * setup_.costs.display_sample + sent * coding);
+        if (batch_.framelets.empty()) {
+            return;
+        }
+        if (reprojects_) {
+            shapes_.fit(rendered_, send_, make_view_rays(input.view.camera, setup_.viewport), plane, batch_.shapes);
+            shapes_.track(input.scene.scene, input.scene.clips, input.scene.render_scene->bodies(), time,
+                          batch_.tracks);
+            step.seconds.encode += 1e-9 * sent * setup_.costs.shape_sample;
+        }
+        batch_.number = ++number_;
+        batch_.view = input.view;
+        batch_.scene_time = time;
+        step.message = encode_message(codec_.encode(batch_));
+    }
+
     /// Before anything has been measured.
     double first_rate() const { return setup_.frames_per_second * setup_.viewport.width * setup_.viewport.height; }
 
@@ -172,8 +216,14 @@ private:
     std::vector<Framelet> rendered_;
     std::vector<DisplayFramelet> display_;
     ProbeRenderer probes_;
+    std::vector<std::uint8_t> send_; ///< whether the viewer gets it, of each
+    std::vector<Tile> lossy_tiles_;
+    LinkEstimate link_;
+    QualityChoice choice_;
+    LossyPlaces lossy_;
     ShapeFeed shapes_;
     Batch batch_;
+    std::uint64_t answered_ = 0; ///< batches
     std::uint64_t number_ = 0;
     BatchCodec codec_;
 

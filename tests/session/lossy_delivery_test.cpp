@@ -1,0 +1,101 @@
+// A viewer behind a slow link beside one that takes exact samples alone: what both show in the end.
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <thread>
+
+#include <boost/asio/ip/tcp.hpp>
+#include <gtest/gtest.h>
+
+#include "common/framelet_cache.h"
+#include "common/reconstruction.h"
+#include "protocol/batch_codec.h"
+#include "protocol/framed_stream.h"
+#include "server/scene/scene_import.h"
+#include "server/session/server.h"
+#include "tests/evaluation/codecs/link_emulator.h"
+
+namespace framelet {
+namespace {
+
+namespace asio = boost::asio;
+using namespace std::chrono_literals;
+using std::chrono::steady_clock;
+
+constexpr Viewport viewport{192, 108};
+constexpr std::uint64_t cameras = 60;
+
+CameraUpdate camera_update(std::uint64_t number) {
+    float const turn = 0.01f * static_cast<float>(cameras - number);
+    return {{number, look_at({9 + turn, 4, 12 - turn}, {0, 1, 0}, {0, 1, 0}, 0.9f), viewport}, -1};
+}
+
+struct Shown {
+    Picture picture;
+    bool converged = false;
+    std::size_t lossy = 0; ///< framelets that came with loss
+};
+
+/// Looks through one camera after the other, a new one with every batch, until the last one's picture is complete.
+Shown watch(std::uint16_t port, std::uint32_t codings) {
+    asio::io_context io{1};
+    asio::ip::tcp::socket socket(io);
+    socket.connect({asio::ip::make_address("127.0.0.1"), port});
+    auto const stream = FramedStream::plain(std::move(socket));
+    BatchCodec codec;
+    FrameletCache cache{ImagePlane(viewport)};
+    Shown shown;
+    std::uint64_t newest = 0, camera = 1;
+    auto const receive = [&](Message const& message) {
+        if (std::holds_alternative<Welcome>(message)) {
+            stream->send(camera_update(camera));
+        } else if (auto const* const encoded = std::get_if<EncodedBatch>(&message)) {
+            auto const received =
+                std::chrono::duration_cast<std::chrono::microseconds>(steady_clock::now().time_since_epoch());
+            Batch const batch = codec.decode(*encoded);
+            cache.insert(batch);
+            newest = batch.number;
+            shown.lossy += batch.quality.size() - static_cast<std::size_t>(std::ranges::count(batch.quality, 0));
+            stream->send(Ack{newest, static_cast<std::uint64_t>(received.count()), 0});
+            if (camera < cameras) {
+                stream->send(camera_update(++camera));
+            }
+        } else if (auto const* const status = std::get_if<Status>(&message)) {
+            if (status->converged && status->camera_number == cameras && status->last_batch == newest) {
+                shown.converged = true;
+                stream->close();
+                io.stop();
+            }
+        }
+    };
+    stream->start({receive, [&io](std::string const&) { io.stop(); }, {}}, max_message_bytes);
+    stream->send(Hello{protocol_version, {}, codings});
+    io.run_for(120s);
+    std::vector<PixelRect> changed;
+    cache.take_changed(changed);
+    shown.picture = Picture(viewport.width, viewport.height);
+    reconstruct(cache, changed, shown.picture);
+    return shown;
+}
+
+TEST(LossyDelivery, ConvergesToTheExactPicture) {
+    Scene const scene = import_scene(FRAMELET_SOURCE_DIR "/scenes/vehicle_chase.glb");
+    RenderScene render_scene(scene, std::nullopt);
+    ServerOptions options;
+    options.port = 0;
+    options.paused = true;
+    Server server(scene, {}, render_scene, options);
+    std::jthread const running([&server] { server.run(false); });
+    Shown const exact = watch(server.port(), coding::exact_colour);
+    bench::LinkEmulator const link(server.port(), {.bits_per_second = 1.5e6, .delay_seconds = 0.002});
+    Shown const lossy = watch(link.port(), coding::exact_colour | coding::haar_colour);
+    server.stop();
+    EXPECT_TRUE(exact.converged);
+    EXPECT_EQ(exact.lossy, 0u);
+    EXPECT_TRUE(lossy.converged);
+    EXPECT_GT(lossy.lossy, 0u) << "the link is too slow for all to be exact";
+    EXPECT_EQ(lossy.picture.rgba, exact.picture.rgba);
+}
+
+} // namespace
+} // namespace framelet
