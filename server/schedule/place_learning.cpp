@@ -71,11 +71,12 @@ void note_probes(PlaceFindings& place, ImagePlane const& plane, LumaHistory::Ent
 }
 
 float mean_inverse_depth(Framelet const& framelet, std::size_t first, std::size_t count) {
-    float sum = 0;
-    for (std::size_t i = first; i < first + count; ++i) {
-        sum += 1 / std::max(framelet.depth[i], 1e-6f); // infinity gives 0
+    // Four sums side by side: they do not wait for each other. What is finer than four samples has one of each.
+    std::array<float, 4> sums{};
+    for (std::size_t i = 0; i < count; ++i) {
+        sums[i % sums.size()] += 1 / std::max(framelet.depth[first + i], 1e-6f); // infinity gives 0
     }
-    return sum / static_cast<float>(count);
+    return ((sums[0] + sums[1]) + (sums[2] + sums[3])) / static_cast<float>(count);
 }
 
 /// What the viewer holds from now on, unless it held better that is still true.

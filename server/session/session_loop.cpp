@@ -17,6 +17,15 @@ namespace {
 /// Samples a second of a renderer that has not been measured yet.
 constexpr double first_rate = 1e6;
 
+/// All but the radiance; what `from` has room for is reused.
+void move_geometry(Framelet& from, Framelet& to) {
+    to.tile = from.tile;
+    to.depth = from.depth;
+    to.body.swap(from.body);
+    to.velocity.swap(from.velocity);
+    to.reflects = from.reflects;
+}
+
 /// Seconds from lap to lap.
 class Laps {
 public:
@@ -214,8 +223,10 @@ void SessionLoop::render_plan(std::span<Tile const> tiles, std::span<Probe const
     ImagePlane const plane(state.view.viewport);
     ViewRays const rays = make_view_rays(camera, state.view.viewport);
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-        render_framelet(render_scene_, rays, plane, tiles[i], 0, rendered_[i]);
-        display_[i] = to_display(rendered_[i], state.exposure); // while the samples are in the cache
+        Framelet& fresh = fresh_.local();
+        render_framelet(render_scene_, rays, plane, tiles[i], 0, fresh);
+        display_[i] = to_display(fresh, state.exposure);
+        move_geometry(fresh, rendered_[i]);
     });
     probes_.render(render_scene_, camera, state.view.viewport, state.exposure, probes);
 }

@@ -12,6 +12,8 @@
 #include <span>
 #include <vector>
 
+#include <tbb/enumerable_thread_specific.h>
+
 #include "protocol/batch_codec.h"
 #include "server/flow/lossy_places.h"
 #include "server/flow/quality_choice.h"
@@ -92,9 +94,10 @@ private:
     RenderRate rate_;
     double plan_seconds_ = 0; ///< what planning a cycle takes
     ProbeRenderer probes_;
+    tbb::enumerable_thread_specific<Framelet> fresh_;
     std::vector<Framelet> rendered_pool_; ///< as many as a batch ever had: making room for them costs time
     std::vector<DisplayFramelet> display_pool_;
-    std::span<Framelet> rendered_; ///< of the last plan
+    std::span<Framelet> rendered_; ///< of the last plan; without radiance, which would crowd the caches for nothing
     std::span<DisplayFramelet> display_;
     std::vector<std::uint8_t> needed_; ///< whether the viewer gets it, of each
     std::vector<std::uint8_t> qualities_; ///< of those that are sent; empty: all are exact
