@@ -16,6 +16,8 @@ constexpr GridCoordinates make_grid_coordinates() {
     return grid;
 }
 
+#pragma GCC diagnostic ignored "-Wpsabi" // how processors without AVX would pass these matters to no other file
+
 /// Eight blocks side by side. Spelt out because loops that end in sums over lanes do not become good vector code.
 using Lanes = float __attribute__((vector_size(32), may_alias));
 constexpr int lanes = sizeof(Lanes) / sizeof(float);
