@@ -57,7 +57,7 @@ TEST(BodyMotion, ShorterArcIsTakenWhateverTheSignOfTheQuaternions) {
 
 TEST(BodyMotion, MovesPointsOfTheBody) {
     BodyTrack const track = wheel(3, 0, 120);
-    double const from = 0.4, to = 1.1;
+    double const from = 0.4, to = 0.55;
     for (double const angle : {0.0, 1.0, 2.5}) {
         auto const place = [&](double time) {
             double const a = 3 * time + angle;
@@ -65,6 +65,16 @@ TEST(BodyMotion, MovesPointsOfTheBody) {
         };
         EXPECT_LT(glm::distance(move(motion_between(track, from, to), place(from)), place(to)), 1e-5);
     }
+}
+
+TEST(BodyMotion, WhatHasTurnedFarIsMovedAlongAndNotTurned) {
+    BodyTrack const track = wheel(3, 0, 120);
+    double const limit = most_turn_radians / 3;
+    EXPECT_NE(motion_between(track, 0.4, 0.4 + 0.95 * limit).linear, glm::dmat3(1));
+    Motion const motion = motion_between(track, 0.4, 0.4 + 1.05 * limit);
+    EXPECT_EQ(motion.linear, glm::dmat3(1));
+    EXPECT_NEAR(motion.offset.x, 2 * 1.05 * limit, 1e-5);
+    EXPECT_EQ(motion.offset.y, 0);
 }
 
 TEST(BodyMotion, RestIsExactlyNoMotion) {
