@@ -90,27 +90,27 @@ bool AdaptiveRefresh::goes_on(RefreshInput const& input) const {
            seen_->view.viewport == input.state.view.viewport && !is_cut(*seen_, input.state, seconds);
 }
 
-RefreshPlan const& AdaptiveRefresh::plan(RefreshInput const& input) {
+void AdaptiveRefresh::plan(RefreshInput const& input, RefreshPlan& plan) {
     FRAMELET_CHECK(input.samples_per_second > 0 && input.cycle_seconds > 0);
-    plan_.patches.clear();
-    plan_.tile_counts.clear();
-    plan_.tiles.clear();
-    plan_.probes.clear();
-    plan_.probed.clear();
+    plan.patches.clear();
+    plan.tile_counts.clear();
+    plan.tiles.clear();
+    plan.probes.clear();
+    plan.probed.clear();
+    plan.now = input.now;
+    plan.viewport = input.state.view.viewport;
+    plan.reprojects = input.reprojects;
     still_ = is_still(input.state);
-    reprojects_ = input.reprojects;
-    plan_.is_new_cycle = !goes_on(input);
-    if (plan_.is_new_cycle) {
+    plan.is_new_cycle = !goes_on(input);
+    if (plan.is_new_cycle) {
         advance(input);
-        plan_cycle(input);
+        plan_cycle(input, plan);
     }
     strayed_ = strayed_ || !same_picture(*seen_, input.state);
-    now_ = input.now;
-    take_batch(batch_limit(input, still_));
-    return plan_;
+    take_batch(batch_limit(input, still_), plan);
 }
 
-void AdaptiveRefresh::plan_cycle(RefreshInput const& input) {
+void AdaptiveRefresh::plan_cycle(RefreshInput const& input, RefreshPlan& plan) {
     planned_ = input.now;
     cycle_.clear();
     next_ = 0;
@@ -119,8 +119,8 @@ void AdaptiveRefresh::plan_cycle(RefreshInput const& input) {
     cycle_budget_ = input.samples_per_second * cycle_seconds_;
     double samples = cycle_budget_;
     if (scene_moves_) {
-        plan_probes(probe_share * samples);
-        samples -= probe_cost * static_cast<double>(plan_.probes.size());
+        plan_probes(probe_share * samples, plan);
+        samples -= probe_cost * static_cast<double>(plan.probes.size());
         samples -= plan_inspections(input);
     }
     plan_patches(input, samples);
@@ -142,18 +142,27 @@ double AdaptiveRefresh::plan_inspections(RefreshInput const& input) {
 }
 
 /// The next patches of the cycle, as many as a batch may hold, at least one.
-void AdaptiveRefresh::take_batch(std::size_t most_framelets) {
+void AdaptiveRefresh::take_batch(std::size_t most_framelets, RefreshPlan& plan) {
     while (next_ < cycle_.size()) {
         Patch const& patch = cycle_[next_];
-        std::size_t const tiles = plan_.tiles.size();
-        append_tiles(field_.plane(), patch, plan_.tiles);
-        if (tiles > 0 && plan_.tiles.size() > most_framelets) {
-            plan_.tiles.resize(tiles);
+        std::size_t const tiles = plan.tiles.size();
+        append_tiles(field_.plane(), patch, plan.tiles);
+        if (tiles > 0 && plan.tiles.size() > most_framelets) {
+            plan.tiles.resize(tiles);
             return;
         }
-        plan_.patches.push_back(patch);
-        plan_.tile_counts.push_back(plan_.tiles.size() - tiles);
+        plan.patches.push_back(patch);
+        plan.tile_counts.push_back(plan.tiles.size() - tiles);
+        take(patch, plan.now);
         ++next_;
+    }
+}
+
+void AdaptiveRefresh::take(Patch const& patch, double now) {
+    PlaceField::Range const range = field_.range_of(patch.node);
+    for (std::uint32_t i = range.first; i < range.last; ++i) {
+        field_[i].taken = {field_.level_of(patch.depth), 0, now};
+        field_[i].asked = now;
     }
 }
 
@@ -190,7 +199,9 @@ void AdaptiveRefresh::plan_completion(double samples) {
     for (std::uint32_t const index : field_.visible()) {
         Place const& place = field_[index];
         bool const fine = place.level == sampling_levels - 1 && place.settled;
-        if (is_finished(index) || (scene_moves_ && fine)) { // while things move, probes and inspections are enough
+        bool const taken = place.taken.level == sampling_levels - 1 && place.taken.when >= still_since_;
+        if (is_finished(index) || taken ||
+            (scene_moves_ && fine)) { // while things move, probes and inspections are enough
             continue;
         }
         Patch const patch{{(1u << (2 * field_.depth())) + index}, field_.plane().max_depth()};
@@ -203,7 +214,7 @@ void AdaptiveRefresh::plan_completion(double samples) {
 }
 
 /// Probes what seems to stand, the neighbours of what moves first.
-void AdaptiveRefresh::plan_probes(double samples) {
+void AdaptiveRefresh::plan_probes(double samples, RefreshPlan& plan) {
     auto const is_active = [this](int column, int row) {
         int const side = 1 << field_.depth();
         if (column < 0 || row < 0 || column >= side || row >= side) {
@@ -222,14 +233,14 @@ void AdaptiveRefresh::plan_probes(double samples) {
                 beside = beside || is_active(x, y);
             }
         }
-        return (advanced_ - place.checked) * (beside ? 8 : 1);
+        return (advanced_ - place.asked) * (beside ? 8 : 1);
     };
     suspects_.clear();
     std::vector<double>& keys = suspicions_;
     keys.assign(field_.size(), 0);
     for (std::uint32_t const index : field_.visible()) {
         Place const& place = field_[index];
-        if (place.level < 0 || place.probe_count == 0) {
+        if (place.level < 0 || place.taken.level >= 0 || place.probe_count == 0) {
             continue;
         }
         // What is refreshed again and again needs no probes, as long as it is.
@@ -237,7 +248,7 @@ void AdaptiveRefresh::plan_probes(double samples) {
                              static_cast<double>(choices_[index].period) < probe_period;
         double const expected = planned ? most_unseen : 0;
         keys[index] = suspicion(index);
-        if (keys[index] > probe_period && advanced_ - place.checked > expected) {
+        if (keys[index] > probe_period && advanced_ - place.asked > expected) {
             suspects_.push_back(index);
         }
     }
@@ -248,39 +259,58 @@ void AdaptiveRefresh::plan_probes(double samples) {
         return keys[a] != keys[b] ? keys[a] > keys[b] : a < b;
     });
     for (auto at = suspects_.begin(); at != middle; ++at) {
-        Place const& place = field_[*at];
-        plan_.probed.push_back(*at);
-        plan_.probes.insert(plan_.probes.end(), place.probes.begin(),
-                            place.probes.begin() + static_cast<std::ptrdiff_t>(place.probe_count));
+        Place& place = field_[*at];
+        place.asked = plan.now;
+        plan.probed.push_back(*at);
+        plan.probes.insert(plan.probes.end(), place.probes.begin(),
+                           place.probes.begin() + static_cast<std::ptrdiff_t>(place.probe_count));
     }
 }
 
-std::vector<std::uint8_t> const& AdaptiveRefresh::learn(std::span<DisplayFramelet const> framelets,
+std::vector<std::uint8_t> const& AdaptiveRefresh::learn(RefreshPlan const& plan,
+                                                        std::span<DisplayFramelet const> framelets,
                                                         std::span<Framelet const> rendered,
                                                         std::span<float const> probe_luma) {
-    FRAMELET_CHECK(framelets.size() == plan_.tiles.size() && rendered.size() == plan_.tiles.size());
-    FRAMELET_CHECK(probe_luma.size() == plan_.probes.size());
+    FRAMELET_CHECK(framelets.size() == plan.tiles.size() && rendered.size() == plan.tiles.size());
+    FRAMELET_CHECK(probe_luma.size() == plan.probes.size());
+    if (plan.viewport != field_.plane().viewport()) {
+        send_.assign(framelets.size(), 0);
+        return send_;
+    }
     std::size_t probe = 0;
-    for (std::uint32_t const index : plan_.probed) {
+    for (std::uint32_t const index : plan.probed) {
         Place& place = field_[index];
-        learn_probes(place, probe_luma.subspan(probe, place.probe_count), now_);
+        learn_probes(place, probe_luma.subspan(probe, place.probe_count), plan.now);
         probe += place.probe_count;
     }
-    examine(framelets, rendered);
+    examine(plan, framelets, rendered);
     std::size_t first_tile = 0;
     std::size_t first_place = 0;
-    for (std::size_t i = 0; i < plan_.patches.size(); ++i) {
-        auto const places = std::span(findings_).subspan(first_place, place_count(plan_.patches[i]));
-        bool const needed = learn_patch(field_, plan_.patches[i], places, same_[i] != 0, now_);
+    for (std::size_t i = 0; i < plan.patches.size(); ++i) {
+        auto const places = std::span(findings_).subspan(first_place, place_count(plan.patches[i]));
+        bool const needed = learn_patch(field_, plan.patches[i], places, same_[i] != 0, plan.now);
         auto const to = send_.begin() + static_cast<std::ptrdiff_t>(first_tile);
-        std::fill(to, to + static_cast<std::ptrdiff_t>(plan_.tile_counts[i]), needed ? 1 : 0);
-        first_tile += plan_.tile_counts[i];
+        std::fill(to, to + static_cast<std::ptrdiff_t>(plan.tile_counts[i]), needed ? 1 : 0);
+        first_tile += plan.tile_counts[i];
         first_place += places.size();
     }
+    release(plan);
     for (LumaHistory::Entry const& entry : entries_) {
         history_.store(entry);
     }
     return send_;
+}
+
+/// What was taken by this plan, and not by a later one again, is no longer.
+void AdaptiveRefresh::release(RefreshPlan const& plan) {
+    for (Patch const& patch : plan.patches) {
+        PlaceField::Range const range = field_.range_of(patch.node);
+        for (std::uint32_t i = range.first; i < range.last; ++i) {
+            if (field_[i].taken.when == plan.now) {
+                field_[i].taken = {};
+            }
+        }
+    }
 }
 
 std::size_t AdaptiveRefresh::place_count(Patch const& patch) const {
@@ -289,31 +319,32 @@ std::size_t AdaptiveRefresh::place_count(Patch const& patch) const {
 }
 
 /// What the framelets say, of all patches in parallel.
-void AdaptiveRefresh::examine(std::span<DisplayFramelet const> framelets, std::span<Framelet const> rendered) {
+void AdaptiveRefresh::examine(RefreshPlan const& plan, std::span<DisplayFramelet const> framelets,
+                              std::span<Framelet const> rendered) {
     firsts_.clear();
     std::size_t tiles = 0;
     std::size_t places = 0;
-    for (std::size_t i = 0; i < plan_.patches.size(); ++i) {
+    for (std::size_t i = 0; i < plan.patches.size(); ++i) {
         firsts_.push_back({tiles, places});
-        tiles += plan_.tile_counts[i];
-        places += place_count(plan_.patches[i]);
+        tiles += plan.tile_counts[i];
+        places += place_count(plan.patches[i]);
     }
     send_.resize(tiles);
     entries_.resize(tiles);
     findings_.resize(places);
-    same_.resize(plan_.patches.size());
-    tbb::parallel_for(std::size_t{0}, plan_.patches.size(), [&](std::size_t i) {
-        Patch const& patch = plan_.patches[i];
+    same_.resize(plan.patches.size());
+    tbb::parallel_for(std::size_t{0}, plan.patches.size(), [&](std::size_t i) {
+        Patch const& patch = plan.patches[i];
         auto const [tile, place] = firsts_[i];
-        std::size_t const count = plan_.tile_counts[i];
+        std::size_t const count = plan.tile_counts[i];
         auto const on_body = [](Framelet const& framelet) {
             return std::ranges::any_of(framelet.body, [](BodyNumber body) { return body != static_body; });
         };
         bool const same = examine_patch(field_, patch, framelets.subspan(tile, count), rendered.subspan(tile, count),
-                                        now_, history_, std::span(entries_).subspan(tile, count),
+                                        plan.now, history_, std::span(entries_).subspan(tile, count),
                                         std::span(findings_).subspan(place, place_count(patch)));
         // The same picture may be of a body that has moved, and that the viewer has moved away.
-        same_[i] = same && !(reprojects_ && std::ranges::any_of(rendered.subspan(tile, count), on_body));
+        same_[i] = same && !(plan.reprojects && std::ranges::any_of(rendered.subspan(tile, count), on_body));
     });
 }
 

@@ -1,6 +1,7 @@
 // What one viewer's picture gets next, adaptively: price -> choices -> density -> tiling -> selection, and learning
 // from what was rendered. In: what is to be seen, when, how many samples a cycle has time for; then the framelets. Out:
-// tiles and probes to render, and which of the framelets are worth sending.
+// tiles and probes to render, and which of the framelets are worth sending. Batches may be planned before those before
+// them are learnt: what has been taken is taken to become what the viewer holds, and is not taken again meanwhile.
 #pragma once
 
 #include <optional>
@@ -35,29 +36,36 @@ struct RefreshInput {
 
 /// What to render now.
 struct RefreshPlan {
+    double now = 0; ///< when
+    Viewport viewport;
+    bool reprojects = false; ///< the viewer
     bool is_new_cycle = false; ///< worked out anew, not what the last one left
     std::vector<Patch> patches;
     std::vector<std::size_t> tile_counts; ///< of each patch
     std::vector<Tile> tiles; ///< of the patches, in order
     std::vector<Probe> probes; ///< of the probed places, in order
     std::vector<std::uint32_t> probed; ///< places
+
+    bool is_empty() const { return tiles.empty() && probes.empty(); }
 };
 
 class AdaptiveRefresh {
 public:
-    /// True when the picture of `state` is complete: `plan` would return nothing.
+    /// True when the picture of `state` is complete, as far as is learnt: `plan` would find nothing.
     bool is_complete(ViewState const& state) const;
 
     /// True when the last plan was for the same picture: nothing moves, and large batches cost no freshness.
     bool is_still(ViewState const& state) const { return seen_ && same_picture(*seen_, state); }
 
-    /// The next batch's work: of the cycle that was planned last while that lasts, or of a new one, so that small
-    /// batches do not plan more often than large ones. Time does not go back.
-    RefreshPlan const& plan(RefreshInput const& input);
+    /// Writes the next batch's work to `plan`: of the cycle that was planned last while that lasts, or of a new one, so
+    /// that small batches do not plan more often than large ones. Time goes on from call to call. While something is
+    /// not learnt yet an empty plan only says that there is nothing else.
+    void plan(RefreshInput const& input, RefreshPlan& plan);
 
-    /// Takes in what was rendered by the last plan: display samples, the same with depth, luma of the probes. Returns
-    /// for each framelet whether the viewer needs it.
-    std::vector<std::uint8_t> const& learn(std::span<DisplayFramelet const> framelets,
+    /// Takes in what was rendered by a plan: display samples, the same with depth, luma of the probes. Plans are learnt
+    /// once each and in order. Returns for each framelet whether the viewer needs it, which it does not where its
+    /// picture has another size by now; valid until the next call.
+    std::vector<std::uint8_t> const& learn(RefreshPlan const& plan, std::span<DisplayFramelet const> framelets,
                                            std::span<Framelet const> rendered, std::span<float const> probe_luma);
 
     // To look at it.
@@ -75,23 +83,24 @@ public:
 private:
     bool goes_on(RefreshInput const& input) const;
     void advance(RefreshInput const& input);
-    void plan_cycle(RefreshInput const& input);
+    void plan_cycle(RefreshInput const& input, RefreshPlan& plan);
     double plan_inspections(RefreshInput const& input);
     void plan_patches(RefreshInput const& input, double samples);
-    void plan_probes(double samples);
+    void plan_probes(double samples, RefreshPlan& plan);
     void plan_completion(double samples);
-    void take_batch(std::size_t most_framelets);
+    void take_batch(std::size_t most_framelets, RefreshPlan& plan);
+    void take(Patch const& patch, double now);
+    void release(RefreshPlan const& plan);
     bool is_finished(std::uint32_t index) const;
     std::size_t place_count(Patch const& patch) const;
-    void examine(std::span<DisplayFramelet const> framelets, std::span<Framelet const> rendered);
+    void examine(RefreshPlan const& plan, std::span<DisplayFramelet const> framelets,
+                 std::span<Framelet const> rendered);
 
     std::optional<ViewState> seen_;
-    double now_ = 0;
     double advanced_ = 0; ///< the time that the field stands for
     double still_since_ = 0; ///< when what is to be seen changed last
     bool strayed_ = false; ///< something was rendered for another state than `seen_` since
     bool scene_moves_ = false;
-    bool reprojects_ = false;
     bool still_ = false; ///< what is to be seen is what the last plan was for
     PlaceField field_;
     LumaHistory history_;
@@ -103,7 +112,6 @@ private:
     double cycle_seconds_ = 0;
     std::vector<Patch> cycle_; ///< patches of the cycle
     std::size_t next_ = 0; ///< of these
-    RefreshPlan plan_;
     std::vector<std::uint8_t> send_;
 
     // Scratch.

@@ -19,10 +19,10 @@ void rate_patches(PlaceField const& field, Choices const& choices, std::span<flo
         double gain = 0;
         bool spoils = false; // what is finer and still true
         for (std::uint32_t i = range.first; i < range.last; ++i) {
-            if (field.pixels_of(i) == 0) {
+            Place const& place = field[i];
+            if (field.pixels_of(i) == 0 || place.taken.level >= 0) { // what it is worth is seen once it is learnt
                 continue;
             }
-            Place const& place = field[i];
             spoils = spoils || (place.level > level && place.drift == 0 && place.model.motion == 0);
             float const drift = place.model.motion * budget.latency;
             float const fresh = unresolved_error(place.model, level) + drift_error(place.model, level, drift);
@@ -59,7 +59,8 @@ void select_inspections(PlaceField const& field, double now, Budget const& budge
     double const latest = now - inspection_period(field, budget);
     scratch.clear();
     for (std::uint32_t const index : field.visible()) {
-        if (field[index].inspected < latest) {
+        Place const& place = field[index];
+        if (place.inspected < latest && place.taken.level < pixel_level) {
             scratch.push_back(index);
         }
     }

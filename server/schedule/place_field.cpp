@@ -42,9 +42,10 @@ PlaceField::Range PlaceField::range_of(Tile node) const {
 }
 
 float shown_error(Place const& place, float more) {
-    return place.level < 0
-               ? bare_error
-               : unresolved_error(place.model, place.level) + drift_error(place.model, place.level, place.drift + more);
+    bool const taken = place.taken.level >= 0;
+    int const level = taken ? place.taken.level : place.level;
+    float const drift = (taken ? place.taken.drift : place.drift) + more;
+    return level < 0 ? bare_error : unresolved_error(place.model, level) + drift_error(place.model, level, drift);
 }
 
 void drift_on(PlaceField& field, ViewRays const& from, ViewRays const& to, bool moving, float seconds) {
@@ -66,6 +67,7 @@ void drift_on(PlaceField& field, ViewRays const& from, ViewRays const& to, bool 
         }
         float const more = own + drift_per_pixel * std::max(pixels - expected, 0.0f);
         place.drift = std::min(place.drift + more, most_drift);
+        place.taken.drift = std::min(place.taken.drift + more, most_drift);
         if (seconds > 0 && pixels != expected) { // from now on that is what the motion is about
             place.speed = pixels / seconds;
             place.model.motion = more / seconds;
@@ -75,7 +77,7 @@ void drift_on(PlaceField& field, ViewRays const& from, ViewRays const& to, bool 
 
 void invalidate(PlaceField& field) {
     for (std::uint32_t const index : field.visible()) {
-        field[index].drift = most_drift;
+        field[index].drift = field[index].taken.drift = most_drift;
     }
 }
 

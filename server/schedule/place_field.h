@@ -17,13 +17,22 @@ inline constexpr double never = -std::numeric_limits<double>::infinity();
 
 inline constexpr std::size_t probes_per_place = 16;
 
+/// What has been taken to be rendered and is not learnt yet.
+struct TakenSamples {
+    int level = -1; ///< -1: nothing
+    float drift = 0; ///< since it was taken
+    double when = never; ///< seconds
+};
+
 struct Place {
     PlaceModel model = unknown_place();
     int level = -1; ///< of what the viewer holds; -1: nothing
     float drift = 0; ///< since that was rendered
+    TakenSamples taken;
     double rendered = never; ///< seconds
     double changed = never; ///< when it was last seen to be different
     double checked = never; ///< when it was last rendered or probed
+    double asked = never; ///< the same, learnt or not
     bool settled = true; ///< false from a change that was seen until two renderings are the same
     double inspected = never; ///< when all its pixels were last rendered
     float inverse_depth = 0; ///< mean, 1/metres
@@ -68,7 +77,7 @@ private:
     std::vector<std::uint32_t> visible_;
 };
 
-/// The error that the viewer sees at this place once `more` drift has been added.
+/// The error that the viewer sees at this place once what was taken has been rendered and `more` drift has been added.
 float shown_error(Place const& place, float more);
 /// Error of a place of which the viewer has nothing.
 inline constexpr float bare_error = 0.25f;

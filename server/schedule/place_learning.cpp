@@ -79,11 +79,13 @@ float mean_inverse_depth(Framelet const& framelet, std::size_t first, std::size_
     return ((sums[0] + sums[1]) + (sums[2] + sums[3])) / static_cast<float>(count);
 }
 
-/// What the viewer holds from now on, unless it held better that is still true.
-void hold(Place& place, int level, double now) {
-    place.level = level;
-    place.rendered = now;
-    place.drift = 0;
+/// Since it was rendered at `now`, which may have been a while ago. What has been taken again meanwhile knows that no
+/// more: what is known of before is too much.
+float drift_since(Place const& place, double now) {
+    if (place.taken.level < 0) {
+        return 0;
+    }
+    return place.taken.when == now ? place.taken.drift : place.drift;
 }
 
 bool is_change(Observation const& seen) {
@@ -172,13 +174,10 @@ bool learn_patch(PlaceField& field, Patch const& patch, std::span<PlaceFindings 
         if (level >= pixel_level) {
             place.inspected = now;
         }
-        if (!known) {
-            hold(place, level, now);
-        } else {
-            place.drift = 0;
-            if (place.level == level) { // what is held is the very picture of now
-                place.rendered = now;
-            }
+        place.drift = drift_since(place, now);
+        if (!known || place.level == level) { // where it is known, what is held is the very picture of then
+            place.level = level;
+            place.rendered = now;
         }
     }
     return !known;

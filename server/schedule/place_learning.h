@@ -24,8 +24,8 @@ bool examine_patch(PlaceField const& field, Patch const& patch, std::span<Displa
                    std::span<Framelet const> rendered, double now, LumaHistory const& history,
                    std::span<LumaHistory::Entry> entries, std::span<PlaceFindings> places);
 
-/// Takes the findings of a patch into account. `same`: what `examine_patch` returned. Returns whether the viewer needs
-/// the patch: false where it holds the very same.
+/// Takes the findings of a patch that was rendered at `now` into account. `same`: what `examine_patch` returned.
+/// Returns whether the viewer needs the patch: false where it holds the very same.
 bool learn_patch(PlaceField& field, Patch const& patch, std::span<PlaceFindings const> places, bool same, double now);
 
 /// Takes the answers to a place's probes into account: their luma now.

@@ -1,4 +1,5 @@
-// What a cycle did for one viewer, in figures. In: the scheduler after a batch. Out: a line of JSON.
+// What a cycle did for one viewer, in figures. In: the scheduler when it has planned a batch, and what became of that.
+// Out: a line of JSON.
 #pragma once
 
 #include <array>
@@ -25,12 +26,13 @@ struct CycleRecord {
     std::array<std::uint64_t, sampling_levels + 1> places_by_level{}; ///< of what the viewer holds; first: bare
     double mean_shown_error = 0; ///< over the viewport's pixels
     struct {
-        double plan = 0, render = 0, learn = 0, shape = 0;
-        double wait = 0; ///< until the batch before is encoded
+        double plan = 0, render = 0;
+        double learn = 0, shape = 0; ///< while the next batch was being rendered
+        double wait = 0; ///< when it was rendered, until the batch before was encoded and sent
     } stage_seconds;
 };
 
-/// Fills in what the scheduler knows of its cycle and field.
+/// Fills in what the scheduler knows of its cycle and field, what was taken for the batch included.
 void describe(AdaptiveRefresh const& refresh, CycleRecord& record);
 
 /// Without the end of line.

@@ -44,7 +44,6 @@ Recorder::~Recorder() {
 }
 
 void Recorder::add(CycleRecord record, AdaptiveRefresh const& refresh, double now) {
-    describe(refresh, record);
     start_ = start_.value_or(now);
     record.seconds = now - *start_;
     bool draw = false;

@@ -26,8 +26,8 @@ public:
     Recorder(Recorder const&) = delete;
     Recorder& operator=(Recorder const&) = delete;
 
-    /// `record` is completed from `refresh`; `now`: seconds, steady. From the render loop's thread. Pictures are left
-    /// out while the last ones are being written; a full disk ends the recording with a warning, not the server.
+    /// Pictures are of `refresh`; `now`: seconds, steady. From the render loop's thread. Pictures are left out while
+    /// the last ones are being written; a full disk ends the recording with a warning, not the server.
     void add(CycleRecord record, AdaptiveRefresh const& refresh, double now);
 
 private:

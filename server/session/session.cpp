@@ -43,9 +43,9 @@ SessionInput Session::newest_input() const {
     return input_;
 }
 
-bool Session::has_room() const {
+bool Session::has_room(std::uint64_t unsent) const {
     std::scoped_lock const lock(mutex_);
-    return open_ && last_batch_ - last_ack_ < max_batches_in_flight &&
+    return open_ && last_batch_ + unsent - last_ack_ < max_batches_in_flight &&
            link_.has_room(seconds_of(std::chrono::steady_clock::now()));
 }
 

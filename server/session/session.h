@@ -57,8 +57,9 @@ public:
     // From any thread:
     bool is_open() const;
     SessionInput newest_input() const;
-    /// True while another batch may be sent: there are few in flight, and the link is not full.
-    bool has_room() const;
+    /// True while another batch may be sent, beyond `unsent` others that are not begun yet: there are few in flight,
+    /// and the link is not full.
+    bool has_room(std::uint64_t unsent) const;
     /// Takes a place in flight for one batch of so many samples and gives its number, from 1. Only while there is room.
     std::uint64_t begin_batch(double samples);
     void send(Message const& message);

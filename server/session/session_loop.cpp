@@ -1,15 +1,15 @@
 #include "server/session/session_loop.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <utility>
 
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
+#include <tbb/global_control.h>
 #include <tbb/task_group.h>
 
-#include "common/color.h"
+#include "server/session/laps.h"
 
 namespace framelet {
 namespace {
@@ -17,50 +17,29 @@ namespace {
 /// Samples a second of a renderer that has not been measured yet.
 constexpr double first_rate = 1e6;
 
-/// All but the radiance; what `from` has room for is reused.
-void move_geometry(Framelet& from, Framelet& to) {
-    to.tile = from.tile;
-    to.depth = from.depth;
-    to.body.swap(from.body);
-    to.velocity.swap(from.velocity);
-    to.reflects = from.reflects;
-}
-
-/// Seconds from lap to lap.
-class Laps {
-public:
-    double lap() {
-        auto const now = std::chrono::steady_clock::now();
-        return std::chrono::duration<double>(now - std::exchange(last_, now)).count();
-    }
-
-private:
-    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
-
 } // namespace
 
-/// The batch being encoded while the next one renders.
-struct SessionLoop::Encoding {
-    tbb::task_group task;
+/// The batch that was rendered last is finished while the next one renders.
+struct SessionLoop::Pipeline {
+    std::array<BatchWork, 2> works;
+    BatchWork* rendered = nullptr; ///< and not finished; null: none
     BatchCodec codec;
-    Batch batch;
-    std::shared_ptr<Session> session;
+    tbb::task_group finishing;
 
-    void run() { session->send_batch(codec.encode(batch)); }
+    BatchWork& free_work() { return works[rendered == works.data() ? 1 : 0]; }
 };
 
 SessionLoop::SessionLoop(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene,
                          SceneClock const& clock, LoopOptions options, Events events)
     : scene_(scene), clips_(std::move(clips)), animated_(animation_duration(scene, clips_) > 0),
       render_scene_(render_scene), clock_(clock), options_(options), events_(std::move(events)),
-      pose_(evaluate_pose(scene, clips_, 0)), encoding_(std::make_unique<Encoding>()) {
+      pose_(evaluate_pose(scene, clips_, 0)), pipeline_(std::make_unique<Pipeline>()) {
     render_scene_.set_clips(clips_);
     render_scene_.set_pose(pose_);
 }
 
 SessionLoop::~SessionLoop() {
-    finish_encoding();
+    pipeline_->finishing.wait();
 }
 
 void SessionLoop::run() {
@@ -78,7 +57,6 @@ void SessionLoop::run() {
             continue;
         }
         // Nothing to do until a viewer or the clock says so. While the clock runs every display frame is worth a look.
-        finish_encoding();
         bool const playing = animated_ && clock_.state(std::chrono::steady_clock::now()).playing && !sessions.empty();
         std::unique_lock lock(mutex_);
         auto const woken = [this] { return wake_ || stop_; };
@@ -106,7 +84,7 @@ bool SessionLoop::cycle(Sessions const& sessions, WallTime now) {
     return rendered;
 }
 
-bool SessionLoop::render_session(Session& session, Viewer& viewer, SceneTime time, double share) {
+bool SessionLoop::render_session(Session& session, ViewerState& viewer, SceneTime time, double share) {
     AdaptiveRefresh& refresh = viewer.refresh;
     SessionInput const input = session.newest_input();
     if (!input.camera) {
@@ -115,6 +93,9 @@ bool SessionLoop::render_session(Session& session, Viewer& viewer, SceneTime tim
     ViewState const state{resolve_camera(*input.camera), options_.exposure * std::exp2(input.settings.exposure_ev),
                           time};
     if (refresh.is_complete(state)) {
+        if (finish_rendered()) {
+            return true;
+        }
         if (!viewer.lossy.empty()) {
             return send_exactly(session, viewer, input, state);
         }
@@ -123,18 +104,56 @@ bool SessionLoop::render_session(Session& session, Viewer& viewer, SceneTime tim
         }
         return false;
     }
-    if (!session.has_room()) {
+    BatchWork const* const rendered = pipeline_->rendered;
+    if (!session.has_room(rendered != nullptr && rendered->order.viewer == &viewer ? 1 : 0)) {
         waits_for_room_ = true;
-        return false;
+        return finish_rendered();
     }
-    auto const start = std::chrono::steady_clock::now();
+    Laps laps;
+    BatchWork& work = pipeline_->free_work();
+    work.record = {};
+    plan(session, viewer, input, state, share, work.order);
+    if (work.order.plan.is_empty()) {
+        return finish_rendered(); // once that is learnt there may be something
+    }
+    work.record.stage_seconds.plan = laps.lap();
+    if (work.order.plan.is_new_cycle) {
+        constexpr double weight = 0.1;
+        plan_seconds_ += weight * (work.record.stage_seconds.plan - plan_seconds_);
+    }
+    if (options_.recorder != nullptr) {
+        work.record.session = session.id();
+        work.record.scene_time = time;
+        work.record.samples_rendered = work.order.plan.tiles.size() * framelet_samples;
+        work.record.probes = work.order.plan.probes.size();
+        describe(refresh, work.record);
+        laps.lap();
+    }
+    start_finishing();
+    work.render(shared());
+    work.record.stage_seconds.render = laps.lap();
+    wait_for_finishing();
+    work.record.stage_seconds.wait = laps.lap();
+    pipeline_->rendered = &work;
+
+    if (!work.order.plan.tiles.empty()) {
+        // Planning left out: it takes as long for few samples, which would then seem to be dear.
+        double const samples = static_cast<double>(work.order.plan.tiles.size() * framelet_samples);
+        rate_ = update_render_rate(rate_, samples, work.record.stage_seconds.render + work.record.stage_seconds.wait);
+        samples_per_second_ = rate_.samples_per_second;
+    }
+    return true;
+}
+
+void SessionLoop::plan(Session& session, ViewerState& viewer, SessionInput const& input, ViewState const& state,
+                       double share, BatchOrder& order) {
     RefreshInput wanted;
     wanted.state = state;
-    wanted.now = std::chrono::duration<double>(start.time_since_epoch()).count();
+    wanted.now = std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
     LinkState const link = session.link();
     double const rendered = share * (rate_.samples_per_second > 0 ? rate_.samples_per_second : first_rate);
     std::uint8_t const quality = input.takes_loss() ? viewer.choice.choose(link, rendered, wanted.now) : exact_quality;
-    bool const still = refresh.is_still(state);
+    bool const still = viewer.refresh.is_still(state);
     wanted.samples_per_second = bounded_rate(link, rendered);
     wanted.cycle_seconds = cycle_length(still, plan_seconds_);
     wanted.delivery_seconds = static_cast<float>(link.delivery_seconds);
@@ -142,120 +161,66 @@ bool SessionLoop::render_session(Session& session, Viewer& viewer, SceneTime tim
     wanted.batch_framelets = options_.batch_framelets;
     wanted.link_framelets = bounded_batch(link);
     wanted.reprojects = input.takes_shapes();
-    CycleRecord record;
-    Laps laps;
-    RefreshPlan const& plan = refresh.plan(wanted);
-    record.stage_seconds.plan = laps.lap();
-    if (plan.is_new_cycle) {
-        constexpr double weight = 0.1;
-        plan_seconds_ += weight * (record.stage_seconds.plan - plan_seconds_);
-    }
-    if (plan.tiles.empty() && plan.probes.empty()) {
-        return false;
-    }
-    render_plan(plan.tiles, plan.probes, state);
-    record.stage_seconds.render = laps.lap();
-    needed_ = refresh.learn(display_, rendered_, probes_.luma());
-    record.stage_seconds.learn = laps.lap();
-    choose_qualities(ImagePlane(state.view.viewport), plan.tiles, needed_, quality, still, viewer.lossy, qualities_);
-    shapes_.clear();
-    tracks_.clear();
-    if (input.takes_shapes() && std::ranges::count(needed_, 0) < std::ssize(needed_)) { // else nothing is sent
-        describe_shapes(viewer, needed_, state);
-    }
-    record.stage_seconds.shape = laps.lap();
-    finish_encoding();
-    record.stage_seconds.wait = laps.lap();
-    send_batch(session, state);
-
-    if (!plan.tiles.empty()) {
-        // Planning left out: it takes as long for few samples, which would then seem to be dear.
-        double const samples = static_cast<double>(plan.tiles.size() * framelet_samples);
-        rate_ = update_render_rate(
-            rate_, samples, record.stage_seconds.render + record.stage_seconds.learn + record.stage_seconds.shape);
-        samples_per_second_ = rate_.samples_per_second;
-    }
-    if (options_.recorder != nullptr) {
-        record.session = session.id();
-        record.scene_time = time;
-        record.samples_rendered = plan.tiles.size() * framelet_samples;
-        record.probes = plan.probes.size();
-        record.framelets_sent =
-            static_cast<std::uint64_t>(std::ranges::count_if(needed_, [](auto n) { return n != 0; }));
-        record.framelets_unchanged = needed_.size() - record.framelets_sent;
-        options_.recorder->add(record, refresh, wanted.now);
-    }
-    if (session.report(input.version, refresh.is_complete(state) && viewer.lossy.empty())) {
-        events_.convergence_changed();
-    }
-    return true;
+    order.session = session.shared_from_this();
+    order.viewer = &viewer;
+    order.input = input;
+    order.state = state;
+    order.quality = quality;
+    order.still = still;
+    order.again = false;
+    viewer.refresh.plan(wanted, order.plan);
 }
 
 /// The picture is complete, but for what the viewer was sent with loss: some of that once more.
-bool SessionLoop::send_exactly(Session& session, Viewer& viewer, SessionInput const& input, ViewState const& state) {
-    if (!session.has_room()) {
+bool SessionLoop::send_exactly(Session& session, ViewerState& viewer, SessionInput const& input,
+                               ViewState const& state) {
+    if (!session.has_room(0)) {
         waits_for_room_ = true;
         return false;
     }
     constexpr std::size_t most_framelets = 1024;
-    viewer.lossy.list(std::min(bounded_batch(session.link()), most_framelets), lossy_tiles_);
-    render_plan(lossy_tiles_, {}, state);
-    needed_.assign(lossy_tiles_.size(), 1);
-    choose_qualities(ImagePlane(state.view.viewport), lossy_tiles_, needed_, exact_quality, true, viewer.lossy,
-                     qualities_);
-    shapes_.clear();
-    tracks_.clear();
-    if (input.takes_shapes()) {
-        describe_shapes(viewer, needed_, state);
-    }
-    finish_encoding();
-    send_batch(session, state);
-    return true;
+    BatchWork& work = pipeline_->free_work();
+    work.order = {session.shared_from_this(), &viewer, input, state, {}, exact_quality, true, true};
+    viewer.lossy.list(std::min(bounded_batch(session.link()), most_framelets), work.order.plan.tiles);
+    work.render(shared());
+    pipeline_->rendered = &work;
+    return finish_rendered();
 }
 
-void SessionLoop::render_plan(std::span<Tile const> tiles, std::span<Probe const> probes, ViewState const& state) {
-    std::size_t const count = tiles.size();
-    rendered_pool_.resize(std::max(rendered_pool_.size(), count));
-    display_pool_.resize(std::max(display_pool_.size(), count));
-    rendered_ = std::span(rendered_pool_).first(count);
-    display_ = std::span(display_pool_).first(count);
-    Camera const& camera = state.view.camera;
-    ImagePlane const plane(state.view.viewport);
-    ViewRays const rays = make_view_rays(camera, state.view.viewport);
-    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-        Framelet& fresh = fresh_.local();
-        render_framelet(render_scene_, rays, plane, tiles[i], 0, fresh);
-        display_[i] = to_display(fresh, state.exposure);
-        move_geometry(fresh, rendered_[i]);
-    });
-    probes_.render(render_scene_, camera, state.view.viewport, state.exposure, probes);
-}
-
-void SessionLoop::describe_shapes(Viewer& viewer, std::vector<std::uint8_t> const& needed, ViewState const& state) {
-    ViewRays const rays = make_view_rays(state.view.camera, state.view.viewport);
-    viewer.shapes.fit(rendered_, needed, rays, ImagePlane(state.view.viewport), shapes_);
-    viewer.shapes.track(scene_, clips_, render_scene_.bodies(), state.scene_time, tracks_);
-}
-
-void SessionLoop::send_batch(Session& session, ViewState const& state) {
-    Batch& batch = encoding_->batch;
-    batch.framelets.clear();
-    for (std::size_t i = 0; i < display_.size(); ++i) {
-        if (needed_[i] != 0) {
-            batch.framelets.push_back(display_[i]);
-        }
-    }
-    if (batch.framelets.empty() || !session.is_open()) {
+void SessionLoop::start_finishing() {
+    if (pipeline_->rendered == nullptr) {
         return;
     }
-    batch.number = session.begin_batch(static_cast<double>(batch.framelets.size() * framelet_samples));
-    batch.quality = qualities_;
-    batch.view = state.view;
-    batch.scene_time = state.scene_time;
-    batch.shapes.swap(shapes_);
-    batch.tracks.swap(tracks_);
-    encoding_->session = session.shared_from_this();
-    encoding_->task.run([encoding = encoding_.get()] { encoding->run(); });
+    auto const finish = [this] {
+        if (pipeline_->rendered->finish(shared(), pipeline_->codec)) {
+            events_.convergence_changed();
+        }
+    };
+    // With one thread it would not begin before the next batch is rendered, and be late by that.
+    if (tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism) > 1) {
+        pipeline_->finishing.run(finish);
+    } else {
+        finish();
+    }
+}
+
+void SessionLoop::wait_for_finishing() {
+    pipeline_->finishing.wait();
+    BatchWork* const done = std::exchange(pipeline_->rendered, nullptr);
+    if (done == nullptr) {
+        return;
+    }
+    if (options_.recorder != nullptr && !done->order.again) {
+        options_.recorder->add(done->record, done->order.viewer->refresh, done->order.plan.now);
+    }
+    done->order.session.reset();
+}
+
+bool SessionLoop::finish_rendered() {
+    bool const any = pipeline_->rendered != nullptr;
+    start_finishing();
+    wait_for_finishing();
+    return any;
 }
 
 void SessionLoop::pose_scene(SceneTime time) {
@@ -273,16 +238,15 @@ NumberedView SessionLoop::resolve_camera(CameraUpdate const& camera) const {
     return view;
 }
 
-void SessionLoop::finish_encoding() {
-    encoding_->task.wait();
-    encoding_->session.reset();
-}
-
 void SessionLoop::forget_ended(Sessions const& sessions) {
-    auto const is_open = [&sessions](std::uint64_t id) {
-        return std::any_of(sessions.begin(), sessions.end(), [id](auto const& session) { return session->id() == id; });
+    auto const has_ended = [&sessions](auto const& entry) {
+        return std::none_of(sessions.begin(), sessions.end(),
+                            [&entry](auto const& session) { return session->id() == entry.first; });
     };
-    std::erase_if(viewers_, [&](auto const& entry) { return !is_open(entry.first); });
+    if (std::any_of(viewers_.begin(), viewers_.end(), has_ended)) {
+        finish_rendered(); // it may be of one of them
+        std::erase_if(viewers_, has_ended);
+    }
 }
 
 void SessionLoop::wake() {

@@ -1,6 +1,6 @@
-// The server's loop: for every viewer, newest camera and scene time -> tile selection -> rendering -> encoding ->
-// display values -> what was learnt -> encoding -> socket. Encoding and sending of one batch overlap the rendering of
-// the next.
+// The server's loop: for every viewer, newest camera and scene time -> tile selection -> rendering, display values ->
+// what was learnt -> quality, shapes -> encoding -> socket. All that follows the rendering of one batch overlaps the
+// rendering of the next, which is planned before that batch is learnt.
 #pragma once
 
 #include <atomic>
@@ -9,18 +9,10 @@
 #include <map>
 #include <memory>
 #include <mutex>
-#include <span>
 #include <vector>
 
-#include <tbb/enumerable_thread_specific.h>
-
-#include "protocol/batch_codec.h"
-#include "server/flow/lossy_places.h"
-#include "server/flow/quality_choice.h"
-#include "server/layers/shape_feed.h"
-#include "server/render/probe_renderer.h"
-#include "server/schedule/adaptive_refresh.h"
 #include "server/schedule/render_rate.h"
+#include "server/session/batch_work.h"
 #include "server/session/recorder.h"
 #include "server/session/scene_clock.h"
 #include "server/session/session.h"
@@ -38,7 +30,7 @@ class SessionLoop {
 public:
     using Sessions = std::vector<std::shared_ptr<Session>>;
 
-    /// What the loop asks of its server; both may be called on the loop's thread.
+    /// What the loop asks of its server, on any of its threads.
     struct Events {
         std::function<Sessions()> open_sessions;
         /// A session's picture is complete, or no longer.
@@ -65,20 +57,15 @@ public:
 private:
     void pose_scene(SceneTime time);
     NumberedView resolve_camera(CameraUpdate const& camera) const;
-    /// What is kept of a viewer from batch to batch.
-    struct Viewer {
-        AdaptiveRefresh refresh;
-        ShapeFeed shapes;
-        QualityChoice choice;
-        LossyPlaces lossy;
-    };
-
-    bool render_session(Session& session, Viewer& viewer, SceneTime time, double share);
-    void describe_shapes(Viewer& viewer, std::vector<std::uint8_t> const& needed, ViewState const& state);
-    bool send_exactly(Session& session, Viewer& viewer, SessionInput const& input, ViewState const& state);
-    void render_plan(std::span<Tile const> tiles, std::span<Probe const> probes, ViewState const& state);
-    void send_batch(Session& session, ViewState const& state);
-    void finish_encoding();
+    SharedScene shared() const { return {scene_, clips_, render_scene_}; }
+    bool render_session(Session& session, ViewerState& viewer, SceneTime time, double share);
+    void plan(Session& session, ViewerState& viewer, SessionInput const& input, ViewState const& state, double share,
+              BatchOrder& order);
+    bool send_exactly(Session& session, ViewerState& viewer, SessionInput const& input, ViewState const& state);
+    void start_finishing();
+    void wait_for_finishing();
+    /// What was rendered and is not finished, without overlap; false where there was none.
+    bool finish_rendered();
     void forget_ended(Sessions const& sessions);
 
     Scene const& scene_;
@@ -90,24 +77,13 @@ private:
     Events const events_;
 
     ScenePose pose_;
-    std::map<std::uint64_t, Viewer> viewers_; ///< by session
+    std::map<std::uint64_t, ViewerState> viewers_; ///< by session
     RenderRate rate_;
     double plan_seconds_ = 0; ///< what planning a cycle takes
-    ProbeRenderer probes_;
-    tbb::enumerable_thread_specific<Framelet> fresh_;
-    std::vector<Framelet> rendered_pool_; ///< as many as a batch ever had: making room for them costs time
-    std::vector<DisplayFramelet> display_pool_;
-    std::span<Framelet> rendered_; ///< of the last plan; without radiance, which would crowd the caches for nothing
-    std::span<DisplayFramelet> display_;
-    std::vector<std::uint8_t> needed_; ///< whether the viewer gets it, of each
-    std::vector<std::uint8_t> qualities_; ///< of those that are sent; empty: all are exact
-    std::vector<FrameletShape> shapes_; ///< of those that are sent
-    std::vector<Tile> lossy_tiles_; ///< scratch
     bool waits_for_room_ = false; ///< a viewer, in this cycle
-    std::vector<BodyTrack> tracks_;
 
-    struct Encoding;
-    std::unique_ptr<Encoding> encoding_;
+    struct Pipeline;
+    std::unique_ptr<Pipeline> pipeline_;
 
     std::mutex mutex_;
     std::condition_variable woken_;

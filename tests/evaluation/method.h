@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -61,8 +62,10 @@ struct StepInput {
 /// One message to the viewer. Empty: nothing to send; where no time was spent either, nothing to do.
 struct ServerStep {
     std::vector<std::byte> message;
-    StageSeconds seconds;
+    StageSeconds seconds; ///< until the message is sent
+    StageSeconds later; ///< from then on, for what the next step sends
     std::uint64_t samples = 0;
+    std::optional<double> begun; ///< when what the message shows was; nothing: in this step
 };
 
 struct ViewerStep {

@@ -56,6 +56,7 @@ ResponseCost response_cost(BenchScene& scene, Viewport viewport, double samples_
     Batch batch;
     std::vector<Framelet> rendered;
     RefreshInput input;
+    RefreshPlan plan;
     input.samples_per_second = samples_per_second;
     double plan_seconds = 0;
     ResponseCost cost;
@@ -64,16 +65,15 @@ ResponseCost response_cost(BenchScene& scene, Viewport viewport, double samples_
         pose_at(scene, input.now);
         input.state = {{1, scene.camera, viewport}, scene.exposure, input.now};
         input.cycle_seconds = cycle_length(false, plan_seconds);
-        RefreshPlan const* plan = nullptr;
-        double const planned = cpu_seconds([&] { plan = &refresh.plan(input); });
-        if (plan->is_new_cycle) {
+        double const planned = cpu_seconds([&] { refresh.plan(input, plan); });
+        if (plan.is_new_cycle) {
             plan_seconds = planned;
         }
-        rendered.resize(plan->tiles.size());
+        rendered.resize(plan.tiles.size());
         batch.framelets.resize(rendered.size());
         double const traced = cpu_seconds([&] {
-            render_framelets(*scene.render_scene, scene.camera, ImagePlane(viewport), plan->tiles, 0, rendered);
-            probes.render(*scene.render_scene, scene.camera, viewport, scene.exposure, plan->probes);
+            render_framelets(*scene.render_scene, scene.camera, ImagePlane(viewport), plan.tiles, 0, rendered);
+            probes.render(*scene.render_scene, scene.camera, viewport, scene.exposure, plan.probes);
         });
         double encoded = cpu_seconds([&] {
             for (std::size_t i = 0; i < rendered.size(); ++i) {
@@ -81,7 +81,8 @@ ResponseCost response_cost(BenchScene& scene, Viewport viewport, double samples_
             }
         });
         std::vector<std::uint8_t> const* send = nullptr;
-        double const learnt = cpu_seconds([&] { send = &refresh.learn(batch.framelets, rendered, probes.luma()); });
+        double const learnt =
+            cpu_seconds([&] { send = &refresh.learn(plan, batch.framelets, rendered, probes.luma()); });
         encoded += cpu_seconds([&] {
             std::size_t kept = 0;
             for (std::size_t i = 0; i < rendered.size(); ++i) {
@@ -97,11 +98,11 @@ ResponseCost response_cost(BenchScene& scene, Viewport viewport, double samples_
             cost.learn += learnt;
             cost.render += traced;
             cost.encode += encoded;
-            cost.cycles += plan->is_new_cycle ? 1 : 0;
+            cost.cycles += plan.is_new_cycle ? 1 : 0;
             ++cost.batches;
             cost.samples += rendered.size() * framelet_samples;
         }
-        double const samples = static_cast<double>(rendered.size() * framelet_samples + plan->probes.size());
+        double const samples = static_cast<double>(rendered.size() * framelet_samples + plan.probes.size());
         input.now += std::max(samples, 1.0) / samples_per_second;
     }
     cost.places = refresh.field().visible().size();

@@ -155,13 +155,14 @@ RunResult run_method(BenchScene& scene, Method& method, RunParameters const& par
             on_step(started, step);
         }
         bool const measured = started >= 0;
+        if (measured) {
+            add(result.cpu, step.seconds, machine, 0);
+            add(result.cpu, step.later, machine, 0);
+            result.samples += step.samples;
+        }
         now += machine * step.seconds.server();
         if (step.message.empty()) {
-            if (measured) {
-                add(result.cpu, step.seconds, machine, 0);
-                result.samples += step.samples;
-            }
-            now = std::max(now, started + idle_seconds);
+            now = std::max(now + machine * step.later.server(), started + idle_seconds);
             continue;
         }
         SimulatedLink::Delivery const delivery = link.send(now, step.message.size());
@@ -184,15 +185,14 @@ RunResult run_method(BenchScene& scene, Method& method, RunParameters const& par
             now += machine * viewed.seconds.viewer();
         }
         if (measured) {
-            add(result.cpu, step.seconds, machine, 0);
             add(result.cpu, viewed.seconds, 0, viewer_machine);
-            result.samples += step.samples;
             result.bytes += step.message.size();
             ++result.messages;
-            result.mean_delay += displayed - started;
+            result.mean_delay += displayed - step.begun.value_or(started);
             result.displayed.push_back(displayed);
             result.deliveries.push_back({now, static_cast<double>(step.message.size()), delivery.begun - now});
         }
+        now += machine * step.later.server();
     }
     spectator.watch(INFINITY);
     result.cpu.reconstruct += spectator.presenting();

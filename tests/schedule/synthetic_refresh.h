@@ -42,27 +42,31 @@ public:
         input.samples_per_second = std::max(4.0 * viewport.width * viewport.height, 1e5);
     }
 
-    /// One batch, and the time that it takes. False when there was nothing to render: a cycle passes.
+    /// Plans and renders a batch, which takes its time; learns and sends it, or the one before where it is pipelined.
+    /// False when there was nothing to do: a cycle passes.
     bool step() {
         input.state.scene_time = running ? input.now : stopped_at;
-        RefreshPlan const& plan = refresh.plan(input);
+        RefreshPlan plan;
+        refresh.plan(input, plan);
         tiles = plan.tiles;
         patches = plan.patches;
         probes = plan.probes.size();
         sent.clear();
-        if (plan.tiles.empty() && plan.probes.empty()) {
-            input.now += static_cast<double>(input.cycle_seconds);
-            return false;
+        bool const learns = !rendered_plan_.is_empty();
+        if (learns) {
+            learn();
+        }
+        if (plan.is_empty()) {
+            input.now += learns ? 0 : static_cast<double>(input.cycle_seconds);
+            return learns;
         }
         render(plan);
-        auto const& send = refresh.learn(display_, rendered_, luma_);
-        for (std::size_t i = 0; i < display_.size(); ++i) {
-            if (send[i] != 0) {
-                sent.push_back(display_[i]);
-            }
-        }
+        rendered_plan_ = std::move(plan);
         double const cost = static_cast<double>(tiles.size() * framelet_samples + 2 * probes);
         input.now += cost / input.samples_per_second;
+        if (!pipelined) {
+            learn();
+        }
         return true;
     }
 
@@ -95,6 +99,7 @@ public:
     }
 
     RefreshInput input;
+    bool pipelined = true; ///< a batch is learnt once the next one has been planned, as in the server
     bool running = true; ///< the scene clock
     double stopped_at = 0; ///< scene time while it is not
     AdaptiveRefresh refresh;
@@ -106,6 +111,15 @@ public:
     std::vector<DisplayFramelet> sent;
 
 private:
+    void learn() {
+        auto const& send = refresh.learn(rendered_plan_, display_, rendered_, luma_);
+        for (std::size_t i = 0; i < display_.size(); ++i) {
+            if (send[i] != 0) {
+                sent.push_back(display_[i]);
+            }
+        }
+        rendered_plan_ = {};
+    }
     std::uint8_t shade(float x, float y) const {
         return static_cast<std::uint8_t>(std::lround(255 * shading_(x, y, input.state.scene_time)));
     }
@@ -134,6 +148,7 @@ private:
     }
 
     Shading shading_;
+    RefreshPlan rendered_plan_; ///< what was rendered and is not learnt yet
     std::vector<DisplayFramelet> display_;
     std::vector<Framelet> rendered_;
     std::vector<float> luma_;

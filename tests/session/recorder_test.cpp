@@ -34,7 +34,8 @@ AdaptiveRefresh planned() {
     input.state.view.viewport = {320, 200};
     input.now = 1;
     input.samples_per_second = 1e6;
-    refresh.plan(input);
+    RefreshPlan plan;
+    refresh.plan(input, plan);
     return refresh;
 }
 
@@ -46,6 +47,7 @@ TEST_F(RecorderTest, ALineForEachBatchAndPicturesAtTheirRate) {
             CycleRecord record;
             record.session = 7;
             record.samples_rendered = 256;
+            describe(refresh, record);
             recorder.add(record, refresh, 10 + 0.02 * i);
         }
     }

@@ -17,6 +17,7 @@ CorpusMoment make_moment(BenchScene& scene, CorpusOptions const& options, double
     std::vector<Framelet> rendered;
     std::vector<DisplayFramelet> display;
     RefreshInput input;
+    RefreshPlan plan;
     input.samples_per_second = options.frames_per_second * pixels;
     input.cycle_seconds = cycle_seconds;
     CorpusMoment moment;
@@ -26,7 +27,7 @@ CorpusMoment make_moment(BenchScene& scene, CorpusOptions const& options, double
         pose_at(scene, time);
         NumberedView const view{number + 1, scene.camera, options.viewport};
         input.state = {view, scene.exposure, time};
-        RefreshPlan const& plan = refresh.plan(input);
+        refresh.plan(input, plan);
         rendered.resize(plan.tiles.size());
         render_framelets(*scene.render_scene, scene.camera, plane, plan.tiles, 0, rendered);
         probes.render(*scene.render_scene, scene.camera, options.viewport, scene.exposure, plan.probes);
@@ -34,7 +35,7 @@ CorpusMoment make_moment(BenchScene& scene, CorpusOptions const& options, double
         for (Framelet const& framelet : rendered) {
             display.push_back(to_display(framelet, scene.exposure));
         }
-        auto const& send = refresh.learn(display, rendered, probes.luma());
+        auto const& send = refresh.learn(plan, display, rendered, probes.luma());
         Batch batch{++number, view, time, {}};
         for (std::size_t i = 0; i < display.size(); ++i) {
             if (send[i] != 0) {

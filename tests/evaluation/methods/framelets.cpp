@@ -12,7 +12,6 @@
 #include "server/schedule/adaptive_refresh.h"
 #include "server/schedule/render_rate.h"
 #include "server/session/session.h"
-#include "server/session/session_loop.h"
 #include "tests/evaluation/methods/methods.h"
 
 namespace framelet::bench {
@@ -30,8 +29,16 @@ public:
         moves_ = input.scene.duration > 0;
         SceneTime const time = moves_ ? input.time : 0;
         ViewState const state{input.view, input.scene.exposure, time};
-        if (refresh_.is_complete(state)) {
-            return lossy_.empty() ? ServerStep() : send_exactly(input, time);
+        ServerStep step;
+        if (refresh_.is_complete(state) && !rendered_) {
+            if (!lossy_.empty()) {
+                send_exactly(input, state, step);
+            }
+            return step;
+        }
+        if (refresh_.is_complete(state) || !link_.has_room(input.now)) {
+            finish(input.scene, step);
+            return step;
         }
         RefreshInput refresh;
         refresh.state = state;
@@ -47,25 +54,23 @@ public:
         refresh.link_framelets = bounded_batch(link);
         refresh.bias = static_cast<float>(setup_.bias);
         refresh.reprojects = reprojects_;
-        RefreshPlan const& plan = refresh_.plan(refresh);
-        if (plan.tiles.empty() && plan.probes.empty()) {
-            return {};
+        refresh_.plan(refresh, plan_);
+        finish(input.scene, step);
+        if (plan_.is_empty()) {
+            return step;
         }
-        ServerStep step;
-        std::uint64_t const segments = render(input, plan.tiles);
-        std::uint64_t const probe_segments = probes_.render(*input.scene.render_scene, input.view.camera,
-                                                            setup_.viewport, input.scene.exposure, plan.probes);
-        step.samples = plan.tiles.size() * framelet_samples + plan.probes.size();
-        double const samples = static_cast<double>(plan.tiles.size() * framelet_samples);
-        step.seconds.render = 1e-9 * (static_cast<double>(segments) * setup_.costs.coherent_segment +
-                                      static_cast<double>(probe_segments) * setup_.costs.incoherent_segment);
-        step.seconds.response = (plan.is_new_cycle ? plan_seconds() : 0) + 1e-9 * samples * setup_.costs.learn_sample;
-        if (!plan.tiles.empty()) {
-            rate_ = update_render_rate(rate_, static_cast<double>(step.samples), setup_.machine * step.seconds.render);
+        step.seconds.response += plan_.is_new_cycle ? plan_seconds() : 0;
+        std::swap(plan_, work_.plan);
+        work_.state = state;
+        work_.begun = input.now;
+        work_.quality = quality;
+        work_.still = still;
+        work_.again = false;
+        render(input, step.later);
+        step.samples = work_.plan.tiles.size() * framelet_samples + work_.plan.probes.size();
+        if (!work_.plan.tiles.empty()) {
+            rate_ = update_render_rate(rate_, static_cast<double>(step.samples), setup_.machine * step.later.render);
         }
-
-        send_ = refresh_.learn(display_, rendered_, probes_.luma());
-        send(input, time, plan.tiles, quality, still, step);
         return step;
     }
 
@@ -74,7 +79,7 @@ public:
         link_.sent(number_, now, bytes);
     }
     void answered(double now, double arrived) override { link_.acknowledged(++answered_, now, arrived); }
-    bool has_room(double now) const override { return link_.has_room(now); }
+    bool has_room(double now) const override { return rendered_ || link_.has_room(now); }
 
     ViewerStep consume(std::vector<std::byte> const& message) override {
         Batch const batch = codec_.decode(std::get<EncodedBatch>(decode_message(message)));
@@ -127,59 +132,82 @@ public:
     Window window() const override { return {Session::max_batches_in_flight, false}; }
 
 private:
-    /// Renders and displays; returns the segments that it took.
-    std::uint64_t render(StepInput const& input, std::span<Tile const> tiles) {
-        rendered_.resize(tiles.size());
-        std::uint64_t const segments = render_framelets(*input.scene.render_scene, input.view.camera,
-                                                        ImagePlane(setup_.viewport), tiles, 0, rendered_);
+    /// What is rendered, and finished with the next step, once that is planned.
+    struct Work {
+        ViewState state;
+        RefreshPlan plan;
+        double begun = 0;
+        std::uint8_t quality = exact_quality;
+        bool still = false;
+        bool again = false; ///< what the viewer holds with loss
+    };
+
+    void render(StepInput const& input, StageSeconds& seconds) {
+        RenderScene const& scene = *input.scene.render_scene;
+        std::vector<Tile> const& tiles = work_.plan.tiles;
+        framelets_.resize(tiles.size());
+        std::uint64_t const segments =
+            render_framelets(scene, input.view.camera, ImagePlane(setup_.viewport), tiles, 0, framelets_);
         display_.clear();
-        for (Framelet const& framelet : rendered_) {
+        for (Framelet const& framelet : framelets_) {
             display_.push_back(to_display(framelet, input.scene.exposure));
         }
-        return segments;
+        std::uint64_t const probe_segments =
+            probes_.render(scene, input.view.camera, setup_.viewport, input.scene.exposure, work_.plan.probes);
+        seconds.render += 1e-9 * (static_cast<double>(segments) * setup_.costs.coherent_segment +
+                                  static_cast<double>(probe_segments) * setup_.costs.incoherent_segment);
+        seconds.encode += 1e-9 * static_cast<double>(tiles.size() * framelet_samples) * setup_.costs.display_sample;
+        rendered_ = true;
     }
 
     /// What the viewer was sent with loss once more, as the server does when the picture is complete.
-    ServerStep send_exactly(StepInput const& input, SceneTime time) {
+    void send_exactly(StepInput const& input, ViewState const& state, ServerStep& step) {
         constexpr std::size_t most_framelets = 1024;
-        lossy_.list(std::min(bounded_batch(link_.state()), most_framelets), lossy_tiles_);
-        ServerStep step;
-        std::uint64_t const segments = render(input, lossy_tiles_);
-        step.samples = lossy_tiles_.size() * framelet_samples;
-        step.seconds.render = 1e-9 * static_cast<double>(segments) * setup_.costs.coherent_segment;
-        send_.assign(lossy_tiles_.size(), 1);
-        send(input, time, lossy_tiles_, exact_quality, true, step);
-        return step;
+        work_ = {state, {}, input.now, exact_quality, true, true};
+        lossy_.list(std::min(bounded_batch(link_.state()), most_framelets), work_.plan.tiles);
+        render(input, step.seconds);
+        step.samples = work_.plan.tiles.size() * framelet_samples;
+        finish(input.scene, step);
     }
 
-    /// The message of what was rendered, and what making it costs.
-    void send(StepInput const& input, SceneTime time, std::span<Tile const> tiles, std::uint8_t quality, bool finish,
-              ServerStep& step) {
+    /// What follows for what was rendered, and the message of it; what that costs.
+    void finish(BenchScene const& scene, ServerStep& step) {
+        if (!std::exchange(rendered_, false)) {
+            return;
+        }
+        double const samples = static_cast<double>(display_.size() * framelet_samples);
+        if (work_.again) {
+            send_.assign(display_.size(), 1);
+        } else {
+            send_ = refresh_.learn(work_.plan, display_, framelets_, probes_.luma());
+            step.seconds.response += 1e-9 * samples * setup_.costs.learn_sample;
+        }
         ImagePlane const plane(setup_.viewport);
-        choose_qualities(plane, tiles, send_, quality, finish, lossy_, batch_.quality);
+        choose_qualities(plane, work_.plan.tiles, send_, work_.quality, work_.still, lossy_, batch_.quality);
         batch_.framelets.clear();
         for (std::size_t i = 0; i < display_.size(); ++i) {
             if (send_[i] != 0) {
                 batch_.framelets.push_back(display_[i]);
             }
         }
-        double const samples = static_cast<double>(tiles.size() * framelet_samples);
-        double const sent = static_cast<double>(batch_.framelets.size() * framelet_samples);
-        double const coding = batch_.quality.empty() ? setup_.costs.encode_sample : setup_.costs.encode_lossy_sample;
-        step.seconds.encode = 1e-9 * (samples * setup_.costs.display_sample + sent * coding);
         if (batch_.framelets.empty()) {
             return;
         }
+        double const sent = static_cast<double>(batch_.framelets.size() * framelet_samples);
+        double const coding = batch_.quality.empty() ? setup_.costs.encode_sample : setup_.costs.encode_lossy_sample;
+        step.seconds.encode += 1e-9 * sent * coding;
         if (reprojects_) {
-            shapes_.fit(rendered_, send_, make_view_rays(input.view.camera, setup_.viewport), plane, batch_.shapes);
-            shapes_.track(input.scene.scene, input.scene.clips, input.scene.render_scene->bodies(), time,
+            shapes_.fit(framelets_, send_, make_view_rays(work_.state.view.camera, setup_.viewport), plane,
+                        batch_.shapes);
+            shapes_.track(scene.scene, scene.clips, scene.render_scene->bodies(), work_.state.scene_time,
                           batch_.tracks);
             step.seconds.encode += 1e-9 * sent * setup_.costs.shape_sample;
         }
         batch_.number = ++number_;
-        batch_.view = input.view;
-        batch_.scene_time = time;
+        batch_.view = work_.state.view;
+        batch_.scene_time = work_.state.scene_time;
         step.message = encode_message(codec_.encode(batch_));
+        step.begun = work_.begun;
     }
 
     /// Before anything has been measured.
@@ -213,7 +241,10 @@ private:
     bool moves_ = false; ///< the scene
     AdaptiveRefresh refresh_;
     RenderRate rate_;
-    std::vector<Framelet> rendered_;
+    RefreshPlan plan_;
+    Work work_;
+    bool rendered_ = false; ///< the work is, and not finished
+    std::vector<Framelet> framelets_;
     std::vector<DisplayFramelet> display_;
     ProbeRenderer probes_;
     std::vector<std::uint8_t> send_; ///< whether the viewer gets it, of each

@@ -1,0 +1,90 @@
+#include "server/session/batch_work.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <tbb/parallel_for.h>
+
+#include "common/color.h"
+#include "server/session/laps.h"
+
+namespace framelet {
+namespace {
+
+/// All but the radiance; what `from` has room for is reused.
+void move_geometry(Framelet& from, Framelet& to) {
+    to.tile = from.tile;
+    to.depth = from.depth;
+    to.body.swap(from.body);
+    to.velocity.swap(from.velocity);
+    to.reflects = from.reflects;
+}
+
+} // namespace
+
+void BatchWork::render(SharedScene const& shared) {
+    std::size_t const count = order.plan.tiles.size();
+    rendered_pool_.resize(std::max(rendered_pool_.size(), count));
+    display_pool_.resize(std::max(display_pool_.size(), count));
+    rendered_ = std::span(rendered_pool_).first(count);
+    display_ = std::span(display_pool_).first(count);
+    NumberedView const& view = order.state.view;
+    ImagePlane const plane(view.viewport);
+    ViewRays const rays = make_view_rays(view.camera, view.viewport);
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+        Framelet& fresh = fresh_.local();
+        render_framelet(shared.render_scene, rays, plane, order.plan.tiles[i], 0, fresh);
+        display_[i] = to_display(fresh, order.state.exposure);
+        move_geometry(fresh, rendered_[i]);
+    });
+    probes_.render(shared.render_scene, view.camera, view.viewport, order.state.exposure, order.plan.probes);
+}
+
+bool BatchWork::finish(SharedScene const& shared, BatchCodec& codec) {
+    ViewerState& viewer = *order.viewer;
+    Laps laps;
+    if (order.again) {
+        needed_.assign(display_.size(), 1);
+    } else {
+        needed_ = viewer.refresh.learn(order.plan, display_, rendered_, probes_.luma());
+    }
+    record.stage_seconds.learn = laps.lap();
+    choose_qualities(ImagePlane(order.state.view.viewport), order.plan.tiles, needed_, order.quality, order.still,
+                     viewer.lossy, batch_.quality);
+    batch_.shapes.clear();
+    batch_.tracks.clear();
+    if (order.input.takes_shapes() && std::ranges::count(needed_, 0) < std::ssize(needed_)) { // else nothing is sent
+        describe_shapes(shared);
+    }
+    record.stage_seconds.shape = laps.lap();
+    send(codec);
+    record.framelets_sent = batch_.framelets.size();
+    record.framelets_unchanged = needed_.size() - batch_.framelets.size();
+    return order.session->report(order.input.version, viewer.refresh.is_complete(order.state) && viewer.lossy.empty());
+}
+
+void BatchWork::describe_shapes(SharedScene const& shared) {
+    Viewport const viewport = order.state.view.viewport;
+    ShapeFeed& shapes = order.viewer->shapes;
+    shapes.fit(rendered_, needed_, make_view_rays(order.state.view.camera, viewport), ImagePlane(viewport),
+               batch_.shapes);
+    shapes.track(shared.scene, shared.clips, shared.render_scene.bodies(), order.state.scene_time, batch_.tracks);
+}
+
+void BatchWork::send(BatchCodec& codec) {
+    batch_.framelets.clear();
+    for (std::size_t i = 0; i < display_.size(); ++i) {
+        if (needed_[i] != 0) {
+            batch_.framelets.push_back(display_[i]);
+        }
+    }
+    if (batch_.framelets.empty() || !order.session->is_open()) {
+        return;
+    }
+    batch_.number = order.session->begin_batch(static_cast<double>(batch_.framelets.size() * framelet_samples));
+    batch_.view = order.state.view;
+    batch_.scene_time = order.state.scene_time;
+    order.session->send_batch(codec.encode(batch_));
+}
+
+} // namespace framelet
