@@ -53,7 +53,8 @@ Demand demand_of(PlaceField const& field, Budget const& budget, std::span<float 
         steady += choice.recurring ? samples / static_cast<double>(choice.period) : 0;
         float const error = due[index];
         if (error > choice.due_error) {
-            bool const is_true = place.taken.level < 0 && place.level >= 0 && unresolved_error(place.model, place.level) > 0.5f * error;
+            bool const is_true =
+                place.taken.level < 0 && place.level >= 0 && unresolved_error(place.model, place.level) > 0.5f * error;
             (is_true ? coarse : stale) += samples;
         }
     }

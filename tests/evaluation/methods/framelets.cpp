@@ -53,7 +53,7 @@ public:
         refresh.batch_framelets = setup_.batch_framelets;
         refresh.link_framelets = bounded_batch(link);
         refresh.bias = static_cast<float>(setup_.bias);
-        refresh.reprojects = reprojects_;
+        refresh.motions = reprojects_ ? &told_ : nullptr;
         refresh_.plan(refresh, plan_);
         finish(input.scene, step);
         if (plan_.is_empty()) {
@@ -201,6 +201,9 @@ private:
                         batch_.shapes);
             shapes_.track(scene.scene, scene.clips, scene.render_scene->bodies(), work_.state.scene_time,
                           batch_.tracks);
+            for (BodyTrack const& track : batch_.tracks) {
+                told_.extend(track);
+            }
             step.seconds.encode += 1e-9 * sent * setup_.costs.shape_sample;
         }
         batch_.number = ++number_;
@@ -259,7 +262,7 @@ private:
     BatchCodec codec_;
 
     FrameletCache cache_;
-    BodyMotions motions_;
+    BodyMotions told_, motions_; ///< what the server has said, and what the viewer knows
     Reprojector reprojector_;
     std::vector<PixelRect> changed_, repainted_;
     Picture picture_;
