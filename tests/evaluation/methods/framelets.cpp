@@ -198,7 +198,7 @@ private:
         step.seconds.encode += 1e-9 * sent * coding;
         if (reprojects_) {
             shapes_.fit(framelets_, send_, make_view_rays(work_.state.view.camera, setup_.viewport), plane,
-                        batch_.shapes);
+                        work_.plan.now, batch_.shapes);
             shapes_.track(scene.scene, scene.clips, scene.render_scene->bodies(), work_.state.scene_time,
                           batch_.tracks);
             for (BodyTrack const& track : batch_.tracks) {
