@@ -58,16 +58,11 @@ Motion motion_between(BodyTrack const& track, SceneTime from, SceneTime to) {
     if (before == after) {
         return {};
     }
+    Motion const source = placement(before);
+    Motion const target = placement(after);
     Motion out;
-    double const cosine = std::abs(glm::dot(glm::dquat(before.rotation), glm::dquat(after.rotation)));
-    if (cosine < std::cos(0.5 * most_turn_radians)) {
-        out.offset = glm::dvec3(after.translation) - glm::dvec3(before.translation);
-    } else {
-        Motion const source = placement(before);
-        Motion const target = placement(after);
-        out.linear = target.linear * glm::inverse(source.linear);
-        out.offset = target.offset - out.linear * source.offset;
-    }
+    out.linear = target.linear * glm::inverse(source.linear);
+    out.offset = target.offset - out.linear * source.offset;
     return is_finite(out) ? out : Motion{};
 }
 

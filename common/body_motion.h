@@ -14,10 +14,6 @@ namespace framelet {
 /// first key, it rests.
 inline constexpr SceneTime max_pose_extrapolation_seconds = 0.1;
 
-/// What has turned farther shows other sides, or comes out from behind something that held it hidden: such a body is
-/// moved along, and not turned. A wheel that looks the same at any angle would else be turned out of its arch.
-inline constexpr double most_turn_radians = 0.6;
-
 /// Keys that a viewer keeps of a body: half a minute.
 inline constexpr std::size_t kept_track_keys = 30 * body_keys_per_second;
 
@@ -33,9 +29,8 @@ struct Motion {
 /// the origin.
 BodyPose pose_at(BodyTrack const& track, SceneTime time);
 
-/// The motion that takes a point of the body from where it is at `from` to where it is at `to`; of one that has turned
-/// by more than `most_turn_radians` that of its origin. Exactly none where the poses are equal; none where a scale of 0
-/// leaves it undefined.
+/// The motion that takes a point of the body from where it is at `from` to where it is at `to`. Exactly none where
+/// the poses are equal; none where a scale of 0 leaves it undefined.
 Motion motion_between(BodyTrack const& track, SceneTime from, SceneTime to);
 
 /// The tracks of all bodies that a viewer knows.

@@ -221,9 +221,17 @@ void Fitter::collect() {
 
 } // namespace
 
-LayerTolerance layer_tolerance(float median_depth, ViewRays const& rays) {
+LayerTolerance layer_tolerance(float median_depth, ViewRays const& rays, float speed) {
     constexpr float parallax = 20, seconds = 0.1f;
-    return {tolerated_pixels / (parallax * median_depth), tolerated_pixels * glm::length(rays.direction_dx) / seconds};
+    constexpr float preferred_pixels = 0.1f, ahead = 0.2f;
+    float const pixel = glm::length(rays.direction_dx);
+    LayerTolerance tolerance{tolerated_pixels / (parallax * median_depth), tolerated_pixels * pixel / seconds, 0};
+    float const travel = std::min(speed * ahead, median_depth); // farther than that is a jump
+    float const preferred = travel > 0 ? preferred_pixels * pixel / travel : INFINITY;
+    if (preferred < 0.5f * tolerance.inverse_depth) { // else it is not worth the search
+        tolerance.preferred_inverse_depth = preferred;
+    }
+    return tolerance;
 }
 
 float median_depth(std::span<Framelet const> framelets) {
@@ -248,7 +256,14 @@ float median_depth(std::span<Framelet const> framelets) {
 
 void fit_layers(Framelet const& framelet, ImagePlane const& plane, LayerTolerance const& tolerance,
                 FrameletShape& shape) {
-    Fitter(framelet, plane.sample_spacing(framelet.tile), tolerance, shape).fit();
+    float const spacing = plane.sample_spacing(framelet.tile);
+    if (tolerance.preferred_inverse_depth > 0) {
+        Fitter(framelet, spacing, {tolerance.preferred_inverse_depth, tolerance.velocity, 0}, shape).fit();
+        if (shape.loose_samples.size() <= most_loose_samples) {
+            return;
+        }
+    }
+    Fitter(framelet, spacing, tolerance, shape).fit();
 }
 
 } // namespace framelet

@@ -19,11 +19,17 @@ struct LayerTolerance {
     float inverse_depth = 0;
     /// Speed times inverse depth, 1 / seconds, by which what deforms may move otherwise than its layer.
     float velocity = 0;
+    /// As `inverse_depth`: what layers are fitted to where that leaves no more than `most_loose_samples`. 0: to that.
+    float preferred_inverse_depth = 0;
 };
 
+/// Of a framelet. They cost more than layers, on the wire and in the viewer.
+inline constexpr std::size_t most_loose_samples = 16;
+
 /// `tolerated_pixels`, while the camera moves so far that what is at `median_depth` (metres, > 0) moves by 20 pixels,
-/// and what deforms moves on for a tenth of a second.
-LayerTolerance layer_tolerance(float median_depth, ViewRays const& rays);
+/// and what deforms moves on for a tenth of a second. Preferred: a tenth of a pixel, while the camera moves on as fast
+/// as it does for a fifth of a second. `speed`: metres a second.
+LayerTolerance layer_tolerance(float median_depth, ViewRays const& rays, float speed = 0);
 
 /// Median of the finite depths in the framelets, from a part of their samples; 1 where there are none.
 float median_depth(std::span<Framelet const> framelets);

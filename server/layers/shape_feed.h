@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -18,9 +19,10 @@ inline constexpr SceneTime tracked_ahead_seconds = 0.3;
 /// One viewer's.
 class ShapeFeed {
 public:
-    /// Shapes of those framelets for which `send` (same length) is not 0, in order. Runs in parallel.
+    /// Shapes of those framelets for which `send` (same length) is not 0, in order. `now`: seconds, steady. Runs in
+    /// parallel.
     void fit(std::span<Framelet const> rendered, std::span<std::uint8_t const> send, ViewRays const& rays,
-             ImagePlane const& plane, std::vector<FrameletShape>& shapes);
+             ImagePlane const& plane, double now, std::vector<FrameletShape>& shapes);
 
     /// The keys of all bodies until `tracked_ahead_seconds` after `time` that have not been given out yet; from `time`
     /// on where that has jumped.
@@ -28,6 +30,11 @@ public:
                std::vector<BodyTrack>& tracks);
 
 private:
+    void follow(Vec3 eye, double now);
+
+    Vec3 eye_{0};
+    double now_ = -std::numeric_limits<double>::infinity(); ///< when the camera was there
+    float speed_ = 0; ///< of the camera, metres a second
     float median_depth_ = 0; ///< of what was rendered lately, metres; 0: nothing was
     std::int64_t first_key_ = 0;
     std::int64_t end_key_ = 0; ///< behind the last one given out

@@ -6,6 +6,7 @@
 #include <tbb/parallel_for.h>
 
 #include "common/error.h"
+#include "common/reprojection.h"
 
 namespace framelet {
 namespace {
@@ -97,7 +98,8 @@ void AdaptiveRefresh::plan(RefreshInput const& input, RefreshPlan& plan) {
     plan.probed.clear();
     plan.now = input.now;
     plan.viewport = input.state.view.viewport;
-    plan.reprojects = input.reprojects;
+    plan.moment = {make_view_rays(input.state.view.camera, input.state.view.viewport), input.state.scene_time,
+                   is_reprojectable(input.state.view.camera) ? input.motions : nullptr};
     still_ = is_still(input.state);
     plan.is_new_cycle = !goes_on(input);
     if (plan.is_new_cycle) {
@@ -340,10 +342,11 @@ void AdaptiveRefresh::examine(RefreshPlan const& plan, std::span<DisplayFramelet
             return std::ranges::any_of(framelet.body, [](BodyNumber body) { return body != static_body; });
         };
         bool const same = examine_patch(field_, patch, framelets.subspan(tile, count), rendered.subspan(tile, count),
-                                        plan.now, history_, std::span(entries_).subspan(tile, count),
+                                        plan.now, plan.moment, history_, std::span(entries_).subspan(tile, count),
                                         std::span(findings_).subspan(place, place_count(patch)));
         // The same picture may be of a body that has moved, and that the viewer has moved away.
-        same_[i] = same && !(plan.reprojects && std::ranges::any_of(rendered.subspan(tile, count), on_body));
+        same_[i] =
+            same && !(plan.moment.motions != nullptr && std::ranges::any_of(rendered.subspan(tile, count), on_body));
     });
 }
 

@@ -27,7 +27,8 @@ struct RefreshInput {
     float cycle_seconds = least_cycle_seconds; ///< how often the response is worked out anew
     float delivery_seconds = 0; ///< from the end of its rendering until it shows
     float bias = 0;
-    bool reprojects = false; ///< the viewer: what lies on a moving body does not stay where it was rendered
+    /// How bodies move, as the viewer knows it that moves what it holds along with them; null for one that does not.
+    BodyMotions const* motions = nullptr;
     /// Most framelets of one batch; 0: what half a cycle has time for, so that it shows sooner, or all of it while
     /// nothing moves.
     std::size_t batch_framelets = 0;
@@ -39,7 +40,7 @@ struct RefreshInput {
 struct RefreshPlan {
     double now = 0; ///< when
     Viewport viewport;
-    bool reprojects = false; ///< the viewer
+    RenderedMoment moment; ///< whose motions must live until it is learnt
     bool is_new_cycle = false; ///< worked out anew, not what the last one left
     std::vector<Patch> patches;
     std::vector<std::size_t> tile_counts; ///< of each patch

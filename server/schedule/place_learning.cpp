@@ -100,8 +100,8 @@ bool is_change(Observation const& seen) {
 } // namespace
 
 bool examine_patch(PlaceField const& field, Patch const& patch, std::span<DisplayFramelet const> framelets,
-                   std::span<Framelet const> rendered, double now, LumaHistory const& history,
-                   std::span<LumaHistory::Entry> entries, std::span<PlaceFindings> places) {
+                   std::span<Framelet const> rendered, double now, RenderedMoment const& moment,
+                   LumaHistory const& history, std::span<LumaHistory::Entry> entries, std::span<PlaceFindings> places) {
     FRAMELET_CHECK(framelets.size() == rendered.size() && framelets.size() == entries.size() && !framelets.empty());
     FRAMELET_CHECK(framelet_samples % places.size() == 0);
     int const level = field.level_of(patch.depth);
@@ -137,6 +137,8 @@ bool examine_patch(PlaceField const& field, Patch const& patch, std::span<Displa
             accumulate(place.seen, observe(level, luma, difference, seconds, first, count));
             note_probes(place, field.plane(), entry, steps, first, count, wanted);
             place.inverse_depth += mean_inverse_depth(rendered[f], first, count);
+            place.meeting_speed =
+                std::max(place.meeting_speed, meeting_speed(rendered[f], field.plane(), moment, first, count));
             first += count;
         }
     }
@@ -164,6 +166,8 @@ bool learn_patch(PlaceField& field, Patch const& patch, std::span<PlaceFindings 
         place.probe_count = found.probe_count;
         place.inverse_depth = found.inverse_depth;
         learn(place.model, found.seen);
+        // What is uncovered there may look like what was rendered there before. It fills a place in so long.
+        place.model.motion = std::max(place.model.motion, found.meeting_speed / static_cast<float>(field.place_side()));
         if (found.seen.has_change) {
             place.settled = !is_change(found.seen);
         }

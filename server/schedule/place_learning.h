@@ -6,6 +6,7 @@
 #include <span>
 
 #include "server/response/luma_history.h"
+#include "server/schedule/meeting_bodies.h"
 #include "server/schedule/place_field.h"
 
 namespace framelet {
@@ -16,13 +17,14 @@ struct PlaceFindings {
     std::array<Probe, probes_per_place> probes{};
     std::size_t probe_count = 0;
     float inverse_depth = 0; ///< mean, 1/metres
+    float meeting_speed = 0; ///< of bodies, pixels a second
 };
 
 /// Of one patch. `framelets`: of its tiles, all the visible ones; `rendered`: the same with depth. Fills `entries` (a
 /// framelet each) and `places` (a place of the patch each). Returns whether all of it is what `history` remembers.
 bool examine_patch(PlaceField const& field, Patch const& patch, std::span<DisplayFramelet const> framelets,
-                   std::span<Framelet const> rendered, double now, LumaHistory const& history,
-                   std::span<LumaHistory::Entry> entries, std::span<PlaceFindings> places);
+                   std::span<Framelet const> rendered, double now, RenderedMoment const& moment,
+                   LumaHistory const& history, std::span<LumaHistory::Entry> entries, std::span<PlaceFindings> places);
 
 /// Takes the findings of a patch that was rendered at `now` into account. `same`: what `examine_patch` returned.
 /// Returns whether the viewer needs the patch: false where it holds the very same.

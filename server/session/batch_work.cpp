@@ -67,8 +67,11 @@ void BatchWork::describe_shapes(SharedScene const& shared) {
     Viewport const viewport = order.state.view.viewport;
     ShapeFeed& shapes = order.viewer->shapes;
     shapes.fit(rendered_, needed_, make_view_rays(order.state.view.camera, viewport), ImagePlane(viewport),
-               batch_.shapes);
+               order.plan.now, batch_.shapes);
     shapes.track(shared.scene, shared.clips, shared.render_scene.bodies(), order.state.scene_time, batch_.tracks);
+    for (BodyTrack const& track : batch_.tracks) {
+        order.viewer->motions.extend(track);
+    }
 }
 
 void BatchWork::send(BatchCodec& codec) {

@@ -23,6 +23,7 @@ namespace framelet {
 struct ViewerState {
     AdaptiveRefresh refresh;
     ShapeFeed shapes;
+    BodyMotions motions; ///< as the viewer knows them
     QualityChoice choice;
     LossyPlaces lossy;
 };

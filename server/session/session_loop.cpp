@@ -160,7 +160,7 @@ void SessionLoop::plan(Session& session, ViewerState& viewer, SessionInput const
     wanted.bias = std::clamp(static_cast<float>(options_.bias) + input.settings.bias, -1.0f, 1.0f);
     wanted.batch_framelets = options_.batch_framelets;
     wanted.link_framelets = bounded_batch(link);
-    wanted.reprojects = input.takes_shapes();
+    wanted.motions = input.takes_shapes() ? &viewer.motions : nullptr;
     order.session = session.shared_from_this();
     order.viewer = &viewer;
     order.input = input;

@@ -67,16 +67,6 @@ TEST(BodyMotion, MovesPointsOfTheBody) {
     }
 }
 
-TEST(BodyMotion, WhatHasTurnedFarIsMovedAlongAndNotTurned) {
-    BodyTrack const track = wheel(3, 0, 120);
-    double const limit = most_turn_radians / 3;
-    EXPECT_NE(motion_between(track, 0.4, 0.4 + 0.95 * limit).linear, glm::dmat3(1));
-    Motion const motion = motion_between(track, 0.4, 0.4 + 1.05 * limit);
-    EXPECT_EQ(motion.linear, glm::dmat3(1));
-    EXPECT_NEAR(motion.offset.x, 2 * 1.05 * limit, 1e-5);
-    EXPECT_EQ(motion.offset.y, 0);
-}
-
 TEST(BodyMotion, RestIsExactlyNoMotion) {
     BodyTrack track{3, 0, {4, {Vec3(1.1f, 2.2f, 3.3f), glm::angleAxis(0.3f, Vec3(0.6f, 0.8f, 0)), Vec3(1.7f)}}};
     EXPECT_EQ(motion_between(track, 0.01, 0.04), Motion{});

@@ -149,7 +149,7 @@ void calibrate_reprojection(BenchScene const& scene, ImagePlane const& plane, in
     std::vector<std::uint8_t> const all(rendered.size(), 1);
     ViewRays const rays = make_view_rays(scene.camera, viewport);
     costs.shape_sample = cost(rounds, static_cast<double>(rendered.size() * framelet_samples),
-                              [&] { feed.fit(rendered, all, rays, plane, batch.shapes); });
+                              [&] { feed.fit(rendered, all, rays, plane, 0, batch.shapes); });
     FrameletCache cache(plane);
     cache.insert(batch);
     Picture picture(viewport.width, viewport.height);

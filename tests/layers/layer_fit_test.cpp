@@ -218,6 +218,25 @@ TEST(LayerFit, MedianDepthAndTolerance) {
     float const focal = 1 / glm::length(rays.direction_dx), move = 20 * 5 / focal;
     EXPECT_NEAR(t.inverse_depth * move * focal, 0.25f, 1e-6f);
     EXPECT_NEAR(t.velocity * 0.1f * focal, 0.25f, 1e-5f);
+    EXPECT_EQ(t.preferred_inverse_depth, 0);
+    EXPECT_EQ(layer_tolerance(5, rays, 0.01f).preferred_inverse_depth, 0) << "slow";
+    EXPECT_NEAR(layer_tolerance(5, rays, 8).preferred_inverse_depth * 8 * 0.2f * focal, 0.1f, 1e-6f);
+    EXPECT_NEAR(layer_tolerance(5, rays, 1e9f).preferred_inverse_depth * 5 * focal, 0.1f, 1e-6f) << "a jump";
+}
+
+TEST(LayerFit, FitsCloserWhereThatLeavesFewSamplesLoose) {
+    auto const roof = [](float x, float) { return 1 / (0.2f + 0.001f * std::abs(x - 8)); };
+    LayerTolerance wanted{0.01f, 1, 0};
+    FrameletShape const rough = fit(make_framelet(roof), wanted);
+    EXPECT_EQ(rough.layer_count, 1);
+    wanted.preferred_inverse_depth = 1e-5f;
+    FrameletShape const close = fit(make_framelet(roof), wanted);
+    EXPECT_EQ(close.layer_count, 2);
+    EXPECT_TRUE(close.loose_samples.empty());
+    EXPECT_LT(close.layers[0].error, 2e-5f);
+    auto const rubble = [](float x, float y) { return 1 / (0.2f + 0.005f * std::sin(x * x * 31 + y * 17)); };
+    EXPECT_EQ(fit(make_framelet(rubble), wanted).layer_count, 1);
+    EXPECT_TRUE(fit(make_framelet(rubble), wanted).loose_samples.empty());
 }
 
 /// Patches of planes at depths of all sizes, bodies, velocities, sky and noise.

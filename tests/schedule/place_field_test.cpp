@@ -31,11 +31,12 @@ public:
             }
             display[t].green = display[t].blue = display[t].red;
             rendered[t].depth.fill(4);
+            rendered[t].body = bodies;
         }
         std::vector<LumaHistory::Entry> entries(tiles.size());
         PlaceField::Range const range = field.range_of(patch.node);
         std::vector<PlaceFindings> places(range.last - range.first);
-        bool const same = examine_patch(field, patch, display, rendered, now, history, entries, places);
+        bool const same = examine_patch(field, patch, display, rendered, now, moment, history, entries, places);
         for (LumaHistory::Entry const& entry : entries) {
             history.store(entry);
         }
@@ -47,6 +48,8 @@ public:
 
     PlaceField field;
     LumaHistory history;
+    RenderedMoment moment; ///< the viewer moves nothing
+    std::vector<BodyNumber> bodies; ///< of the samples; empty: none
 };
 
 float still(float x, float y) {
@@ -62,6 +65,24 @@ TEST(PlaceField, PlacesCoverTheViewport) {
         }
         EXPECT_EQ(pixels, double(viewport.width) * viewport.height);
     }
+}
+
+TEST(PlaceField, WhereBodiesPassEachOtherThingsMoveThoughTheyLookTheSame) {
+    BodyMotions motions;
+    motions.extend({7, 0, {{Vec3(0)}, {Vec3(0.1f, 0, 0)}}});
+    Learner learner({64, 64});
+    learner.bodies.assign(framelet_samples, 7);
+    learner.bodies.resize(framelet_samples / 2);
+    learner.bodies.resize(framelet_samples, static_body);
+    for (bool const moves : {false, true}) {
+        learner.moment = {make_view_rays(Camera{}, {64, 64}), 0, moves ? &motions : nullptr};
+        learner.learn(learner.patch(3), 1, still);
+        learner.learn(learner.patch(3), 2, still);
+        EXPECT_EQ(learner.field[0].model.motion > 0, moves);
+    }
+    learner.bodies.assign(framelet_samples, 7);
+    learner.learn(learner.patch(3), 3, still);
+    EXPECT_EQ(learner.field[0].model.motion, 0) << "it moves as one";
 }
 
 TEST(PlaceField, TheSameIsSentOnce) {

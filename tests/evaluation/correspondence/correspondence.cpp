@@ -119,12 +119,12 @@ bool shows(Surfaces const& surfaces, ExactMotion::Place const& place, BodyNumber
     return place.inverse_depth >= least - margin && place.inverse_depth <= most + margin;
 }
 
-/// What a viewer holds of a picture whose colours are the pixels' places.
-void hold_places(Surfaces const& surfaces, BenchScene const& scene, Camera const& camera, int shift,
+/// What a viewer holds of a picture whose colours are the pixels' places. `speed`: of the camera, metres a second.
+void hold_places(Surfaces const& surfaces, BenchScene const& scene, Camera const& camera, float speed, int shift,
                  FrameletCache& cache, std::vector<BodyTrack> const& tracks, BodyMotions& motions) {
     ImagePlane const plane(surfaces.viewport);
     LayerTolerance const tolerance =
-        layer_tolerance(median_depth(surfaces.framelets), make_view_rays(camera, surfaces.viewport));
+        layer_tolerance(median_depth(surfaces.framelets), make_view_rays(camera, surfaces.viewport), speed);
     Batch batch;
     batch.number = 1;
     batch.view = {1, camera, surfaces.viewport};
@@ -235,6 +235,11 @@ Camera flown(Camera camera, float median_depth, double seconds) {
     return camera;
 }
 
+/// Where the camera is so many seconds after `time`, when it was `camera`.
+Camera camera_after(BenchScene const& scene, Camera const& camera, float median_depth, SceneTime time, double seconds) {
+    return scene.scene_camera != none ? camera_at(scene, time + seconds) : flown(camera, median_depth, seconds);
+}
+
 void measure_from(BenchScene& scene, CorrespondenceStudy const& study, SceneTime time, std::vector<Found>& found) {
     ImagePlane const plane(study.viewport);
     pose_at(scene, time);
@@ -246,16 +251,20 @@ void measure_from(BenchScene& scene, CorrespondenceStudy const& study, SceneTime
     double const farthest = *std::ranges::max_element(study.ahead);
     auto const keys = static_cast<std::size_t>(std::ceil(farthest * body_keys_per_second)) + 2;
     std::vector<BodyTrack> const tracks = body_tracks(scene.scene, scene.clips, bodies, first_key, keys);
+    constexpr double instant = 1.0 / 60;
+    float const speed =
+        glm::distance(camera_after(scene, camera, median_depth(before.framelets), time, instant).position,
+                      camera.position) /
+        static_cast<float>(instant);
     FrameletCache caches[2]{FrameletCache(plane), FrameletCache(plane)};
     BodyMotions motions;
     for (int shift = 0; shift < 2; ++shift) {
-        hold_places(before, scene, camera, shift, caches[shift], tracks, motions);
+        hold_places(before, scene, camera, speed, shift, caches[shift], tracks, motions);
     }
     for (std::size_t i = 0; i < study.ahead.size(); ++i) {
         SceneTime const later = time + study.ahead[i];
+        Camera const moved = camera_after(scene, camera, median_depth(before.framelets), time, study.ahead[i]);
         pose_at(scene, later);
-        Camera const moved =
-            scene.scene_camera != none ? scene.camera : flown(camera, median_depth(before.framelets), study.ahead[i]);
         Surfaces const after = render_surfaces(scene, moved, study.viewport);
         WarpPlan plans[2];
         for (int shift = 0; shift < 2; ++shift) {

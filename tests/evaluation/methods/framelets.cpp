@@ -58,7 +58,7 @@ public:
         refresh.batch_framelets = setup_.batch_framelets;
         refresh.link_framelets = setup_.parts.link_budget ? bounded_batch(link) : max_batch_framelets;
         refresh.bias = static_cast<float>(setup_.bias);
-        refresh.reprojects = reprojects_;
+        refresh.motions = reprojects_ ? &told_ : nullptr;
         refresh.limits = limits_;
         refresh_.plan(refresh, plan_);
         finish(input.scene, step);
@@ -225,9 +225,12 @@ private:
         step.seconds.encode += 1e-9 * sent * coding;
         if (reprojects_) {
             shapes_.fit(framelets_, send_, make_view_rays(work_.state.view.camera, setup_.viewport), plane,
-                        batch_.shapes);
+                        work_.plan.now, batch_.shapes);
             shapes_.track(scene.scene, scene.clips, scene.render_scene->bodies(), work_.state.scene_time,
                           batch_.tracks);
+            for (BodyTrack const& track : batch_.tracks) {
+                told_.extend(track);
+            }
             step.seconds.encode += 1e-9 * sent * setup_.costs.shape_sample;
         }
         batch_.number = ++number_;
@@ -287,7 +290,7 @@ private:
     BatchCodec codec_;
 
     FrameletCache cache_;
-    BodyMotions motions_;
+    BodyMotions told_, motions_; ///< what the server has said, and what the viewer knows
     Reprojector reprojector_;
     std::vector<PixelRect> changed_, repainted_;
     Picture picture_;
