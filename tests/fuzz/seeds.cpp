@@ -60,6 +60,19 @@ void append(std::vector<std::uint8_t>& out, ByteView bytes) {
     }
 }
 
+/// A message alone, and as the only one of a connection.
+void write_message(std::filesystem::path const& folder, Message const& message, std::string const& name) {
+    std::vector<std::uint8_t> body;
+    append(body, encode_message(message));
+    write(folder / "message" / name, body);
+    std::vector<std::uint8_t> stream{1};
+    for (int shift = 0; shift < 32; shift += 8) {
+        stream.push_back(static_cast<std::uint8_t>(body.size() >> shift));
+    }
+    stream.insert(stream.end(), body.begin(), body.end());
+    write(folder / "stream" / name, stream);
+}
+
 void write_batch(std::filesystem::path const& folder, Batch const& batch, std::string const& name) {
     EncodedBatch const encoded = BatchCodec().encode(batch);
     std::vector<std::uint8_t> payload{static_cast<std::uint8_t>(encoded.tiles.size()),
@@ -67,9 +80,7 @@ void write_batch(std::filesystem::path const& folder, Batch const& batch, std::s
                                       static_cast<std::uint8_t>(static_cast<int>(encoded.encoding) - 1)};
     append(payload, encoded.payload);
     write(folder / "batch" / name, payload);
-    std::vector<std::uint8_t> body;
-    append(body, encode_message(encoded));
-    write(folder / "message" / ("batch_" + name), body);
+    write_message(folder, encoded, "batch_" + name);
 }
 
 } // namespace
@@ -110,9 +121,7 @@ int main(int argc, char** argv) {
          {Message(Hello{protocol_version, "secret"}), Message(CameraUpdate{}), Message(ViewerSettings{1, 0}),
           Message(ClockRequest{}), Message(Ack{3, 4, 5}), Message(Welcome{1, "s", "n", {}, {}, {camera}, 2, {}}),
           Message(Status{}), Message(Failure{"text"})}) {
-        std::vector<std::uint8_t> body;
-        append(body, encode_message(message));
-        write(folder / "message" / std::to_string(number++), body);
+        write_message(folder, message, std::to_string(number++));
     }
     return 0;
 }
