@@ -47,7 +47,7 @@ struct SessionLoop::Encoding {
     Batch batch;
     std::shared_ptr<Session> session;
 
-    void run() { session->send_batch(codec.encode(batch)); }
+    void run() { session->send_batch(codec.encode(batch, session->held_picture())); }
 };
 
 SessionLoop::SessionLoop(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene,

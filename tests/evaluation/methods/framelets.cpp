@@ -77,7 +77,7 @@ public:
     bool has_room(double now) const override { return link_.has_room(now); }
 
     ViewerStep consume(std::vector<std::byte> const& message) override {
-        Batch const batch = codec_.decode(std::get<EncodedBatch>(decode_message(message)));
+        Batch const batch = codec_.decode(std::get<EncodedBatch>(decode_message(message)), &received_);
         cache_.insert(batch);
         for (BodyTrack const& track : batch.tracks) {
             motions_.extend(track);
@@ -179,7 +179,7 @@ private:
         batch_.number = ++number_;
         batch_.view = input.view;
         batch_.scene_time = time;
-        step.message = encode_message(codec_.encode(batch_));
+        step.message = encode_message(codec_.encode(batch_, &sent_));
     }
 
     /// Before anything has been measured.
@@ -226,6 +226,7 @@ private:
     std::uint64_t answered_ = 0; ///< batches
     std::uint64_t number_ = 0;
     BatchCodec codec_;
+    HeldPicture sent_, received_; ///< on the server's side, on the viewer's
 
     FrameletCache cache_;
     BodyMotions motions_;
