@@ -55,6 +55,7 @@ struct ClientCore::Impl {
     std::function<void()> on_news;
     Clock::time_point const start = Clock::now();
     BatchCodec codec; // the connection's thread only
+    HeldPicture held; // the same
 
     mutable std::mutex mutex; // guards all that follows, but the connection
     std::condition_variable news_arrived;
@@ -157,7 +158,7 @@ struct ClientCore::Impl {
                 return;
             }
         }
-        Batch const batch = codec.decode(encoded);
+        Batch const batch = codec.decode(encoded, &held);
         Clock::time_point const decoded = Clock::now();
         Ack ack{batch.number, 0, 0};
         ack.received_us = static_cast<std::uint64_t>(

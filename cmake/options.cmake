@@ -7,6 +7,9 @@ target_compile_options(framelet_options INTERFACE
   -Woverloaded-virtual -Werror
   # No code relies on the value of errno, on trapping or on the sign of zero; NaN and infinity keep their meaning.
   -fno-math-errno -fno-trapping-math)
+if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+  target_compile_options(framelet_options INTERFACE -Wno-unknown-pragmas) # GCC's own, such as ivdep
+endif()
 if(FRAMELET_NATIVE)
   target_compile_options(framelet_options INTERFACE -march=native)
 endif()

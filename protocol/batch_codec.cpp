@@ -20,11 +20,12 @@ struct Worker {
     PlaneCodec planes;
     ShapeCodec shapes;
 
-    /// Returns the length of the frame written to `out`. `quality` may be empty: without loss, in encoding 1.
+    /// Returns the length of the frame written to `out`. `quality` may be empty: without loss, in encoding 1. `held`
+    /// and `decoded` as of PlaneCodec.
     std::size_t encode(std::span<DisplayFramelet const> group, std::span<std::uint8_t const> quality,
-                       std::span<std::byte> out) {
+                       HeldPicture const* held, std::span<DisplayFramelet> decoded, std::span<std::byte> out) {
         if (!quality.empty()) {
-            return frames.compress(planes.encode(group, quality), out);
+            return frames.compress(planes.encode(group, quality, held, decoded), out);
         }
         content.resize(group.size() * exact_framelet_bytes);
         std::uint8_t* to = content.data();
@@ -38,10 +39,11 @@ struct Worker {
     }
 
     /// `quality` may be empty, as above. The frame has been checked.
-    void decode(ByteView frame, std::span<DisplayFramelet> group, std::span<std::uint8_t> quality) {
+    void decode(ByteView frame, std::span<DisplayFramelet> group, std::span<std::uint8_t> quality,
+                HeldPicture const* held) {
         auto const bytes = frames.decompress(frame);
         if (!quality.empty()) {
-            planes.decode(bytes, group, quality);
+            planes.decode(bytes, group, quality, held);
             return;
         }
         std::uint8_t const* from = bytes.data();
@@ -82,6 +84,7 @@ std::span<Value> part_of(std::span<Value> all, std::size_t first, std::size_t si
 struct BatchCodec::Scratch {
     tbb::enumerable_thread_specific<Worker> workers;
     std::vector<std::byte> frames; ///< of all groups, each in a slot of the largest size it may need
+    std::vector<DisplayFramelet> decoded; ///< of a batch that is encoded
 };
 
 BatchCodec::BatchCodec() : scratch_(std::make_unique<Scratch>()) {}
@@ -89,14 +92,26 @@ BatchCodec::~BatchCodec() = default;
 BatchCodec::BatchCodec(BatchCodec&&) noexcept = default;
 BatchCodec& BatchCodec::operator=(BatchCodec&&) noexcept = default;
 
-EncodedBatch BatchCodec::encode(Batch const& batch) {
+EncodedBatch BatchCodec::encode(Batch const& batch, HeldPicture* held) {
     std::size_t const count = batch.framelets.size();
     FRAMELET_CHECK(count <= max_batch_framelets);
     FRAMELET_CHECK(batch.quality.empty() || batch.quality.size() == count);
     FRAMELET_CHECK(batch.shapes.empty() || batch.shapes.size() == count);
+    std::span<std::uint8_t const> const quality = batch.quality;
+    Viewport const viewport = batch.view.viewport;
+    bool const is_predicted = held != nullptr && !quality.empty() && HeldPicture::holds(viewport);
+    std::span<DisplayFramelet> decoded;
+    if (is_predicted) {
+        held->show(viewport);
+        scratch_->decoded.resize(std::max(scratch_->decoded.size(), count));
+        decoded = std::span(scratch_->decoded).first(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            decoded[i].tile = batch.framelets[i].tile;
+        }
+    }
     std::size_t const groups = group_count(count);
-    std::size_t const slot = most_frame_bytes(batch.quality.empty() ? group_framelets * exact_framelet_bytes
-                                                                    : most_plane_bytes(group_framelets));
+    std::size_t const slot = most_frame_bytes(quality.empty() ? group_framelets * exact_framelet_bytes
+                                                              : most_predicted_bytes(group_framelets));
     if (scratch_->frames.size() < groups * slot) {
         scratch_->frames.resize(groups * slot);
     }
@@ -104,11 +119,17 @@ EncodedBatch BatchCodec::encode(Batch const& batch) {
     for_each_group(count, [&](std::size_t group, std::size_t first, std::size_t size) {
         std::span const out = std::span(scratch_->frames).subspan(group * slot, slot);
         frames[group] = out.first(scratch_->workers.local().encode(
-            std::span(batch.framelets).subspan(first, size), part_of(std::span(batch.quality), first, size), out));
+            std::span(batch.framelets).subspan(first, size), part_of(quality, first, size),
+            is_predicted ? held : nullptr, part_of(decoded, first, size), out));
     });
+    if (held != nullptr && held->shows(viewport)) {
+        held->take(is_predicted ? std::span<DisplayFramelet const>(decoded) : batch.framelets);
+    }
 
     EncodedBatch encoded{batch.number, batch.view, batch.scene_time, {}, join_frames(frames)};
-    encoded.encoding = batch.quality.empty() ? SampleEncoding::exact : SampleEncoding::haar;
+    encoded.encoding = is_predicted      ? SampleEncoding::predicted
+                       : quality.empty() ? SampleEncoding::exact
+                                         : SampleEncoding::haar;
     encoded.tiles.reserve(count);
     for (DisplayFramelet const& framelet : batch.framelets) {
         encoded.tiles.push_back(framelet.tile);
@@ -130,29 +151,47 @@ Bytes BatchCodec::encode_shapes(Batch const& batch) {
     return join_frames(std::vector<ByteView>(contents.begin(), contents.end()));
 }
 
-Batch BatchCodec::decode(EncodedBatch const& encoded) {
+Batch BatchCodec::decode(EncodedBatch const& encoded, HeldPicture* held) {
     std::size_t const count = encoded.tiles.size();
     if (count > max_batch_framelets) {
         throw ProtocolError("a batch has more than 32768 framelets");
     }
-    std::vector<ByteView> const frames = split_frames(encoded.payload, group_count(count));
     bool const is_exact = encoded.encoding == SampleEncoding::exact;
+    bool const is_predicted = encoded.encoding == SampleEncoding::predicted;
+    Viewport const viewport = encoded.view.viewport;
+    if (is_predicted && (held == nullptr || !HeldPicture::holds(viewport))) {
+        throw ProtocolError("a batch is predicted from what this viewer does not hold");
+    }
+    bool const is_held = is_predicted || (held != nullptr && held->shows(viewport));
+    ImagePlane const plane(viewport);
+    if (is_held && !std::ranges::all_of(encoded.tiles, [&](Tile tile) { return plane.accepts(tile); })) {
+        throw ProtocolError("a batch has a tile that its viewport does not have");
+    }
+    std::vector<ByteView> const frames = split_frames(encoded.payload, group_count(count));
     for (std::size_t group = 0; group < frames.size(); ++group) {
         std::size_t const first = group * group_framelets;
         std::size_t const size = std::min(group_framelets, count - first);
         std::size_t const exact = size * exact_framelet_bytes;
-        check_frame(frames[group], is_exact ? exact : 0, is_exact ? exact : most_plane_bytes(size));
+        std::size_t const lossy = is_predicted ? most_predicted_bytes(size) : most_plane_bytes(size);
+        check_frame(frames[group], is_exact ? exact : 0, is_exact ? exact : lossy);
     }
     // Memory is asked for only now: the frames have said that they fill it, or how much less they hold.
     Batch batch{encoded.number, encoded.view, encoded.scene_time, std::vector<DisplayFramelet>(count)};
     batch.quality.resize(is_exact ? 0 : count);
+    if (is_predicted) {
+        held->show(viewport);
+    }
     for_each_group(count, [&](std::size_t group, std::size_t first, std::size_t size) {
         std::span const framelets = std::span(batch.framelets).subspan(first, size);
         for (std::size_t i = 0; i < size; ++i) {
             framelets[i].tile = encoded.tiles[first + i];
         }
-        scratch_->workers.local().decode(frames[group], framelets, part_of(std::span(batch.quality), first, size));
+        scratch_->workers.local().decode(frames[group], framelets, part_of(std::span(batch.quality), first, size),
+                                         is_predicted ? held : nullptr);
     });
+    if (is_held) {
+        held->take(batch.framelets);
+    }
     if (!encoded.shapes.empty()) {
         batch.shapes = decode_shapes(encoded);
     }

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "common/framelet.h"
+#include "protocol/held_picture.h"
 #include "protocol/message.h"
 
 namespace framelet {
@@ -17,10 +18,13 @@ public:
     BatchCodec& operator=(BatchCodec&&) noexcept;
 
     /// Without loss where the batch has no qualities; else each framelet with its own, and `decode` gives what the
-    /// viewer will see. Shapes always lose a little (`shape_quantisation.h`).
-    EncodedBatch encode(Batch const& batch);
-    /// Throws ProtocolError where payload and shapes are not exactly what the tiles ask for.
-    Batch decode(EncodedBatch const& encoded);
+    /// viewer will see. Shapes always lose a little (`shape_quantisation.h`). `held`: what the viewer holds after all
+    /// batches before this one, from which it is predicted; it then holds this one as well. Null: the batch is coded
+    /// alone.
+    EncodedBatch encode(Batch const& batch, HeldPicture* held = nullptr);
+    /// `held`: as it was for the encoder; null: a batch that is predicted is refused. Throws ProtocolError where
+    /// payload and shapes are not exactly what the tiles ask for.
+    Batch decode(EncodedBatch const& encoded, HeldPicture* held = nullptr);
 
 private:
     struct Scratch;

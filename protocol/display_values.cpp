@@ -29,6 +29,26 @@ DisplayValues display_values(DisplayFramelet const& framelet) {
     return values;
 }
 
+DisplayValues operator-(DisplayValues const& a, DisplayValues const& b) {
+    DisplayValues out;
+    for (std::size_t plane = 0; plane < out.planes.size(); ++plane) {
+        for (std::size_t i = 0; i < framelet_samples; ++i) {
+            out.planes[plane][i] = wrapped(a.planes[plane][i] - b.planes[plane][i]);
+        }
+    }
+    return out;
+}
+
+DisplayValues operator+(DisplayValues const& a, DisplayValues const& b) {
+    DisplayValues out;
+    for (std::size_t plane = 0; plane < out.planes.size(); ++plane) {
+        for (std::size_t i = 0; i < framelet_samples; ++i) {
+            out.planes[plane][i] = wrapped(a.planes[plane][i] + b.planes[plane][i]);
+        }
+    }
+    return out;
+}
+
 void to_samples(DisplayValues const& values, DisplayFramelet& framelet) {
     for (std::size_t i = 0; i < framelet_samples; ++i) {
         int const y = values.planes[0][i], co = values.planes[1][i], cg = values.planes[2][i];

@@ -16,6 +16,8 @@ struct DisplayValues {
 };
 
 DisplayValues display_values(DisplayFramelet const& framelet);
+DisplayValues operator-(DisplayValues const& a, DisplayValues const& b);
+DisplayValues operator+(DisplayValues const& a, DisplayValues const& b);
 /// Rounds and clamps; the tile stays.
 void to_samples(DisplayValues const& values, DisplayFramelet& framelet);
 

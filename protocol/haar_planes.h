@@ -1,7 +1,9 @@
 // Samples of framelets with loss: quantised Haar details of luma and chroma as tokens, the finest octave apart from the
-// rest. In: framelets, their quality. Out: parts of bytes, and back. PROTOCOL.md has the layout.
+// rest. In: luma and chroma of framelets, or what is left of them beside a prediction; their quality. Out: parts of
+// bytes, and back. PROTOCOL.md has the layout.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -17,6 +19,21 @@ inline constexpr std::size_t mean_bytes = 6;
 inline constexpr std::size_t coarse_details = 3 * 3 * (1 + 4 + 16);
 inline constexpr std::size_t fine_details = 3 * 3 * 64;
 
+/// Quantised details of a framelet's three planes, its octaves from the coarsest, each [0, h, v, d] a place; and the
+/// planes' means.
+struct HaarLevels {
+    static constexpr std::size_t four_values = 4 * (64 + 16 + 4 + 1);
+    std::array<std::array<std::int16_t, four_values>, 3> details;
+    std::array<std::int16_t, 3> means;
+};
+
+/// `quality` is 1..coarsest_quality.
+HaarLevels quantise(DisplayValues const& values, std::uint8_t quality);
+/// What a reader makes of the levels.
+DisplayValues dequantise(HaarLevels const& levels, std::uint8_t quality);
+/// Bits that levels will take, roughly: what two ways of coding a framelet are compared by.
+int expected_bits(HaarLevels const& levels);
+
 /// Writes `count` framelets, one after the other, into memory that is reused.
 class HaarWriter {
 public:
@@ -26,8 +43,7 @@ public:
 
     HaarWriter(Memory& memory, std::size_t count);
 
-    /// `quality` is 1..coarsest_quality.
-    void write(DisplayFramelet const& framelet, std::uint8_t quality);
+    void write(HaarLevels const& levels);
 
     std::span<std::uint8_t const> means() const { return {memory_.means.data(), mean_bytes * count_}; }
     std::span<std::uint8_t const> coarse() const { return coarse_.tokens(); }
@@ -51,8 +67,8 @@ public:
                std::span<std::uint8_t const> coarse, std::span<std::uint8_t const> fine)
         : means_(means), coarse_(coarse), fine_(fine), escapes_{escapes.data(), escapes.data() + escapes.size()} {}
 
-    /// The next framelet; its tile stays. ProtocolError where escapes are missing.
-    void read(DisplayFramelet& framelet, std::uint8_t quality);
+    /// The next framelet. ProtocolError where escapes are missing.
+    DisplayValues read(std::uint8_t quality);
 
     /// True when nothing is left over.
     bool is_at_end() const { return coarse_.is_at_end() && fine_.is_at_end() && escapes_.left() == 0; }

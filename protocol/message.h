@@ -27,7 +27,8 @@ namespace coding {
 inline constexpr std::uint32_t exact_colour = 1; ///< every viewer can
 inline constexpr std::uint32_t haar_colour = 2; ///< framelets with a quality
 inline constexpr std::uint32_t shapes_and_tracks = 4;
-inline constexpr std::uint32_t all = exact_colour | haar_colour | shapes_and_tracks; ///< that this version knows
+inline constexpr std::uint32_t predicted_colour = 8; ///< framelets predicted from those of earlier batches
+inline constexpr std::uint32_t all = exact_colour | haar_colour | shapes_and_tracks | predicted_colour; ///< known here
 } // namespace coding
 
 /// First message of a connection.
@@ -96,6 +97,7 @@ struct Welcome {
 enum class SampleEncoding : std::uint8_t {
     exact = 1, ///< all without loss
     haar = 2, ///< each with a quality of its own
+    predicted = 4, ///< the same, beside what the viewer holds
 };
 
 /// Most bodies of which one batch tells how they move, and most keys of one of them.

@@ -122,7 +122,8 @@ EncodedBatch read(wire::Batch const& wire) {
         (shapes != nullptr && shapes->content() != wire::Content::shape)) {
         throw ProtocolError("a batch's section holds something unknown");
     }
-    if (section.encoding() != wire::Encoding::planes_left_zstd && section.encoding() != wire::Encoding::haar_zstd) {
+    if (section.encoding() != wire::Encoding::planes_left_zstd && section.encoding() != wire::Encoding::haar_zstd &&
+        section.encoding() != wire::Encoding::predicted_haar_zstd) {
         throw ProtocolError("a batch's samples are in an unknown encoding");
     }
     if (shapes != nullptr && shapes->encoding() != wire::Encoding::layers_zstd) {

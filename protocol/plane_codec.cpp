@@ -1,6 +1,7 @@
 #include "protocol/plane_codec.h"
 
 #include <algorithm>
+#include <array>
 
 #include "common/error.h"
 
@@ -24,15 +25,51 @@ std::size_t take_length(ByteCursor& bytes) {
     return length;
 }
 
+std::size_t count_exact(std::span<std::uint8_t const> quality) {
+    return static_cast<std::size_t>(std::count(quality.begin(), quality.end(), exact_quality));
+}
+
+/// How each framelet of a group is predicted, as it was sent.
+class PredictionReader {
+public:
+    PredictionReader(ByteCursor& bytes, std::size_t framelets) : kinds_(bytes.take(framelets)) {
+        std::size_t moved = 0;
+        for (std::uint8_t const kind : kinds_) {
+            if (kind > static_cast<std::uint8_t>(PredictionKind::moved)) {
+                throw ProtocolError("a batch has a framelet of an unknown prediction");
+            }
+            moved += kind == static_cast<std::uint8_t>(PredictionKind::moved) ? 1 : 0;
+        }
+        vectors_ = bytes.take(2 * moved);
+    }
+
+    /// Of the next framelet.
+    void next(HeldPicture const& held, Tile tile, Prediction& prediction) {
+        prediction.kind = static_cast<PredictionKind>(kinds_[read_++]);
+        prediction.vector = {};
+        if (prediction.kind == PredictionKind::moved) {
+            prediction.vector = {static_cast<std::int8_t>(vectors_[0]), static_cast<std::int8_t>(vectors_[1])};
+            vectors_ = vectors_.subspan(2);
+        }
+        if (prediction.kind != PredictionKind::none) {
+            held.predict(tile, prediction.vector, prediction.samples);
+        }
+    }
+
+private:
+    std::span<std::uint8_t const> kinds_, vectors_;
+    std::size_t read_ = 0;
+};
+
 } // namespace
 
-PlaneParts PlaneCodec::encode(std::span<DisplayFramelet const> framelets, std::span<std::uint8_t const> quality) {
-    FRAMELET_CHECK(framelets.size() == quality.size());
-    auto const exact = static_cast<std::size_t>(std::count(quality.begin(), quality.end(), exact_quality));
-    HaarWriter haar(haar_, framelets.size() - exact);
-    head_.resize(quality.size() + exact * exact_framelet_bytes + haar.means().size() + 3 * length_bytes +
-                 most_escape_bytes(coarse_details + fine_details) * (framelets.size() - exact));
+PlaneParts PlaneCodec::join(std::span<DisplayFramelet const> framelets, std::span<std::uint8_t const> quality,
+                            HaarWriter const& haar) {
+    head_.resize(quality.size() + kinds_.size() + vectors_.size() + count_exact(quality) * exact_framelet_bytes +
+                 haar.means().size() + 3 * length_bytes + haar.escapes().size());
     std::uint8_t* out = std::copy(quality.begin(), quality.end(), head_.data());
+    out = std::copy(kinds_.begin(), kinds_.end(), out);
+    out = std::copy(vectors_.begin(), vectors_.end(), out);
     for_each_plane([&](auto const plane) {
         for (std::size_t i = 0; i < framelets.size(); ++i) {
             if (quality[i] == exact_quality) {
@@ -41,23 +78,56 @@ PlaneParts PlaneCodec::encode(std::span<DisplayFramelet const> framelets, std::s
             }
         }
     });
-    for (std::size_t i = 0; i < framelets.size(); ++i) {
-        FRAMELET_CHECK(quality[i] <= coarsest_quality);
-        if (quality[i] != exact_quality) {
-            haar.write(framelets[i], quality[i]);
-        }
-    }
     out = std::copy(haar.means().begin(), haar.means().end(), out);
     for (auto const part : {haar.escapes(), haar.coarse(), haar.fine()}) {
         put_length(out, part.size());
         out += length_bytes;
     }
-    out = std::copy(haar.escapes().begin(), haar.escapes().end(), out);
-    return {std::span(head_.data(), out), haar.coarse(), haar.fine()};
+    std::copy(haar.escapes().begin(), haar.escapes().end(), out);
+    return {head_, haar.coarse(), haar.fine()};
+}
+
+PlaneParts PlaneCodec::encode(std::span<DisplayFramelet const> framelets, std::span<std::uint8_t const> quality,
+                              HeldPicture const* held, std::span<DisplayFramelet> decoded) {
+    FRAMELET_CHECK(framelets.size() == quality.size());
+    FRAMELET_CHECK(held == nullptr || decoded.size() == quality.size());
+    HaarWriter haar(haar_, framelets.size() - count_exact(quality));
+    kinds_.clear();
+    vectors_.clear();
+    search_.begin();
+    for (std::size_t i = 0; i < framelets.size(); ++i) {
+        FRAMELET_CHECK(quality[i] <= coarsest_quality);
+        if (quality[i] == exact_quality) {
+            if (held != nullptr) {
+                decoded[i] = framelets[i];
+            }
+        } else if (held == nullptr) {
+            haar.write(quantise(display_values(framelets[i]), quality[i]));
+        } else {
+            HaarLevels const levels = predict(*held, framelets[i], quality[i], search_, prediction_);
+            haar.write(levels);
+            put_prediction();
+            add_prediction(dequantise(levels, quality[i]), decoded[i]);
+        }
+    }
+    return join(framelets, quality, haar);
+}
+
+void PlaneCodec::add_prediction(DisplayValues const& left, DisplayFramelet& framelet) const {
+    bool const alone = prediction_.kind == PredictionKind::none;
+    to_samples(alone ? left : left + display_values(prediction_.samples), framelet);
+}
+
+void PlaneCodec::put_prediction() {
+    kinds_.push_back(static_cast<std::uint8_t>(prediction_.kind));
+    if (prediction_.kind == PredictionKind::moved) {
+        vectors_.push_back(static_cast<std::uint8_t>(prediction_.vector.x));
+        vectors_.push_back(static_cast<std::uint8_t>(prediction_.vector.y));
+    }
 }
 
 void PlaneCodec::decode(std::span<std::uint8_t const> bytes, std::span<DisplayFramelet> framelets,
-                        std::span<std::uint8_t> quality) {
+                        std::span<std::uint8_t> quality, HeldPicture const* held) {
     FRAMELET_CHECK(framelets.size() == quality.size());
     ByteCursor rest{bytes.data(), bytes.data() + bytes.size()};
     auto const qualities = rest.take(quality.size());
@@ -65,7 +135,8 @@ void PlaneCodec::decode(std::span<std::uint8_t const> bytes, std::span<DisplayFr
         throw ProtocolError("a batch has a framelet of an unknown quality");
     }
     std::copy(qualities.begin(), qualities.end(), quality.begin());
-    auto const exact = static_cast<std::size_t>(std::count(quality.begin(), quality.end(), exact_quality));
+    std::size_t const exact = count_exact(quality);
+    PredictionReader predictions(rest, held == nullptr ? 0 : framelets.size() - exact);
     std::uint8_t const* planes = rest.take(exact * exact_framelet_bytes).data();
     for_each_plane([&](auto const plane) {
         for (std::size_t i = 0; i < framelets.size(); ++i) {
@@ -85,7 +156,11 @@ void PlaneCodec::decode(std::span<std::uint8_t const> bytes, std::span<DisplayFr
     HaarReader haar(means, escapes, coarse, fine);
     for (std::size_t i = 0; i < framelets.size(); ++i) {
         if (quality[i] != exact_quality) {
-            haar.read(framelets[i], quality[i]);
+            prediction_.kind = PredictionKind::none;
+            if (held != nullptr) {
+                predictions.next(*held, framelets[i].tile, prediction_);
+            }
+            add_prediction(haar.read(quality[i]), framelets[i]);
         }
     }
     if (rest.left() != 0 || !haar.is_at_end()) {

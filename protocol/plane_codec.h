@@ -11,7 +11,7 @@
 
 #include "common/framelet.h"
 #include "protocol/exact_planes.h"
-#include "protocol/haar_planes.h"
+#include "protocol/prediction.h"
 
 namespace framelet {
 
@@ -21,6 +21,10 @@ constexpr std::size_t most_plane_bytes(std::size_t framelets) {
         mean_bytes + most_token_bytes(coarse_details + fine_details) + most_escape_bytes(coarse_details + fine_details);
     return 12 + framelets * (1 + std::max(haar, exact_framelet_bytes));
 }
+/// The same with predictions: of which kind each is, and a vector.
+constexpr std::size_t most_predicted_bytes(std::size_t framelets) {
+    return most_plane_bytes(framelets) + 3 * framelets;
+}
 
 /// The parts of a group's bytes, in order; their statistics differ.
 using PlaneParts = std::array<std::span<std::uint8_t const>, 3>;
@@ -28,16 +32,28 @@ using PlaneParts = std::array<std::span<std::uint8_t const>, 3>;
 /// Scratch that is reused.
 class PlaneCodec {
 public:
-    /// `quality`: one for each framelet, 0 (exact) .. coarsest_quality. The parts are valid until the next call.
-    PlaneParts encode(std::span<DisplayFramelet const> framelets, std::span<std::uint8_t const> quality);
+    /// `quality`: one for each framelet, 0 (exact) .. coarsest_quality. `held`: what the viewer holds, from which those
+    /// with loss are predicted, and `decoded` as many framelets that get the samples which the viewer will see; null:
+    /// each is coded alone. The parts are valid until the next call.
+    PlaneParts encode(std::span<DisplayFramelet const> framelets, std::span<std::uint8_t const> quality,
+                      HeldPicture const* held = nullptr, std::span<DisplayFramelet> decoded = {});
 
-    /// Fills samples and qualities of so many framelets. Throws ProtocolError.
+    /// Fills samples and qualities of so many framelets, whose tiles are set and within the picture `held`. That is
+    /// null where they are coded alone. Throws ProtocolError.
     void decode(std::span<std::uint8_t const> bytes, std::span<DisplayFramelet> framelets,
-                std::span<std::uint8_t> quality);
+                std::span<std::uint8_t> quality, HeldPicture const* held = nullptr);
 
 private:
+    void add_prediction(DisplayValues const& left, DisplayFramelet& framelet) const;
+    void put_prediction();
+    PlaneParts join(std::span<DisplayFramelet const> framelets, std::span<std::uint8_t const> quality,
+                    HaarWriter const& haar);
+
     std::vector<std::uint8_t> head_;
+    std::vector<std::uint8_t> kinds_, vectors_; ///< of predictions; vectors: of those that moved, x and y
     HaarWriter::Memory haar_;
+    VectorSearch search_;
+    Prediction prediction_; ///< of the framelet at hand
 };
 
 } // namespace framelet

@@ -15,7 +15,7 @@ constexpr double too_much = 1.1, too_little = 0.8;
 /// The finest quality with a loss: its step is below one of a display's, and what is finer costs like exact.
 constexpr std::uint8_t least_loss = 4;
 /// Exact samples take about so much more than those of `least_loss`.
-constexpr double exact_cost = 2.5;
+constexpr double exact_cost = 3.5;
 /// At most one step in so many seconds.
 constexpr double step_seconds = 0.03;
 

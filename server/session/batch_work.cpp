@@ -87,7 +87,7 @@ void BatchWork::send(BatchCodec& codec) {
     batch_.number = order.session->begin_batch(static_cast<double>(batch_.framelets.size() * framelet_samples));
     batch_.view = order.state.view;
     batch_.scene_time = order.state.scene_time;
-    order.session->send_batch(codec.encode(batch_));
+    order.session->send_batch(codec.encode(batch_, order.session->held_picture()));
 }
 
 } // namespace framelet

@@ -49,6 +49,10 @@ bool Session::has_room(std::uint64_t unsent) const {
            link_.has_room(seconds_of(std::chrono::steady_clock::now()));
 }
 
+HeldPicture* Session::held_picture() {
+    return newest_input().takes_predictions() ? &held_ : nullptr;
+}
+
 std::uint64_t Session::begin_batch(double samples) {
     std::scoped_lock const lock(mutex_);
     FRAMELET_CHECK(last_batch_ - last_ack_ < max_batches_in_flight);

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "protocol/framed_stream.h"
+#include "protocol/held_picture.h"
 #include "protocol/message.h"
 #include "server/flow/link_estimate.h"
 
@@ -24,6 +25,7 @@ struct SessionInput {
     std::uint64_t version = 0; ///< counts every change, that of the shared clock as well
 
     bool takes_loss() const { return (codings & coding::haar_colour) != 0; }
+    bool takes_predictions() const { return takes_loss() && (codings & coding::predicted_colour) != 0; }
     bool takes_shapes() const { return settings.reproject && (codings & coding::shapes_and_tracks) != 0; }
 };
 
@@ -65,6 +67,9 @@ public:
     void send(Message const& message);
     /// The same for a batch that was begun; what becomes of it tells of the link.
     void send_batch(EncodedBatch batch);
+    /// What the viewer holds once it has all batches that were sent, for whoever encodes them in turn; null where the
+    /// viewer takes no predictions.
+    HeldPicture* held_picture();
     /// What is known of the way to the viewer.
     LinkState link() const;
     /// The picture may have to change for a reason that is not in the input (the clock was set).
@@ -95,6 +100,7 @@ private:
     std::uint64_t converged_version_ = 0; ///< of the input that there is nothing left to refine for; 0: none
     std::chrono::steady_clock::time_point last_progress_;
     LinkEstimate link_;
+    HeldPicture held_; ///< only for the encoder
 };
 
 } // namespace framelet

@@ -18,7 +18,7 @@ struct CostTable {
     double learn_sample = 0; ///< what the response learns from one sample
     double encode_sample = 0; ///< batch codec
     double decode_sample = 0;
-    double encode_lossy_sample = 0; ///< the same with loss
+    double encode_lossy_sample = 0; ///< the same with loss, predicted
     double decode_lossy_sample = 0;
     double cache_sample = 0; ///< insertion into the framelet cache
     double reconstruct_pixel = 0; ///< from samples not finer than a pixel

@@ -12,7 +12,7 @@ namespace {
 
 /// About what the codec makes of a moving picture.
 double bytes_of(std::uint8_t quality) {
-    return quality == 0 ? 1.1 : 0.75 / (1 + 0.14 * quality);
+    return quality == 0 ? 1.15 : 0.6 / (1 + 0.2 * quality);
 }
 
 struct Outcome {

@@ -1,4 +1,6 @@
 // Payloads of batches. Input: two bytes, the number of tiles; one byte, the encoding; the payload.
+#include <array>
+
 #include "common/error.h"
 #include "protocol/batch_codec.h"
 
@@ -12,14 +14,20 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
     EncodedBatch encoded;
     encoded.number = 1;
     encoded.tiles.resize((data[0] | std::size_t{data[1]} << 8) % 1024);
-    encoded.encoding = data[2] % 2 == 0 ? SampleEncoding::exact : SampleEncoding::haar;
+    constexpr std::array encodings{SampleEncoding::exact, SampleEncoding::haar, SampleEncoding::predicted};
+    encoded.encoding = encodings[data[2] % encodings.size()];
+    HeldPicture held;
+    encoded.view.viewport = {640, 480};
+    for (std::uint32_t i = 0; i < encoded.tiles.size(); ++i) {
+        encoded.tiles[i] = make_tile(6, i % 32, i / 32 % 30);
+    }
     auto const* const payload = reinterpret_cast<std::byte const*>(data + head);
     encoded.payload.assign(payload, payload + (size - head));
     try {
-        Batch const batch = codec.decode(encoded);
+        Batch const batch = codec.decode(encoded, &held);
         FRAMELET_CHECK(batch.framelets.size() == encoded.tiles.size());
         // What was taken can be sent again.
-        codec.encode(batch);
+        codec.encode(batch, &held);
     } catch (ProtocolError const&) {
     }
     return 0;

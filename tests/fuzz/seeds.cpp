@@ -60,16 +60,72 @@ void append(std::vector<std::uint8_t>& out, ByteView bytes) {
     }
 }
 
-void write_batch(std::filesystem::path const& folder, Batch const& batch, std::string const& name) {
-    EncodedBatch const encoded = BatchCodec().encode(batch);
+/// A message alone, and as the only one of a connection.
+void write_message(std::filesystem::path const& folder, Message const& message, std::string const& name) {
+    std::vector<std::uint8_t> body;
+    append(body, encode_message(message));
+    write(folder / "message" / name, body);
+    std::vector<std::uint8_t> stream{1};
+    for (int shift = 0; shift < 32; shift += 8) {
+        stream.push_back(static_cast<std::uint8_t>(body.size() >> shift));
+    }
+    stream.insert(stream.end(), body.begin(), body.end());
+    write(folder / "stream" / name, stream);
+}
+
+/// Number of the encoding as fuzz_batch takes it.
+std::uint8_t number_of(SampleEncoding encoding) {
+    return static_cast<std::uint8_t>(encoding == SampleEncoding::exact ? 0 : encoding == SampleEncoding::haar ? 1 : 2);
+}
+
+void write_batch(std::filesystem::path const& folder, EncodedBatch const& encoded, std::string const& name) {
     std::vector<std::uint8_t> payload{static_cast<std::uint8_t>(encoded.tiles.size()),
                                       static_cast<std::uint8_t>(encoded.tiles.size() >> 8),
-                                      static_cast<std::uint8_t>(static_cast<int>(encoded.encoding) - 1)};
+                                      number_of(encoded.encoding)};
     append(payload, encoded.payload);
     write(folder / "batch" / name, payload);
-    std::vector<std::uint8_t> body;
-    append(body, encode_message(encoded));
-    write(folder / "message" / ("batch_" + name), body);
+    write_message(folder, encoded, "batch_" + name);
+}
+
+/// The batch as it moves right, so that the later ones are predicted from the first.
+void write_sequence(std::filesystem::path const& folder, Batch batch, std::string const& name) {
+    BatchCodec codec;
+    HeldPicture held;
+    std::vector<std::uint8_t> bodies;
+    for (int i = 0; i < 3; ++i) {
+        batch.number = static_cast<std::uint64_t>(i + 1);
+        for (DisplayFramelet& framelet : batch.framelets) {
+            auto const moved = [](auto& samples) {
+                auto const old = samples;
+                for (std::uint32_t k = 0; k < framelet_samples; ++k) {
+                    samples[k] = old[morton_index((morton_x(k) + 15) % framelet_side, morton_y(k))];
+                }
+            };
+            moved(framelet.red);
+            moved(framelet.green);
+            moved(framelet.blue);
+        }
+        EncodedBatch const encoded = codec.encode(batch, &held);
+        write_batch(folder, encoded, name + "_" + std::to_string(i));
+        std::vector<std::uint8_t> body;
+        append(body, encode_message(encoded));
+        bodies.push_back(static_cast<std::uint8_t>(body.size()));
+        bodies.push_back(static_cast<std::uint8_t>(body.size() >> 8));
+        bodies.insert(bodies.end(), body.begin(), body.end());
+    }
+    write(folder / "viewer" / name, bodies);
+}
+
+void write_planes(std::filesystem::path const& folder, Batch const& batch, HeldPicture const* held) {
+    PlaneCodec codec;
+    std::vector<std::uint8_t> content{static_cast<std::uint8_t>(batch.framelets.size()),
+                                      static_cast<std::uint8_t>(held == nullptr ? 0 : 1)};
+    std::vector<DisplayFramelet> decoded = batch.framelets;
+    for (auto const part : codec.encode(batch.framelets, batch.quality, held, decoded)) {
+        content.insert(content.end(), part.begin(), part.end());
+    }
+    write(folder / "planes" / ((held == nullptr ? "alone_" : "predicted_") + std::to_string(batch.framelets.size())),
+          content);
 }
 
 } // namespace
@@ -82,19 +138,19 @@ int main(int argc, char** argv) {
     std::filesystem::path const folder = argv[1];
     for (std::size_t const count : {0u, 1u, 3u, 20u, 140u}) {
         Batch batch = make_batch(count, 1);
-        write_batch(folder, batch, "lossy_" + std::to_string(count));
+        write_batch(folder, BatchCodec().encode(batch), "lossy_" + std::to_string(count));
         if (count < 128) {
-            PlaneCodec codec;
-            std::vector<std::uint8_t> content{static_cast<std::uint8_t>(count)};
-            for (auto const part : codec.encode(batch.framelets, batch.quality)) {
-                content.insert(content.end(), part.begin(), part.end());
-            }
-            write(folder / "planes" / std::to_string(count), content);
+            HeldPicture held;
+            held.show(batch.view.viewport);
+            held.take(batch.framelets);
+            write_planes(folder, batch, &held);
+            write_planes(folder, batch, nullptr);
+            write_sequence(folder, batch, "predicted_" + std::to_string(count));
         }
         batch.quality.clear();
-        write_batch(folder, batch, "exact_" + std::to_string(count));
+        write_batch(folder, BatchCodec().encode(batch), "exact_" + std::to_string(count));
         add_shapes(batch);
-        write_batch(folder, batch, "shapes_" + std::to_string(count));
+        write_batch(folder, BatchCodec().encode(batch), "shapes_" + std::to_string(count));
         if (count < 128) {
             ShapeCodec codec;
             std::vector<std::uint8_t> content{static_cast<std::uint8_t>(count)};
@@ -110,9 +166,7 @@ int main(int argc, char** argv) {
          {Message(Hello{protocol_version, "secret"}), Message(CameraUpdate{}), Message(ViewerSettings{1, 0}),
           Message(ClockRequest{}), Message(Ack{3, 4, 5}), Message(Welcome{1, "s", "n", {}, {}, {camera}, 2, {}}),
           Message(Status{}), Message(Failure{"text"})}) {
-        std::vector<std::uint8_t> body;
-        append(body, encode_message(message));
-        write(folder / "message" / std::to_string(number++), body);
+        write_message(folder, message, std::to_string(number++));
     }
     return 0;
 }

@@ -1,6 +1,7 @@
 // The server in this process, spoken to over loopback sockets by a viewer that sends just what a test wants.
 #include "server/session/server.h"
 
+#include <optional>
 #include <thread>
 
 #include <boost/asio/ip/tcp.hpp>
@@ -133,6 +134,36 @@ TEST(Server, WaitsForAcknowledgements) {
         return beats < 3;
     });
     EXPECT_EQ(batches, Session::max_batches_in_flight) << "and not one more while nothing is acknowledged";
+}
+
+TEST(Server, NothingOlderComesFirstWhenThereIsRoomAgain) {
+    // Latest wins without a queue to replace in: while there is no room nothing is rendered, so the first batch after
+    // that is of the newest camera.
+    ServerOptions options;
+    options.loop.batch_framelets = 16;
+    RunningServer const server(options);
+    Conversation viewer(server.port());
+    viewer.stream->send(Hello{});
+    std::uint64_t batches = 0;
+    int beats = 0;
+    std::optional<std::uint64_t> next_camera;
+    viewer.run([&](Message const& message) {
+        if (std::holds_alternative<Welcome>(message)) {
+            viewer.stream->send(camera_update(1, {640, 480}));
+        } else if (auto const* const batch = std::get_if<EncodedBatch>(&message)) {
+            if (++batches > Session::max_batches_in_flight) {
+                next_camera = batch->view.number;
+            } else if (batches == Session::max_batches_in_flight) {
+                viewer.stream->send(camera_update(2, {640, 480}));
+                viewer.stream->send(camera_update(3, {640, 480}));
+            }
+        } else if (std::holds_alternative<Status>(message) && batches == Session::max_batches_in_flight &&
+                   ++beats == 2) { // the cameras have arrived
+            viewer.stream->send(Ack{batches, 0, 0});
+        }
+        return !next_camera;
+    });
+    EXPECT_EQ(next_camera, 3u) << viewer.closed;
 }
 
 TEST(Server, NewerCameraWinsAndLateOnesAreIgnored) {

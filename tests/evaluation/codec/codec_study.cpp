@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <tbb/global_control.h>
 
+#include "common/error.h"
 #include "common/framelet_cache.h"
 #include "common/reconstruction.h"
 #include "protocol/batch_codec.h"
@@ -32,18 +33,33 @@ struct Candidate {
     std::string name;
     std::vector<int> qualities;
     std::function<Coded(Batch const&, int quality, int rounds)> code;
+    std::function<void()> begin = nullptr; ///< before each moment, where earlier batches count
 };
 
-Coded code_planes(BatchCodec& codec, Batch batch, int quality, int rounds) {
+/// What both sides of the predicting codec hold.
+struct Held {
+    HeldPicture sent, received;
+};
+
+/// `held`: null where each batch is coded alone; else it holds this one afterwards.
+Coded code_planes(BatchCodec& codec, Held* held, Batch batch, int quality, int rounds) {
     if (quality != exact_quality) {
         batch.quality.assign(batch.framelets.size(), static_cast<std::uint8_t>(quality));
     }
     Coded coded;
     EncodedBatch encoded;
+    Held after;
+    HeldPicture* const sent = held == nullptr ? nullptr : &after.sent;
+    HeldPicture* const received = held == nullptr ? nullptr : &after.received;
     for (int round = 0; round < rounds; ++round) {
-        coded.encode_seconds = std::min(coded.encode_seconds, seconds_of([&] { encoded = codec.encode(batch); }));
+        after = held == nullptr ? Held{} : *held;
+        coded.encode_seconds = std::min(coded.encode_seconds, seconds_of([&] { encoded = codec.encode(batch, sent); }));
         coded.decode_seconds =
-            std::min(coded.decode_seconds, seconds_of([&] { coded.decoded = codec.decode(encoded); }));
+            std::min(coded.decode_seconds, seconds_of([&] { coded.decoded = codec.decode(encoded, received); }));
+    }
+    if (held != nullptr) {
+        FRAMELET_CHECK(after.sent == after.received);
+        *held = std::move(after);
     }
     coded.bytes = encoded.payload.size();
     return coded;
@@ -127,6 +143,12 @@ json measure(std::vector<CorpusMoment> const& corpus, Candidate const& candidate
     Error samples, pictures;
     double count = 0, bytes = 0, encode = 0, decode = 0;
     for (CorpusMoment const& moment : corpus) {
+        if (candidate.begin) {
+            candidate.begin();
+            for (Batch const& batch : moment.lead) {
+                candidate.code(batch, quality, 1);
+            }
+        }
         std::vector<Batch> decoded;
         for (Batch const& batch : moment.batches) {
             Coded coded = candidate.code(batch, quality, study.rounds);
@@ -180,11 +202,13 @@ void draw_chart(std::string const& scene, json const& rows, char const* error, s
 json compare_codecs(CodecStudy const& study) {
     BatchCodec planes;
     JpegCodec jpeg;
+    std::vector<int> const steps{4, 6, 8, 10, 12, 14, 18, 24, 32, 48};
+    Held held;
     std::vector<Candidate> const candidates{
-        {"planes", {exact_quality}, [&](auto const&... told) { return code_planes(planes, told...); }},
-        {"haar",
-         {4, 6, 8, 10, 12, 14, 18, 24, 32, 48},
-         [&](auto const&... told) { return code_planes(planes, told...); }},
+        {"planes", {exact_quality}, [&](auto const&... told) { return code_planes(planes, nullptr, told...); }},
+        {"predicted", steps, [&](auto const&... told) { return code_planes(planes, &held, told...); },
+         [&] { held = {}; }},
+        {"haar", steps, [&](auto const&... told) { return code_planes(planes, nullptr, told...); }},
         {"jpeg strip",
          {95, 93, 90, 85, 80, 70, 60, 50, 40},
          [&](auto const&... told) { return code_strip(jpeg, told...); }},

@@ -93,7 +93,7 @@ public:
     bool has_room(double now) const override { return rendered_ || link_.has_room(now); }
 
     ViewerStep consume(std::vector<std::byte> const& message) override {
-        Batch const batch = codec_.decode(std::get<EncodedBatch>(decode_message(message)));
+        Batch const batch = codec_.decode(std::get<EncodedBatch>(decode_message(message)), &received_);
         cache_.insert(batch);
         for (BodyTrack const& track : batch.tracks) {
             motions_.extend(track);
@@ -236,7 +236,7 @@ private:
         batch_.number = ++number_;
         batch_.view = work_.state.view;
         batch_.scene_time = work_.state.scene_time;
-        step.message = encode_message(codec_.encode(batch_));
+        step.message = encode_message(codec_.encode(batch_, &sent_));
         step.begun = work_.begun;
     }
 
@@ -288,6 +288,7 @@ private:
     std::uint64_t answered_ = 0; ///< batches
     std::uint64_t number_ = 0;
     BatchCodec codec_;
+    HeldPicture sent_, received_; ///< on the server's side, on the viewer's
 
     FrameletCache cache_;
     BodyMotions told_, motions_; ///< what the server has said, and what the viewer knows

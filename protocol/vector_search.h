@@ -1,0 +1,24 @@
+// Where in the picture that the viewer holds a framelet has been seen before. In: the picture, a framelet. Out: the
+// vector from its tile to there. Only a writer needs it.
+#pragma once
+
+#include <array>
+
+#include "protocol/held_picture.h"
+
+namespace framelet {
+
+/// Remembers what it has found: framelets near each other move alike.
+class VectorSearch {
+public:
+    /// Forgets.
+    void begin() { *this = {}; }
+    /// The best vector of those tried: what was found before and steps from there, down to half a pixel.
+    PictureVector find(HeldPicture const& held, DisplayFramelet const& framelet);
+
+private:
+    std::array<PictureVector, 6> found_{}; ///< lately, different ones
+    std::size_t next_ = 0;
+};
+
+} // namespace framelet

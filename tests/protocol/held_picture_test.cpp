@@ -1,0 +1,160 @@
+#include "protocol/held_picture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "protocol/vector_search.h"
+
+namespace framelet {
+namespace {
+
+constexpr Viewport viewport{200, 120};
+int const pixel_depth = ImagePlane(viewport).pixel_depth();
+
+HeldPicture grey_picture() {
+    HeldPicture held;
+    held.show(viewport);
+    return held;
+}
+
+template <typename Value>
+DisplayFramelet framelet_of(Tile tile, Value const& value) {
+    DisplayFramelet framelet{tile, {}, {}, {}};
+    for (std::uint32_t k = 0; k < framelet_samples; ++k) {
+        auto const v = static_cast<std::uint8_t>(value(static_cast<int>(morton_x(k)), static_cast<int>(morton_y(k))));
+        framelet.red[k] = v;
+        framelet.green[k] = static_cast<std::uint8_t>(v + 1);
+        framelet.blue[k] = static_cast<std::uint8_t>(255 - v);
+    }
+    return framelet;
+}
+
+DisplayFramelet predicted(HeldPicture const& held, Tile tile, PictureVector vector = {}) {
+    DisplayFramelet out{tile, {}, {}, {}};
+    held.predict(tile, vector, out);
+    return out;
+}
+
+int red_at(DisplayFramelet const& framelet, std::uint32_t x, std::uint32_t y) {
+    return framelet.red[morton_index(x, y)];
+}
+
+void take(HeldPicture& held, DisplayFramelet const& framelet) {
+    held.take(std::span(&framelet, 1));
+}
+
+TEST(HeldPicture, IsGreyAtFirstAndForEveryOtherViewport) {
+    HeldPicture held;
+    EXPECT_FALSE(held.shows(viewport));
+    held.show(viewport);
+    Tile const tile = make_tile(pixel_depth, 3, 2);
+    EXPECT_EQ(predicted(held, tile).red, framelet_of(tile, [](int, int) { return 128; }).red);
+    take(held, framelet_of(tile, [](int x, int y) { return x + y; }));
+    held.show(viewport); // as it is
+    EXPECT_EQ(red_at(predicted(held, tile), 5, 6), 11);
+    held.show({201, 120});
+    EXPECT_FALSE(held.shows(viewport));
+    held.show(viewport);
+    EXPECT_TRUE(held == grey_picture());
+}
+
+TEST(HeldPicture, GivesBackWhatItTookUpToHalfThePixelsSpacing) {
+    std::mt19937 random(1);
+    ImagePlane const plane(viewport);
+    for (int depth = plane.min_depth(); depth < plane.max_depth(); ++depth) {
+        HeldPicture held = grey_picture();
+        Tile const tile = make_tile(depth, 0, 0);
+        DisplayFramelet const framelet = framelet_of(tile, [&](int, int) { return random(); });
+        take(held, framelet);
+        EXPECT_TRUE(predicted(held, tile) == framelet) << depth;
+    }
+}
+
+TEST(HeldPicture, KnownValuesOfOtherDepths) {
+    HeldPicture held = grey_picture();
+    take(held, framelet_of(make_tile(pixel_depth, 1, 1), [](int x, int y) { return 10 * x + y; }));
+    // Finer: what covers it. A level finer, sample (2, 4) of the upper right quarter lies in sample (9, 2).
+    DisplayFramelet const finer = predicted(held, make_tile(pixel_depth + 1, 3, 2));
+    EXPECT_EQ(red_at(finer, 2, 4), 92);
+    EXPECT_EQ(red_at(finer, 3, 5), 92);
+    DisplayFramelet const finest = predicted(held, make_tile(pixel_depth + 2, 7, 4));
+    EXPECT_EQ(red_at(finest, 0, 0), 120);
+    EXPECT_EQ(red_at(finest, 7, 15), 133);
+    // Coarser: the mean of the pixels about a sample's centre; here (0, 0), (1, 0), (0, 1), (1, 1).
+    DisplayFramelet const coarser = predicted(held, make_tile(pixel_depth - 1, 0, 0));
+    EXPECT_EQ(red_at(coarser, 8, 8), (0 + 10 + 1 + 11 + 2) / 4);
+    EXPECT_EQ(red_at(coarser, 7, 8), 128);
+    // What is finest is kept as means of four.
+    take(held, framelet_of(make_tile(pixel_depth + 2, 4, 4), [](int x, int y) { return x + y; }));
+    EXPECT_EQ(red_at(predicted(held, make_tile(pixel_depth + 1, 2, 2)), 1, 2), (6 + 7 + 7 + 8 + 2) / 4);
+}
+
+TEST(HeldPicture, VectorsAreHalfPixelsAndStayInside) {
+    HeldPicture held = grey_picture();
+    Tile const tile = make_tile(pixel_depth, 1, 1);
+    take(held, framelet_of(tile, [](int x, int y) { return 8 * x + y; }));
+    DisplayFramelet const moved = predicted(held, tile, {6, -2});
+    EXPECT_EQ(red_at(moved, 0, 1), 8 * 3);
+    EXPECT_EQ(red_at(moved, 12, 15), 8 * 15 + 14);
+    EXPECT_EQ(red_at(moved, 13, 15), 128);
+    DisplayFramelet const between = predicted(held, tile, {1, 0});
+    EXPECT_EQ(red_at(between, 4, 3), 8 * 4 + 3 + 4);
+    Tile const corner = make_tile(pixel_depth, 0, 0);
+    EXPECT_TRUE(predicted(held, corner, {-128, -128}) == predicted(held, corner));
+    // The right and lower ends are those of the coarsest tiles.
+    DisplayFramelet const last = framelet_of(make_tile(pixel_depth, 15, 7), [](int x, int y) { return 16 * y + x; });
+    take(held, last);
+    EXPECT_TRUE(predicted(held, last.tile, {127, 127}) == last);
+}
+
+TEST(HeldPicture, OfOneBatchTheFinerCountsWhateverTheOrder) {
+    Tile const coarse_tile = make_tile(pixel_depth - 1, 1, 0);
+    DisplayFramelet const coarse = framelet_of(coarse_tile, [](int, int) { return 10; });
+    DisplayFramelet const fine = framelet_of(coarse_tile.child(2), [](int x, int) { return 100 + x; });
+    HeldPicture one = grey_picture(), other = one, later = one;
+    one.take(std::array{coarse, fine});
+    other.take(std::array{fine, coarse});
+    EXPECT_TRUE(one == other);
+    EXPECT_TRUE(predicted(one, fine.tile) == fine);
+    EXPECT_EQ(red_at(predicted(one, coarse_tile), 8, 3), 10);
+    take(later, fine);
+    take(later, coarse); // a later batch
+    EXPECT_EQ(red_at(predicted(later, fine.tile), 4, 4), 10);
+}
+
+TEST(VectorSearch, FindsWhatHasMoved) {
+    std::mt19937 random(1);
+    HeldPicture held = grey_picture();
+    ImagePlane const plane(viewport);
+    auto const scene = [](double x, double y) {
+        return 128 + 60 * std::sin(0.13 * x) + 60 * std::cos(0.17 * y + 0.05 * x);
+    };
+    for (std::uint32_t row = 0; row < 8; ++row) {
+        for (std::uint32_t column = 0; column < 13; ++column) {
+            Tile const tile = make_tile(pixel_depth, column, row);
+            if (plane.accepts(tile)) {
+                take(held, framelet_of(tile, [&](int x, int y) { return scene(16. * column + x, 16. * row + y); }));
+            }
+        }
+    }
+    VectorSearch search;
+    for (int i = 0; i < 50; ++i) {
+        int const dx = static_cast<int>(random() % 9) - 4, dy = static_cast<int>(random() % 9) - 4; // pixels
+        Tile const tile = make_tile(pixel_depth, 2 + random() % 8, 2 + random() % 4);
+        PixelRect const rect = plane.tile_rect(tile);
+        DisplayFramelet const moved =
+            framelet_of(tile, [&](int x, int y) { return scene(rect.left + x + dx, rect.top + y + dy); });
+        DisplayFramelet const found = predicted(held, tile, search.find(held, moved));
+        int difference = 0;
+        for (std::size_t k = 0; k < framelet_samples; ++k) {
+            difference += std::abs(int{found.green[k]} - int{moved.green[k]});
+        }
+        EXPECT_LT(difference, 8 * framelet_samples) << i; // about what a pixel makes
+    }
+}
+
+} // namespace
+} // namespace framelet

@@ -1,0 +1,222 @@
+// Batches that are predicted from those before: both sides hold the same picture whatever was sent.
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "common/error.h"
+#include "protocol/batch_codec.h"
+#include "protocol/plane_codec.h"
+
+namespace framelet {
+namespace {
+
+/// Waves that a seed moves, with noise.
+void fill(DisplayFramelet& framelet, PixelRect rect, double shift, int noise, std::mt19937& random) {
+    for (std::uint32_t k = 0; k < framelet_samples; ++k) {
+        double const x = rect.left + (morton_x(k) + 0.5) * rect.width() / framelet_side + shift;
+        double const y = rect.top + (morton_y(k) + 0.5) * rect.width() / framelet_side;
+        double const value = 128 + 60 * std::sin(0.2 * x) + 60 * std::cos(0.23 * y + 0.1 * x) +
+                             static_cast<double>(random() % static_cast<unsigned>(noise + 1));
+        framelet.red[k] = static_cast<std::uint8_t>(std::min(value, 255.0));
+        framelet.green[k] = static_cast<std::uint8_t>(value / 2);
+        framelet.blue[k] = static_cast<std::uint8_t>(255 - framelet.red[k]);
+    }
+}
+
+/// Different tiles, of any depth where `depth` is negative.
+Batch make_batch(std::mt19937& random, Viewport viewport, std::size_t count, double shift, int noise, int depth = -1) {
+    ImagePlane const plane(viewport);
+    Batch batch;
+    batch.number = 1;
+    batch.view.viewport = viewport;
+    std::vector<Tile> tiles;
+    for (std::uint32_t code = 1; code < 4u << (2 * plane.max_depth()); ++code) {
+        if (plane.accepts({code}) && (depth < 0 || Tile{code}.depth() == depth)) {
+            tiles.push_back({code});
+        }
+    }
+    std::shuffle(tiles.begin(), tiles.end(), random);
+    for (std::size_t i = 0; i < std::min(count, tiles.size()); ++i) {
+        batch.framelets.push_back({tiles[i], {}, {}, {}});
+        fill(batch.framelets.back(), plane.tile_rect(tiles[i]), shift, noise, random);
+    }
+    return batch;
+}
+
+std::size_t payload_bytes(BatchCodec& codec, HeldPicture& held, Batch const& batch) {
+    return codec.encode(batch, &held).payload.size();
+}
+
+Batch with_quality(Batch batch, std::uint8_t quality) {
+    batch.quality.assign(batch.framelets.size(), quality);
+    return batch;
+}
+
+constexpr Viewport small_viewport{96, 64};
+
+TEST(PredictedBatch, BothSidesHoldTheSameAfterAnySequence) {
+    for (unsigned seed = 1; seed <= 6; ++seed) {
+        std::mt19937 random(seed);
+        BatchCodec encoder, decoder;
+        HeldPicture sent, received;
+        std::array const viewports{small_viewport, Viewport{17, 200}, Viewport{9, 5}};
+        Viewport viewport = viewports[0];
+        for (int i = 0; i < 120; ++i) {
+            viewport = random() % 16 == 0 ? viewports[random() % viewports.size()] : viewport;
+            Batch batch = make_batch(random, viewport, random() % 60, 0.3 * i, static_cast<int>(random() % 30));
+            for (std::size_t f = 0; f < batch.framelets.size() && i % 5 != 0; ++f) {
+                batch.quality.push_back(
+                    static_cast<std::uint8_t>(random() % 4 == 0 ? 0 : random() % (coarsest_quality + 1)));
+            }
+            auto const arrived = std::get<EncodedBatch>(decode_message(encode_message(encoder.encode(batch, &sent))));
+            Batch const decoded = decoder.decode(arrived, &received);
+            ASSERT_TRUE(sent == received) << "seed " << seed << " batch " << i;
+            ASSERT_EQ(decoded.quality, batch.quality);
+            for (std::size_t f = 0; f < batch.framelets.size(); ++f) {
+                bool const exact = batch.quality.empty() || batch.quality[f] == exact_quality;
+                ASSERT_TRUE(!exact || decoded.framelets[f] == batch.framelets[f]);
+            }
+        }
+    }
+}
+
+TEST(PredictedBatch, WhatIsHeldCostsNearlyNothing) {
+    std::mt19937 random(1);
+    int const depth = ImagePlane(small_viewport).pixel_depth();
+    Batch const batch = with_quality(make_batch(random, small_viewport, 24, 0, 0, depth), 12);
+    BatchCodec codec;
+    HeldPicture held;
+    std::size_t const alone = payload_bytes(codec, held, batch);
+    std::size_t const again = payload_bytes(codec, held, batch);
+    EXPECT_LT(again * 10, alone);
+    // The same moved by three pixels: nearly all of it is found elsewhere.
+    std::size_t const moved =
+        payload_bytes(codec, held, with_quality(make_batch(random, small_viewport, 24, 3, 0, depth), 12));
+    EXPECT_LT(moved * 2, alone);
+}
+
+TEST(PredictedBatch, ErrorsDoNotAddUp) {
+    std::mt19937 random(1);
+    int const depth = ImagePlane(small_viewport).pixel_depth();
+    BatchCodec codec;
+    HeldPicture sent, received;
+    constexpr std::uint8_t quality = 12;
+    for (int i = 0; i < 60; ++i) {
+        Batch const batch = with_quality(make_batch(random, small_viewport, 24, 0.15 * i, 0, depth), quality);
+        Batch const decoded = codec.decode(codec.encode(batch, &sent), &received);
+        double sum = 0;
+        for (std::size_t f = 0; f < batch.framelets.size(); ++f) {
+            for (std::size_t k = 0; k < framelet_samples; ++k) {
+                double const error = double(batch.framelets[f].green[k]) - double(decoded.framelets[f].green[k]);
+                sum += error * error;
+            }
+        }
+        // An orthonormal detail is off by 0.66 steps at most; green is Y + Cg.
+        double const mean = sum / static_cast<double>(batch.framelets.size() * framelet_samples);
+        EXPECT_LE(std::sqrt(mean), 0.66 * quality * std::sqrt(2.0) + 1) << i;
+    }
+}
+
+TEST(PredictedBatch, IsRefusedWithoutThePicture) {
+    std::mt19937 random(1);
+    BatchCodec codec;
+    HeldPicture held;
+    EncodedBatch encoded = codec.encode(with_quality(make_batch(random, small_viewport, 5, 0, 0), 8), &held);
+    EXPECT_EQ(encoded.encoding, SampleEncoding::predicted);
+    EXPECT_THROW(codec.decode(encoded), ProtocolError);
+    HeldPicture other;
+    EncodedBatch larger = encoded;
+    larger.view.viewport = {16384, 16384};
+    EXPECT_THROW(codec.decode(larger, &other), ProtocolError);
+    encoded.tiles[0] = {1u << 30}; // no tile of this viewport
+    EXPECT_THROW(codec.decode(encoded, &other), ProtocolError);
+}
+
+TEST(PredictedBatch, ThereIsNoPictureWithoutLossNorOfLargeViewports) {
+    std::mt19937 random(1);
+    BatchCodec codec;
+    HeldPicture held;
+    EXPECT_EQ(codec.encode(make_batch(random, small_viewport, 5, 0, 0), &held).encoding, SampleEncoding::exact);
+    EXPECT_FALSE(held.shows(small_viewport));
+    Batch batch = with_quality(make_batch(random, small_viewport, 1, 0, 0), 8);
+    batch.view.viewport = {16384, 16384};
+    batch.framelets[0].tile = make_tile(10, 0, 0);
+    EXPECT_EQ(codec.encode(batch, &held).encoding, SampleEncoding::haar);
+    EXPECT_FALSE(held.shows(batch.view.viewport));
+}
+
+TEST(PredictedBatch, DamagedGroupsAreRefusedOrDecoded) {
+    std::mt19937 random(1);
+    Batch batch = with_quality(make_batch(random, small_viewport, 40, 0, 3), 8);
+    for (std::size_t i = 0; i < batch.quality.size(); i += 7) {
+        batch.quality[i] = exact_quality;
+    }
+    HeldPicture held;
+    held.show(small_viewport);
+    held.take(make_batch(random, small_viewport, 100, 2, 0).framelets);
+    PlaneCodec codec;
+    std::vector<DisplayFramelet> decoded = batch.framelets;
+    std::vector<std::uint8_t> good;
+    for (auto const part : codec.encode(batch.framelets, batch.quality, &held, decoded)) {
+        good.insert(good.end(), part.begin(), part.end());
+    }
+    std::size_t refused = 0;
+    for (int i = 0; i < 3000; ++i) {
+        std::vector<std::uint8_t> bad = good;
+        if (i % 3 == 0) {
+            bad.resize(random() % bad.size());
+            bad.shrink_to_fit();
+        } else {
+            bad[random() % bad.size()] ^= static_cast<std::uint8_t>(1u << (random() % 8));
+            bad[random() % std::min<std::size_t>(bad.size(), 100)] ^= static_cast<std::uint8_t>(1u << (random() % 8));
+        }
+        try {
+            codec.decode(bad, decoded, batch.quality, &held);
+        } catch (ProtocolError const&) {
+            ++refused;
+        }
+    }
+    EXPECT_GT(refused, 1000u);
+    std::vector<std::uint8_t> bad = good;
+    bad[batch.framelets.size()] = 3; // no kind of prediction
+    EXPECT_THROW(codec.decode(bad, decoded, batch.quality, &held), ProtocolError);
+}
+
+TEST(PredictedBatch, GoldenBytes) {
+    // As PROTOCOL.md has it: two framelets of one grey each, over a picture that is grey and one that has been sent.
+    HeldPicture held;
+    held.show({32, 32});
+    std::array<DisplayFramelet, 2> framelets;
+    framelets[0].tile = make_tile(1, 0, 0);
+    framelets[1].tile = make_tile(1, 1, 0);
+    for (DisplayFramelet& framelet : framelets) {
+        framelet.red.fill(140);
+        framelet.green.fill(140);
+        framelet.blue.fill(140);
+    }
+    std::vector<std::uint8_t> const golden{0x08, 0x08, // qualities
+                                           0x01, 0x02, // at its place; moved
+                                           0xe0, 0x00, // by 16 pixels to the left
+                                           0x18, 0x00, 0x00, 0x00, 0x00, 0x00, // 24 steps of Y
+                                           0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,
+                                           0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00};
+    PlaneCodec codec;
+    std::vector<std::uint8_t> quality(2);
+    std::array<DisplayFramelet, 2> decoded = framelets;
+    DisplayFramelet light = framelets[0];
+    light.red.fill(200);
+    light.green.fill(200);
+    light.blue.fill(200);
+    codec.decode(golden, decoded, quality, &held);
+    EXPECT_EQ(decoded[0], framelets[0]);
+    EXPECT_EQ(decoded[1].green[0], 128); // the picture is as it was before this batch
+    held.take(std::span(&light, 1));
+    codec.decode(golden, decoded, quality, &held);
+    EXPECT_EQ(decoded[0].green[0], 212);
+    EXPECT_EQ(decoded[1].green[0], 200);
+}
+
+} // namespace
+} // namespace framelet
