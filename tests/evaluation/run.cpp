@@ -71,6 +71,18 @@ private:
 
 } // namespace
 
+MethodSetup method_setup(RunParameters const& parameters, double machine, CostTable const& costs) {
+    return {parameters.viewport,
+            costs,
+            machine,
+            parameters.frames_per_second,
+            parameters.link.bits_per_second,
+            parameters.seed,
+            parameters.link.delay_seconds,
+            parameters.bias,
+            parameters.batch_framelets};
+}
+
 double lead_seconds(RunParameters const& parameters) {
     return std::max(0.5, 3 / parameters.frames_per_second) + 4 * parameters.link.delay_seconds;
 }
