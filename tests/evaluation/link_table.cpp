@@ -33,7 +33,7 @@ struct Link {
     }
     std::string name() const {
         char text[64];
-        std::snprintf(text, sizeof(text), "%g Mbit/s\n%g ms", megabits, round_trip_ms);
+        std::snprintf(text, sizeof(text), "%g / %g", megabits, round_trip_ms);
         return text;
     }
 };
@@ -149,6 +149,7 @@ json link_table(LinkTableOptions const& table, StudyOptions const& options) {
     std::array<HeatTable, beside.size()> charts;
     for (std::size_t i = 0; i < beside.size(); ++i) {
         charts[i].title = std::string("median of MSE(") + own + ") / MSE(" + beside[i] + ")";
+        charts[i].x_title = "link [Mbit/s] / round trip [ms]";
         charts[i].goal = i < judged ? table.goal : 0;
         std::ranges::transform(links, std::back_inserter(charts[i].columns), &Link::name);
     }

@@ -59,6 +59,7 @@ void expect_has(std::string const& text, std::string const& part) {
 
 TEST_F(Drawn, HeatTable) {
     HeatTable chart{.title = "ratios",
+                    .x_title = "link",
                     .columns = {"5 Mbit/s", "20 Mbit/s"},
                     .rows = {"globe", "dim", "stop"},
                     .values = {{0.25, 0.75}, {4, 12.3}, {0.5, infinity}},

@@ -11,7 +11,7 @@ namespace framelet::bench {
 namespace {
 
 constexpr int cell_width = 72, cell_height = 26; // pixels
-constexpr int beside = 260, around = 110; // pixels that are no cells
+constexpr int beside = 260, around = 130; // pixels that are no cells
 constexpr double octaves = 3; // each way, to the strongest colour
 
 void check(HeatTable const& chart) {
@@ -70,9 +70,10 @@ Plot plot_of(HeatTable const& chart) {
     }
     plot.data += "EOD\n";
     plot.commands = common_look(chart.title) + "unset key\nunset grid\nunset border\nunset colorbox\n" +
-                    marks("x", chart.columns) + marks("y", chart.rows) + "set palette defined (-" + number(octaves) +
-                    " '#4393c3', 0 '#ffffff', " + number(octaves) + " '#d6604d')\nset cbrange [-" + number(octaves) +
-                    ":" + number(octaves) + "]\n" + labels + "plot $cells using 1:2:3 with image\n";
+                    axis_title("x", chart.x_title) + marks("x", chart.columns) + marks("y", chart.rows) +
+                    "set palette defined (-" + number(octaves) + " '#4393c3', 0 '#ffffff', " + number(octaves) +
+                    " '#d6604d')\nset cbrange [-" + number(octaves) + ":" + number(octaves) + "]\n" + labels +
+                    "plot $cells using 1:2:(0.5):(0.5):3 with boxxyerror fs solid noborder fc palette\n";
     return plot;
 }
 

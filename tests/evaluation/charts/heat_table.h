@@ -10,6 +10,7 @@ namespace framelet::bench {
 
 struct HeatTable {
     std::string title;
+    std::string x_title;
     std::vector<std::string> columns;
     std::vector<std::string> rows; ///< from the top
     std::vector<std::vector<double>> values; ///< [row][column]; > 0; not finite: the cell stays empty
