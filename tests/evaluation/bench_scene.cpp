@@ -4,6 +4,15 @@
 #include "server/scene/scene_import.h"
 
 namespace framelet::bench {
+namespace {
+
+Camera camera_of(BenchScene const& scene, ScenePose const& pose) {
+    Camera const camera =
+        scene.scene_camera == none ? scene.default_camera : scene_camera(scene.scene, pose, scene.scene_camera);
+    return turned(camera, scene.turn, pose.time);
+}
+
+} // namespace
 
 std::unique_ptr<BenchScene> load_bench_scene(std::filesystem::path const& file, int camera) {
     auto loaded = std::make_unique<BenchScene>();
@@ -22,7 +31,7 @@ std::unique_ptr<BenchScene> load_bench_scene(std::filesystem::path const& file, 
     loaded->pose = evaluate_pose(loaded->scene, loaded->clips, 0);
     loaded->render_scene->set_pose(loaded->pose);
     loaded->scene_camera = cameras > 0 ? camera : none;
-    loaded->camera = default_camera(scene_bounds(loaded->scene, loaded->pose));
+    loaded->default_camera = default_camera(scene_bounds(loaded->scene, loaded->pose));
     loaded->camera = camera_at(*loaded, 0);
     loaded->exposure = auto_exposure(*loaded->render_scene, loaded->camera);
     return loaded;
@@ -33,15 +42,12 @@ void pose_at(BenchScene& scene, SceneTime time) {
         scene.pose = evaluate_pose(scene.scene, scene.clips, time);
         scene.render_scene->set_pose(scene.pose);
     }
-    if (scene.scene_camera != none) {
-        scene.camera = scene_camera(scene.scene, scene.pose, scene.scene_camera);
-    }
+    scene.camera = camera_of(scene, scene.pose);
 }
 
 Camera camera_at(BenchScene const& scene, SceneTime time) {
-    return scene.scene_camera == none
-               ? scene.camera
-               : scene_camera(scene.scene, evaluate_pose(scene.scene, scene.clips, time), scene.scene_camera);
+    return scene.scene_camera == none ? turned(scene.default_camera, scene.turn, time)
+                                      : camera_of(scene, evaluate_pose(scene.scene, scene.clips, time));
 }
 
 } // namespace framelet::bench

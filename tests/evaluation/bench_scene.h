@@ -8,6 +8,7 @@
 
 #include "server/render/framelet_renderer.h"
 #include "server/scene/animation.h"
+#include "tests/evaluation/camera_turn.h"
 
 namespace framelet::bench {
 
@@ -17,7 +18,9 @@ struct BenchScene {
     Scene scene;
     std::vector<Index> clips;
     std::unique_ptr<RenderScene> render_scene; ///< reads `scene`
-    Index scene_camera = none; ///< looked through; none: `camera`
+    Index scene_camera = none; ///< looked through; none: `default_camera`
+    Camera default_camera;
+    CameraTurn turn; ///< of whichever camera
     Camera camera; ///< at the time that the scene was posed for last
     float exposure = 1;
     double duration = 0; ///< seconds of animation; 0: nothing moves

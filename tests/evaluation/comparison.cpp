@@ -74,9 +74,7 @@ MethodRecord record_method(BenchScene& scene, Reference const& reference, std::s
     record.method = name;
     record.measures.resize(times);
     record.ages.resize(times);
-    auto const method = make_method(name, {parameters.viewport, costs, machine, parameters.frames_per_second,
-                                           parameters.link.bits_per_second, parameters.seed,
-                                           parameters.link.delay_seconds, parameters.bias, parameters.batch_framelets});
+    auto const method = make_method(name, method_setup(parameters, machine, costs));
     tbb::task_group measuring;
     record.run =
         run_method(scene, *method, parameters, machine, [&](std::size_t index, Picture const& shown, double age) {

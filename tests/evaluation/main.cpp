@@ -22,6 +22,8 @@
 #include "tests/evaluation/estimators/estimator_verbs.h"
 #include "tests/evaluation/layer_study.h"
 #include "tests/evaluation/limits.h"
+#include "tests/evaluation/link_table.h"
+#include "tests/evaluation/link_turn.h"
 #include "tests/evaluation/response_cost.h"
 #include "tests/evaluation/sensitivity.h"
 #include "tests/evaluation/stability.h"
@@ -67,6 +69,7 @@ struct Options {
     framelet::bench::AntialiasingStudy antialiasing;
     framelet::bench::CorrespondenceStudy correspondence;
     framelet::bench::StillnessStudy stillness;
+    framelet::bench::LinkTableOptions link_table;
     framelet::bench::WallOptions wall{.server_threads =
                                           std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1)};
 };
@@ -97,7 +100,8 @@ void add_time_options(CLI::App& verb, Options& options) {
 }
 
 void add_size_option(CLI::App& verb, Options& options) {
-    verb.add_option("--size", options.size, "Side of the picture, pixels (default 512, --quick: 256)")
+    verb.add_option("--size", options.size,
+                    "Side of the picture, pixels (default: 512 or less, as the verb has time for)")
         ->check(CLI::Range(16, 4096));
 }
 
@@ -158,6 +162,23 @@ void add_table_options(CLI::App& verb, Options& options) {
     add_method_options(verb, options);
     verb.add_option("--runs", options.table_runs, "Which runs of the table, by number (default: all)")->delimiter(',');
     verb.add_option("--scenes", options.table_scenes, "Which of its scenes, by name (default: all)")->delimiter(',');
+}
+
+void add_link_table_options(CLI::App& verb, Options& options) {
+    add_output_options(verb, options);
+    add_size_option(verb, options);
+    add_time_options(verb, options);
+    add_machine_options(verb, options);
+    verb.add_option("--scenes", options.link_table.scenes, "Scene files (default: all of the project's)")
+        ->delimiter(',');
+    verb.add_option("--megabits", options.link_table.megabits, "Rates of the links, Mbit/s; 0: unlimited")
+        ->delimiter(',')
+        ->check(CLI::Range(0.0, 1e6))
+        ->capture_default_str();
+    verb.add_option("--round-trips", options.link_table.round_trips_ms, "Round trips of the links, ms")
+        ->delimiter(',')
+        ->check(CLI::Range(0.0, 10000.0))
+        ->capture_default_str();
 }
 
 void add_stability_options(CLI::App& verb, Options& options) {
@@ -275,6 +296,17 @@ json table(Options& options) {
     return bench::run_table(part, source / "scenes", options.study);
 }
 
+/// Whole frames as they are sent, the same moved by the viewer, and the project's own.
+std::vector<std::string> const streamed_methods{"framed+h264", "framed+warp", "framelet"};
+
+json turn(BenchScene& scene, Options& options) {
+    settle(options, options.quick ? Scale{.size = 128, .seconds = 1, .rate = 60} : Scale{.size = 256, .rate = 60});
+    if (options.study.methods.empty()) {
+        options.study.methods = streamed_methods;
+    }
+    return turn_study(scene, options.study);
+}
+
 json stability(Options& options) {
     settle(options, options.quick ? Scale{.size = 96, .rate = 20} : Scale{.size = 256, .rate = 40});
     return framelet::bench::measure_stability(source / "scenes", options.stability, options.study);
@@ -316,6 +348,15 @@ std::vector<std::filesystem::path> bundled_scenes() {
     }
     std::ranges::sort(files);
     return files;
+}
+
+json links(Options& options) {
+    settle(options, options.quick ? Scale{.size = 96, .seconds = 0.5, .rate = 20}
+                                  : Scale{.size = 256, .seconds = 1, .rate = 30});
+    if (options.link_table.scenes.empty()) {
+        options.link_table.scenes = bundled_scenes();
+    }
+    return link_table(options.link_table, options.study);
 }
 
 json antialiasing(Options& options) {
@@ -417,6 +458,10 @@ int main(int argc, char** argv) {
     add_verb("pareto", "Error against server CPU, bytes and delay", add_run_options, study(framelet::bench::pareto));
     add_verb("link", "Error against the link's rate, delay and stalls", add_run_options,
              study(framelet::bench::link_study));
+    add_verb("turn", "Error and lag against the round trip while the camera turns", add_run_options,
+             with_scene([&options](BenchScene& scene) { return turn(scene, options); }));
+    add_verb("links", "The project's error beside coded whole frames', for every scene on several links",
+             add_link_table_options, [&options] { return links(options); });
     add_verb("table", "Runs and scenes of the dissertation's Table 7.2 (--quick: those of 256x256)", add_table_options,
              [&options] { return table(options); });
     add_verb("stability", "How the loop of error, density and tiling settles after events, and how steady it is then",

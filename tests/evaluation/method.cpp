@@ -15,10 +15,11 @@ struct KnownMethod {
     bool batches = false;
 };
 
-constexpr std::array<KnownMethod, 8> known_methods{{
+constexpr std::array<KnownMethod, 9> known_methods{{
     {"framed", make_framed},
     {"framed+jpeg", make_framed_jpeg},
     {"framed+h264", make_framed_h264},
+    {"framed+warp", make_framed_warp},
     {"frameless", make_frameless},
     {"afr", make_afr},
     {"tsar", make_tsar, true},

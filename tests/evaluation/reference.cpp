@@ -35,6 +35,10 @@ std::string printed(char const* format, Values... values) {
     return text;
 }
 
+std::string turn_name(CameraTurn const& turn) {
+    return turn.turns() ? printed("-turn%gx%g", turn.degrees_per_second, turn.reach_degrees) : "";
+}
+
 std::uint64_t hash_of_file(std::filesystem::path const& file) {
     std::ifstream stream(file, std::ios::binary);
     std::uint64_t hash = 0xcbf29ce484222325u; // FNV-1a
@@ -99,10 +103,11 @@ Picture render_reference(BenchScene const& scene, Viewport viewport, int samples
 }
 
 Reference::Reference(BenchScene& scene, ReferenceParameters const& p, std::filesystem::path const& cache)
-    : folder_(cache / (scene.name + printed("-%016llx-c%d-%dx%d-%dspp-%ghz",
-                                            static_cast<unsigned long long>(hash_of_file(scene.file)),
-                                            static_cast<int>(scene.scene_camera), p.viewport.width, p.viewport.height,
-                                            p.samples_per_side * p.samples_per_side, p.rate))),
+    : folder_(cache /
+              (scene.name + turn_name(scene.turn) +
+               printed("-%016llx-c%d-%dx%d-%dspp-%ghz", static_cast<unsigned long long>(hash_of_file(scene.file)),
+                       static_cast<int>(scene.scene_camera), p.viewport.width, p.viewport.height,
+                       p.samples_per_side * p.samples_per_side, p.rate))),
       count_(static_cast<std::size_t>(std::lround(p.seconds * p.rate))) {
     std::filesystem::create_directories(folder_);
     auto const render = [&](std::size_t index) {

@@ -72,6 +72,18 @@ private:
 
 } // namespace
 
+MethodSetup method_setup(RunParameters const& parameters, double machine, CostTable const& costs) {
+    return {parameters.viewport,
+            costs,
+            machine,
+            parameters.frames_per_second,
+            parameters.link.bits_per_second,
+            parameters.seed,
+            parameters.link.delay_seconds,
+            parameters.bias,
+            parameters.batch_framelets};
+}
+
 double lead_seconds(RunParameters const& parameters) {
     return std::max(0.5, 3 / parameters.frames_per_second) + 4 * parameters.link.delay_seconds;
 }
@@ -124,6 +136,7 @@ RunResult run_method(BenchScene& scene, Method& method, RunParameters const& par
     std::deque<Answer> answers;
     std::vector<DeliveredMessage> delivered;
     Picture shown = method.picture();
+    NumberedView view{0, {}, parameters.viewport};
     while (now < parameters.seconds) {
         while (!in_flight.empty() && in_flight.front() <= now) {
             in_flight.pop_front();
@@ -147,7 +160,10 @@ RunResult run_method(BenchScene& scene, Method& method, RunParameters const& par
         Camera const camera = parameters.link.delay_seconds > 0
                                   ? camera_at(scene, scene_time(parameters, now - parameters.link.delay_seconds))
                                   : scene.camera;
-        StepInput const input{scene, time, now, {1, camera, parameters.viewport}, link.backlog_bytes(now), delivered};
+        if (view.number == 0 || !(view.camera == camera)) {
+            view = {view.number + 1, camera, parameters.viewport};
+        }
+        StepInput const input{scene, time, now, view, link.backlog_bytes(now), delivered};
         ServerStep const step = method.produce(input);
         delivered.clear();
         double const started = now;

@@ -31,6 +31,9 @@ struct RunParameters {
     double scene_stops = INFINITY; ///< from then on scene and camera stand still
 };
 
+/// What such a run tells its method, on a machine of this speed.
+MethodSetup method_setup(RunParameters const& parameters, double machine, CostTable const& costs);
+
 /// The scene stands still for this long before the run, so that every method starts from a finished picture.
 double lead_seconds(RunParameters const& parameters);
 std::size_t reference_count(RunParameters const& parameters);

@@ -13,6 +13,7 @@
 #include "common/error.h"
 #include "common/image_io.h"
 #include "tests/evaluation/charts/chart_style.h"
+#include "tests/evaluation/charts/heat_table.h"
 #include "tests/evaluation/charts/ratio_boxes.h"
 
 namespace framelet::bench {
@@ -54,6 +55,21 @@ protected:
 
 void expect_has(std::string const& text, std::string const& part) {
     EXPECT_NE(text.find(part), std::string::npos) << "no '" << part << "' in:\n" << text.substr(0, 3000);
+}
+
+TEST_F(Drawn, HeatTable) {
+    HeatTable chart{.title = "ratios",
+                    .x_title = "link",
+                    .columns = {"5 Mbit/s", "20 Mbit/s"},
+                    .rows = {"globe", "dim", "stop"},
+                    .values = {{0.25, 0.75}, {4, 12.3}, {0.5, infinity}},
+                    .goal = 0.5};
+    std::string const text = drawn(chart);
+    for (char const* const part : {"ratios", "20 Mbit/s", "stop", "0.25", "0.75", "4.00", "12"}) {
+        expect_has(text, part);
+    }
+    chart.values.pop_back();
+    EXPECT_THROW(plot_of(chart), InputError);
 }
 
 TEST_F(Drawn, ErrorOverTime) {

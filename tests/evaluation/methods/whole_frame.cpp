@@ -15,7 +15,11 @@ WholeFrame::WholeFrame(MethodSetup const& setup)
       machine_(setup.machine), rate_{setup.bits_per_second > 0 ? setup.bits_per_second / 8 : INFINITY},
       plane_(setup.viewport), tiles_(make_uniform_tiling(plane_, plane_.pixel_depth()).tiles), rendered_(tiles_.size()),
       displayed_(tiles_.size()), picture_(setup.viewport.width, setup.viewport.height),
-      pixels_(picture_.rgba.size() / 4) {}
+      pixels_(picture_.rgba.size() / 4) {
+    for (std::size_t i = 0; i < tiles_.size(); ++i) {
+        displayed_[i].tile = tiles_[i];
+    }
+}
 
 ServerStep WholeFrame::render(StepInput const& input) {
     ServerStep step;
@@ -56,6 +60,18 @@ void place_framelet(DisplayFramelet const& framelet, ImagePlane const& plane, Pi
             pixel[2] = framelet.blue[i];
             pixel[3] = 255;
         }
+    }
+}
+
+void take_framelet(Picture const& picture, ImagePlane const& plane, DisplayFramelet& framelet) {
+    PixelRect const rect = plane.tile_rect(framelet.tile);
+    for (std::uint32_t i = 0; i < framelet_samples; ++i) {
+        int const x = std::min(rect.left + static_cast<int>(morton_x(i)), picture.width - 1);
+        int const y = std::min(rect.top + static_cast<int>(morton_y(i)), picture.height - 1);
+        std::uint8_t const* const pixel = picture.row(y) + static_cast<std::ptrdiff_t>(x) * 4;
+        framelet.red[i] = pixel[0];
+        framelet.green[i] = pixel[1];
+        framelet.blue[i] = pixel[2];
     }
 }
 

@@ -15,7 +15,10 @@ public:
 
     /// Renders every pixel of the view. Seconds: render, and the tone curve under `encode`.
     ServerStep render(StepInput const& input);
+    /// One for each tile of the picture, from the beginning on; before `render` only their tiles are set.
     std::vector<DisplayFramelet> const& framelets() const { return displayed_; }
+    /// The same before exposure, with depths and bodies.
+    std::vector<Framelet> const& rendered() const { return rendered_; }
     /// The same as a picture.
     Picture const& picture();
 
@@ -40,5 +43,8 @@ private:
 
 /// Writes a framelet of one sample a pixel to its place.
 void place_framelet(DisplayFramelet const& framelet, ImagePlane const& plane, Picture& picture);
+
+/// Reads the framelet's samples from there; beyond the picture's border its last pixels repeat.
+void take_framelet(Picture const& picture, ImagePlane const& plane, DisplayFramelet& framelet);
 
 } // namespace framelet::bench

@@ -1,0 +1,109 @@
+// Methods whose viewer moves what it holds: the camera's own motion, and whole frames with depth beside those without.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "tests/evaluation/comparison.h"
+#include "tests/evaluation/link_turn.h"
+
+namespace framelet::bench {
+namespace {
+
+std::filesystem::path const source = FRAMELET_SOURCE_DIR;
+
+RunParameters small_run() {
+    RunParameters parameters;
+    parameters.viewport = {96, 64};
+    parameters.seconds = 0.5;
+    parameters.reference_rate = 20;
+    return parameters;
+}
+
+class Warp : public testing::Test {
+protected:
+    CostTable costs = read_cost_table(source / "tests/evaluation/costs.json");
+    std::filesystem::path cache =
+        std::filesystem::temp_directory_path() / ("framelet-warp-" + std::to_string(getpid()));
+
+    void TearDown() override { std::filesystem::remove_all(cache); }
+
+    std::vector<MethodRecord> records(BenchScene& scene, std::vector<std::string> const& methods,
+                                      RunParameters const& p) {
+        Reference const truth(scene, {p.viewport, p.seconds, p.reference_rate, 3}, cache);
+        return compare_methods(scene, truth, methods, p, costs).records;
+    }
+};
+
+TEST(CameraTurn, GoesBackAndForthAtOneSpeed) {
+    CameraTurn const turn{90, 30};
+    EXPECT_EQ(turned_degrees(turn, -1), 0);
+    EXPECT_EQ(turned_degrees(turn, 0), 0);
+    EXPECT_NEAR(turned_degrees(turn, 0.1), 9, 1e-9);
+    EXPECT_NEAR(turned_degrees(turn, 1 / 3.0), 30, 1e-9);
+    EXPECT_NEAR(turned_degrees(turn, 2 / 3.0), 0, 1e-9);
+    EXPECT_NEAR(turned_degrees(turn, 1), -30, 1e-9);
+    EXPECT_NEAR(turned_degrees(turn, 4 / 3.0 + 0.1), 9, 1e-9);
+    Camera const camera = look_at({1, 2, 3}, {5, 2, 3}, {0, 1, 0}, 1);
+    Camera const after = turned(camera, turn, 1 / 3.0);
+    EXPECT_NEAR(glm::dot(after.forward(), camera.forward()), std::cos(glm::radians(30.0f)), 1e-5f);
+    EXPECT_NEAR(glm::dot(after.up(), camera.up()), 1, 1e-5f);
+    EXPECT_LT(glm::dot(after.forward(), camera.right()), 0) << "to the left";
+    EXPECT_EQ(turned(camera, {}, 1), camera);
+}
+
+TEST(PictureLag, IsFoundWhateverTheErrorIs) {
+    std::vector<Picture> truth;
+    std::vector<Picture> shown;
+    for (int i = 0; i < 30; ++i) {
+        Picture picture(16, 16);
+        for (std::size_t byte = 0; byte < picture.rgba.size(); ++byte) {
+            picture.rgba[byte] =
+                static_cast<std::uint8_t>(128 + 80 * std::sin(0.1 * static_cast<double>(byte) + 0.3 * i));
+        }
+        truth.push_back(picture);
+        Picture late = truth[static_cast<std::size_t>(std::max(i - 4, 0))];
+        for (std::size_t byte = 0; byte < late.rgba.size(); byte += 3) {
+            late.rgba[byte] ^= 7;
+        }
+        shown.push_back(late);
+    }
+    EXPECT_EQ(picture_lag(shown, truth, 12), 4u);
+    EXPECT_EQ(picture_lag(truth, truth, 12), 0u);
+}
+
+TEST_F(Warp, FramesThatStandStillAreShownAsTheyCame) {
+    auto const scene = load_bench_scene(source / "scenes/teleport.glb"); // nothing moves until the camera cuts
+    auto const found = records(*scene, {"framed+h264", "framed+warp"}, small_run());
+    EXPECT_NEAR(found[1].measures[0].mse, found[0].measures[0].mse, 0.05 * found[0].measures[0].mse);
+    EXPECT_LT(mean_squared_error(found[1].sample, found[0].sample), 1e-5);
+}
+
+TEST_F(Warp, FramesAreMovedToWhereTheCameraIs) {
+    auto const scene = load_bench_scene(source / "scenes/vehicle_chase.glb");
+    RunParameters parameters = small_run();
+    parameters.link = {.bits_per_second = 20e6, .delay_seconds = 0.05};
+    auto const found = records(*scene, {"framed+h264", "framed+warp"}, parameters);
+    EXPECT_LT(mean_mse(found[1]), 0.6 * mean_mse(found[0]));
+    // Shapes and tracks travel as well, within the same limit.
+    EXPECT_GT(found[1].run.bytes, found[0].run.bytes);
+}
+
+/// The link is so long that nothing of the run knows of the turn.
+TEST_F(Warp, ATurnShowsBeforeAnyMessageKnowsOfIt) {
+    auto const scene = load_bench_scene(source / "scenes/teleport.glb");
+    scene->turn = {.degrees_per_second = 30, .reach_degrees = 30};
+    RunParameters parameters = small_run();
+    parameters.seconds = 0.3;
+    parameters.link.delay_seconds = 0.3;
+    auto const found = records(*scene, {"framed+h264", "framed+warp", "framelet"}, parameters);
+    for (std::size_t i = 2; i < found[0].measures.size(); ++i) {
+        EXPECT_LT(found[1].measures[i].mse, 0.5 * found[0].measures[i].mse) << i;
+        EXPECT_LT(found[2].measures[i].mse, 0.5 * found[0].measures[i].mse) << i;
+    }
+}
+
+} // namespace
+} // namespace framelet::bench
