@@ -49,8 +49,8 @@ struct CachedFramelet {
 /// of the same batch, the finer one. A framelet of which nothing shows is dropped, so at most one framelet is held for
 /// each 4x4 pixels of the viewport. Cameras make no difference to what is dropped: places are those of each framelet's
 /// own image plane, since the newest camera is never far from the one that is displayed, and the only framelet of a
-/// place is never dropped. At most 1.9 KB are held for each 4x4 pixels (109 MB at 1280x720). Changes are counted in
-/// blocks of 16x16 pixels, aligned to the picture's corner.
+/// place is never dropped. At most 2.1 KB are held for each 4x4 pixels (121 MB at 1280x720), whatever the batches bring.
+/// Changes are counted in blocks of 16x16 pixels, aligned to the picture's corner.
 class FrameletCache {
 public:
     static constexpr int block_side = framelet_side;

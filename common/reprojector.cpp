@@ -240,6 +240,19 @@ void Reprojector::count_holes(Picture const& picture) {
     hole_share_ = static_cast<double>(holes) / (static_cast<double>(picture.width) * picture.height);
 }
 
+bool Reprojector::is_beside_hole(int column, int row) const {
+    for (int y = std::max(row - 1, 0); y < std::min(row + 2, plan_.rows()); ++y) {
+        for (int x = std::max(column - 1, 0); x < std::min(column + 2, plan_.columns()); ++x) {
+            if (blocks_[static_cast<std::size_t>(y) * static_cast<std::size_t>(plan_.columns()) +
+                        static_cast<std::size_t>(x)]
+                    .holes > 0) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
 /// Holes depend on all that surrounds them, so all of them are filled again.
 void Reprojector::fill(Picture& picture) {
     if (hole_share_ == 0) {
@@ -247,14 +260,25 @@ void Reprojector::fill(Picture& picture) {
     }
     int const columns = plan_.columns();
     means_.make(block_means_, columns, plan_.rows());
-    tbb::parallel_for(0, plan_.rows(), [&](int row) {
-        for (int column = 0; column < columns; ++column) {
-            auto const index =
-                static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
-            if (blocks_[index].holes > 0) {
-                fill_holes(means_, inverse_depth_, column, row, picture);
-                painted_[index] = 1;
+    cells_.resize(blocks_.size());
+    auto const for_each_block = [&](auto const& work) {
+        tbb::parallel_for(0, plan_.rows(), [&](int row) {
+            for (int column = 0; column < columns; ++column) {
+                work(column, row,
+                     static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+                         static_cast<std::size_t>(column));
             }
+        });
+    };
+    for_each_block([&](int column, int row, std::size_t index) {
+        if (is_beside_hole(column, row)) {
+            cells_[index] = far_cells(inverse_depth_, picture, column, row);
+        }
+    });
+    for_each_block([&](int column, int row, std::size_t index) {
+        if (blocks_[index].holes > 0) {
+            fill_holes(means_, cells_, inverse_depth_, column, row, picture);
+            painted_[index] = 1;
         }
     });
 }

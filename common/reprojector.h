@@ -51,6 +51,7 @@ private:
                       BodyMotions const& motions, int column, int row, std::vector<PatchView>& patches,
                       Picture& picture);
     void count_holes(Picture const& picture);
+    bool is_beside_hole(int column, int row) const;
     void fill(Picture& picture);
 
     bool has_shown_ = false;
@@ -61,6 +62,7 @@ private:
     std::vector<FarMean> block_means_;
     std::vector<std::uint8_t> painted_; ///< a flag for each block
     FarMeans means_;
+    std::vector<FarCells> cells_; ///< of blocks with holes and those beside them
     std::vector<float> inverse_depth_;
 };
 

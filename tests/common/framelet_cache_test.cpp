@@ -10,6 +10,9 @@
 namespace framelet {
 namespace {
 
+/// As FrameletCache states it, for each 4x4 pixels.
+constexpr std::size_t most_bytes_per_framelet = 2100;
+
 /// What shows at every finest cell, by the definition: the highest batch, of equals the finest.
 std::map<std::pair<int, int>, Tile> shown_cells(ImagePlane const& plane, std::vector<Batch> const& batches) {
     std::map<std::pair<int, int>, std::pair<std::uint64_t, Tile>> cells;
@@ -187,6 +190,57 @@ TEST(FrameletCache, ChangesAreRectanglesOfBlocksAndAreTakenOnce) {
     EXPECT_FALSE(cache.has_changes());
     cache.take_changed(changed);
     EXPECT_TRUE(changed.empty());
+}
+
+/// Whatever comes in whatever order from wherever: a place that has shown something goes on showing something.
+TEST(FrameletCache, NeverDropsTheOnlyContentOfAPlace) {
+    ImagePlane const plane({130, 70});
+    std::mt19937 random(31);
+    std::vector<Batch> batches = random_batches(plane, random, 200, 6);
+    for (Batch& batch : batches) {
+        batch.view.number = random() % 9;
+        batch.view.camera.position.x = static_cast<float>(batch.view.number);
+        batch.scene_time = static_cast<double>(random() % 5);
+    }
+    std::shuffle(batches.begin(), batches.end(), random);
+    FrameletCache cache(plane);
+    std::set<std::pair<int, int>> covered;
+    for (Batch const& batch : batches) {
+        cache.insert(batch);
+        std::set<std::pair<int, int>> now;
+        for (Tile const tile : held_tiles(cache)) {
+            PixelRect const rect = plane.tile_rect(tile);
+            for (int y = rect.top; y < std::min(rect.bottom, plane.viewport().height); y += 4) {
+                for (int x = rect.left; x < std::min(rect.right, plane.viewport().width); x += 4) {
+                    now.emplace(x, y);
+                }
+            }
+        }
+        ASSERT_TRUE(std::ranges::includes(now, covered));
+        covered = std::move(now);
+    }
+    EXPECT_GT(covered.size(), 300U);
+}
+
+/// The most that can be held: the finest framelets everywhere, each of its own view, no sample on a layer.
+TEST(FrameletCache, MemoryIsBounded) {
+    ImagePlane const plane({320, 192});
+    std::vector<Tile> const tiles = visible_tiles(plane, plane.max_depth());
+    FrameletShape loose;
+    loose.layer_of.fill(FrameletShape::loose);
+    loose.loose_samples.resize(framelet_samples);
+    FrameletCache cache(plane);
+    std::uint64_t number = 0;
+    for (int round = 0; round < 3; ++round) {
+        for (Tile const tile : tiles) {
+            Batch batch = make_batch(plane, ++number, {constant_framelet(plane, tile, 9)});
+            batch.view.number = number;
+            batch.shapes.push_back(loose);
+            cache.insert(batch);
+        }
+        EXPECT_EQ(cache.framelet_count(), tiles.size());
+        EXPECT_LE(cache.memory_bytes(), most_bytes_per_framelet * tiles.size());
+    }
 }
 
 TEST(FrameletCache, SteadyStateAllocatesNothing) {
