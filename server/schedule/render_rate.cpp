@@ -8,7 +8,7 @@ RenderRate update_render_rate(RenderRate rate, double samples, double seconds) {
     if (!(seconds > 0) || !(samples > 0)) {
         return rate;
     }
-    constexpr double memory_seconds = 0.1;
+    constexpr double memory_seconds = 0.25;
     double const measured = samples / seconds;
     if (rate.samples_per_second <= 0) {
         return {measured};

@@ -8,7 +8,7 @@ struct RenderRate {
     double samples_per_second = 0;
 };
 
-/// Takes a batch into account. Short batches weigh less: the estimate follows the last tenth of a second or so.
+/// Takes a batch into account. Short batches weigh less: the estimate follows the last quarter of a second or so.
 RenderRate update_render_rate(RenderRate rate, double samples, double seconds);
 
 } // namespace framelet
