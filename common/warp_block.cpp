@@ -59,18 +59,18 @@ void merge_row(Candidate const& row, std::int32_t group, float tolerance, std::s
     }
 }
 
-void paint_layer(WarpPatch const& patch, int left, int top, PatchSampler& sampler, Layers& layers) {
-    PixelRect const& box = patch.box;
-    PixelRect area{0, std::max(box.top - top, 0), side, std::min(box.bottom - top, side)};
-    area.left = box.left - left >= lanes ? lanes : 0;
-    area.right = box.right - left <= lanes ? lanes : side;
-    if (!sampler.turn_to(patch, {left + area.left, top + area.top, left + area.right, top + area.bottom})) {
-        return;
-    }
+void paint_layer(WarpPatch const& patch, int left, int top, Layers& layers) {
     Candidate half;
-    for (int y = area.top; y < area.bottom; ++y) {
-        for (int x = area.left; x < area.right; x += lanes) {
-            sampler.sample(left + x, top + y, half);
+    int const last_row = std::min(patch.box.bottom - top, side);
+    for (int x = 0; x < side; x += lanes) {
+        auto const first = static_cast<float>(patch.box.left - left - x);
+        auto const last = static_cast<float>(patch.box.right - left - x);
+        if (first >= lanes || last <= 0) {
+            continue;
+        }
+        for (int y = std::max(patch.box.top - top, 0); y < last_row; ++y) {
+            sample_patch(patch, static_cast<float>(left + x - patch.box.left),
+                         static_cast<float>(top + y - patch.box.top), first, last, half);
             merge_row(half, patch.group, patch.tolerance, static_cast<std::size_t>(y * side + x), layers);
         }
     }
@@ -131,7 +131,6 @@ void paint_warped_block(std::span<PatchView const> patches, int column, int row,
     int const left = column * side;
     int const top = row * side;
     Layers layers;
-    PatchSampler sampler;
     for (auto* const plane : {&layers.red, &layers.green, &layers.blue, &layers.weight}) {
         plane->fill(0);
     }
@@ -144,7 +143,7 @@ void paint_warped_block(std::span<PatchView const> patches, int column, int row,
                 paint_splat(view.splats[patch.first_splat + k], patch.group, left, top, layers);
             }
         } else {
-            paint_layer(patch, left, top, sampler, layers);
+            paint_layer(patch, left, top, layers);
         }
     }
     finish(layers, viewport.width - left, viewport.height - top, block);
