@@ -94,19 +94,28 @@ void read_block(std::span<float const> inverse_depth, Picture const& picture, in
     }
 }
 
+/// Of what lies outside of the picture.
+FarCells const no_cells = [] {
+    FarCells out{};
+    out.twos.inverse_depth.fill(FarMean::nothing);
+    out.fours.inverse_depth.fill(FarMean::nothing);
+    out.eights.inverse_depth.fill(FarMean::nothing);
+    return out;
+}();
+
 /// The cells of blocks in a picture.
 struct CellsAround {
     std::span<FarCells const> cells;
     int columns, rows; ///< of blocks
     int column, row; ///< the one in the middle
 
-    FarCells const* at(int dx, int dy) const {
+    FarCells const& at(int dx, int dy) const {
         int const x = column + dx;
         int const y = row + dy;
         bool const inside = x >= 0 && y >= 0 && x < columns && y < rows;
-        return inside ? &cells[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) +
-                               static_cast<std::size_t>(x)]
-                      : nullptr;
+        return inside ? cells[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) +
+                              static_cast<std::size_t>(x)]
+                      : no_cells;
     }
 };
 
@@ -120,14 +129,16 @@ void read_window(CellsAround const& around, FarGrid<n / 2> FarCells::*level, Far
         int const y1 = std::min(n - margin, before + (dy + 1) * side);
         for (int dx = -1; dx <= 1; ++dx) {
             int const x0 = std::max(margin, before + dx * side);
-            int const x1 = std::min(n - margin, before + (dx + 1) * side);
-            FarCells const* const block = around.at(dx, dy);
+            auto const count = static_cast<std::size_t>(std::min(n - margin, before + (dx + 1) * side) - x0);
+            FarGrid<n / 2> const& block = around.at(dx, dy).*level;
             for (int y = y0; y < y1; ++y) {
-                for (int x = x0; x < x1; ++x) {
-                    int const from = (y - before - dy * side) * side + x - before - dx * side;
-                    FarMean const nothing{};
-                    put(block == nullptr ? nothing : mean_at(block->*level, static_cast<std::size_t>(from)),
-                        static_cast<std::size_t>(y * n + x), window);
+                auto const from = static_cast<std::size_t>((y - before - dy * side) * side + x0 - before - dx * side);
+                auto const to = static_cast<std::size_t>(y * n + x0);
+                for (std::size_t i = 0; i < count; ++i) {
+                    window.red[to + i] = block.red[from + i];
+                    window.green[to + i] = block.green[from + i];
+                    window.blue[to + i] = block.blue[from + i];
+                    window.inverse_depth[to + i] = block.inverse_depth[from + i];
                 }
             }
         }
