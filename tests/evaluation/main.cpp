@@ -24,6 +24,7 @@
 #include "tests/evaluation/response_cost.h"
 #include "tests/evaluation/sensitivity.h"
 #include "tests/evaluation/stability.h"
+#include "tests/evaluation/stillness.h"
 #include "tests/evaluation/table.h"
 #include "tests/evaluation/verbs.h"
 #include "tests/evaluation/wall.h"
@@ -63,6 +64,7 @@ struct Options {
     framelet::bench::LayerStudy layers;
     framelet::bench::AntialiasingStudy antialiasing;
     framelet::bench::CorrespondenceStudy correspondence;
+    framelet::bench::StillnessStudy stillness;
     framelet::bench::WallOptions wall{.server_threads =
                                           std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1)};
 };
@@ -208,6 +210,16 @@ void add_correspondence_options(CLI::App& verb, Options& options) {
         ->capture_default_str();
 }
 
+void add_stillness_options(CLI::App& verb, Options& options) {
+    add_output_options(verb, options);
+    add_size_option(verb, options);
+    add_machine_options(verb, options);
+    add_link_options(verb, options);
+    verb.add_option("--scene", options.stillness.scenes, "Scene files to measure with (default: all of the project's)");
+    verb.add_option("--seconds", options.seconds, "How long it is watched after the stop")
+        ->check(CLI::Range(1.0, 600.0));
+}
+
 void add_wall_options(CLI::App& verb, Options& options) {
     add_study_options(verb, options);
     add_link_options(verb, options);
@@ -309,6 +321,15 @@ json correspondence(Options& options) {
     return framelet::bench::measure_correspondence(study);
 }
 
+json stillness(Options& options) {
+    settle(options,
+           options.quick ? Scale{.size = 128, .seconds = 2, .rate = 20} : Scale{.size = 512, .seconds = 4, .rate = 20});
+    if (options.stillness.scenes.empty()) {
+        options.stillness.scenes = bundled_scenes();
+    }
+    return framelet::bench::measure_stillness(options.stillness, options.study);
+}
+
 json layers(Options& options) {
     auto& study = options.layers;
     if (study.scenes.empty()) {
@@ -391,6 +412,8 @@ int main(int argc, char** argv) {
              add_layer_options, [&options] { return layers(options); });
     add_verb("correspondence", "How far off the viewer shows what it moves", add_correspondence_options,
              [&options] { return correspondence(options); });
+    add_verb("stillness", "How good the picture gets once everything stands still, how soon, and what is sent then",
+             add_stillness_options, [&options] { return stillness(options); });
     add_verb("calibrate", "What every stage costs on this machine", add_scene_options,
              with_scene([&options](BenchScene& scene) { return calibrate(scene, options.quick); }));
     add_verb("codec", "Bytes of a sample against the error of what is decoded, for each way of coding framelets",

@@ -36,7 +36,8 @@ public:
             // What is seen at a time was begun when the picture before it was done.
             double const now = reference_time(parameters_, next_);
             double const begun = std::max(0.0, now - last_.seconds.viewer() * viewer_machine_);
-            last_ = method_.present({1, camera_at(scene_, begun), parameters_.viewport}, begun);
+            SceneTime const time = scene_time(parameters_, begun);
+            last_ = method_.present({1, camera_at(scene_, time), parameters_.viewport}, time);
             presenting_ += viewer_machine_ * last_.seconds.viewer() * display_rate / parameters_.reference_rate;
             hand_out(method_.picture(), method_.mean_sample_time());
         }
@@ -54,7 +55,7 @@ public:
 
 private:
     void hand_out(Picture const& shown, double sample_time) {
-        double const age = reference_time(parameters_, next_) - sample_time;
+        double const age = scene_time(parameters_, reference_time(parameters_, next_)) - sample_time;
         on_reference_time_(next_++, shown, age);
     }
 
@@ -81,6 +82,10 @@ std::size_t reference_count(RunParameters const& parameters) {
 
 double reference_time(RunParameters const& parameters, std::size_t index) {
     return static_cast<double>(index) / parameters.reference_rate;
+}
+
+SceneTime scene_time(RunParameters const& parameters, double now) {
+    return std::clamp(now, 0.0, parameters.scene_stops);
 }
 
 double machine_factor(BenchScene& scene, RunParameters const& parameters, CostTable const& costs) {
@@ -136,11 +141,11 @@ RunResult run_method(BenchScene& scene, Method& method, RunParameters const& par
             now = answers.empty() ? now + idle_seconds : std::min(now + idle_seconds, answers.front().when);
             continue;
         }
-        SceneTime const time = std::max(0.0, now);
+        SceneTime const time = scene_time(parameters, now);
         pose_at(scene, time);
         // The camera is the viewer's: the server knows it as it was when it set out.
         Camera const camera = parameters.link.delay_seconds > 0
-                                  ? camera_at(scene, std::max(0.0, now - parameters.link.delay_seconds))
+                                  ? camera_at(scene, scene_time(parameters, now - parameters.link.delay_seconds))
                                   : scene.camera;
         StepInput const input{scene, time, now, {1, camera, parameters.viewport}, link.backlog_bytes(now), delivered};
         ServerStep const step = method.produce(input);

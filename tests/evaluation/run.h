@@ -6,6 +6,7 @@
 // viewer is one processor of the calibrated machine, of its own.
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <vector>
 
@@ -27,12 +28,16 @@ struct RunParameters {
     std::uint64_t seed = 1;
     double bias = 0; ///< -1 (spatial fidelity) .. 1 (temporal)
     std::size_t batch_framelets = 0; ///< as in MethodSetup
+    double scene_stops = INFINITY; ///< from then on scene and camera stand still
 };
 
 /// The scene stands still for this long before the run, so that every method starts from a finished picture.
 double lead_seconds(RunParameters const& parameters);
 std::size_t reference_count(RunParameters const& parameters);
 double reference_time(RunParameters const& parameters, std::size_t index);
+
+/// What the scene's clock says at a time of the run's.
+SceneTime scene_time(RunParameters const& parameters, double now);
 
 /// How many times slower than the calibrated machine one is that renders and encodes whole frames of this scene, at one
 /// sample a pixel, at the rate of the parameters.

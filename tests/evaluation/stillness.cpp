@@ -1,0 +1,112 @@
+#include "tests/evaluation/stillness.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include <nlohmann/json.hpp>
+
+#include "common/error.h"
+#include "tests/evaluation/charts/charts.h"
+#include "tests/evaluation/measures/measures.h"
+
+namespace framelet::bench {
+namespace {
+
+using nlohmann::json;
+
+/// The first second moves most; after two the picture should be good.
+constexpr double listed_seconds[] = {0.25, 0.5, 1, 2, 4};
+
+struct Still {
+    std::vector<double> seconds; ///< since the stop
+    std::vector<double> psnr;
+    double last_second_bytes = 0;
+
+    /// At the last measurement not after `after` seconds.
+    double at(double after) const {
+        auto const next = std::ranges::upper_bound(seconds, after + 1e-6);
+        return psnr[static_cast<std::size_t>(std::max<std::ptrdiff_t>(next - seconds.begin(), 1) - 1)];
+    }
+
+    /// The most that it was ever below what it had been, dB.
+    double most_fall() const {
+        double best = psnr.front(), fall = 0;
+        for (double const value : psnr) {
+            best = std::max(best, value);
+            fall = std::max(fall, best - value);
+        }
+        return fall;
+    }
+};
+
+Still watch(BenchScene& scene, StillnessStudy const& study, StudyOptions const& options) {
+    RunParameters run = options.run;
+    run.seconds += study.stops;
+    run.scene_stops = study.stops;
+    double const machine = machine_factor(scene, options.run, options.costs);
+    pose_at(scene, study.stops);
+    Picture const reference = render_reference(scene, run.viewport, study.reference_side);
+    auto const method =
+        make_method("framelet", {run.viewport, options.costs, machine, run.frames_per_second, run.link.bits_per_second,
+                                 run.seed, run.link.delay_seconds, run.bias, run.batch_framelets});
+    Still still;
+    RunResult const result =
+        run_method(scene, *method, run, machine, [&](std::size_t index, Picture const& shown, double) {
+            double const since = reference_time(run, index) - study.stops;
+            if (since >= 0) {
+                still.seconds.push_back(since);
+                still.psnr.push_back(psnr_from_mse(mean_squared_error(shown, reference)));
+            }
+        });
+    for (RunResult::Delivery const& delivery : result.deliveries) {
+        still.last_second_bytes += delivery.sent > run.seconds - 1 ? delivery.bytes : 0;
+    }
+    return still;
+}
+
+} // namespace
+
+json measure_stillness(StillnessStudy const& study, StudyOptions const& options) {
+    FRAMELET_CHECK(options.run.seconds >= 1);
+    Viewport const viewport = options.run.viewport;
+    std::printf("%dx%d, %.0f whole frames a second; PSNR [dB] after everything has come to rest\n", viewport.width,
+                viewport.height, options.run.frames_per_second);
+    std::printf("%-18s", "after [s]");
+    for (double const after : listed_seconds) {
+        std::printf("  %6.2f", after);
+    }
+    std::printf("     end  falls [dB]  bytes in the last second\n");
+    json rows = json::array();
+    Curves curves{.title = "PSNR after everything has come to rest",
+                  .x_title = "time since [s]",
+                  .y_title = "PSNR [dB]",
+                  .points = false,
+                  .curves = {}};
+    for (std::filesystem::path const& file : study.scenes) {
+        auto const scene = load_bench_scene(file);
+        Still const still = watch(*scene, study, options);
+        std::printf("%-18s", scene->name.c_str());
+        json psnr = json::array();
+        for (double const after : listed_seconds) {
+            if (after <= options.run.seconds) {
+                std::printf("  %6.2f", still.at(after));
+                psnr.push_back({{"after_seconds", after}, {"psnr", still.at(after)}});
+            }
+        }
+        std::printf("  %6.2f  %10.3f  %24.0f\n", still.psnr.back(), still.most_fall(), still.last_second_bytes);
+        std::fflush(stdout);
+        rows.push_back({{"scene", scene->name},
+                        {"psnr", psnr},
+                        {"final_psnr", still.psnr.back()},
+                        {"most_fall_db", still.most_fall()},
+                        {"last_second_bytes", still.last_second_bytes}});
+        curves.curves.push_back({scene->name, still.seconds, still.psnr});
+    }
+    if (!options.charts.empty()) {
+        std::filesystem::create_directories(options.charts);
+        draw(curves, options.charts / "stillness");
+    }
+    return rows;
+}
+
+} // namespace framelet::bench
