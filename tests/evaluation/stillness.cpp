@@ -1,12 +1,15 @@
 #include "tests/evaluation/stillness.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 
 #include <nlohmann/json.hpp>
 
 #include "common/error.h"
+#include "common/picture_writer.h"
 #include "tests/evaluation/charts/charts.h"
+#include "tests/evaluation/charts/side_by_side.h"
 #include "tests/evaluation/measures/measures.h"
 
 namespace framelet::bench {
@@ -22,6 +25,8 @@ struct Still {
     double last_sent = 0; ///< seconds since the stop
     double bytes = 0; ///< since the stop
     double last_second_bytes = 0;
+    Picture reference;
+    Picture last;
 };
 
 Still watch(BenchScene& scene, StillnessStudy const& study, StudyOptions const& options) {
@@ -30,19 +35,20 @@ Still watch(BenchScene& scene, StillnessStudy const& study, StudyOptions const& 
     run.scene_stops = study.stops;
     double const machine = machine_factor(scene, options.run, options.costs);
     pose_at(scene, study.stops);
-    Picture const reference = render_reference(scene, run.viewport, study.reference_side);
+    Still still;
+    still.reference = render_reference(scene, run.viewport, study.reference_side);
     auto const method =
         make_method("framelet", {run.viewport, options.costs, machine, run.frames_per_second, run.link.bits_per_second,
                                  run.seed, run.link.delay_seconds, run.bias, run.batch_framelets});
-    Still still;
     RunResult const result =
         run_method(scene, *method, run, machine, [&](std::size_t index, Picture const& shown, double) {
             double const since = reference_time(run, index) - study.stops;
             if (since >= 0) {
                 still.quality.seconds.push_back(since);
-                still.quality.psnr.push_back(psnr_from_mse(mean_squared_error(shown, reference)));
+                still.quality.psnr.push_back(psnr_from_mse(mean_squared_error(shown, still.reference)));
             }
         });
+    still.last = method->picture();
     for (RunResult::Delivery const& delivery : result.deliveries) {
         if (delivery.sent > study.stops) {
             still.last_sent = delivery.sent - study.stops;
@@ -51,6 +57,15 @@ Still watch(BenchScene& scene, StillnessStudy const& study, StudyOptions const& 
         still.last_second_bytes += delivery.sent > run.seconds - 1 ? delivery.bytes : 0;
     }
     return still;
+}
+
+/// What is shown in the end, beside the reference.
+void write_last(std::filesystem::path const& folder, std::string const& scene, Still const& still) {
+    std::array<char, 32> label{};
+    std::snprintf(label.data(), label.size(), "in the end, %.1f dB", still.quality.psnr.back());
+    std::filesystem::create_directories(folder);
+    write_png(folder / (scene + "-still.png"),
+              side_by_side(still.reference, std::array{Labelled{label.data(), still.last}}));
 }
 
 } // namespace
@@ -106,10 +121,12 @@ json measure_stillness(StillnessStudy const& study, StudyOptions const& options)
                         {"last_sent_seconds", still.last_sent},
                         {"bytes", still.bytes},
                         {"last_second_bytes", still.last_second_bytes}});
+        if (!options.charts.empty()) {
+            write_last(options.charts, scene->name, still);
+        }
         curves.curves.push_back({scene->name, still.quality.seconds, still.quality.psnr});
     }
     if (!options.charts.empty()) {
-        std::filesystem::create_directories(options.charts);
         draw(curves, options.charts / "stillness");
     }
     return rows;
