@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <functional>
 
 #include <tbb/parallel_for.h>
@@ -12,8 +11,6 @@
 namespace framelet {
 namespace {
 
-/// Of a cycle's samples, for probes: while the scene moves, what seems to stand is looked at now and then.
-constexpr double probe_share = 0.08;
 /// A probe's rays go together with none of their neighbours.
 constexpr double probe_cost = 2;
 /// A place is probed again after so many seconds, sooner beside something that moves.
@@ -21,7 +18,7 @@ constexpr double probe_period = 0.25;
 /// What should have been refreshed by then, and has not, is probed after so many.
 constexpr double most_unseen = 0.5;
 /// Mean squared error of the finest samples, as modelled, above which they are not enough of a still picture.
-float const enough = std::getenv("ENOUGH") ? std::strtof(std::getenv("ENOUGH"), nullptr) : 5e-5f; // XXX
+constexpr float enough = 5e-5f;
 /// A scene time that jumps by more than this over what has passed has been set.
 constexpr double most_time_step = 0.5;
 
@@ -133,7 +130,7 @@ void AdaptiveRefresh::plan_cycle(RefreshInput const& input, RefreshPlan& plan) {
     cycle_budget_ = input.samples_per_second * cycle_seconds_;
     double samples = cycle_budget_;
     if (scene_moves_) {
-        plan_probes(probe_share * samples, plan);
+        plan_probes(input.limits.probe_share * samples, plan);
         samples -= probe_cost * static_cast<double>(plan.probes.size());
         samples -= plan_inspections(input);
     }
@@ -149,7 +146,8 @@ void AdaptiveRefresh::plan_cycle(RefreshInput const& input, RefreshPlan& plan) {
 /// Before all else of the cycle, so that they are not what is cut off when it takes longer than expected. Returns what
 /// they cost.
 double AdaptiveRefresh::plan_inspections(RefreshInput const& input) {
-    Budget const budget{input.samples_per_second, input.cycle_seconds, input.delivery_seconds, input.bias};
+    Budget const budget{input.samples_per_second, input.cycle_seconds, input.delivery_seconds, input.bias,
+                        input.limits};
     select_inspections(field_, advanced_, budget, suspects_, cycle_);
     double tiles = 0;
     for (Patch const& patch : cycle_) {
@@ -191,7 +189,7 @@ void AdaptiveRefresh::plan_patches(RefreshInput const& input, double samples) {
     double const batch_samples = static_cast<double>(batch_limit(input, still_) * framelet_samples);
     double const rendering = std::min(batch_samples, samples) / input.samples_per_second;
     Budget const budget{samples / static_cast<double>(input.cycle_seconds), input.cycle_seconds,
-                        static_cast<float>(rendering) + input.delivery_seconds, input.bias};
+                        static_cast<float>(rendering) + input.delivery_seconds, input.bias, input.limits};
     find_due_errors(field_, budget, due_errors_);
     price_ = solve_price(field_, advanced_, budget, due_errors_, price_, choices_);
     density_.assign(field_.size(), 0);

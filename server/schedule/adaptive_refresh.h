@@ -33,6 +33,7 @@ struct RefreshInput {
     /// nothing moves.
     std::size_t batch_framelets = 0;
     std::size_t link_framelets = max_batch_framelets; ///< most that the link takes at once
+    ResponseLimits limits{};
 };
 
 /// What to render now.

@@ -5,7 +5,6 @@
 namespace framelet {
 namespace {
 
-constexpr double inspection_share = 0.05;
 constexpr double least_inspection_period = 2;
 
 } // namespace
@@ -51,7 +50,7 @@ void select_patches(double samples, std::vector<RatedPatch>& rated) {
 double inspection_period(PlaceField const& field, Budget const& budget) {
     Viewport const viewport = field.plane().viewport();
     double const pixels = static_cast<double>(viewport.width) * viewport.height;
-    return std::max(least_inspection_period, pixels / (inspection_share * budget.samples_per_second));
+    return std::max(least_inspection_period, pixels / (budget.limits.inspection_share * budget.samples_per_second));
 }
 
 void select_inspections(PlaceField const& field, double now, Budget const& budget, std::vector<std::uint32_t>& scratch,
@@ -67,7 +66,8 @@ void select_inspections(PlaceField const& field, double now, Budget const& budge
     std::sort(scratch.begin(), scratch.end(), [&field](std::uint32_t a, std::uint32_t b) {
         return field[a].inspected != field[b].inspected ? field[a].inspected < field[b].inspected : a < b;
     });
-    double samples = inspection_share * budget.samples_per_second * static_cast<double>(budget.cycle_seconds);
+    double samples =
+        budget.limits.inspection_share * budget.samples_per_second * static_cast<double>(budget.cycle_seconds);
     for (std::uint32_t const index : scratch) {
         if (samples <= 0) {
             return;

@@ -6,8 +6,6 @@
 namespace framelet {
 namespace {
 
-constexpr float least_price = 1e-12f;
-constexpr float most_price = 1e3f;
 /// What is shown and no longer true should be renewed within so many cycles.
 constexpr double stale_cycles = 3;
 /// What is true but coarse can wait longer, seconds.
@@ -25,10 +23,11 @@ float expected_life(Place const& place, double now) {
 
 void choose_all(PlaceField const& field, double now, Budget const& budget, float price, Choices& choices) {
     SamplingPrice const terms{price, budget.latency, budget.cycle_seconds, budget.bias};
+    int const least_level = std::max(field.least_level(), budget.limits.least_level);
     for (std::uint32_t const index : field.visible()) {
         Place const& place = field[index];
         choices[index] =
-            choose_sampling(place.model, expected_life(place, now), terms, field.least_level(), sampling_levels - 1);
+            choose_sampling(place.model, expected_life(place, now), terms, least_level, budget.limits.most_level);
     }
 }
 
@@ -53,7 +52,8 @@ Demand demand_of(PlaceField const& field, Budget const& budget, std::span<float 
         steady += choice.recurring ? samples / static_cast<double>(choice.period) : 0;
         float const error = due[index];
         if (error > choice.due_error) {
-            bool const is_true = place.taken.level < 0 && place.level >= 0 && unresolved_error(place.model, place.level) > 0.5f * error;
+            bool const is_true =
+                place.taken.level < 0 && place.level >= 0 && unresolved_error(place.model, place.level) > 0.5f * error;
             (is_true ? coarse : stale) += samples;
         }
     }
@@ -65,6 +65,8 @@ float solve_price(PlaceField const& field, double now, Budget const& budget, std
                   float last_price, Choices& choices) {
     choices.resize(field.size());
     constexpr int most_steps = 4;
+    float const least_price = budget.limits.least_price;
+    float const most_price = budget.limits.most_price;
     float price = std::clamp(last_price, least_price, most_price);
     for (int step = 0;; ++step) {
         choose_all(field, now, budget, price, choices);

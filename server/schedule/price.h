@@ -10,11 +10,20 @@
 
 namespace framelet {
 
+/// What the response may use. The evaluation narrows it, to see what each part is worth.
+struct ResponseLimits {
+    int least_level = 0, most_level = sampling_levels - 1; ///< of what is chosen for a place
+    float least_price = 1e-12f, most_price = 1e3f;
+    double inspection_share = 0.05; ///< of the samples, for looking at all of the picture now and then
+    double probe_share = 0.08; ///< likewise, while the scene moves, for looking at a few samples of what seems to stand
+};
+
 struct Budget {
     double samples_per_second = 0;
     float cycle_seconds = 0.01f;
     float latency = 0; ///< seconds from rendering to display
     float bias = 0; ///< -1 (spatial fidelity) .. 1 (temporal)
+    ResponseLimits limits{};
 };
 
 /// For every place of a field, by Morton index; what is not visible keeps its default.

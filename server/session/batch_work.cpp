@@ -25,7 +25,7 @@ void BatchWork::render(SharedScene const& shared) {
     probes_.render(shared.render_scene, view.camera, view.viewport, order.state.exposure, order.plan.probes);
 }
 
-bool BatchWork::finish(SharedScene const& shared, BatchCodec& codec) {
+void BatchWork::learn(SharedScene const& shared) {
     ViewerState& viewer = *order.viewer;
     Laps laps;
     if (order.again) {
@@ -42,10 +42,17 @@ bool BatchWork::finish(SharedScene const& shared, BatchCodec& codec) {
         describe_shapes(shared);
     }
     record.stage_seconds.shape = laps.lap();
-    send(codec);
+    begin_batch();
+    complete_ = viewer.refresh.is_complete(order.state) && viewer.lossy.empty();
     record.framelets_sent = batch_.framelets.size();
     record.framelets_unchanged = needed_.size() - batch_.framelets.size();
-    return order.session->report(order.input.version, viewer.refresh.is_complete(order.state) && viewer.lossy.empty());
+}
+
+bool BatchWork::send(BatchCodec& codec) {
+    if (batch_.number > 0) {
+        order.session->send_batch(codec.encode(batch_));
+    }
+    return order.session->report(order.input.version, complete_);
 }
 
 void BatchWork::describe_shapes(SharedScene const& shared) {
@@ -56,7 +63,8 @@ void BatchWork::describe_shapes(SharedScene const& shared) {
     shapes.track(shared.scene, shared.clips, shared.render_scene.bodies(), order.state.scene_time, batch_.tracks);
 }
 
-void BatchWork::send(BatchCodec& codec) {
+void BatchWork::begin_batch() {
+    batch_.number = 0;
     batch_.framelets.clear();
     for (std::size_t i = 0; i < display_.size(); ++i) {
         if (needed_[i] != 0) {
@@ -69,7 +77,6 @@ void BatchWork::send(BatchCodec& codec) {
     batch_.number = order.session->begin_batch(static_cast<double>(batch_.framelets.size() * framelet_samples));
     batch_.view = order.state.view;
     batch_.scene_time = order.state.scene_time;
-    order.session->send_batch(codec.encode(batch_));
 }
 
 } // namespace framelet

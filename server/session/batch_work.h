@@ -53,14 +53,15 @@ public:
 
     /// Parallel on the calling TBB arena.
     void render(SharedScene const& shared);
-    /// What follows for what was rendered: learning, choice of quality, shapes, encoding, sending. Not while the
-    /// viewer's state is used otherwise. `codec` may keep scratch from batch to batch. Returns whether the viewer's
+    /// What was rendered: learning, choice of quality, shapes. Not while the viewer's state is used otherwise.
+    void learn(SharedScene const& shared);
+    /// What was learnt: encoding, sending. `codec` may keep scratch from batch to batch. Returns whether the viewer's
     /// picture has become complete, or is no longer.
-    bool finish(SharedScene const& shared, BatchCodec& codec);
+    bool send(BatchCodec& codec);
 
 private:
     void describe_shapes(SharedScene const& shared);
-    void send(BatchCodec& codec);
+    void begin_batch();
 
     tbb::enumerable_thread_specific<Framelet> fresh_;
     std::vector<Framelet> rendered_pool_; ///< as many as a batch ever had: making room for them costs time
@@ -69,7 +70,8 @@ private:
     std::span<DisplayFramelet> display_;
     ProbeRenderer probes_;
     std::vector<std::uint8_t> needed_; ///< whether the viewer gets it, of each
-    Batch batch_;
+    Batch batch_; ///< number 0: there is nothing to send
+    bool complete_ = false; ///< with it the viewer's picture is
 };
 
 } // namespace framelet

@@ -16,6 +16,13 @@ namespace {
 
 /// Samples a second of a renderer that has not been measured yet.
 constexpr double first_rate = 1e6;
+/// From so many threads on learning overlaps rendering. Its serial part would leave most of them idle; few are busy
+/// with its parallel part, which is cheaper while what was rendered is still in the caches.
+constexpr std::size_t many_threads = 5;
+
+std::size_t thread_count() {
+    return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+}
 
 } // namespace
 
@@ -23,10 +30,13 @@ constexpr double first_rate = 1e6;
 struct SessionLoop::Pipeline {
     std::array<BatchWork, 2> works;
     BatchWork* rendered = nullptr; ///< and not finished; null: none
+    bool learnt = false; ///< that one is
     BatchCodec codec;
     tbb::task_group finishing;
 
     BatchWork& free_work() { return works[rendered == works.data() ? 1 : 0]; }
+    bool is_of(ViewerState const& viewer) const { return rendered != nullptr && rendered->order.viewer == &viewer; }
+    bool is_unlearnt() const { return rendered != nullptr && !learnt; }
 };
 
 SessionLoop::SessionLoop(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene,
@@ -53,7 +63,7 @@ void SessionLoop::run() {
         }
         Sessions const sessions = events_.open_sessions();
         bool const rendered = cycle(sessions, std::chrono::steady_clock::now());
-        if (rendered) {
+        if (rendered || finish_rendered()) {
             continue;
         }
         // Nothing to do until a viewer or the clock says so. While the clock runs every display frame is worth a look.
@@ -93,7 +103,7 @@ bool SessionLoop::render_session(Session& session, ViewerState& viewer, SceneTim
     ViewState const state{resolve_camera(*input.camera), options_.exposure * std::exp2(input.settings.exposure_ev),
                           time};
     if (refresh.is_complete(state)) {
-        if (finish_rendered()) {
+        if (pipeline_->is_of(viewer) && finish_rendered()) {
             return true;
         }
         if (!viewer.lossy.empty()) {
@@ -104,8 +114,8 @@ bool SessionLoop::render_session(Session& session, ViewerState& viewer, SceneTim
         }
         return false;
     }
-    BatchWork const* const rendered = pipeline_->rendered;
-    if (!session.has_room(rendered != nullptr && rendered->order.viewer == &viewer ? 1 : 0)) {
+    bool const unsent = pipeline_->is_unlearnt() && pipeline_->is_of(viewer);
+    if (!session.has_room(unsent ? 1 : 0)) {
         waits_for_room_ = true;
         return finish_rendered();
     }
@@ -129,17 +139,27 @@ bool SessionLoop::render_session(Session& session, ViewerState& viewer, SceneTim
         describe(refresh, work.record);
         laps.lap();
     }
-    start_finishing();
+    if (pipeline_->is_unlearnt()) {
+        start_finishing();
+    }
     work.render(shared());
     work.record.stage_seconds.render = laps.lap();
     wait_for_finishing();
     work.record.stage_seconds.wait = laps.lap();
     pipeline_->rendered = &work;
+    pipeline_->learnt = false;
+    if (thread_count() < many_threads) {
+        work.learn(shared());
+        pipeline_->learnt = true;
+        start_finishing();
+    }
+    double const learning = laps.lap(); // by itself
 
     if (!work.order.plan.tiles.empty()) {
         // Planning left out: it takes as long for few samples, which would then seem to be dear.
         double const samples = static_cast<double>(work.order.plan.ray_count());
-        rate_ = update_render_rate(rate_, samples, work.record.stage_seconds.render + work.record.stage_seconds.wait);
+        rate_ = update_render_rate(rate_, samples,
+                                   work.record.stage_seconds.render + work.record.stage_seconds.wait + learning);
         samples_per_second_ = rate_.samples_per_second;
     }
     return true;
@@ -179,25 +199,27 @@ bool SessionLoop::send_exactly(Session& session, ViewerState& viewer, SessionInp
         return false;
     }
     constexpr std::size_t most_framelets = 1024;
+    finish_rendered();
     BatchWork& work = pipeline_->free_work();
     work.order = {session.shared_from_this(), &viewer, input, state, {}, exact_quality, true, true};
     viewer.lossy.list(std::min(bounded_batch(session.link()), most_framelets), work.order.plan.tiles);
     work.render(shared());
     pipeline_->rendered = &work;
+    pipeline_->learnt = false;
     return finish_rendered();
 }
 
 void SessionLoop::start_finishing() {
-    if (pipeline_->rendered == nullptr) {
-        return;
-    }
-    auto const finish = [this] {
-        if (pipeline_->rendered->finish(shared(), pipeline_->codec)) {
+    auto const finish = [this, learnt = pipeline_->learnt] {
+        if (!learnt) {
+            pipeline_->rendered->learn(shared());
+        }
+        if (pipeline_->rendered->send(pipeline_->codec)) {
             events_.convergence_changed();
         }
     };
     // With one thread it would not begin before the next batch is rendered, and be late by that.
-    if (tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism) > 1) {
+    if (thread_count() > 1) {
         pipeline_->finishing.run(finish);
     } else {
         finish();
@@ -217,10 +239,12 @@ void SessionLoop::wait_for_finishing() {
 }
 
 bool SessionLoop::finish_rendered() {
-    bool const any = pipeline_->rendered != nullptr;
-    start_finishing();
+    bool const learns = pipeline_->is_unlearnt();
+    if (learns) {
+        start_finishing();
+    }
     wait_for_finishing();
-    return any;
+    return learns;
 }
 
 void SessionLoop::pose_scene(SceneTime time) {

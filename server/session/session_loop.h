@@ -1,6 +1,6 @@
 // The server's loop: for every viewer, newest camera and scene time -> tile selection -> rendering, display values ->
-// what was learnt -> quality, shapes -> encoding -> socket. All that follows the rendering of one batch overlaps the
-// rendering of the next, which is planned before that batch is learnt.
+// what was learnt -> quality, shapes -> encoding -> socket. Encoding and sending of one batch overlap the rendering of
+// the next; with many threads all that follows the rendering does, and the next batch is planned before that is learnt.
 #pragma once
 
 #include <atomic>
@@ -64,7 +64,7 @@ private:
     bool send_exactly(Session& session, ViewerState& viewer, SessionInput const& input, ViewState const& state);
     void start_finishing();
     void wait_for_finishing();
-    /// What was rendered and is not finished, without overlap; false where there was none.
+    /// Waits for all that was rendered to be sent; true where some of it had not been learnt.
     bool finish_rendered();
     void forget_ended(Sessions const& sessions);
 

@@ -14,6 +14,7 @@
 #include <spdlog/spdlog.h>
 
 #include "common/error.h"
+#include "tests/evaluation/ablation.h"
 #include "tests/evaluation/antialiasing.h"
 #include "tests/evaluation/calibrate.h"
 #include "tests/evaluation/codec/codec_study.h"
@@ -56,6 +57,7 @@ struct Options {
     double jitter_ms = 0;
     bool total = false;
     framelet::bench::StabilityOptions stability;
+    framelet::bench::AblationOptions ablation;
     std::vector<int> table_runs;
     std::vector<std::string> table_scenes;
     framelet::bench::StudyOptions study;
@@ -175,6 +177,15 @@ void add_stability_options(CLI::App& verb, Options& options) {
         ->capture_default_str();
 }
 
+void add_ablation_options(CLI::App& verb, Options& options) {
+    add_output_options(verb, options);
+    add_size_option(verb, options);
+    add_time_options(verb, options);
+    add_machine_options(verb, options);
+    verb.add_option("--scene", options.ablation.scenes,
+                    "Scene files to measure with (default: chase, flyby, fixed, stop, windmill, globe, dim)");
+}
+
 void add_codec_options(CLI::App& verb, Options& options) {
     add_output_options(verb, options);
     verb.add_option("--scene", options.codec.scenes, "Scene files (default: the five vehicle scenes)");
@@ -267,6 +278,18 @@ json table(Options& options) {
 json stability(Options& options) {
     settle(options, options.quick ? Scale{.size = 96, .rate = 20} : Scale{.size = 256, .rate = 40});
     return framelet::bench::measure_stability(source / "scenes", options.stability, options.study);
+}
+
+json ablation(Options& options) {
+    settle(options, options.quick ? Scale{.size = 128, .seconds = 0.5, .rate = 60} : Scale{.size = 256, .seconds = 1});
+    auto& scenes = options.ablation.scenes;
+    if (scenes.empty()) {
+        for (auto const* scene :
+             {"vehicle_chase", "vehicle_flyby", "vehicle_fixed", "stop", "windmill", "globe", "dim"}) {
+            scenes.push_back(source / ("scenes/" + std::string(scene) + ".glb"));
+        }
+    }
+    return framelet::bench::measure_ablation(options.ablation, options.study);
 }
 
 json codec(Options& options) {
@@ -398,6 +421,8 @@ int main(int argc, char** argv) {
              [&options] { return table(options); });
     add_verb("stability", "How the loop of error, density and tiling settles after events, and how steady it is then",
              add_stability_options, [&options] { return stability(options); });
+    add_verb("ablation", "What each part of framelet buys, and what it costs: error, bytes and work without it",
+             add_ablation_options, [&options] { return ablation(options); });
     add_verb("wall", "The real server and client through an emulated link, beside what the virtual clock predicts",
              add_wall_options, study([&options](BenchScene& scene, framelet::bench::StudyOptions const& settled) {
                  return framelet::bench::measure_wall(scene, settled, options.wall);

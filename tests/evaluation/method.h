@@ -30,6 +30,19 @@ struct StageSeconds {
     double viewer() const { return decode + reconstruct; }
 };
 
+/// Parts of `framelet` that can be left out.
+struct FrameletParts {
+    bool spacing = true; ///< adapts to the picture; else one sample a pixel, finer only when nothing is due
+    bool price = true; ///< of a sample, follows the budget; else it is always cheap, and urgency alone decides
+    bool probes = true;
+    bool inspections = true;
+    bool pipelining = true; ///< what follows rendering overlaps the next; else a batch is learnt before the next plan
+    bool link_budget = true; ///< rate and batches are bounded by what the link carries
+    bool loss = true; ///< where the link asks for it
+    bool withholding = true; ///< of what the viewer has already
+    bool reprojection = true; ///< by the viewer
+};
+
 /// What a method is told once.
 struct MethodSetup {
     Viewport viewport;
@@ -41,6 +54,7 @@ struct MethodSetup {
     double delay_seconds = 0; ///< of the link, one way, for those who measure it
     double bias = 0; ///< -1 (spatial fidelity) .. 1 (temporal), for those who know one
     std::size_t batch_framelets = 0; ///< most framelets of one batch; 0: what a cycle has time for
+    FrameletParts parts{};
 };
 
 /// What the viewer's answer tells of a message.

@@ -24,6 +24,7 @@ constexpr double hunting_share = 0.5;
 struct EventRecord {
     double time = 0, until = 0;
     Settling settling;
+    std::size_t settling_cycles = 0; ///< that began until it had settled
     Hunting hunting;
 };
 
@@ -63,6 +64,7 @@ StabilityRun run_batch(BenchScene& scene, Reference const& reference, std::vecto
         EventRecord event{.time = events[i],
                           .until = i + 1 < events.size() ? events[i + 1] : parameters.seconds,
                           .settling = {},
+                          .settling_cycles = 0,
                           .hunting = {}};
         // The picture of the event's own moment is not there yet: it belongs to what comes after it.
         auto const first = std::ranges::lower_bound(result.times, event.time - 1e-9) - result.times.begin();
@@ -73,6 +75,11 @@ StabilityRun run_batch(BenchScene& scene, Reference const& reference, std::vecto
         event.settling = measure_settling(part(result.times), part(result.errors), event.time, options.factor);
         event.hunting =
             measure_hunting(result.cycles, event.until - hunting_share * (event.until - event.time), event.until);
+        event.settling_cycles =
+            static_cast<std::size_t>(std::ranges::count_if(result.cycles, [&event](CycleEntry const& entry) {
+                return entry.start >= event.time &&
+                       entry.start < event.time + event.settling.settled.value_or(INFINITY);
+            }));
         result.events.push_back(event);
     }
     return result;
@@ -92,6 +99,7 @@ json to_json(StabilityRun const& run) {
                                     {"peak_mse", event.settling.peak},
                                     {"first_seconds", or_null(event.settling.first)},
                                     {"settled_seconds", or_null(event.settling.settled)},
+                                    {"settled_cycles", event.settling.settled ? json(event.settling_cycles) : json()},
                                     {"overshoot", event.settling.overshoot},
                                     {"hunting",
                                      {{"cycles", event.hunting.cycles},
@@ -104,8 +112,8 @@ json to_json(StabilityRun const& run) {
 void print_head(StabilityOptions const& options) {
     std::printf("settled: error within %gx of its final level; hunting: the last half before the next event\n",
                 options.factor);
-    std::printf("%-9s %5s %6s %9s %9s %8s %10s %6s %7s %9s %9s\n", "scene", "batch", "event", "peak mse", "final mse",
-                "first ms", "settled ms", "over", "cycles", "tiling %", "price oct");
+    std::printf("%-9s %5s %6s %9s %9s %8s %10s %7s %6s %7s %9s %9s\n", "scene", "batch", "event", "peak mse",
+                "final mse", "first ms", "settled ms", "cycles", "over", "later", "tiling %", "price oct");
 }
 
 void print(StabilityRun const& run, std::string const& scene) {
@@ -115,10 +123,11 @@ void print(StabilityRun const& run, std::string const& scene) {
         return seconds ? std::string(text) : std::string("never");
     };
     for (EventRecord const& event : run.events) {
-        std::printf("%-9s %5zu %6.2f %9.2e %9.2e %8s %10s %6.1f %7zu %9.1f %9.3f\n", scene.c_str(), run.batch,
+        std::string const cycles = event.settling.settled ? std::to_string(event.settling_cycles) : "-";
+        std::printf("%-9s %5zu %6.2f %9.2e %9.2e %8s %10s %7s %6.1f %7zu %9.1f %9.3f\n", scene.c_str(), run.batch,
                     event.time, event.settling.peak, event.settling.final_level,
                     milliseconds(event.settling.first).c_str(), milliseconds(event.settling.settled).c_str(),
-                    event.settling.overshoot, event.hunting.cycles, 100 * event.hunting.changed_share,
+                    cycles.c_str(), event.settling.overshoot, event.hunting.cycles, 100 * event.hunting.changed_share,
                     event.hunting.price_octaves);
     }
     std::printf("%-9s %5zu samples rendered / what there was time for: %.3f, worst tenth of a second %.3f\n",

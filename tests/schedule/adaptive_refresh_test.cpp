@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <malloc.h>
 #include <map>
+#include <optional>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -58,6 +59,72 @@ TEST(AdaptiveRefresh, AStillSceneCompletes) {
             EXPECT_TRUE(synthetic.refresh.is_complete(synthetic.input.state));
             EXPECT_FALSE(synthetic.step());
         }
+    }
+}
+
+/// The places under patches, each as often as it is under one.
+std::multiset<std::uint32_t> places_of(PlaceField const& field, std::vector<Patch> const& patches) {
+    std::multiset<std::uint32_t> places;
+    for (Patch const& patch : patches) {
+        PlaceField::Range const range = field.range_of(patch.node);
+        for (std::uint32_t i = range.first; i < range.last; ++i) {
+            places.insert(i);
+        }
+    }
+    return places;
+}
+
+/// What was taken by the last plan is not learnt when the next one is made.
+TEST(AdaptiveRefresh, WhatIsInFlightIsNotTakenAgain) {
+    for (std::size_t const batch : {1u, 8u, 64u, 1024u}) {
+        SyntheticRefresh synthetic(small, texture);
+        synthetic.running = false;
+        synthetic.input.batch_framelets = batch;
+        std::multiset<std::uint32_t> in_flight;
+        std::size_t plans = 0;
+        for (bool goes_on = true; goes_on; ++plans) {
+            goes_on = synthetic.step();
+            auto const taken = places_of(synthetic.refresh.field(), synthetic.patches);
+            for (std::uint32_t const index : taken) {
+                ASSERT_EQ(in_flight.count(index), 0u) << "place " << index << ", plan " << plans;
+            }
+            in_flight = taken;
+        }
+        EXPECT_GT(plans, 10u);
+        for (std::uint32_t const index : synthetic.refresh.field().visible()) {
+            EXPECT_LT(synthetic.refresh.field()[index].taken.level, 0) << "nothing is in flight for ever";
+        }
+    }
+}
+
+/// The finest tiles that were sent until the picture was complete, and how often each.
+std::map<Tile, int> finest_sent(bool pipelined, Viewport viewport, std::optional<Viewport> first) {
+    SyntheticRefresh synthetic(first.value_or(viewport), texture);
+    synthetic.running = false;
+    synthetic.pipelined = pipelined;
+    if (first) {
+        synthetic.step();
+        synthetic.input.state.view.viewport = viewport; // while the first batch is in flight
+    }
+    std::map<Tile, int> sent;
+    while (synthetic.step()) {
+        for (DisplayFramelet const& framelet : synthetic.sent) {
+            sent[framelet.tile] += framelet.tile.depth() == ImagePlane(viewport).max_depth() ? 1 : 0;
+        }
+    }
+    EXPECT_TRUE(synthetic.refresh.is_complete(synthetic.input.state));
+    std::erase_if(sent, [](auto const& entry) { return entry.second == 0; });
+    return sent;
+}
+
+TEST(AdaptiveRefresh, PipelinedConvergesToTheSame) {
+    for (Viewport const viewport : {Viewport{17, 5}, {130, 70}}) {
+        ImagePlane const plane(viewport);
+        auto const serial = finest_sent(false, viewport, {});
+        EXPECT_EQ(serial.size(), uniform_tile_count(plane, plane.max_depth()));
+        EXPECT_EQ(finest_sent(true, viewport, {}), serial);
+        EXPECT_EQ(finest_sent(true, viewport, Viewport{200, 30}), serial) << "another size meanwhile";
+        EXPECT_EQ(finest_sent(true, viewport, Viewport{16, 16}), serial) << "another size meanwhile";
     }
 }
 

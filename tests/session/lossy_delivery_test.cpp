@@ -6,6 +6,7 @@
 
 #include <boost/asio/ip/tcp.hpp>
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include "common/framelet_cache.h"
 #include "common/reconstruction.h"
@@ -78,7 +79,12 @@ Shown watch(std::uint16_t port, std::uint32_t codings) {
     return shown;
 }
 
-TEST(LossyDelivery, ConvergesToTheExactPicture) {
+/// One thread, few, and so many that a batch is planned before the last one is learnt.
+class LossyDelivery : public testing::TestWithParam<std::size_t> {};
+INSTANTIATE_TEST_SUITE_P(Threads, LossyDelivery, testing::Values(1, 2, 8));
+
+TEST_P(LossyDelivery, ConvergesToTheExactPicture) {
+    tbb::global_control const threads(tbb::global_control::max_allowed_parallelism, GetParam());
     Scene const scene = import_scene(FRAMELET_SOURCE_DIR "/scenes/vehicle_chase.glb");
     RenderScene render_scene(scene, std::nullopt);
     ServerOptions options;

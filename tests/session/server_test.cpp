@@ -5,6 +5,7 @@
 
 #include <boost/asio/ip/tcp.hpp>
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include "common/error.h"
 #include "protocol/framed_stream.h"
@@ -84,7 +85,13 @@ CameraUpdate camera_update(std::uint64_t number, Viewport viewport = {64, 48}) {
     return {{number, Camera{}, viewport}, -1};
 }
 
-TEST(Server, CoarseFirstThenFinerThenConverged) {
+/// One thread, few, and so many that a batch is planned before the last one is learnt.
+class ServerOfThreads : public testing::TestWithParam<std::size_t> {
+    tbb::global_control const threads_{tbb::global_control::max_allowed_parallelism, GetParam()};
+};
+INSTANTIATE_TEST_SUITE_P(Threads, ServerOfThreads, testing::Values(1, 2, 8));
+
+TEST_P(ServerOfThreads, CoarseFirstThenFinerThenConverged) {
     RunningServer const server;
     Conversation viewer(server.port());
     viewer.stream->send(Hello{});
@@ -114,7 +121,7 @@ TEST(Server, CoarseFirstThenFinerThenConverged) {
     EXPECT_EQ(depths.back(), plane.max_depth());
 }
 
-TEST(Server, WaitsForAcknowledgements) {
+TEST_P(ServerOfThreads, WaitsForAcknowledgements) {
     ServerOptions options;
     options.loop.batch_framelets = 16; // so that the picture takes more batches than may be in flight, however fast
     RunningServer const server(options);
@@ -135,7 +142,7 @@ TEST(Server, WaitsForAcknowledgements) {
     EXPECT_EQ(batches, Session::max_batches_in_flight) << "and not one more while nothing is acknowledged";
 }
 
-TEST(Server, NewerCameraWinsAndLateOnesAreIgnored) {
+TEST_P(ServerOfThreads, NewerCameraWinsAndLateOnesAreIgnored) {
     RunningServer const server;
     Conversation viewer(server.port());
     viewer.stream->send(Hello{});

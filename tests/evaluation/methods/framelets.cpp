@@ -1,6 +1,8 @@
 // `framelet`: the project's own server and viewer as they stand, the very stages that the programs run.
 // `framelet-unwarped`: the same with the viewer's reprojection switched off.
+#include <algorithm>
 #include <atomic>
+#include <utility>
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -25,8 +27,9 @@ namespace {
 class Framelets final : public Method {
 public:
     Framelets(MethodSetup const& setup, bool reprojects)
-        : setup_(setup), reprojects_(reprojects), cache_(ImagePlane(setup.viewport)),
-          picture_(setup.viewport.width, setup.viewport.height), cells_((setup.viewport.width + cell - 1) / cell),
+        : setup_(setup), reprojects_(reprojects && setup.parts.reprojection), limits_(limits_of(setup.parts)),
+          cache_(ImagePlane(setup.viewport)), picture_(setup.viewport.width, setup.viewport.height),
+          cells_((setup.viewport.width + cell - 1) / cell),
           times_(static_cast<std::size_t>(cells_) *
                  static_cast<std::size_t>((setup.viewport.height + cell - 1) / cell)) {}
 
@@ -50,15 +53,17 @@ public:
         refresh.now = input.now;
         LinkState const link = link_.state();
         double const rendered = rate_.samples_per_second > 0 ? rate_.samples_per_second : first_rate();
-        std::uint8_t const quality = choice_.choose(link, rendered, input.now);
+        std::uint8_t const quality =
+            setup_.parts.loss ? choice_.choose(link, rendered, input.now) : std::uint8_t{exact_quality};
         bool const still = refresh_.is_still(state);
-        refresh.samples_per_second = bounded_rate(link, rendered);
+        refresh.samples_per_second = setup_.parts.link_budget ? bounded_rate(link, rendered) : rendered;
         refresh.cycle_seconds = cycle_length(still, setup_.machine * plan_seconds());
         refresh.delivery_seconds = static_cast<float>(link.delivery_seconds);
         refresh.batch_framelets = setup_.batch_framelets;
-        refresh.link_framelets = bounded_batch(link);
+        refresh.link_framelets = setup_.parts.link_budget ? bounded_batch(link) : max_batch_framelets;
         refresh.bias = static_cast<float>(setup_.bias);
         refresh.reprojects = reprojects_;
+        refresh.limits = limits_;
         refresh_.plan(refresh, plan_);
         finish(input.scene, step);
         if (plan_.is_empty()) {
@@ -75,6 +80,11 @@ public:
         step.samples = work_.plan.ray_count() + work_.plan.probes.size();
         if (!work_.plan.tiles.empty()) {
             rate_ = update_render_rate(rate_, static_cast<double>(step.samples), setup_.machine * step.later.render);
+        }
+        if (!setup_.parts.pipelining) {
+            step.seconds.render += std::exchange(step.later.render, 0);
+            step.seconds.encode += std::exchange(step.later.encode, 0);
+            finish(input.scene, step);
         }
         return step;
     }
@@ -137,6 +147,19 @@ public:
     Window window() const override { return {Session::max_batches_in_flight, false}; }
 
 private:
+    static ResponseLimits limits_of(FrameletParts const& parts) {
+        ResponseLimits limits;
+        if (!parts.spacing) {
+            limits.least_level = limits.most_level = pixel_level;
+        }
+        if (!parts.price) {
+            limits.least_price = limits.most_price = 1e-6f; // what the first cycle begins with
+        }
+        limits.probe_share = parts.probes ? limits.probe_share : 0;
+        limits.inspection_share = parts.inspections ? limits.inspection_share : 0;
+        return limits;
+    }
+
     /// What is rendered, and finished with the next step, once that is planned.
     struct Work {
         ViewState state;
@@ -188,6 +211,9 @@ private:
         } else {
             send_ = refresh_.learn(work_.plan, display_, framelets_, probes_.luma());
             step.seconds.response += 1e-9 * samples * setup_.costs.learn_sample;
+            if (!setup_.parts.withholding) {
+                std::ranges::fill(send_, std::uint8_t{1});
+            }
         }
         ImagePlane const plane(setup_.viewport);
         choose_qualities(plane, work_.plan.tiles, send_, work_.quality, work_.still, lossy_, batch_.quality);
@@ -245,6 +271,7 @@ private:
 
     MethodSetup const setup_;
     bool const reprojects_;
+    ResponseLimits const limits_;
     bool moves_ = false; ///< the scene
     AdaptiveRefresh refresh_;
     RenderRate rate_;
