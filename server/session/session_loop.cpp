@@ -191,7 +191,8 @@ void SessionLoop::plan(Session& session, ViewerState& viewer, SessionInput const
     viewer.refresh.plan(wanted, order.plan);
 }
 
-/// The picture is complete, but for what the viewer was sent with loss: some of that once more.
+/// The picture is complete, but for what the viewer was sent with loss: some of that once more. What has four rays a
+/// sample is not among it: it was sent exactly, since nothing moved.
 bool SessionLoop::send_exactly(Session& session, ViewerState& viewer, SessionInput const& input,
                                ViewState const& state) {
     if (!session.has_room(0)) {
