@@ -24,7 +24,7 @@ TEST(PsnrOverTime, AFallIsFromTheBestBefore) {
 
 TEST(Stillness, ThePictureBecomesTheReferenceAndNothingMoreIsSent) {
     StillnessStudy study;
-    study.scenes = {source / "scenes/foliage.glb", source / "scenes/stop.glb"};
+    study.scenes = {source / "scenes/globe.glb", source / "scenes/stop.glb"};
     StudyOptions options;
     options.run.viewport = {48, 32};
     options.run.frames_per_second = 30;
