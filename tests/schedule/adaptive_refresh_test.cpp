@@ -208,7 +208,7 @@ TEST(AdaptiveRefresh, WhatTheFinestSamplesDoNotResolveGetsFourRaysASample) {
 
 TEST(AdaptiveRefresh, WhileAnythingMovesThereIsOneRayASample) {
     SyntheticRefresh synthetic(small, half_dust);
-    synthetic.input.samples_per_second = 1e8; // more than there is use for
+    synthetic.input.samples_per_second = 4e6; // more than there is use for
     int most = single_ray;
     synthetic.run(2, [&] { most = std::max(most, synthetic.rays_per_sample); });
     synthetic.stop();

@@ -64,7 +64,7 @@ public:
         }
         render(plan);
         rendered_plan_ = std::move(plan);
-        double const cost = static_cast<double>(plan.ray_count() + 2 * probes);
+        double const cost = static_cast<double>(rendered_plan_.ray_count() + 2 * probes);
         input.now += cost / input.samples_per_second;
         if (!pipelined) {
             learn();
