@@ -34,7 +34,7 @@ std::uint64_t render_samples(RenderScene const& scene, ViewRays const& rays, std
 
 /// The whole picture by the same renderer without tiling, wire or cache: `samples_per_side`^2 samples a pixel on the
 /// same grid that framelets use, each tone-mapped and quantised as `to_display` does, then averaged in linear light
-/// (box filter). 1, 2 or 4.
+/// (box filter). 1, 2, 4 or 8.
 Picture render_picture(RenderScene const& scene, Camera const& camera, Viewport viewport, float exposure,
                        int samples_per_side);
 

@@ -53,7 +53,7 @@ void add_pixels(DisplayFramelet const& framelet, ImagePlane const& plane, int sa
 
 Picture render_picture(RenderScene const& scene, Camera const& camera, Viewport viewport, float exposure,
                        int samples_per_side) {
-    FRAMELET_CHECK(samples_per_side == 1 || samples_per_side == 2 || samples_per_side == 4);
+    FRAMELET_CHECK(samples_per_side >= 1 && samples_per_side <= 8 && std::has_single_bit(unsigned(samples_per_side)));
     ImagePlane const plane(viewport);
     ViewRays const view = make_view_rays(camera, viewport);
     int const finer = std::countr_zero(static_cast<unsigned>(samples_per_side));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include <tbb/parallel_for.h>
 
@@ -17,6 +18,8 @@ constexpr double probe_cost = 2;
 constexpr double probe_period = 0.25;
 /// What should have been refreshed by then, and has not, is probed after so many.
 constexpr double most_unseen = 0.5;
+/// Mean squared error of the finest samples, as modelled, above which they are not enough of a still picture.
+constexpr float enough = 5e-5f;
 /// A scene time that jumps by more than this over what has passed has been set.
 constexpr double most_time_step = 0.5;
 
@@ -44,9 +47,16 @@ float cycle_length(bool still, double plan_seconds) {
                  : std::clamp(static_cast<float>(40 * plan_seconds), least_cycle_seconds, most_cycle_seconds);
 }
 
-bool AdaptiveRefresh::is_finished(std::uint32_t index) const {
+/// The viewer holds the finest samples of this picture, as far as is learnt.
+bool AdaptiveRefresh::is_finest(std::uint32_t index) const {
     Place const& place = field_[index];
     return place.level == sampling_levels - 1 && place.rendered >= still_since_;
+}
+
+bool AdaptiveRefresh::is_finished(std::uint32_t index) const {
+    Place const& place = field_[index];
+    return is_finest(index) &&
+           (place.supersampled >= still_since_ || unresolved_error(place.model, sampling_levels - 1) <= enough);
 }
 
 bool AdaptiveRefresh::is_complete(ViewState const& state) const {
@@ -86,6 +96,7 @@ void AdaptiveRefresh::advance(RefreshInput const& input) {
 bool AdaptiveRefresh::goes_on(RefreshInput const& input) const {
     double const seconds = input.now - planned_;
     return next_ < cycle_.size() && seconds < static_cast<double>(input.cycle_seconds) &&
+           (rays_per_sample_ == single_ray || same_picture(*seen_, input.state)) &&
            seen_->view.viewport == input.state.view.viewport && !is_cut(*seen_, input.state, seconds);
 }
 
@@ -107,12 +118,14 @@ void AdaptiveRefresh::plan(RefreshInput const& input, RefreshPlan& plan) {
         plan_cycle(input, plan);
     }
     strayed_ = strayed_ || !same_picture(*seen_, input.state);
-    take_batch(batch_limit(input, still_), plan);
+    plan.rays_per_sample = rays_per_sample_;
+    take_batch(batch_limit(input, still_) / static_cast<std::size_t>(rays_per_sample_), plan);
 }
 
 void AdaptiveRefresh::plan_cycle(RefreshInput const& input, RefreshPlan& plan) {
     planned_ = input.now;
     cycle_.clear();
+    rays_per_sample_ = single_ray;
     next_ = 0;
     ++cycle_count_;
     cycle_seconds_ = static_cast<double>(input.cycle_seconds);
@@ -126,6 +139,9 @@ void AdaptiveRefresh::plan_cycle(RefreshInput const& input, RefreshPlan& plan) {
     plan_patches(input, samples);
     if (rated_.empty() && samples > 0) {
         plan_completion(samples);
+    }
+    if (cycle_.empty() && !scene_moves_) {
+        plan_supersampling(samples);
     }
 }
 
@@ -201,7 +217,7 @@ void AdaptiveRefresh::plan_completion(double samples) {
         Place const& place = field_[index];
         bool const fine = place.level == sampling_levels - 1 && place.settled;
         bool const taken = place.taken.level == sampling_levels - 1 && place.taken.when >= still_since_;
-        if (is_finished(index) || taken ||
+        if (is_finest(index) || taken ||
             (scene_moves_ && fine)) { // while things move, probes and inspections are enough
             continue;
         }
@@ -209,6 +225,28 @@ void AdaptiveRefresh::plan_completion(double samples) {
         cycle_.push_back(patch);
         tiles += tile_count(patch);
         if (tiles * framelet_samples >= samples) {
+            return;
+        }
+    }
+}
+
+/// Where the finest samples of a still picture are not enough they are rendered once more, each with four rays: where
+/// most is left unresolved first.
+void AdaptiveRefresh::plan_supersampling(double samples) {
+    unresolved_.clear();
+    for (std::uint32_t const index : field_.visible()) {
+        if (is_finest(index) && !is_finished(index) && field_[index].taken.level < 0) {
+            unresolved_.push_back({unresolved_error(field_[index].model, sampling_levels - 1), index});
+        }
+    }
+    std::ranges::sort(unresolved_, std::ranges::greater());
+    double rays = 0;
+    for (auto const& [error, index] : unresolved_) {
+        Patch const patch{{(1u << (2 * field_.depth())) + index}, field_.plane().max_depth()};
+        cycle_.push_back(patch);
+        rays_per_sample_ = four_rays;
+        rays += tile_count(patch) * framelet_samples * four_rays;
+        if (rays >= samples) {
             return;
         }
     }
@@ -278,6 +316,12 @@ std::vector<std::uint8_t> const& AdaptiveRefresh::learn(RefreshPlan const& plan,
         send_.assign(framelets.size(), 0);
         return send_;
     }
+    if (plan.rays_per_sample != single_ray) {
+        note_supersampled(plan);
+        release(plan);
+        send_.assign(framelets.size(), 1);
+        return send_;
+    }
     std::size_t probe = 0;
     for (std::uint32_t const index : plan.probed) {
         Place& place = field_[index];
@@ -300,6 +344,19 @@ std::vector<std::uint8_t> const& AdaptiveRefresh::learn(RefreshPlan const& plan,
         history_.store(entry);
     }
     return send_;
+}
+
+/// Nothing is learnt of the picture: compared with single rays it would seem to have changed.
+void AdaptiveRefresh::note_supersampled(RefreshPlan const& plan) {
+    for (Patch const& patch : plan.patches) {
+        PlaceField::Range const range = field_.range_of(patch.node);
+        for (std::uint32_t i = range.first; i < range.last; ++i) {
+            Place& place = field_[i];
+            place.drift = drift_since(place, plan.now);
+            place.level = field_.level_of(patch.depth);
+            place.rendered = place.checked = place.supersampled = plan.now;
+        }
+    }
 }
 
 /// What was taken by this plan, and not by a later one again, is no longer.

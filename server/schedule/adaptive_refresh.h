@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/rays_per_sample.h"
 #include "server/schedule/patch_selection.h"
 #include "server/schedule/place_learning.h"
 #include "server/schedule/view_state.h"
@@ -45,10 +46,15 @@ struct RefreshPlan {
     std::vector<Patch> patches;
     std::vector<std::size_t> tile_counts; ///< of each patch
     std::vector<Tile> tiles; ///< of the patches, in order
+    int rays_per_sample = single_ray; ///< of the tiles
     std::vector<Probe> probes; ///< of the probed places, in order
     std::vector<std::uint32_t> probed; ///< places
 
     bool is_empty() const { return tiles.empty() && probes.empty(); }
+    /// Through the samples of the tiles.
+    std::size_t ray_count() const {
+        return tiles.size() * framelet_samples * static_cast<std::size_t>(rays_per_sample);
+    }
 };
 
 class AdaptiveRefresh {
@@ -75,11 +81,12 @@ public:
     Choices const& choices() const { return choices_; }
     float price() const { return price_; }
     /// The cycle that was planned last: how many there have been, its tiling, the patches to render, the samples
-    /// that it has time for, and its length.
+    /// that it has time for, the rays that each is made of, and its length.
     std::uint64_t cycle_count() const { return cycle_count_; }
     std::vector<Patch> const& cut() const { return cut_; }
     std::vector<Patch> const& cycle() const { return cycle_; }
     double cycle_budget() const { return cycle_budget_; }
+    int rays_per_sample() const { return rays_per_sample_; }
     double cycle_seconds() const { return cycle_seconds_; }
 
 private:
@@ -90,10 +97,13 @@ private:
     void plan_patches(RefreshInput const& input, double samples);
     void plan_probes(double samples, RefreshPlan& plan);
     void plan_completion(double samples);
+    void plan_supersampling(double samples);
     void take_batch(std::size_t most_framelets, RefreshPlan& plan);
     void take(Patch const& patch, double now);
     void release(RefreshPlan const& plan);
+    bool is_finest(std::uint32_t index) const;
     bool is_finished(std::uint32_t index) const;
+    void note_supersampled(RefreshPlan const& plan);
     std::size_t place_count(Patch const& patch) const;
     void examine(RefreshPlan const& plan, std::span<DisplayFramelet const> framelets,
                  std::span<Framelet const> rendered);
@@ -113,6 +123,7 @@ private:
     double cycle_budget_ = 0; ///< samples
     double cycle_seconds_ = 0;
     std::vector<Patch> cycle_; ///< patches of the cycle
+    int rays_per_sample_ = single_ray; ///< of the cycle
     std::size_t next_ = 0; ///< of these
     std::vector<std::uint8_t> send_;
 
@@ -123,6 +134,7 @@ private:
     std::vector<Patch> cut_;
     std::vector<RatedPatch> rated_;
     std::vector<std::uint32_t> suspects_;
+    std::vector<std::pair<float, std::uint32_t>> unresolved_; ///< error and index of places
     std::vector<double> suspicions_;
     std::vector<LumaHistory::Entry> entries_; ///< of the framelets learnt from
     std::vector<PlaceFindings> findings_; ///< of the places of their patches

@@ -30,6 +30,7 @@ struct Place {
     float drift = 0; ///< since that was rendered
     TakenSamples taken;
     double rendered = never; ///< seconds
+    double supersampled = never; ///< when the viewer got it with four rays a sample, seconds
     double changed = never; ///< when it was last seen to be different
     double checked = never; ///< when it was last rendered or probed
     double asked = never; ///< the same, learnt or not

@@ -79,15 +79,6 @@ float mean_inverse_depth(Framelet const& framelet, std::size_t first, std::size_
     return ((sums[0] + sums[1]) + (sums[2] + sums[3])) / static_cast<float>(count);
 }
 
-/// Since it was rendered at `now`, which may have been a while ago. What has been taken again meanwhile knows that no
-/// more: what is known of before is too much.
-float drift_since(Place const& place, double now) {
-    if (place.taken.level < 0) {
-        return 0;
-    }
-    return place.taken.when == now ? place.taken.drift : place.drift;
-}
-
 bool is_change(Observation const& seen) {
     constexpr float noise = 1e-6f; // a quarter of a display step, squared
     float change = seen.mean_change;
@@ -98,6 +89,14 @@ bool is_change(Observation const& seen) {
 }
 
 } // namespace
+
+float drift_since(Place const& place, double now) {
+    if (place.taken.level < 0) {
+        return 0;
+    }
+    // What has been taken again meanwhile knows that no more: what is known of before is too much.
+    return place.taken.when == now ? place.taken.drift : place.drift;
+}
 
 bool examine_patch(PlaceField const& field, Patch const& patch, std::span<DisplayFramelet const> framelets,
                    std::span<Framelet const> rendered, double now, RenderedMoment const& moment,

@@ -30,6 +30,9 @@ bool examine_patch(PlaceField const& field, Patch const& patch, std::span<Displa
 /// Returns whether the viewer needs the patch: false where it holds the very same.
 bool learn_patch(PlaceField& field, Patch const& patch, std::span<PlaceFindings const> places, bool same, double now);
 
+/// Drift since a rendering of it that was planned at `now`, which may have been a while ago.
+float drift_since(Place const& place, double now);
+
 /// Takes the answers to a place's probes into account: their luma now.
 void learn_probes(Place& place, std::span<float const> luma, double now);
 

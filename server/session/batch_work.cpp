@@ -5,23 +5,10 @@
 
 #include <tbb/parallel_for.h>
 
-#include "common/color.h"
+#include "server/render/display_renderer.h"
 #include "server/session/laps.h"
 
 namespace framelet {
-namespace {
-
-/// All but the radiance; what `from` has room for is reused.
-void move_geometry(Framelet& from, Framelet& to) {
-    to.tile = from.tile;
-    to.depth = from.depth;
-    to.body.swap(from.body);
-    to.velocity.swap(from.velocity);
-    to.reflects = from.reflects;
-}
-
-} // namespace
-
 void BatchWork::render(SharedScene const& shared) {
     std::size_t const count = order.plan.tiles.size();
     rendered_pool_.resize(std::max(rendered_pool_.size(), count));
@@ -32,10 +19,8 @@ void BatchWork::render(SharedScene const& shared) {
     ImagePlane const plane(view.viewport);
     ViewRays const rays = make_view_rays(view.camera, view.viewport);
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-        Framelet& fresh = fresh_.local();
-        render_framelet(shared.render_scene, rays, plane, order.plan.tiles[i], 0, fresh);
-        display_[i] = to_display(fresh, order.state.exposure);
-        move_geometry(fresh, rendered_[i]);
+        render_display(shared.render_scene, rays, plane, order.plan.tiles[i], order.state.exposure,
+                       order.plan.rays_per_sample, fresh_.local(), rendered_[i], display_[i]);
     });
     probes_.render(shared.render_scene, view.camera, view.viewport, order.state.exposure, order.plan.probes);
 }

@@ -13,7 +13,7 @@ void describe(AdaptiveRefresh const& refresh, CycleRecord& record) {
     for (Patch const& patch : refresh.cycle()) {
         append_tiles(field.plane(), patch, tiles);
     }
-    record.samples_planned = tiles.size() * framelet_samples;
+    record.samples_planned = tiles.size() * framelet_samples * static_cast<std::size_t>(refresh.rays_per_sample());
     record.places_by_level.fill(0);
     double error = 0;
     double pixels = 0;

@@ -18,7 +18,7 @@ struct CycleRecord {
     SceneTime scene_time = 0;
     double price = 0;
     double budget = 0; ///< samples that the cycle has time for
-    std::uint64_t samples_planned = 0; ///< of the whole cycle, probes not included
+    std::uint64_t samples_planned = 0; ///< of the whole cycle, probes not included; one of four rays counts as four
     std::uint64_t samples_rendered = 0; ///< of this batch
     std::uint64_t framelets_sent = 0;
     std::uint64_t framelets_unchanged = 0; ///< rendered, and the viewer had them

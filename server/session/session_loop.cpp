@@ -134,7 +134,7 @@ bool SessionLoop::render_session(Session& session, ViewerState& viewer, SceneTim
     if (options_.recorder != nullptr) {
         work.record.session = session.id();
         work.record.scene_time = time;
-        work.record.samples_rendered = work.order.plan.tiles.size() * framelet_samples;
+        work.record.samples_rendered = work.order.plan.ray_count();
         work.record.probes = work.order.plan.probes.size();
         describe(refresh, work.record);
         laps.lap();
@@ -157,7 +157,7 @@ bool SessionLoop::render_session(Session& session, ViewerState& viewer, SceneTim
 
     if (!work.order.plan.tiles.empty()) {
         // Planning left out: it takes as long for few samples, which would then seem to be dear.
-        double const samples = static_cast<double>(work.order.plan.tiles.size() * framelet_samples);
+        double const samples = static_cast<double>(work.order.plan.ray_count());
         rate_ = update_render_rate(rate_, samples,
                                    work.record.stage_seconds.render + work.record.stage_seconds.wait + learning);
         samples_per_second_ = rate_.samples_per_second;
@@ -191,7 +191,8 @@ void SessionLoop::plan(Session& session, ViewerState& viewer, SessionInput const
     viewer.refresh.plan(wanted, order.plan);
 }
 
-/// The picture is complete, but for what the viewer was sent with loss: some of that once more.
+/// The picture is complete, but for what the viewer was sent with loss: some of that once more. What has four rays a
+/// sample is not among it: it was sent exactly, since nothing moved.
 bool SessionLoop::send_exactly(Session& session, ViewerState& viewer, SessionInput const& input,
                                ViewState const& state) {
     if (!session.has_room(0)) {

@@ -53,7 +53,7 @@ json measure_server(BenchScene& scene, LimitsOptions const& options) {
     std::vector<double> ratios, server_rates, bare_rates;
     SinkRecord record;
     for (int round = 0; round < options.rounds; ++round) {
-        record = watch_until_converged(server.port(), scene.camera, options.viewport);
+        record = watch_until_repeated(server.port(), scene.camera, options.viewport);
         std::vector<Tile> tiles;
         for (auto const& batch : record.batches) {
             tiles.insert(tiles.end(), batch.begin(), batch.end());

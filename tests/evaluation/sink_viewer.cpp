@@ -1,6 +1,7 @@
 #include "tests/evaluation/sink_viewer.h"
 
 #include <chrono>
+#include <set>
 
 #include "tests/evaluation/visit.h"
 
@@ -8,15 +9,21 @@ namespace framelet::bench {
 
 using std::chrono::steady_clock;
 
-SinkRecord watch_until_converged(std::uint16_t port, Camera const& camera, Viewport viewport) {
+SinkRecord watch_until_repeated(std::uint16_t port, Camera const& camera, Viewport viewport) {
     SinkRecord record;
     steady_clock::time_point start, last;
     std::uint64_t newest = 0;
+    std::set<Tile> seen;
     auto const receive = [&](FramedStream& stream, Message const& message) {
         if (std::holds_alternative<Welcome>(message)) {
             start = steady_clock::now();
             stream.send(CameraUpdate{{1, camera, viewport}, -1});
         } else if (auto const* const batch = std::get_if<EncodedBatch>(&message)) {
+            for (Tile const tile : batch->tiles) {
+                if (!seen.insert(tile).second) {
+                    return true;
+                }
+            }
             last = steady_clock::now();
             newest = batch->number;
             record.batches.push_back(batch->tiles);

@@ -1,5 +1,5 @@
 // A viewer that asks for a picture and looks at nothing: it acknowledges batches without decoding them, so that what is
-// measured is the server.
+// measured is the server. It leaves when the first tile comes once more: from then on samples take four rays.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace framelet::bench {
 
-/// What the server sent for one still view, from the first camera to convergence.
+/// What the server sent for one still view, from the first camera until it has every tile with one ray a sample.
 struct SinkRecord {
     std::vector<std::vector<Tile>> batches;
     double seconds = 0; ///< from the camera's departure to the arrival of the last batch
@@ -18,7 +18,8 @@ struct SinkRecord {
     std::size_t payload_bytes = 0;
 };
 
-/// Connects to 127.0.0.1:port and stays until the picture has converged. Throws ConnectionError.
-SinkRecord watch_until_converged(std::uint16_t port, Camera const& camera, Viewport viewport);
+/// Connects to 127.0.0.1:port and stays until the picture has converged or a tile comes that it had. Throws
+/// ConnectionError.
+SinkRecord watch_until_repeated(std::uint16_t port, Camera const& camera, Viewport viewport);
 
 } // namespace framelet::bench

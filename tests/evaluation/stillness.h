@@ -17,8 +17,21 @@ struct StillnessStudy {
     int reference_side = 16; ///< samples along a side of the reference's pixel
 };
 
-/// One row a scene: PSNR [dB] at times after the stop, by how much it ever falls again, and the bytes that are sent in
-/// the last second of the run. `options.run.seconds` is what is watched after the stop, at least a second.
+/// How good the picture was when, since the stop. As many of each, at least one; seconds ascend.
+struct PsnrOverTime {
+    std::vector<double> seconds;
+    std::vector<double> psnr; ///< dB
+
+    /// At the last measurement not after `after` seconds, or the first one.
+    double at(double after) const;
+    /// The most that it was ever below what it had been, dB.
+    double most_fall() const;
+};
+
+/// One row a scene: PSNR [dB] at times after the stop, by how much it ever falls again, when the last message leaves
+/// and how much has been sent by then since the stop, and the bytes that are sent in the last second of the run.
+/// `options.run.seconds` is what is watched after the stop, at least a second.
+/// Charts: PSNR over time, and for each scene the last picture beside its reference.
 nlohmann::json measure_stillness(StillnessStudy const& study, StudyOptions const& options);
 
 } // namespace framelet::bench

@@ -27,6 +27,11 @@ float moving_texture(float x, float y, double time) {
     return smooth_noise((x - static_cast<float>(40 * time)) / 5, y / 5);
 }
 
+/// Finer than any sample in its right half.
+float half_dust(float x, float y, double time) {
+    return x < 128 ? flat(x, y, time) : smooth_noise(9 * x, 9 * y);
+}
+
 bool is_all_finest(AdaptiveRefresh const& refresh) {
     PlaceField const& field = refresh.field();
     return std::all_of(field.visible().begin(), field.visible().end(),
@@ -163,6 +168,68 @@ TEST(AdaptiveRefresh, ACameraThatReturnsWithinACycleIsNotForgotten) {
         EXPECT_TRUE(owed.empty()) << "away at batch " << stray << ": " << owed.size() << " tiles";
     }
     EXPECT_GT(strays, 5);
+}
+
+/// Each place once, where that is needed; then nothing.
+TEST(AdaptiveRefresh, WhatTheFinestSamplesDoNotResolveGetsFourRaysASample) {
+    SyntheticRefresh synthetic(small, half_dust);
+    synthetic.running = false;
+    for (float const camera : {0.0f, 1.0f}) { // and the same again from elsewhere
+        synthetic.input.state.view.camera.position.x = camera;
+        std::map<Tile, int> times;
+        int last_rays = single_ray;
+        bool in_order = true;
+        std::vector<PlaceModel> models; // once single rays are learnt
+        while (synthetic.step()) {
+            if (models.empty() && synthetic.rays_per_sample == four_rays) {
+                for (std::uint32_t const index : synthetic.refresh.field().visible()) {
+                    models.push_back(synthetic.refresh.field()[index].model);
+                }
+            }
+            for (Tile const tile : synthetic.tiles) {
+                times[tile] += synthetic.rays_per_sample == four_rays ? 1 : 0;
+            }
+            in_order = in_order && (synthetic.tiles.empty() || synthetic.rays_per_sample >= last_rays);
+            last_rays = synthetic.tiles.empty() ? last_rays : synthetic.rays_per_sample;
+        }
+        EXPECT_TRUE(in_order) << "single rays first, everywhere";
+        EXPECT_TRUE(synthetic.refresh.is_complete(synthetic.input.state));
+        ImagePlane const plane(small);
+        for (Tile const tile : make_uniform_tiling(plane, plane.max_depth()).tiles) {
+            EXPECT_EQ(times[tile], plane.tile_rect(tile).left < 128 ? 0 : 1) << tile.code;
+        }
+        ASSERT_FALSE(models.empty());
+        for (std::size_t i = 0; i < models.size(); ++i) {
+            std::uint32_t const index = synthetic.refresh.field().visible()[i];
+            EXPECT_EQ(synthetic.refresh.field()[index].model, models[i]) << "averages differ from samples";
+        }
+    }
+}
+
+TEST(AdaptiveRefresh, WhileAnythingMovesThereIsOneRayASample) {
+    SyntheticRefresh synthetic(small, half_dust);
+    synthetic.input.samples_per_second = 4e6; // more than there is use for
+    int most = single_ray;
+    synthetic.run(2, [&] { most = std::max(most, synthetic.rays_per_sample); });
+    synthetic.stop();
+    synthetic.run(0.5, [&] {
+        synthetic.input.state.view.camera.position.x += 0.001f;
+        most = std::max(most, synthetic.rays_per_sample);
+    });
+    EXPECT_EQ(most, single_ray);
+}
+
+/// A batch of four rays a sample that was planned is not gone on with once the camera moves.
+TEST(AdaptiveRefresh, MotionEndsFourRaysASample) {
+    SyntheticRefresh synthetic(small, half_dust);
+    synthetic.running = false;
+    synthetic.input.batch_framelets = 8;
+    while (synthetic.rays_per_sample == single_ray && synthetic.step()) {
+    }
+    ASSERT_EQ(synthetic.rays_per_sample, four_rays);
+    synthetic.input.state.view.camera.position.x = 1;
+    synthetic.step();
+    EXPECT_EQ(synthetic.rays_per_sample, single_ray);
 }
 
 TEST(AdaptiveRefresh, WhatIsUnchangedIsNotSentAgain) {

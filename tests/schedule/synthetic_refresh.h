@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "common/color.h"
@@ -50,6 +51,7 @@ public:
         refresh.plan(input, plan);
         tiles = plan.tiles;
         patches = plan.patches;
+        rays_per_sample = plan.rays_per_sample;
         probes = plan.probes.size();
         sent.clear();
         bool const learns = !rendered_plan_.is_empty();
@@ -62,7 +64,7 @@ public:
         }
         render(plan);
         rendered_plan_ = std::move(plan);
-        double const cost = static_cast<double>(tiles.size() * framelet_samples + 2 * probes);
+        double const cost = static_cast<double>(rendered_plan_.ray_count() + 2 * probes);
         input.now += cost / input.samples_per_second;
         if (!pipelined) {
             learn();
@@ -107,6 +109,7 @@ public:
     // Of the last step.
     std::vector<Tile> tiles;
     std::vector<Patch> patches;
+    int rays_per_sample = single_ray;
     std::size_t probes = 0;
     std::vector<DisplayFramelet> sent;
 
@@ -123,6 +126,18 @@ private:
     std::uint8_t shade(float x, float y) const {
         return static_cast<std::uint8_t>(std::lround(255 * shading_(x, y, input.state.scene_time)));
     }
+    /// Of a cell of this side: in its middle, or the mean of its quarters.
+    std::uint8_t shade_cell(float x, float y, float side, int rays) const {
+        if (rays == single_ray) {
+            return shade(x, y);
+        }
+        float const step = 0.25f * side;
+        float sum = 0;
+        for (auto const& [dx, dy] : {std::pair{-step, -step}, {step, -step}, {-step, step}, {step, step}}) {
+            sum += linear_from_srgb_byte(shade(x + dx, y + dy));
+        }
+        return srgb_byte_from_linear(sum / four_rays);
+    }
     void render(RefreshPlan const& plan) {
         ImagePlane const plane(input.state.view.viewport);
         display_.resize(plan.tiles.size());
@@ -134,8 +149,9 @@ private:
             float const spacing = plane.sample_spacing(framelet.tile);
             for (std::uint32_t i = 0; i < framelet_samples; ++i) {
                 framelet.red[i] =
-                    shade(static_cast<float>(rect.left) + (static_cast<float>(morton_x(i)) + 0.5f) * spacing,
-                          static_cast<float>(rect.top) + (static_cast<float>(morton_y(i)) + 0.5f) * spacing);
+                    shade_cell(static_cast<float>(rect.left) + (static_cast<float>(morton_x(i)) + 0.5f) * spacing,
+                               static_cast<float>(rect.top) + (static_cast<float>(morton_y(i)) + 0.5f) * spacing,
+                               spacing, plan.rays_per_sample);
             }
             framelet.green = framelet.blue = framelet.red;
             rendered_[t].depth.fill(10);

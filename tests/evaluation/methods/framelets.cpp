@@ -1,9 +1,12 @@
 // `framelet`: the project's own server and viewer as they stand, the very stages that the programs run.
 // `framelet-unwarped`: the same with the viewer's reprojection switched off.
 #include <algorithm>
+#include <atomic>
 #include <utility>
 
-#include "common/color.h"
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
 #include "common/framelet_cache.h"
 #include "common/reconstruction.h"
 #include "common/reprojector.h"
@@ -11,6 +14,7 @@
 #include "server/flow/lossy_places.h"
 #include "server/flow/quality_choice.h"
 #include "server/layers/shape_feed.h"
+#include "server/render/display_renderer.h"
 #include "server/render/probe_renderer.h"
 #include "server/schedule/adaptive_refresh.h"
 #include "server/schedule/render_rate.h"
@@ -73,7 +77,7 @@ public:
         work_.still = still;
         work_.again = false;
         render(input, step.later);
-        step.samples = work_.plan.tiles.size() * framelet_samples + work_.plan.probes.size();
+        step.samples = work_.plan.ray_count() + work_.plan.probes.size();
         if (!work_.plan.tiles.empty()) {
             rate_ = update_render_rate(rate_, static_cast<double>(step.samples), setup_.machine * step.later.render);
         }
@@ -169,18 +173,20 @@ private:
     void render(StepInput const& input, StageSeconds& seconds) {
         RenderScene const& scene = *input.scene.render_scene;
         std::vector<Tile> const& tiles = work_.plan.tiles;
+        ImagePlane const plane(setup_.viewport);
+        ViewRays const rays = make_view_rays(input.view.camera, setup_.viewport);
         framelets_.resize(tiles.size());
-        std::uint64_t const segments =
-            render_framelets(scene, input.view.camera, ImagePlane(setup_.viewport), tiles, 0, framelets_);
-        display_.clear();
-        for (Framelet const& framelet : framelets_) {
-            display_.push_back(to_display(framelet, input.scene.exposure));
-        }
+        display_.resize(tiles.size());
+        std::atomic<std::uint64_t> segments = 0;
+        tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t i) {
+            segments += render_display(scene, rays, plane, tiles[i], input.scene.exposure, work_.plan.rays_per_sample,
+                                       fresh_.local(), framelets_[i], display_[i]);
+        });
         std::uint64_t const probe_segments =
             probes_.render(scene, input.view.camera, setup_.viewport, input.scene.exposure, work_.plan.probes);
         seconds.render += 1e-9 * (static_cast<double>(segments) * setup_.costs.coherent_segment +
                                   static_cast<double>(probe_segments) * setup_.costs.incoherent_segment);
-        seconds.encode += 1e-9 * static_cast<double>(tiles.size() * framelet_samples) * setup_.costs.display_sample;
+        seconds.encode += 1e-9 * static_cast<double>(work_.plan.ray_count()) * setup_.costs.display_sample;
         rendered_ = true;
     }
 
@@ -275,7 +281,8 @@ private:
     RefreshPlan plan_;
     Work work_;
     bool rendered_ = false; ///< the work is, and not finished
-    std::vector<Framelet> framelets_;
+    tbb::enumerable_thread_specific<Framelet> fresh_;
+    std::vector<Framelet> framelets_; ///< without radiance
     std::vector<DisplayFramelet> display_;
     ProbeRenderer probes_;
     std::vector<std::uint8_t> send_; ///< whether the viewer gets it, of each

@@ -1,0 +1,9 @@
+// How many rays a sample is made of.
+#pragma once
+
+namespace framelet {
+
+inline constexpr int single_ray = 1; ///< through the middle of its cell
+inline constexpr int four_rays = 4; ///< through the middles of the quarters of its cell
+
+} // namespace framelet

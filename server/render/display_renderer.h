@@ -1,0 +1,24 @@
+// Tiles in, framelets as the viewer gets them out: display samples, and apart from them what reprojection needs. Where
+// one ray a sample is not enough, each sample is the mean of four.
+#pragma once
+
+#include "common/framelet.h"
+#include "common/rays_per_sample.h"
+#include "server/render/framelet_renderer.h"
+
+namespace framelet {
+
+/// A quarter of the samples of the tile that `child` is a child of: each the mean of four of the child's, in the
+/// display's light, as the viewer averages samples over a pixel. Depth and what goes with it are those of the first of
+/// the four. `geometry` and `display` are of that tile; body and velocity grow when there are some. Finite for finite
+/// radiance.
+void merge_child(Framelet const& child, float exposure, Framelet& geometry, DisplayFramelet& display);
+
+/// One framelet on the calling thread, at the places of seed 0. `geometry` gets all but the radiance; `scratch` is
+/// overwritten, and its room is reused. `rays_per_sample`: single_ray or four_rays. Returns how many rays that took,
+/// shadow and mirror rays included.
+std::uint32_t render_display(RenderScene const& scene, ViewRays const& rays, ImagePlane const& plane, Tile tile,
+                             float exposure, int rays_per_sample, Framelet& scratch, Framelet& geometry,
+                             DisplayFramelet& display);
+
+} // namespace framelet

@@ -1,0 +1,46 @@
+// Properties of `stillness`' measures, and of the whole verb at a tiny size. Nothing here is about how fast.
+#include "tests/evaluation/stillness.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace framelet::bench {
+namespace {
+
+std::filesystem::path const source = FRAMELET_SOURCE_DIR;
+
+TEST(PsnrOverTime, IsThatOfTheLastMeasurement) {
+    PsnrOverTime const quality{{0.1, 0.2, 0.3}, {30, 35, 40}};
+    EXPECT_EQ(quality.at(0), 30) << "nothing is known of before";
+    EXPECT_EQ(quality.at(0.2), 35);
+    EXPECT_EQ(quality.at(0.29), 35);
+    EXPECT_EQ(quality.at(9), 40);
+}
+
+TEST(PsnrOverTime, AFallIsFromTheBestBefore) {
+    EXPECT_EQ((PsnrOverTime{{0, 1, 2}, {30, 35, 40}}.most_fall()), 0);
+    EXPECT_EQ((PsnrOverTime{{0, 1, 2, 3, 4}, {30, 38, 36, 35, 50}}.most_fall()), 3);
+}
+
+TEST(Stillness, ThePictureBecomesTheReferenceAndNothingMoreIsSent) {
+    StillnessStudy study;
+    study.scenes = {source / "scenes/globe.glb", source / "scenes/stop.glb"};
+    StudyOptions options;
+    options.run.viewport = {48, 32};
+    options.run.frames_per_second = 30;
+    options.run.reference_rate = 10;
+    options.run.seconds = 8;
+    options.costs = read_cost_table(source / "tests/evaluation/costs.json");
+    auto const rows = measure_stillness(study, options);
+    ASSERT_EQ(rows.size(), 2u);
+    for (auto const& row : rows) {
+        EXPECT_GE(row["final_psnr"], 40) << row["scene"];
+        EXPECT_LE(row["most_fall_db"], 0.5) << row["scene"];
+        EXPECT_GT(row["bytes"], 0);
+        EXPECT_LT(row["last_sent_seconds"], options.run.seconds - 1);
+        EXPECT_EQ(row["last_second_bytes"], 0);
+    }
+}
+
+} // namespace
+} // namespace framelet::bench
