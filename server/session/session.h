@@ -44,7 +44,7 @@ public:
 
     /// Batches that may be on their way (rendered, not yet acknowledged). Enough to keep the renderer busy while the
     /// viewer answers, few enough that what arrives is fresh.
-    static constexpr std::uint64_t max_batches_in_flight = 64;
+    static constexpr std::uint64_t max_batches_in_flight = 32;
     /// A viewer that owes an acknowledgement for so long is taken for gone.
     static constexpr std::chrono::seconds ack_timeout{30};
 

@@ -73,6 +73,9 @@ TEST(Table, BatchesHaveNoMoreFrameletsThanTheRunSays) {
             pose_at(*scene, 0.1 * step);
             auto const message =
                 method->produce({*scene, 0.1 * step, 0.1 * step, {1, scene->camera, {128, 128}}, 0, {}}).message;
+            if (message.empty()) { // it is sent with the next step
+                continue;
+            }
             most = std::max(most, std::get<EncodedBatch>(decode_message(message)).tiles.size());
         }
         return most;
