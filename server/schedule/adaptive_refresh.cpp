@@ -118,6 +118,7 @@ void AdaptiveRefresh::plan(RefreshInput const& input, RefreshPlan& plan) {
         plan_cycle(input, plan);
     }
     strayed_ = strayed_ || !same_picture(*seen_, input.state);
+    plan.still_since = strayed_ ? input.now : still_since_;
     plan.rays_per_sample = rays_per_sample_;
     take_batch(batch_limit(input, still_) / static_cast<std::size_t>(rays_per_sample_), plan);
 }
@@ -283,7 +284,7 @@ void AdaptiveRefresh::plan_probes(double samples, RefreshPlan& plan) {
             continue;
         }
         // What is refreshed again and again needs no probes, as long as it is.
-        bool const planned = place.model.motion > 0 && choices_.size() == field_.size() &&
+        bool const planned = place.model.motion > 0 && choices_.size() == field_.size() && choices_[index].recurring &&
                              static_cast<double>(choices_[index].period) < probe_period;
         double const expected = planned ? most_unseen : 0;
         keys[index] = suspicion(index);
@@ -333,7 +334,7 @@ std::vector<std::uint8_t> const& AdaptiveRefresh::learn(RefreshPlan const& plan,
     std::size_t first_place = 0;
     for (std::size_t i = 0; i < plan.patches.size(); ++i) {
         auto const places = std::span(findings_).subspan(first_place, place_count(plan.patches[i]));
-        bool const needed = learn_patch(field_, plan.patches[i], places, same_[i] != 0, plan.now);
+        bool const needed = learn_patch(field_, plan.patches[i], places, same_since_[i], plan.still_since, plan.now);
         auto const to = send_.begin() + static_cast<std::ptrdiff_t>(first_tile);
         std::fill(to, to + static_cast<std::ptrdiff_t>(plan.tile_counts[i]), needed ? 1 : 0);
         first_tile += plan.tile_counts[i];
@@ -390,7 +391,7 @@ void AdaptiveRefresh::examine(RefreshPlan const& plan, std::span<DisplayFramelet
     send_.resize(tiles);
     entries_.resize(tiles);
     findings_.resize(places);
-    same_.resize(plan.patches.size());
+    same_since_.resize(plan.patches.size());
     tbb::parallel_for(std::size_t{0}, plan.patches.size(), [&](std::size_t i) {
         Patch const& patch = plan.patches[i];
         auto const [tile, place] = firsts_[i];
@@ -398,12 +399,14 @@ void AdaptiveRefresh::examine(RefreshPlan const& plan, std::span<DisplayFramelet
         auto const on_body = [](Framelet const& framelet) {
             return std::ranges::any_of(framelet.body, [](BodyNumber body) { return body != static_body; });
         };
-        bool const same = examine_patch(field_, patch, framelets.subspan(tile, count), rendered.subspan(tile, count),
-                                        plan.now, plan.moment, history_, std::span(entries_).subspan(tile, count),
-                                        std::span(findings_).subspan(place, place_count(patch)));
+        double const same_since =
+            examine_patch(field_, patch, framelets.subspan(tile, count), rendered.subspan(tile, count), plan.now,
+                          plan.moment, history_, std::span(entries_).subspan(tile, count),
+                          std::span(findings_).subspan(place, place_count(patch)));
         // The same picture may be of a body that has moved, and that the viewer has moved away.
-        same_[i] =
-            same && !(plan.moment.motions != nullptr && std::ranges::any_of(rendered.subspan(tile, count), on_body));
+        bool const moved =
+            plan.moment.motions != nullptr && std::ranges::any_of(rendered.subspan(tile, count), on_body);
+        same_since_[i] = moved ? never : same_since;
     });
 }
 

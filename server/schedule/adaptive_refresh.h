@@ -40,6 +40,7 @@ struct RefreshInput {
 /// What to render now.
 struct RefreshPlan {
     double now = 0; ///< when
+    double still_since = 0; ///< when anything moved last
     Viewport viewport;
     RenderedMoment moment; ///< whose motions must live until it is learnt
     bool is_new_cycle = false; ///< worked out anew, not what the last one left
@@ -138,7 +139,7 @@ private:
     std::vector<double> suspicions_;
     std::vector<LumaHistory::Entry> entries_; ///< of the framelets learnt from
     std::vector<PlaceFindings> findings_; ///< of the places of their patches
-    std::vector<std::uint8_t> same_; ///< of the patches
+    std::vector<double> same_since_; ///< of the patches
     std::vector<std::pair<std::size_t, std::size_t>> firsts_; ///< first tile and first place of each patch
 };
 

@@ -7,29 +7,52 @@ namespace {
 
 constexpr double least_inspection_period = 2;
 
+struct Gain {
+    double error = 0; ///< that refreshing takes away, beyond what is tolerated, summed over pixels
+    bool spoils = false; ///< what is finer and still true
+};
+
+Gain gain_of(PlaceField const& field, Choices const& choices, std::span<float const> due, Budget const& budget,
+             PlaceField::Range range, int level) {
+    Gain gain;
+    for (std::uint32_t i = range.first; i < range.last; ++i) {
+        Place const& place = field[i];
+        if (field.pixels_of(i) == 0 || place.taken.level >= 0) { // what it is worth is seen once it is learnt
+            continue;
+        }
+        gain.spoils = gain.spoils || (place.level > level && place.drift == 0 && place.model.motion == 0);
+        float const drift = place.model.motion * budget.latency;
+        float const fresh = unresolved_error(place.model, level) + drift_error(place.model, level, drift);
+        gain.error += static_cast<double>(field.pixels_of(i)) *
+                      static_cast<double>(due[i] - std::max(choices[i].due_error, fresh));
+    }
+    return gain;
+}
+
 } // namespace
 
 void rate_patches(PlaceField const& field, Choices const& choices, std::span<float const> due,
                   std::vector<Patch> const& cut, Budget const& budget, std::vector<RatedPatch>& rated) {
     rated.clear();
-    for (Patch const& patch : cut) {
-        PlaceField::Range const range = field.range_of(patch.node);
-        int const level = field.level_of(patch.depth);
-        double gain = 0;
-        bool spoils = false; // what is finer and still true
-        for (std::uint32_t i = range.first; i < range.last; ++i) {
-            Place const& place = field[i];
-            if (field.pixels_of(i) == 0 || place.taken.level >= 0) { // what it is worth is seen once it is learnt
-                continue;
-            }
-            spoils = spoils || (place.level > level && place.drift == 0 && place.model.motion == 0);
-            float const drift = place.model.motion * budget.latency;
-            float const fresh = unresolved_error(place.model, level) + drift_error(place.model, level, drift);
-            gain += static_cast<double>(field.pixels_of(i)) *
-                    static_cast<double>(due[i] - std::max(choices[i].due_error, fresh));
+    auto const rate = [&](Patch const& patch) {
+        Gain const gain = gain_of(field, choices, due, budget, field.range_of(patch.node), field.level_of(patch.depth));
+        if (!gain.spoils) {
+            double const samples = framelet_samples * tile_count(patch);
+            rated.push_back({patch, samples, gain.error / samples});
         }
-        double const samples = framelet_samples * tile_count(patch);
-        rated.push_back({patch, samples, spoils ? 0 : gain / samples});
+        return !gain.spoils;
+    };
+    for (Patch const& patch : cut) {
+        if (rate(patch)) {
+            continue;
+        }
+        // What is true among them must not keep the others waiting: each for itself.
+        PlaceField::Range const range = field.range_of(patch.node);
+        for (std::uint32_t i = range.first; i < range.last && range.last - range.first > 1; ++i) {
+            if (field.pixels_of(i) > 0) {
+                rate({{(1u << (2 * field.depth())) + i}, std::max(patch.depth, field.depth())});
+            }
+        }
     }
 }
 

@@ -14,7 +14,8 @@ struct RatedPatch {
     double urgency = 0; ///< error that waiting costs, summed over pixels, for each sample; above 0: due
 };
 
-/// Replaces `rated` by every patch of the cut, with its urgency. `due`: what `find_due_errors` gives.
+/// Replaces `rated` by every patch of the cut, with its urgency; a patch that would put something coarser over what is
+/// true gives way to those of its places that need it. `due`: what `find_due_errors` gives.
 void rate_patches(PlaceField const& field, Choices const& choices, std::span<float const> due,
                   std::vector<Patch> const& cut, Budget const& budget, std::vector<RatedPatch>& rated);
 

@@ -32,6 +32,7 @@ struct Place {
     double rendered = never; ///< seconds
     double supersampled = never; ///< when the viewer got it with four rays a sample, seconds
     double changed = never; ///< when it was last seen to be different
+    double doubted = never; ///< when it was last rendered with nothing to compare with, and might have changed
     double checked = never; ///< when it was last rendered or probed
     double asked = never; ///< the same, learnt or not
     bool settled = true; ///< false from a change that was seen until two renderings are the same
@@ -40,6 +41,7 @@ struct Place {
     float speed = 0; ///< of the camera's motion here, pixels a second, when `model.motion` was learnt
     std::array<Probe, probes_per_place> probes{};
     std::size_t probe_count = 0;
+    std::array<float, probes_per_place> seen{}; ///< what the probes last were: their luma
 };
 
 class PlaceField {

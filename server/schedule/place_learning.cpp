@@ -79,6 +79,23 @@ float mean_inverse_depth(Framelet const& framelet, std::size_t first, std::size_
     return ((sums[0] + sums[1]) + (sums[2] + sums[3])) / static_cast<float>(count);
 }
 
+/// Mean squared difference of the probes' luma to what it was, 0 below half a step of the display. The steepest samples
+/// say whether there is one; how large it is on the whole the others know.
+template <class Before>
+float probed_error(std::span<float const> luma, Before&& before) {
+    constexpr float step = 1.0f / 255;
+    constexpr float steep_weight = 1.0f / 16;
+    float sum = 0;
+    float weights = 0;
+    for (std::size_t i = 0; i < luma.size(); ++i) {
+        float const difference = std::abs(luma[i] - before(i));
+        float const weight = i % 2 == 0 ? steep_weight : 1 - steep_weight;
+        sum += difference > 0.5f * step ? weight * difference * difference : 0;
+        weights += weight;
+    }
+    return luma.empty() ? 0 : sum / weights;
+}
+
 bool is_change(Observation const& seen) {
     constexpr float noise = 1e-6f; // a quarter of a display step, squared
     float change = seen.mean_change;
@@ -98,9 +115,10 @@ float drift_since(Place const& place, double now) {
     return place.taken.when == now ? place.taken.drift : place.drift;
 }
 
-bool examine_patch(PlaceField const& field, Patch const& patch, std::span<DisplayFramelet const> framelets,
-                   std::span<Framelet const> rendered, double now, RenderedMoment const& moment,
-                   LumaHistory const& history, std::span<LumaHistory::Entry> entries, std::span<PlaceFindings> places) {
+double examine_patch(PlaceField const& field, Patch const& patch, std::span<DisplayFramelet const> framelets,
+                     std::span<Framelet const> rendered, double now, RenderedMoment const& moment,
+                     LumaHistory const& history, std::span<LumaHistory::Entry> entries,
+                     std::span<PlaceFindings> places) {
     FRAMELET_CHECK(framelets.size() == rendered.size() && framelets.size() == entries.size() && !framelets.empty());
     FRAMELET_CHECK(framelet_samples % places.size() == 0);
     int const level = field.level_of(patch.depth);
@@ -108,7 +126,7 @@ bool examine_patch(PlaceField const& field, Patch const& patch, std::span<Displa
     std::array<float, framelet_samples> luma;
     std::array<float, framelet_samples> change;
     std::fill(places.begin(), places.end(), PlaceFindings{});
-    bool same = true;
+    double same_since = now;
     for (std::size_t f = 0; f < framelets.size(); ++f) {
         LumaHistory::Entry& entry = entries[f];
         fill_entry(entry, framelets[f], now);
@@ -127,7 +145,8 @@ bool examine_patch(PlaceField const& field, Patch const& patch, std::span<Displa
             difference = std::span<float const, framelet_samples>(change);
             seconds = static_cast<float>(now - before->time);
         }
-        same = same && before != nullptr && before->content == entry.content;
+        bool const same = before != nullptr && before->content == entry.content;
+        same_since = std::min(same_since, same ? before->time : never);
         std::size_t const wanted =
             (f + 1) * probes_per_place / framelets.size() - f * probes_per_place / framelets.size();
         Steps const steps = steps_of(entry);
@@ -145,24 +164,28 @@ bool examine_patch(PlaceField const& field, Patch const& patch, std::span<Displa
         place.seen = mean_of(place.seen, static_cast<int>(framelets.size()));
         place.inverse_depth /= static_cast<float>(framelets.size());
     }
-    return same;
+    return same_since;
 }
 
-bool learn_patch(PlaceField& field, Patch const& patch, std::span<PlaceFindings const> places, bool same, double now) {
+bool learn_patch(PlaceField& field, Patch const& patch, std::span<PlaceFindings const> places, double same_since,
+                 double still_since, double now) {
     int const level = field.level_of(patch.depth);
     PlaceField::Range const range = field.range_of(patch.node);
     FRAMELET_CHECK(places.size() == range.last - range.first);
-    // The viewer has it, or better, and that has not been seen to change: nothing to send.
-    bool known = same;
+    // The viewer has it, or better, and either has had it since before it looked the same, or what it got later is of a
+    // place that has not changed meanwhile: nothing to send.
+    bool known = same_since > never;
     for (std::uint32_t i = range.first; i < range.last; ++i) {
         Place const& place = field[i];
-        known = known && (field.pixels_of(i) == 0 || (place.level >= level && place.changed <= place.rendered));
+        bool const goes_on = std::min(place.rendered, std::max(place.changed, place.doubted)) <= same_since;
+        known = known && (field.pixels_of(i) == 0 || (place.level >= level && goes_on));
     }
     for (std::uint32_t i = range.first; i < range.last; ++i) {
         Place& place = field[i];
         PlaceFindings const& found = places[i - range.first];
         place.probes = found.probes;
         place.probe_count = found.probe_count;
+        std::ranges::transform(found.probes, place.seen.begin(), &Probe::luma);
         place.inverse_depth = found.inverse_depth;
         learn(place.model, found.seen);
         // What is uncovered there may look like what was rendered there before. It fills a place in so long.
@@ -172,6 +195,9 @@ bool learn_patch(PlaceField& field, Patch const& patch, std::span<PlaceFindings 
         }
         if (is_change(found.seen) || place.rendered == never) {
             place.changed = now;
+        }
+        if (!found.seen.has_change && place.rendered < still_since) {
+            place.doubted = now;
         }
         place.checked = now;
         if (level >= pixel_level) {
@@ -188,25 +214,22 @@ bool learn_patch(PlaceField& field, Patch const& patch, std::span<PlaceFindings 
 
 void learn_probes(Place& place, std::span<float const> luma, double now) {
     FRAMELET_CHECK(luma.size() == place.probe_count && place.level >= 0);
-    constexpr float step = 1.0f / 255;
-    // The steepest samples say whether there is a change; how large it is on the whole the others know.
-    constexpr float steep_weight = 1.0f / 16;
-    float sum = 0;
-    float weights = 0;
-    for (std::size_t i = 0; i < luma.size(); ++i) {
-        float const difference = std::abs(luma[i] - place.probes[i].luma);
-        float const weight = i % 2 == 0 ? steep_weight : 1 - steep_weight;
-        sum += difference > 0.5f * step ? weight * difference * difference : 0;
-        weights += weight;
-    }
-    float const error = luma.empty() ? 0 : sum / weights;
+    float const error = probed_error(luma, [&](std::size_t i) { return place.probes[i].luma; });
+    float const change = probed_error(luma, [&](std::size_t i) { return place.seen[i]; });
+    auto const seconds = static_cast<float>(now - place.checked);
     if (error > 0) {
-        float const drift = drift_of_error(place.model, place.level, error);
-        place.drift = std::max(place.drift, drift);
-        auto const seconds = static_cast<float>(now - place.checked);
+        place.drift = std::max(place.drift, drift_of_error(place.model, place.level, error));
+        place.settled = false;
+    }
+    if (change > 0) {
+        float const drift = drift_of_error(place.model, place.level, change);
         place.model.motion = std::max(place.model.motion, seconds > 0 ? drift / seconds : 0);
         place.changed = now;
-        place.settled = false;
+    } else if (error > 0) {
+        // It is not what the viewer has, and stands: a step, after which it is worth rendering again.
+        constexpr float unseen_drift = 0.1f;
+        place.model.motion = std::min(0.5f * place.model.motion, seconds > 0 ? unseen_drift / seconds : INFINITY);
+        place.model.pace = PlaceModel::unknown_pace();
     } else {
         // Too few samples to say so of all of it, unless its last rendering did.
         constexpr float least_motion = 0.5f;
@@ -214,6 +237,7 @@ void learn_probes(Place& place, std::span<float const> luma, double now) {
         place.drift *= kept;
         place.model.motion *= kept;
     }
+    std::ranges::copy(luma, place.seen.begin());
     place.checked = now;
 }
 

@@ -21,14 +21,18 @@ struct PlaceFindings {
 };
 
 /// Of one patch. `framelets`: of its tiles, all the visible ones; `rendered`: the same with depth. Fills `entries` (a
-/// framelet each) and `places` (a place of the patch each). Returns whether all of it is what `history` remembers.
-bool examine_patch(PlaceField const& field, Patch const& patch, std::span<DisplayFramelet const> framelets,
-                   std::span<Framelet const> rendered, double now, RenderedMoment const& moment,
-                   LumaHistory const& history, std::span<LumaHistory::Entry> entries, std::span<PlaceFindings> places);
+/// framelet each) and `places` (a place of the patch each). Returns since when all of it is what `history` remembers;
+/// `never` where it is not.
+double examine_patch(PlaceField const& field, Patch const& patch, std::span<DisplayFramelet const> framelets,
+                     std::span<Framelet const> rendered, double now, RenderedMoment const& moment,
+                     LumaHistory const& history, std::span<LumaHistory::Entry> entries,
+                     std::span<PlaceFindings> places);
 
-/// Takes the findings of a patch that was rendered at `now` into account. `same`: what `examine_patch` returned.
+/// Takes the findings of a patch that was rendered at `now` into account. `same_since`: what `examine_patch` returned;
+/// `still_since`: when anything that is to be seen moved last.
 /// Returns whether the viewer needs the patch: false where it holds the very same.
-bool learn_patch(PlaceField& field, Patch const& patch, std::span<PlaceFindings const> places, bool same, double now);
+bool learn_patch(PlaceField& field, Patch const& patch, std::span<PlaceFindings const> places, double same_since,
+                 double still_since, double now);
 
 /// Drift since a rendering of it that was planned at `now`, which may have been a while ago.
 float drift_since(Place const& place, double now);

@@ -23,5 +23,30 @@ TEST(Inspections, LookAtEveryPlaceAndTakeNoTileTwice) {
     EXPECT_EQ(std::ranges::count(tiles, fine, &Tile::depth), 64) << "every place is looked at";
 }
 
+TEST(RatedPatches, WhatIsTrueKeepsItsNeighboursNotWaiting) {
+    PlaceField field{ImagePlane({128, 128})};
+    Choices choices(field.size());
+    std::vector<float> due(field.size(), 0.1f); // all are wrong
+    for (std::uint32_t const index : field.visible()) {
+        field[index].level = pixel_level;
+        field[index].drift = 64;
+        field[index].model.energy.fill(1e-6f);
+    }
+    std::vector<Patch> const cut{{Tile{1}.child(0), field.depth() - 2}}; // coarser than a place is
+    std::vector<RatedPatch> rated;
+    rate_patches(field, choices, due, cut, {}, rated);
+    ASSERT_EQ(rated.size(), 1u);
+    EXPECT_GT(rated[0].urgency, 0);
+
+    field[0].drift = 0; // but one
+    due[0] = 0;
+    rate_patches(field, choices, due, cut, {}, rated);
+    ASSERT_EQ(rated.size(), std::size_t{field.range_of(cut[0].node).last});
+    for (RatedPatch const& entry : rated) {
+        EXPECT_EQ(entry.patch.node.depth(), field.depth());
+        EXPECT_EQ(entry.urgency > 0, field.range_of(entry.patch.node).first != 0);
+    }
+}
+
 } // namespace
 } // namespace framelet

@@ -36,11 +36,11 @@ public:
         std::vector<LumaHistory::Entry> entries(tiles.size());
         PlaceField::Range const range = field.range_of(patch.node);
         std::vector<PlaceFindings> places(range.last - range.first);
-        bool const same = examine_patch(field, patch, display, rendered, now, moment, history, entries, places);
+        double const same_since = examine_patch(field, patch, display, rendered, now, moment, history, entries, places);
         for (LumaHistory::Entry const& entry : entries) {
             history.store(entry);
         }
-        return learn_patch(field, patch, places, same, now);
+        return learn_patch(field, patch, places, same_since, still_since, now);
     }
     Patch patch(int level, std::uint32_t index = 0) const {
         return {{(1u << (2 * field.depth())) + index}, field.depth_of(level)};
@@ -49,6 +49,7 @@ public:
     PlaceField field;
     LumaHistory history;
     RenderedMoment moment; ///< the viewer moves nothing
+    double still_since = 0;
     std::vector<BodyNumber> bodies; ///< of the samples; empty: none
 };
 
@@ -99,6 +100,28 @@ TEST(PlaceField, TheSameIsSentOnce) {
     EXPECT_FALSE(learner.learn(learner.patch(5), 5, still));
 }
 
+TEST(PlaceField, WhatIsAsItWasBeforeTheLastChangeIsSent) {
+    auto const other = [](float x, float y) { return 1 - still(x, y); };
+    Learner learner({64, 64});
+    EXPECT_TRUE(learner.learn(learner.patch(3), 1, still));
+    EXPECT_TRUE(learner.learn(learner.patch(4), 2, still));
+    EXPECT_TRUE(learner.learn(learner.patch(4), 3, other)) << "a lamp goes on";
+    EXPECT_TRUE(learner.learn(learner.patch(3), 4, still)) << "and off: the viewer still shows the other";
+    EXPECT_FALSE(learner.learn(learner.patch(3), 5, still));
+}
+
+TEST(PlaceField, WhatWasRenderedWithNothingToCompareWithMayHaveChanged) {
+    auto const other = [](float x, float y) { return 1 - still(x, y); };
+    for (bool const moves : {false, true}) {
+        Learner learner({64, 64});
+        learner.still_since = moves ? 10 : 0;
+        EXPECT_TRUE(learner.learn(learner.patch(3), 1, still));
+        EXPECT_TRUE(learner.learn(learner.patch(4), 2, moves ? other : still)) << "of this level nothing is known";
+        EXPECT_EQ(learner.learn(learner.patch(3), 3, still), moves);
+        EXPECT_EQ(learner.field[0].level, moves ? 3 : 4);
+    }
+}
+
 /// Probes lie in all parts of a place, however many framelets it was rendered as.
 TEST(PlaceField, ProbesSpreadOverThePlace) {
     for (Viewport const viewport : {Viewport{64, 64}, {1280, 720}, {4096, 4096}}) {
@@ -119,6 +142,25 @@ TEST(PlaceField, ProbesSpreadOverThePlace) {
             EXPECT_EQ(quarters, (std::array{4, 4, 4, 4})) << viewport.width << " level " << level;
         }
     }
+}
+
+TEST(PlaceField, AStepIsNotMotion) {
+    Learner learner({64, 64});
+    learner.learn(learner.patch(3), 1, still);
+    Place& place = learner.field[0];
+    std::vector<float> luma(place.probe_count, 0.9f);
+    learn_probes(place, luma, 1.1);
+    EXPECT_GT(place.model.motion, 1) << "for all that is known";
+    float const drift = place.drift;
+    EXPECT_GT(drift, 0);
+    learn_probes(place, luma, 1.2);
+    EXPECT_LE(place.model.motion, 1.001f) << "it stands";
+    EXPECT_GE(place.drift, drift) << "and is not what the viewer has";
+    EXPECT_EQ(place.changed, 1.1);
+    luma.assign(place.probe_count, 0.2f);
+    learn_probes(place, luma, 1.3);
+    EXPECT_GT(place.model.motion, 1);
+    EXPECT_EQ(place.changed, 1.3);
 }
 
 TEST(PlaceField, ProbesTellStandingFromMoving) {
