@@ -255,13 +255,16 @@ void AdaptiveRefresh::plan_supersampling(double samples) {
 
 /// Probes what seems to stand, the neighbours of what moves first.
 void AdaptiveRefresh::plan_probes(double samples, RefreshPlan& plan) {
+    active_.assign(field_.size(), 0);
+    for (std::uint32_t const index : field_.visible()) {
+        active_[index] = field_[index].model.motion > 0 ? 1 : 0;
+    }
     auto const is_active = [this](int column, int row) {
         int const side = 1 << field_.depth();
         if (column < 0 || row < 0 || column >= side || row >= side) {
             return false;
         }
-        std::uint32_t const index = morton_index(static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row));
-        return field_.pixels_of(index) > 0 && field_[index].model.motion > 0;
+        return active_[morton_index(static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row))] != 0;
     };
     auto const suspicion = [&](std::uint32_t index) {
         Place const& place = field_[index];

@@ -136,6 +136,7 @@ private:
     std::vector<RatedPatch> rated_;
     std::vector<std::uint32_t> suspects_;
     std::vector<std::pair<float, std::uint32_t>> unresolved_; ///< error and index of places
+    std::vector<std::uint8_t> active_; ///< of the places: whether it moves
     std::vector<double> suspicions_;
     std::vector<LumaHistory::Entry> entries_; ///< of the framelets learnt from
     std::vector<PlaceFindings> findings_; ///< of the places of their patches
