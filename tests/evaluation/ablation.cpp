@@ -41,14 +41,7 @@ struct Outcome {
 
 Outcome run_without(Part const& part, BenchScene& scene, Reference const& reference, RunParameters const& parameters,
                     double machine, CostTable const& costs) {
-    MethodSetup setup{.viewport = parameters.viewport,
-                      .costs = costs,
-                      .machine = machine,
-                      .frames_per_second = parameters.frames_per_second,
-                      .bits_per_second = parameters.link.bits_per_second,
-                      .seed = parameters.seed,
-                      .delay_seconds = parameters.link.delay_seconds,
-                      .bias = parameters.bias};
+    MethodSetup setup = method_setup(parameters, machine, costs);
     if (part.left_out != nullptr) {
         setup.parts.*part.left_out = false;
     }

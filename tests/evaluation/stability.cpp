@@ -41,15 +41,7 @@ StabilityRun run_batch(BenchScene& scene, Reference const& reference, std::vecto
                        CostTable const& costs) {
     StabilityRun result;
     result.batch = parameters.batch_framelets;
-    auto const method = make_method("framelet", {.viewport = parameters.viewport,
-                                                 .costs = costs,
-                                                 .machine = machine,
-                                                 .frames_per_second = parameters.frames_per_second,
-                                                 .bits_per_second = parameters.link.bits_per_second,
-                                                 .seed = parameters.seed,
-                                                 .delay_seconds = parameters.link.delay_seconds,
-                                                 .bias = parameters.bias,
-                                                 .batch_framelets = parameters.batch_framelets});
+    auto const method = make_method("framelet", method_setup(parameters, machine, costs));
     CycleLog log;
     run_method(
         scene, *method, parameters, machine,

@@ -37,9 +37,7 @@ Still watch(BenchScene& scene, StillnessStudy const& study, StudyOptions const& 
     pose_at(scene, study.stops);
     Still still;
     still.reference = render_reference(scene, run.viewport, study.reference_side);
-    auto const method =
-        make_method("framelet", {run.viewport, options.costs, machine, run.frames_per_second, run.link.bits_per_second,
-                                 run.seed, run.link.delay_seconds, run.bias, run.batch_framelets});
+    auto const method = make_method("framelet", method_setup(run, machine, options.costs));
     RunResult const result =
         run_method(scene, *method, run, machine, [&](std::size_t index, Picture const& shown, double) {
             double const since = reference_time(run, index) - study.stops;
