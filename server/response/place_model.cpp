@@ -237,6 +237,11 @@ void learn_motion(PlaceModel& place, Observation const& seen) {
 
 } // namespace
 
+float unresolved_error(Observation const& seen) {
+    FRAMELET_CHECK(seen.level >= pixel_level);
+    return tail * to_energy(seen.energy[0]) / samples_per_pixel(seen.level);
+}
+
 void learn(PlaceModel& place, Observation const& seen) {
     learn_energy(place, seen);
     if (seen.has_change) {

@@ -97,6 +97,9 @@ Observation observe(int level, std::span<float const, framelet_samples> luma,
 void accumulate(Observation& sum, Observation const& more);
 Observation mean_of(Observation const& sum, int count);
 
+/// What the mean over a pixel's samples leaves unresolved, by the observation alone; of levels from a pixel on.
+float unresolved_error(Observation const& seen);
+
 /// Takes an observation into account. All results are finite and not below 0 for any finite input.
 void learn(PlaceModel& place, Observation const& observation);
 

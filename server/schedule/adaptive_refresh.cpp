@@ -55,8 +55,7 @@ bool AdaptiveRefresh::is_finest(std::uint32_t index) const {
 
 bool AdaptiveRefresh::is_finished(std::uint32_t index) const {
     Place const& place = field_[index];
-    return is_finest(index) &&
-           (place.supersampled >= still_since_ || unresolved_error(place.model, sampling_levels - 1) <= enough);
+    return is_finest(index) && (place.supersampled >= still_since_ || place.left <= enough);
 }
 
 bool AdaptiveRefresh::is_complete(ViewState const& state) const {
@@ -237,7 +236,7 @@ void AdaptiveRefresh::plan_supersampling(double samples) {
     unresolved_.clear();
     for (std::uint32_t const index : field_.visible()) {
         if (is_finest(index) && !is_finished(index) && field_[index].taken.level < 0) {
-            unresolved_.push_back({unresolved_error(field_[index].model, sampling_levels - 1), index});
+            unresolved_.push_back({field_[index].left, index});
         }
     }
     std::ranges::sort(unresolved_, std::ranges::greater());

@@ -30,6 +30,7 @@ struct Place {
     float drift = 0; ///< since that was rendered
     TakenSamples taken;
     double rendered = never; ///< seconds
+    float left = 0; ///< mean squared error that the finest samples leave, by their last rendering alone
     double supersampled = never; ///< when the viewer got it with four rays a sample, seconds
     double changed = never; ///< when it was last seen to be different
     double doubted = never; ///< when it was last rendered with nothing to compare with, and might have changed

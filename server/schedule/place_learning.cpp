@@ -188,6 +188,9 @@ bool learn_patch(PlaceField& field, Patch const& patch, std::span<PlaceFindings 
         std::ranges::transform(found.probes, place.seen.begin(), &Probe::luma);
         place.inverse_depth = found.inverse_depth;
         learn(place.model, found.seen);
+        if (level == sampling_levels - 1) {
+            place.left = unresolved_error(found.seen);
+        }
         // What is uncovered there may look like what was rendered there before. It fills a place in so long.
         place.model.motion = std::max(place.model.motion, found.meeting_speed / static_cast<float>(field.place_side()));
         if (found.seen.has_change) {
