@@ -190,8 +190,12 @@ void AdaptiveRefresh::plan_patches(RefreshInput const& input, double samples) {
     }
     double const batch_samples = static_cast<double>(batch_limit(input, still_) * framelet_samples);
     double const rendering = std::min(batch_samples, samples) / input.samples_per_second;
-    Budget const budget{samples / static_cast<double>(input.cycle_seconds), input.cycle_seconds,
-                        static_cast<float>(rendering) + input.delivery_seconds, input.bias, input.limits};
+    Budget const budget{samples / static_cast<double>(input.cycle_seconds),
+                        input.cycle_seconds,
+                        static_cast<float>(rendering) + input.delivery_seconds,
+                        input.bias,
+                        input.limits,
+                        still_};
     find_due_errors(field_, budget, due_errors_);
     price_ = solve_price(field_, advanced_, budget, due_errors_, price_, choices_);
     density_.assign(field_.size(), 0);

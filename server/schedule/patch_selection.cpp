@@ -20,9 +20,10 @@ Gain gain_of(PlaceField const& field, Choices const& choices, std::span<float co
         if (field.pixels_of(i) == 0 || place.taken.level >= 0) { // what it is worth is seen once it is learnt
             continue;
         }
-        gain.spoils = gain.spoils || (place.level > level && place.drift == 0 && place.model.motion == 0);
-        float const drift = place.model.motion * budget.latency;
-        float const fresh = unresolved_error(place.model, level) + drift_error(place.model, level, drift);
+        gain.spoils =
+            gain.spoils || (place.level > level && place.drift == 0 && (budget.still || place.model.motion == 0));
+        float const fresh =
+            unresolved_error(place.model, level) + drift_error(place.model, level, drift_on_the_way(place, budget));
         gain.error += static_cast<double>(field.pixels_of(i)) *
                       static_cast<double>(due[i] - std::max(choices[i].due_error, fresh));
     }

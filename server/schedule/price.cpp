@@ -13,9 +13,13 @@ constexpr double coarse_seconds = 0.12;
 /// Seconds that a place is expected to stay as it is: as long as it has, within these.
 constexpr float least_life = 0.1f;
 constexpr float most_life = 4;
+constexpr float least_rest = 0.3f; ///< once all stands
 
-float expected_life(Place const& place, double now) {
+float expected_life(Place const& place, double now, bool all_stands) {
     float const still = static_cast<float>(std::min(now - place.changed, static_cast<double>(most_life)));
+    if (all_stands) {
+        return std::clamp(still, least_rest, most_life);
+    }
     float const motion = place.model.motion;
     float const passing = motion > 2 / most_life ? 2 / motion : most_life;
     return std::clamp(std::min(std::max(still, passing), most_life), least_life, most_life);
@@ -26,18 +30,26 @@ void choose_all(PlaceField const& field, double now, Budget const& budget, float
     int const least_level = std::max(field.least_level(), budget.limits.least_level);
     for (std::uint32_t const index : field.visible()) {
         Place const& place = field[index];
-        choices[index] =
-            choose_sampling(place.model, expected_life(place, now), terms, least_level, budget.limits.most_level);
+        PlaceModel model = place.model;
+        if (budget.still) {
+            model.motion = 0;
+        }
+        choices[index] = choose_sampling(model, expected_life(place, now, budget.still), terms, least_level,
+                                         budget.limits.most_level);
     }
 }
 
 } // namespace
 
+float drift_on_the_way(Place const& place, Budget const& budget) {
+    return budget.still ? 0 : place.model.motion * budget.latency;
+}
+
 void find_due_errors(PlaceField const& field, Budget const& budget, std::vector<float>& due) {
     due.resize(field.size());
     for (std::uint32_t const index : field.visible()) {
         Place const& place = field[index];
-        due[index] = shown_error(place, place.model.motion * budget.latency);
+        due[index] = shown_error(place, drift_on_the_way(place, budget));
     }
 }
 

@@ -24,6 +24,7 @@ struct Budget {
     float latency = 0; ///< seconds from rendering to display
     float bias = 0; ///< -1 (spatial fidelity) .. 1 (temporal)
     ResponseLimits limits{};
+    bool still = false; ///< nothing moves: what is rendered now stays true, whatever was learnt of the place's motion
 };
 
 /// For every place of a field, by Morton index; what is not visible keeps its default.
@@ -42,6 +43,9 @@ struct Demand {
     double refining = 0; ///< for what is true and coarse: it can wait and makes nothing dearer
 };
 Demand demand_of(PlaceField const& field, Budget const& budget, std::span<float const> due, Choices const& choices);
+
+/// Drift of a place while what is rendered of it is on its way.
+float drift_on_the_way(Place const& place, Budget const& budget);
 
 /// For every visible place, by Morton index, the error that it shows by the time at which a refresh would come.
 void find_due_errors(PlaceField const& field, Budget const& budget, std::vector<float>& due);

@@ -48,5 +48,30 @@ TEST(RatedPatches, WhatIsTrueKeepsItsNeighboursNotWaiting) {
     }
 }
 
+/// Once nothing moves, what was learnt of the motion of places says nothing of what the viewer holds.
+TEST(RatedPatches, WhatIsTrueGetsNoCoarserOnceAllStands) {
+    PlaceField field{ImagePlane({128, 128})};
+    for (std::uint32_t const index : field.visible()) {
+        field[index].level = pixel_level;
+        field[index].model.energy.fill(1e-3f);
+        field[index].model.motion = 100;
+    }
+    Choices const choices(field.size());
+    std::vector<Patch> const cut{{Tile{1}.child(0), field.depth() - 2}};
+    std::vector<float> due;
+    std::vector<RatedPatch> rated;
+    Budget budget{.samples_per_second = 1e6, .latency = 0.02f};
+    auto const is_wanted = [&] {
+        find_due_errors(field, budget, due);
+        rate_patches(field, choices, due, cut, budget, rated);
+        return std::ranges::any_of(rated, [](RatedPatch const& entry) { return entry.urgency > 0; });
+    };
+    EXPECT_TRUE(is_wanted());
+    budget.still = true;
+    EXPECT_FALSE(is_wanted());
+    field[0].drift = 1; // what is no longer true is rendered again
+    EXPECT_TRUE(is_wanted());
+}
+
 } // namespace
 } // namespace framelet
