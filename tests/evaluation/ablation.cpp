@@ -4,10 +4,13 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
+#include "common/picture_writer.h"
 #include "tests/evaluation/charts/charts.h"
+#include "tests/evaluation/charts/side_by_side.h"
 #include "tests/evaluation/measures/measures.h"
 
 namespace framelet::bench {
@@ -37,7 +40,12 @@ constexpr Part parts[] = {
 
 struct Outcome {
     double mse = 0, bytes = 0, server = 0, response = 0, viewer = 0; ///< mean, a second's, CPU seconds a second
+    Picture picture; ///< in the middle of the run
 };
+
+std::size_t middle_of(RunParameters const& parameters) {
+    return reference_count(parameters) / 2;
+}
 
 Outcome run_without(Part const& part, BenchScene& scene, Reference const& reference, RunParameters const& parameters,
                     double machine, CostTable const& costs) {
@@ -51,6 +59,9 @@ Outcome run_without(Part const& part, BenchScene& scene, Reference const& refere
     RunResult const run =
         run_method(scene, *method, parameters, machine, [&](std::size_t index, Picture const& shown, double) {
             result.mse += mean_squared_error(shown, reference.picture(index)) / count;
+            if (index == middle_of(parameters)) {
+                result.picture = shown;
+            }
         });
     result.bytes = static_cast<double>(run.bytes) / parameters.seconds;
     result.server = run.cpu.server() / parameters.seconds;
@@ -82,7 +93,6 @@ void draw_chart(json const& runs, std::filesystem::path const& folder) {
             found->y.push_back(without["mse_ratio"]);
         }
     }
-    std::filesystem::create_directories(folder);
     draw(chart, folder / "ablation");
 }
 
@@ -108,8 +118,9 @@ void print_summary(json const& runs) {
     }
 }
 
+/// `pictures` gets what is shown in the middle of each run.
 json measure_run(BenchScene& scene, Reference const& reference, RunParameters const& parameters, double machine,
-                 CostTable const& costs) {
+                 CostTable const& costs, std::vector<Labelled>& pictures) {
     bool const limited = parameters.link.bits_per_second > 0;
     json result{{"scene", scene.name}, {"bits_per_second", parameters.link.bits_per_second}};
     Outcome whole;
@@ -118,6 +129,8 @@ json measure_run(BenchScene& scene, Reference const& reference, RunParameters co
             continue;
         }
         Outcome const found = run_without(part, scene, reference, parameters, machine, costs);
+        pictures.push_back(
+            {part.left_out == nullptr ? "framelet" : std::string("without ") + part.name, found.picture});
         if (part.left_out == nullptr) {
             whole = found;
             result["whole"] = {{"mse", found.mse},
@@ -149,6 +162,9 @@ json measure_run(BenchScene& scene, Reference const& reference, RunParameters co
 json measure_ablation(AblationOptions const& options, StudyOptions const& study) {
     std::printf("%-17s %5s %-14s %9s %8s %7s %9s\n", "scene", "link", "without", "mse", "kB/s", "server", "viewer");
     json runs = json::array();
+    if (!study.charts.empty()) {
+        std::filesystem::create_directories(study.charts);
+    }
     for (std::filesystem::path const& file : options.scenes) {
         auto const scene = load_bench_scene(file);
         StudyOptions of_scene = study;
@@ -156,7 +172,13 @@ json measure_ablation(AblationOptions const& options, StudyOptions const& study)
         double const machine = machine_factor(*scene, of_scene.run, study.costs);
         for (LinkParameters const& link : {LinkParameters{}, options.link}) {
             of_scene.run.link = link;
-            runs.push_back(measure_run(*scene, reference, of_scene.run, machine, study.costs));
+            std::vector<Labelled> pictures;
+            runs.push_back(measure_run(*scene, reference, of_scene.run, machine, study.costs, pictures));
+            if (!study.charts.empty()) {
+                std::string const end = link.bits_per_second > 0 ? "-parts-link.png" : "-parts.png";
+                write_png(study.charts / (scene->name + end),
+                          side_by_side(reference.picture(middle_of(of_scene.run)), pictures));
+            }
         }
     }
     print_summary(runs);
