@@ -8,6 +8,7 @@
 
 #include "common/error.h"
 #include "common/reprojection.h"
+#include "server/schedule/picture_bound.h"
 
 namespace framelet {
 namespace {
@@ -20,6 +21,8 @@ constexpr double probe_period = 0.25;
 constexpr double most_unseen = 0.5;
 /// Mean squared error of the finest samples, as modelled, above which they are not enough of a still picture.
 constexpr float enough = 5e-5f;
+/// What moves is looked at over so many seconds.
+constexpr double least_earlier = 0.03, most_earlier = 0.15;
 /// A scene time that jumps by more than this over what has passed has been set.
 constexpr double most_time_step = 0.5;
 
@@ -108,8 +111,16 @@ void AdaptiveRefresh::plan(RefreshInput const& input, RefreshPlan& plan) {
     plan.probed.clear();
     plan.now = input.now;
     plan.viewport = input.state.view.viewport;
-    plan.moment = {make_view_rays(input.state.view.camera, input.state.view.viewport), input.state.scene_time,
-                   is_reprojectable(input.state.view.camera) ? input.motions : nullptr};
+    plan.moment = {make_view_rays(input.state.view.camera, input.state.view.viewport),
+                   input.state.scene_time,
+                   is_reprojectable(input.state.view.camera) ? input.motions : nullptr,
+                   earlier_.rays,
+                   earlier_.scene_time,
+                   input.now - earlier_.when < most_earlier ? static_cast<float>(input.now - earlier_.when) : 0.0f};
+    if (!(input.now - recent_.when < least_earlier)) {
+        earlier_ = recent_;
+        recent_ = {plan.moment.rays, plan.moment.scene_time, input.now};
+    }
     still_ = is_still(input.state);
     plan.is_new_cycle = !goes_on(input);
     if (plan.is_new_cycle) {
@@ -321,12 +332,14 @@ std::vector<std::uint8_t> const& AdaptiveRefresh::learn(RefreshPlan const& plan,
     FRAMELET_CHECK(probe_luma.size() == plan.probes.size());
     if (plan.viewport != field_.plane().viewport()) {
         send_.assign(framelets.size(), 0);
+        stays_.assign(framelets.size(), 0);
         return send_;
     }
     if (plan.rays_per_sample != single_ray) {
         note_supersampled(plan);
         release(plan);
         send_.assign(framelets.size(), 1);
+        stays_.assign(framelets.size(), 0);
         return send_;
     }
     std::size_t probe = 0;
@@ -336,6 +349,7 @@ std::vector<std::uint8_t> const& AdaptiveRefresh::learn(RefreshPlan const& plan,
         probe += place.probe_count;
     }
     examine(plan, framelets, rendered);
+    stays_.assign(framelets.size(), 0);
     std::size_t first_tile = 0;
     std::size_t first_place = 0;
     for (std::size_t i = 0; i < plan.patches.size(); ++i) {
@@ -343,6 +357,8 @@ std::vector<std::uint8_t> const& AdaptiveRefresh::learn(RefreshPlan const& plan,
         bool const needed = learn_patch(field_, plan.patches[i], places, same_since_[i], plan.still_since, plan.now);
         auto const to = send_.begin() + static_cast<std::ptrdiff_t>(first_tile);
         std::fill(to, to + static_cast<std::ptrdiff_t>(plan.tile_counts[i]), needed ? 1 : 0);
+        std::fill_n(stays_.begin() + static_cast<std::ptrdiff_t>(first_tile), plan.tile_counts[i],
+                    stays_in_picture(plan.patches[i], places) ? 1 : 0);
         first_tile += plan.tile_counts[i];
         first_place += places.size();
     }
@@ -364,6 +380,19 @@ void AdaptiveRefresh::note_supersampled(RefreshPlan const& plan) {
             place.rendered = place.checked = place.supersampled = plan.now;
         }
     }
+}
+
+/// Of what is seen in a patch whose places have been learnt.
+bool AdaptiveRefresh::stays_in_picture(Patch const& patch, std::span<PlaceFindings const> places) const {
+    std::uint32_t index = field_.range_of(patch.node).first;
+    CarriedChange all;
+    for (PlaceFindings const& found : places) {
+        CarriedChange const change = carried_change(field_[index].model, found.seen, found.carried_speed);
+        all.seen += change.seen * field_.pixels_of(index);
+        all.expected += change.expected * field_.pixels_of(index);
+        ++index;
+    }
+    return stays(all);
 }
 
 /// What was taken by this plan, and not by a later one again, is no longer.
@@ -414,6 +443,19 @@ void AdaptiveRefresh::examine(RefreshPlan const& plan, std::span<DisplayFramelet
             plan.moment.motions != nullptr && std::ranges::any_of(rendered.subspan(tile, count), on_body);
         same_since_[i] = moved ? never : same_since;
     });
+}
+
+void bind_to_picture(RefreshPlan const& plan, std::span<std::uint8_t const> send, std::span<std::uint8_t const> staying,
+                     std::span<FrameletShape> shapes) {
+    FRAMELET_CHECK(send.size() == plan.tiles.size() && staying.size() == plan.tiles.size());
+    ImagePlane const plane(plan.viewport);
+    std::size_t shape = 0;
+    for (std::size_t i = 0; i < send.size(); ++i) {
+        if (send[i] != 0 && staying[i] != 0) {
+            bind_to_picture(plan.tiles[i], plane, plan.moment, shapes[shape]);
+        }
+        shape += send[i] != 0 ? 1 : 0;
+    }
 }
 
 } // namespace framelet

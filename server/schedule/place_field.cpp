@@ -9,8 +9,6 @@
 namespace framelet {
 namespace {
 
-/// Drift of one pixel of displacement: detail of a pixel is elsewhere after two.
-constexpr float drift_per_pixel = 0.5f;
 constexpr float most_drift = 64;
 constexpr float most_displacement = most_drift / drift_per_pixel;
 

@@ -17,6 +17,9 @@ inline constexpr double never = -std::numeric_limits<double>::infinity();
 
 inline constexpr std::size_t probes_per_place = 16;
 
+/// Drift of one pixel of displacement: detail of a pixel is elsewhere after two.
+inline constexpr float drift_per_pixel = 0.5f;
+
 /// What has been taken to be rendered and is not learnt yet.
 struct TakenSamples {
     int level = -1; ///< -1: nothing

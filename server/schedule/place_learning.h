@@ -18,6 +18,7 @@ struct PlaceFindings {
     std::size_t probe_count = 0;
     float inverse_depth = 0; ///< mean, 1/metres
     float meeting_speed = 0; ///< of bodies, pixels a second
+    float carried_speed = 0; ///< of what is seen there, pixels a second
 };
 
 /// Of one patch. `framelets`: of its tiles, all the visible ones; `rendered`: the same with depth. Fills `entries` (a

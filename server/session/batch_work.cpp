@@ -60,6 +60,9 @@ void BatchWork::describe_shapes(SharedScene const& shared) {
     ShapeFeed& shapes = order.viewer->shapes;
     shapes.fit(rendered_, needed_, make_view_rays(order.state.view.camera, viewport), ImagePlane(viewport),
                order.plan.now, batch_.shapes);
+    if (!order.again) {
+        bind_to_picture(order.plan, needed_, order.viewer->refresh.staying(), batch_.shapes);
+    }
     shapes.track(shared.scene, shared.clips, shared.render_scene.bodies(), order.state.scene_time, batch_.tracks);
     for (BodyTrack const& track : batch_.tracks) {
         order.viewer->motions.extend(track);

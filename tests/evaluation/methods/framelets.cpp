@@ -232,6 +232,9 @@ private:
         if (reprojects_) {
             shapes_.fit(framelets_, send_, make_view_rays(work_.state.view.camera, setup_.viewport), plane,
                         work_.plan.now, batch_.shapes);
+            if (!work_.again) {
+                bind_to_picture(work_.plan, send_, refresh_.staying(), batch_.shapes);
+            }
             shapes_.track(scene.scene, scene.clips, scene.render_scene->bodies(), work_.state.scene_time,
                           batch_.tracks);
             for (BodyTrack const& track : batch_.tracks) {
