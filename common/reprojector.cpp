@@ -125,6 +125,22 @@ void write_colors(WarpedBlock const& block, int left, int top, Picture& picture)
     copy_rows(colors.data(), {picture.width, picture.height}, left, top, picture.rgba.data());
 }
 
+/// Shows another block's pixels where this one has holes. Only those left of `width` and above `height` are counted.
+void show_in_holes(WarpedBlock const& behind, int width, int height, WarpedBlock& block) {
+    for (std::size_t i = 0; i < WarpedBlock::pixels; ++i) {
+        if (block.inverse_depth[i] != hole_depth || behind.inverse_depth[i] == hole_depth) {
+            continue;
+        }
+        block.inverse_depth[i] = behind.inverse_depth[i];
+        for (std::size_t channel = 0; channel < 3; ++channel) {
+            block.squares[channel][i] = behind.squares[channel][i];
+        }
+        int const x = static_cast<int>(i) % side;
+        int const y = static_cast<int>(i) / side;
+        block.holes -= x < width && y < height ? 1 : 0;
+    }
+}
+
 void write_plane(std::array<float, WarpedBlock::pixels> const& from, int left, int top, Viewport viewport,
                  std::vector<float>& plane) {
     copy_rows(from.data(), viewport, left, top, plane.data());
@@ -168,14 +184,15 @@ void Reprojector::show(FrameletCache const& cache, std::span<PixelRect const> ch
         return;
     }
     plan_.make(cache, camera, scene_time, motions);
+    spare_plan_.make_spares(cache, camera, scene_time, motions);
     int const columns = plan_.columns();
     start_moving(viewport, static_cast<std::size_t>(columns) * static_cast<std::size_t>(plan_.rows()));
     std::atomic<bool> any = false;
     tbb::parallel_for(0, plan_.rows(), [&](int row) {
         bool painted = false;
-        std::vector<PatchView> patches;
+        std::vector<PatchView> patches, spares;
         for (int column = 0; column < columns; ++column) {
-            painted |= update_block(cache, camera, scene_time, motions, column, row, patches, picture);
+            painted |= update_block(cache, camera, scene_time, motions, column, row, patches, spares, picture);
         }
         if (painted) {
             any.store(true, std::memory_order_relaxed);
@@ -201,14 +218,20 @@ void Reprojector::show(FrameletCache const& cache, std::span<PixelRect const> ch
 
 bool Reprojector::update_block(FrameletCache const& cache, Camera const& camera, SceneTime scene_time,
                                BodyMotions const& motions, int column, int row, std::vector<PatchView>& patches,
-                               Picture& picture) {
+                               std::vector<PatchView>& spares, Picture& picture) {
     auto const index =
         static_cast<std::size_t>(row) * static_cast<std::size_t>(plan_.columns()) + static_cast<std::size_t>(column);
     plan_.block(index, patches);
     bool const in_place = std::ranges::all_of(patches, [](PatchView const& view) { return view.patch->is_still; }) &&
                           is_block_in_place(cache, camera, scene_time, motions, column, row);
     std::uint64_t const signature = signature_of(patches, in_place);
-    if (signature == blocks_[index].signature) {
+    bool const is_as_before = signature == blocks_[index].signature;
+    BlockState state{signature, 0, 0, is_as_before && blocks_[index].needs_spares};
+    if (state.needs_spares) {
+        spare_plan_.block(index, spares);
+        state.spare_signature = signature_of(spares, false);
+    }
+    if (is_as_before && state.spare_signature == blocks_[index].spare_signature) {
         return false;
     }
     Viewport const viewport = cache.plane().viewport();
@@ -216,6 +239,16 @@ bool Reprojector::update_block(FrameletCache const& cache, Camera const& camera,
     int const top = row * side;
     WarpedBlock block;
     paint_warped_block(patches, column, row, viewport, block);
+    if (!in_place && block.holes > 0) {
+        spare_plan_.block(index, spares);
+        state.spare_signature = signature_of(spares, false);
+        state.needs_spares = true;
+        if (!spares.empty()) {
+            WarpedBlock behind;
+            paint_warped_block(spares, column, row, viewport, behind);
+            show_in_holes(behind, viewport.width - left, viewport.height - top, block);
+        }
+    }
     if (in_place) {
         block.holes = 0;
         for (float& inverse_depth : block.inverse_depth) {
@@ -227,7 +260,8 @@ bool Reprojector::update_block(FrameletCache const& cache, Camera const& camera,
     }
     write_plane(block.inverse_depth, left, top, viewport, inverse_depth_);
     block_means_[index] = far_mean(block);
-    blocks_[index] = {signature, block.holes};
+    state.holes = block.holes;
+    blocks_[index] = state;
     painted_[index] = 1;
     return true;
 }

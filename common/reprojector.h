@@ -24,8 +24,9 @@ public:
     ///
     /// Where all that is held was taken with this camera and nothing in it has moved since, this is `reconstruct`, byte
     /// by byte; so is every block for which that holds while others move. Samples of or for an orthographic camera stay
-    /// on their pixels. So does everything where the camera has cut: where nearly nothing of what is held would show in
-    /// the new view. Only blocks whose samples or their places differ from the last call's are painted.
+    /// on their pixels. Where what is in place leaves holes the cache's spares show, and only there. All stays on its
+    /// pixels where the camera has cut: where nearly nothing of what is held would show in the new view. Only blocks
+    /// whose samples or their places differ from the last call's are painted.
     void show(FrameletCache const& cache, std::span<PixelRect const> changed, Camera const& camera,
               SceneTime scene_time, BodyMotions const& motions, Picture& picture, std::vector<PixelRect>& repainted);
 
@@ -40,7 +41,9 @@ public:
 private:
     struct BlockState {
         std::uint64_t signature = 0;
+        std::uint64_t spare_signature = 0; ///< where they are needed
         std::int32_t holes = 0;
+        bool needs_spares = false; ///< what is in place leaves holes
     };
 
     void show_exact(FrameletCache const& cache, std::span<PixelRect const> changed, Picture& picture,
@@ -49,7 +52,7 @@ private:
     /// True when it had to be painted.
     bool update_block(FrameletCache const& cache, Camera const& camera, SceneTime scene_time,
                       BodyMotions const& motions, int column, int row, std::vector<PatchView>& patches,
-                      Picture& picture);
+                      std::vector<PatchView>& spares, Picture& picture);
     void count_holes(Picture const& picture);
     bool is_beside_hole(int column, int row) const;
     void fill(Picture& picture);
@@ -58,6 +61,7 @@ private:
     bool is_exact_ = false;
     double hole_share_ = 0;
     WarpPlan plan_;
+    WarpPlan spare_plan_; ///< of what shows only in holes
     std::vector<BlockState> blocks_;
     std::vector<FarMean> block_means_;
     std::vector<std::uint8_t> painted_; ///< a flag for each block

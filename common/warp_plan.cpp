@@ -51,9 +51,7 @@ bool is_before(WarpPatch const& a, WarpPatch const& b) {
 
 void WarpPlan::make(FrameletCache const& cache, Camera const& display, SceneTime display_time,
                     BodyMotions const& motions) {
-    Viewport const viewport = cache.plane().viewport();
-    columns_ = (viewport.width + block_side - 1) / block_side;
-    rows_ = (viewport.height + block_side - 1) / block_side;
+    set_size(cache.plane().viewport());
     std::size_t const blocks = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
     std::size_t const slot_chunks = cache.slot_count() / slots_per_chunk;
     chunks_.resize(slot_chunks + (blocks + blocks_per_chunk - 1) / blocks_per_chunk);
@@ -77,6 +75,30 @@ void WarpPlan::make(FrameletCache const& cache, Camera const& display, SceneTime
     });
     limit_entries();
     make_bins();
+}
+
+void WarpPlan::make_spares(FrameletCache const& cache, Camera const& display, SceneTime display_time,
+                           BodyMotions const& motions) {
+    set_size(cache.plane().viewport());
+    std::span<Spare const> const spares = cache.spares();
+    chunks_.resize((spares.size() + slots_per_chunk - 1) / slots_per_chunk);
+    tbb::parallel_for(std::size_t{0}, chunks_.size(), [&](std::size_t i) {
+        Chunk& chunk = chunks_[i];
+        chunk.patches.clear();
+        chunk.splats.clear();
+        FrameletWarp warp(cache, display, display_time, motions);
+        std::size_t const first = i * slots_per_chunk;
+        for (Spare const& spare : spares.subspan(first, std::min(slots_per_chunk, spares.size() - first))) {
+            warp.add(cache.at(spare), chunk.patches, chunk.splats);
+        }
+    });
+    limit_entries();
+    make_bins();
+}
+
+void WarpPlan::set_size(Viewport viewport) {
+    columns_ = (viewport.width + block_side - 1) / block_side;
+    rows_ = (viewport.height + block_side - 1) / block_side;
 }
 
 /// A block's framelets are merged all together where possible, else those of its quarters.

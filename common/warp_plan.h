@@ -22,6 +22,10 @@ public:
     /// Replaces the plan. Runs in parallel; allocates only where more is held than ever before.
     void make(FrameletCache const& cache, Camera const& display, SceneTime display_time, BodyMotions const& motions);
 
+    /// The same for the cache's spares.
+    void make_spares(FrameletCache const& cache, Camera const& display, SceneTime display_time,
+                     BodyMotions const& motions);
+
     int columns() const { return columns_; }
     int rows() const { return rows_; }
     /// Fills `patches` with what may touch a block: newest batch first, then in an order that depends on tiles and
@@ -37,6 +41,7 @@ private:
         std::vector<MergedFramelet> merged; ///< that some of the patches show
     };
 
+    void set_size(Viewport viewport);
     void merge_blocks(FrameletCache const& cache, std::size_t first, std::size_t last, FrameletWarp& warp,
                       Chunk& chunk);
     bool is_merged(ImagePlane const& plane, Tile tile) const;
