@@ -26,6 +26,7 @@
 #include "tests/evaluation/link_turn.h"
 #include "tests/evaluation/response_cost.h"
 #include "tests/evaluation/sensitivity.h"
+#include "tests/evaluation/smoothness.h"
 #include "tests/evaluation/stability.h"
 #include "tests/evaluation/stillness.h"
 #include "tests/evaluation/table.h"
@@ -68,6 +69,7 @@ struct Options {
     framelet::bench::LayerStudy layers;
     framelet::bench::AntialiasingStudy antialiasing;
     framelet::bench::CorrespondenceStudy correspondence;
+    framelet::bench::SmoothnessStudy smoothness;
     framelet::bench::StillnessStudy stillness;
     framelet::bench::LinkTableOptions link_table;
     framelet::bench::WallOptions wall{.server_threads =
@@ -242,6 +244,21 @@ void add_correspondence_options(CLI::App& verb, Options& options) {
         ->capture_default_str();
 }
 
+void add_smoothness_options(CLI::App& verb, Options& options) {
+    auto& smoothness = options.smoothness;
+    add_output_options(verb, options);
+    add_size_option(verb, options);
+    add_time_options(verb, options);
+    add_machine_options(verb, options);
+    add_link_options(verb, options);
+    verb.add_option("--scene", smoothness.scenes,
+                    "Scene files to measure with (default: chase, windmill, flicker, globe)");
+    verb.add_option("--lags", smoothness.lags_ms, "How late the scene is shown, ms; 0: without smoothing")
+        ->delimiter(',')
+        ->check(CLI::Range(0.0, 1000.0))
+        ->capture_default_str();
+}
+
 void add_stillness_options(CLI::App& verb, Options& options) {
     add_output_options(verb, options);
     add_size_option(verb, options);
@@ -310,6 +327,18 @@ json turn(BenchScene& scene, Options& options) {
 json stability(Options& options) {
     settle(options, options.quick ? Scale{.size = 96, .rate = 20} : Scale{.size = 256, .rate = 40});
     return framelet::bench::measure_stability(source / "scenes", options.stability, options.study);
+}
+
+json smoothness(Options& options) {
+    settle(options, options.quick ? Scale{.size = 96, .seconds = 0.5, .rate = 60}
+                                  : Scale{.size = 192, .seconds = 1, .rate = 60});
+    auto& scenes = options.smoothness.scenes;
+    if (scenes.empty()) {
+        for (auto const* scene : {"vehicle_chase", "windmill", "flicker", "globe"}) {
+            scenes.push_back(source / ("scenes/" + std::string(scene) + ".glb"));
+        }
+    }
+    return framelet::bench::measure_smoothness(options.smoothness, options.study);
 }
 
 json ablation(Options& options) {
@@ -482,6 +511,9 @@ int main(int argc, char** argv) {
              add_layer_options, [&options] { return layers(options); });
     add_verb("correspondence", "How far off the viewer shows what it moves", add_correspondence_options,
              [&options] { return correspondence(options); });
+    add_verb("smoothness",
+             "How steadily the scene moves where the viewer shows it a little late, and how far off that is",
+             add_smoothness_options, [&options] { return smoothness(options); });
     add_verb("stillness", "How good the picture gets once everything stands still, how soon, and what is sent then",
              add_stillness_options, [&options] { return stillness(options); });
     add_verb("calibrate", "What every stage costs on this machine", add_scene_options,
