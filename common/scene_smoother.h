@@ -26,7 +26,7 @@ public:
     /// As `Reprojector::show`; `newest` holds all that was inserted, and perhaps more. `lag`, >= 0, is how many seconds
     /// `scene_time` is behind the scene's clock: a change takes no longer, since what changes for the first time in
     /// long would else show as soon as it came. Where nothing that was inserted is of later than `scene_time`, the
-    /// picture is byte by byte what `Reprojector` shows, and takes no longer; elsewhere it takes about twice as long. A
+    /// picture is byte by byte what `Reprojector` shows, for a copy more; elsewhere it takes about twice as long. A
     /// clock that is set back ends what is going on.
     void show(FrameletCache const& newest, std::span<PixelRect const> changed, Camera const& camera,
               SceneTime scene_time, SceneTime lag, BodyMotions const& motions, Picture& picture,

@@ -60,19 +60,15 @@ struct Lagging {
     std::vector<Picture> reference, shown;
 };
 
-void write_pictures(std::string const& scene, std::vector<Lagging> const& runs, std::filesystem::path const& folder) {
+/// What was shown in the middle and shortly after that, each beside what was to be shown.
+void write_pictures(std::string const& scene, Lagging const& run, std::filesystem::path const& folder) {
     std::filesystem::create_directories(folder);
-    std::size_t const middle = runs.front().shown.size() / 2;
     for (std::size_t later = 0; later < 3; ++later) {
-        std::size_t const i = std::min(middle + 2 * later, runs.front().shown.size() - 1);
-        std::vector<Labelled> columns;
-        for (Lagging const& run : runs) {
-            std::array<char, 32> label{};
-            std::snprintf(label.data(), label.size(), "%.0f ms late", run.lag_ms);
-            columns.push_back({label.data(), run.shown[i]});
-        }
-        write_png(folder / (scene + "-smooth-" + std::to_string(later) + ".png"),
-                  side_by_side(runs.back().reference[i], columns));
+        std::size_t const i = std::min(run.shown.size() / 2 + 2 * later, run.shown.size() - 1);
+        std::array<char, 64> name{};
+        std::snprintf(name.data(), name.size(), "-lag%.0f-%zu.png", run.lag_ms, later);
+        write_png(folder / (scene + name.data()),
+                  side_by_side(run.reference[i], std::array{Labelled{"shown", run.shown[i]}}));
     }
 }
 
@@ -100,18 +96,16 @@ json measure_smoothness(SmoothnessStudy const& study, StudyOptions const& option
         auto const scene = load_bench_scene(file);
         double const machine = machine_factor(*scene, options.run, options.costs);
         std::vector<Picture> const present = late_reference(*scene, options, 0);
-        std::vector<Lagging> runs;
         for (double const lag_ms : study.lags_ms) {
             RunParameters run = options.run;
             run.lag_seconds = 1e-3 * lag_ms;
             ShownPictures shown = show_method(*scene, "framelet", run, machine, options.costs);
-            runs.push_back({lag_ms, late_reference(*scene, options, run.lag_seconds), std::move(shown.pictures)});
-            Lagging const& last = runs.back();
+            Lagging const late{lag_ms, late_reference(*scene, options, run.lag_seconds), std::move(shown.pictures)};
             double const beyond =
-                mean_squared_second_difference(last.shown) - mean_squared_second_difference(last.reference);
-            double const of_error = mean_squared_second_difference(last.shown, last.reference);
-            double const now = mean_error(last.shown, present);
-            double const as_shown = mean_error(last.shown, last.reference);
+                mean_squared_second_difference(late.shown) - mean_squared_second_difference(late.reference);
+            double const of_error = mean_squared_second_difference(late.shown, late.reference);
+            double const now = mean_error(late.shown, present);
+            double const as_shown = mean_error(late.shown, late.reference);
             std::printf("%-18s  %6.0f  %12.3e  %12.3e  %16.3e  %16.3e  %8.4f\n", scene->name.c_str(), lag_ms, now,
                         as_shown, beyond, of_error, shown.run.cpu.viewer());
             std::fflush(stdout);
@@ -122,9 +116,9 @@ json measure_smoothness(SmoothnessStudy const& study, StudyOptions const& option
                             {"second_difference_beyond_reference", beyond},
                             {"second_difference_of_error", of_error},
                             {"viewer_seconds", shown.run.cpu.viewer()}});
-        }
-        if (!options.charts.empty()) {
-            write_pictures(scene->name, runs, options.charts);
+            if (!options.charts.empty()) {
+                write_pictures(scene->name, late, options.charts);
+            }
         }
     }
     return rows;

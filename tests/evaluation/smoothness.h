@@ -26,8 +26,8 @@ double mean_squared_second_difference(std::span<Picture const> pictures, std::sp
 
 /// One row a scene and lag: MSE against the scene as it is, against the scene as it is to be shown (the lag earlier,
 /// with the same camera), and how unsteady the pictures are against the latter. `options.samples_per_side` are the
-/// references'. Charts: for each scene the pictures of all lags beside the reference, each in the middle of its run
-/// and twice after that, two pictures later.
+/// references'. Charts: for each scene and lag a picture of the middle of the run beside the one that was to be shown,
+/// and two more, each two pictures later.
 nlohmann::json measure_smoothness(SmoothnessStudy const& study, StudyOptions const& options);
 
 } // namespace framelet::bench
