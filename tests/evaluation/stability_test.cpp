@@ -3,16 +3,18 @@
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
 #include "common/error.h"
 #include "scenes/failure_scenes.h"
 #include "scenes/scene_table.h"
 #include "tests/evaluation/cycle_log.h"
 #include "tests/evaluation/settling.h"
-#include "tests/evaluation/small_run.h"
 
 namespace framelet::bench {
 namespace {
+
+std::filesystem::path const source = FRAMELET_SOURCE_DIR;
 
 Settling settle(std::vector<double> const& errors) {
     std::vector<double> times;
@@ -77,13 +79,13 @@ TEST(EventTimes, AreThoseOfTheGenerator) {
 }
 
 TEST(Stability, EveryEventIsToldOfAndTheBudgetIsKept) {
-    ReferenceFolder const folder("stability");
+    auto const cache = std::filesystem::temp_directory_path() / ("framelet-stability-" + std::to_string(getpid()));
     StudyOptions study;
     study.run.viewport = {48, 32};
     study.run.reference_rate = 20;
     study.samples_per_side = 2;
-    study.reference_cache = folder.path();
-    study.costs = usual_costs();
+    study.reference_cache = cache;
+    study.costs = read_cost_table(source / "tests/evaluation/costs.json");
     StabilityOptions options;
     options.scenes = {"stop", "teleport"};
     options.batches = {8, 128};
@@ -108,6 +110,7 @@ TEST(Stability, EveryEventIsToldOfAndTheBudgetIsKept) {
     }
     options.scenes = {"no such scene"};
     EXPECT_THROW(measure_stability(source / "scenes", options, study), InputError);
+    std::filesystem::remove_all(cache);
 }
 
 } // namespace

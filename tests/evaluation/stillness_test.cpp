@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "tests/evaluation/small_run.h"
-
 namespace framelet::bench {
 namespace {
+
+std::filesystem::path const source = FRAMELET_SOURCE_DIR;
 
 TEST(PsnrOverTime, IsThatOfTheLastMeasurement) {
     PsnrOverTime const quality{{0.1, 0.2, 0.3}, {30, 35, 40}};
@@ -30,7 +30,7 @@ TEST(Stillness, ThePictureBecomesTheReferenceAndNothingMoreIsSent) {
     options.run.frames_per_second = 30;
     options.run.reference_rate = 10;
     options.run.seconds = 8;
-    options.costs = usual_costs();
+    options.costs = read_cost_table(source / "tests/evaluation/costs.json");
     auto const rows = measure_stillness(study, options);
     ASSERT_EQ(rows.size(), 2u);
     for (auto const& row : rows) {

@@ -9,11 +9,12 @@
 #include "common/error.h"
 #include "protocol/message.h"
 #include "tests/evaluation/method.h"
-#include "tests/evaluation/small_run.h"
 #include "tests/evaluation/table.h"
 
 namespace framelet::bench {
 namespace {
+
+std::filesystem::path const source = FRAMELET_SOURCE_DIR;
 
 PublishedTable published() {
     return read_published_table(source / "tests/evaluation/published_table_7_2.csv");
@@ -63,7 +64,7 @@ TEST(PublishedTable, DamagedFilesAreRefused) {
 
 TEST(Table, BatchesHaveNoMoreFrameletsThanTheRunSays) {
     auto const scene = load_bench_scene(source / "scenes/vehicle_chase.glb");
-    CostTable const costs = usual_costs();
+    CostTable const costs = read_cost_table(source / "tests/evaluation/costs.json");
     auto const largest = [&](std::size_t batch_framelets) {
         auto const method = make_method(
             "framelet", {.viewport = {128, 128}, .costs = costs, .machine = 0.1, .batch_framelets = batch_framelets});
@@ -91,10 +92,10 @@ TEST(Table, EveryRunOfEverySceneGetsItsFigures) {
     study.run.seconds = 0.5;
     study.run.reference_rate = 20;
     study.samples_per_side = 1;
-    ReferenceFolder const folder("table");
-    study.reference_cache = folder.path();
-    study.costs = usual_costs();
+    study.reference_cache = std::filesystem::temp_directory_path() / ("framelet-table-" + std::to_string(getpid()));
+    study.costs = read_cost_table(source / "tests/evaluation/costs.json");
     auto const figures = run_table(table, source / "scenes", study);
+    std::filesystem::remove_all(study.reference_cache);
     ASSERT_EQ(figures["cells"].size(), 2u * 2 * 2) << "framed is what the others are divided by";
     for (auto const& cell : figures["cells"]) {
         EXPECT_EQ(cell["ratios"].size(), 10u);
