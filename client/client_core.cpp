@@ -1,6 +1,7 @@
 #include "client/client_core.h"
 
 #include <algorithm>
+#include <cmath>
 #include <condition_variable>
 #include <deque>
 #include <mutex>
@@ -8,10 +9,12 @@
 
 #include "client/framelet_outlines.h"
 #include "client/server_connection.h"
+#include "client/smooth_view.h"
 #include "common/error.h"
 #include "common/framelet_cache.h"
 #include "common/reconstruction.h"
 #include "common/reprojector.h"
+#include "common/scene_smoother.h"
 #include "protocol/batch_codec.h"
 
 namespace framelet {
@@ -74,6 +77,10 @@ struct ClientCore::Impl {
     bool reproject = true;
     BodyMotions motions;
     Reprojector reprojector;
+    LateClock late_clock{0};
+    CameraTrack batch_cameras; ///< only while the scene is smoothed
+    std::optional<SceneSmoother> smoother;
+    SceneTime pictured_time = 0; ///< what the picture shows
     std::vector<PixelRect> arrived; ///< scratch: where batches have changed something
     Status status;
     Clock::time_point status_time = start;
@@ -188,6 +195,10 @@ struct ClientCore::Impl {
         shown_time = batch.scene_time;
         Clock::time_point const before = Clock::now();
         cache->insert(batch);
+        if (smoother) {
+            smoother->insert(batch);
+            batch_cameras.add(batch.scene_time, batch.view.camera);
+        }
         for (BodyTrack const& track : batch.tracks) {
             motions.extend(track);
         }
@@ -207,13 +218,52 @@ struct ClientCore::Impl {
         return out;
     }
 
-    /// What the picture is to be of: the newest camera and the present. Where the server moves the camera, what its
-    /// newest batch shows. Under the lock.
-    std::pair<Camera, SceneTime> wanted_picture() const {
-        if (view.scene_camera >= 0) {
-            return {shown_camera, shown_time};
+    bool scene_moves() const { return connection->welcome().animation_duration > 0; }
+
+    /// Where the scene is to be smoothed, from here on. Under the lock.
+    void restart_smoothing() {
+        smoother.reset();
+        batch_cameras = {};
+        late_clock = LateClock(late_clock.lag_seconds());
+        shown_pixels = nullptr; // all of it anew
+        if (late_clock.lag_seconds() > 0 && reproject && cache && scene_moves()) {
+            smoother.emplace(cache->plane());
         }
-        return {view.view.camera, connection->welcome().animation_duration > 0 ? clock_now().time : 0};
+    }
+
+    /// What the picture is to be of: the newest camera and the present, or what is late by the lag. Where the server
+    /// moves the camera, what its newest batch shows, or what came before it. Under the lock.
+    std::pair<Camera, SceneTime> wanted_picture() {
+        bool const own_camera = view.scene_camera < 0;
+        if (smoother) {
+            SceneTime const time = late_clock.read(seconds_between(start, Clock::now()), clock_now().time);
+            if (own_camera || batch_cameras.empty()) {
+                return {own_camera ? view.view.camera : shown_camera, time};
+            }
+            SceneTime const known = std::min(time, shown_time);
+            return {batch_cameras.at(known), known};
+        }
+        if (own_camera) {
+            return {view.view.camera, scene_moves() ? clock_now().time : 0};
+        }
+        return {shown_camera, shown_time};
+    }
+
+    /// Under the lock. `changed` is what has changed in the cache, and becomes what may differ in the picture.
+    void draw(Picture& picture, std::vector<PixelRect>& changed) {
+        if (!reproject) {
+            reconstruct(*cache, changed, picture);
+            return;
+        }
+        auto const [camera, time] = wanted_picture();
+        pictured_time = time;
+        arrived.swap(changed);
+        if (smoother) {
+            SceneTime const lag = late_clock.lag_seconds() * std::abs(static_cast<double>(status.clock.speed));
+            smoother->show(*cache, arrived, camera, time, lag, motions, picture, changed);
+        } else {
+            reprojector.show(*cache, arrived, camera, time, motions, picture, changed);
+        }
     }
 
     /// Under the lock.
@@ -254,6 +304,7 @@ void ClientCore::set_view(Camera const& camera, Viewport viewport, int scene_cam
     if (!impl_->cache || impl_->cache->plane().viewport() != viewport) {
         impl_->cache.emplace(ImagePlane(viewport));
         ++impl_->cache_generation;
+        impl_->restart_smoothing();
     }
     view = {{view.view.number + 1, camera, viewport}, scene_camera};
     impl_->statistics.converged = false;
@@ -266,10 +317,19 @@ void ClientCore::set_settings(ViewerSettings const& settings) {
         std::lock_guard const lock(impl_->mutex);
         if (impl_->reproject != settings.reproject) {
             impl_->reproject = settings.reproject;
-            impl_->shown_pixels = nullptr; // all of it anew
+            impl_->restart_smoothing();
         }
     }
     impl_->connection->send(settings);
+}
+
+void ClientCore::set_smoothing(double lag_seconds) {
+    FRAMELET_CHECK(lag_seconds >= 0 && lag_seconds <= max_lag_seconds);
+    std::lock_guard const lock(impl_->mutex);
+    if (impl_->late_clock.lag_seconds() != lag_seconds) {
+        impl_->late_clock = LateClock(lag_seconds);
+        impl_->restart_smoothing();
+    }
 }
 
 void ClientCore::request_clock(ClockRequest const& request) {
@@ -302,18 +362,15 @@ bool ClientCore::update_picture(Picture& picture, std::vector<PixelRect>& change
     if (whole) {
         picture = Picture(viewport.width, viewport.height);
         core.reprojector = Reprojector();
+        if (core.smoother) {
+            core.smoother->start_picture();
+        }
         changed.assign(1, {0, 0, viewport.width, viewport.height});
         core.shown_generation = core.cache_generation;
         core.shown_pixels = picture.rgba.data();
     }
     Clock::time_point const before = Clock::now();
-    if (core.reproject) {
-        auto const [camera, time] = core.wanted_picture();
-        core.arrived.swap(changed);
-        core.reprojector.show(*core.cache, core.arrived, camera, time, core.motions, picture, changed);
-    } else {
-        reconstruct(*core.cache, changed, picture);
-    }
+    core.draw(picture, changed);
     if (changed.empty()) {
         return false;
     }
@@ -351,7 +408,8 @@ bool ClientCore::is_complete() const {
     std::lock_guard const lock(impl_->mutex);
     return impl_->status.converged && impl_->view.view.number > 0 &&
            impl_->status.camera_number == impl_->view.view.number && impl_->last_batch >= impl_->status.last_batch &&
-           impl_->cache && impl_->cache->framelet_count() > 0;
+           impl_->cache && impl_->cache->framelet_count() > 0 &&
+           (!impl_->smoother || impl_->status.clock.playing || impl_->pictured_time == impl_->status.clock.time);
 }
 
 Status ClientCore::status() const {
@@ -377,6 +435,10 @@ ClientStatistics ClientCore::statistics() const {
         out.coverage = impl_->cache->coverage();
         out.cached_framelets = impl_->cache->framelet_count();
         out.cached_bytes = impl_->cache->memory_bytes();
+    }
+    if (impl_->smoother) {
+        out.cached_bytes += impl_->smoother->memory_bytes();
+        out.lag_seconds = impl_->late_clock.lag_seconds();
     }
     return out;
 }

@@ -17,6 +17,11 @@
 
 namespace framelet {
 
+/// Most that the scene may be shown late.
+inline constexpr double max_lag_seconds = 1;
+/// What is late enough where a server renders some ten whole frames a second.
+inline constexpr double usual_lag_seconds = 0.1;
+
 /// What has happened since the session was opened.
 struct ClientStatistics {
     double seconds = 0;
@@ -40,6 +45,7 @@ struct ClientStatistics {
     std::uint64_t cameras_sent = 0;
     double server_samples_per_second = 0;
     bool converged = false;
+    double lag_seconds = 0; ///< by which the scene is shown late, as asked for; 0: it is not
 
     double bytes_per_sample() const;
     double decode_ns_per_sample() const;
@@ -65,6 +71,11 @@ public:
     /// camera of the scene. Call it at most once a display frame; a view that equals the last one costs nothing.
     void set_view(Camera const& camera, Viewport viewport, int scene_camera = -1);
     void set_settings(ViewerSettings const& settings);
+    /// Shows the scene, not the camera, so many seconds late, [0, `max_lag_seconds`], and between what came before that
+    /// moment and what came after it instead of going on from what came last; 0: does not. To no effect without
+    /// `ViewerSettings::reproject` and where the scene never moves. Through a camera of the scene that camera is late
+    /// too. While it is on, a second cache, two pictures and the batches of that time are held.
+    void set_smoothing(double lag_seconds);
     /// `clock` answers as if it were granted, until the server says how it is.
     void request_clock(ClockRequest const& request);
 

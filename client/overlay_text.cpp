@@ -54,6 +54,7 @@ TextRows help_rows() {
         {"F2 or Tab", "statistics"},
         {"F3", "outlines of framelets, fresh ones bright"},
         {"F4", "move what is held to where it is now, or not"},
+        {"F5", "smooth motion, the scene a little late, or not"},
         {"F11 or Alt+Enter", "full screen"},
         {"F12", "screenshot (PNG, in the current folder)"},
         {"F1", "this help"},
@@ -66,6 +67,10 @@ std::string clock_text(ClockState const& clock) {
     out << std::fixed << std::setprecision(2) << clock.time << " s, " << (clock.playing ? "playing" : "paused");
     out << std::defaultfloat << " at " << clock.speed << "x";
     return out.str();
+}
+
+std::string lag_text(double lag_seconds) {
+    return "the scene " + fixed(lag_seconds * 1e3, 0, " ms late");
 }
 
 TextRows statistics_rows(ClientStatistics const& s, RateMeter const& meter, ClockState const& clock,
@@ -85,7 +90,7 @@ TextRows statistics_rows(ClientStatistics const& s, RateMeter const& meter, Cloc
          fixed(s.decode_ns_per_sample(), 1, " ns/sample, ") + fixed(s.reconstruct_ns_per_pixel(), 1, " ns/pixel")},
         {"cache", std::to_string(s.cached_framelets) + " framelets, " +
                       fixed(static_cast<double>(s.cached_bytes) * 1e-6, 1, " MB")},
-        {"clock", clock_text(clock)},
+        {"clock", clock_text(clock) + (s.lag_seconds > 0 ? "; " + lag_text(s.lag_seconds) : "")},
     };
 }
 

@@ -35,5 +35,7 @@ TextRows statistics_rows(ClientStatistics const& statistics, RateMeter const& me
                          Viewport viewport);
 /// "12.34 s, playing at 1x".
 std::string clock_text(ClockState const& clock);
+/// "the scene 100 ms late".
+std::string lag_text(double lag_seconds);
 
 } // namespace framelet

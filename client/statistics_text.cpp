@@ -53,6 +53,7 @@ std::string statistics_json(ClientStatistics const& s, RunFigures const& run) {
         {"coverage", s.coverage},
         {"cached_framelets", s.cached_framelets},
         {"cached_bytes", s.cached_bytes},
+        {"lag_seconds", s.lag_seconds},
         {"server_samples_per_second", s.server_samples_per_second},
         {"converged", s.converged},
     };

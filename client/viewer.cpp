@@ -25,9 +25,10 @@ constexpr double idle_seconds = 0.25;
 } // namespace
 
 Viewer::Viewer(Window& window, ConnectionOptions connection, std::unique_ptr<ClientCore> core,
-               ViewerSettings const& settings)
+               ViewerSettings const& settings, double lag_seconds)
     : window_(window), connection_(std::move(connection)), overlay_(window.handle(), window.content_scale()),
-      settings_(settings) {
+      settings_(settings), lag_seconds_(lag_seconds),
+      chosen_lag_seconds_(lag_seconds > 0 ? lag_seconds : usual_lag_seconds) {
     adopt(std::move(core));
     say("F1: help");
 }
@@ -51,6 +52,7 @@ void Viewer::adopt(std::unique_ptr<ClientCore> core) {
     lost_.clear();
     meter_ = RateMeter();
     core_->set_settings(settings_);
+    core_->set_smoothing(lag_seconds_);
     window_.set_title(welcome.scene_name + " - framelet-viewer");
 }
 
@@ -197,6 +199,9 @@ void Viewer::apply(Command command) {
         core_->set_settings(settings_);
         say(settings_.reproject ? "moved to where it is now" : "shown where it was rendered");
         break;
+    case Command::toggle_smoothing:
+        toggle_smoothing();
+        break;
     case Command::screenshot:
         save_screenshot();
         break;
@@ -243,6 +248,12 @@ void Viewer::change_exposure(float stops) {
     std::ostringstream text;
     text << "exposure " << std::showpos << settings_.exposure_ev << " EV";
     say(text.str());
+}
+
+void Viewer::toggle_smoothing() {
+    lag_seconds_ = lag_seconds_ > 0 ? 0 : chosen_lag_seconds_;
+    core_->set_smoothing(lag_seconds_);
+    say(lag_seconds_ > 0 ? "smooth, " + lag_text(lag_seconds_) : "going on from what is newest");
 }
 
 void Viewer::save_screenshot() {

@@ -16,9 +16,9 @@ namespace framelet {
 
 class Viewer {
 public:
-    /// `core` is connected and wakes the window on news.
+    /// `core` is connected and wakes the window on news. `lag_seconds` as in `ClientCore::set_smoothing`.
     Viewer(Window& window, ConnectionOptions connection, std::unique_ptr<ClientCore> core,
-           ViewerSettings const& settings);
+           ViewerSettings const& settings, double lag_seconds);
 
     /// Until the user quits. Returns the program's exit code: 1 where the server was gone.
     int run();
@@ -37,6 +37,7 @@ private:
     void choose_scene_camera(int number);
     void leave_scene_camera();
     void change_exposure(float stops);
+    void toggle_smoothing();
     void save_screenshot();
     void say(std::string note);
     void watch_connection();
@@ -51,6 +52,8 @@ private:
     std::optional<CameraController> controller_;
     int scene_camera_ = -1;
     ViewerSettings settings_;
+    double lag_seconds_; ///< 0: the scene is not smoothed
+    double const chosen_lag_seconds_; ///< when it is
     std::string lost_; ///< why there is no session; empty while there is one
     std::future<std::unique_ptr<ClientCore>> reconnecting_;
 

@@ -4,6 +4,7 @@
 #include <CLI/App.hpp>
 
 #include "client/connection_arguments.h"
+#include "client/display_arguments.h"
 #include "client/viewer.h"
 #include "common/error.h"
 
@@ -13,8 +14,7 @@ int main(int argc, char** argv) {
     arguments.server = ServerAddress{}.text();
     std::string size = "1280x720";
     bool fullscreen = false;
-    float exposure = 0;
-    bool unwarped = false;
+    DisplayArguments display;
 
     CLI::App app("Shows a scene that framelet-server renders. F1 in the window lists the keys.", "framelet-viewer");
     app.set_version_flag("--version", "framelet-viewer " FRAMELET_VERSION);
@@ -22,10 +22,7 @@ int main(int argc, char** argv) {
     add_connection_options(app, arguments)->capture_default_str();
     app.add_option("--size", size, "Size of the window in pixels")->capture_default_str();
     app.add_flag("--fullscreen", fullscreen, "Fill the screen");
-    app.add_option("--exposure", exposure, "Stops brighter (or darker: negative) than the server's exposure")
-        ->check(CLI::Range(-16.0, 16.0));
-    app.add_flag("--no-reprojection", unwarped,
-                 "Show pixels where they were rendered: nothing is moved to where it is by now");
+    add_display_options(app, display);
 
     Viewport viewport;
     ConnectionOptions connection;
@@ -40,7 +37,7 @@ int main(int argc, char** argv) {
     }
     try {
         Window window("framelet-viewer", viewport);
-        Viewer viewer(window, connection, Viewer::connect(connection), {exposure, 0, !unwarped});
+        Viewer viewer(window, connection, Viewer::connect(connection), display.settings(), display.lag_seconds());
         window.show();
         if (fullscreen) {
             window.toggle_fullscreen();

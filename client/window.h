@@ -34,6 +34,7 @@ enum class Command {
     toggle_statistics,
     toggle_outlines,
     toggle_reprojection,
+    toggle_smoothing,
     screenshot,
     scene_camera, ///< the first; `scene_camera` + n is the n-th more, up to 8 more
 };

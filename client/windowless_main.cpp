@@ -10,6 +10,7 @@
 #include "client/camera_path.h"
 #include "client/client_core.h"
 #include "client/connection_arguments.h"
+#include "client/display_arguments.h"
 #include "client/frame_log.h"
 #include "client/frame_writer.h"
 #include "client/statistics_text.h"
@@ -35,8 +36,7 @@ struct Options {
     bool json = false;
     bool overlay = false;
     bool until_converged = false;
-    float exposure = 0;
-    bool unwarped = false;
+    DisplayArguments display;
     bool play = false;
     bool pause = false;
     std::optional<double> seek;
@@ -180,7 +180,8 @@ int run(Options const& options, ConnectionOptions const& connection, Viewport vi
         throw InputError("the camera file asks for camera " + std::to_string(path->scene_camera) +
                          " of the scene, which has " + std::to_string(cameras) + " (numbered from 0)");
     }
-    core.set_settings({options.exposure, 0, !options.unwarped});
+    core.set_settings(options.display.settings());
+    core.set_smoothing(options.display.lag_seconds());
     ask_clock(core, options);
     RunFigures const figures = show(core, options, path, viewport, writer ? &*writer : nullptr, log ? &*log : nullptr);
     if (writer) {
@@ -227,10 +228,7 @@ int main(int argc, char** argv) {
     app.add_flag("--json", options.json, "Print the statistics as JSON");
     app.add_flag("--until-converged", options.until_converged,
                  "End once the picture is as good as it gets; exit code 1 where that takes longer than --duration");
-    app.add_option("--exposure", options.exposure, "Stops brighter (or darker: negative) than the server's exposure")
-        ->check(CLI::Range(-16.0, 16.0));
-    app.add_flag("--no-reprojection", options.unwarped,
-                 "Show pixels where they were rendered: nothing is moved to where it is by now");
+    add_display_options(app, options.display);
     CLI::Option* const play = app.add_flag("--play", options.play, "Let the scene's clock run");
     app.add_flag("--pause", options.pause, "Stop the scene's clock")->excludes(play);
     app.add_option("--seek", options.seek, "Set the scene's clock to this second")->check(CLI::Range(0.0, 1e9));

@@ -190,6 +190,42 @@ TEST(ClientCore, ANewViewportKeepsTheOldPictureUntilItsOwnContentComes) {
     EXPECT_EQ(picture.row(39)[4 * 63], 20);
 }
 
+TEST(ClientCore, ASmoothSceneIsShownLateAndArrives) {
+    FakeServer::Script script;
+    script.welcome.animation_duration = 5;
+    script.welcome.clock = {2, false, 1};
+    FakeServer server(script);
+    server.fall_silent();
+    ClientCore core(options_for(server));
+    core.set_smoothing(0.2);
+    ImagePlane const plane(Viewport{32, 32});
+    core.set_view({}, plane.viewport());
+    Picture picture;
+    std::vector<PixelRect> changed;
+    auto const batch_at = [&](SceneTime time, std::uint8_t value) {
+        Batch batch = constant_batch(plane, plane.pixel_depth(), value, 1);
+        batch.scene_time = time;
+        return batch;
+    };
+    server.send(batch_at(2, 100));
+    ASSERT_TRUE(wait_for(core, [&] { return core.update_picture(picture, changed); }));
+    EXPECT_EQ(picture.rgba[0], 100);
+    EXPECT_EQ(core.statistics().lag_seconds, 0.2);
+    core.request_clock({ClockRequest::time, {3, false, 1}});
+    core.update_picture(picture, changed); // notes where the clock stands
+    server.send(batch_at(3, 200));
+    ASSERT_TRUE(wait_for(core, [&] { return core.statistics().batches == 2; }));
+    ASSERT_TRUE(wait_for(core, [&] {
+        core.update_picture(picture, changed);
+        return picture.rgba[0] == 200;
+    }));
+    core.update_picture(picture, changed);
+    EXPECT_FALSE(core.update_picture(picture, changed)) << "it has arrived";
+    core.set_smoothing(0);
+    EXPECT_TRUE(core.update_picture(picture, changed)) << "all of it anew";
+    EXPECT_EQ(core.statistics().lag_seconds, 0);
+}
+
 TEST(ClientCore, SaysThatNobodyListens) {
     ConnectionOptions options;
     {

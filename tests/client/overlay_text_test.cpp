@@ -46,6 +46,10 @@ TEST(OverlayText, ClockAndStatisticsReadWell) {
     EXPECT_EQ(value("picture"), "640x360, covered 0%");
     EXPECT_EQ(value("network"), "0.00 Mbit/s, 0.25 B/sample");
     EXPECT_EQ(value("round trip"), "not measured");
+    EXPECT_EQ(value("clock"), "0.00 s, paused at 1x");
+    statistics.lag_seconds = 0.1;
+    TextRows const late = statistics_rows(statistics, RateMeter(), {}, {640, 360});
+    EXPECT_EQ(late.back().second, "0.00 s, paused at 1x; the scene 100 ms late");
 }
 
 } // namespace

@@ -4,41 +4,26 @@
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 #include "common/error.h"
 #include "tests/evaluation/comparison.h"
 #include "tests/evaluation/methods/kd_leaves.h"
+#include "tests/evaluation/small_run.h"
 
 namespace framelet::bench {
 namespace {
 
-std::filesystem::path const source = FRAMELET_SOURCE_DIR;
-
-RunParameters small_run() {
-    RunParameters parameters;
-    parameters.viewport = {64, 48};
-    parameters.seconds = 0.5;
-    parameters.reference_rate = 40;
-    return parameters;
-}
-
 class Evaluation : public testing::Test {
 protected:
     std::unique_ptr<BenchScene> scene = load_bench_scene(source / "scenes/vehicle_chase.glb");
-    CostTable costs = read_cost_table(source / "tests/evaluation/costs.json");
-    std::filesystem::path cache =
-        std::filesystem::temp_directory_path() / ("framelet-evaluation-" + std::to_string(getpid()));
+    CostTable costs = usual_costs();
+    ReferenceFolder folder{"evaluation"};
 
-    void TearDown() override { std::filesystem::remove_all(cache); }
-
-    Reference reference(RunParameters const& parameters) {
-        return {*scene, {parameters.viewport, parameters.seconds, parameters.reference_rate, 3}, cache};
-    }
+    Reference reference(RunParameters const& parameters) { return folder.reference(*scene, parameters); }
 };
 
 TEST_F(Evaluation, TheSameSeedGivesTheSameFigures) {
-    RunParameters parameters = small_run();
+    RunParameters parameters = small_run({64, 48}, 40);
     parameters.link.bits_per_second = 5e6;
     parameters.link.delay_seconds = 0.02;
     parameters.link.jitter_seconds = 0.01;
@@ -52,7 +37,7 @@ TEST_F(Evaluation, TheSameSeedGivesTheSameFigures) {
 
 TEST_F(Evaluation, FramedReachesTheRateThatTheMachineIsStatedBy) {
     for (double const rate : {5.0, 20.0}) {
-        RunParameters parameters = small_run();
+        RunParameters parameters = small_run({64, 48}, 40);
         parameters.seconds = 2;
         parameters.frames_per_second = rate;
         double const machine = machine_factor(*scene, parameters, costs);
@@ -70,7 +55,7 @@ TEST_F(Evaluation, FramedReachesTheRateThatTheMachineIsStatedBy) {
 }
 
 TEST_F(Evaluation, EveryMethodSpendsTheSameOnTheServer) {
-    RunParameters parameters = small_run();
+    RunParameters parameters = small_run({64, 48}, 40);
     parameters.seconds = 1;
     Reference const truth = reference(parameters);
     for (MethodRecord const& record : compare_methods(*scene, truth, method_names(), parameters, costs).records) {
@@ -80,7 +65,7 @@ TEST_F(Evaluation, EveryMethodSpendsTheSameOnTheServer) {
 }
 
 TEST_F(Evaluation, BothSlopesOfTheSpectrumAreTold) {
-    RunParameters const parameters = small_run();
+    RunParameters const parameters = small_run({64, 48}, 40);
     Comparison const comparison = compare_methods(*scene, reference(parameters), {}, parameters, costs);
     // Less power in what is fine and fast, as 004 found; the ground under a following camera is near to noise in time.
     EXPECT_LT(comparison.spatial_slope, -0.5);
@@ -93,7 +78,7 @@ TEST_F(Evaluation, BothSlopesOfTheSpectrumAreTold) {
 
 TEST_F(Evaluation, AStillSceneIsShownWithoutError) {
     auto const still = load_bench_scene(source / "scenes/vehicle_fixed.glb");
-    RunParameters parameters = small_run();
+    RunParameters parameters = small_run({64, 48}, 40);
     parameters.seconds = 0.05; // the lead-in is over, nothing to speak of has moved
     parameters.frames_per_second = 30;
     double const machine = machine_factor(*still, parameters, costs);
@@ -110,7 +95,7 @@ TEST_F(Evaluation, AStillSceneIsShownWithoutError) {
 }
 
 TEST_F(Evaluation, ALinkDelaysWhatIsShown) {
-    RunParameters parameters = small_run();
+    RunParameters parameters = small_run({64, 48}, 40);
     auto const age_with = [&](double delay) {
         parameters.link.delay_seconds = delay;
         double const machine = machine_factor(*scene, parameters, costs);
@@ -129,7 +114,7 @@ TEST_F(Evaluation, ALinkDelaysWhatIsShown) {
 
 /// Delay of what is shown in the last part of a run whose link has lost most of its rate.
 TEST_F(Evaluation, CodedFramesFollowTheLinkDown) {
-    RunParameters parameters = small_run();
+    RunParameters parameters = small_run({64, 48}, 40);
     parameters.viewport = {128, 128};
     parameters.seconds = 3;
     parameters.link.bits_per_second = 4e6;
@@ -154,7 +139,7 @@ TEST_F(Evaluation, CodedFramesFollowTheLinkDown) {
 }
 
 TEST_F(Evaluation, ReferencesAreKeptAndMadeAgainWhenTheyAreWrong) {
-    RunParameters const parameters = small_run();
+    RunParameters const parameters = small_run({64, 48}, 40);
     Picture const first = reference(parameters).picture(0);
     auto const file = reference(parameters).folder() / "00000.png";
     auto const written = std::filesystem::last_write_time(file);

@@ -81,7 +81,9 @@ MethodSetup method_setup(RunParameters const& parameters, double machine, CostTa
             parameters.seed,
             parameters.link.delay_seconds,
             parameters.bias,
-            parameters.batch_framelets};
+            parameters.batch_framelets,
+            {},
+            parameters.lag_seconds};
 }
 
 double lead_seconds(RunParameters const& parameters) {

@@ -4,36 +4,22 @@
 #include <filesystem>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "tests/evaluation/comparison.h"
 #include "tests/evaluation/link_turn.h"
+#include "tests/evaluation/small_run.h"
 
 namespace framelet::bench {
 namespace {
 
-std::filesystem::path const source = FRAMELET_SOURCE_DIR;
-
-RunParameters small_run() {
-    RunParameters parameters;
-    parameters.viewport = {96, 64};
-    parameters.seconds = 0.5;
-    parameters.reference_rate = 20;
-    return parameters;
-}
-
 class Warp : public testing::Test {
 protected:
-    CostTable costs = read_cost_table(source / "tests/evaluation/costs.json");
-    std::filesystem::path cache =
-        std::filesystem::temp_directory_path() / ("framelet-warp-" + std::to_string(getpid()));
-
-    void TearDown() override { std::filesystem::remove_all(cache); }
+    CostTable costs = usual_costs();
+    ReferenceFolder folder{"warp"};
 
     std::vector<MethodRecord> records(BenchScene& scene, std::vector<std::string> const& methods,
                                       RunParameters const& p) {
-        Reference const truth(scene, {p.viewport, p.seconds, p.reference_rate, 3}, cache);
-        return compare_methods(scene, truth, methods, p, costs).records;
+        return compare_methods(scene, folder.reference(scene, p), methods, p, costs).records;
     }
 };
 
@@ -76,14 +62,14 @@ TEST(PictureLag, IsFoundWhateverTheErrorIs) {
 
 TEST_F(Warp, FramesThatStandStillAreShownAsTheyCame) {
     auto const scene = load_bench_scene(source / "scenes/teleport.glb"); // nothing moves until the camera cuts
-    auto const found = records(*scene, {"framed+h264", "framed+warp"}, small_run());
+    auto const found = records(*scene, {"framed+h264", "framed+warp"}, small_run({96, 64}, 20));
     EXPECT_NEAR(found[1].measures[0].mse, found[0].measures[0].mse, 0.05 * found[0].measures[0].mse);
     EXPECT_LT(mean_squared_error(found[1].sample, found[0].sample), 1e-5);
 }
 
 TEST_F(Warp, FramesAreMovedToWhereTheCameraIs) {
     auto const scene = load_bench_scene(source / "scenes/vehicle_chase.glb");
-    RunParameters parameters = small_run();
+    RunParameters parameters = small_run({96, 64}, 20);
     parameters.link = {.bits_per_second = 20e6, .delay_seconds = 0.05};
     auto const found = records(*scene, {"framed+h264", "framed+warp"}, parameters);
     EXPECT_LT(mean_mse(found[1]), 0.6 * mean_mse(found[0]));
@@ -95,7 +81,7 @@ TEST_F(Warp, FramesAreMovedToWhereTheCameraIs) {
 TEST_F(Warp, ATurnShowsBeforeAnyMessageKnowsOfIt) {
     auto const scene = load_bench_scene(source / "scenes/teleport.glb");
     scene->turn = {.degrees_per_second = 30, .reach_degrees = 30};
-    RunParameters parameters = small_run();
+    RunParameters parameters = small_run({96, 64}, 20);
     parameters.seconds = 0.3;
     parameters.link.delay_seconds = 0.3;
     auto const found = records(*scene, {"framed+h264", "framed+warp", "framelet"}, parameters);

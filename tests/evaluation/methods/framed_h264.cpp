@@ -1,6 +1,4 @@
 // `framed+h264`: whole frames in turn through x264, no frame larger than the link carries in its time.
-#include <cstring>
-
 #include "tests/evaluation/codecs/h264_codec.h"
 #include "tests/evaluation/methods/methods.h"
 #include "tests/evaluation/methods/whole_frame.h"
@@ -18,16 +16,13 @@ public:
         ServerStep step = frame_.render(input);
         double const encoding = 1e-9 * static_cast<double>(frame_.pixels()) * setup_.costs.h264_encode_pixel;
         auto const bytes = encoder_.encode(frame_.picture(), frame_.budget(input, step, encoding));
-        step.message.resize(sizeof(input.time) + bytes.size());
-        std::memcpy(step.message.data(), &input.time, sizeof(input.time));
-        std::memcpy(step.message.data() + sizeof(input.time), bytes.data(), bytes.size());
+        step.message = WholeFrame::timed(input.time, bytes);
         step.seconds.encode += encoding;
         return step;
     }
 
     ViewerStep consume(std::vector<std::byte> const& message) override {
-        std::memcpy(&time_, message.data(), sizeof(time_));
-        decoder_.decode(std::span(message).subspan(sizeof(time_)), picture_);
+        decoder_.decode(WholeFrame::untimed(message, time_), picture_);
         ViewerStep step;
         step.seconds.decode = 1e-9 * static_cast<double>(frame_.pixels()) * setup_.costs.h264_decode_pixel;
         return step;

@@ -1,6 +1,4 @@
 // `framed+jpeg`: whole frames in turn as JPEG, the quality chosen for the link.
-#include <cstring>
-
 #include "tests/evaluation/codecs/jpeg_codec.h"
 #include "tests/evaluation/methods/methods.h"
 #include "tests/evaluation/methods/whole_frame.h"
@@ -19,16 +17,13 @@ public:
         int const quality = rate_.quality(frame_.budget(input, step, encoding));
         auto const bytes = codec_.encode(frame_.picture(), quality);
         rate_.took(quality, bytes.size());
-        step.message.resize(sizeof(input.time) + bytes.size());
-        std::memcpy(step.message.data(), &input.time, sizeof(input.time));
-        std::memcpy(step.message.data() + sizeof(input.time), bytes.data(), bytes.size());
+        step.message = WholeFrame::timed(input.time, bytes);
         step.seconds.encode += encoding;
         return step;
     }
 
     ViewerStep consume(std::vector<std::byte> const& message) override {
-        std::memcpy(&time_, message.data(), sizeof(time_));
-        codec_.decode(std::span(message).subspan(sizeof(time_)), picture_);
+        codec_.decode(WholeFrame::untimed(message, time_), picture_);
         ViewerStep step;
         step.seconds.decode = 1e-9 * static_cast<double>(frame_.pixels()) * setup_.costs.jpeg_decode_pixel;
         return step;

@@ -7,9 +7,6 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
-#include "common/framelet_cache.h"
-#include "common/reconstruction.h"
-#include "common/reprojector.h"
 #include "protocol/batch_codec.h"
 #include "server/flow/lossy_places.h"
 #include "server/flow/quality_choice.h"
@@ -20,6 +17,7 @@
 #include "server/schedule/render_rate.h"
 #include "server/session/session.h"
 #include "tests/evaluation/methods/methods.h"
+#include "tests/evaluation/methods/warp_viewer.h"
 
 namespace framelet::bench {
 namespace {
@@ -28,7 +26,7 @@ class Framelets final : public Method {
 public:
     Framelets(MethodSetup const& setup, bool reprojects)
         : setup_(setup), reprojects_(reprojects && setup.parts.reprojection), limits_(limits_of(setup.parts)),
-          cache_(ImagePlane(setup.viewport)), picture_(setup.viewport.width, setup.viewport.height),
+          plane_(setup.viewport), viewer_(setup.viewport, setup.costs, setup.lag_seconds),
           cells_((setup.viewport.width + cell - 1) / cell),
           times_(static_cast<std::size_t>(cells_) *
                  static_cast<std::size_t>((setup.viewport.height + cell - 1) / cell)) {}
@@ -98,41 +96,26 @@ public:
 
     ViewerStep consume(std::vector<std::byte> const& message) override {
         Batch const batch = codec_.decode(std::get<EncodedBatch>(decode_message(message)), &received_);
-        cache_.insert(batch);
-        for (BodyTrack const& track : batch.tracks) {
-            motions_.extend(track);
-        }
+        ViewerStep step = viewer_.insert(batch);
+        double const decoding = batch.quality.empty() ? setup_.costs.decode_sample : setup_.costs.decode_lossy_sample;
+        step.seconds.decode += 1e-9 * static_cast<double>(batch.framelets.size() * framelet_samples) * decoding;
         double fine = 0;
         for (DisplayFramelet const& framelet : batch.framelets) {
-            fine += cache_.plane().sample_spacing(framelet.tile) < 1 ? framelet_samples : 0;
-            stamp(cache_.plane().tile_rect(framelet.tile), batch.scene_time);
+            fine += plane_.sample_spacing(framelet.tile) < 1 ? framelet_samples : 0;
+            stamp(plane_.tile_rect(framelet.tile), batch.scene_time);
         }
-        double const samples = static_cast<double>(batch.framelets.size() * framelet_samples);
-        ViewerStep step;
-        double const decoding = batch.quality.empty() ? setup_.costs.decode_sample : setup_.costs.decode_lossy_sample;
-        step.seconds.decode = 1e-9 * samples * (decoding + setup_.costs.cache_sample);
         if (!reprojects_) {
-            cache_.take_changed(changed_);
-            reconstruct(cache_, changed_, picture_);
-            step.seconds.reconstruct = 1e-9 * (pixels_of(changed_) * setup_.costs.reconstruct_pixel +
-                                               fine * setup_.costs.reconstruct_fine_sample);
+            step.seconds.reconstruct =
+                viewer_.present_unmoved().seconds.reconstruct + 1e-9 * fine * setup_.costs.reconstruct_fine_sample;
         }
         return step;
     }
 
     ViewerStep present(NumberedView const& view, SceneTime time) override {
-        ViewerStep step;
-        if (reprojects_) {
-            cache_.take_changed(changed_);
-            reprojector_.show(cache_, changed_, view.camera, moves_ ? time : 0, motions_, picture_, repainted_);
-            step.seconds.reconstruct =
-                1e-9 * pixels_of(repainted_) *
-                (reprojector_.is_exact() ? setup_.costs.reconstruct_pixel : setup_.costs.reproject_pixel);
-        }
-        return step;
+        return reprojects_ ? viewer_.present(view.camera, moves_ ? time : 0) : ViewerStep{};
     }
 
-    Picture const& picture() const override { return picture_; }
+    Picture const& picture() const override { return viewer_.picture(); }
 
     double mean_sample_time() const override {
         double sum = 0;
@@ -173,13 +156,12 @@ private:
     void render(StepInput const& input, StageSeconds& seconds) {
         RenderScene const& scene = *input.scene.render_scene;
         std::vector<Tile> const& tiles = work_.plan.tiles;
-        ImagePlane const plane(setup_.viewport);
         ViewRays const rays = make_view_rays(input.view.camera, setup_.viewport);
         framelets_.resize(tiles.size());
         display_.resize(tiles.size());
         std::atomic<std::uint64_t> segments = 0;
         tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t i) {
-            segments += render_display(scene, rays, plane, tiles[i], input.scene.exposure, work_.plan.rays_per_sample,
+            segments += render_display(scene, rays, plane_, tiles[i], input.scene.exposure, work_.plan.rays_per_sample,
                                        fresh_.local(), framelets_[i], display_[i]);
         });
         std::uint64_t const probe_segments =
@@ -215,8 +197,7 @@ private:
                 std::ranges::fill(send_, std::uint8_t{1});
             }
         }
-        ImagePlane const plane(setup_.viewport);
-        choose_qualities(plane, work_.plan.tiles, send_, work_.quality, work_.still, lossy_, batch_.quality);
+        choose_qualities(plane_, work_.plan.tiles, send_, work_.quality, work_.still, lossy_, batch_.quality);
         batch_.framelets.clear();
         for (std::size_t i = 0; i < display_.size(); ++i) {
             if (send_[i] != 0) {
@@ -230,7 +211,7 @@ private:
         double const coding = batch_.quality.empty() ? setup_.costs.encode_sample : setup_.costs.encode_lossy_sample;
         step.seconds.encode += 1e-9 * sent * coding;
         if (reprojects_) {
-            shapes_.fit(framelets_, send_, make_view_rays(work_.state.view.camera, setup_.viewport), plane,
+            shapes_.fit(framelets_, send_, make_view_rays(work_.state.view.camera, setup_.viewport), plane_,
                         work_.plan.now, batch_.shapes);
             if (!work_.again) {
                 bind_to_picture(work_.plan, send_, refresh_.staying(), batch_.shapes);
@@ -257,19 +238,11 @@ private:
         return 1e-9 * static_cast<double>(refresh_.field().visible().size()) * setup_.costs.plan_place;
     }
 
-    static double pixels_of(std::vector<PixelRect> const& rects) {
-        double pixels = 0;
-        for (PixelRect const& rect : rects) {
-            pixels += static_cast<double>(rect.width()) * rect.height();
-        }
-        return pixels;
-    }
-
     static constexpr int cell = framelet_side >> finest_levels; ///< side of the finest tile, pixels
 
     void stamp(PixelRect const& rect, double time) {
-        int const right = std::min(rect.right, picture_.width);
-        for (int y = rect.top; y < std::min(rect.bottom, picture_.height); y += cell) {
+        int const right = std::min(rect.right, setup_.viewport.width);
+        for (int y = rect.top; y < std::min(rect.bottom, setup_.viewport.height); y += cell) {
             auto const row = times_.begin() + static_cast<std::ptrdiff_t>(y / cell) * cells_;
             std::fill(row + rect.left / cell, row + (right + cell - 1) / cell, time);
         }
@@ -278,6 +251,7 @@ private:
     MethodSetup const setup_;
     bool const reprojects_;
     ResponseLimits const limits_;
+    ImagePlane const plane_;
     bool moves_ = false; ///< the scene
     AdaptiveRefresh refresh_;
     RenderRate rate_;
@@ -289,7 +263,6 @@ private:
     std::vector<DisplayFramelet> display_;
     ProbeRenderer probes_;
     std::vector<std::uint8_t> send_; ///< whether the viewer gets it, of each
-    std::vector<Tile> lossy_tiles_;
     LinkEstimate link_;
     QualityChoice choice_;
     LossyPlaces lossy_;
@@ -300,11 +273,8 @@ private:
     BatchCodec codec_;
     HeldPicture sent_, received_; ///< on the server's side, on the viewer's
 
-    FrameletCache cache_;
-    BodyMotions told_, motions_; ///< what the server has said, and what the viewer knows
-    Reprojector reprojector_;
-    std::vector<PixelRect> changed_, repainted_;
-    Picture picture_;
+    BodyMotions told_; ///< what the server has said
+    WarpViewer viewer_;
     int const cells_; ///< in a row
     std::vector<double> times_; ///< scene time shown in each cell
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include <tbb/parallel_for.h>
 
@@ -46,6 +47,18 @@ Picture const& WholeFrame::picture() {
         place_framelet(framelet, plane_, picture_);
     }
     return picture_;
+}
+
+std::vector<std::byte> WholeFrame::timed(SceneTime time, std::span<std::byte const> access_unit) {
+    std::vector<std::byte> message(sizeof(time) + access_unit.size());
+    std::memcpy(message.data(), &time, sizeof(time));
+    std::ranges::copy(access_unit, message.begin() + std::ptrdiff_t{sizeof(time)});
+    return message;
+}
+
+std::span<std::byte const> WholeFrame::untimed(std::span<std::byte const> message, SceneTime& time) {
+    std::memcpy(&time, message.data(), sizeof(time));
+    return message.subspan(sizeof(time));
 }
 
 void place_framelet(DisplayFramelet const& framelet, ImagePlane const& plane, Picture& picture) {

@@ -2,6 +2,7 @@
 // framelets of one frame as they are displayed, and what they cost.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "tests/evaluation/codecs/delivery_rate.h"
@@ -28,6 +29,11 @@ public:
     /// idle: from what the answers say and from how long a frame takes. `encode_seconds`: what encoding costs,
     /// calibrated.
     double budget(StepInput const& input, ServerStep const& rendered, double encode_seconds);
+
+    /// The message of such an access unit, which says of when it is.
+    static std::vector<std::byte> timed(SceneTime time, std::span<std::byte const> access_unit);
+    /// Takes such a message apart: sets `time`, returns the access unit.
+    static std::span<std::byte const> untimed(std::span<std::byte const> message, SceneTime& time);
 
 private:
     CostTable costs_;
