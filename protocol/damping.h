@@ -23,7 +23,5 @@ struct Damping {
 
 /// What a reader predicts.
 void damp(DisplayValues& values, Damping damping);
-/// One octave of the same, for a writer.
-void damp(HaarValues& values, std::size_t octave, Details details);
 
 } // namespace framelet

@@ -25,24 +25,39 @@ struct Way {
     int bits; ///< of everything
 };
 
-Way code(HaarValues const& left, std::uint8_t quality) {
-    Way way{{}, left, quantise(left, quality), {}, 0};
+/// Codes what is left.
+void code(std::uint8_t quality, Way& way) {
+    way.levels = quantise(way.left, quality);
     way.bits = expected_bits_of_means(way.levels);
     for (std::size_t octave = 0; octave < HaarNumbers::octaves; ++octave) {
         way.octave_bits[octave] = expected_bits(way.levels, octave);
         way.bits += way.octave_bits[octave];
     }
-    return way;
+}
+
+/// Calls `use` with where an octave of a plane begins in each of `numbers`, for every plane.
+template <typename Use, typename... Numbers>
+void for_each_plane_of(std::size_t octave, Use const& use, Numbers&... numbers) {
+    for (std::size_t plane = 0; plane < 3; ++plane) {
+        use(&numbers.details[plane][HaarNumbers::first_four[octave]]...);
+    }
 }
 
 /// Puts one octave of `from` in the place of that of `to`.
 void copy_octave(HaarNumbers const& from, std::size_t octave, HaarNumbers& to) {
-    std::size_t const first = HaarNumbers::first_four[octave];
-    for (std::size_t plane = 0; plane < 3; ++plane) {
-        auto const begin = from.details[plane].begin() + static_cast<std::ptrdiff_t>(first);
-        std::copy(begin, begin + static_cast<std::ptrdiff_t>(4 * HaarNumbers::places(octave)),
-                  &to.details[plane][first]);
-    }
+    std::size_t const count = 4 * HaarNumbers::places(octave);
+    for_each_plane_of(
+        octave, [count](std::int16_t const* in, std::int16_t* out) { std::copy(in, in + count, out); }, from, to);
+}
+
+/// What is left of one octave beside half of its prediction.
+void subtract_half(HaarValues const& framelet, HaarValues const& predicted, std::size_t octave, HaarValues& left) {
+    std::size_t const count = 4 * HaarNumbers::places(octave);
+    auto const subtract = [count](std::int16_t const* whole, std::int16_t const* other, std::int16_t* out) {
+        std::transform(whole, whole + count, other, out,
+                       [](std::int16_t a, std::int16_t b) { return static_cast<std::int16_t>(a - (b >> 1)); });
+    };
+    for_each_plane_of(octave, subtract, framelet, predicted, left);
 }
 
 /// Weakens those details of the prediction that are better not predicted, or not fully.
@@ -53,9 +68,8 @@ void choose_damping(HaarValues const& framelet, HaarValues const& predicted, Way
         if (whole <= bits_of_damping) {
             continue;
         }
-        HaarValues halved = predicted;
-        damp(halved, octave, Details::halved);
-        Way half{{}, framelet - halved, {}, {}, 0};
+        Way half;
+        subtract_half(framelet, predicted, octave, half.left);
         quantise_octave(half.left, quality, octave, half.levels);
         half.octave_bits[octave] = expected_bits(half.levels, octave);
         bool const is_none = alone.octave_bits[octave] <= half.octave_bits[octave];
@@ -102,28 +116,30 @@ DisplayValues predicted_values(HeldPicture const& held, Tile tile, Prediction co
 
 HaarLevels predict(HeldPicture const& held, DisplayFramelet const& framelet, std::uint8_t quality, VectorSearch& search,
                    Prediction& prediction) {
-    HaarValues const whole = analyse(display_values(framelet));
-    Way const alone = code(whole, quality);
-    Way best = alone;
-    auto const try_vector = [&](PredictionKind kind, PictureVector vector) {
+    Way alone, at_place, moved;
+    alone.left = analyse(display_values(framelet));
+    code(quality, alone);
+    Way* best = &alone;
+    auto const try_vector = [&](PredictionKind kind, PictureVector vector, Way& way) {
         HaarValues const predicted = analyse(values_at(held, framelet.tile, vector));
-        Way way = code(whole - predicted, quality);
+        way.left = alone.left - predicted;
+        code(quality, way);
         way.prediction = {kind, vector, {}};
         way.bits += bits_of_kind + (kind == PredictionKind::moved ? bits_of_vector : 0);
-        choose_damping(whole, predicted, alone, quality, way);
-        if (way.bits < best.bits) {
-            best = way;
+        choose_damping(alone.left, predicted, alone, quality, way);
+        if (way.bits < best->bits) {
+            best = &way;
         }
     };
-    try_vector(PredictionKind::same_place, {});
-    if (best.bits > few_bits) {
+    try_vector(PredictionKind::same_place, {}, at_place);
+    if (best->bits > few_bits) {
         if (PictureVector const vector = search.find(held, framelet); vector != PictureVector{}) {
-            try_vector(PredictionKind::moved, vector);
+            try_vector(PredictionKind::moved, vector, moved);
         }
     }
-    share_luma(best.left, quality, best.levels);
-    prediction = best.prediction;
-    return best.levels;
+    share_luma(best->left, quality, best->levels);
+    prediction = best->prediction;
+    return best->levels;
 }
 
 } // namespace framelet

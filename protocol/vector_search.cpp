@@ -12,6 +12,8 @@ namespace {
 /// First steps of the search, half pixels, and those from which on all rows are looked at, not every second one.
 constexpr int first_step = 32, exact_step = 2;
 constexpr int farthest = 127;
+/// Sum of differences of what is found already: the quantiser would leave nothing of them.
+constexpr int hardly_any = 2 * framelet_samples;
 /// What a vector must gain for each half pixel that it is longer: of two that are as good, the shorter one.
 constexpr int length_cost = 4;
 
@@ -107,7 +109,7 @@ PictureVector VectorSearch::find(HeldPicture const& held, DisplayFramelet const&
     for (PictureVector const vector : found_) {
         try_one(vector.x, vector.y);
     }
-    for (int step = first_step; step > 0; step /= 2) {
+    for (int step = least <= hardly_any ? 1 : first_step; step > 0; step /= 2) {
         if (step == exact_step) {
             apart = 1;
             least = cost(best);
