@@ -60,7 +60,7 @@ void expect_close(FrameletShape const& in, FrameletShape const& out, int side_bi
         double const error = static_cast<double>(a.error);
         double const magnitude = std::abs(static_cast<double>(a.at)) +
                                  side * (std::abs(static_cast<double>(a.dx)) + std::abs(static_cast<double>(a.dy)));
-        double const unit = std::max(error / 8, std::ldexp(magnitude, -11)) + 1e-37;
+        double const unit = std::max(error / 8, std::ldexp(magnitude, -12)) + 1e-37;
         for (double const x : {0.0, side}) {
             for (double const y : {0.0, side}) {
                 double const off = std::abs(value_at(a, x, y) - value_at(b, x, y));
@@ -76,7 +76,7 @@ void expect_close(FrameletShape const& in, FrameletShape const& out, int side_bi
     }
     for (std::size_t i = 0; i < in.loose_samples.size(); ++i) {
         EXPECT_EQ(in.loose_samples[i].body, out.loose_samples[i].body);
-        EXPECT_NEAR(in.loose_samples[i].inverse_depth, out.loose_samples[i].inverse_depth, nearest / 1023 + 1e-37f);
+        EXPECT_NEAR(in.loose_samples[i].inverse_depth, out.loose_samples[i].inverse_depth, nearest / 2047 + 1e-37f);
         EXPECT_GE(out.loose_samples[i].inverse_depth, 0);
         EXPECT_LE(largest(in.loose_samples[i].velocity - out.loose_samples[i].velocity), velocity_off);
     }
@@ -152,15 +152,15 @@ FrameletShape documented_shape() {
 
 Plain documented_bytes() {
     Plain golden{0x06, 0x04, 0x00}; // two layers and loose samples; side of 16 pixels; no velocities
-    for (int const byte : {0x74, 0x73, 5,    0,    0x00, 0x00, 0x10, 0x10, 0x00, 0x00,
-                           0x04, 0x00, 0xff, 0x00, 0x07, 0x00, 0x00, 0x02, 0x00, 0x01}) {
+    for (int const byte : {0x73, 0x72, 9,    0,    0x00, 0x00, 0x20, 0x20, 0x00, 0x00,
+                           0x08, 0x00, 0xff, 0x00, 0x0f, 0x00, 0x00, 0x02, 0x00, 0x01}) {
         golden.push_back(static_cast<std::uint8_t>(byte));
     }
     golden.insert(golden.end(), {4, 10, 255, 1, 1}); // gaps, turns
-    golden.push_back(0x77);
+    golden.push_back(0x76);
     golden.insert(golden.end(), {0x00, 0xff});
     golden.insert(golden.end(), 14, 0);
-    golden.insert(golden.end(), {0x04, 0x01});
+    golden.insert(golden.end(), {0x08, 0x03});
     golden.insert(golden.end(), 14, 0);
     golden.insert(golden.end(), 16, 3);
     golden.insert(golden.end(), 16, 0);
@@ -172,7 +172,7 @@ TEST(ShapeCodec, GoldenBytes) {
     std::uint8_t const side_bits = 4;
     EXPECT_EQ(bytes_of({&shape, 1}, {&side_bits, 1}), documented_bytes());
     FrameletShape expected = shape;
-    expected.layers[0].error = 5 * 0x1p-12f;
+    expected.layers[0].error = 9 * 0x1p-13f;
     EXPECT_EQ(shapes_of(documented_bytes(), 1)[0], expected);
 }
 
