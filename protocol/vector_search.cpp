@@ -19,6 +19,18 @@ constexpr int length_cost = 4;
 
 using Row = std::array<std::uint8_t, framelet_side>;
 
+/// Values of a row of samples, one of each: `held` is where the first of them is. `Lane` holds as many as a sample
+/// covers.
+template <typename Lane>
+void fetch_points(std::uint8_t const* held, std::size_t /*stride*/, Row& row) {
+    constexpr std::size_t pitch = sizeof(Lane);
+    for (std::size_t x = 0; x < row.size(); ++x) { // many at a time
+        Lane values;
+        std::memcpy(&values, held + x * pitch, pitch);
+        row[x] = static_cast<std::uint8_t>(values >> (8 * (pitch / 2)));
+    }
+}
+
 /// Predicted samples of a row: `held` is where the values are that it is compared with, their rows `stride` apart.
 /// `Lane` holds as many as a sample covers.
 template <typename Lane>
@@ -68,18 +80,23 @@ int difference(SamplePlane const& rows, HeldPicture::Source const& from, std::si
     return sum;
 }
 
+/// Of all rows what will be predicted, or of every second one what is near that.
 int difference(SamplePlane const& rows, HeldPicture::Source const& from, std::size_t apart) {
+    bool const is_exact = apart == 1;
     switch (from.pitch) {
     case 0:
         return difference(rows, from, apart, 0, 1, fetch_doubled);
     case 1:
         return difference(rows, from, apart, 0, 2, fetch_each);
     case 2:
-        return difference(rows, from, apart, 0, 4, fetch_means<std::uint16_t>);
+        return is_exact ? difference(rows, from, apart, 0, 4, fetch_means<std::uint16_t>)
+                        : difference(rows, from, apart, 1, 4, fetch_points<std::uint16_t>);
     case 4:
-        return difference(rows, from, apart, 1, 8, fetch_means<std::uint32_t>);
+        return is_exact ? difference(rows, from, apart, 1, 8, fetch_means<std::uint32_t>)
+                        : difference(rows, from, apart, 2, 8, fetch_points<std::uint32_t>);
     case 8:
-        return difference(rows, from, apart, 3, 16, fetch_means<std::uint64_t>);
+        return is_exact ? difference(rows, from, apart, 3, 16, fetch_means<std::uint64_t>)
+                        : difference(rows, from, apart, 4, 16, fetch_points<std::uint64_t>);
     default:
         return difference(rows, from, apart, 8, 32, fetch_coarsest);
     }
@@ -109,7 +126,7 @@ PictureVector VectorSearch::find(HeldPicture const& held, DisplayFramelet const&
     for (PictureVector const vector : found_) {
         try_one(vector.x, vector.y);
     }
-    for (int step = least <= hardly_any ? 1 : first_step; step > 0; step /= 2) {
+    for (int step = least <= hardly_any ? exact_step : first_step; step > 0; step /= 2) {
         if (step == exact_step) {
             apart = 1;
             least = cost(best);

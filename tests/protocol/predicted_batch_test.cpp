@@ -102,7 +102,7 @@ void fill_with_anything(DisplayFramelet& framelet, std::mt19937_64& random) {
 }
 
 TEST(PredictedBatch, ReadersSeeWhatWritersSayWhateverTheSamplesAre) {
-    constexpr std::size_t group = 64, groups = 1500;
+    constexpr std::size_t group = 64, groups = 2500;
     std::mt19937_64 random(1);
     ImagePlane const plane(small_viewport);
     std::vector<DisplayFramelet> framelets;
