@@ -11,9 +11,10 @@ std::int16_t wrapped(int value) {
     return static_cast<std::int16_t>(static_cast<std::uint16_t>(value));
 }
 
-/// Sixteenths, modulo 2^16, to a byte.
+/// Sixteenths, modulo 2^16, to a byte. Of 16 bits, so that many fit into a register.
 std::uint8_t sample(int sixteenths) {
-    return static_cast<std::uint8_t>(std::clamp(wrapped(sixteenths + middle + 8) >> 4, 0, 255));
+    auto const rounded = static_cast<std::int16_t>(wrapped(sixteenths + middle + 8) >> 4);
+    return static_cast<std::uint8_t>(std::clamp<std::int16_t>(rounded, 0, 255));
 }
 
 } // namespace
