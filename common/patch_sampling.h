@@ -26,8 +26,8 @@ inline float square(std::uint32_t byte) {
     return value * value;
 }
 
-/// At pixels of which the first lies (x, y) from the centre of the box's first pixel; lanes from `first` on and before
-/// `last` are in the box, others get no weight.
-void sample_patch(WarpPatch const& patch, float x, float y, float first, float last, Candidate& out);
+/// At pixels of which the first lies (x, y) from the centre of the box's first pixel; `in_box` is 1 for lanes in the
+/// box, 0 for others, which get no weight.
+void sample_patch(WarpPatch const& patch, float x, float y, Candidate::Lanes<float> const& in_box, Candidate& out);
 
 } // namespace framelet

@@ -63,14 +63,18 @@ void paint_layer(WarpPatch const& patch, int left, int top, Layers& layers) {
     Candidate half;
     int const last_row = std::min(patch.box.bottom - top, side);
     for (int x = 0; x < side; x += lanes) {
-        auto const first = static_cast<float>(patch.box.left - left - x);
-        auto const last = static_cast<float>(patch.box.right - left - x);
+        int const first = patch.box.left - left - x;
+        int const last = patch.box.right - left - x;
         if (first >= lanes || last <= 0) {
             continue;
         }
+        Candidate::Lanes<float> in_box;
+        for (int i = 0; i < lanes; ++i) {
+            in_box[static_cast<std::size_t>(i)] = (i >= first) & (i < last) ? 1.0f : 0.0f;
+        }
         for (int y = std::max(patch.box.top - top, 0); y < last_row; ++y) {
             sample_patch(patch, static_cast<float>(left + x - patch.box.left),
-                         static_cast<float>(top + y - patch.box.top), first, last, half);
+                         static_cast<float>(top + y - patch.box.top), in_box, half);
             merge_row(half, patch.group, patch.tolerance, static_cast<std::size_t>(y * side + x), layers);
         }
     }
