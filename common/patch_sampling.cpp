@@ -12,6 +12,7 @@ namespace framelet {
 namespace {
 
 constexpr int lanes = sampling_lanes;
+constexpr std::size_t most_rows = std::tuple_size_v<CandidateRows>;
 
 template <class T>
 using Lanes = Candidate::Lanes<T>;
@@ -30,10 +31,10 @@ struct Samples {
 /// Beyond the outermost samples the corner is the last one that has neighbours, and tents give the weights: 0 from a
 /// sample's distance on. Outside of the box and behind the camera rows have no weight.
 void find_places(WarpPatch const& patch, float x, float y, Lanes<float> const& in_box, Places& out) {
-    float const u0 = patch.at[0] + y * patch.dy[0] + x * patch.dx[0];
-    float const v0 = patch.at[1] + y * patch.dy[1] + x * patch.dx[1];
-    float const z0 = patch.at[2] + y * patch.dy[2] + x * patch.dx[2];
     float const du = patch.dx[0], dv = patch.dx[1], dz = patch.dx[2];
+    float const u0 = patch.at[0] + y * patch.dy[0] + x * du;
+    float const v0 = patch.at[1] + y * patch.dy[1] + x * dv;
+    float const z0 = patch.at[2] + y * patch.dy[2] + x * dz;
     auto const n = static_cast<float>(patch.side);
     float const last = n - 2;
     for (int i = 0; i < lanes; ++i) {
@@ -157,23 +158,36 @@ void interpolate(std::uint32_t layer, Places const& places, Samples const& sampl
     }
 }
 
-} // namespace
-
-void sample_patch(WarpPatch const& patch, float x, float y, Candidate::Lanes<float> const& in_box, Candidate& out) {
-    Places places;
-    Samples samples;
-    find_places(patch, x, y, in_box, places);
-    look_up(patch, places, samples);
-    if (patch.is_whole) {
-        interpolate<true>(patch.layer, places, samples, out);
-    } else {
-        interpolate<false>(patch.layer, places, samples, out);
-    }
+void interpolate_depth(WarpPatch const& patch, float x, float y, Candidate& out) {
     float const step = patch.inverse_depth_dx;
     float const first = patch.inverse_depth + y * patch.inverse_depth_dy + x * step;
     for (int i = 0; i < lanes; ++i) {
         float const depth = first + static_cast<float>(i) * step;
         out.inverse_depth[static_cast<std::size_t>(i)] = depth > 0 ? depth : 0.0f;
+    }
+}
+
+} // namespace
+
+void sample_patch(WarpPatch const& patch, float x, float y, int rows, Candidate::Lanes<float> const& in_box,
+                  CandidateRows& out) {
+    // One step after the other for all rows: a row's steps depend on each other, the rows do not.
+    std::array<Places, most_rows> places;
+    std::array<Samples, most_rows> samples;
+    auto const count = static_cast<std::size_t>(rows);
+    for (std::size_t row = 0; row < count; ++row) {
+        find_places(patch, x, y + static_cast<float>(row), in_box, places[row]);
+    }
+    for (std::size_t row = 0; row < count; ++row) {
+        look_up(patch, places[row], samples[row]);
+    }
+    for (std::size_t row = 0; row < count; ++row) {
+        if (patch.is_whole) {
+            interpolate<true>(patch.layer, places[row], samples[row], out[row]);
+        } else {
+            interpolate<false>(patch.layer, places[row], samples[row], out[row]);
+        }
+        interpolate_depth(patch, x, y + static_cast<float>(row), out[row]);
     }
 }
 
