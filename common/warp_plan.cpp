@@ -43,6 +43,23 @@ std::size_t block_count(PixelRect const& box) {
     return static_cast<std::size_t>(blocks.width()) * static_cast<std::size_t>(blocks.height());
 }
 
+/// Fetches from memory what merging reads of those framelets below a block that are so many levels finer than pixels.
+/// (Where a picture is held as fine framelets they are far apart, and waiting for each costs more than all the rest.)
+void prefetch_below(FrameletCache const& cache, Tile block, int levels) {
+    int const n = 1 << levels;
+    for (int i = 0; i < n * n; ++i) {
+        CachedFramelet const* const framelet =
+            cache.find(block.depth() + levels, n * static_cast<int>(block.column()) + i % n,
+                       n * static_cast<int>(block.row()) + i / n);
+        if (framelet == nullptr) {
+            return; // not all of them are there, so most will not be looked at
+        }
+        __builtin_prefetch(framelet);
+        __builtin_prefetch(&framelet->shape.layers);
+        __builtin_prefetch(&framelet->shape.reduced);
+    }
+}
+
 bool is_before(WarpPatch const& a, WarpPatch const& b) {
     return a.batch != b.batch ? a.batch > b.batch : a.place < b.place;
 }
@@ -105,10 +122,17 @@ void WarpPlan::merge_blocks(FrameletCache const& cache, std::size_t first, std::
         }
         return true;
     };
-    for (std::size_t block = first; block < last; ++block) {
+    auto const tile_of = [&](std::size_t block) {
         auto const columns = static_cast<std::size_t>(columns_);
-        Tile const tile =
-            make_tile(depth, static_cast<std::uint32_t>(block % columns), static_cast<std::uint32_t>(block / columns));
+        return make_tile(depth, static_cast<std::uint32_t>(block % columns),
+                         static_cast<std::uint32_t>(block / columns));
+    };
+    for (std::size_t block = first; block < last; ++block) {
+        if (block + 1 < last) {
+            prefetch_below(cache, tile_of(block + 1), 1);
+            prefetch_below(cache, tile_of(block + 1), 2);
+        }
+        Tile const tile = tile_of(block);
         unsigned merged = merge(tile, depth + 1) ? 1 : 0;
         if (merge(tile, depth + 2)) {
             merged |= all_quarters;
