@@ -9,7 +9,7 @@ namespace framelet {
 namespace {
 
 /// Children along a side of what is merged.
-constexpr int most_children = 1 << finest_levels;
+constexpr int most_children = 8;
 
 /// Samples copied at a time; the side of a child is a multiple of it.
 constexpr int run = framelet_side >> finest_levels;
@@ -27,7 +27,7 @@ double value_at(Layer const& layer, double x, double y) {
     return layer.at + layer.dx * x + layer.dy * y;
 }
 
-/// To the inverse depths in the middles of n x n children of `side` pixels, in pixels from the first one's corner.
+/// To the inverse depths in the middles of n x n children of `side` pixels, from the first one's corner.
 Layer fit(Children const& children, int n, int side) {
     double const middle = 0.5 * (n - 1);
     double mean = 0, dx = 0, dy = 0, squares = 0;
@@ -80,15 +80,17 @@ bool merge_fine(FrameletCache const& cache, Tile over, int depth, double toleran
             return false;
         }
     }
-    int const side = children[0]->shape.side; // of a child, pixels
-    Layer const plane = fit(children, n, side);
-    double const difference = largest_difference(plane, children, n, side);
+    int const pixels = cache.plane().tile_side(children[0]->tile);
+    Layer const plane = fit(children, n, pixels);
+    double const difference = largest_difference(plane, children, n, pixels);
     if (!(difference <= tolerance)) {
         return false;
     }
+    int const side = children[0]->shape.side;
     merged.tile = over;
     merged.first = children[0];
     merged.side = n * side;
+    merged.grid.resize(static_cast<std::size_t>(merged.side * merged.side));
     auto const last = static_cast<std::int8_t>(merged.side - 1);
     merged.layer = {plane, 0, 0, last, last};
     merged.layer.layer.error += static_cast<float>(difference);
@@ -98,8 +100,9 @@ bool merge_fine(FrameletCache const& cache, Tile over, int depth, double toleran
         CachedFramelet const& child = *children[static_cast<std::size_t>(i)];
         merged.newest_batch = std::max(merged.newest_batch, child.moment.batch);
         merged.signature = (merged.signature + child.moment.batch) * 0x9e3779b97f4a7c15u;
+        PackedSample const* const grid = side == framelet_side ? child.samples.data() : child.shape.reduced.data();
         for (int y = 0; y < side; ++y) {
-            PackedSample const* const from = &child.shape.reduced[static_cast<std::size_t>(y * side)];
+            PackedSample const* const from = grid + y * side;
             PackedSample* const to =
                 &merged.grid[static_cast<std::size_t>((i / n * side + y) * merged.side + i % n * side)];
             for (int x = 0; x < side; x += run) {

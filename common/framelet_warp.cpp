@@ -124,7 +124,7 @@ void FrameletWarp::add(MergedFramelet const& merged, std::vector<WarpPatch>& pat
     patch.is_whole = true;
     patch.place = first.tile.code * 4;
     rect_ = cache_.plane().tile_rect(merged.tile);
-    spacing_ = 1;
+    spacing_ = static_cast<double>(rect_.width()) / merged.side;
     add_layer(first.view, merged.layer, merged.signature, patch, patches);
 }
 

@@ -12,7 +12,7 @@
 
 namespace framelet {
 
-/// Framelets finer than pixels that show one plane, as one of `side` x `side` samples a pixel apart.
+/// Neighbouring framelets that show one plane, as one of `side` x `side` samples.
 struct MergedFramelet {
     Tile tile; ///< that they are below
     CachedFramelet const* first = nullptr; ///< of them; the others have its view and its depth
@@ -20,7 +20,7 @@ struct MergedFramelet {
     std::int32_t side = 0;
     std::uint64_t newest_batch = 0;
     std::uint64_t signature = 0; ///< differs where what is held differs
-    std::array<PackedSample, framelet_samples> grid; ///< in rows
+    std::vector<PackedSample> grid; ///< in rows
 };
 
 /// Transforms one framelet after the other; neighbours mostly share view and body. What is not finite or too large for

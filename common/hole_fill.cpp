@@ -21,7 +21,7 @@ struct Row {
     alignas(64) std::array<float, static_cast<std::size_t>(n)> red, green, blue, inverse_depth;
 
     template <int m, class Column>
-    Row(FarGrid<m> const& coarse, int row, Column const& column) {
+    void spread(FarGrid<m> const& coarse, int row, Column const& column) {
         for (int x = 0; x < n; ++x) {
             auto const from = static_cast<std::size_t>(row * m + column(x));
             auto const to = static_cast<std::size_t>(x);
@@ -33,28 +33,55 @@ struct Row {
     }
 };
 
-/// Gives fine cells with nothing in them a value: interpolated between those of the four coarse cells around them that
-/// are about as far as the farthest. What is still nothing (no picture at all) stays nothing. `parent` and `other` are
-/// the coarse column (or row) that a fine one lies in and the nearest other one. Cells within the margin are not
-/// needed. (No branch depends on a cell: eight are worked on at a time.)
-template <int margin, int n, int m, class Parent, class Other>
-void push(FarGrid<m> const& coarse, FarGrid<n>& fine, Parent const& parent, Other const& other) {
-    for (int y = margin; y < n - margin; ++y) {
-        Row<n> const own(coarse, parent(y), parent), beside(coarse, parent(y), other);
-        Row<n> const above(coarse, other(y), parent), across(coarse, other(y), other);
-        for (std::size_t x = margin; x < n - margin; ++x) {
+/// Values for n x n fine cells: interpolated between those of the four coarse cells around each that are about as far
+/// as the farthest. Where those are nothing (no picture at all) the value is. `parent` and `other` give the coarse
+/// column (or row) that a fine one lies in and the nearest other one. (No branch depends on a cell: eight are worked on
+/// at a time. A coarse row is spread once for all fine rows that lie in it or beside it.)
+template <int n, int m>
+class Pushed {
+public:
+    template <class Parent, class Other>
+    Pushed(FarGrid<m> const& coarse, int first, int last, Parent const& parent, Other const& other) {
+        for (int row = std::min(parent(first), other(first)); row <= std::max(parent(last), other(last)); ++row) {
+            own_[static_cast<std::size_t>(row)].spread(coarse, row, parent);
+            beside_[static_cast<std::size_t>(row)].spread(coarse, row, other);
+        }
+    }
+
+    /// Cells of one fine row from `first` on and before `last`.
+    void row(int parent, int other, std::size_t first, std::size_t last, Row<n>& out) const {
+        Row<n> const& own = own_[static_cast<std::size_t>(parent)];
+        Row<n> const& beside = beside_[static_cast<std::size_t>(parent)];
+        Row<n> const& above = own_[static_cast<std::size_t>(other)];
+        Row<n> const& across = beside_[static_cast<std::size_t>(other)];
+        for (std::size_t x = first; x < last; ++x) {
             FarthestOfFour const four({9, 3, 3, 1}, own.inverse_depth[x], beside.inverse_depth[x],
                                       above.inverse_depth[x], across.inverse_depth[x]);
+            out.red[x] = four.mean(own.red[x], beside.red[x], above.red[x], across.red[x]);
+            out.green[x] = four.mean(own.green[x], beside.green[x], above.green[x], across.green[x]);
+            out.blue[x] = four.mean(own.blue[x], beside.blue[x], above.blue[x], across.blue[x]);
+            out.inverse_depth[x] = four.farthest;
+        }
+    }
+
+private:
+    std::array<Row<n>, static_cast<std::size_t>(m)> own_, beside_;
+};
+
+/// Gives fine cells with nothing in them a value. Cells within the margin are not needed.
+template <int margin, int n, int m, class Parent, class Other>
+void push(FarGrid<m> const& coarse, FarGrid<n>& fine, Parent const& parent, Other const& other) {
+    Pushed<n, m> const pushed(coarse, margin, n - margin - 1, parent, other);
+    Row<n> row;
+    for (int y = margin; y < n - margin; ++y) {
+        pushed.row(parent(y), other(y), margin, n - margin, row);
+        for (std::size_t x = margin; x < n - margin; ++x) {
             std::size_t const to = static_cast<std::size_t>(y * n) + x;
-            float const there = fine.inverse_depth[to];
-            bool const nothing = is_nothing(there);
-            float const red = four.mean(own.red[x], beside.red[x], above.red[x], across.red[x]);
-            float const green = four.mean(own.green[x], beside.green[x], above.green[x], across.green[x]);
-            float const blue = four.mean(own.blue[x], beside.blue[x], above.blue[x], across.blue[x]);
-            fine.red[to] = nothing ? red : fine.red[to];
-            fine.green[to] = nothing ? green : fine.green[to];
-            fine.blue[to] = nothing ? blue : fine.blue[to];
-            fine.inverse_depth[to] = nothing ? four.farthest : there;
+            bool const nothing = is_nothing(fine.inverse_depth[to]);
+            fine.red[to] = nothing ? row.red[x] : fine.red[to];
+            fine.green[to] = nothing ? row.green[x] : fine.green[to];
+            fine.blue[to] = nothing ? row.blue[x] : fine.blue[to];
+            fine.inverse_depth[to] = nothing ? row.inverse_depth[x] : fine.inverse_depth[to];
         }
     }
 }
@@ -119,30 +146,36 @@ struct CellsAround {
     }
 };
 
-/// Of cells around a block, half a block more on each side; those within the margin are not needed.
-template <int margin, int n>
-void read_window(CellsAround const& around, FarGrid<n / 2> FarCells::*level, FarGrid<n>& window) {
+/// What of the window the blocks `dx` to the right of the middle give; of a width that the compiler knows.
+template <int margin, int n, int dx>
+void read_column(CellsAround const& around, FarGrid<n / 2> FarCells::*level, FarGrid<n>& window) {
     constexpr int side = n / 2; // cells of a block
     constexpr int before = side / 2; // of the window, before the block
+    constexpr int x0 = std::max(margin, before + dx * side);
+    constexpr auto count = static_cast<std::size_t>(std::min(n - margin, before + (dx + 1) * side) - x0);
     for (int dy = -1; dy <= 1; ++dy) {
         int const y0 = std::max(margin, before + dy * side);
         int const y1 = std::min(n - margin, before + (dy + 1) * side);
-        for (int dx = -1; dx <= 1; ++dx) {
-            int const x0 = std::max(margin, before + dx * side);
-            auto const count = static_cast<std::size_t>(std::min(n - margin, before + (dx + 1) * side) - x0);
-            FarGrid<n / 2> const& block = around.at(dx, dy).*level;
-            for (int y = y0; y < y1; ++y) {
-                auto const from = static_cast<std::size_t>((y - before - dy * side) * side + x0 - before - dx * side);
-                auto const to = static_cast<std::size_t>(y * n + x0);
-                for (std::size_t i = 0; i < count; ++i) {
-                    window.red[to + i] = block.red[from + i];
-                    window.green[to + i] = block.green[from + i];
-                    window.blue[to + i] = block.blue[from + i];
-                    window.inverse_depth[to + i] = block.inverse_depth[from + i];
-                }
+        FarGrid<n / 2> const& block = around.at(dx, dy).*level;
+        for (int y = y0; y < y1; ++y) {
+            auto const from = static_cast<std::size_t>((y - before - dy * side) * side + x0 - before - dx * side);
+            auto const to = static_cast<std::size_t>(y * n + x0);
+            for (std::size_t i = 0; i < count; ++i) {
+                window.red[to + i] = block.red[from + i];
+                window.green[to + i] = block.green[from + i];
+                window.blue[to + i] = block.blue[from + i];
+                window.inverse_depth[to + i] = block.inverse_depth[from + i];
             }
         }
     }
+}
+
+/// Of cells around a block, half a block more on each side; those within the margin are not needed.
+template <int margin, int n>
+void read_window(CellsAround const& around, FarGrid<n / 2> FarCells::*level, FarGrid<n>& window) {
+    read_column<margin, n, -1>(around, level, window);
+    read_column<margin, n, 0>(around, level, window);
+    read_column<margin, n, 1>(around, level, window);
 }
 
 template <int margin, int n>
@@ -159,6 +192,36 @@ bool has_nothing(FarGrid<n> const& grid) {
 std::uint32_t byte_of(float square) {
     return static_cast<std::uint32_t>(
         static_cast<std::int32_t>(std::min(std::sqrt(std::max(square, 0.0f)) + 0.5f, 255.0f)));
+}
+
+/// The holes of a block from the means of 2x2 pixels around it.
+void write_holes(FarGrid<16> const& twos, std::span<float const> inverse_depth, int left, int top, Picture& picture) {
+    auto const parent = [](int i) { return i / 2 + 4; };
+    auto const other = [](int i) { return i / 2 + 4 + (i % 2 == 0 ? -1 : 1); };
+    Pushed<16, 16> const pushed(twos, 0, block_side - 1, parent, other);
+    std::uint32_t const gray = srgb_byte_from_linear(uncovered_light);
+    std::uint32_t const uncovered = picture_pixel(gray, gray, gray);
+    int const width = std::min(block_side, picture.width - left);
+    Row<16> row;
+    for (int y = 0; y < std::min(block_side, picture.height - top); ++y) {
+        float const* const depth =
+            inverse_depth.data() + static_cast<std::size_t>(top + y) * static_cast<std::size_t>(picture.width) + left;
+        if (std::all_of(depth, depth + width, [](float value) { return value > hole_depth; })) {
+            continue;
+        }
+        pushed.row(parent(y), other(y), 0, block_side, row);
+        std::array<std::uint32_t, block_side> colors;
+        for (std::size_t x = 0; x < block_side; ++x) {
+            std::uint32_t const color = picture_pixel(byte_of(row.red[x]), byte_of(row.green[x]), byte_of(row.blue[x]));
+            colors[x] = is_nothing(row.inverse_depth[x]) ? uncovered : color;
+        }
+        std::uint8_t* const pixel = picture.row(top + y) + 4 * left;
+        for (int x = 0; x < width; ++x) {
+            if (!(depth[x] > hole_depth)) {
+                std::memcpy(pixel + 4 * x, &colors[static_cast<std::size_t>(x)], sizeof colors[0]);
+            }
+        }
+    }
 }
 
 } // namespace
@@ -196,32 +259,7 @@ void fill_holes(FarMeans const& means, std::span<FarCells const> cells, std::spa
         push<1>(eights, fours);
         push<3>(fours, twos);
     }
-    int const left = column * block_side;
-    int const top = row * block_side;
-    FarGrid<16> pixels;
-    read_block(inverse_depth, picture, left, top, pixels);
-    push<0>(
-        twos, pixels, [](int i) { return i / 2 + 4; }, [](int i) { return i / 2 + 4 + (i % 2 == 0 ? -1 : 1); });
-    std::uint32_t const gray = srgb_byte_from_linear(uncovered_light);
-    std::uint32_t const uncovered = picture_pixel(gray, gray, gray);
-    int const width = std::min(block_side, picture.width - left);
-    for (int y = 0; y < std::min(block_side, picture.height - top); ++y) {
-        std::array<std::uint32_t, block_side> colors;
-        for (std::size_t x = 0; x < block_side; ++x) {
-            std::size_t const at = static_cast<std::size_t>(y * block_side) + x;
-            std::uint32_t const color =
-                picture_pixel(byte_of(pixels.red[at]), byte_of(pixels.green[at]), byte_of(pixels.blue[at]));
-            colors[x] = is_nothing(pixels.inverse_depth[at]) ? uncovered : color;
-        }
-        float const* const depth =
-            inverse_depth.data() + static_cast<std::size_t>(top + y) * static_cast<std::size_t>(picture.width) + left;
-        std::uint8_t* const pixel = picture.row(top + y) + 4 * left;
-        for (int x = 0; x < width; ++x) {
-            if (!(depth[x] > hole_depth)) {
-                std::memcpy(pixel + 4 * x, &colors[static_cast<std::size_t>(x)], sizeof colors[0]);
-            }
-        }
-    }
+    write_holes(twos, inverse_depth, column * block_side, row * block_side, picture);
 }
 
 } // namespace framelet

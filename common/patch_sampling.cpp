@@ -12,14 +12,14 @@ namespace framelet {
 namespace {
 
 constexpr int lanes = sampling_lanes;
+constexpr std::size_t most_rows = std::tuple_size_v<CandidateRows>;
 
 template <class T>
 using Lanes = Candidate::Lanes<T>;
 
-/// Between which samples pixels fall: columns and first samples of rows, and the weights of both. Outside of the grid
-/// or the box all weights across are 0.
+/// Between which samples pixels fall: the upper left one of four in the grid, and the weights of columns and rows.
 struct Places {
-    alignas(64) Lanes<std::int32_t> left, right, above, below;
+    alignas(64) Lanes<std::int32_t> corner;
     alignas(64) Lanes<float> left_weight, right_weight, above_weight, below_weight;
 };
 
@@ -28,14 +28,15 @@ struct Samples {
     alignas(64) Lanes<PackedSample> above_left, above_right, below_left, below_right;
 };
 
-void find_places(WarpPatch const& patch, float x, float y, float first, float last, Places& out) {
-    float const u0 = patch.at[0] + y * patch.dy[0] + x * patch.dx[0];
-    float const v0 = patch.at[1] + y * patch.dy[1] + x * patch.dx[1];
-    float const z0 = patch.at[2] + y * patch.dy[2] + x * patch.dx[2];
+/// Beyond the outermost samples the corner is the last one that has neighbours, and tents give the weights: 0 from a
+/// sample's distance on. Outside of the box and behind the camera rows have no weight.
+void find_places(WarpPatch const& patch, float x, float y, Lanes<float> const& in_box, Places& out) {
     float const du = patch.dx[0], dv = patch.dx[1], dz = patch.dx[2];
-    std::int32_t const n = patch.side;
-    std::int32_t const end = n - 1;
-    auto const outside = static_cast<float>(n);
+    float const u0 = patch.at[0] + y * patch.dy[0] + x * du;
+    float const v0 = patch.at[1] + y * patch.dy[1] + x * dv;
+    float const z0 = patch.at[2] + y * patch.dy[2] + x * dz;
+    auto const n = static_cast<float>(patch.side);
+    float const last = n - 2;
     for (int i = 0; i < lanes; ++i) {
         auto const k = static_cast<std::size_t>(i);
         auto const step = static_cast<float>(i);
@@ -43,47 +44,29 @@ void find_places(WarpPatch const& patch, float x, float y, float first, float la
         float const z = 1 / inverse_z;
         float u = (u0 + step * du) * z;
         float v = (v0 + step * dv) * z;
-        bool const inside =
-            (inverse_z > 0) & (step >= first) & (step < last) & (u > -1) & (u < outside) & (v > -1) & (v < outside);
         u = u > -1 ? u : -1; // not a number becomes one
         v = v > -1 ? v : -1;
-        u = u < outside ? u : outside;
-        v = v < outside ? v : outside;
-        float const fu = std::floor(u);
-        float const fv = std::floor(v);
-        auto const iu = static_cast<std::int32_t>(fu);
-        auto const iv = static_cast<std::int32_t>(fv);
-        out.left[k] = std::min(std::max(iu, 0), end);
-        out.right[k] = std::min(iu + 1, end);
-        out.above[k] = std::min(std::max(iv, 0), end) * n;
-        out.below[k] = std::min(iv + 1, end) * n;
-        float const scale = inside ? 1.0f : 0.0f;
-        out.left_weight[k] = iu >= 0 ? 1 - (u - fu) : 0.0f;
-        out.right_weight[k] = iu < end ? u - fu : 0.0f;
-        out.above_weight[k] = iv >= 0 ? scale - scale * (v - fv) : 0.0f;
-        out.below_weight[k] = iv < end ? scale * (v - fv) : 0.0f;
-    }
-}
-
-void gather(PackedSample const* grid, Places const& places, Samples& out) {
-    for (std::size_t k = 0; k < lanes; ++k) {
-        out.above_left[k] = grid[places.above[k] + places.left[k]];
-        out.above_right[k] = grid[places.above[k] + places.right[k]];
-        out.below_left[k] = grid[places.below[k] + places.left[k]];
-        out.below_right[k] = grid[places.below[k] + places.right[k]];
+        u = u < n ? u : n;
+        v = v < n ? v : n;
+        float const column = std::min(std::max(std::floor(u), 0.0f), last);
+        float const row = std::min(std::max(std::floor(v), 0.0f), last);
+        float const scale = inverse_z > 0 ? in_box[k] : 0.0f;
+        out.corner[k] = static_cast<std::int32_t>(row * n + column);
+        out.left_weight[k] = std::max(1 - std::abs(u - column), 0.0f);
+        out.right_weight[k] = std::max(1 - std::abs(u - column - 1), 0.0f);
+        out.above_weight[k] = scale * std::max(1 - std::abs(v - row), 0.0f);
+        out.below_weight[k] = scale * std::max(1 - std::abs(v - row - 1), 0.0f);
     }
 }
 
 #ifdef __AVX2__
 
-/// A row of up to 16 samples in two registers, from which any eight are picked; a gather takes several times as long.
+/// Sixteen samples in a row in two registers, from which any eight are picked; a gather takes several times as long.
 class RegisterRow {
 public:
-    RegisterRow(PackedSample const* row, std::int32_t side)
-        : low_(load(row)), high_(load(side > lanes ? row + lanes : row)) {}
+    explicit RegisterRow(PackedSample const* row) : low_(load(row)), high_(load(row + lanes)) {}
 
-    void pick(Lanes<std::int32_t> const& columns, Lanes<PackedSample>& out) const {
-        __m256i const index = _mm256_load_si256(reinterpret_cast<__m256i const*>(columns.data()));
+    void pick(__m256i index, Lanes<PackedSample>& out) const {
         __m256i const low = _mm256_permutevar8x32_epi32(low_, index);
         __m256i const high = _mm256_permutevar8x32_epi32(high_, index);
         __m256 const picked = _mm256_blendv_ps(_mm256_castsi256_ps(low), _mm256_castsi256_ps(high),
@@ -97,28 +80,55 @@ private:
     __m256i low_, high_;
 };
 
-bool are_equal(Lanes<std::int32_t> const& values) {
-    __m256i const all = _mm256_load_si256(reinterpret_cast<__m256i const*>(values.data()));
-    return _mm256_movemask_epi8(_mm256_cmpeq_epi32(all, _mm256_set1_epi32(values[0]))) == -1;
+constexpr int register_samples = 2 * lanes;
+
+/// Two neighbours at each of eight places.
+void gather_pairs(PackedSample const* grid, __m256i index, Lanes<PackedSample>& left, Lanes<PackedSample>& right) {
+    auto const* const pairs = reinterpret_cast<long long const*>(grid);
+    __m256 const low = _mm256_castsi256_ps(_mm256_i32gather_epi64(pairs, _mm256_castsi256_si128(index), 4));
+    __m256 const high = _mm256_castsi256_ps(_mm256_i32gather_epi64(pairs, _mm256_extracti128_si256(index, 1), 4));
+    auto const store = [](__m256 mixed, Lanes<PackedSample>& out) {
+        __m256i const ordered = _mm256_permute4x64_epi64(_mm256_castps_si256(mixed), 0b11011000);
+        _mm256_store_si256(reinterpret_cast<__m256i*>(out.data()), ordered);
+    };
+    store(_mm256_shuffle_ps(low, high, 0b10001000), left);
+    store(_mm256_shuffle_ps(low, high, 0b11011101), right);
 }
 
 void look_up(WarpPatch const& patch, Places const& places, Samples& out) {
-    if (!are_equal(places.above) || !are_equal(places.below) || patch.side < lanes) {
-        gather(patch.grid, places, out);
+    std::int32_t const n = patch.side;
+    __m256i const corner = _mm256_load_si256(reinterpret_cast<__m256i const*>(places.corner.data()));
+    __m256i const one = _mm256_set1_epi32(1);
+    // Where the registers begin: those of the row below must end within the grid, of which the smallest fits into them.
+    std::int32_t const base = std::max(std::min(places.corner[0], n * (n - 1) - register_samples), 0);
+    std::int32_t const below = base + (n * n > register_samples ? n : 0);
+    __m256i const index = _mm256_sub_epi32(corner, _mm256_set1_epi32(base));
+    __m256i const far = _mm256_or_si256(_mm256_cmpgt_epi32(index, _mm256_set1_epi32(register_samples - 2)),
+                                        _mm256_cmpgt_epi32(_mm256_setzero_si256(), index));
+    if (_mm256_testz_si256(far, far) == 0) {
+        gather_pairs(patch.grid, corner, out.above_left, out.above_right);
+        gather_pairs(patch.grid + n, corner, out.below_left, out.below_right);
         return;
     }
-    RegisterRow const above(patch.grid + places.above[0], patch.side);
-    RegisterRow const below(patch.grid + places.below[0], patch.side);
-    above.pick(places.left, out.above_left);
-    above.pick(places.right, out.above_right);
-    below.pick(places.left, out.below_left);
-    below.pick(places.right, out.below_right);
+    RegisterRow const above_row(patch.grid + base);
+    RegisterRow const below_row(patch.grid + below);
+    __m256i const below_index = _mm256_add_epi32(index, _mm256_set1_epi32(base + n - below));
+    above_row.pick(index, out.above_left);
+    above_row.pick(_mm256_add_epi32(index, one), out.above_right);
+    below_row.pick(below_index, out.below_left);
+    below_row.pick(_mm256_add_epi32(below_index, one), out.below_right);
 }
 
 #else
 
 void look_up(WarpPatch const& patch, Places const& places, Samples& out) {
-    gather(patch.grid, places, out);
+    for (std::size_t k = 0; k < lanes; ++k) {
+        PackedSample const* const corner = patch.grid + places.corner[k];
+        out.above_left[k] = corner[0];
+        out.above_right[k] = corner[1];
+        out.below_left[k] = corner[patch.side];
+        out.below_right[k] = corner[patch.side + 1];
+    }
 }
 
 #endif
@@ -148,22 +158,36 @@ void interpolate(std::uint32_t layer, Places const& places, Samples const& sampl
     }
 }
 
+void interpolate_depth(WarpPatch const& patch, float x, float y, Candidate& out) {
+    float const step = patch.inverse_depth_dx;
+    float const first = patch.inverse_depth + y * patch.inverse_depth_dy + x * step;
+    for (int i = 0; i < lanes; ++i) {
+        float const depth = first + static_cast<float>(i) * step;
+        out.inverse_depth[static_cast<std::size_t>(i)] = depth > 0 ? depth : 0.0f;
+    }
+}
+
 } // namespace
 
-void sample_patch(WarpPatch const& patch, float x, float y, float first, float last, Candidate& out) {
-    Places places;
-    Samples samples;
-    find_places(patch, x, y, first, last, places);
-    look_up(patch, places, samples);
-    if (patch.is_whole) {
-        interpolate<true>(patch.layer, places, samples, out);
-    } else {
-        interpolate<false>(patch.layer, places, samples, out);
+void sample_patch(WarpPatch const& patch, float x, float y, int rows, Candidate::Lanes<float> const& in_box,
+                  CandidateRows& out) {
+    // One step after the other for all rows: a row's steps depend on each other, the rows do not.
+    std::array<Places, most_rows> places;
+    std::array<Samples, most_rows> samples;
+    auto const count = static_cast<std::size_t>(rows);
+    for (std::size_t row = 0; row < count; ++row) {
+        find_places(patch, x, y + static_cast<float>(row), in_box, places[row]);
     }
-    float const w0 = patch.inverse_depth + y * patch.inverse_depth_dy + x * patch.inverse_depth_dx;
-    for (int i = 0; i < lanes; ++i) {
-        float const depth = w0 + static_cast<float>(i) * patch.inverse_depth_dx;
-        out.inverse_depth[static_cast<std::size_t>(i)] = depth > 0 ? depth : 0.0f;
+    for (std::size_t row = 0; row < count; ++row) {
+        look_up(patch, places[row], samples[row]);
+    }
+    for (std::size_t row = 0; row < count; ++row) {
+        if (patch.is_whole) {
+            interpolate<true>(patch.layer, places[row], samples[row], out[row]);
+        } else {
+            interpolate<false>(patch.layer, places[row], samples[row], out[row]);
+        }
+        interpolate_depth(patch, x, y + static_cast<float>(row), out[row]);
     }
 }
 

@@ -26,8 +26,12 @@ inline float square(std::uint32_t byte) {
     return value * value;
 }
 
-/// At pixels of which the first lies (x, y) from the centre of the box's first pixel; lanes from `first` on and before
-/// `last` are in the box, others get no weight.
-void sample_patch(WarpPatch const& patch, float x, float y, float first, float last, Candidate& out);
+/// The same for some rows of a block.
+using CandidateRows = std::array<Candidate, static_cast<std::size_t>(FrameletCache::block_side)>;
+
+/// In `rows` rows, the first pixel of the first of which lies (x, y) from the centre of the box's first pixel. `in_box`
+/// is 1 for lanes in the box, 0 for others, which get no weight.
+void sample_patch(WarpPatch const& patch, float x, float y, int rows, Candidate::Lanes<float> const& in_box,
+                  CandidateRows& out);
 
 } // namespace framelet

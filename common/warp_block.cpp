@@ -60,18 +60,24 @@ void merge_row(Candidate const& row, std::int32_t group, float tolerance, std::s
 }
 
 void paint_layer(WarpPatch const& patch, int left, int top, Layers& layers) {
-    Candidate half;
-    int const last_row = std::min(patch.box.bottom - top, side);
+    CandidateRows rows;
+    int const first_row = std::max(patch.box.top - top, 0);
+    int const row_count = std::min(patch.box.bottom - top, side) - first_row;
     for (int x = 0; x < side; x += lanes) {
-        auto const first = static_cast<float>(patch.box.left - left - x);
-        auto const last = static_cast<float>(patch.box.right - left - x);
+        int const first = patch.box.left - left - x;
+        int const last = patch.box.right - left - x;
         if (first >= lanes || last <= 0) {
             continue;
         }
-        for (int y = std::max(patch.box.top - top, 0); y < last_row; ++y) {
-            sample_patch(patch, static_cast<float>(left + x - patch.box.left),
-                         static_cast<float>(top + y - patch.box.top), first, last, half);
-            merge_row(half, patch.group, patch.tolerance, static_cast<std::size_t>(y * side + x), layers);
+        Candidate::Lanes<float> in_box;
+        for (int i = 0; i < lanes; ++i) {
+            in_box[static_cast<std::size_t>(i)] = (i >= first) & (i < last) ? 1.0f : 0.0f;
+        }
+        sample_patch(patch, static_cast<float>(-first), static_cast<float>(top + first_row - patch.box.top), row_count,
+                     in_box, rows);
+        for (int i = 0; i < row_count; ++i) {
+            merge_row(rows[static_cast<std::size_t>(i)], patch.group, patch.tolerance,
+                      static_cast<std::size_t>((first_row + i) * side + x), layers);
         }
     }
 }
@@ -118,8 +124,8 @@ void finish(Layers const& layers, int width, int height, WarpedBlock& block) {
     }
     block.holes = 0;
     for (int y = 0; y < std::min(height, side); ++y) {
-        for (int x = 0; x < std::min(width, side); ++x) {
-            block.holes += layers.weight[static_cast<std::size_t>(y * side + x)] > 0 ? 0 : 1;
+        for (int x = 0; x < side; ++x) {
+            block.holes += (x < width) & !(layers.weight[static_cast<std::size_t>(y * side + x)] > 0) ? 1 : 0;
         }
     }
 }

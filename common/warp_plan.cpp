@@ -9,15 +9,18 @@ namespace framelet {
 namespace {
 
 constexpr std::size_t slots_per_chunk = 256;
-constexpr std::size_t blocks_per_chunk = 128;
+constexpr std::size_t squares_per_chunk = 32; // of 2x2 blocks
 constexpr std::uint32_t patches_per_chunk = slots_per_chunk * (max_layers + 1);
-static_assert(patches_per_chunk >= 5 * blocks_per_chunk); // a block is merged as a whole and in quarters at most
+// A square is merged as a whole and each of its blocks as a whole and in quarters at most.
+static_assert(patches_per_chunk >= (1 + 4 * 5) * squares_per_chunk);
 constexpr int block_side = FrameletCache::block_side;
 
 /// How far off merging may show a sample.
 constexpr double merging_pixels = 1.0 / 16;
 
-constexpr std::uint8_t all_quarters = 0b11110;
+constexpr unsigned merged_fine = 0b1;
+constexpr unsigned merged_finest = 0b11110; ///< all quarters
+constexpr unsigned merged_pixels = 0b100000;
 
 /// The blocks that a box which is not empty touches.
 PixelRect blocks_of(PixelRect const& box) {
@@ -43,6 +46,28 @@ std::size_t block_count(PixelRect const& box) {
     return static_cast<std::size_t>(blocks.width()) * static_cast<std::size_t>(blocks.height());
 }
 
+/// Fetches from memory what merging reads of those framelets below a tile that are so many levels finer.
+/// (Where a picture is held as fine framelets they are far apart, and waiting for each costs more than all the rest.)
+void prefetch_below(FrameletCache const& cache, Tile over, int levels) {
+    int const n = 1 << levels;
+    for (int i = 0; i < n * n; ++i) {
+        CachedFramelet const* const framelet =
+            cache.find(over.depth() + levels, n * static_cast<int>(over.column()) + i % n,
+                       n * static_cast<int>(over.row()) + i / n);
+        if (framelet == nullptr) {
+            return; // not all of them are there, so most will not be looked at
+        }
+        __builtin_prefetch(framelet);
+        __builtin_prefetch(&framelet->shape.layers);
+        __builtin_prefetch(&framelet->shape.reduced);
+    }
+}
+
+/// Squares of 2x2 blocks along a side of so many blocks.
+std::size_t square_count(int blocks) {
+    return static_cast<std::size_t>(blocks + 1) / 2;
+}
+
 bool is_before(WarpPatch const& a, WarpPatch const& b) {
     return a.batch != b.batch ? a.batch > b.batch : a.place < b.place;
 }
@@ -53,20 +78,22 @@ void WarpPlan::make(FrameletCache const& cache, Camera const& display, SceneTime
                     BodyMotions const& motions) {
     set_size(cache.plane().viewport());
     std::size_t const blocks = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
-    std::size_t const slot_chunks = cache.slot_count() / slots_per_chunk;
-    chunks_.resize(slot_chunks + (blocks + blocks_per_chunk - 1) / blocks_per_chunk);
+    std::size_t const squares = square_count(columns_) * square_count(rows_);
+    std::size_t const square_chunks = (squares + squares_per_chunk - 1) / squares_per_chunk;
+    chunks_.resize(square_chunks + cache.slot_count() / slots_per_chunk);
     merged_.assign(blocks, 0);
-    tbb::parallel_for(slot_chunks, chunks_.size(), [&](std::size_t i) {
+    tbb::parallel_for(std::size_t{0}, square_chunks, [&](std::size_t i) {
         FrameletWarp warp(cache, display, display_time, motions);
-        std::size_t const first = (i - slot_chunks) * blocks_per_chunk;
-        merge_blocks(cache, first, std::min(first + blocks_per_chunk, blocks), warp, chunks_[i]);
+        std::size_t const first = i * squares_per_chunk;
+        merge_squares(cache, first, std::min(first + squares_per_chunk, squares), warp, chunks_[i]);
     });
-    tbb::parallel_for(std::size_t{0}, slot_chunks, [&](std::size_t i) {
+    tbb::parallel_for(square_chunks, chunks_.size(), [&](std::size_t i) {
         Chunk& chunk = chunks_[i];
         chunk.patches.clear();
         chunk.splats.clear();
         FrameletWarp warp(cache, display, display_time, motions);
-        for (std::size_t slot = i * slots_per_chunk; slot < (i + 1) * slots_per_chunk; ++slot) {
+        std::size_t const first = (i - square_chunks) * slots_per_chunk;
+        for (std::size_t slot = first; slot < first + slots_per_chunk; ++slot) {
             CachedFramelet const* const framelet = cache.at_slot(slot);
             if (framelet != nullptr && !is_merged(cache.plane(), framelet->tile)) {
                 warp.add(*framelet, chunk.patches, chunk.splats);
@@ -101,12 +128,16 @@ void WarpPlan::set_size(Viewport viewport) {
     rows_ = (viewport.height + block_side - 1) / block_side;
 }
 
-/// A block's framelets are merged all together where possible, else those of its quarters.
-void WarpPlan::merge_blocks(FrameletCache const& cache, std::size_t first, std::size_t last, FrameletWarp& warp,
-                            Chunk& chunk) {
+/// Framelets of one depth are merged in the largest squares possible: 2x2 blocks, one, a quarter of one.
+void WarpPlan::merge_squares(FrameletCache const& cache, std::size_t first, std::size_t last, FrameletWarp& warp,
+                             Chunk& chunk) {
     chunk.patches.clear();
-    chunk.merged.clear();
     int const depth = cache.plane().pixel_depth();
+    auto const square_at = [&](std::size_t index) {
+        std::size_t const columns = square_count(columns_);
+        return make_tile(depth - 1, static_cast<std::uint32_t>(index % columns),
+                         static_cast<std::uint32_t>(index / columns));
+    };
     auto const merge = [&](Tile over, int fine_depth) {
         int const n = 1 << (fine_depth - over.depth());
         CachedFramelet const* const corner =
@@ -115,46 +146,79 @@ void WarpPlan::merge_blocks(FrameletCache const& cache, std::size_t first, std::
             return false;
         }
         double const tolerance = warp.inverse_depth_within(merging_pixels, *corner);
-        chunk.merged.emplace_back();
-        if (!merge_fine(cache, over, fine_depth, tolerance, chunk.merged.back())) {
-            chunk.merged.pop_back();
+        if (chunk.merged.size() == chunk.patches.size()) {
+            chunk.merged.emplace_back();
+        }
+        MergedFramelet& merged = chunk.merged[chunk.patches.size()];
+        if (!merge_fine(cache, over, fine_depth, tolerance, merged)) {
             return false;
         }
-        std::size_t const before = chunk.patches.size();
-        warp.add(chunk.merged.back(), chunk.patches);
-        if (chunk.patches.size() == before) {
-            chunk.merged.pop_back();
-        }
+        warp.add(merged, chunk.patches); // nothing where it does not show
         return true;
     };
-    for (std::size_t block = first; block < last; ++block) {
-        auto const columns = static_cast<std::size_t>(columns_);
-        Tile const tile =
-            make_tile(depth, static_cast<std::uint32_t>(block % columns), static_cast<std::uint32_t>(block / columns));
-        unsigned merged = merge(tile, depth + 1) ? 1 : 0;
-        if (merge(tile, depth + 2)) {
-            merged |= all_quarters;
-        } else {
-            for (std::uint32_t quarter = 0; quarter < 4; ++quarter) {
-                merged |= merge(tile.child(quarter), depth + 2) ? 2u << quarter : 0u;
+    auto const merge_block = [&](Tile block, bool is_fine, bool is_finest) {
+        if (!is_fine && merge(block, depth + 1)) {
+            set_merged(block, 0, merged_fine);
+        }
+        if (is_finest) {
+            return;
+        }
+        if (merge(block, depth + 2)) {
+            set_merged(block, 0, merged_finest);
+            return;
+        }
+        for (std::uint32_t quarter = 0; quarter < 4; ++quarter) {
+            if (merge(block.child(quarter), depth + 2)) {
+                set_merged(block, 0, 2u << quarter);
             }
         }
-        merged_[block] = static_cast<std::uint8_t>(merged);
+    };
+    if (depth == 0) {
+        merge_block(Tile{}, false, false);
+    }
+    for (std::size_t i = first; i < last && depth > 0; ++i) {
+        if (i + 1 < last) {
+            prefetch_below(cache, square_at(i + 1), 2);
+            prefetch_below(cache, square_at(i + 1), 3);
+        }
+        Tile const square = square_at(i);
+        if (merge(square, depth)) {
+            set_merged(square, 1, merged_pixels);
+        }
+        bool const is_fine = merge(square, depth + 1);
+        bool const is_finest = merge(square, depth + 2);
+        if (is_fine || is_finest) {
+            set_merged(square, 1, (is_fine ? merged_fine : 0u) | (is_finest ? merged_finest : 0u));
+        }
+        for (std::uint32_t quarter = 0; quarter < 4; ++quarter) {
+            if (is_block(square.child(quarter))) {
+                merge_block(square.child(quarter), is_fine, is_finest);
+            }
+        }
     }
     for (std::size_t i = 0; i < chunk.patches.size(); ++i) {
         chunk.patches[i].grid = chunk.merged[i].grid.data();
     }
 }
 
+/// Of the blocks so many levels below `over`.
+void WarpPlan::set_merged(Tile over, int levels, unsigned flags) {
+    for (std::uint32_t i = 0; i < 1u << 2 * levels; ++i) {
+        Tile const block{(over.code << 2 * levels) + i};
+        if (is_block(block)) {
+            merged_[index_of(block)] |= static_cast<std::uint8_t>(flags);
+        }
+    }
+}
+
 bool WarpPlan::is_merged(ImagePlane const& plane, Tile tile) const {
     int const levels = tile.depth() - plane.pixel_depth();
-    if (levels <= 0) {
+    if (levels < 0) {
         return false;
     }
-    Tile const block{tile.code >> 2 * levels};
-    std::uint8_t const merged = merged_[static_cast<std::size_t>(block.row()) * static_cast<std::size_t>(columns_) +
-                                        static_cast<std::size_t>(block.column())];
-    return (levels == 1 ? merged & 1u : merged >> (1 + tile.parent().code % 4) & 1u) != 0;
+    unsigned const merged = merged_[index_of(Tile{tile.code >> 2 * levels})];
+    unsigned const own = levels == 0 ? merged_pixels : levels == 1 ? merged_fine : 2u << tile.parent().code % 4;
+    return (merged & own) != 0;
 }
 
 void WarpPlan::limit_entries() {

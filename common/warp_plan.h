@@ -38,20 +38,27 @@ private:
     struct Chunk {
         std::vector<WarpPatch> patches;
         std::vector<Splat> splats;
-        std::vector<MergedFramelet> merged; ///< that some of the patches show
+        std::vector<MergedFramelet> merged; ///< one for each patch and room for more, or none
     };
 
     void set_size(Viewport viewport);
-    void merge_blocks(FrameletCache const& cache, std::size_t first, std::size_t last, FrameletWarp& warp,
-                      Chunk& chunk);
+    void merge_squares(FrameletCache const& cache, std::size_t first, std::size_t last, FrameletWarp& warp,
+                       Chunk& chunk);
+    void set_merged(Tile over, int levels, unsigned flags);
+    bool is_block(Tile tile) const {
+        return static_cast<int>(tile.column()) < columns_ && static_cast<int>(tile.row()) < rows_;
+    }
+    std::size_t index_of(Tile block) const {
+        return static_cast<std::size_t>(block.row()) * static_cast<std::size_t>(columns_) + block.column();
+    }
     bool is_merged(ImagePlane const& plane, Tile tile) const;
     void limit_entries();
     void make_bins();
 
     int columns_ = 0, rows_ = 0;
-    std::vector<Chunk> chunks_; ///< of slots, then of blocks
+    std::vector<Chunk> chunks_; ///< of squares of 2x2 blocks, then of slots
     /// By block: bit 0 where the framelets one level finer than pixels are merged, bit 1 + i where those two levels
-    /// finer are in quarter i.
+    /// finer are in quarter i, bit 5 where that of one sample a pixel is.
     std::vector<std::uint8_t> merged_;
     std::vector<std::uint32_t> first_entry_; ///< by block; one more at the end
     std::vector<std::uint32_t> next_entry_;

@@ -49,7 +49,7 @@ TEST(WarpPlan, HoldsBoundedlyManyPatchesAndTheNewestOnes) {
     }
 }
 
-TEST(WarpPlan, FineFrameletsOfOnePlaneAreOnePatchABlock) {
+TEST(WarpPlan, FrameletsOfOnePlaneAreOnePatchForFourBlocks) {
     ImagePlane const plane(viewport);
     Camera aside = front();
     aside.position.x += 0.1f;
@@ -60,6 +60,8 @@ TEST(WarpPlan, FineFrameletsOfOnePlaneAreOnePatchABlock) {
         WarpPlan plan;
         plan.make(cache, aside, 0, {});
         EXPECT_GT(plan.entry_count(), 0u);
+        // A patch of a block alone reaches three blocks upright and two across.
+        EXPECT_LT(plan.entry_count(), static_cast<std::size_t>(4 * plan.columns() * plan.rows())) << levels;
         EXPECT_TRUE(levels == 0 || plan.entry_count() == entries) << levels;
         entries = plan.entry_count();
     }
