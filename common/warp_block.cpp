@@ -71,7 +71,7 @@ void paint_layer(WarpPatch const& patch, int left, int top, Layers& layers) {
         }
         Candidate::Lanes<float> in_box;
         for (int i = 0; i < lanes; ++i) {
-            in_box[static_cast<std::size_t>(i)] = (i >= first) & (i < last) ? 1.0f : 0.0f;
+            in_box[static_cast<std::size_t>(i)] = ((i >= first) & (i < last)) ? 1.0f : 0.0f;
         }
         sample_patch(patch, static_cast<float>(-first), static_cast<float>(top + first_row - patch.box.top), row_count,
                      in_box, rows);
@@ -125,7 +125,7 @@ void finish(Layers const& layers, int width, int height, WarpedBlock& block) {
     block.holes = 0;
     for (int y = 0; y < std::min(height, side); ++y) {
         for (int x = 0; x < side; ++x) {
-            block.holes += (x < width) & !(layers.weight[static_cast<std::size_t>(y * side + x)] > 0) ? 1 : 0;
+            block.holes += ((x < width) & !(layers.weight[static_cast<std::size_t>(y * side + x)] > 0)) ? 1 : 0;
         }
     }
 }
