@@ -11,10 +11,9 @@ std::int16_t wrapped(int value) {
     return static_cast<std::int16_t>(static_cast<std::uint16_t>(value));
 }
 
-/// Sixteenths, modulo 2^16, to a byte. Of 16 bits, so that many fit into a register.
+/// Sixteenths, modulo 2^16, to a byte.
 std::uint8_t sample(int sixteenths) {
-    auto const rounded = static_cast<std::int16_t>(wrapped(sixteenths + middle + 8) >> 4);
-    return static_cast<std::uint8_t>(std::clamp<std::int16_t>(rounded, 0, 255));
+    return static_cast<std::uint8_t>(std::clamp(wrapped(sixteenths + middle + 8) >> 4, 0, 255));
 }
 
 } // namespace

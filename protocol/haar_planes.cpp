@@ -1,23 +1,22 @@
 #include "protocol/haar_planes.h"
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
 #include <cstdlib>
 #include <cstring>
 
 #include "common/error.h"
 #include "protocol/haar_transform.h"
-#include "protocol/zigzag.h"
 
 namespace framelet {
 namespace {
 
-constexpr std::size_t octaves = HaarNumbers::octaves;
-constexpr auto first_four = HaarNumbers::first_four;
+constexpr std::size_t octaves = 4;
+/// Of an octave, from the finest (0).
 constexpr std::size_t places(std::size_t octave) {
-    return HaarNumbers::places(octave);
+    return std::size_t{framelet_samples} >> (2 * (octave + 1));
 }
+/// Details of the octaves of one plane, the coarsest first, each [0, h, v, d] a place.
+constexpr std::array<std::size_t, octaves> first_four{84, 20, 4, 0};
 
 /// Quantisation step of the plane's mean and of its coarsest octave, sixteenths; it doubles with each finer one, as the
 /// orthonormal transform has it. Errors of Y and Cg count three times in red, green and blue, those of Co twice.
@@ -30,50 +29,17 @@ std::uint16_t octave_step(std::uint16_t base, std::size_t octave) {
 
 /// Smallest share of a step that rounds up, in 64ths: what is nearer to zero costs more bytes than it removes error.
 constexpr unsigned detail_rounding = 22, mean_rounding = 32;
-/// A level of one that stands alone in this many values costs most: in the two finest octaves it must be this share of
-/// a step, in 64ths.
-constexpr std::size_t alone_among = 8;
-constexpr unsigned least_alone = 56;
 
-/// Levels of details; 0 in place of the means between them.
-void quantise_details(std::int16_t const* fours, std::size_t count, unsigned step, std::int16_t* levels) {
-    // floor(x / step) of 16-bit x, or one more where x is just below a multiple. Steps of 1 leave everything.
-    auto const reciprocal = static_cast<std::uint16_t>(65536 / step + 1);
-    auto const rounding = static_cast<std::uint16_t>(step * detail_rounding / 64);
-    for (std::size_t i = 0; i < count; ++i) { // many at a time
-        std::int16_t const value = fours[i];
-        auto const sign = static_cast<std::uint16_t>(value >> 15);
-        auto const size = static_cast<std::uint16_t>((static_cast<std::uint16_t>(value) ^ sign) - sign + rounding);
-        auto const level = static_cast<std::uint16_t>(std::uint32_t{size} * reciprocal >> 16);
-        levels[i] = static_cast<std::int16_t>((level ^ sign) - sign);
-    }
-    if (step == 1) {
-        std::copy(fours, fours + count, levels);
-    }
-    for (std::size_t i = 0; i < count; i += 4) {
-        levels[i] = 0;
-    }
-}
-
-/// Clears what is hardly worth its bytes.
-void drop_lone_levels(std::int16_t const* fours, std::size_t count, unsigned step, std::int16_t* levels) {
-    auto const least = static_cast<int>(step * least_alone / 64);
-    for (std::size_t i = 0; i < count; i += alone_among) {
-        std::array<std::uint64_t, 2> words;
-        std::memcpy(words.data(), levels + i, sizeof words);
-        if ((words[0] == 0) == (words[1] == 0)) {
-            continue; // nothing, or two places
-        }
-        std::uint64_t const word = words[0] | words[1];
-        auto const shift = static_cast<unsigned>(std::countr_zero(word)) / 16 * 16;
-        std::uint64_t const level = word >> shift;
-        if (level != 1 && level != 0xffff) {
-            continue; // several, or a large one
-        }
-        std::size_t const at = i + (words[0] == 0 ? 4 : 0) + shift / 16;
-        if (std::abs(int{fours[at]}) < least) {
-            levels[at] = 0;
-        }
+/// Levels of details, the means between them cleared.
+void quantise_details(std::int16_t* fours, std::size_t count, unsigned step) {
+    // floor(x / step) of 16-bit x, or one more where x is just below a multiple.
+    unsigned const reciprocal = 65536 / step + 1;
+    unsigned const rounding = step * detail_rounding / 64;
+    for (std::size_t i = 0; i < count; ++i) {
+        int const value = fours[i];
+        unsigned const size = static_cast<unsigned>(value < 0 ? -value : value);
+        auto const level = static_cast<int>((size + rounding) * reciprocal >> 16);
+        fours[i] = static_cast<std::int16_t>(i % 4 == 0 ? 0 : value < 0 ? -level : level);
     }
 }
 
@@ -82,49 +48,19 @@ std::int16_t quantised_mean(int value, int step) {
     return static_cast<std::int16_t>(value < 0 ? -size : size);
 }
 
+/// Values of a plane from its mean and its details, which are overwritten.
+void synthesise(std::array<std::int16_t, HaarLevels::four_values>& fours, std::int16_t mean,
+                std::array<std::int16_t, framelet_samples>& values) {
+    std::int16_t const* means = &mean;
+    for (std::size_t octave = octaves; octave-- > 0;) {
+        haar_inverse(means, &fours[first_four[octave]], places(octave));
+        means = &fours[first_four[octave]];
+    }
+    std::copy(means, means + framelet_samples, values.begin());
+}
+
 std::int16_t times(std::int16_t level, std::uint16_t step) {
     return static_cast<std::int16_t>(static_cast<std::uint16_t>(static_cast<std::uint16_t>(level) * unsigned{step}));
-}
-
-using Fours = std::array<std::int16_t, HaarLevels::four_values>;
-
-/// Of all octaves of a plane, from its levels.
-void dequantise(Fours& fours, std::uint16_t base) {
-    for (std::size_t octave = 0; octave < octaves; ++octave) {
-        std::uint16_t const step = octave_step(base, octave);
-        std::int16_t* const of_octave = &fours[first_four[octave]];
-        std::transform(of_octave, of_octave + 4 * places(octave), of_octave,
-                       [step](std::int16_t level) { return times(level, step); });
-    }
-}
-
-/// What details of chroma have from those of luma.
-std::int16_t shared(std::int16_t luma, std::int8_t share) {
-    return static_cast<std::int16_t>(times(luma, static_cast<std::uint16_t>(share)) >> 3);
-}
-
-/// Values of the planes from their means and details, which are overwritten.
-DisplayValues synthesise(std::array<Fours, 3>& details, std::array<std::int16_t, 3> const& plane_means,
-                         std::array<std::int8_t, 2> const& shares) {
-    for (std::size_t chroma = 0; chroma < shares.size(); ++chroma) {
-        if (shares[chroma] != 0) {
-            std::transform(details[1 + chroma].begin(), details[1 + chroma].end(), details[0].begin(),
-                           details[1 + chroma].begin(), [share = shares[chroma]](std::int16_t own, std::int16_t luma) {
-                               return static_cast<std::int16_t>(own + shared(luma, share));
-                           });
-        }
-    }
-    DisplayValues values;
-    for (std::size_t plane = 0; plane < 3; ++plane) {
-        std::int16_t const* means = &plane_means[plane];
-        for (std::size_t octave = octaves; octave-- > 0;) {
-            std::int16_t* const fours = &details[plane][first_four[octave]];
-            haar_inverse(means, fours, places(octave));
-            means = fours;
-        }
-        std::copy(means, means + framelet_samples, values.planes[plane].begin());
-    }
-    return values;
 }
 
 /// Roughly what levels take behind the entropy stage.
@@ -155,190 +91,91 @@ int bits_of(std::int16_t const* levels, std::size_t count) {
 
 } // namespace
 
-HaarValues analyse(DisplayValues const& values) {
-    HaarValues haar;
-    for (std::size_t plane = 0; plane < 3; ++plane) {
-        auto& fours = haar.details[plane];
-        std::copy(values.planes[plane].begin(), values.planes[plane].end(), fours.begin() + first_four[0]);
-        for (std::size_t octave = 0; octave < octaves; ++octave) {
-            std::int16_t* const means = octave + 1 < octaves ? &fours[first_four[octave + 1]] : &haar.means[plane];
-            haar_forward(&fours[first_four[octave]], means, places(octave));
-        }
-    }
-    return haar;
-}
-
-HaarValues operator-(HaarValues const& a, HaarValues const& b) {
-    HaarValues out;
-    auto const minus = [](std::int16_t x, std::int16_t y) { return static_cast<std::int16_t>(x - y); };
-    for (std::size_t plane = 0; plane < 3; ++plane) {
-        std::transform(a.details[plane].begin(), a.details[plane].end(), b.details[plane].begin(),
-                       out.details[plane].begin(), minus);
-        out.means[plane] = minus(a.means[plane], b.means[plane]);
-    }
-    return out;
-}
-
-namespace {
-
-void quantise_plane(std::int16_t const* fours, std::size_t plane, std::uint8_t quality, std::size_t octave,
-                    std::int16_t* levels) {
-    constexpr std::size_t last_with_lone_levels = 1;
-    unsigned const step = octave_step(base_step(plane, quality), octave);
-    quantise_details(fours, 4 * places(octave), step, levels);
-    if (octave <= last_with_lone_levels) {
-        drop_lone_levels(fours, 4 * places(octave), step, levels);
-    }
-}
-
-/// Least squares: how many eighths of luma, as it will be read, the details of chroma have. Each counts as much as it
-/// does in the picture.
-int fitted_share(Fours const& luma, Fours const& chroma) {
-    double products = 0, squares = 0;
-    for (std::size_t octave = 0; octave < octaves; ++octave) {
-        float product = 0, square = 0;
-        for (std::size_t i = first_four[octave]; i < first_four[octave] + 4 * places(octave); ++i) {
-            auto const y = static_cast<float>(luma[i]);
-            product += y * static_cast<float>(chroma[i]);
-            square += y * y;
-        }
-        auto const weight = static_cast<double>(1u << (2 * octave));
-        products += weight * static_cast<double>(product);
-        squares += weight * static_cast<double>(square);
-    }
-    constexpr double eighths = 8;
-    return squares > 0 ? static_cast<int>(std::lround(std::clamp(eighths * products / squares, -8.0, 7.0))) : 0;
-}
-
-} // namespace
-
-void share_luma(HaarValues const& values, std::uint8_t quality, HaarLevels& levels) {
-    Fours luma = levels.details[0];
-    dequantise(luma, base_step(0, quality));
-    for (std::size_t chroma = 0; chroma < levels.shares.size(); ++chroma) {
-        std::size_t const plane = 1 + chroma;
-        auto const share = static_cast<std::int8_t>(fitted_share(luma, values.details[plane]));
-        if (share == 0) {
-            continue;
-        }
-        Fours left = values.details[plane], tried;
-        for (std::size_t i = 0; i < left.size(); ++i) {
-            left[i] = static_cast<std::int16_t>(left[i] - shared(luma[i], share));
-        }
-        for (std::size_t octave = 0; octave < octaves; ++octave) {
-            quantise_plane(&left[first_four[octave]], plane, quality, octave, &tried[first_four[octave]]);
-        }
-        if (bits_of(tried.data(), tried.size()) < bits_of(levels.details[plane].data(), tried.size())) {
-            levels.details[plane] = tried;
-            levels.shares[chroma] = share;
-        }
-    }
-}
-
-void quantise_octave(HaarValues const& values, std::uint8_t quality, std::size_t octave, HaarLevels& levels) {
-    for (std::size_t plane = 0; plane < 3; ++plane) {
-        quantise_plane(&values.details[plane][first_four[octave]], plane, quality, octave,
-                       &levels.details[plane][first_four[octave]]);
-    }
-}
-
-HaarLevels quantise(HaarValues const& values, std::uint8_t quality) {
+HaarLevels quantise(DisplayValues const& values, std::uint8_t quality) {
     HaarLevels levels;
-    for (std::size_t octave = 0; octave < octaves; ++octave) {
-        quantise_octave(values, quality, octave, levels);
-    }
     for (std::size_t plane = 0; plane < 3; ++plane) {
-        levels.means[plane] = quantised_mean(values.means[plane], base_step(plane, quality));
+        auto& fours = levels.details[plane];
+        std::uint16_t const base = base_step(plane, quality);
+        std::copy(values.planes[plane].begin(), values.planes[plane].end(), fours.begin() + first_four[0]);
+        std::int16_t mean = 0;
+        for (std::size_t octave = 0; octave < octaves; ++octave) {
+            std::int16_t* const means = octave + 1 < octaves ? &fours[first_four[octave + 1]] : &mean;
+            haar_forward(&fours[first_four[octave]], means, places(octave));
+            quantise_details(&fours[first_four[octave]], 4 * places(octave), octave_step(base, octave));
+        }
+        levels.means[plane] = quantised_mean(mean, base);
     }
     return levels;
 }
 
 DisplayValues dequantise(HaarLevels const& levels, std::uint8_t quality) {
-    std::array<Fours, 3> details = levels.details;
-    std::array<std::int16_t, 3> means;
+    DisplayValues values;
     for (std::size_t plane = 0; plane < 3; ++plane) {
+        auto fours = levels.details[plane];
         std::uint16_t const base = base_step(plane, quality);
-        dequantise(details[plane], base);
-        means[plane] = times(levels.means[plane], base);
+        for (std::size_t octave = 0; octave < octaves; ++octave) {
+            std::uint16_t const step = octave_step(base, octave);
+            std::int16_t* const of_octave = &fours[first_four[octave]];
+            std::transform(of_octave, of_octave + 4 * places(octave), of_octave,
+                           [step](std::int16_t level) { return times(level, step); });
+        }
+        synthesise(fours, times(levels.means[plane], base), values.planes[plane]);
     }
-    return synthesise(details, means, levels.shares);
+    return values;
 }
 
-int expected_bits_of_means(HaarLevels const& levels) {
-    return bits_of(levels.means.data(), levels.means.size());
-}
-
-int expected_bits(HaarLevels const& levels, std::size_t octave) {
-    int bits = 0;
+int expected_bits(HaarLevels const& levels) {
+    int bits = bits_of(levels.means.data(), levels.means.size());
     for (auto const& details : levels.details) {
-        bits += bits_of(&details[first_four[octave]], 4 * places(octave));
+        bits += bits_of(details.data(), details.size());
     }
     return bits;
 }
 
-namespace {
-
-TokenWriter writer_of(HaarWriter::Memory& memory, std::size_t part, std::size_t framelets) {
-    std::size_t const planes = part % 2 == 0 ? 1 : 2;
-    std::size_t const details = planes * (part < 2 ? coarse_details : fine_details);
-    memory.tokens[part].resize(most_token_bytes(details) * framelets);
-    return TokenWriter(memory.tokens[part].data());
-}
-
-} // namespace
-
 HaarWriter::HaarWriter(Memory& memory, std::size_t count)
-    : memory_(memory), count_(count), writers_{writer_of(memory, 0, count), writer_of(memory, 1, count),
-                                               writer_of(memory, 2, count), writer_of(memory, 3, count)} {
-    memory.shares.resize(share_bytes * count);
+    : memory_(memory), count_(count),
+      coarse_((memory.coarse.resize(most_token_bytes(coarse_details) * count), memory.coarse.data())),
+      fine_((memory.fine.resize(most_token_bytes(fine_details) * count), memory.fine.data())) {
     memory.means.resize(mean_bytes * count);
-    memory.escapes.resize(most_escape_bytes(3 * (coarse_details + fine_details)) * count);
+    memory.escapes.resize(most_escape_bytes(coarse_details + fine_details) * count);
     escapes_ = memory.escapes.data();
 }
 
 void HaarWriter::put_mean(std::size_t plane, std::int16_t level) {
-    auto const code = zigzag(level);
+    auto const bits = static_cast<std::uint16_t>(level);
     std::size_t const i = plane * count_ + written_;
-    memory_.means[i] = static_cast<std::uint8_t>(code);
-    memory_.means[3 * count_ + i] = static_cast<std::uint8_t>(code >> 8);
+    memory_.means[i] = static_cast<std::uint8_t>(bits);
+    memory_.means[3 * count_ + i] = static_cast<std::uint8_t>(bits >> 8);
 }
 
 void HaarWriter::write(HaarLevels const& levels) {
-    memory_.shares[written_] =
-        static_cast<std::uint8_t>((levels.shares[0] & 15) | static_cast<std::uint8_t>(levels.shares[1]) << 4);
     for (std::size_t plane = 0; plane < 3; ++plane) {
         put_mean(plane, levels.means[plane]);
         std::int16_t const* const fours = levels.details[plane].data();
-        escapes_ = writers_[token_part(plane, false)].write(fours, first_four[0] / 4, escapes_);
-        escapes_ = writers_[token_part(plane, true)].write(fours + first_four[0], places(0), escapes_);
+        escapes_ = coarse_.write(fours, first_four[0] / 4, escapes_);
+        escapes_ = fine_.write(fours + first_four[0], places(0), escapes_);
     }
     ++written_;
 }
 
 std::int16_t HaarReader::mean(std::size_t plane) const {
     std::size_t const i = plane * (means_.size() / mean_bytes) + read_;
-    return from_zigzag(static_cast<std::uint16_t>(means_[i] | means_[means_.size() / 2 + i] << 8));
+    return static_cast<std::int16_t>(means_[i] | means_[means_.size() / 2 + i] << 8);
 }
 
 DisplayValues HaarReader::read(std::uint8_t quality) {
-    std::array<Fours, 3> details{};
-    std::array<std::int16_t, 3> means;
+    DisplayValues values;
     for (std::size_t plane = 0; plane < 3; ++plane) {
+        std::array<std::int16_t, HaarLevels::four_values> fours{};
         std::uint16_t const base = base_step(plane, quality);
         for (std::size_t octave = octaves; octave-- > 0;) {
-            readers_[token_part(plane, octave == 0)].read(&details[plane][first_four[octave]], places(octave),
-                                                          octave_step(base, octave), escapes_);
+            TokenReader& reader = octave == 0 ? fine_ : coarse_;
+            reader.read(&fours[first_four[octave]], places(octave), octave_step(base, octave), escapes_);
         }
-        means[plane] = times(mean(plane), base);
+        synthesise(fours, times(mean(plane), base), values.planes[plane]);
     }
-    unsigned const shares = shares_[read_];
     ++read_;
-    auto const share = [](unsigned nibble) { return static_cast<std::int8_t>(nibble < 8 ? nibble : nibble - 16); };
-    return synthesise(details, means, {share(shares & 15), share(shares >> 4)});
-}
-
-bool HaarReader::is_at_end() const {
-    return escapes_.left() == 0 && std::ranges::all_of(readers_, [](TokenReader const& r) { return r.is_at_end(); });
+    return values;
 }
 
 } // namespace framelet

@@ -87,13 +87,12 @@ template <std::size_t pitch>
 void put_squares(SamplePlane const& samples, std::uint8_t* to, std::size_t stride) {
     SamplePlane rows;
     to_rows(samples.data(), rows.data(), framelet_side);
-    for (std::size_t y = 0; y < framelet_side; ++y) {
-        std::array<std::uint8_t, framelet_side * pitch> row;
+    for (std::size_t y = 0; y < framelet_side; ++y, to += pitch * stride) {
         for (std::size_t x = 0; x < framelet_side; ++x) {
-            std::memset(&row[x * pitch], rows[y * framelet_side + x], pitch);
+            std::memset(to + x * pitch, rows[y * framelet_side + x], pitch);
         }
-        for (std::size_t copy = 0; copy < pitch; ++copy, to += stride) {
-            std::memcpy(to, row.data(), row.size());
+        for (std::size_t copy = 1; copy < pitch; ++copy) {
+            std::memcpy(to + copy * stride, to, framelet_side * pitch);
         }
     }
 }

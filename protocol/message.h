@@ -25,9 +25,9 @@ inline constexpr std::uint16_t protocol_version = 1;
 /// What a viewer can read; a server sends nothing else. Sums of these; bits that a server does not know are left out.
 namespace coding {
 inline constexpr std::uint32_t exact_colour = 1; ///< every viewer can
-inline constexpr std::uint32_t haar_colour = 16; ///< framelets with a quality
-inline constexpr std::uint32_t predicted_colour = 32; ///< framelets predicted from those of earlier batches
-inline constexpr std::uint32_t shapes_and_tracks = 64;
+inline constexpr std::uint32_t haar_colour = 2; ///< framelets with a quality
+inline constexpr std::uint32_t shapes_and_tracks = 4;
+inline constexpr std::uint32_t predicted_colour = 8; ///< framelets predicted from those of earlier batches
 inline constexpr std::uint32_t all = exact_colour | haar_colour | shapes_and_tracks | predicted_colour; ///< known here
 } // namespace coding
 
@@ -96,8 +96,8 @@ struct Welcome {
 /// How the samples of a batch are coded.
 enum class SampleEncoding : std::uint8_t {
     exact = 1, ///< all without loss
-    haar = 5, ///< each with a quality of its own
-    predicted = 6, ///< the same, beside what the viewer holds
+    haar = 2, ///< each with a quality of its own
+    predicted = 4, ///< the same, beside what the viewer holds
 };
 
 /// Most bodies of which one batch tells how they move, and most keys of one of them.

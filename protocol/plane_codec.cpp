@@ -32,45 +32,41 @@ std::size_t count_exact(std::span<std::uint8_t const> quality) {
 /// How each framelet of a group is predicted, as it was sent.
 class PredictionReader {
 public:
-    PredictionReader(ByteCursor& bytes, std::size_t framelets) : codes_(bytes.take(framelets)) {
+    PredictionReader(ByteCursor& bytes, std::size_t framelets) : kinds_(bytes.take(framelets)) {
         std::size_t moved = 0;
-        for (std::uint8_t const code : codes_) {
-            if (code > largest_prediction_code) {
+        for (std::uint8_t const kind : kinds_) {
+            if (kind > static_cast<std::uint8_t>(PredictionKind::moved)) {
                 throw ProtocolError("a batch has a framelet of an unknown prediction");
             }
-            moved += prediction_of(code).kind == PredictionKind::moved ? 1 : 0;
+            moved += kind == static_cast<std::uint8_t>(PredictionKind::moved) ? 1 : 0;
         }
         vectors_ = bytes.take(2 * moved);
     }
 
     /// Of the next framelet.
-    Prediction next() {
-        Prediction prediction = prediction_of(codes_[read_++]);
+    void next(HeldPicture const& held, Tile tile, Prediction& prediction) {
+        prediction.kind = static_cast<PredictionKind>(kinds_[read_++]);
+        prediction.vector = {};
         if (prediction.kind == PredictionKind::moved) {
             prediction.vector = {static_cast<std::int8_t>(vectors_[0]), static_cast<std::int8_t>(vectors_[1])};
             vectors_ = vectors_.subspan(2);
         }
-        return prediction;
+        if (prediction.kind != PredictionKind::none) {
+            held.predict(tile, prediction.vector, prediction.samples);
+        }
     }
 
 private:
-    std::span<std::uint8_t const> codes_, vectors_;
+    std::span<std::uint8_t const> kinds_, vectors_;
     std::size_t read_ = 0;
 };
-
-/// Samples of a framelet from what was coded of it.
-void put_samples(DisplayValues const& left, Prediction const& prediction, HeldPicture const* held,
-                 DisplayFramelet& framelet) {
-    bool const is_alone = prediction.kind == PredictionKind::none;
-    to_samples(is_alone ? left : left + predicted_values(*held, framelet.tile, prediction), framelet);
-}
 
 } // namespace
 
 PlaneParts PlaneCodec::join(std::span<DisplayFramelet const> framelets, std::span<std::uint8_t const> quality,
                             HaarWriter const& haar) {
     head_.resize(quality.size() + kinds_.size() + vectors_.size() + count_exact(quality) * exact_framelet_bytes +
-                 haar.shares().size() + haar.means().size() + (1 + token_parts) * length_bytes + haar.escapes().size());
+                 haar.means().size() + 3 * length_bytes + haar.escapes().size());
     std::uint8_t* out = std::copy(quality.begin(), quality.end(), head_.data());
     out = std::copy(kinds_.begin(), kinds_.end(), out);
     out = std::copy(vectors_.begin(), vectors_.end(), out);
@@ -82,18 +78,13 @@ PlaneParts PlaneCodec::join(std::span<DisplayFramelet const> framelets, std::spa
             }
         }
     });
-    out = std::copy(haar.shares().begin(), haar.shares().end(), out);
     out = std::copy(haar.means().begin(), haar.means().end(), out);
-    put_length(out, haar.escapes().size());
-    PlaneParts parts;
-    for (std::size_t part = 0; part < token_parts; ++part) {
-        parts[1 + part] = haar.tokens(part);
+    for (auto const part : {haar.escapes(), haar.coarse(), haar.fine()}) {
+        put_length(out, part.size());
         out += length_bytes;
-        put_length(out, parts[1 + part].size());
     }
-    std::copy(haar.escapes().begin(), haar.escapes().end(), out + length_bytes);
-    parts[0] = head_;
-    return parts;
+    std::copy(haar.escapes().begin(), haar.escapes().end(), out);
+    return {head_, haar.coarse(), haar.fine()};
 }
 
 PlaneParts PlaneCodec::encode(std::span<DisplayFramelet const> framelets, std::span<std::uint8_t const> quality,
@@ -111,26 +102,27 @@ PlaneParts PlaneCodec::encode(std::span<DisplayFramelet const> framelets, std::s
                 decoded[i] = framelets[i];
             }
         } else if (held == nullptr) {
-            HaarValues const values = analyse(display_values(framelets[i]));
-            HaarLevels levels = quantise(values, quality[i]);
-            share_luma(values, quality[i], levels);
-            haar.write(levels);
+            haar.write(quantise(display_values(framelets[i]), quality[i]));
         } else {
-            Prediction prediction;
-            HaarLevels const levels = predict(*held, framelets[i], quality[i], search_, prediction);
+            HaarLevels const levels = predict(*held, framelets[i], quality[i], search_, prediction_);
             haar.write(levels);
-            put(prediction);
-            put_samples(dequantise(levels, quality[i]), prediction, held, decoded[i]);
+            put_prediction();
+            add_prediction(dequantise(levels, quality[i]), decoded[i]);
         }
     }
     return join(framelets, quality, haar);
 }
 
-void PlaneCodec::put(Prediction const& prediction) {
-    kinds_.push_back(prediction_code(prediction));
-    if (prediction.kind == PredictionKind::moved) {
-        vectors_.push_back(static_cast<std::uint8_t>(prediction.vector.x));
-        vectors_.push_back(static_cast<std::uint8_t>(prediction.vector.y));
+void PlaneCodec::add_prediction(DisplayValues const& left, DisplayFramelet& framelet) const {
+    bool const alone = prediction_.kind == PredictionKind::none;
+    to_samples(alone ? left : left + display_values(prediction_.samples), framelet);
+}
+
+void PlaneCodec::put_prediction() {
+    kinds_.push_back(static_cast<std::uint8_t>(prediction_.kind));
+    if (prediction_.kind == PredictionKind::moved) {
+        vectors_.push_back(static_cast<std::uint8_t>(prediction_.vector.x));
+        vectors_.push_back(static_cast<std::uint8_t>(prediction_.vector.y));
     }
 }
 
@@ -154,20 +146,21 @@ void PlaneCodec::decode(std::span<std::uint8_t const> bytes, std::span<DisplayFr
             }
         }
     });
-    auto const shares = rest.take(share_bytes * (framelets.size() - exact));
     auto const means = rest.take(mean_bytes * (framelets.size() - exact));
     std::size_t const escape_bytes = take_length(rest);
-    std::array<std::size_t, token_parts> part_bytes;
-    std::ranges::generate(part_bytes, [&] { return take_length(rest); });
+    std::size_t const coarse_bytes = take_length(rest);
+    std::size_t const fine_bytes = take_length(rest);
     auto const escapes = rest.take(escape_bytes);
-    HaarReader::Parts parts;
-    std::ranges::transform(part_bytes, parts.begin(),
-                           [&](std::size_t bytes_of_part) { return rest.take(bytes_of_part); });
-    HaarReader haar(shares, means, escapes, parts);
+    auto const coarse = rest.take(coarse_bytes);
+    auto const fine = rest.take(fine_bytes);
+    HaarReader haar(means, escapes, coarse, fine);
     for (std::size_t i = 0; i < framelets.size(); ++i) {
         if (quality[i] != exact_quality) {
-            Prediction const prediction = held == nullptr ? Prediction{} : predictions.next();
-            put_samples(haar.read(quality[i]), prediction, held, framelets[i]);
+            prediction_.kind = PredictionKind::none;
+            if (held != nullptr) {
+                predictions.next(*held, framelets[i].tile, prediction_);
+            }
+            add_prediction(haar.read(quality[i]), framelets[i]);
         }
     }
     if (rest.left() != 0 || !haar.is_at_end()) {

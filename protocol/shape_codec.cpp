@@ -8,7 +8,6 @@
 #include "protocol/byte_cursor.h"
 #include "protocol/shape_masks.h"
 #include "protocol/shape_quantisation.h"
-#include "protocol/zigzag.h"
 
 namespace framelet {
 namespace {
@@ -30,7 +29,7 @@ class WordReader {
 public:
     WordReader(ByteCursor& bytes, std::size_t count) : low_(bytes.take(count)), high_(bytes.take(count)) {}
     std::uint16_t operator[](std::size_t i) const { return static_cast<std::uint16_t>(low_[i] | high_[i] << 8); }
-    std::int16_t number(std::size_t i) const { return from_zigzag((*this)[i]); }
+    std::int16_t number(std::size_t i) const { return static_cast<std::int16_t>((*this)[i]); }
 
 private:
     std::span<std::uint8_t const> low_, high_;
@@ -93,9 +92,9 @@ void encode_layers(std::span<FrameletShape const> shapes, std::span<std::uint8_t
     Words at, dx, dy, body;
     for_each_layer(shapes, [&](Layer const& layer, std::size_t i) {
         LayerCode const& code = codes.emplace_back(quantise(layer, side_bits[i]));
-        at.push_back(zigzag(code.at));
-        dx.push_back(zigzag(code.dx));
-        dy.push_back(zigzag(code.dy));
+        at.push_back(static_cast<std::uint16_t>(code.at));
+        dx.push_back(static_cast<std::uint16_t>(code.dx));
+        dy.push_back(static_cast<std::uint16_t>(code.dy));
         body.push_back(layer.body);
     });
     std::transform(codes.begin(), codes.end(), std::back_inserter(out), [](LayerCode const& c) { return c.unit; });
@@ -131,7 +130,7 @@ void encode_loose(std::span<FrameletShape const> shapes, std::vector<std::uint8_
             std::uint16_t before = 0;
             for (LooseSample const& sample : shape.loose_samples) {
                 std::uint16_t const depth = quantise_inverse_depth(sample.inverse_depth, unit);
-                depths.push_back(zigzag(static_cast<std::int16_t>(static_cast<std::uint16_t>(depth - before))));
+                depths.push_back(static_cast<std::uint16_t>(depth - before));
                 bodies.push_back(sample.body);
                 before = depth;
             }
@@ -158,7 +157,7 @@ void decode_loose(ByteCursor& bytes, std::span<FrameletShape> shapes) {
         double const unit = unit_of(take_unit(*units++));
         std::uint16_t depth = 0;
         for (LooseSample& sample : shape.loose_samples) {
-            depth = static_cast<std::uint16_t>(depth + depths.number(next));
+            depth = static_cast<std::uint16_t>(depth + depths[next]);
             sample.inverse_depth = static_cast<float>(depth * unit);
             sample.body = bodies[next];
             ++next;
@@ -170,7 +169,7 @@ void encode_velocities(std::span<FrameletShape const> shapes, UnitCode unit, std
     for (int axis = 0; axis < 3 && unit != 0; ++axis) {
         Words words;
         for_each_carried(shapes, [&](auto const& carried) {
-            words.push_back(zigzag(quantise_velocity(carried.velocity[axis], unit)));
+            words.push_back(static_cast<std::uint16_t>(quantise_velocity(carried.velocity[axis], unit)));
         });
         put_words(out, words);
     }

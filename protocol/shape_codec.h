@@ -8,15 +8,13 @@
 #include <vector>
 
 #include "common/framelet_shape.h"
-#include "protocol/shape_masks.h"
 
 namespace framelet {
 
 /// Most bytes of a group of so many framelets, each with all layers, everything loose and all of it with velocities.
 constexpr std::size_t most_shape_bytes(std::size_t framelets) {
-    constexpr std::size_t head = 2, layer = 10, velocity = 6, loose = 4;
-    return 1 + framelets * (head + max_layers * (layer + velocity) + most_mask_bytes + 1 +
-                            framelet_samples * (loose + velocity));
+    constexpr std::size_t head = 2, layer = 10, velocity = 6, masks = 64, loose = 4;
+    return 1 + framelets * (head + max_layers * (layer + velocity) + masks + 1 + framelet_samples * (loose + velocity));
 }
 
 /// The parts of a group's bytes, in order; their statistics differ.

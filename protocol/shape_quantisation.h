@@ -26,14 +26,13 @@ struct LayerCode {
 /// `side_bits`: the tile's side is 2^side_bits pixels. The decoded plane is within 3/2 units of the layer anywhere on
 /// the tile, and its error is the layer's and the distance between the two planes, rounded up: whatever is within the
 /// layer's error of the layer is within the decoded error of the decoded plane. The unit is at most the larger of an
-/// eighth of the layer's error and 2^-12 of its largest inverse depth.
+/// eighth of the layer's error and 2^-13 of its largest inverse depth.
 LayerCode quantise(Layer const& layer, int side_bits);
 /// Without body and velocity.
 Layer dequantise(LayerCode const& code, int side_bits);
 
-/// Units, rounded. The unit is that above the largest of all values that share it, divided by these. What is nearest
-/// in a framelet and moves by 200 pixels is shown a tenth of a pixel off at most.
-inline constexpr double largest_inverse_depth_code = 2047, largest_velocity_code = 32767;
+/// Units, rounded. The unit is that above the largest of all values that share it, divided by these.
+inline constexpr double largest_inverse_depth_code = 65535, largest_velocity_code = 32767;
 std::uint16_t quantise_inverse_depth(float inverse_depth, UnitCode unit);
 std::int16_t quantise_velocity(float velocity, UnitCode unit);
 

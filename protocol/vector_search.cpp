@@ -12,93 +12,63 @@ namespace {
 /// First steps of the search, half pixels, and those from which on all rows are looked at, not every second one.
 constexpr int first_step = 32, exact_step = 2;
 constexpr int farthest = 127;
-/// Sum of differences of what is found already: the quantiser would leave nothing of them.
-constexpr int hardly_any = 2 * framelet_samples;
 /// What a vector must gain for each half pixel that it is longer: of two that are as good, the shorter one.
 constexpr int length_cost = 4;
 
-using Row = std::array<std::uint8_t, framelet_side>;
-
-/// Values of a row of samples, one of each: `held` is where the first of them is. `Lane` holds as many as a sample
-/// covers.
+/// Sum of differences of rows `apart` from each other. `Lane` holds a row of the values that a sample covers.
 template <typename Lane>
-void fetch_points(std::uint8_t const* held, std::size_t /*stride*/, Row& row) {
+int difference_of(SamplePlane const& rows, HeldPicture::Source const& from, std::size_t apart) {
     constexpr std::size_t pitch = sizeof(Lane);
-    for (std::size_t x = 0; x < row.size(); ++x) { // many at a time
-        Lane values;
-        std::memcpy(&values, held + x * pitch, pitch);
-        row[x] = static_cast<std::uint8_t>(values >> (8 * (pitch / 2)));
-    }
-}
-
-/// Predicted samples of a row: `held` is where the values are that it is compared with, their rows `stride` apart.
-/// `Lane` holds as many as a sample covers.
-template <typename Lane>
-void fetch_means(std::uint8_t const* held, std::size_t stride, Row& row) {
-    constexpr std::size_t pitch = sizeof(Lane);
-    constexpr unsigned left = 8 * (pitch / 2 - 1), right = left + 8;
-    for (std::size_t x = 0; x < row.size(); ++x) { // many at a time
-        Lane above, below;
-        std::memcpy(&above, held + x * pitch, pitch);
-        std::memcpy(&below, held + stride + x * pitch, pitch);
-        auto const sum = static_cast<std::uint16_t>((above >> left & 255) + (above >> right & 255) +
-                                                    (below >> left & 255) + (below >> right & 255));
-        row[x] = static_cast<std::uint8_t>((sum + 2) >> 2);
-    }
-}
-
-void fetch_coarsest(std::uint8_t const* held, std::size_t /*stride*/, Row& row) {
-    constexpr std::size_t pitch = 16;
-    for (std::size_t x = 0; x < row.size(); ++x) {
-        row[x] = held[x * pitch + pitch / 2];
-    }
-}
-
-void fetch_each(std::uint8_t const* held, std::size_t /*stride*/, Row& row) {
-    std::memcpy(row.data(), held, row.size());
-}
-
-void fetch_doubled(std::uint8_t const* held, std::size_t /*stride*/, Row& row) {
-    for (std::size_t x = 0; x < row.size(); ++x) {
-        row[x] = held[x / 2];
-    }
-}
-
-/// Sum of differences of rows `apart` from each other. `first`: the first row of values that is looked at;
-/// `twice_pitch` of them belong to two rows of samples.
-template <typename Fetch>
-int difference(SamplePlane const& rows, HeldPicture::Source const& from, std::size_t apart, std::size_t first,
-               std::size_t twice_pitch, Fetch const& fetch) {
     int sum = 0;
     for (std::size_t y = 0; y < framelet_side; y += apart) {
-        Row row;
-        fetch(from.first + (first + y * twice_pitch / 2) * from.stride, from.stride, row);
-        for (std::size_t x = 0; x < row.size(); ++x) {
-            sum += std::abs(int{rows[y * framelet_side + x]} - int{row[x]});
+        std::uint8_t const* const held = from.first + (y * pitch + pitch / 2) * from.stride;
+        for (std::size_t x = 0; x < framelet_side; ++x) { // many at a time
+            Lane values;
+            std::memcpy(&values, held + x * pitch, pitch);
+            sum += std::abs(int{rows[y * framelet_side + x]} - static_cast<int>(values >> (8 * (pitch / 2)) & 255));
         }
     }
     return sum;
 }
 
-/// Of all rows what will be predicted, or of every second one what is near that.
+/// The same of every second sample.
+int difference_of_coarsest(SamplePlane const& rows, HeldPicture::Source const& from, std::size_t apart) {
+    constexpr std::size_t pitch = 16;
+    int sum = 0;
+    for (std::size_t y = 0; y < framelet_side; y += apart) {
+        std::uint8_t const* const held = from.first + (y * pitch + pitch / 2) * from.stride + pitch / 2;
+        for (std::size_t x = y / apart % 2; x < framelet_side; x += 2) {
+            sum += std::abs(int{rows[y * framelet_side + x]} - int{held[x * pitch]});
+        }
+    }
+    return 2 * sum;
+}
+
+int difference_of_finest(SamplePlane const& rows, HeldPicture::Source const& from, std::size_t apart) {
+    int sum = 0;
+    for (std::size_t y = 0; y < framelet_side; y += apart) {
+        std::uint8_t const* const held = from.first + (y / 2) * from.stride;
+        for (std::size_t x = 0; x < framelet_side; ++x) {
+            sum += std::abs(int{rows[y * framelet_side + x]} - int{held[x / 2]});
+        }
+    }
+    return sum;
+}
+
 int difference(SamplePlane const& rows, HeldPicture::Source const& from, std::size_t apart) {
-    bool const is_exact = apart == 1;
     switch (from.pitch) {
     case 0:
-        return difference(rows, from, apart, 0, 1, fetch_doubled);
+        return difference_of_finest(rows, from, apart);
     case 1:
-        return difference(rows, from, apart, 0, 2, fetch_each);
+        return difference_of<std::uint8_t>(rows, from, apart);
     case 2:
-        return is_exact ? difference(rows, from, apart, 0, 4, fetch_means<std::uint16_t>)
-                        : difference(rows, from, apart, 1, 4, fetch_points<std::uint16_t>);
+        return difference_of<std::uint16_t>(rows, from, apart);
     case 4:
-        return is_exact ? difference(rows, from, apart, 1, 8, fetch_means<std::uint32_t>)
-                        : difference(rows, from, apart, 2, 8, fetch_points<std::uint32_t>);
+        return difference_of<std::uint32_t>(rows, from, apart);
     case 8:
-        return is_exact ? difference(rows, from, apart, 3, 16, fetch_means<std::uint64_t>)
-                        : difference(rows, from, apart, 4, 16, fetch_points<std::uint64_t>);
+        return difference_of<std::uint64_t>(rows, from, apart);
     default:
-        return difference(rows, from, apart, 8, 32, fetch_coarsest);
+        return difference_of_coarsest(rows, from, apart);
     }
 }
 
@@ -126,7 +96,7 @@ PictureVector VectorSearch::find(HeldPicture const& held, DisplayFramelet const&
     for (PictureVector const vector : found_) {
         try_one(vector.x, vector.y);
     }
-    for (int step = least <= hardly_any ? exact_step : first_step; step > 0; step /= 2) {
+    for (int step = first_step; step > 0; step /= 2) {
         if (step == exact_step) {
             apart = 1;
             least = cost(best);
