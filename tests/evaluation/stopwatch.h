@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <vector>
 
 namespace framelet::bench {
@@ -12,6 +13,19 @@ double seconds_of(Work&& work) {
     auto const start = std::chrono::steady_clock::now();
     work();
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Processor time of the calling thread alone: what others do meanwhile counts little.
+template <class Work>
+double processor_seconds_of(Work&& work) {
+    auto const now = [] {
+        timespec time{};
+        clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+        return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+    };
+    double const start = now();
+    work();
+    return now() - start;
 }
 
 /// The upper one of the two middle values where their number is even; 0 where there is none.

@@ -24,7 +24,8 @@ using nlohmann::json;
 /// A batch through a codec and back.
 struct Coded {
     Batch decoded;
-    std::size_t bytes = 0;
+    std::size_t bytes = 0; ///< of colour
+    std::size_t shape_bytes = 0;
     double encode_seconds = std::numeric_limits<double>::infinity();
     double decode_seconds = std::numeric_limits<double>::infinity();
 };
@@ -53,15 +54,17 @@ Coded code_planes(BatchCodec& codec, Held* held, Batch batch, int quality, int r
     HeldPicture* const received = held == nullptr ? nullptr : &after.received;
     for (int round = 0; round < rounds; ++round) {
         after = held == nullptr ? Held{} : *held;
-        coded.encode_seconds = std::min(coded.encode_seconds, seconds_of([&] { encoded = codec.encode(batch, sent); }));
-        coded.decode_seconds =
-            std::min(coded.decode_seconds, seconds_of([&] { coded.decoded = codec.decode(encoded, received); }));
+        coded.encode_seconds =
+            std::min(coded.encode_seconds, processor_seconds_of([&] { encoded = codec.encode(batch, sent); }));
+        coded.decode_seconds = std::min(coded.decode_seconds,
+                                        processor_seconds_of([&] { coded.decoded = codec.decode(encoded, received); }));
     }
     if (held != nullptr) {
         FRAMELET_CHECK(after.sent == after.received);
         *held = std::move(after);
     }
     coded.bytes = encoded.payload.size();
+    coded.shape_bytes = encoded.shapes.size();
     return coded;
 }
 
@@ -87,8 +90,9 @@ Coded code_strip(JpegCodec& codec, Batch const& batch, int quality, int rounds) 
     for (int round = 0; round < rounds; ++round) {
         std::span<std::byte const> bytes;
         coded.encode_seconds =
-            std::min(coded.encode_seconds, seconds_of([&] { bytes = codec.encode(strip, quality); }));
-        coded.decode_seconds = std::min(coded.decode_seconds, seconds_of([&] { codec.decode(bytes, decoded); }));
+            std::min(coded.encode_seconds, processor_seconds_of([&] { bytes = codec.encode(strip, quality); }));
+        coded.decode_seconds =
+            std::min(coded.decode_seconds, processor_seconds_of([&] { codec.decode(bytes, decoded); }));
         coded.bytes = bytes.size();
     }
     for_each_pixel(coded.decoded.framelets, [&](DisplayFramelet& framelet, std::uint32_t k) {
@@ -141,7 +145,7 @@ Picture picture_of(CorpusMoment const& moment, std::vector<Batch> const& batches
 json measure(std::vector<CorpusMoment> const& corpus, Candidate const& candidate, int quality,
              CodecStudy const& study) {
     Error samples, pictures;
-    double count = 0, bytes = 0, encode = 0, decode = 0;
+    double count = 0, bytes = 0, shape_bytes = 0, encode = 0, decode = 0;
     for (CorpusMoment const& moment : corpus) {
         if (candidate.begin) {
             candidate.begin();
@@ -155,6 +159,7 @@ json measure(std::vector<CorpusMoment> const& corpus, Candidate const& candidate
             compare(batch.framelets, coded.decoded.framelets, samples);
             count += static_cast<double>(batch.framelets.size() * framelet_samples);
             bytes += static_cast<double>(coded.bytes);
+            shape_bytes += static_cast<double>(coded.shape_bytes);
             encode += coded.encode_seconds;
             decode += coded.decode_seconds;
             decoded.push_back(std::move(coded.decoded));
@@ -170,6 +175,7 @@ json measure(std::vector<CorpusMoment> const& corpus, Candidate const& candidate
     return {{"codec", candidate.name},
             {"quality", quality},
             {"bytes_per_sample", bytes / count},
+            {"shape_bytes_per_sample", shape_bytes / count},
             {"sample_psnr", samples.psnr()},
             {"picture_psnr", pictures.psnr()},
             {"encode_samples_per_second", count / encode},
@@ -218,15 +224,17 @@ json compare_codecs(CodecStudy const& study) {
         auto const scene = load_bench_scene(file);
         auto const corpus = make_corpus(*scene, study.corpus);
         tbb::global_control const one_thread(tbb::global_control::max_allowed_parallelism, 1);
-        std::printf("%s\n  codec       quality  B/sample  PSNR samples, picture [dB]  encode, decode [Msamples/s]\n",
-                    scene->name.c_str());
+        std::printf(
+            "%s\n  codec       quality  B/sample + shapes  PSNR samples, picture [dB]  encode, decode [Msamples/s]\n",
+            scene->name.c_str());
         json rows = json::array();
         for (Candidate const& candidate : candidates) {
             for (int const quality : candidate.qualities) {
                 json const& row = rows.emplace_back(measure(corpus, candidate, quality, study));
-                std::printf("  %-12s %6d %9.4f %13.2f %12.2f %14.0f %8.0f\n", candidate.name.c_str(), quality,
-                            row["bytes_per_sample"].get<double>(), row["sample_psnr"].get<double>(),
-                            row["picture_psnr"].get<double>(), row["encode_samples_per_second"].get<double>() / 1e6,
+                std::printf("  %-12s %6d %9.4f + %.4f %13.2f %12.2f %14.0f %8.0f\n", candidate.name.c_str(), quality,
+                            row["bytes_per_sample"].get<double>(), row["shape_bytes_per_sample"].get<double>(),
+                            row["sample_psnr"].get<double>(), row["picture_psnr"].get<double>(),
+                            row["encode_samples_per_second"].get<double>() / 1e6,
                             row["decode_samples_per_second"].get<double>() / 1e6);
             }
         }

@@ -1,6 +1,7 @@
 #include "tests/evaluation/codec/corpus.h"
 
 #include "common/color.h"
+#include "server/layers/shape_feed.h"
 #include "server/render/probe_renderer.h"
 #include "server/schedule/adaptive_refresh.h"
 
@@ -18,6 +19,7 @@ CorpusMoment make_moment(BenchScene& scene, CorpusOptions const& options, double
     std::vector<DisplayFramelet> display;
     RefreshInput input;
     RefreshPlan plan;
+    ShapeFeed feed;
     input.samples_per_second = options.frames_per_second * pixels;
     input.cycle_seconds = cycle_seconds;
     CorpusMoment moment;
@@ -42,6 +44,7 @@ CorpusMoment make_moment(BenchScene& scene, CorpusOptions const& options, double
                 batch.framelets.push_back(display[i]);
             }
         }
+        feed.fit(rendered, send, make_view_rays(scene.camera, options.viewport), plane, input.now, batch.shapes);
         if (!batch.framelets.empty()) {
             (input.now < options.lead_seconds ? moment.lead : moment.batches).push_back(std::move(batch));
         }
