@@ -134,6 +134,9 @@ void LinkEstimate::acknowledged(std::uint64_t batch, double now, std::optional<d
         flights_.pop_front();
     }
     in_flight_ = flights_.empty() ? 0 : std::max(0.0, in_flight_ - bytes);
+    if (flights_.empty()) { // nothing waits: whatever the rate, soon something has to find out what the link carries
+        paced_ = std::min(paced_, now + standing_seconds);
+    }
     if (!first_sent || !last.sent) {
         return; // a guess, not an answer
     }

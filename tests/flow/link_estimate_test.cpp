@@ -118,6 +118,31 @@ TEST(LinkEstimate, GoesOnAfterAStall) {
     EXPECT_LT(sender.most_queueing(6, 9), 0.05);
 }
 
+/// One batch is in flight when a stall begins that is the first queue met: its answer looks like a link that hardly
+/// carries anything, and nothing else is there to say otherwise.
+TEST(LinkEstimate, NothingInFlightIsRoomSoonWhateverTheRate) {
+    LinkEstimate estimate;
+    double now = 0;
+    std::uint64_t batch = 0;
+    auto const deliver = [&](double bytes, double seconds) {
+        estimate.begin(bytes);
+        estimate.sent(++batch, now, bytes);
+        now += seconds;
+        estimate.acknowledged(batch, now, now);
+    };
+    while (now < 2) {
+        deliver(4e3, 0.03);
+    }
+    for (double const stall : {2.0, 5.0, 20.0}) {
+        deliver(16e3, stall);
+        estimate.begin(16e3); // was made meanwhile
+        estimate.sent(++batch, now, 16e3);
+        now += 0.03;
+        estimate.acknowledged(batch, now, now);
+        EXPECT_TRUE(estimate.has_room(now + 0.1)) << stall;
+    }
+}
+
 TEST(LinkEstimate, JitterIsNoQueue) {
     Sender sender;
     sender.run({.bits_per_second = 20e6, .delay_seconds = 0.02, .jitter_seconds = 0.04}, 8);
