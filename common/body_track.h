@@ -1,6 +1,7 @@
 // How a rigid body moves: poses at a fixed rate, a little ahead of the scene's clock.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -19,6 +20,9 @@ struct BodyPose {
 
 /// Keys a second of scene time. Key k stands for the time k / body_keys_per_second.
 inline constexpr int body_keys_per_second = 60;
+
+/// Of all tracks that are given out together: what they take is bounded.
+inline constexpr std::size_t max_batch_keys = 131072;
 
 struct BodyTrack {
     BodyNumber body = static_body;

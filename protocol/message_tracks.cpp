@@ -9,7 +9,7 @@
 namespace framelet {
 namespace {
 
-constexpr std::size_t key_floats = 10;
+constexpr char const* too_many_keys = "the tracks of a batch have more than 131072 keys";
 constexpr std::int64_t farthest_key = std::int64_t{1} << 62;
 
 bool is_finite(Vec3 const& v) {
@@ -36,17 +36,60 @@ char const* problem(BodyTrack const& track) {
     return std::ranges::all_of(track.keys, is_usable) ? nullptr : "a track has a pose that is not a usable one";
 }
 
+using Floats = flatbuffers::Vector<float>;
+
+std::array<float, 3> numbers_of(Vec3 const& v) {
+    return {v.x, v.y, v.z};
+}
+
+std::array<float, 4> numbers_of(Quat const& q) {
+    return {q.x, q.y, q.z, q.w};
+}
+
+void assign(Vec3& v, float const* from) {
+    v = {from[0], from[1], from[2]};
+}
+
+void assign(Quat& q, float const* from) {
+    q = Quat(from[3], from[0], from[1], from[2]);
+}
+
+/// The numbers of one member of all keys; once where it stays as it is.
+template <typename Member>
+Offset<Floats> write(Builder& builder, std::vector<BodyPose> const& keys, Member BodyPose::*member) {
+    bool const stays = std::ranges::all_of(keys, [&](BodyPose const& key) { return key.*member == keys[0].*member; });
+    std::size_t const count = stays ? std::min<std::size_t>(keys.size(), 1) : keys.size();
+    float* out = nullptr;
+    auto const written = builder.CreateUninitializedVector(count * numbers_of(Member()).size(), &out);
+    for (std::size_t key = 0; key < count; ++key) {
+        out = std::ranges::copy(numbers_of(keys[key].*member), out).out;
+    }
+    return written;
+}
+
+template <typename Member>
+void read(Floats const& wire, Member BodyPose::*member, std::vector<BodyPose>& keys) {
+    std::size_t const numbers = numbers_of(Member()).size();
+    bool const stays = wire.size() == numbers;
+    if (!stays && wire.size() != numbers * keys.size()) {
+        throw ProtocolError("a track's numbers are not those of its keys");
+    }
+    for (std::size_t key = 0; key < keys.size(); ++key) {
+        assign(keys[key].*member, wire.data() + (stays ? 0 : key * numbers));
+    }
+}
+
 } // namespace
 
 Offset<TrackList> write(Builder& builder, std::vector<BodyTrack> const& value) {
     std::vector<Offset<wire::BodyTrack>> tracks;
     for (BodyTrack const& track : value) {
-        float* out = nullptr;
-        auto const keys = builder.CreateUninitializedVector(key_floats * track.keys.size(), &out);
-        for (auto const& [t, q, s] : track.keys) {
-            out = std::ranges::copy(std::array{t.x, t.y, t.z, q.x, q.y, q.z, q.w, s.x, s.y, s.z}, out).out;
-        }
-        tracks.push_back(wire::CreateBodyTrack(builder, track.body, track.first_key, keys));
+        auto const translations = write(builder, track.keys, &BodyPose::translation);
+        auto const rotations = write(builder, track.keys, &BodyPose::rotation);
+        auto const scales = write(builder, track.keys, &BodyPose::scale);
+        tracks.push_back(wire::CreateBodyTrack(builder, track.body, track.first_key,
+                                               static_cast<std::uint16_t>(track.keys.size()), translations, rotations,
+                                               scales));
     }
     return builder.CreateVector(tracks);
 }
@@ -55,18 +98,21 @@ std::vector<BodyTrack> read(TrackList const& wire) {
     if (wire.size() > max_batch_tracks) {
         throw ProtocolError("a batch has more than 4096 tracks");
     }
+    std::size_t keys = 0;
+    for (wire::BodyTrack const* const track : wire) {
+        keys += track->keys();
+    }
+    if (keys > max_batch_keys) {
+        throw ProtocolError(too_many_keys);
+    }
     std::vector<BodyTrack> value;
     value.reserve(wire.size());
     for (wire::BodyTrack const* const track : wire) {
-        std::size_t const floats = track->keys()->size();
-        if (floats % key_floats != 0) {
-            throw ProtocolError("a track's keys are not ten numbers each");
-        }
         BodyTrack& out = value.emplace_back(BodyTrack{track->body(), track->first_key(), {}});
-        out.keys.reserve(floats / key_floats);
-        for (float const* k = track->keys()->data(); out.keys.size() < floats / key_floats; k += key_floats) {
-            out.keys.push_back({{k[0], k[1], k[2]}, Quat(k[6], k[3], k[4], k[5]), {k[7], k[8], k[9]}});
-        }
+        out.keys.resize(track->keys());
+        read(*track->translations(), &BodyPose::translation, out.keys);
+        read(*track->rotations(), &BodyPose::rotation, out.keys);
+        read(*track->scales(), &BodyPose::scale, out.keys);
     }
     return value;
 }
@@ -76,11 +122,16 @@ char const* problem(std::vector<BodyTrack> const& value) {
         return "a batch has more than 4096 tracks";
     }
     std::vector<BodyNumber> bodies;
+    std::size_t keys = 0;
     for (BodyTrack const& track : value) {
         if (char const* const fault = problem(track)) {
             return fault;
         }
         bodies.push_back(track.body);
+        keys += track.keys.size();
+    }
+    if (keys > max_batch_keys) {
+        return too_many_keys;
     }
     std::ranges::sort(bodies);
     return std::ranges::adjacent_find(bodies) == bodies.end() ? nullptr : "a batch has two tracks of one body";

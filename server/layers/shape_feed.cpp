@@ -15,6 +15,8 @@ namespace {
 /// After a pause the viewer gets the keys of all of it, or it could not move what it has from before; but not after a
 /// leap of the clock.
 constexpr std::int64_t most_missed_keys = 5 * body_keys_per_second;
+/// So many at a time: a track costs bytes of its own.
+constexpr std::int64_t least_keys = body_keys_per_second / 10;
 /// The first picture does not wait for keys that hardly anybody will need: seconds ahead at first, more for each
 /// second.
 constexpr SceneTime first_ahead_seconds = 0.3, ahead_growth = 0.5;
@@ -63,17 +65,24 @@ void ShapeFeed::track(Scene const& scene, std::span<Index const> clips, SceneBod
         return;
     }
     auto const key = static_cast<std::int64_t>(std::floor(time * body_keys_per_second));
-    bool const goes_on = end_key_ > first_key_ && key >= first_key_ && key <= end_key_ + most_missed_keys;
+    auto const most_keys = static_cast<std::int64_t>(max_batch_keys / bodies.frames.size());
+    bool const goes_on = end_key_ > first_key_ && key >= first_key_ && key <= end_key_ + most_missed_keys &&
+                         key_behind(time) <= end_key_ + most_keys;
     if (!goes_on) {
         first_key_ = end_key_ = key;
     }
-    SceneTime const known = time - static_cast<double>(first_key_) / body_keys_per_second;
-    SceneTime const ahead = std::min(first_ahead_seconds + ahead_growth * known, tracked_ahead_seconds);
-    auto const end = static_cast<std::int64_t>(std::ceil((time + ahead) * body_keys_per_second)) + 1;
-    if (end_key_ < end) {
+    std::int64_t const end = key_behind(time);
+    if (end - end_key_ >= (goes_on ? least_keys : 1)) {
         tracks = body_tracks(scene, clips, bodies, end_key_, static_cast<std::size_t>(end - end_key_));
         end_key_ = end;
     }
+}
+
+/// Of all that is given out with the batch of `time`.
+std::int64_t ShapeFeed::key_behind(SceneTime time) const {
+    SceneTime const known = time - static_cast<double>(first_key_) / body_keys_per_second;
+    SceneTime const ahead = std::min(first_ahead_seconds + ahead_growth * known, tracked_ahead_seconds);
+    return static_cast<std::int64_t>(std::ceil((time + ahead) * body_keys_per_second)) + 1;
 }
 
 } // namespace framelet

@@ -32,6 +32,7 @@ public:
 
 private:
     void follow(Vec3 eye, double now);
+    std::int64_t key_behind(SceneTime time) const;
 
     Vec3 eye_{0};
     double now_ = -std::numeric_limits<double>::infinity(); ///< when the camera was there

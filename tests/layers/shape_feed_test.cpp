@@ -81,6 +81,15 @@ TEST(ShapeFeed, AfterALeapOfTheClockOnlyWhatIsNearIsGivenOut) {
     EXPECT_NEAR(drive.moved(1, 1.2), 0.6, 1e-4);
 }
 
+TEST(ShapeFeed, ManyBodiesAfterAPauseFitABatch) {
+    Drive drive;
+    drive.bodies.frames.assign(4097, 0); // as many as there may be
+    drive.batch(1);
+    for (double const time : {1.5, 2.0, 2.9, 5.0, 5.1, 6.0, 7.0, 7.5}) {
+        EXPECT_LE(drive.batch(time), max_batch_keys) << time;
+    }
+}
+
 TEST(ShapeFeed, StillScenesHaveNoTracks) {
     Drive drive;
     drive.bodies = find_bodies(drive.scene, {});

@@ -272,10 +272,18 @@ TEST(MessageRange, Tracks) {
     };
     EXPECT_NO_THROW(decode_message(many(max_batch_tracks)));
     expect_refused(many(max_batch_tracks + 1), "4096");
-    for (std::size_t const floats : {1u, 9u, 11u, 19u}) {
+    expect_refused(with([](Tracks& t) {
+                       t[0].keys.resize(max_track_keys);
+                       t.resize(max_batch_keys / max_track_keys + 1, t[0]);
+                   }),
+                   "131072");
+    for (std::size_t const floats : {0u, 1u, 2u, 4u, 5u, 7u, 9u}) {
         Builder builder;
-        auto const keys = builder.CreateVector(std::vector<float>(floats, 1.0f));
-        auto const track = wire::CreateBodyTrack(builder, 3, 0, keys);
+        auto const three = builder.CreateVector(std::vector<float>(3, 1.0f));
+        auto const wrong = builder.CreateVector(std::vector<float>(floats, 0.5f));
+        auto const rotations = builder.CreateVector(std::vector<float>(4, 0.5f));
+        auto const track = floats % 2 == 0 ? wire::CreateBodyTrack(builder, 3, 0, 2, wrong, rotations, three)
+                                           : wire::CreateBodyTrack(builder, 3, 0, 2, three, rotations, wrong);
         auto const tracks = builder.CreateVector(&track, 1);
         auto const data = builder.CreateVector(std::vector<std::uint8_t>{1, 2});
         auto const section =
@@ -283,7 +291,7 @@ TEST(MessageRange, Tracks) {
         auto const sections = builder.CreateVector(&section, 1);
         auto const tiles = builder.CreateVector(std::vector<std::uint32_t>{});
         auto const view = write(builder, NumberedView{});
-        expect_refused(finish(builder, wire::CreateBatch(builder, 1, view, 0, tiles, sections, tracks)), "ten");
+        expect_refused(finish(builder, wire::CreateBatch(builder, 1, view, 0, tiles, sections, tracks)), "numbers");
     }
 }
 
