@@ -27,7 +27,7 @@ struct Row {
 /// is the last one that has neighbours, and tents give the weights: 0 from a sample's distance on. Outside of the box
 /// (where `in_box` is 0) and behind the camera rows have no weight.
 template <bool inside>
-Places find_places(Row const& row, float n, FloatLanes in_box) {
+Places find_places(Row const& row, float n, float stride, FloatLanes in_box) {
     FloatLanes const zero{};
     FloatLanes const z = 1 / row.inverse_z;
     FloatLanes u = row.u * z;
@@ -36,7 +36,7 @@ Places find_places(Row const& row, float n, FloatLanes in_box) {
     if constexpr (inside) {
         FloatLanes const column = __builtin_convertvector(__builtin_convertvector(u, IntLanes), FloatLanes);
         FloatLanes const line = __builtin_convertvector(__builtin_convertvector(v, IntLanes), FloatLanes);
-        out.corner = __builtin_convertvector(line * n + column, IntLanes);
+        out.corner = __builtin_convertvector(line * stride + column, IntLanes);
         out.right_weight = u - column;
         out.left_weight = 1 - out.right_weight;
         out.below_weight = v - line;
@@ -53,7 +53,7 @@ Places find_places(Row const& row, float n, FloatLanes in_box) {
         };
         FloatLanes const column = whole(u);
         FloatLanes const line = whole(v);
-        out.corner = __builtin_convertvector(line * n + column, IntLanes);
+        out.corner = __builtin_convertvector(line * stride + column, IntLanes);
         FloatLanes const x = u - column; // from -1 to 2
         FloatLanes const y = v - line;
         FloatLanes const scale = row.inverse_z > 0 ? in_box : zero;
@@ -105,10 +105,12 @@ void gather_pairs(PackedSample const* grid, __m256i index, IntLanes& left, IntLa
     right = ordered(_mm256_shuffle_ps(low, high, 0b11011101));
 }
 
-[[gnu::always_inline]] inline Samples look_up(PackedSample const* grid, std::int32_t n, IntLanes corners) {
+[[gnu::always_inline]] inline Samples look_up(WarpPatch const& patch, IntLanes corners) {
+    PackedSample const* const grid = patch.grid;
+    std::int32_t const n = patch.stride;
     auto const corner = reinterpret_cast<__m256i>(corners);
     std::int32_t const first = corners[0];
-    std::int32_t const last = n * (n - 1); // row of the grid
+    std::int32_t const last = n * (patch.side - 2) + patch.side; // where samples end of which the row below is there
     Samples out;
     // One register from which all left ones are picked, one for all right ones.
     std::int32_t base = std::min(first, last - register_samples - 1);
@@ -123,7 +125,7 @@ void gather_pairs(PackedSample const* grid, __m256i index, IntLanes& left, IntLa
     }
     base = std::max(std::min(first, last - 2 * register_samples), 0);
     // Those of the row below must end within the grid, of which the smallest fits into two registers.
-    std::int32_t const below = base + (n * n > 2 * register_samples ? n : 0);
+    std::int32_t const below = base + (last >= 2 * register_samples ? n : 0);
     index = _mm256_sub_epi32(corner, _mm256_set1_epi32(base));
     __m256i const next = _mm256_add_epi32(index, _mm256_set1_epi32(1));
     if (_mm256_testz_si256(_mm256_or_si256(index, next), _mm256_set1_epi32(-2 * register_samples)) != 0) {
@@ -143,10 +145,11 @@ void gather_pairs(PackedSample const* grid, __m256i index, IntLanes& left, IntLa
 
 #else
 
-[[gnu::always_inline]] inline Samples look_up(PackedSample const* grid, std::int32_t n, IntLanes corners) {
+[[gnu::always_inline]] inline Samples look_up(WarpPatch const& patch, IntLanes corners) {
     Samples out;
+    std::int32_t const n = patch.stride;
     for (int k = 0; k < lane_count; ++k) {
-        PackedSample const* const corner = grid + corners[k];
+        PackedSample const* const corner = patch.grid + corners[k];
         out.above_left[k] = static_cast<std::int32_t>(corner[0]);
         out.above_right[k] = static_cast<std::int32_t>(corner[1]);
         out.below_left[k] = static_cast<std::int32_t>(corner[n]);
@@ -191,10 +194,10 @@ void sample_rows(WarpPatch const& patch, float x, float y, int rows, CandidateRo
     auto const in_box =
         (place >= 0) & (place < static_cast<float>(patch.box.width())) ? FloatLanes{} + 1 : FloatLanes{};
     auto const n = static_cast<float>(patch.side);
+    auto const stride = static_cast<float>(patch.stride);
     for (std::size_t i = 0; i < static_cast<std::size_t>(rows); ++i) {
-        Places const places = find_places<inside>(row, n, in_box);
-        interpolate<whole>(static_cast<std::int32_t>(patch.layer), places,
-                           look_up(patch.grid, patch.side, places.corner), out[i]);
+        Places const places = find_places<inside>(row, n, stride, in_box);
+        interpolate<whole>(static_cast<std::int32_t>(patch.layer), places, look_up(patch, places.corner), out[i]);
         out[i].inverse_depth = larger(depth, FloatLanes{});
         row.u += patch.dy[0];
         row.v += patch.dy[1];

@@ -86,8 +86,8 @@ void prefetch_grid(WarpPatch const& patch, int left, int top) {
     int const to = static_cast<int>(std::clamp(v + static_cast<float>(last_row) * patch.dy[1] * step, 0.0f, last));
     PackedSample const* const grid = patch.grid + column;
     for (int row = from; row <= to; ++row) {
-        __builtin_prefetch(grid + row * patch.side);
-        __builtin_prefetch(grid + row * patch.side + line);
+        __builtin_prefetch(grid + row * patch.stride);
+        __builtin_prefetch(grid + row * patch.stride + line);
     }
 }
 
