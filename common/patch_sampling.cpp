@@ -195,13 +195,18 @@ void sample_rows(WarpPatch const& patch, float x, float y, int rows, CandidateRo
         (place >= 0) & (place < static_cast<float>(patch.box.width())) ? FloatLanes{} + 1 : FloatLanes{};
     auto const n = static_cast<float>(patch.side);
     auto const stride = static_cast<float>(patch.stride);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(rows); ++i) {
-        Places const places = find_places<inside>(row, n, stride, in_box);
-        interpolate<whole>(static_cast<std::int32_t>(patch.layer), places, look_up(patch, places.corner), out[i]);
-        out[i].inverse_depth = larger(depth, FloatLanes{});
+    // One step after the other for all rows: a row's steps wait for each other, the rows do not.
+    std::array<Places, std::tuple_size_v<CandidateRows>> places;
+    auto const count = static_cast<std::size_t>(rows);
+    for (std::size_t i = 0; i < count; ++i) {
+        places[i] = find_places<inside>(row, n, stride, in_box);
         row.u += patch.dy[0];
         row.v += patch.dy[1];
         row.inverse_z += patch.dy[2];
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        interpolate<whole>(static_cast<std::int32_t>(patch.layer), places[i], look_up(patch, places[i].corner), out[i]);
+        out[i].inverse_depth = larger(depth, FloatLanes{});
         depth += patch.inverse_depth_dy;
     }
 }
