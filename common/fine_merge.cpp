@@ -93,9 +93,9 @@ MergedFramelet const* FineSquare::merged(int levels, std::uint32_t index) {
     }
     Part& part = parts_[first_part(levels) + index];
     if (part.state == State::unknown) {
-        part.state = make(levels, index, part.merged) ? State::some : State::none;
+        part.state = make(levels, index, part.merged) ? State::present : State::absent;
     }
-    return part.state == State::some ? &part.merged : nullptr;
+    return part.state == State::present ? &part.merged : nullptr;
 }
 
 /// The plane is the least-squares fit to the inverse depths in the middles of the children, its difference is taken at

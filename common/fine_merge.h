@@ -49,7 +49,7 @@ private:
         std::uint64_t batch = 0;
         Layer layer;
     };
-    enum class State : std::uint8_t { unknown, none, some };
+    enum class State : std::uint8_t { unknown, absent, present };
     struct Part {
         State state = State::unknown;
         MergedFramelet merged;
