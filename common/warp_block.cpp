@@ -21,53 +21,74 @@ constexpr float faint = 1e-3f;
 /// Inverse depths that differ by this share belong to one surface.
 constexpr float same_surface = 0.01f;
 
-/// What is in front at each pixel so far, by half rows.
+/// What is in front at each pixel so far.
 struct Layers {
-    static constexpr std::size_t halves = pixels / lanes;
-    std::array<FloatLanes, halves> red, green, blue, weight, inverse_depth;
-    std::array<IntLanes, halves> group;
+    alignas(64) std::array<float, pixels> red, green, blue, weight, inverse_depth;
+    alignas(64) std::array<std::int32_t, pixels> group;
 };
 
-/// Lets candidates compete with what half a row of the block has. Of two that cover firmly or both do not, the
-/// clearly nearer one wins; else the one that was there, which is newer. Those of one group on one surface add up.
-void merge_half(Candidate const& candidate, std::int32_t group, float tolerance, std::size_t half, Layers& layers) {
-    FloatLanes const there = layers.inverse_depth[half];
+FloatLanes load(float const* from) {
+    FloatLanes out;
+    std::memcpy(&out, from, sizeof out);
+    return out;
+}
+
+IntLanes load(std::int32_t const* from) {
+    IntLanes out;
+    std::memcpy(&out, from, sizeof out);
+    return out;
+}
+
+template <class Lanes, class T>
+void store(Lanes from, T* to) {
+    std::memcpy(to, &from, sizeof from);
+}
+
+/// Lets candidates compete with what pixels of a row have. Of two that cover firmly or both do not, the clearly nearer
+/// one wins; else the one that was there, which is newer. Those of one group on one surface add up.
+void merge_row(Candidate const& candidate, std::int32_t group, float tolerance, std::size_t first, Layers& layers) {
+    FloatLanes const there = load(&layers.inverse_depth[first]);
+    FloatLanes const weight = load(&layers.weight[first]);
+    IntLanes const groups = load(&layers.group[first]);
     FloatLanes const depth = candidate.inverse_depth;
     FloatLanes const limit = tolerance + same_surface * depth;
     IntLanes const shows = candidate.weight > faint;
     IntLanes const is_firm = candidate.weight >= firm;
-    IntLanes const was_firm = layers.weight[half] >= firm;
-    IntLanes const joins = shows & (layers.group[half] == group) & (depth - there <= limit) & (there - depth <= limit);
+    IntLanes const was_firm = weight >= firm;
+    IntLanes const joins = shows & (groups == group) & (depth - there <= limit) & (there - depth <= limit);
     IntLanes const wins = shows & ((is_firm & ~was_firm) | (~(is_firm ^ was_firm) & (depth > there + limit)));
     IntLanes const replaces = wins & ~joins;
     FloatLanes const zero{};
     FloatLanes const one = zero + 1;
     FloatLanes const keep = replaces ? zero : one;
     FloatLanes const take = (wins | joins) ? one : zero;
-    layers.red[half] = keep * layers.red[half] + take * candidate.red;
-    layers.green[half] = keep * layers.green[half] + take * candidate.green;
-    layers.blue[half] = keep * layers.blue[half] + take * candidate.blue;
-    layers.weight[half] = keep * layers.weight[half] + take * candidate.weight;
-    layers.inverse_depth[half] = replaces ? depth : there;
-    layers.group[half] = replaces ? IntLanes{} + group : layers.group[half];
+    store(keep * load(&layers.red[first]) + take * candidate.red, &layers.red[first]);
+    store(keep * load(&layers.green[first]) + take * candidate.green, &layers.green[first]);
+    store(keep * load(&layers.blue[first]) + take * candidate.blue, &layers.blue[first]);
+    store(keep * weight + take * candidate.weight, &layers.weight[first]);
+    store(replaces ? depth : there, &layers.inverse_depth[first]);
+    store(replaces ? IntLanes{} + group : groups, &layers.group[first]);
 }
 
 void paint_layer(WarpPatch const& patch, int left, int top, Layers& layers) {
     CandidateRows rows;
     int const first_row = std::max(patch.box.top - top, 0);
     int const row_count = std::min(patch.box.bottom - top, side) - first_row;
-    for (int x = 0; x < side; x += lanes) {
-        int const first = patch.box.left - left - x;
-        int const last = patch.box.right - left - x;
-        if (first >= lanes || last <= 0) {
-            continue;
-        }
-        sample_patch(patch, static_cast<float>(-first), static_cast<float>(top + first_row - patch.box.top), row_count,
-                     rows);
+    int const first = std::max(patch.box.left - left, 0);
+    int const last = std::min(patch.box.right - left, side);
+    auto const paint = [&](int x) {
+        sample_patch(patch, static_cast<float>(left + x - patch.box.left),
+                     static_cast<float>(top + first_row - patch.box.top), row_count, rows);
         for (int i = 0; i < row_count; ++i) {
-            merge_half(rows[static_cast<std::size_t>(i)], patch.group, patch.tolerance,
-                       static_cast<std::size_t>((first_row + i) * side + x) / lanes, layers);
+            merge_row(rows[static_cast<std::size_t>(i)], patch.group, patch.tolerance,
+                      static_cast<std::size_t>((first_row + i) * side + x), layers);
         }
+    };
+    if (last - first <= lanes) {
+        paint(std::min(first, side - lanes));
+    } else {
+        paint(0);
+        paint(lanes);
     }
 }
 
@@ -115,33 +136,28 @@ void paint_splat(Splat const& splat, std::int32_t group, int left, int top, Laye
             half.green = half.weight * square(green_of(splat.sample));
             half.blue = half.weight * square(blue_of(splat.sample));
             half.inverse_depth = zero + splat.inverse_depth;
-            merge_half(half, group, 0, static_cast<std::size_t>(j * side + from) / lanes, layers);
+            merge_row(half, group, 0, static_cast<std::size_t>(j * side + from), layers);
         }
     }
-}
-
-void store(FloatLanes from, float* to) {
-    std::memcpy(to, &from, sizeof from);
 }
 
 /// Divides by the weights.
 void finish(Layers const& layers, int width, int height, WarpedBlock& block) {
     FloatLanes const zero{};
-    for (std::size_t half = 0; half < Layers::halves; ++half) {
-        IntLanes const shows = layers.weight[half] > 0;
-        FloatLanes const scale = shows ? 1 / layers.weight[half] : zero;
-        std::size_t const first = half * lanes;
-        store(scale * layers.red[half], &block.squares[0][first]);
-        store(scale * layers.green[half], &block.squares[1][first]);
-        store(scale * layers.blue[half], &block.squares[2][first]);
-        store(shows ? layers.inverse_depth[half] : zero + hole_depth, &block.inverse_depth[first]);
+    for (std::size_t i = 0; i < pixels; i += lanes) {
+        FloatLanes const weight = load(&layers.weight[i]);
+        IntLanes const shows = weight > 0;
+        FloatLanes const scale = shows ? 1 / weight : zero;
+        store(scale * load(&layers.red[i]), &block.squares[0][i]);
+        store(scale * load(&layers.green[i]), &block.squares[1][i]);
+        store(scale * load(&layers.blue[i]), &block.squares[2][i]);
+        store(shows ? load(&layers.inverse_depth[i]) : zero + hole_depth, &block.inverse_depth[i]);
     }
     IntLanes holes{};
     IntLanes const numbers{0, 1, 2, 3, 4, 5, 6, 7};
     for (int y = 0; y < std::min(height, side); ++y) {
         for (int x = 0; x < side; x += lanes) {
-            auto const half = static_cast<std::size_t>(y * side + x) / lanes;
-            holes -= (numbers < width - x) & ~(layers.weight[half] > 0);
+            holes -= (numbers < width - x) & ~(load(&layers.weight[static_cast<std::size_t>(y * side + x)]) > 0);
         }
     }
     block.holes = 0;
@@ -158,10 +174,10 @@ void paint_warped_block(std::span<PatchView const> patches, int column, int row,
     int const top = row * side;
     Layers layers;
     for (auto* const plane : {&layers.red, &layers.green, &layers.blue, &layers.weight}) {
-        plane->fill(FloatLanes{});
+        plane->fill(0);
     }
-    layers.inverse_depth.fill(FloatLanes{} + hole_depth);
-    layers.group.fill(IntLanes{} - 1);
+    layers.inverse_depth.fill(hole_depth);
+    layers.group.fill(-1);
     for (std::size_t i = 0; i < patches.size(); ++i) {
         if (i + 1 < patches.size()) {
             prefetch_grid(*patches[i + 1].patch, left, top);

@@ -1,6 +1,7 @@
 #include "common/warp_plan.h"
 
 #include <algorithm>
+#include <array>
 
 #include <tbb/parallel_for.h>
 
@@ -46,6 +47,17 @@ std::size_t block_count(PixelRect const& box) {
     return static_cast<std::size_t>(blocks.width()) * static_cast<std::size_t>(blocks.height());
 }
 
+/// Framelets are far apart in memory: what is needed of one is fetched while those before it are worked on.
+constexpr std::size_t fetched_ahead = 4;
+
+void prefetch(CachedFramelet const* framelet) {
+    if (framelet != nullptr) {
+        __builtin_prefetch(framelet);
+        __builtin_prefetch(&framelet->shape.layers);
+        __builtin_prefetch(&framelet->shape.loose);
+    }
+}
+
 /// Squares of 2x2 blocks along a side of so many blocks.
 std::size_t square_count(int blocks) {
     return static_cast<std::size_t>(blocks + 1) / 2;
@@ -84,11 +96,17 @@ void WarpPlan::make(FrameletCache const& cache, Camera const& display, SceneTime
         chunk.splats.clear();
         FrameletWarp warp(cache, display, display_time, motions);
         std::size_t const first = (i - square_chunks) * slots_per_chunk;
+        std::array<CachedFramelet const*, slots_per_chunk + fetched_ahead> alone{};
+        std::size_t count = 0;
         for (std::size_t slot = first; slot < first + slots_per_chunk; ++slot) {
             Tile const tile = cache.tile_at_slot(slot);
             if (tile != no_tile && !is_merged(cache.plane(), tile)) {
-                warp.add(*cache.at_slot(slot), chunk.patches, chunk.splats);
+                alone[count++] = cache.at_slot(slot);
             }
+        }
+        for (std::size_t k = 0; k < count; ++k) {
+            prefetch(alone[k + fetched_ahead]);
+            warp.add(*alone[k], chunk.patches, chunk.splats);
         }
     });
     limit_entries();
