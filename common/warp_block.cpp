@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "common/patch_sampling.h"
 
@@ -27,29 +26,12 @@ struct Layers {
     alignas(64) std::array<std::int32_t, pixels> group;
 };
 
-FloatLanes load(float const* from) {
-    FloatLanes out;
-    std::memcpy(&out, from, sizeof out);
-    return out;
-}
-
-IntLanes load(std::int32_t const* from) {
-    IntLanes out;
-    std::memcpy(&out, from, sizeof out);
-    return out;
-}
-
-template <class Lanes, class T>
-void store(Lanes from, T* to) {
-    std::memcpy(to, &from, sizeof from);
-}
-
 /// Lets candidates compete with what pixels of a row have. Of two that cover firmly or both do not, the clearly nearer
 /// one wins; else the one that was there, which is newer. Those of one group on one surface add up.
 void merge_row(Candidate const& candidate, std::int32_t group, float tolerance, std::size_t first, Layers& layers) {
-    FloatLanes const there = load(&layers.inverse_depth[first]);
-    FloatLanes const weight = load(&layers.weight[first]);
-    IntLanes const groups = load(&layers.group[first]);
+    FloatLanes const there = load_lanes(&layers.inverse_depth[first]);
+    FloatLanes const weight = load_lanes(&layers.weight[first]);
+    IntLanes const groups = load_lanes(&layers.group[first]);
     FloatLanes const depth = candidate.inverse_depth;
     FloatLanes const limit = tolerance + same_surface * depth;
     IntLanes const shows = candidate.weight > faint;
@@ -62,12 +44,12 @@ void merge_row(Candidate const& candidate, std::int32_t group, float tolerance, 
     FloatLanes const one = zero + 1;
     FloatLanes const keep = replaces ? zero : one;
     FloatLanes const take = (wins | joins) ? one : zero;
-    store(keep * load(&layers.red[first]) + take * candidate.red, &layers.red[first]);
-    store(keep * load(&layers.green[first]) + take * candidate.green, &layers.green[first]);
-    store(keep * load(&layers.blue[first]) + take * candidate.blue, &layers.blue[first]);
-    store(keep * weight + take * candidate.weight, &layers.weight[first]);
-    store(replaces ? depth : there, &layers.inverse_depth[first]);
-    store(replaces ? IntLanes{} + group : groups, &layers.group[first]);
+    store_lanes(keep * load_lanes(&layers.red[first]) + take * candidate.red, &layers.red[first]);
+    store_lanes(keep * load_lanes(&layers.green[first]) + take * candidate.green, &layers.green[first]);
+    store_lanes(keep * load_lanes(&layers.blue[first]) + take * candidate.blue, &layers.blue[first]);
+    store_lanes(keep * weight + take * candidate.weight, &layers.weight[first]);
+    store_lanes(replaces ? depth : there, &layers.inverse_depth[first]);
+    store_lanes(replaces ? IntLanes{} + group : groups, &layers.group[first]);
 }
 
 void paint_layer(WarpPatch const& patch, int left, int top, Layers& layers) {
@@ -145,19 +127,19 @@ void paint_splat(Splat const& splat, std::int32_t group, int left, int top, Laye
 void finish(Layers const& layers, int width, int height, WarpedBlock& block) {
     FloatLanes const zero{};
     for (std::size_t i = 0; i < pixels; i += lanes) {
-        FloatLanes const weight = load(&layers.weight[i]);
+        FloatLanes const weight = load_lanes(&layers.weight[i]);
         IntLanes const shows = weight > 0;
         FloatLanes const scale = shows ? 1 / weight : zero;
-        store(scale * load(&layers.red[i]), &block.squares[0][i]);
-        store(scale * load(&layers.green[i]), &block.squares[1][i]);
-        store(scale * load(&layers.blue[i]), &block.squares[2][i]);
-        store(shows ? load(&layers.inverse_depth[i]) : zero + hole_depth, &block.inverse_depth[i]);
+        store_lanes(scale * load_lanes(&layers.red[i]), &block.squares[0][i]);
+        store_lanes(scale * load_lanes(&layers.green[i]), &block.squares[1][i]);
+        store_lanes(scale * load_lanes(&layers.blue[i]), &block.squares[2][i]);
+        store_lanes(shows ? load_lanes(&layers.inverse_depth[i]) : zero + hole_depth, &block.inverse_depth[i]);
     }
     IntLanes holes{};
     IntLanes const numbers{0, 1, 2, 3, 4, 5, 6, 7};
     for (int y = 0; y < std::min(height, side); ++y) {
         for (int x = 0; x < side; x += lanes) {
-            holes -= (numbers < width - x) & ~(load(&layers.weight[static_cast<std::size_t>(y * side + x)]) > 0);
+            holes -= (numbers < width - x) & ~(load_lanes(&layers.weight[static_cast<std::size_t>(y * side + x)]) > 0);
         }
     }
     block.holes = 0;
