@@ -9,6 +9,11 @@
 #include <immintrin.h>
 #endif
 
+#ifndef __AVX2__
+// Vectors wider than the processor's own are passed within the project only, all of which is compiled alike.
+#pragma GCC diagnostic ignored "-Wpsabi"
+#endif
+
 namespace framelet {
 
 inline constexpr int lane_count = 8;

@@ -191,8 +191,9 @@ void sample_rows(WarpPatch const& patch, float x, float y, int rows, CandidateRo
     auto const first = [&](std::size_t i) { return (patch.at[i] + y * patch.dy[i]) + place * patch.dx[i]; };
     Row row{first(0), first(1), first(2)};
     FloatLanes depth = (patch.inverse_depth + y * patch.inverse_depth_dy) + place * patch.inverse_depth_dx;
-    auto const in_box =
-        (place >= 0) & (place < static_cast<float>(patch.box.width())) ? FloatLanes{} + 1 : FloatLanes{};
+    IntLanes const is_in_box = (place >= 0) & (place < static_cast<float>(patch.box.width()));
+    FloatLanes const zero{};
+    FloatLanes const in_box = is_in_box ? zero + 1 : zero;
     auto const n = static_cast<float>(patch.side);
     auto const stride = static_cast<float>(patch.stride);
     // One step after the other for all rows: a row's steps wait for each other, the rows do not.
@@ -206,7 +207,7 @@ void sample_rows(WarpPatch const& patch, float x, float y, int rows, CandidateRo
     }
     for (std::size_t i = 0; i < count; ++i) {
         interpolate<whole>(static_cast<std::int32_t>(patch.layer), places[i], look_up(patch, places[i].corner), out[i]);
-        out[i].inverse_depth = larger(depth, FloatLanes{});
+        out[i].inverse_depth = larger(depth, zero);
         depth += patch.inverse_depth_dy;
     }
 }
