@@ -50,19 +50,22 @@ void FineSquare::load(FrameletCache const& cache, std::uint32_t block) {
     std::uint32_t const first = block * (count / blocks);
     for (std::uint32_t i = first; i < first + count / blocks; ++i) {
         Tile const tile{(square_.code << 2 * levels) + i};
-        CachedFramelet const* const found =
-            cache.find(depth_, static_cast<int>(tile.column()), static_cast<int>(tile.row()));
-        bool const is_usable = found != nullptr && found->shape.layer_count == 1 && found->shape.loose.empty();
-        if (is_usable && children_.empty()) {
+        int const column = static_cast<int>(tile.column());
+        int const row = static_cast<int>(tile.row());
+        std::uint64_t const version = cache.version_of(depth_, column, row);
+        if (version > 0 && children_.empty()) {
             children_.resize(count);
             parts_.resize(first_part(levels));
             grid_.resize(static_cast<std::size_t>(side * side));
             pixels_ = cache.plane().tile_side(tile);
         }
-        if (children_.empty()) {
+        if (children_.empty() || version == children_[i].version) {
             continue;
         }
+        CachedFramelet const* const found = cache.find(depth_, column, row);
+        bool const is_usable = found != nullptr && found->shape.layer_count == 1 && found->shape.loose.empty();
         Child& child = children_[i];
+        child.version = version;
         usable_ -= child.is_usable ? 1 : 0;
         child.is_usable = is_usable;
         if (is_usable) {

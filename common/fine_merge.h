@@ -44,6 +44,7 @@ private:
     static constexpr int side = 2 * framelet_side; ///< of the grid
 
     struct Child {
+        std::uint64_t version = 0; ///< 0 where none is held
         bool is_usable = false; ///< held, with a single layer
         std::uint32_t view = 0;
         std::uint64_t batch = 0;

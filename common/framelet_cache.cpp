@@ -112,6 +112,7 @@ bool FrameletCache::insert_one(DisplayFramelet const& framelet, FrameletShape co
     CachedFramelet& cached = held(own.slot);
     cached.tile = framelet.tile;
     slot_tiles_[static_cast<std::size_t>(own.slot)] = framelet.tile;
+    slot_versions_[static_cast<std::size_t>(own.slot)] = ++insertions_;
     cached.moment = moment;
     cached.view = view;
     shape_bytes_ -= bytes_behind(cached.shape);
@@ -214,6 +215,7 @@ std::int32_t FrameletCache::take_slot() {
         chunks_.push_back(std::make_unique<Chunk>());
         free_slots_.reserve(chunks_.size() * size);
         slot_tiles_.resize(chunks_.size() * size, no_tile);
+        slot_versions_.resize(chunks_.size() * size);
         for (auto slot = first + static_cast<std::int32_t>(size) - 1; slot >= first; --slot) {
             free_slots_.push_back(slot);
         }
@@ -337,9 +339,9 @@ double FrameletCache::coverage() const {
 
 std::size_t FrameletCache::memory_bytes() const {
     return chunks_.size() * sizeof(Chunk) + nodes_.capacity() * sizeof(Node) + slot_tiles_.capacity() * sizeof(Tile) +
-           free_slots_.capacity() * sizeof(std::int32_t) + views_.capacity() * sizeof(HeldView) +
-           changed_blocks_.capacity() + block_versions_.capacity() * sizeof(std::uint64_t) + shape_bytes_ +
-           spares_.memory_bytes();
+           slot_versions_.capacity() * sizeof(std::uint64_t) + free_slots_.capacity() * sizeof(std::int32_t) +
+           views_.capacity() * sizeof(HeldView) + changed_blocks_.capacity() +
+           block_versions_.capacity() * sizeof(std::uint64_t) + shape_bytes_ + spares_.memory_bytes();
 }
 
 } // namespace framelet

@@ -110,6 +110,16 @@ public:
     }
     /// Its tile, without a look at it; `no_tile` where there is nothing.
     Tile tile_at_slot(std::size_t slot) const { return slot_tiles_[slot]; }
+    /// Of the framelet that `find` finds, without a look at it: another number for another framelet; 0 where there is
+    /// none.
+    std::uint64_t version_of(int depth, int column, int row) const {
+        Level const& l = level(depth);
+        if (column < 0 || row < 0 || column >= l.columns || row >= l.rows) {
+            return 0;
+        }
+        std::int32_t const slot = node(depth, column, row).slot;
+        return slot == no_slot ? 0 : slot_versions_[static_cast<std::size_t>(slot)];
+    }
     /// Of a block of the picture: changes where what is in place there changes. 0 where nothing ever was, and outside
     /// of the picture.
     std::uint64_t block_version(int column, int row) const {
@@ -179,6 +189,7 @@ private:
     std::vector<Node> nodes_;
     std::vector<std::unique_ptr<Chunk>> chunks_;
     std::vector<Tile> slot_tiles_; ///< of what is in place
+    std::vector<std::uint64_t> slot_versions_; ///< the number of insertions when it came
     std::vector<std::int32_t> free_slots_;
     SparePool spares_;
     std::vector<HeldView> views_;
@@ -186,6 +197,7 @@ private:
     std::vector<std::uint8_t> changed_blocks_; ///< a byte for each block, in rows
     std::vector<std::uint64_t> block_versions_; ///< the number of changes when they changed last
     std::uint64_t changes_ = 0;
+    std::uint64_t insertions_ = 0;
     std::size_t count_ = 0;
     bool has_changes_ = false;
 };
