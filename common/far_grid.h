@@ -5,6 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstring>
+#include <type_traits>
+
+#include "common/lanes.h"
 
 namespace framelet {
 
@@ -46,39 +50,52 @@ void put(FarMean const& mean, std::size_t i, FarGrid<n>& grid) {
 inline constexpr float foreground_share = 1.15f;
 inline constexpr float foreground_least = 1e-4f;
 
-/// The weighted mean of those of four that are about as far as the farthest.
+/// The weighted mean of those of four that are about as far as the farthest. Of numbers or of lanes.
+template <class T>
 struct FarthestOfFour {
-    std::array<float, 4> take;
-    float scale;
-    float farthest;
+    std::array<T, 4> take;
+    T scale;
+    T farthest;
 
-    FarthestOfFour(std::array<float, 4> const& weights, float a, float b, float c, float d)
-        : farthest(std::min(std::min(a, b), std::min(c, d))) {
-        float const limit = farthest * foreground_share + foreground_least;
-        take = {a <= limit ? weights[0] : 0.0f, b <= limit ? weights[1] : 0.0f, c <= limit ? weights[2] : 0.0f,
-                d <= limit ? weights[3] : 0.0f};
+    FarthestOfFour(std::array<float, 4> const& weights, T a, T b, T c, T d)
+        : farthest(smaller(smaller(a, b), smaller(c, d))) {
+        T const limit = farthest * foreground_share + foreground_least;
+        T const zero{};
+        take = {a <= limit ? zero + weights[0] : zero, b <= limit ? zero + weights[1] : zero,
+                c <= limit ? zero + weights[2] : zero, d <= limit ? zero + weights[3] : zero};
         scale = 1 / (take[0] + take[1] + take[2] + take[3]);
     }
-    float mean(float a, float b, float c, float d) const {
-        return scale * ((take[0] * a + take[1] * b) + (take[2] * c + take[3] * d));
-    }
+    T mean(T a, T b, T c, T d) const { return scale * ((take[0] * a + take[1] * b) + (take[2] * c + take[3] * d)); }
 };
 
 /// Cells of twice the side, each of the farthest of four.
 template <int n>
 void pull(FarGrid<2 * n> const& fine, FarGrid<n>& coarse) {
-    for (int y = 0; y < n; ++y) {
-        for (int x = 0; x < n; ++x) {
-            auto const to = static_cast<std::size_t>(y * n + x);
-            auto const from = static_cast<std::size_t>(4 * y * n + 2 * x);
-            std::size_t const below = from + 2 * n;
-            FarthestOfFour const four({1, 1, 1, 1}, fine.inverse_depth[from], fine.inverse_depth[from + 1],
-                                      fine.inverse_depth[below], fine.inverse_depth[below + 1]);
-            coarse.red[to] = four.mean(fine.red[from], fine.red[from + 1], fine.red[below], fine.red[below + 1]);
-            coarse.green[to] =
-                four.mean(fine.green[from], fine.green[from + 1], fine.green[below], fine.green[below + 1]);
-            coarse.blue[to] = four.mean(fine.blue[from], fine.blue[from + 1], fine.blue[below], fine.blue[below + 1]);
-            coarse.inverse_depth[to] = four.farthest;
+    using T = std::conditional_t<n % lane_count == 0, FloatLanes, float>;
+    constexpr std::size_t step = sizeof(T) / sizeof(float);
+    for (std::size_t y = 0; y < n; ++y) {
+        for (std::size_t x = 0; x < n; x += step) {
+            // The four fine cells of each coarse one.
+            auto const four_of = [&](std::array<float, FarGrid<2 * n>::cells> const& plane) {
+                float const* const above = &plane[4 * y * n + 2 * x];
+                float const* const below = above + 2 * n;
+                if constexpr (step == 1) {
+                    return std::array{above[0], above[1], below[0], below[1]};
+                } else {
+                    return std::array{even_of(above), odd_of(above), even_of(below), odd_of(below)};
+                }
+            };
+            auto const depths = four_of(fine.inverse_depth);
+            FarthestOfFour<T> const four({1, 1, 1, 1}, depths[0], depths[1], depths[2], depths[3]);
+            auto const put_mean = [&](auto const& from, auto& to) {
+                auto const values = four_of(from);
+                T const mean = four.mean(values[0], values[1], values[2], values[3]);
+                std::memcpy(&to[y * n + x], &mean, sizeof mean);
+            };
+            put_mean(fine.red, coarse.red);
+            put_mean(fine.green, coarse.green);
+            put_mean(fine.blue, coarse.blue);
+            std::memcpy(&coarse.inverse_depth[y * n + x], &four.farthest, sizeof four.farthest);
         }
     }
 }

@@ -38,6 +38,7 @@ FrameletCache::FrameletCache(ImagePlane plane) : plane_(plane), spares_(0) {
     nodes_.resize(nodes);
     Level const& blocks = level(plane.pixel_depth());
     changed_blocks_.resize(static_cast<std::size_t>(blocks.columns) * static_cast<std::size_t>(blocks.rows));
+    block_versions_.resize(changed_blocks_.size());
     spares_ = SparePool(spares_per_block * changed_blocks_.size());
 }
 
@@ -110,9 +111,10 @@ bool FrameletCache::insert_one(DisplayFramelet const& framelet, FrameletShape co
     ++count_;
     CachedFramelet& cached = held(own.slot);
     cached.tile = framelet.tile;
+    slot_tiles_[static_cast<std::size_t>(own.slot)] = framelet.tile;
+    slot_versions_[static_cast<std::size_t>(own.slot)] = ++insertions_;
     cached.moment = moment;
     cached.view = view;
-    cached.is_spare = false;
     shape_bytes_ -= bytes_behind(cached.shape);
     hold(framelet, shape, 1 << std::max(depth - plane_.pixel_depth(), 0), cached.samples, cached.shape);
     shape_bytes_ += bytes_behind(cached.shape);
@@ -175,7 +177,7 @@ void FrameletCache::drop(Node& owner, std::uint32_t view) {
 
 void FrameletCache::set_aside(std::int32_t slot) {
     CachedFramelet& framelet = held(slot);
-    framelet.is_spare = true;
+    slot_tiles_[static_cast<std::size_t>(slot)] = no_tile;
     ++views_[framelet.view].spares;
     if (auto const gone = spares_.add({framelet.moment.batch, framelet.tile, slot})) {
         release(*gone);
@@ -188,7 +190,7 @@ void FrameletCache::release(Spare const& spare) {
 }
 
 void FrameletCache::release(std::int32_t slot) {
-    held(slot).tile = {0};
+    held(slot).tile = slot_tiles_[static_cast<std::size_t>(slot)] = no_tile;
     free_slots_.push_back(slot);
 }
 
@@ -212,6 +214,8 @@ std::int32_t FrameletCache::take_slot() {
         auto const first = static_cast<std::int32_t>(chunks_.size() * size);
         chunks_.push_back(std::make_unique<Chunk>());
         free_slots_.reserve(chunks_.size() * size);
+        slot_tiles_.resize(chunks_.size() * size, no_tile);
+        slot_versions_.resize(chunks_.size() * size);
         for (auto slot = first + static_cast<std::int32_t>(size) - 1; slot >= first; --slot) {
             free_slots_.push_back(slot);
         }
@@ -242,8 +246,10 @@ void FrameletCache::refresh(int depth, int column, int row, std::uint32_t view) 
 
 void FrameletCache::mark_block(int column, int row) {
     Level const& blocks = level(plane_.pixel_depth());
-    changed_blocks_[static_cast<std::size_t>(row) * static_cast<std::size_t>(blocks.columns) +
-                    static_cast<std::size_t>(column)] = 1;
+    std::size_t const index =
+        static_cast<std::size_t>(row) * static_cast<std::size_t>(blocks.columns) + static_cast<std::size_t>(column);
+    changed_blocks_[index] = 1;
+    block_versions_[index] = ++changes_;
     has_changes_ = true;
 }
 
@@ -332,9 +338,10 @@ double FrameletCache::coverage() const {
 }
 
 std::size_t FrameletCache::memory_bytes() const {
-    return chunks_.size() * sizeof(Chunk) + nodes_.capacity() * sizeof(Node) +
-           free_slots_.capacity() * sizeof(std::int32_t) + views_.capacity() * sizeof(HeldView) +
-           changed_blocks_.capacity() + shape_bytes_ + spares_.memory_bytes();
+    return chunks_.size() * sizeof(Chunk) + nodes_.capacity() * sizeof(Node) + slot_tiles_.capacity() * sizeof(Tile) +
+           slot_versions_.capacity() * sizeof(std::uint64_t) + free_slots_.capacity() * sizeof(std::int32_t) +
+           views_.capacity() * sizeof(HeldView) + changed_blocks_.capacity() +
+           block_versions_.capacity() * sizeof(std::uint64_t) + shape_bytes_ + spares_.memory_bytes();
 }
 
 } // namespace framelet

@@ -44,10 +44,12 @@ struct CachedFramelet {
     Tile tile{0};
     std::uint32_t view = 0; ///< in the cache's `views`
     Moment moment;
-    bool is_spare = false; ///< nothing of it shows in its place
     HeldShape shape;
     std::array<PackedSample, framelet_samples> samples;
 };
+
+/// Code 0 names no tile.
+inline constexpr Tile no_tile{0};
 
 /// The newest framelets of one viewport. A place shows the framelet of the highest batch number that covers it; of two
 /// of the same batch, the finer one. A framelet of which nothing shows leaves its place, so that at most one framelet
@@ -104,8 +106,28 @@ public:
     /// All that is in place, in no particular order: from 0 to `slot_count()` - 1, null where there is nothing.
     std::size_t slot_count() const { return chunks_.size() * std::tuple_size_v<Chunk>; }
     CachedFramelet const* at_slot(std::size_t slot) const {
-        CachedFramelet const& found = held(static_cast<std::int32_t>(slot));
-        return found.tile.code == 0 || found.is_spare ? nullptr : &found;
+        return tile_at_slot(slot) == no_tile ? nullptr : &held(static_cast<std::int32_t>(slot));
+    }
+    /// Its tile, without a look at it; `no_tile` where there is nothing.
+    Tile tile_at_slot(std::size_t slot) const { return slot_tiles_[slot]; }
+    /// Of the framelet that `find` finds, without a look at it: another number for another framelet; 0 where there is
+    /// none.
+    std::uint64_t version_of(int depth, int column, int row) const {
+        Level const& l = level(depth);
+        if (column < 0 || row < 0 || column >= l.columns || row >= l.rows) {
+            return 0;
+        }
+        std::int32_t const slot = node(depth, column, row).slot;
+        return slot == no_slot ? 0 : slot_versions_[static_cast<std::size_t>(slot)];
+    }
+    /// Of a block of the picture: changes where what is in place there changes. 0 where nothing ever was, and outside
+    /// of the picture.
+    std::uint64_t block_version(int column, int row) const {
+        Level const& blocks = level(plane_.pixel_depth());
+        return column < blocks.columns && row < blocks.rows
+                   ? block_versions_[static_cast<std::size_t>(row) * static_cast<std::size_t>(blocks.columns) +
+                                     static_cast<std::size_t>(column)]
+                   : 0;
     }
     /// In no particular order.
     std::span<Spare const> spares() const { return spares_.all(); }
@@ -166,11 +188,16 @@ private:
     std::vector<Level> levels_;
     std::vector<Node> nodes_;
     std::vector<std::unique_ptr<Chunk>> chunks_;
+    std::vector<Tile> slot_tiles_; ///< of what is in place
+    std::vector<std::uint64_t> slot_versions_; ///< the number of insertions when it came
     std::vector<std::int32_t> free_slots_;
     SparePool spares_;
     std::vector<HeldView> views_;
     std::size_t shape_bytes_ = 0; ///< what the shapes hold besides
     std::vector<std::uint8_t> changed_blocks_; ///< a byte for each block, in rows
+    std::vector<std::uint64_t> block_versions_; ///< the number of changes when they changed last
+    std::uint64_t changes_ = 0;
+    std::uint64_t insertions_ = 0;
     std::size_t count_ = 0;
     bool has_changes_ = false;
 };

@@ -88,7 +88,7 @@ FrameletWarp::FrameletWarp(FrameletCache const& cache, Camera const& display, Sc
 void FrameletWarp::add(CachedFramelet const& framelet, std::vector<WarpPatch>& patches, std::vector<Splat>& splats) {
     HeldShape const& shape = framelet.shape;
     WarpPatch common;
-    common.side = shape.side;
+    common.side = common.stride = shape.side;
     common.grid = shape.side == framelet_side ? framelet.samples.data() : shape.reduced.data();
     common.group = static_cast<std::int32_t>(framelet.view) * 16 + framelet.tile.depth();
     common.batch = framelet.moment.batch;
@@ -116,16 +116,17 @@ void FrameletWarp::add(CachedFramelet const& framelet, std::vector<WarpPatch>& p
 }
 
 void FrameletWarp::add(MergedFramelet const& merged, std::vector<WarpPatch>& patches) {
-    CachedFramelet const& first = *merged.first;
     WarpPatch patch;
+    patch.grid = merged.grid;
     patch.side = merged.side;
-    patch.group = static_cast<std::int32_t>(first.view) * 16 + first.tile.depth();
+    patch.stride = merged.stride;
+    patch.group = static_cast<std::int32_t>(merged.view) * 16 + merged.first.depth();
     patch.batch = merged.newest_batch;
     patch.is_whole = true;
-    patch.place = first.tile.code * 4;
+    patch.place = merged.first.code * 4;
     rect_ = cache_.plane().tile_rect(merged.tile);
     spacing_ = static_cast<double>(rect_.width()) / merged.side;
-    add_layer(first.view, merged.layer, merged.signature, patch, patches);
+    add_layer(merged.view, merged.layer, merged.signature, patch, patches);
 }
 
 void FrameletWarp::add_layer(std::uint32_t view, HeldLayer const& layer, std::uint64_t content, WarpPatch& patch,
@@ -140,13 +141,13 @@ void FrameletWarp::add_layer(std::uint32_t view, HeldLayer const& layer, std::ui
     }
 }
 
-double FrameletWarp::inverse_depth_within(double pixels, CachedFramelet const& framelet) {
-    Layer const& layer = framelet.shape.layers[0].layer;
-    turn_to(framelet.view, layer.body, layer.velocity);
+double FrameletWarp::inverse_depth_within(double pixels, MergedFramelet const& merged) {
+    Layer const& layer = merged.layer.layer;
+    turn_to(merged.view, layer.body, layer.velocity);
     if (is_still_) {
         return 0;
     }
-    PixelRect const rect = cache_.plane().tile_rect(framelet.tile);
+    PixelRect const rect = cache_.plane().tile_rect(merged.tile);
     glm::dvec2 const middle = 0.5 * glm::dvec2(rect.width(), rect.height());
     double const w = layer.at + layer.dx * middle.x + layer.dy * middle.y;
     double const z = transform_.map(rect.left + middle.x, rect.top + middle.y, w).z;

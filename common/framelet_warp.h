@@ -7,21 +7,11 @@
 #include <vector>
 
 #include "common/body_motion.h"
+#include "common/fine_merge.h"
 #include "common/reprojection.h"
 #include "common/warp_patch.h"
 
 namespace framelet {
-
-/// Neighbouring framelets that show one plane, as one of `side` x `side` samples.
-struct MergedFramelet {
-    Tile tile; ///< that they are below
-    CachedFramelet const* first = nullptr; ///< of them; the others have its view and its depth
-    HeldLayer layer; ///< the pixels are from the corner of `tile`
-    std::int32_t side = 0;
-    std::uint64_t newest_batch = 0;
-    std::uint64_t signature = 0; ///< differs where what is held differs
-    std::vector<PackedSample> grid; ///< in rows
-};
 
 /// Transforms one framelet after the other; neighbours mostly share view and body. What is not finite or too large for
 /// single precision does not show.
@@ -30,12 +20,11 @@ public:
     FrameletWarp(FrameletCache const& cache, Camera const& display, SceneTime time, BodyMotions const& motions);
 
     void add(CachedFramelet const& framelet, std::vector<WarpPatch>& patches, std::vector<Splat>& splats);
-    /// The patch's `grid` is left to be set.
     void add(MergedFramelet const& merged, std::vector<WarpPatch>& patches);
 
-    /// By how much inverse depths may differ from the framelet's first layer so that nobody sees it: shown less than so
-    /// many pixels off, anywhere in the picture, and as good as equal. 0 where it stays in its place or is the sky.
-    double inverse_depth_within(double pixels, CachedFramelet const& framelet);
+    /// By how much inverse depths may differ from the plane so that nobody sees it: shown less than so many pixels off,
+    /// anywhere in the picture, and as good as equal. 0 where it stays in its place or is the sky.
+    double inverse_depth_within(double pixels, MergedFramelet const& merged);
 
 private:
     void turn_to(std::uint32_t view, BodyNumber body, Vec3 const& velocity);

@@ -55,8 +55,8 @@ public:
         Row<n> const& above = own_[static_cast<std::size_t>(other)];
         Row<n> const& across = beside_[static_cast<std::size_t>(other)];
         for (std::size_t x = first; x < last; ++x) {
-            FarthestOfFour const four({9, 3, 3, 1}, own.inverse_depth[x], beside.inverse_depth[x],
-                                      above.inverse_depth[x], across.inverse_depth[x]);
+            FarthestOfFour<float> const four({9, 3, 3, 1}, own.inverse_depth[x], beside.inverse_depth[x],
+                                             above.inverse_depth[x], across.inverse_depth[x]);
             out.red[x] = four.mean(own.red[x], beside.red[x], above.red[x], across.red[x]);
             out.green[x] = four.mean(own.green[x], beside.green[x], above.green[x], across.green[x]);
             out.blue[x] = four.mean(own.blue[x], beside.blue[x], above.blue[x], across.blue[x]);
@@ -206,7 +206,11 @@ void write_holes(FarGrid<16> const& twos, std::span<float const> inverse_depth, 
     for (int y = 0; y < std::min(block_side, picture.height - top); ++y) {
         float const* const depth =
             inverse_depth.data() + static_cast<std::size_t>(top + y) * static_cast<std::size_t>(picture.width) + left;
-        if (std::all_of(depth, depth + width, [](float value) { return value > hole_depth; })) {
+        float least = INFINITY;
+        for (int x = 0; x < width; ++x) {
+            least = std::min(least, depth[x]);
+        }
+        if (least > hole_depth) {
             continue;
         }
         pushed.row(parent(y), other(y), 0, block_side, row);

@@ -5,19 +5,18 @@
 #include <array>
 #include <cstdint>
 
+#include "common/lanes.h"
 #include "common/warp_plan.h"
 
 namespace framelet {
 
 /// Pixels of a row that are worked on together: half a block, since patches seldom begin where blocks do.
-inline constexpr int sampling_lanes = FrameletCache::block_side / 2;
+inline constexpr int sampling_lanes = lane_count;
+static_assert(sampling_lanes == FrameletCache::block_side / 2);
 
 /// What a patch or a splat shows at each of them: sums of weights and weighted sums of squares of bytes.
 struct Candidate {
-    template <class T>
-    using Lanes = std::array<T, static_cast<std::size_t>(sampling_lanes)>;
-
-    alignas(64) Lanes<float> red, green, blue, weight, inverse_depth;
+    FloatLanes red, green, blue, weight, inverse_depth;
 };
 
 /// The square of a byte, which stands for linear light.
@@ -29,9 +28,8 @@ inline float square(std::uint32_t byte) {
 /// The same for some rows of a block.
 using CandidateRows = std::array<Candidate, static_cast<std::size_t>(FrameletCache::block_side)>;
 
-/// In `rows` rows, the first pixel of the first of which lies (x, y) from the centre of the box's first pixel. `in_box`
-/// is 1 for lanes in the box, 0 for others, which get no weight.
-void sample_patch(WarpPatch const& patch, float x, float y, int rows, Candidate::Lanes<float> const& in_box,
-                  CandidateRows& out);
+/// In `rows` rows, the first pixel of the first of which lies (x, y) from the centre of the box's first pixel. Pixels
+/// outside of the box, which are only beside it, get no weight.
+void sample_patch(WarpPatch const& patch, float x, float y, int rows, CandidateRows& out);
 
 } // namespace framelet

@@ -26,59 +26,71 @@ struct Layers {
     alignas(64) std::array<std::int32_t, pixels> group;
 };
 
-/// Lets candidates compete with what half a row of the block has. Of two that cover firmly or both do not, the
-/// clearly nearer one wins; else the one that was there, which is newer. Those of one group on one surface add up.
-void merge_row(Candidate const& row, std::int32_t group, float tolerance, std::size_t first, Layers& layers) {
-    float* const red = layers.red.data() + first;
-    float* const green = layers.green.data() + first;
-    float* const blue = layers.blue.data() + first;
-    float* const weight = layers.weight.data() + first;
-    float* const inverse_depth = layers.inverse_depth.data() + first;
-    std::int32_t* const groups = layers.group.data() + first;
-#pragma GCC ivdep // rows of distinct arrays
-    for (int i = 0; i < lanes; ++i) {
-        auto const k = static_cast<std::size_t>(i);
-        float const own = row.weight[k];
-        float const depth = row.inverse_depth[k];
-        float const there = inverse_depth[k];
-        float const limit = tolerance + same_surface * depth;
-        bool const shows = own > faint;
-        bool const is_firm = own >= firm;
-        bool const was_firm = weight[k] >= firm;
-        bool const joins = shows & (groups[k] == group) & (std::abs(depth - there) <= limit);
-        bool const wins = shows & ((is_firm & !was_firm) | ((is_firm == was_firm) & (depth > there + limit)));
-        float const keep = (wins & !joins) ? 0.0f : 1.0f;
-        float const take = (wins | joins) ? 1.0f : 0.0f;
-        red[k] = keep * red[k] + take * row.red[k];
-        green[k] = keep * green[k] + take * row.green[k];
-        blue[k] = keep * blue[k] + take * row.blue[k];
-        weight[k] = keep * weight[k] + take * own;
-        bool const replaces = wins & !joins;
-        inverse_depth[k] = replaces ? depth : there;
-        groups[k] = replaces ? group : groups[k];
-    }
+/// Lets candidates compete with what pixels of a row have. Of two that cover firmly or both do not, the clearly nearer
+/// one wins; else the one that was there, which is newer. Those of one group on one surface add up.
+void merge_row(Candidate const& candidate, std::int32_t group, float tolerance, std::size_t first, Layers& layers) {
+    FloatLanes const there = load_lanes(&layers.inverse_depth[first]);
+    FloatLanes const weight = load_lanes(&layers.weight[first]);
+    IntLanes const groups = load_lanes(&layers.group[first]);
+    FloatLanes const depth = candidate.inverse_depth;
+    FloatLanes const limit = tolerance + same_surface * depth;
+    IntLanes const shows = candidate.weight > faint;
+    IntLanes const is_firm = candidate.weight >= firm;
+    IntLanes const was_firm = weight >= firm;
+    IntLanes const joins = shows & (groups == group) & (depth - there <= limit) & (there - depth <= limit);
+    IntLanes const wins = shows & ((is_firm & ~was_firm) | (~(is_firm ^ was_firm) & (depth > there + limit)));
+    IntLanes const replaces = wins & ~joins;
+    FloatLanes const zero{};
+    FloatLanes const one = zero + 1;
+    FloatLanes const keep = replaces ? zero : one;
+    FloatLanes const take = (wins | joins) ? one : zero;
+    store_lanes(keep * load_lanes(&layers.red[first]) + take * candidate.red, &layers.red[first]);
+    store_lanes(keep * load_lanes(&layers.green[first]) + take * candidate.green, &layers.green[first]);
+    store_lanes(keep * load_lanes(&layers.blue[first]) + take * candidate.blue, &layers.blue[first]);
+    store_lanes(keep * weight + take * candidate.weight, &layers.weight[first]);
+    store_lanes(replaces ? depth : there, &layers.inverse_depth[first]);
+    store_lanes(replaces ? IntLanes{} + group : groups, &layers.group[first]);
 }
 
 void paint_layer(WarpPatch const& patch, int left, int top, Layers& layers) {
     CandidateRows rows;
     int const first_row = std::max(patch.box.top - top, 0);
     int const row_count = std::min(patch.box.bottom - top, side) - first_row;
-    for (int x = 0; x < side; x += lanes) {
-        int const first = patch.box.left - left - x;
-        int const last = patch.box.right - left - x;
-        if (first >= lanes || last <= 0) {
-            continue;
-        }
-        Candidate::Lanes<float> in_box;
-        for (int i = 0; i < lanes; ++i) {
-            in_box[static_cast<std::size_t>(i)] = ((i >= first) & (i < last)) ? 1.0f : 0.0f;
-        }
-        sample_patch(patch, static_cast<float>(-first), static_cast<float>(top + first_row - patch.box.top), row_count,
-                     in_box, rows);
+    int const first = std::max(patch.box.left - left, 0);
+    int const last = std::min(patch.box.right - left, side);
+    auto const paint = [&](int x) {
+        sample_patch(patch, static_cast<float>(left + x - patch.box.left),
+                     static_cast<float>(top + first_row - patch.box.top), row_count, rows);
         for (int i = 0; i < row_count; ++i) {
             merge_row(rows[static_cast<std::size_t>(i)], patch.group, patch.tolerance,
                       static_cast<std::size_t>((first_row + i) * side + x), layers);
         }
+    };
+    if (last - first <= lanes) {
+        paint(std::min(first, side - lanes));
+    } else {
+        paint(0);
+        paint(lanes);
+    }
+}
+
+/// Fetches from memory the rows of the grid that painting will read, about.
+void prefetch_grid(WarpPatch const& patch, int left, int top) {
+    constexpr int line = 64 / sizeof(PackedSample);
+    auto const x = static_cast<float>(std::max(left - patch.box.left, 0));
+    int const first_row = std::max(top - patch.box.top, 0);
+    int const last_row = std::min(top + side, patch.box.bottom) - patch.box.top;
+    float const step = 1 / std::max(patch.at[2], 1e-3f);
+    float const u = (patch.at[0] + x * patch.dx[0]) * step;
+    float const v = (patch.at[1] + x * patch.dx[1]) * step;
+    float const last = static_cast<float>(patch.side - 1);
+    int const column = static_cast<int>(std::clamp(u, 0.0f, last));
+    int const from = static_cast<int>(std::clamp(v + static_cast<float>(first_row) * patch.dy[1] * step, 0.0f, last));
+    int const to = static_cast<int>(std::clamp(v + static_cast<float>(last_row) * patch.dy[1] * step, 0.0f, last));
+    PackedSample const* const grid = patch.grid + column;
+    for (int row = from; row <= to; ++row) {
+        __builtin_prefetch(grid + row * patch.stride);
+        __builtin_prefetch(grid + row * patch.stride + line);
     }
 }
 
@@ -92,22 +104,20 @@ void paint_splat(Splat const& splat, std::int32_t group, int left, int top, Laye
     if (x + splat.spacing < 0 || x - splat.spacing > side - 1) {
         return;
     }
+    FloatLanes const zero{};
     Candidate half;
     for (int from = 0; from < side; from += lanes) {
         if (x + splat.spacing < static_cast<float>(from) || x - splat.spacing > static_cast<float>(from + lanes - 1)) {
             continue;
         }
+        FloatLanes const distance = lane_numbers + (static_cast<float>(from) - x);
+        FloatLanes const wx = larger(1 - larger(distance, -distance) * scale, zero);
         for (int j = first_row; j <= last_row; ++j) {
-            float const wy = std::max(1 - std::abs(static_cast<float>(j) - y) * scale, 0.0f);
-            for (int i = 0; i < lanes; ++i) {
-                auto const k = static_cast<std::size_t>(i);
-                float const weight = wy * std::max(1 - std::abs(static_cast<float>(from + i) - x) * scale, 0.0f);
-                half.weight[k] = weight;
-                half.red[k] = weight * square(red_of(splat.sample));
-                half.green[k] = weight * square(green_of(splat.sample));
-                half.blue[k] = weight * square(blue_of(splat.sample));
-                half.inverse_depth[k] = splat.inverse_depth;
-            }
+            half.weight = wx * std::max(1 - std::abs(static_cast<float>(j) - y) * scale, 0.0f);
+            half.red = half.weight * square(red_of(splat.sample));
+            half.green = half.weight * square(green_of(splat.sample));
+            half.blue = half.weight * square(blue_of(splat.sample));
+            half.inverse_depth = zero + splat.inverse_depth;
             merge_row(half, group, 0, static_cast<std::size_t>(j * side + from), layers);
         }
     }
@@ -115,18 +125,26 @@ void paint_splat(Splat const& splat, std::int32_t group, int left, int top, Laye
 
 /// Divides by the weights.
 void finish(Layers const& layers, int width, int height, WarpedBlock& block) {
-    for (std::size_t i = 0; i < pixels; ++i) {
-        float const scale = layers.weight[i] > 0 ? 1 / layers.weight[i] : 0.0f;
-        block.squares[0][i] = scale * layers.red[i];
-        block.squares[1][i] = scale * layers.green[i];
-        block.squares[2][i] = scale * layers.blue[i];
-        block.inverse_depth[i] = layers.weight[i] > 0 ? layers.inverse_depth[i] : hole_depth;
+    FloatLanes const zero{};
+    for (std::size_t i = 0; i < pixels; i += lanes) {
+        FloatLanes const weight = load_lanes(&layers.weight[i]);
+        IntLanes const shows = weight > 0;
+        FloatLanes const scale = shows ? 1 / weight : zero;
+        store_lanes(scale * load_lanes(&layers.red[i]), &block.squares[0][i]);
+        store_lanes(scale * load_lanes(&layers.green[i]), &block.squares[1][i]);
+        store_lanes(scale * load_lanes(&layers.blue[i]), &block.squares[2][i]);
+        store_lanes(shows ? load_lanes(&layers.inverse_depth[i]) : zero + hole_depth, &block.inverse_depth[i]);
+    }
+    IntLanes holes{};
+    IntLanes const numbers{0, 1, 2, 3, 4, 5, 6, 7};
+    for (int y = 0; y < std::min(height, side); ++y) {
+        for (int x = 0; x < side; x += lanes) {
+            holes -= (numbers < width - x) & ~(load_lanes(&layers.weight[static_cast<std::size_t>(y * side + x)]) > 0);
+        }
     }
     block.holes = 0;
-    for (int y = 0; y < std::min(height, side); ++y) {
-        for (int x = 0; x < side; ++x) {
-            block.holes += ((x < width) & !(layers.weight[static_cast<std::size_t>(y * side + x)] > 0)) ? 1 : 0;
-        }
+    for (int k = 0; k < lanes; ++k) {
+        block.holes += holes[k];
     }
 }
 
@@ -142,7 +160,11 @@ void paint_warped_block(std::span<PatchView const> patches, int column, int row,
     }
     layers.inverse_depth.fill(hole_depth);
     layers.group.fill(-1);
-    for (PatchView const& view : patches) {
+    for (std::size_t i = 0; i < patches.size(); ++i) {
+        if (i + 1 < patches.size()) {
+            prefetch_grid(*patches[i + 1].patch, left, top);
+        }
+        PatchView const& view = patches[i];
         WarpPatch const& patch = *view.patch;
         if (patch.layer == FrameletShape::loose) {
             for (std::uint32_t k = 0; k < patch.splats; ++k) {

@@ -18,6 +18,7 @@ struct WarpPatch {
     PixelRect box; ///< that holds all of it, clipped to the viewport
     PackedSample const* grid = nullptr;
     std::int32_t side = 0; ///< of the grid
+    std::int32_t stride = 0; ///< from one of its rows to the next
     std::uint32_t layer = 0; ///< or FrameletShape::loose
     std::int32_t group = 0; ///< same view, same scene time, same spacing: its samples are interpolated with the others'
     std::uint32_t first_splat = 0, splats = 0; ///< of loose samples, in the chunk

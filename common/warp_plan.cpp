@@ -1,6 +1,7 @@
 #include "common/warp_plan.h"
 
 #include <algorithm>
+#include <array>
 
 #include <tbb/parallel_for.h>
 
@@ -46,20 +47,14 @@ std::size_t block_count(PixelRect const& box) {
     return static_cast<std::size_t>(blocks.width()) * static_cast<std::size_t>(blocks.height());
 }
 
-/// Fetches from memory what merging reads of those framelets below a tile that are so many levels finer.
-/// (Where a picture is held as fine framelets they are far apart, and waiting for each costs more than all the rest.)
-void prefetch_below(FrameletCache const& cache, Tile over, int levels) {
-    int const n = 1 << levels;
-    for (int i = 0; i < n * n; ++i) {
-        CachedFramelet const* const framelet =
-            cache.find(over.depth() + levels, n * static_cast<int>(over.column()) + i % n,
-                       n * static_cast<int>(over.row()) + i / n);
-        if (framelet == nullptr) {
-            return; // not all of them are there, so most will not be looked at
-        }
+/// Framelets are far apart in memory: what is needed of one is fetched while those before it are worked on.
+constexpr std::size_t fetched_ahead = 4;
+
+void prefetch(CachedFramelet const* framelet) {
+    if (framelet != nullptr) {
         __builtin_prefetch(framelet);
         __builtin_prefetch(&framelet->shape.layers);
-        __builtin_prefetch(&framelet->shape.reduced);
+        __builtin_prefetch(&framelet->shape.loose);
     }
 }
 
@@ -78,14 +73,22 @@ void WarpPlan::make(FrameletCache const& cache, Camera const& display, SceneTime
                     BodyMotions const& motions) {
     set_size(cache.plane().viewport());
     std::size_t const blocks = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
-    std::size_t const squares = square_count(columns_) * square_count(rows_);
+    std::size_t const squares = cache.plane().pixel_depth() > 0 ? square_count(columns_) * square_count(rows_) : 0;
     std::size_t const square_chunks = (squares + squares_per_chunk - 1) / squares_per_chunk;
     chunks_.resize(square_chunks + cache.slot_count() / slots_per_chunk);
     merged_.assign(blocks, 0);
+    squares_.resize(squares);
     tbb::parallel_for(std::size_t{0}, square_chunks, [&](std::size_t i) {
+        Chunk& chunk = chunks_[i];
+        chunk.patches.clear();
         FrameletWarp warp(cache, display, display_time, motions);
+        std::size_t const columns = square_count(columns_);
         std::size_t const first = i * squares_per_chunk;
-        merge_squares(cache, first, std::min(first + squares_per_chunk, squares), warp, chunks_[i]);
+        for (std::size_t index = first; index < std::min(first + squares_per_chunk, squares); ++index) {
+            Tile const tile = make_tile(cache.plane().pixel_depth() - 1, static_cast<std::uint32_t>(index % columns),
+                                        static_cast<std::uint32_t>(index / columns));
+            merge_square(cache, tile, squares_[index], warp, chunk.patches);
+        }
     });
     tbb::parallel_for(square_chunks, chunks_.size(), [&](std::size_t i) {
         Chunk& chunk = chunks_[i];
@@ -93,11 +96,17 @@ void WarpPlan::make(FrameletCache const& cache, Camera const& display, SceneTime
         chunk.splats.clear();
         FrameletWarp warp(cache, display, display_time, motions);
         std::size_t const first = (i - square_chunks) * slots_per_chunk;
+        std::array<CachedFramelet const*, slots_per_chunk + fetched_ahead> alone{};
+        std::size_t count = 0;
         for (std::size_t slot = first; slot < first + slots_per_chunk; ++slot) {
-            CachedFramelet const* const framelet = cache.at_slot(slot);
-            if (framelet != nullptr && !is_merged(cache.plane(), framelet->tile)) {
-                warp.add(*framelet, chunk.patches, chunk.splats);
+            Tile const tile = cache.tile_at_slot(slot);
+            if (tile != no_tile && !is_merged(cache.plane(), tile)) {
+                alone[count++] = cache.at_slot(slot);
             }
+        }
+        for (std::size_t k = 0; k < count; ++k) {
+            prefetch(alone[k + fetched_ahead]);
+            warp.add(*alone[k], chunk.patches, chunk.splats);
         }
     });
     limit_entries();
@@ -129,75 +138,35 @@ void WarpPlan::set_size(Viewport viewport) {
 }
 
 /// Framelets of one depth are merged in the largest squares possible: 2x2 blocks, one, a quarter of one.
-void WarpPlan::merge_squares(FrameletCache const& cache, std::size_t first, std::size_t last, FrameletWarp& warp,
-                             Chunk& chunk) {
-    chunk.patches.clear();
-    int const depth = cache.plane().pixel_depth();
-    auto const square_at = [&](std::size_t index) {
-        std::size_t const columns = square_count(columns_);
-        return make_tile(depth - 1, static_cast<std::uint32_t>(index % columns),
-                         static_cast<std::uint32_t>(index / columns));
-    };
-    auto const merge = [&](Tile over, int fine_depth) {
-        int const n = 1 << (fine_depth - over.depth());
-        CachedFramelet const* const corner =
-            cache.find(fine_depth, n * static_cast<int>(over.column()), n * static_cast<int>(over.row()));
-        if (corner == nullptr || corner->shape.layer_count != 1) {
+void WarpPlan::merge_square(FrameletCache const& cache, Tile tile, Square& square, FrameletWarp& warp,
+                            std::vector<WarpPatch>& patches) {
+    auto const merge = [&](FineSquare& fine, int levels, std::uint32_t index) {
+        MergedFramelet const* const merged = fine.merged(levels, index);
+        if (merged == nullptr || !(merged->difference <= warp.inverse_depth_within(merging_pixels, *merged))) {
             return false;
         }
-        double const tolerance = warp.inverse_depth_within(merging_pixels, *corner);
-        if (chunk.merged.size() == chunk.patches.size()) {
-            chunk.merged.emplace_back();
-        }
-        MergedFramelet& merged = chunk.merged[chunk.patches.size()];
-        if (!merge_fine(cache, over, fine_depth, tolerance, merged)) {
-            return false;
-        }
-        warp.add(merged, chunk.patches); // nothing where it does not show
+        warp.add(*merged, patches); // nothing where it does not show
         return true;
     };
-    auto const merge_block = [&](Tile block, bool is_fine, bool is_finest) {
-        if (!is_fine && merge(block, depth + 1)) {
-            set_merged(block, 0, merged_fine);
+    constexpr std::array<unsigned, finest_levels + 1> whole{merged_pixels, merged_fine, merged_finest};
+    for (std::size_t finer = 0; finer <= finest_levels; ++finer) {
+        FineSquare& fine = square[finer];
+        fine.update(cache, tile, tile.depth() + 1 + static_cast<int>(finer));
+        if (merge(fine, 0, 0)) {
+            set_merged(tile, 1, whole[finer]);
+            continue;
         }
-        if (is_finest) {
-            return;
-        }
-        if (merge(block, depth + 2)) {
-            set_merged(block, 0, merged_finest);
-            return;
-        }
-        for (std::uint32_t quarter = 0; quarter < 4; ++quarter) {
-            if (merge(block.child(quarter), depth + 2)) {
-                set_merged(block, 0, 2u << quarter);
+        for (std::uint32_t block = 0; finer > 0 && block < FineSquare::blocks; ++block) {
+            if (merge(fine, 1, block)) {
+                set_merged(tile.child(block), 0, whole[finer]);
+                continue;
+            }
+            for (std::uint32_t quarter = 0; finer == finest_levels && quarter < 4; ++quarter) {
+                if (merge(fine, 2, 4 * block + quarter)) {
+                    set_merged(tile.child(block), 0, 2u << quarter);
+                }
             }
         }
-    };
-    if (depth == 0) {
-        merge_block(Tile{}, false, false);
-    }
-    for (std::size_t i = first; i < last && depth > 0; ++i) {
-        if (i + 1 < last) {
-            prefetch_below(cache, square_at(i + 1), 2);
-            prefetch_below(cache, square_at(i + 1), 3);
-        }
-        Tile const square = square_at(i);
-        if (merge(square, depth)) {
-            set_merged(square, 1, merged_pixels);
-        }
-        bool const is_fine = merge(square, depth + 1);
-        bool const is_finest = merge(square, depth + 2);
-        if (is_fine || is_finest) {
-            set_merged(square, 1, (is_fine ? merged_fine : 0u) | (is_finest ? merged_finest : 0u));
-        }
-        for (std::uint32_t quarter = 0; quarter < 4; ++quarter) {
-            if (is_block(square.child(quarter))) {
-                merge_block(square.child(quarter), is_fine, is_finest);
-            }
-        }
-    }
-    for (std::size_t i = 0; i < chunk.patches.size(); ++i) {
-        chunk.patches[i].grid = chunk.merged[i].grid.data();
     }
 }
 

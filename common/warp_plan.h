@@ -9,6 +9,7 @@
 #include "common/body_motion.h"
 #include "common/fine_merge.h"
 #include "common/framelet_cache.h"
+#include "common/framelet_warp.h"
 #include "common/warp_patch.h"
 
 namespace framelet {
@@ -19,7 +20,8 @@ public:
     /// newest ones are.
     static constexpr std::size_t most_patches_per_block = 256;
 
-    /// Replaces the plan. Runs in parallel; allocates only where more is held than ever before.
+    /// Replaces the plan; `cache` is always the same one. Runs in parallel; allocates only where more is held than ever
+    /// before.
     void make(FrameletCache const& cache, Camera const& display, SceneTime display_time, BodyMotions const& motions);
 
     /// The same for the cache's spares.
@@ -38,12 +40,14 @@ private:
     struct Chunk {
         std::vector<WarpPatch> patches;
         std::vector<Splat> splats;
-        std::vector<MergedFramelet> merged; ///< one for each patch and room for more, or none
     };
 
+    /// Below one square of 2x2 blocks: framelets of one sample a pixel, then finer ones.
+    using Square = std::array<FineSquare, finest_levels + 1>;
+
     void set_size(Viewport viewport);
-    void merge_squares(FrameletCache const& cache, std::size_t first, std::size_t last, FrameletWarp& warp,
-                       Chunk& chunk);
+    void merge_square(FrameletCache const& cache, Tile tile, Square& square, FrameletWarp& warp,
+                      std::vector<WarpPatch>& patches);
     void set_merged(Tile over, int levels, unsigned flags);
     bool is_block(Tile tile) const {
         return static_cast<int>(tile.column()) < columns_ && static_cast<int>(tile.row()) < rows_;
@@ -56,6 +60,7 @@ private:
     void make_bins();
 
     int columns_ = 0, rows_ = 0;
+    std::vector<Square> squares_; ///< in rows; none where a block is all there is
     std::vector<Chunk> chunks_; ///< of squares of 2x2 blocks, then of slots
     /// By block: bit 0 where the framelets one level finer than pixels are merged, bit 1 + i where those two levels
     /// finer are in quarter i, bit 5 where that of one sample a pixel is.

@@ -79,13 +79,13 @@ double cpu_seconds_to(std::function<void()> const& work) {
     return cpu_seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
 }
 
-/// One stage on one thread beside a memcpy of the bytes it has to move.
-json measure_stage(int rounds, double units, std::size_t bytes, std::function<void()> const& stage) {
+/// One stage on one thread, which returns its processor time, beside a memcpy of the bytes it has to move.
+json measure_seconds(int rounds, double units, std::size_t bytes, std::function<double()> const& stage) {
     std::vector<std::byte> from(bytes), to(bytes);
     std::vector<double> stage_ns, copy_ns, ratios;
     for (int round = 0; round < rounds; ++round) {
         double const copy = cpu_seconds_to([&] { std::memcpy(to.data(), from.data(), bytes); });
-        double const work = cpu_seconds_to(stage);
+        double const work = stage();
         stage_ns.push_back(1e9 * work / units);
         copy_ns.push_back(1e9 * copy / units);
         ratios.push_back(work / copy);
@@ -93,9 +93,15 @@ json measure_stage(int rounds, double units, std::size_t bytes, std::function<vo
     return {{"ns", median(stage_ns)}, {"memcpy_ns", median(copy_ns)}, {"times_memcpy", median(ratios)}};
 }
 
+json measure_stage(int rounds, double units, std::size_t bytes, std::function<void()> const& stage) {
+    return measure_seconds(rounds, units, bytes, [&] { return cpu_seconds_to(stage); });
+}
+
 /// Everything held was taken with the scene's camera by `levels` levels more than a sample a pixel; the camera moves a
-/// little on for each picture, so that every pixel changes.
-json measure_reprojection(BenchScene& scene, LimitsOptions const& options, int levels) {
+/// little on for each picture, so that every pixel changes. `arriving`: every fifth framelet is replaced before each
+/// picture, which is not counted.
+json measure_reprojection(BenchScene& scene, LimitsOptions const& options, int levels, bool arriving) {
+    constexpr std::size_t parts = 5;
     constexpr int pictures = 4; // a round
     ImagePlane const plane(options.viewport);
     Tiling const tiling = make_uniform_tiling(plane, plane.pixel_depth() + levels);
@@ -104,30 +110,39 @@ json measure_reprojection(BenchScene& scene, LimitsOptions const& options, int l
     float const depth = median_depth(rendered);
     LayerTolerance const tolerance = layer_tolerance(depth, make_view_rays(scene.camera, options.viewport));
     FrameletCache cache(plane);
-    Batch batch;
-    batch.view = {1, scene.camera, options.viewport};
-    batch.framelets.resize(1);
-    batch.shapes.resize(1);
-    for (Framelet const& framelet : rendered) {
-        ++batch.number;
-        batch.framelets[0] = to_display(framelet, scene.exposure);
-        fit_layers(framelet, plane, tolerance, batch.shapes[0]);
+    std::array<Batch, parts> batches;
+    for (std::size_t part = 0; part < parts; ++part) {
+        Batch& batch = batches[part];
+        batch.number = part + 1;
+        batch.view = {1, scene.camera, options.viewport};
+        for (std::size_t i = part; i < rendered.size(); i += parts) {
+            batch.framelets.push_back(to_display(rendered[i], scene.exposure));
+            fit_layers(rendered[i], plane, tolerance, batch.shapes.emplace_back());
+        }
         cache.insert(batch);
     }
     tbb::global_control const one_thread(tbb::global_control::max_allowed_parallelism, 1);
     Reprojector reprojector;
     Picture picture(options.viewport.width, options.viewport.height);
-    std::vector<PixelRect> changed;
-    int shown = 0;
+    std::vector<PixelRect> arrived, changed;
+    std::size_t shown = 0;
     double const pixels = static_cast<double>(picture.rgba.size() / 4);
-    return measure_stage(options.rounds, pictures * pixels, pictures * picture.rgba.size(), [&] {
+    return measure_seconds(options.rounds, pictures * pixels, pictures * picture.rgba.size(), [&] {
+        double seconds = 0;
         for (int i = 0; i < pictures; ++i) {
+            Batch& batch = batches[shown % parts];
+            if (arriving) {
+                batch.number += parts;
+                cache.insert(batch);
+            }
+            cache.take_changed(arrived);
             auto const way = static_cast<float>(++shown);
             Camera camera = scene.camera;
             camera.position += 1e-3f * way * depth * scene.camera.right();
             camera.orientation = glm::normalize(glm::angleAxis(2e-3f * way, Vec3(0, 1, 0)) * camera.orientation);
-            reprojector.show(cache, {}, camera, 0, {}, picture, changed);
+            seconds += cpu_seconds_to([&] { reprojector.show(cache, arrived, camera, 0, {}, picture, changed); });
         }
+        return seconds;
     });
 }
 
@@ -229,7 +244,10 @@ json measure_limits(BenchScene& scene, LimitsOptions const& options) {
     std::array const reprojections{"reproject, spacing 2", "reproject, spacing 1", "reproject, spacing 1/2",
                                    "reproject, spacing 1/4"};
     for (std::size_t i = 0; i < reprojections.size(); ++i) {
-        result["stages"][reprojections[i]] = measure_reprojection(scene, options, static_cast<int>(i) - 1);
+        int const levels = static_cast<int>(i) - 1;
+        json& figures = result["stages"][reprojections[i]];
+        figures = measure_reprojection(scene, options, levels, false);
+        figures["arriving"] = measure_reprojection(scene, options, levels, true);
     }
     result["viewer"] = measure_viewer(scene, options);
 
@@ -255,6 +273,7 @@ json measure_limits(BenchScene& scene, LimitsOptions const& options) {
     print("reconstruct", "   (a pixel, insertion included)");
     for (auto const* stage : reprojections) {
         print(stage, "   (a pixel, camera moving)");
+        std::printf("    a fifth arrives for each   %8.2f\n", result["stages"][stage]["arriving"]["ns"].get<double>());
     }
     return result;
 }
