@@ -172,7 +172,8 @@ Batch BatchCodec::decode(EncodedBatch const& encoded, HeldPicture* held) {
     }
     bool const is_held = is_predicted || (held != nullptr && held->shows(viewport));
     ImagePlane const plane(viewport);
-    if ((is_held || !encoded.shapes.empty()) && !std::ranges::all_of(encoded.tiles, [&](Tile tile) { return plane.accepts(tile); })) {
+    if ((is_held || !encoded.shapes.empty()) &&
+        !std::ranges::all_of(encoded.tiles, [&](Tile tile) { return plane.accepts(tile); })) {
         throw ProtocolError("a batch has a tile that its viewport does not have");
     }
     std::vector<ByteView> const frames = split_frames(encoded.payload, group_count(count));

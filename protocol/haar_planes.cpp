@@ -32,14 +32,21 @@ constexpr unsigned detail_rounding = 22, mean_rounding = 32;
 
 /// Levels of details, the means between them cleared.
 void quantise_details(std::int16_t* fours, std::size_t count, unsigned step) {
+    if (step == 1) { // they are levels; its reciprocal would not fit 16 bits
+        for (std::size_t i = 0; i < count; i += 4) {
+            fours[i] = 0;
+        }
+        return;
+    }
     // floor(x / step) of 16-bit x, or one more where x is just below a multiple.
-    unsigned const reciprocal = 65536 / step + 1;
-    unsigned const rounding = step * detail_rounding / 64;
-    for (std::size_t i = 0; i < count; ++i) {
-        int const value = fours[i];
-        unsigned const size = static_cast<unsigned>(value < 0 ? -value : value);
-        auto const level = static_cast<int>((size + rounding) * reciprocal >> 16);
-        fours[i] = static_cast<std::int16_t>(i % 4 == 0 ? 0 : value < 0 ? -level : level);
+    auto const reciprocal = static_cast<std::uint16_t>(65536 / step + 1);
+    auto const rounding = static_cast<std::uint16_t>(step * detail_rounding / 64);
+    for (std::size_t i = 0; i < count; ++i) { // many at a time: products of 16 bits
+        std::int16_t const value = fours[i];
+        auto const sign = static_cast<std::int16_t>(value >> 15);
+        auto const size = static_cast<std::uint16_t>(static_cast<std::uint16_t>((value ^ sign) - sign) + rounding);
+        auto const level = static_cast<std::int16_t>(size * unsigned{reciprocal} >> 16);
+        fours[i] = static_cast<std::int16_t>(i % 4 == 0 ? 0 : (level ^ sign) - sign);
     }
 }
 

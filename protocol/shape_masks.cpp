@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cstddef>
+#include <cstring>
 
 #include "common/error.h"
 #include "protocol/morton_rows.h"
@@ -18,44 +21,91 @@ constexpr unsigned kinds_of(std::uint8_t head) {
 /// it goes on; all the rest are.
 constexpr std::uint8_t goes_on = 254, rest = 255;
 
-/// In raster order: the kind above, but that to the left where a horizontal edge lies between that and what is above
-/// it; in the first row that to the left; 0 for the first.
-std::uint8_t expected_kind(SamplePlane const& rows, std::size_t at) {
-    if (at < framelet_side) {
-        return at > 0 ? rows[at - 1] : std::uint8_t{0};
+/// The kinds of a framelet in raster order, with a row of none above the first one.
+class KindRows {
+public:
+    KindRows() { std::fill_n(kinds_.begin(), margin, no_kind); }
+
+    std::uint8_t* begin() { return kinds_.data() + margin; }
+    std::uint8_t& operator[](std::size_t at) { return kinds_[margin + at]; }
+
+    /// What a sample is expected to be: as the one above it, but as that to its left where a horizontal edge lies
+    /// between that and what is above it. In the first row that to the left; 0 for the first.
+    std::uint8_t expected(std::size_t at) const {
+        std::uint8_t const* const kind = kinds_.data() + margin + at;
+        if (at % framelet_side == 0) {
+            return at == 0 ? std::uint8_t{0} : kind[above];
+        }
+        return kind[-1] == kind[above - 1] ? kind[above] : kind[-1];
     }
-    std::uint8_t const above = rows[at - framelet_side];
-    if (at % framelet_side == 0) {
-        return above;
+
+    /// 1 for every sample that is not as expected, else 0.
+    SamplePlane others() const {
+        SamplePlane others;
+        for (std::ptrdiff_t at = 0; at < framelet_samples; ++at) { // many at a time
+            std::uint8_t const* const kind = kinds_.data() + margin + at;
+            bool const is_above = kind[-1] == kind[above - 1] || at % framelet_side == 0;
+            others[static_cast<std::size_t>(at)] = kind[0] != (is_above ? kind[above] : kind[-1]) ? 1 : 0;
+        }
+        others[0] = kinds_[margin] != 0 ? 1 : 0;
+        return others;
     }
-    std::uint8_t const left = rows[at - 1];
-    return left == rows[at - framelet_side - 1] ? above : left;
-}
+
+    /// Makes all from `at` to `end` what they are expected to be.
+    void extend(std::size_t at, std::size_t end) {
+        while (at < end) {
+            std::size_t const row_end = std::min(end, (at / framelet_side + 1) * framelet_side);
+            (*this)[at] = expected(at);
+            for (++at; at < row_end && !follows_above(at); ++at) {
+                (*this)[at] = (*this)[at - 1];
+            }
+            std::copy(begin() + at + above, begin() + row_end + above, begin() + at);
+            at = row_end;
+        }
+    }
+
+private:
+    /// Not of the first column: so do the rest of its row then.
+    bool follows_above(std::size_t at) const {
+        std::uint8_t const* const kind = kinds_.data() + margin + at;
+        return kind[-1] == kind[above - 1];
+    }
+
+    static constexpr std::size_t margin = 2 * framelet_side;
+    static constexpr std::ptrdiff_t above = -framelet_side;
+    static constexpr std::uint8_t no_kind = 255;
+    std::array<std::uint8_t, margin + framelet_samples> kinds_;
+};
 
 /// How far the kinds that come otherwise are from what is expected goes to `turns`, unless there are but two.
 void put_mask(FrameletShape const& shape, std::vector<std::uint8_t>& gaps, std::vector<std::uint8_t>& turns) {
     unsigned const kinds = kinds_of(shape_head(shape));
-    SamplePlane in_order, rows;
+    SamplePlane in_order;
     std::transform(shape.layer_of.begin(), shape.layer_of.end(), in_order.begin(),
                    [loose = shape.layer_count](std::uint8_t layer) { return std::min(layer, loose); });
-    to_rows(in_order.data(), rows.data(), framelet_side);
-    std::uint8_t gap = 0;
-    for (std::size_t at = 0; at < rows.size(); ++at) {
-        std::uint8_t const expected = expected_kind(rows, at);
-        if (rows[at] == expected) {
-            if (++gap == goes_on) {
-                gaps.push_back(goes_on);
-                gap = 0;
-            }
-            continue;
+    KindRows rows;
+    to_rows(in_order.data(), rows.begin(), framelet_side);
+    SamplePlane const others = rows.others();
+    std::size_t told = 0;
+    auto const tell_until = [&](std::size_t at) {
+        for (; at - told >= goes_on; told += goes_on) {
+            gaps.push_back(goes_on);
         }
-        gaps.push_back(gap);
-        gap = 0;
-        if (kinds > 2) {
-            turns.push_back(static_cast<std::uint8_t>((rows[at] + kinds - expected) % kinds));
+    };
+    for (std::size_t eight = 0; eight < framelet_samples; eight += sizeof(std::uint64_t)) {
+        std::uint64_t left;
+        for (std::memcpy(&left, &others[eight], sizeof left); left != 0; left &= left - 1) {
+            std::size_t const at = eight + static_cast<std::size_t>(std::countr_zero(left)) / 8;
+            tell_until(at);
+            gaps.push_back(static_cast<std::uint8_t>(at - told));
+            told = at + 1;
+            if (kinds > 2) {
+                turns.push_back(static_cast<std::uint8_t>((rows[at] + kinds - rows.expected(at)) % kinds));
+            }
         }
     }
-    if (gap > 0) {
+    tell_until(framelet_samples);
+    if (told < framelet_samples) {
         gaps.push_back(rest);
     }
 }
@@ -86,23 +136,22 @@ Gaps take_gaps(ByteCursor& bytes) {
 
 /// The reverse of `put_mask`: kinds in `layer_of`. `turns` is empty where there are but two.
 void read_mask(Gaps const& gaps, unsigned kinds, std::span<std::uint8_t const> turns, FrameletShape& shape) {
-    SamplePlane rows;
+    KindRows rows;
     std::size_t at = 0, turned = 0;
     for (std::uint8_t const gap : gaps.bytes) {
-        std::size_t const end = gap == rest ? rows.size() : at + gap;
-        for (; at < end; ++at) {
-            rows[at] = expected_kind(rows, at);
-        }
+        std::size_t const end = gap == rest ? framelet_samples : at + gap;
+        rows.extend(at, end);
+        at = end;
         if (gap < goes_on) {
             unsigned const turn = turns.empty() ? 1 : turns[turned++];
             if (turn == 0 || turn >= kinds) {
                 throw ProtocolError("a shape has a sample on a layer that it does not have");
             }
-            rows[at] = static_cast<std::uint8_t>((expected_kind(rows, at) + turn) % kinds);
+            rows[at] = static_cast<std::uint8_t>((rows.expected(at) + turn) % kinds);
             ++at;
         }
     }
-    from_rows(rows.data(), framelet_side, shape.layer_of.data());
+    from_rows(rows.begin(), framelet_side, shape.layer_of.data());
 }
 
 /// From kinds to layers, with place for what is loose.
