@@ -11,7 +11,10 @@ namespace framelet {
 namespace {
 
 /// First steps of the search, half pixels, and those from which on all rows are looked at, not every second one.
-constexpr int first_step = 32, exact_step = 2;
+constexpr int first_step = 32, exact_step = 1;
+/// Where a vector that was found before leaves no more than this of a framelet, 2 of a sample, the search begins near
+/// it.
+constexpr int hardly_any = 512, near_step = 4;
 constexpr int farthest = 127;
 /// What a vector must gain for each half pixel that it is longer: of two that are as good, the shorter one.
 constexpr int length_cost = 4;
@@ -131,7 +134,7 @@ PictureVector VectorSearch::find(HeldPicture const& held, DisplayFramelet const&
     for (PictureVector const vector : found_) {
         try_one(vector.x, vector.y);
     }
-    for (int step = first_step; step > 0; step /= 2) {
+    for (int step = least <= hardly_any ? near_step : first_step; step > 0; step /= 2) {
         if (step == exact_step) {
             apart = 1;
             least = std::numeric_limits<int>::max();
