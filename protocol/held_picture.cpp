@@ -19,6 +19,16 @@ std::uint8_t mean_of_four(unsigned a, unsigned b, unsigned c, unsigned d) {
     return static_cast<std::uint8_t>((a + b + c + d + 2) >> 2);
 }
 
+/// The picture is larger than the caches near the processor, and its rows are far apart: they are asked for in time.
+constexpr std::size_t rows_ahead = 12;
+constexpr int to_read = 0, to_write = 1;
+template <int use>
+void prefetch_row(std::uint8_t const* row, std::size_t size) {
+    for (std::size_t at = 0; at < size; at += cache_line) {
+        __builtin_prefetch(row + at, use);
+    }
+}
+
 /// Two rows of two samples for each value.
 void fetch_doubled(HeldPicture::Source const& from, SamplePlane& samples) {
     std::array<std::uint8_t, framelet_samples / 4> values;
@@ -97,6 +107,7 @@ void put_squares(SamplePlane const& samples, std::uint8_t* to, std::size_t strid
         std::memcpy(&row, rows.data() + y * framelet_side, sizeof row);
         Row const spread = __builtin_convertvector(row, Row) * ones;
         for (std::size_t copy = 0; copy < pitch; ++copy, to += stride) {
+            prefetch_row<to_write>(to + rows_ahead * stride, sizeof spread);
             std::memcpy(to, &spread, sizeof spread);
         }
     }
@@ -108,6 +119,7 @@ void put_squares_of_coarsest(SamplePlane const& samples, std::uint8_t* to, std::
     to_rows(samples.data(), rows.data(), framelet_side);
     for (std::size_t y = 0; y < framelet_side; ++y) {
         for (std::size_t copy = 0; copy < pitch; ++copy, to += stride) {
+            prefetch_row<to_write>(to + rows_ahead * stride, framelet_side * pitch);
             for (std::size_t x = 0; x < framelet_side; ++x) {
                 std::memset(to + x * pitch, rows[y * framelet_side + x], pitch);
             }
@@ -165,6 +177,25 @@ void HeldPicture::show(Viewport viewport) {
 HeldPicture::Place HeldPicture::place(Tile tile) const {
     PixelRect const rect = plane_.tile_rect(tile);
     return {values_per_pixel * rect.left, values_per_pixel * rect.top, values_per_pixel * rect.width()};
+}
+
+void HeldPicture::expect(Tile tile) const {
+    Place const from = place(tile);
+    for (std::size_t plane = 0; plane < values_.size(); ++plane) {
+        Source const rows = source(from, {}, plane);
+        auto const pitch = static_cast<std::size_t>(rows.pitch);
+        auto const side = static_cast<std::size_t>(from.side);
+        if (pitch <= 2) {
+            for (std::size_t y = 0; y < side; ++y) {
+                prefetch_row<to_read>(rows.first + y * rows.stride, side);
+            }
+        } else { // of the rows that a sample covers only the two in the middle are read
+            for (std::size_t y = pitch / 2 - 1; y < side; y += pitch) {
+                prefetch_row<to_read>(rows.first + y * rows.stride, side);
+                prefetch_row<to_read>(rows.first + (y + 1) * rows.stride, side);
+            }
+        }
+    }
 }
 
 void HeldPicture::predict(Tile tile, PictureVector vector, DisplayFramelet& out) const {

@@ -14,6 +14,8 @@
 
 namespace framelet {
 
+inline constexpr std::size_t cache_line = 64;
+
 /// Half pixels.
 struct PictureVector {
     std::int8_t x = 0, y = 0;
@@ -40,6 +42,9 @@ public:
     /// Samples of `out` as the picture has them `vector` away from its tile, or as far as the picture reaches.
     void predict(Tile tile, PictureVector vector, DisplayFramelet& out) const;
 
+    /// Says that a prediction from near the tile's place will be asked for soon.
+    void expect(Tile tile) const;
+
     /// Where a tile lies: half pixels.
     struct Place {
         int left, top, side;
@@ -62,8 +67,8 @@ public:
 
 private:
     /// Rows of coarse tiles are whole lines of the cache where they are written.
-    struct alignas(64) Line {
-        std::array<std::uint8_t, 64> values;
+    struct alignas(cache_line) Line {
+        std::array<std::uint8_t, cache_line> values;
         bool operator==(Line const&) const = default;
     };
 

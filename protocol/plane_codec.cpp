@@ -61,6 +61,13 @@ private:
     std::size_t read_ = 0;
 };
 
+/// Most are predicted from their own places.
+void expect_next(HeldPicture const& held, std::span<DisplayFramelet const> framelets, std::size_t i) {
+    if (i + 1 < framelets.size()) {
+        held.expect(framelets[i + 1].tile);
+    }
+}
+
 } // namespace
 
 PlaneParts PlaneCodec::join(std::span<DisplayFramelet const> framelets, std::span<std::uint8_t const> quality,
@@ -112,6 +119,7 @@ PlaneParts PlaneCodec::encode(std::span<DisplayFramelet const> framelets, std::s
             share_luma(values, quality[i], levels);
             haar.write(levels);
         } else {
+            expect_next(*held, framelets, i);
             HaarLevels const levels = predict(*held, framelets[i], quality[i], search_, prediction_);
             haar.write(levels);
             put_prediction();
@@ -168,6 +176,7 @@ void PlaneCodec::decode(std::span<std::uint8_t const> bytes, std::span<DisplayFr
         if (quality[i] != exact_quality) {
             prediction_.kind = PredictionKind::none;
             if (held != nullptr) {
+                expect_next(*held, framelets, i);
                 predictions.next(*held, framelets[i].tile, prediction_);
             }
             add_prediction(haar.read(quality[i]), framelets[i]);
