@@ -5,9 +5,8 @@
 #include <bit>
 #include <functional>
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include "common/error.h"
+#include "common/per_thread.h"
 #include "protocol/plane_codec.h"
 #include "protocol/shape_codec.h"
 #include "protocol/zstd_frames.h"
@@ -89,7 +88,7 @@ std::span<Value> part_of(std::span<Value> all, std::size_t first, std::size_t si
 } // namespace
 
 struct BatchCodec::Scratch {
-    tbb::enumerable_thread_specific<Worker> workers;
+    PerThread<Worker> workers;
     std::vector<std::byte> frames; ///< of all groups, each in a slot of the largest size it may need
     std::vector<DisplayFramelet> decoded; ///< of a batch that is encoded
 };

@@ -20,9 +20,12 @@ constexpr double least_queue = 0.012;
 constexpr double standing_seconds = 0.05;
 /// A fast link gets a shorter queue: what is on its way when it turns slow has to be through within a second.
 constexpr double most_queue_bytes = 64e3, fast_queue = 0.006;
-/// Of the rate, per step upwards: the first one, and how much it may become. A step takes until its queue
-/// would stand.
-constexpr double first_growth = 1.03, most_growth = 1.5;
+/// Of the rate, per step upwards: the first one, how much it may become, and the queue, seconds, that it makes at most
+/// until that stands.
+constexpr double first_growth = 1.03, most_growth = 1.5, tried_queue = 0.02;
+/// A step upwards has been tried when so much of the rate was sent since. Nobody knows that a rate is carried which
+/// nothing was sent at, and the next burst would find out. Less than what a quality that is kept makes use of.
+constexpr double tried_share = 0.75;
 /// The same, as long as the rate is below this share of what it was before it fell.
 constexpr double known_growth = 1.5, known_share = 0.5;
 /// After a queue for so long none, seconds.
@@ -112,7 +115,7 @@ void LinkEstimate::sent(std::uint64_t batch, double now, double bytes) {
     was_full_ = was_full_ || is_full();
     if (!starting_) {
         double const rate = queued_ ? draining_share * rate_ : rate_;
-        was_full_ = was_full_ || now - paced_ < slack_seconds;
+        used_ += bytes;
         paced_ = std::max(paced_, now - slack_seconds) + bytes / rate;
     }
     if (flight.samples > 0) {
@@ -207,22 +210,25 @@ void LinkEstimate::adapt(double now, double bytes, double queue) {
         rate_ = measured; // at once: what is too much waits
     } else if (queue >= least_queue) {
         rate_ += 0.25 * (measured - rate_);
-    } else if (queue < 0.5 * least_queue && was_full_ && now - grown_ >= 1.25 * base + standing_seconds) {
-        bool const is_known = rate_ < known_share * ceiling_;
-        // What is tried shows only a round trip later.
-        growth_ = std::min({growth_ * growth_, most_growth, 1 + most_queue / (base + standing_seconds)});
-        rate_ = std::min((is_known ? known_growth : growth_) * rate_, most_rate);
+    } else if (queue < 0.5 * least_queue && now - grown_ >= 1.25 * base + standing_seconds) {
+        if (used_ >= tried_share * rate_ * (now - grown_)) {
+            bool const is_known = rate_ < known_share * ceiling_;
+            // What is tried shows only a round trip later.
+            growth_ = std::min({growth_ * growth_, most_growth, 1 + tried_queue / (base + standing_seconds)});
+            rate_ = std::min((is_known ? known_growth : growth_) * rate_, most_rate);
+        } else {
+            growth_ = first_growth;
+        }
         grown_ = now;
-        was_full_ = false;
+        used_ = 0;
     }
     queued_ = queue >= least_queue;
     if (queued_) {
         growth_ = first_growth;
         grown_ = now + quiet_seconds;
-        was_full_ = false;
+        used_ = 0;
     }
     window_ = window_of(rate_, base);
-    was_full_ = was_full_ || is_full();
 }
 
 } // namespace framelet

@@ -76,7 +76,7 @@ private:
     std::uint64_t acknowledged_ = 0; ///< batches
     std::deque<Flight> flights_; ///< begun and not acknowledged, in order
     double in_flight_ = 0; ///< bytes
-    bool was_full_ = false; ///< the window or the time, since the rate was raised last
+    bool was_full_ = false; ///< the window, as long as it is being found
 
     WindowedMinimum base_; ///< round trips, seconds
     WindowedMinimum base_way_; ///< differences of arrival by the viewer's clock and sending by ours
@@ -93,7 +93,8 @@ private:
     double paced_ = 0; ///< until when the link is busy at this rate
     bool queued_ = false; ///< a queue stands
     double growth_ = 1; ///< of the rate, at the next step upwards
-    double grown_ = 0; ///< when the rate was raised last, or had to fall
+    double grown_ = 0; ///< when a step upwards was tried last, or the rate had to fall
+    double used_ = 0; ///< bytes sent since then
     double bytes_per_sample_;
     double delivery_seconds_ = 0;
     double queueing_seconds_ = 0;

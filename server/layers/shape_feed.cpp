@@ -1,5 +1,6 @@
 #include "server/layers/shape_feed.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <glm/geometric.hpp>
@@ -9,6 +10,16 @@
 #include "common/error.h"
 
 namespace framelet {
+namespace {
+
+/// After a pause the viewer gets the keys of all of it, or it could not move what it has from before; but not after a
+/// leap of the clock.
+constexpr std::int64_t most_missed_keys = 5 * body_keys_per_second;
+/// The first picture does not wait for keys that hardly anybody will need: seconds ahead at first, more for each
+/// second.
+constexpr SceneTime first_ahead_seconds = 0.3, ahead_growth = 0.5;
+
+} // namespace
 
 /// Cameras come more rarely than batches: what counts is their speed over a tenth of a second.
 void ShapeFeed::follow(Vec3 eye, double now) {
@@ -52,11 +63,13 @@ void ShapeFeed::track(Scene const& scene, std::span<Index const> clips, SceneBod
         return;
     }
     auto const key = static_cast<std::int64_t>(std::floor(time * body_keys_per_second));
-    auto const end = static_cast<std::int64_t>(std::ceil((time + tracked_ahead_seconds) * body_keys_per_second)) + 1;
-    bool const goes_on = key >= first_key_ && key <= end_key_;
+    bool const goes_on = end_key_ > first_key_ && key >= first_key_ && key <= end_key_ + most_missed_keys;
     if (!goes_on) {
         first_key_ = end_key_ = key;
     }
+    SceneTime const known = time - static_cast<double>(first_key_) / body_keys_per_second;
+    SceneTime const ahead = std::min(first_ahead_seconds + ahead_growth * known, tracked_ahead_seconds);
+    auto const end = static_cast<std::int64_t>(std::ceil((time + ahead) * body_keys_per_second)) + 1;
     if (end_key_ < end) {
         tracks = body_tracks(scene, clips, bodies, end_key_, static_cast<std::size_t>(end - end_key_));
         end_key_ = end;

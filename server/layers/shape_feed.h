@@ -13,8 +13,9 @@
 
 namespace framelet {
 
-/// How far ahead of a batch its viewer knows where bodies will be, seconds of scene time: what a slow link needs.
-inline constexpr SceneTime tracked_ahead_seconds = 0.3;
+/// How far ahead of a batch, in the end, its viewer knows where bodies will be, seconds of scene time: what a slow link
+/// or a busy server needs.
+inline constexpr SceneTime tracked_ahead_seconds = 1;
 
 /// One viewer's.
 class ShapeFeed {
@@ -24,8 +25,8 @@ public:
     void fit(std::span<Framelet const> rendered, std::span<std::uint8_t const> send, ViewRays const& rays,
              ImagePlane const& plane, double now, std::vector<FrameletShape>& shapes);
 
-    /// The keys of all bodies until `tracked_ahead_seconds` after `time` that have not been given out yet; from `time`
-    /// on where that has jumped.
+    /// The keys of all bodies until `tracked_ahead_seconds` after `time` that have not been given out yet, however late
+    /// this batch comes; from `time` on where that has leapt by seconds or backwards.
     void track(Scene const& scene, std::span<Index const> clips, SceneBodies const& bodies, SceneTime time,
                std::vector<BodyTrack>& tracks);
 

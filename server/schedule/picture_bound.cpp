@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <glm/geometric.hpp>
 
@@ -19,6 +20,11 @@ constexpr float noise = 1e-6f;
 /// Of what the motion would have changed.
 constexpr float least_share = 0.25f;
 
+/// Otherwise nothing could be bound: a velocity is one of scene time.
+bool has_passed(RenderedMoment const& moment) {
+    return moment.seconds > 0 && moment.scene_time != moment.scene_time_before;
+}
+
 glm::dvec3 point_at(ViewRays const& rays, glm::dvec2 pixel, double depth) {
     glm::dvec3 const origin =
         glm::dvec3(rays.origin) + pixel.x * glm::dvec3(rays.origin_dx) + pixel.y * glm::dvec3(rays.origin_dy);
@@ -31,7 +37,7 @@ glm::dvec3 point_at(ViewRays const& rays, glm::dvec2 pixel, double depth) {
 
 float carried_speed(Framelet const& framelet, ImagePlane const& plane, RenderedMoment const& moment, std::size_t first,
                     std::size_t count) {
-    if (moment.motions == nullptr || !(moment.seconds > 0)) {
+    if (moment.motions == nullptr || !has_passed(moment)) {
         return 0;
     }
     PixelRect const rect = plane.tile_rect(framelet.tile);
@@ -39,13 +45,18 @@ float carried_speed(Framelet const& framelet, ImagePlane const& plane, RenderedM
     std::size_t const step = std::max<std::size_t>(count / most_followed, 1);
     double sum = 0;
     int followed = 0;
+    ViewTransform transform;
+    std::optional<BodyNumber> carrier; // of the transform: samples are mostly on one body
     for (std::size_t i = first + step / 2; i < first + count; i += step) {
         BodyNumber const body = framelet.body.empty() ? static_body : framelet.body[i];
-        Motion const motion = moment.motions->between(body, moment.scene_time, moment.scene_time_before);
+        if (carrier != body) {
+            Motion const motion = moment.motions->between(body, moment.scene_time, moment.scene_time_before);
+            transform = make_view_transform(moment.rays, moment.rays_before, motion);
+            carrier = body;
+        }
         auto const sample = static_cast<std::uint32_t>(i);
         Vec2 const pixel = Vec2(rect.left, rect.top) + (Vec2(morton_x(sample), morton_y(sample)) + 0.5f) * spacing;
-        glm::dvec3 const before = make_view_transform(moment.rays, moment.rays_before, motion)
-                                      .map(pixel.x, pixel.y, 1.0 / static_cast<double>(framelet.depth[i]));
+        glm::dvec3 const before = transform.map(pixel.x, pixel.y, 1.0 / static_cast<double>(framelet.depth[i]));
         double const far = before.z > 0 ? glm::distance(glm::dvec2(before) / before.z, glm::dvec2(pixel)) : most_speed;
         double const speed = far / static_cast<double>(moment.seconds);
         sum += speed < most_speed ? speed : most_speed; // what is not a number is not less
@@ -70,10 +81,10 @@ bool stays(CarriedChange const& change) {
 }
 
 void bind_to_picture(Tile tile, ImagePlane const& plane, RenderedMoment const& moment, FrameletShape& shape) {
-    double const seconds = moment.scene_time - moment.scene_time_before;
-    if (!(moment.seconds > 0) || seconds == 0) {
+    if (!has_passed(moment)) {
         return;
     }
+    double const seconds = moment.scene_time - moment.scene_time_before;
     PixelRect const rect = plane.tile_rect(tile);
     glm::dvec2 const middle = 0.5 * glm::dvec2(rect.width(), rect.height());
     auto const velocity_at = [&](glm::dvec2 from_corner, double inverse_depth) {

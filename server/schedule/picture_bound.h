@@ -14,7 +14,8 @@
 namespace framelet {
 
 /// How fast what is seen at samples [first, first + count) is carried through the picture by the camera's motion and
-/// that of bodies, pixels a second: the mean of some of them; 0 where the viewer moves nothing. Finite.
+/// that of bodies, pixels a second: the mean of some of them; 0 where the viewer moves nothing or no
+/// scene time passes. Finite.
 float carried_speed(Framelet const& framelet, ImagePlane const& plane, RenderedMoment const& moment, std::size_t first,
                     std::size_t count);
 

@@ -6,8 +6,7 @@
 #include <span>
 #include <vector>
 
-#include <tbb/enumerable_thread_specific.h>
-
+#include "common/per_thread.h"
 #include "protocol/batch_codec.h"
 #include "server/flow/lossy_places.h"
 #include "server/flow/quality_choice.h"
@@ -64,7 +63,7 @@ private:
     void describe_shapes(SharedScene const& shared);
     void begin_batch();
 
-    tbb::enumerable_thread_specific<Framelet> fresh_;
+    PerThread<Framelet> fresh_;
     std::vector<Framelet> rendered_pool_; ///< as many as a batch ever had: making room for them costs time
     std::vector<DisplayFramelet> display_pool_;
     std::span<Framelet> rendered_; ///< without radiance, which would crowd the caches for nothing

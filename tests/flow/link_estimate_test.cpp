@@ -28,6 +28,7 @@ struct Delivered {
 struct Sender {
     LinkEstimate estimate;
     double produced = 20e6; ///< bytes a second
+    double burst = 1; ///< so many times that for 20 of 60 ms, and for the last fifth of every second
     double bytes_per_sample = 0.5;
     double viewer_clock = -1000; ///< of it when ours is at 0
     double jump = 0; ///< of the viewer's clock, after 4 seconds
@@ -54,9 +55,11 @@ struct Sender {
             if (!estimate.has_room(now) || batch - answered >= 12) {
                 continue;
             }
-            double const bytes = std::min(0.01 * produced, estimate.state().batch_bytes);
+            bool const bursts = now - std::floor(now) > 0.8 || std::fmod(now, 0.06) < 0.02;
+            double const now_produced = bursts ? burst * produced : produced;
+            double const bytes = std::min(0.01 * now_produced, estimate.state().batch_bytes);
             estimate.begin(bytes / bytes_per_sample);
-            now += bytes / produced;
+            now += bytes / now_produced;
             ++batch;
             SimulatedLink::Delivery const d = link.send(now, static_cast<std::size_t>(bytes));
             estimate.sent(batch, now, bytes);
@@ -91,6 +94,22 @@ TEST(LinkEstimate, SteadySlowLinkIsFilledWithoutAQueue) {
         EXPECT_NEAR(sender.estimate.state().bytes_per_second, 300e3, 60e3) << delay;
         EXPECT_NEAR(sender.estimate.state().base_seconds, 2 * delay, 0.03) << delay;
         EXPECT_NEAR(sender.estimate.state().bytes_per_sample, 0.5, 1e-9);
+    }
+}
+
+/// A rate that nothing was sent at is not known to be carried.
+TEST(LinkEstimate, BurstsOfWhatHardlyFillsTheLinkMakeNoQueue) {
+    for (double const produced : {30e3, 60e3, 120e3, 180e3, 240e3}) {
+        for (double const delay : {0.0, 0.015}) {
+            Sender sender;
+            sender.produced = produced;
+            sender.burst = 10;
+            sender.run({.bits_per_second = 2.4e6, .delay_seconds = delay}, 12);
+            EXPECT_LT(sender.most_queueing(3, 12), 0.05) << produced << " " << delay;
+            double const offered =
+                produced / 300e3 * (1 + 9 * (0.2 + 0.8 / 3)); // of what the link carries; bursts are longer than queues
+            EXPECT_GT(sender.used(3, 12, 300e3), 0.65 * std::min(1.0, offered)) << produced << " " << delay;
+        }
     }
 }
 

@@ -70,6 +70,10 @@ TEST(CarriedSpeed, IsNothingWhereTheViewerMovesNothingAndAlwaysFinite) {
         EXPECT_TRUE(std::isfinite(speed));
         EXPECT_GE(speed, 0);
     }
+    moment.scene_time_before = moment.scene_time;
+    EXPECT_EQ(speed_of(seen_at(4), moment), 0) << "only the user moves the camera";
+    moment.scene_time_before = 0;
+    EXPECT_GT(speed_of(seen_at(4), moment), 0);
     moment.seconds = 0;
     EXPECT_EQ(speed_of(seen_at(4), moment), 0);
     moment.seconds = seconds;

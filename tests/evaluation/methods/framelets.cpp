@@ -4,9 +4,9 @@
 #include <atomic>
 #include <utility>
 
-#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
+#include "common/per_thread.h"
 #include "protocol/batch_codec.h"
 #include "server/flow/lossy_places.h"
 #include "server/flow/quality_choice.h"
@@ -258,7 +258,7 @@ private:
     RefreshPlan plan_;
     Work work_;
     bool rendered_ = false; ///< the work is, and not finished
-    tbb::enumerable_thread_specific<Framelet> fresh_;
+    PerThread<Framelet> fresh_;
     std::vector<Framelet> framelets_; ///< without radiance
     std::vector<DisplayFramelet> display_;
     ProbeRenderer probes_;

@@ -1,0 +1,39 @@
+#include "common/per_thread.h"
+
+#include <cstddef>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
+
+#if defined(__SANITIZE_ADDRESS__)
+#include <sanitizer/lsan_interface.h>
+#endif
+
+namespace framelet {
+namespace {
+
+TEST(PerThread, ThreadsDoNotShareAndKeepWhatTheyHave) {
+    PerThread<std::vector<std::size_t>> lists;
+    constexpr std::size_t count = 100000;
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { lists.local().push_back(i); });
+    std::vector<bool> found(count);
+    for (auto const& list : lists) {
+        for (std::size_t const i : list) {
+            EXPECT_FALSE(found[i]);
+            found[i] = true;
+        }
+    }
+    EXPECT_EQ(std::vector<bool>(count, true), found);
+}
+
+#if defined(__SANITIZE_ADDRESS__)
+TEST(PerThread, LeakCheckersSeeWhatAValueHolds) {
+    PerThread<std::vector<char>> buffers;
+    tbb::parallel_for(0, 1000, [&](int) { buffers.local().resize(70000); });
+    EXPECT_EQ(__lsan_do_recoverable_leak_check(), 0);
+}
+#endif
+
+} // namespace
+} // namespace framelet
