@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <functional>
 
 #include "common/error.h"
 #include "common/per_thread.h"
@@ -54,14 +55,8 @@ struct Worker {
         });
     }
 
-    Bytes encode_shapes(std::span<FrameletShape const> group, std::span<DisplayFramelet const> framelets,
-                        ImagePlane const& plane) {
-        std::array<std::uint8_t, group_framelets> side_bits;
-        std::transform(framelets.begin(), framelets.end(), side_bits.begin(), [&](DisplayFramelet const& framelet) {
-            auto const side = static_cast<unsigned>(plane.tile_side(framelet.tile));
-            return static_cast<std::uint8_t>(std::bit_width(side | 1u) - 1);
-        });
-        ShapeParts const parts = shapes.encode(group, std::span(side_bits).first(group.size()));
+    Bytes encode_shapes(std::span<FrameletShape const> group, std::span<std::uint8_t const> side_bits) {
+        ShapeParts const parts = shapes.encode(group, side_bits);
         std::size_t size = 0;
         for (auto const part : parts) {
             size += part.size();
@@ -71,6 +66,18 @@ struct Worker {
         return frame;
     }
 };
+
+/// Logarithms of the tiles' sides in pixels, to base 2; 0 where that is less than one.
+template <typename Range, typename TileOf>
+std::vector<std::uint8_t> side_bits_of(Range const& range, Viewport viewport, TileOf const& tile_of) {
+    ImagePlane const plane(viewport);
+    std::vector<std::uint8_t> bits(range.size());
+    std::transform(range.begin(), range.end(), bits.begin(), [&](auto const& one) {
+        auto const side = static_cast<unsigned>(plane.tile_side(tile_of(one)));
+        return static_cast<std::uint8_t>(std::bit_width(side | 1u) - 1);
+    });
+    return bits;
+}
 
 /// Of a list that has something for every framelet or for none.
 template <typename Value>
@@ -141,11 +148,12 @@ EncodedBatch BatchCodec::encode(Batch const& batch, HeldPicture* held) {
 }
 
 Bytes BatchCodec::encode_shapes(Batch const& batch) {
-    ImagePlane const plane(batch.view.viewport);
+    auto const side_bits = side_bits_of(batch.framelets, batch.view.viewport,
+                                        [](DisplayFramelet const& framelet) { return framelet.tile; });
     std::vector<Bytes> contents(group_count(batch.shapes.size()));
     for_each_group(batch.shapes.size(), [&](std::size_t group, std::size_t first, std::size_t size) {
-        contents[group] = scratch_->workers.local().encode_shapes(
-            std::span(batch.shapes).subspan(first, size), std::span(batch.framelets).subspan(first, size), plane);
+        contents[group] = scratch_->workers.local().encode_shapes(std::span(batch.shapes).subspan(first, size),
+                                                                  std::span(side_bits).subspan(first, size));
     });
     return join_frames(std::vector<ByteView>(contents.begin(), contents.end()));
 }
@@ -163,7 +171,8 @@ Batch BatchCodec::decode(EncodedBatch const& encoded, HeldPicture* held) {
     }
     bool const is_held = is_predicted || (held != nullptr && held->shows(viewport));
     ImagePlane const plane(viewport);
-    if (is_held && !std::ranges::all_of(encoded.tiles, [&](Tile tile) { return plane.accepts(tile); })) {
+    if ((is_held || !encoded.shapes.empty()) &&
+        !std::ranges::all_of(encoded.tiles, [&](Tile tile) { return plane.accepts(tile); })) {
         throw ProtocolError("a batch has a tile that its viewport does not have");
     }
     std::vector<ByteView> const frames = split_frames(encoded.payload, group_count(count));
@@ -204,10 +213,11 @@ std::vector<FrameletShape> BatchCodec::decode_shapes(EncodedBatch const& encoded
     for (std::size_t group = 0; group < frames.size(); ++group) {
         check_frame(frames[group], 0, most_shape_bytes(std::min(group_framelets, count - group * group_framelets)));
     }
+    auto const side_bits = side_bits_of(encoded.tiles, encoded.view.viewport, std::identity{});
     std::vector<FrameletShape> shapes(count);
     for_each_group(count, [&](std::size_t group, std::size_t first, std::size_t size) {
         ShapeCodec::decode(scratch_->workers.local().frames.decompress(frames[group]),
-                           std::span(shapes).subspan(first, size));
+                           std::span(side_bits).subspan(first, size), std::span(shapes).subspan(first, size));
     });
     return shapes;
 }

@@ -13,6 +13,31 @@ namespace {
 constexpr std::size_t zeros_alone = 15;
 /// Low half: 2 |level| - 1 where it is negative, 2 |level| where it is positive.
 constexpr unsigned escape = 0;
+/// What an escape of one byte states beside this: 2 (|level| - 8), and 1 more where the level is negative.
+constexpr unsigned long_escape = 255;
+
+std::uint8_t* put_escape(std::int16_t level, std::uint8_t* escapes) {
+    auto const code = static_cast<unsigned>(2 * (std::abs(int{level}) - largest_token_level - 1) + (level < 0 ? 1 : 0));
+    if (code < long_escape) {
+        *escapes++ = static_cast<std::uint8_t>(code);
+        return escapes;
+    }
+    auto const bits = static_cast<std::uint16_t>(level);
+    *escapes++ = long_escape;
+    *escapes++ = static_cast<std::uint8_t>(bits);
+    *escapes++ = static_cast<std::uint8_t>(bits >> 8);
+    return escapes;
+}
+
+unsigned take_escape(ByteCursor& escapes) {
+    unsigned const code = escapes.take(1)[0];
+    if (code == long_escape) {
+        auto const bits = escapes.take(2);
+        return bits[0] | unsigned{bits[1]} << 8;
+    }
+    unsigned const size = largest_token_level + 1 + code / 2;
+    return code % 2 == 0 ? size : 0u - size;
+}
 
 } // namespace
 
@@ -30,9 +55,7 @@ std::uint8_t* TokenWriter::put(std::int16_t level, std::uint8_t* escapes) {
     if (size <= largest_token_level) {
         code = static_cast<unsigned>(2 * size - (level < 0 ? 1 : 0));
     } else {
-        auto const bits = static_cast<std::uint16_t>(level);
-        *escapes++ = static_cast<std::uint8_t>(bits);
-        *escapes++ = static_cast<std::uint8_t>(bits >> 8);
+        escapes = put_escape(level, escapes);
     }
     *next_++ = static_cast<std::uint8_t>(run_ << 4 | code);
     run_ = 0;
@@ -77,11 +100,7 @@ void TokenReader::read(std::int16_t* fours, std::size_t places, std::uint16_t st
         ++next;
         unsigned level = code % 2 == 0 ? code / 2 : 0u - (code + 1) / 2;
         if (code == escape) {
-            if (escapes.left() < 2) {
-                throw ProtocolError("a group of a batch lacks escapes");
-            }
-            level = escapes.next[0] | unsigned{escapes.next[1]} << 8;
-            escapes.next += 2;
+            level = take_escape(escapes);
         }
         // Three details a place, four values.
         fours[at + at / 3 + 1] = static_cast<std::int16_t>(static_cast<std::uint16_t>(level * step));

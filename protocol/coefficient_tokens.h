@@ -10,14 +10,14 @@
 
 namespace framelet {
 
-/// Largest level that a token holds itself; greater ones are escapes of two bytes.
+/// Largest level that a token holds itself; greater ones are escapes: of one byte, or three.
 inline constexpr int largest_token_level = 7;
 /// Bounds for `details` of them that were written.
 constexpr std::size_t most_token_bytes(std::size_t details) {
     return details;
 }
 constexpr std::size_t most_escape_bytes(std::size_t details) {
-    return 2 * details;
+    return 3 * details;
 }
 
 /// Writes one sequence in as many calls as there are pieces. Zeros at its end are not written.

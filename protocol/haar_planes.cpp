@@ -1,11 +1,13 @@
 #include "protocol/haar_planes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 
 #include "common/error.h"
 #include "protocol/haar_transform.h"
+#include "protocol/zigzag.h"
 
 namespace framelet {
 namespace {
@@ -32,14 +34,21 @@ constexpr unsigned detail_rounding = 22, mean_rounding = 32;
 
 /// Levels of details, the means between them cleared.
 void quantise_details(std::int16_t* fours, std::size_t count, unsigned step) {
+    if (step == 1) { // they are levels; its reciprocal would not fit 16 bits
+        for (std::size_t i = 0; i < count; i += 4) {
+            fours[i] = 0;
+        }
+        return;
+    }
     // floor(x / step) of 16-bit x, or one more where x is just below a multiple.
-    unsigned const reciprocal = 65536 / step + 1;
-    unsigned const rounding = step * detail_rounding / 64;
-    for (std::size_t i = 0; i < count; ++i) {
-        int const value = fours[i];
-        unsigned const size = static_cast<unsigned>(value < 0 ? -value : value);
-        auto const level = static_cast<int>((size + rounding) * reciprocal >> 16);
-        fours[i] = static_cast<std::int16_t>(i % 4 == 0 ? 0 : value < 0 ? -level : level);
+    auto const reciprocal = static_cast<std::uint16_t>(65536 / step + 1);
+    auto const rounding = static_cast<std::uint16_t>(step * detail_rounding / 64);
+    for (std::size_t i = 0; i < count; ++i) { // many at a time: products of 16 bits
+        std::int16_t const value = fours[i];
+        auto const sign = static_cast<std::int16_t>(value >> 15);
+        auto const size = static_cast<std::uint16_t>(static_cast<std::uint16_t>((value ^ sign) - sign) + rounding);
+        auto const level = static_cast<std::int16_t>(size * unsigned{reciprocal} >> 16);
+        fours[i] = static_cast<std::int16_t>(i % 4 == 0 ? 0 : (level ^ sign) - sign);
     }
 }
 
@@ -48,19 +57,53 @@ std::int16_t quantised_mean(int value, int step) {
     return static_cast<std::int16_t>(value < 0 ? -size : size);
 }
 
-/// Values of a plane from its mean and its details, which are overwritten.
-void synthesise(std::array<std::int16_t, HaarLevels::four_values>& fours, std::int16_t mean,
-                std::array<std::int16_t, framelet_samples>& values) {
-    std::int16_t const* means = &mean;
-    for (std::size_t octave = octaves; octave-- > 0;) {
-        haar_inverse(means, &fours[first_four[octave]], places(octave));
-        means = &fours[first_four[octave]];
-    }
-    std::copy(means, means + framelet_samples, values.begin());
-}
-
 std::int16_t times(std::int16_t level, std::uint16_t step) {
     return static_cast<std::int16_t>(static_cast<std::uint16_t>(static_cast<std::uint16_t>(level) * unsigned{step}));
+}
+
+/// Of all octaves of a plane, from its levels.
+void dequantise(Fours& fours, std::uint16_t base) {
+    for (std::size_t octave = 0; octave < octaves; ++octave) {
+        std::uint16_t const step = octave_step(base, octave);
+        std::int16_t* const of_octave = &fours[first_four[octave]];
+        std::transform(of_octave, of_octave + 4 * places(octave), of_octave,
+                       [step](std::int16_t level) { return times(level, step); });
+    }
+}
+
+void quantise(Fours& fours, std::uint16_t base) {
+    for (std::size_t octave = 0; octave < octaves; ++octave) {
+        quantise_details(&fours[first_four[octave]], 4 * places(octave), octave_step(base, octave));
+    }
+}
+
+/// What details of chroma have from those of luma.
+std::int16_t shared(std::int16_t luma, std::int8_t share) {
+    return static_cast<std::int16_t>(times(luma, static_cast<std::uint16_t>(share)) >> 3);
+}
+
+/// Values of the planes from their means and details, which are overwritten.
+DisplayValues synthesise(std::array<Fours, 3>& details, std::array<std::int16_t, 3> const& plane_means,
+                         std::array<std::int8_t, 2> const& shares) {
+    for (std::size_t chroma = 0; chroma < shares.size(); ++chroma) {
+        if (shares[chroma] != 0) {
+            std::transform(details[1 + chroma].begin(), details[1 + chroma].end(), details[0].begin(),
+                           details[1 + chroma].begin(), [share = shares[chroma]](std::int16_t own, std::int16_t luma) {
+                               return static_cast<std::int16_t>(own + shared(luma, share));
+                           });
+        }
+    }
+    DisplayValues values;
+    for (std::size_t plane = 0; plane < 3; ++plane) {
+        std::int16_t const* means = &plane_means[plane];
+        for (std::size_t octave = octaves; octave-- > 0;) {
+            std::int16_t* const fours = &details[plane][first_four[octave]];
+            haar_inverse(means, fours, places(octave));
+            means = fours;
+        }
+        std::copy(means, means + framelet_samples, values.planes[plane].begin());
+    }
+    return values;
 }
 
 /// Roughly what levels take behind the entropy stage.
@@ -91,37 +134,83 @@ int bits_of(std::int16_t const* levels, std::size_t count) {
 
 } // namespace
 
-HaarLevels quantise(DisplayValues const& values, std::uint8_t quality) {
-    HaarLevels levels;
+HaarValues analyse(DisplayValues const& values) {
+    HaarValues haar;
     for (std::size_t plane = 0; plane < 3; ++plane) {
-        auto& fours = levels.details[plane];
-        std::uint16_t const base = base_step(plane, quality);
+        Fours& fours = haar.details[plane];
         std::copy(values.planes[plane].begin(), values.planes[plane].end(), fours.begin() + first_four[0]);
-        std::int16_t mean = 0;
         for (std::size_t octave = 0; octave < octaves; ++octave) {
-            std::int16_t* const means = octave + 1 < octaves ? &fours[first_four[octave + 1]] : &mean;
+            std::int16_t* const means = octave + 1 < octaves ? &fours[first_four[octave + 1]] : &haar.means[plane];
             haar_forward(&fours[first_four[octave]], means, places(octave));
-            quantise_details(&fours[first_four[octave]], 4 * places(octave), octave_step(base, octave));
         }
-        levels.means[plane] = quantised_mean(mean, base);
+    }
+    return haar;
+}
+
+HaarLevels quantise(HaarValues const& values, std::uint8_t quality) {
+    HaarLevels levels{values.details, {}, {}};
+    for (std::size_t plane = 0; plane < 3; ++plane) {
+        std::uint16_t const base = base_step(plane, quality);
+        quantise(levels.details[plane], base);
+        levels.means[plane] = quantised_mean(values.means[plane], base);
     }
     return levels;
 }
 
-DisplayValues dequantise(HaarLevels const& levels, std::uint8_t quality) {
-    DisplayValues values;
-    for (std::size_t plane = 0; plane < 3; ++plane) {
-        auto fours = levels.details[plane];
-        std::uint16_t const base = base_step(plane, quality);
-        for (std::size_t octave = 0; octave < octaves; ++octave) {
-            std::uint16_t const step = octave_step(base, octave);
-            std::int16_t* const of_octave = &fours[first_four[octave]];
-            std::transform(of_octave, of_octave + 4 * places(octave), of_octave,
-                           [step](std::int16_t level) { return times(level, step); });
+namespace {
+
+/// Least squares: how many eighths of luma, as it will be read, the details of chroma have. Each counts as much as it
+/// does in the picture.
+int fitted_share(Fours const& luma, Fours const& chroma) {
+    float products = 0, squares = 0;
+    for (std::size_t octave = 0; octave < octaves; ++octave) {
+        float product = 0, square = 0;
+        for (std::size_t i = first_four[octave]; i < first_four[octave] + 4 * places(octave); ++i) {
+            auto const y = static_cast<float>(luma[i]);
+            product += y * static_cast<float>(chroma[i]);
+            square += y * y;
         }
-        synthesise(fours, times(levels.means[plane], base), values.planes[plane]);
+        auto const weight = static_cast<float>(1u << (2 * octave));
+        products += weight * product;
+        squares += weight * square;
     }
-    return values;
+    constexpr float eighths = 8;
+    return squares > 0 ? static_cast<int>(std::lround(std::clamp(eighths * products / squares, -8.0f, 7.0f))) : 0;
+}
+
+} // namespace
+
+void share_luma(HaarValues const& values, std::uint8_t quality, HaarLevels& levels) {
+    Fours luma = levels.details[0];
+    dequantise(luma, base_step(0, quality));
+    for (std::size_t chroma = 0; chroma < levels.shares.size(); ++chroma) {
+        std::size_t const plane = 1 + chroma;
+        int const bits = bits_of(levels.details[plane].data(), levels.details[plane].size());
+        auto const share = static_cast<std::int8_t>(bits > 0 ? fitted_share(luma, values.details[plane]) : 0);
+        if (share == 0) {
+            continue;
+        }
+        Fours tried = values.details[plane];
+        for (std::size_t i = 0; i < tried.size(); ++i) {
+            tried[i] = static_cast<std::int16_t>(tried[i] - shared(luma[i], share));
+        }
+        quantise(tried, base_step(plane, quality));
+        if (bits_of(tried.data(), tried.size()) < bits) {
+            levels.details[plane] = tried;
+            levels.shares[chroma] = share;
+        }
+    }
+}
+
+DisplayValues dequantise(HaarLevels const& levels, std::uint8_t quality) {
+    std::array<Fours, 3> details = levels.details;
+    std::array<std::int16_t, 3> means;
+    for (std::size_t plane = 0; plane < 3; ++plane) {
+        std::uint16_t const base = base_step(plane, quality);
+        dequantise(details[plane], base);
+        means[plane] = times(levels.means[plane], base);
+    }
+    return synthesise(details, means, levels.shares);
 }
 
 int expected_bits(HaarLevels const& levels) {
@@ -132,50 +221,69 @@ int expected_bits(HaarLevels const& levels) {
     return bits;
 }
 
+namespace {
+
+TokenWriter writer_of(HaarWriter::Memory& memory, std::size_t part, std::size_t framelets) {
+    std::size_t const planes = part % 2 == 0 ? 1 : 2;
+    std::size_t const details = planes * (part < 2 ? coarse_details : fine_details);
+    memory.tokens[part].resize(most_token_bytes(details) * framelets);
+    return TokenWriter(memory.tokens[part].data());
+}
+
+} // namespace
+
 HaarWriter::HaarWriter(Memory& memory, std::size_t count)
-    : memory_(memory), count_(count),
-      coarse_((memory.coarse.resize(most_token_bytes(coarse_details) * count), memory.coarse.data())),
-      fine_((memory.fine.resize(most_token_bytes(fine_details) * count), memory.fine.data())) {
+    : memory_(memory), count_(count), writers_{writer_of(memory, 0, count), writer_of(memory, 1, count),
+                                               writer_of(memory, 2, count), writer_of(memory, 3, count)} {
+    memory.shares.resize(share_bytes * count);
     memory.means.resize(mean_bytes * count);
-    memory.escapes.resize(most_escape_bytes(coarse_details + fine_details) * count);
+    memory.escapes.resize(most_escape_bytes(3 * (coarse_details + fine_details)) * count);
     escapes_ = memory.escapes.data();
 }
 
 void HaarWriter::put_mean(std::size_t plane, std::int16_t level) {
-    auto const bits = static_cast<std::uint16_t>(level);
+    auto const code = zigzag(level);
     std::size_t const i = plane * count_ + written_;
-    memory_.means[i] = static_cast<std::uint8_t>(bits);
-    memory_.means[3 * count_ + i] = static_cast<std::uint8_t>(bits >> 8);
+    memory_.means[i] = static_cast<std::uint8_t>(code);
+    memory_.means[3 * count_ + i] = static_cast<std::uint8_t>(code >> 8);
 }
 
 void HaarWriter::write(HaarLevels const& levels) {
+    memory_.shares[written_] =
+        static_cast<std::uint8_t>((levels.shares[0] & 15) | static_cast<std::uint8_t>(levels.shares[1]) << 4);
     for (std::size_t plane = 0; plane < 3; ++plane) {
         put_mean(plane, levels.means[plane]);
         std::int16_t const* const fours = levels.details[plane].data();
-        escapes_ = coarse_.write(fours, first_four[0] / 4, escapes_);
-        escapes_ = fine_.write(fours + first_four[0], places(0), escapes_);
+        escapes_ = writers_[token_part(plane, false)].write(fours, first_four[0] / 4, escapes_);
+        escapes_ = writers_[token_part(plane, true)].write(fours + first_four[0], places(0), escapes_);
     }
     ++written_;
 }
 
 std::int16_t HaarReader::mean(std::size_t plane) const {
     std::size_t const i = plane * (means_.size() / mean_bytes) + read_;
-    return static_cast<std::int16_t>(means_[i] | means_[means_.size() / 2 + i] << 8);
+    return from_zigzag(static_cast<std::uint16_t>(means_[i] | means_[means_.size() / 2 + i] << 8));
 }
 
 DisplayValues HaarReader::read(std::uint8_t quality) {
-    DisplayValues values;
+    std::array<Fours, 3> details{};
+    std::array<std::int16_t, 3> means;
     for (std::size_t plane = 0; plane < 3; ++plane) {
-        std::array<std::int16_t, HaarLevels::four_values> fours{};
         std::uint16_t const base = base_step(plane, quality);
         for (std::size_t octave = octaves; octave-- > 0;) {
-            TokenReader& reader = octave == 0 ? fine_ : coarse_;
-            reader.read(&fours[first_four[octave]], places(octave), octave_step(base, octave), escapes_);
+            readers_[token_part(plane, octave == 0)].read(&details[plane][first_four[octave]], places(octave),
+                                                          octave_step(base, octave), escapes_);
         }
-        synthesise(fours, times(mean(plane), base), values.planes[plane]);
+        means[plane] = times(mean(plane), base);
     }
+    unsigned const shares = shares_[read_];
     ++read_;
-    return values;
+    auto const share = [](unsigned nibble) { return static_cast<std::int8_t>(nibble < 8 ? nibble : nibble - 16); };
+    return synthesise(details, means, {share(shares & 15), share(shares >> 4)});
+}
+
+bool HaarReader::is_at_end() const {
+    return escapes_.left() == 0 && std::ranges::all_of(readers_, [](TokenReader const& r) { return r.is_at_end(); });
 }
 
 } // namespace framelet

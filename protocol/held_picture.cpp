@@ -13,8 +13,20 @@ namespace {
 constexpr std::uint8_t grey = 128;
 constexpr int values_per_pixel = 2;
 
+using RowOfSamples [[gnu::vector_size(framelet_side)]] = std::uint8_t;
+
 std::uint8_t mean_of_four(unsigned a, unsigned b, unsigned c, unsigned d) {
     return static_cast<std::uint8_t>((a + b + c + d + 2) >> 2);
+}
+
+/// The picture is larger than the caches near the processor, and its rows are far apart: they are asked for in time.
+constexpr std::size_t rows_ahead = 12;
+constexpr int to_read = 0, to_write = 1;
+template <int use>
+void prefetch_row(std::uint8_t const* row, std::size_t size) {
+    for (std::size_t at = 0; at < size; at += cache_line) {
+        __builtin_prefetch(row + at, use);
+    }
 }
 
 /// Two rows of two samples for each value.
@@ -82,17 +94,35 @@ void fetch(HeldPicture::Source const& from, SamplePlane& samples) {
     from_rows(rows.data(), framelet_side, samples.data());
 }
 
-/// Each value gets the sample that covers it.
-template <std::size_t pitch>
+/// Each value gets the sample that covers it. `Lane` holds a row of the values that a sample covers.
+template <typename Lane>
 void put_squares(SamplePlane const& samples, std::uint8_t* to, std::size_t stride) {
+    constexpr std::size_t pitch = sizeof(Lane);
+    constexpr Lane ones = static_cast<Lane>(~std::uint64_t{0}) / 255;
+    using Row [[gnu::vector_size(framelet_side * pitch)]] = Lane;
     SamplePlane rows;
     to_rows(samples.data(), rows.data(), framelet_side);
-    for (std::size_t y = 0; y < framelet_side; ++y, to += pitch * stride) {
-        for (std::size_t x = 0; x < framelet_side; ++x) {
-            std::memset(to + x * pitch, rows[y * framelet_side + x], pitch);
+    for (std::size_t y = 0; y < framelet_side; ++y) {
+        RowOfSamples row;
+        std::memcpy(&row, rows.data() + y * framelet_side, sizeof row);
+        Row const spread = __builtin_convertvector(row, Row) * ones;
+        for (std::size_t copy = 0; copy < pitch; ++copy, to += stride) {
+            prefetch_row<to_write>(to + rows_ahead * stride, sizeof spread);
+            std::memcpy(to, &spread, sizeof spread);
         }
-        for (std::size_t copy = 1; copy < pitch; ++copy) {
-            std::memcpy(to + copy * stride, to, framelet_side * pitch);
+    }
+}
+
+void put_squares_of_coarsest(SamplePlane const& samples, std::uint8_t* to, std::size_t stride) {
+    constexpr std::size_t pitch = 16;
+    SamplePlane rows;
+    to_rows(samples.data(), rows.data(), framelet_side);
+    for (std::size_t y = 0; y < framelet_side; ++y) {
+        for (std::size_t copy = 0; copy < pitch; ++copy, to += stride) {
+            prefetch_row<to_write>(to + rows_ahead * stride, framelet_side * pitch);
+            for (std::size_t x = 0; x < framelet_side; ++x) {
+                std::memset(to + x * pitch, rows[y * framelet_side + x], pitch);
+            }
         }
     }
 }
@@ -100,8 +130,10 @@ void put_squares(SamplePlane const& samples, std::uint8_t* to, std::size_t strid
 /// Each value gets the mean of its four samples.
 void put_means(SamplePlane const& samples, std::uint8_t* to, std::size_t stride) {
     std::array<std::uint8_t, framelet_samples / 4> means;
-    for (std::size_t k = 0; k < means.size(); ++k) {
-        means[k] = mean_of_four(samples[4 * k], samples[4 * k + 1], samples[4 * k + 2], samples[4 * k + 3]);
+    for (std::size_t k = 0; k < means.size(); ++k) { // many at a time
+        std::uint32_t four;
+        std::memcpy(&four, &samples[4 * k], sizeof four);
+        means[k] = mean_of_four(four & 255, four >> 8 & 255, four >> 16 & 255, four >> 24);
     }
     to_rows(means.data(), to, stride, means.size());
 }
@@ -113,13 +145,13 @@ void put(SamplePlane const& samples, int pitch, std::uint8_t* to, std::size_t st
     case 1:
         return to_rows(samples.data(), to, stride);
     case 2:
-        return put_squares<2>(samples, to, stride);
+        return put_squares<std::uint16_t>(samples, to, stride);
     case 4:
-        return put_squares<4>(samples, to, stride);
+        return put_squares<std::uint32_t>(samples, to, stride);
     case 8:
-        return put_squares<8>(samples, to, stride);
+        return put_squares<std::uint64_t>(samples, to, stride);
     default:
-        return put_squares<16>(samples, to, stride);
+        return put_squares_of_coarsest(samples, to, stride);
     }
 }
 
@@ -135,33 +167,49 @@ void HeldPicture::show(Viewport viewport) {
     auto const rounded_up = [&](int pixels) { return (pixels + coarsest - 1) / coarsest * coarsest; };
     width_ = values_per_pixel * rounded_up(viewport.width);
     height_ = values_per_pixel * rounded_up(viewport.height);
+    Line grey_line;
+    grey_line.values.fill(grey);
     for (auto& values : values_) {
-        values.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), grey);
+        values.assign(at(0, height_) / grey_line.values.size(), grey_line);
     }
 }
 
-HeldPicture::Source HeldPicture::source(Tile tile, PictureVector vector, std::size_t plane) const {
+HeldPicture::Place HeldPicture::place(Tile tile) const {
     PixelRect const rect = plane_.tile_rect(tile);
-    int const side = values_per_pixel * rect.width();
-    int const left = std::clamp(values_per_pixel * rect.left + vector.x, 0, width_ - side);
-    int const top = std::clamp(values_per_pixel * rect.top + vector.y, 0, height_ - side);
-    auto const stride = static_cast<std::size_t>(width_);
-    return {values_[plane].data() + static_cast<std::size_t>(top) * stride + static_cast<std::size_t>(left), stride,
-            side / framelet_side};
+    return {values_per_pixel * rect.left, values_per_pixel * rect.top, values_per_pixel * rect.width()};
+}
+
+void HeldPicture::expect(Tile tile) const {
+    Place const from = place(tile);
+    for (std::size_t plane = 0; plane < values_.size(); ++plane) {
+        Source const rows = source(from, {}, plane);
+        auto const pitch = static_cast<std::size_t>(rows.pitch);
+        auto const side = static_cast<std::size_t>(from.side);
+        if (pitch <= 2) {
+            for (std::size_t y = 0; y < side; ++y) {
+                prefetch_row<to_read>(rows.first + y * rows.stride, side);
+            }
+        } else { // of the rows that a sample covers only the two in the middle are read
+            for (std::size_t y = pitch / 2 - 1; y < side; y += pitch) {
+                prefetch_row<to_read>(rows.first + y * rows.stride, side);
+                prefetch_row<to_read>(rows.first + (y + 1) * rows.stride, side);
+            }
+        }
+    }
 }
 
 void HeldPicture::predict(Tile tile, PictureVector vector, DisplayFramelet& out) const {
+    Place const from = place(tile);
     std::size_t plane = 0;
-    for_each_plane([&](auto const samples) { fetch(source(tile, vector, plane++), out.*samples); });
+    for_each_plane([&](auto const samples) { fetch(source(from, vector, plane++), out.*samples); });
 }
 
 void HeldPicture::write(DisplayFramelet const& framelet) {
+    Place const to = place(framelet.tile);
     std::size_t plane = 0;
     for_each_plane([&](auto const samples) {
-        Source const to = source(framelet.tile, {}, plane);
-        auto const first = static_cast<std::size_t>(to.first - values_[plane].data());
-        put(framelet.*samples, to.pitch, values_[plane].data() + first, to.stride);
-        ++plane;
+        std::uint8_t* const first = reinterpret_cast<std::uint8_t*>(values_[plane++].data()) + at(to.left, to.top);
+        put(framelet.*samples, to.side / framelet_side, first, static_cast<std::size_t>(width_));
     });
 }
 

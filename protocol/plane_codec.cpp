@@ -61,12 +61,19 @@ private:
     std::size_t read_ = 0;
 };
 
+/// Most are predicted from their own places.
+void expect_next(HeldPicture const& held, std::span<DisplayFramelet const> framelets, std::size_t i) {
+    if (i + 1 < framelets.size()) {
+        held.expect(framelets[i + 1].tile);
+    }
+}
+
 } // namespace
 
 PlaneParts PlaneCodec::join(std::span<DisplayFramelet const> framelets, std::span<std::uint8_t const> quality,
                             HaarWriter const& haar) {
     head_.resize(quality.size() + kinds_.size() + vectors_.size() + count_exact(quality) * exact_framelet_bytes +
-                 haar.means().size() + 3 * length_bytes + haar.escapes().size());
+                 haar.shares().size() + haar.means().size() + (1 + token_parts) * length_bytes + haar.escapes().size());
     std::uint8_t* out = std::copy(quality.begin(), quality.end(), head_.data());
     out = std::copy(kinds_.begin(), kinds_.end(), out);
     out = std::copy(vectors_.begin(), vectors_.end(), out);
@@ -78,13 +85,18 @@ PlaneParts PlaneCodec::join(std::span<DisplayFramelet const> framelets, std::spa
             }
         }
     });
+    out = std::copy(haar.shares().begin(), haar.shares().end(), out);
     out = std::copy(haar.means().begin(), haar.means().end(), out);
-    for (auto const part : {haar.escapes(), haar.coarse(), haar.fine()}) {
-        put_length(out, part.size());
+    put_length(out, haar.escapes().size());
+    PlaneParts parts;
+    for (std::size_t part = 0; part < token_parts; ++part) {
+        parts[1 + part] = haar.tokens(part);
         out += length_bytes;
+        put_length(out, parts[1 + part].size());
     }
-    std::copy(haar.escapes().begin(), haar.escapes().end(), out);
-    return {head_, haar.coarse(), haar.fine()};
+    std::copy(haar.escapes().begin(), haar.escapes().end(), out + length_bytes);
+    parts[0] = head_;
+    return parts;
 }
 
 PlaneParts PlaneCodec::encode(std::span<DisplayFramelet const> framelets, std::span<std::uint8_t const> quality,
@@ -102,8 +114,12 @@ PlaneParts PlaneCodec::encode(std::span<DisplayFramelet const> framelets, std::s
                 decoded[i] = framelets[i];
             }
         } else if (held == nullptr) {
-            haar.write(quantise(display_values(framelets[i]), quality[i]));
+            HaarValues const values = analyse(display_values(framelets[i]));
+            HaarLevels levels = quantise(values, quality[i]);
+            share_luma(values, quality[i], levels);
+            haar.write(levels);
         } else {
+            expect_next(*held, framelets, i);
             HaarLevels const levels = predict(*held, framelets[i], quality[i], search_, prediction_);
             haar.write(levels);
             put_prediction();
@@ -146,18 +162,21 @@ void PlaneCodec::decode(std::span<std::uint8_t const> bytes, std::span<DisplayFr
             }
         }
     });
+    auto const shares = rest.take(share_bytes * (framelets.size() - exact));
     auto const means = rest.take(mean_bytes * (framelets.size() - exact));
     std::size_t const escape_bytes = take_length(rest);
-    std::size_t const coarse_bytes = take_length(rest);
-    std::size_t const fine_bytes = take_length(rest);
+    std::array<std::size_t, token_parts> part_bytes;
+    std::ranges::generate(part_bytes, [&] { return take_length(rest); });
     auto const escapes = rest.take(escape_bytes);
-    auto const coarse = rest.take(coarse_bytes);
-    auto const fine = rest.take(fine_bytes);
-    HaarReader haar(means, escapes, coarse, fine);
+    HaarReader::Parts parts;
+    std::ranges::transform(part_bytes, parts.begin(),
+                           [&](std::size_t bytes_of_part) { return rest.take(bytes_of_part); });
+    HaarReader haar(shares, means, escapes, parts);
     for (std::size_t i = 0; i < framelets.size(); ++i) {
         if (quality[i] != exact_quality) {
             prediction_.kind = PredictionKind::none;
             if (held != nullptr) {
+                expect_next(*held, framelets, i);
                 predictions.next(*held, framelets[i].tile, prediction_);
             }
             add_prediction(haar.read(quality[i]), framelets[i]);

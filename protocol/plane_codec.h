@@ -17,9 +17,8 @@ namespace framelet {
 
 /// Most bytes of a group of so many framelets.
 constexpr std::size_t most_plane_bytes(std::size_t framelets) {
-    std::size_t const haar =
-        mean_bytes + most_token_bytes(coarse_details + fine_details) + most_escape_bytes(coarse_details + fine_details);
-    return 12 + framelets * (1 + std::max(haar, exact_framelet_bytes));
+    std::size_t const haar = share_bytes + mean_bytes + most_detail_bytes;
+    return 20 + framelets * (1 + std::max(haar, exact_framelet_bytes));
 }
 /// The same with predictions: of which kind each is, and a vector.
 constexpr std::size_t most_predicted_bytes(std::size_t framelets) {
@@ -27,7 +26,7 @@ constexpr std::size_t most_predicted_bytes(std::size_t framelets) {
 }
 
 /// The parts of a group's bytes, in order; their statistics differ.
-using PlaneParts = std::array<std::span<std::uint8_t const>, 3>;
+using PlaneParts = std::array<std::span<std::uint8_t const>, 1 + token_parts>;
 
 /// Scratch that is reused.
 class PlaneCodec {

@@ -8,13 +8,13 @@
 #include "protocol/byte_cursor.h"
 #include "protocol/shape_masks.h"
 #include "protocol/shape_quantisation.h"
+#include "protocol/zigzag.h"
 
 namespace framelet {
 namespace {
 
 using Words = std::vector<std::uint16_t>;
 
-constexpr int largest_side_bits = 31;
 /// All low bytes, then all high bytes.
 void put_words(std::vector<std::uint8_t>& out, Words const& words) {
     for (std::uint16_t const word : words) {
@@ -29,7 +29,7 @@ class WordReader {
 public:
     WordReader(ByteCursor& bytes, std::size_t count) : low_(bytes.take(count)), high_(bytes.take(count)) {}
     std::uint16_t operator[](std::size_t i) const { return static_cast<std::uint16_t>(low_[i] | high_[i] << 8); }
-    std::int16_t number(std::size_t i) const { return static_cast<std::int16_t>((*this)[i]); }
+    std::int16_t number(std::size_t i) const { return from_zigzag((*this)[i]); }
 
 private:
     std::span<std::uint8_t const> low_, high_;
@@ -92,9 +92,9 @@ void encode_layers(std::span<FrameletShape const> shapes, std::span<std::uint8_t
     Words at, dx, dy, body;
     for_each_layer(shapes, [&](Layer const& layer, std::size_t i) {
         LayerCode const& code = codes.emplace_back(quantise(layer, side_bits[i]));
-        at.push_back(static_cast<std::uint16_t>(code.at));
-        dx.push_back(static_cast<std::uint16_t>(code.dx));
-        dy.push_back(static_cast<std::uint16_t>(code.dy));
+        at.push_back(zigzag(code.at));
+        dx.push_back(zigzag(code.dx));
+        dy.push_back(zigzag(code.dy));
         body.push_back(layer.body);
     });
     std::transform(codes.begin(), codes.end(), std::back_inserter(out), [](LayerCode const& c) { return c.unit; });
@@ -122,21 +122,22 @@ void decode_layers(ByteCursor& bytes, std::span<std::uint8_t const> side_bits, s
 
 /// Inverse depths as differences from the sample before of the same framelet, 0 before the first.
 void encode_loose(std::span<FrameletShape const> shapes, std::vector<std::uint8_t>& out) {
-    Words depths, bodies;
+    std::vector<std::uint8_t> depths;
+    Words bodies;
     for (FrameletShape const& shape : shapes) {
         if (!shape.loose_samples.empty()) {
             UnitCode const unit = loose_unit(shape);
             out.push_back(unit);
-            std::uint16_t before = 0;
+            std::uint8_t before = 0;
             for (LooseSample const& sample : shape.loose_samples) {
-                std::uint16_t const depth = quantise_inverse_depth(sample.inverse_depth, unit);
-                depths.push_back(static_cast<std::uint16_t>(depth - before));
+                std::uint8_t const depth = quantise_inverse_depth(sample.inverse_depth, unit);
+                depths.push_back(zigzag(static_cast<std::int8_t>(depth - before)));
                 bodies.push_back(sample.body);
                 before = depth;
             }
         }
     }
-    put_words(out, depths);
+    out.insert(out.end(), depths.begin(), depths.end());
     put_words(out, bodies);
 }
 
@@ -148,16 +149,17 @@ void decode_loose(ByteCursor& bytes, std::span<FrameletShape> shapes) {
         count += shape.loose_samples.size();
     }
     auto units = bytes.take(framelets).begin();
-    WordReader const depths(bytes, count), bodies(bytes, count);
+    auto const depths = bytes.take(count);
+    WordReader const bodies(bytes, count);
     std::size_t next = 0;
     for (FrameletShape& shape : shapes) {
         if (shape.loose_samples.empty()) {
             continue;
         }
         double const unit = unit_of(take_unit(*units++));
-        std::uint16_t depth = 0;
+        std::uint8_t depth = 0;
         for (LooseSample& sample : shape.loose_samples) {
-            depth = static_cast<std::uint16_t>(depth + depths[next]);
+            depth = static_cast<std::uint8_t>(depth + from_zigzag(depths[next]));
             sample.inverse_depth = static_cast<float>(depth * unit);
             sample.body = bodies[next];
             ++next;
@@ -169,7 +171,7 @@ void encode_velocities(std::span<FrameletShape const> shapes, UnitCode unit, std
     for (int axis = 0; axis < 3 && unit != 0; ++axis) {
         Words words;
         for_each_carried(shapes, [&](auto const& carried) {
-            words.push_back(static_cast<std::uint16_t>(quantise_velocity(carried.velocity[axis], unit)));
+            words.push_back(zigzag(quantise_velocity(carried.velocity[axis], unit)));
         });
         put_words(out, words);
     }
@@ -200,10 +202,6 @@ ShapeParts ShapeCodec::encode(std::span<FrameletShape const> shapes, std::span<s
         FRAMELET_CHECK(shape.layer_count <= max_layers);
         layers_.push_back(shape_head(shape));
     }
-    for (std::uint8_t const bits : side_bits) {
-        FRAMELET_CHECK(bits <= largest_side_bits);
-        layers_.push_back(bits);
-    }
     UnitCode const unit = velocity_unit(shapes);
     layers_.push_back(unit);
     encode_layers(shapes, side_bits, layers_);
@@ -213,17 +211,15 @@ ShapeParts ShapeCodec::encode(std::span<FrameletShape const> shapes, std::span<s
     return {layers_, masks_, loose_};
 }
 
-void ShapeCodec::decode(std::span<std::uint8_t const> bytes, std::span<FrameletShape> shapes) {
+void ShapeCodec::decode(std::span<std::uint8_t const> bytes, std::span<std::uint8_t const> side_bits,
+                        std::span<FrameletShape> shapes) {
+    FRAMELET_CHECK(shapes.size() == side_bits.size());
     ByteCursor rest{bytes.data(), bytes.data() + bytes.size()};
     auto const heads = rest.take(shapes.size());
-    auto const side_bits = rest.take(shapes.size());
     UnitCode const velocity = take_unit(rest.take(1)[0]);
     for (std::size_t i = 0; i < shapes.size(); ++i) {
         if (heads[i] == 0 || heads[i] > largest_shape_head) {
             throw ProtocolError("a shape has an unknown number of layers");
-        }
-        if (side_bits[i] > largest_side_bits) {
-            throw ProtocolError("a shape is of a tile larger than any");
         }
         shapes[i].layer_count = layers_of_head(heads[i]);
     }

@@ -2,53 +2,156 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cstddef>
+#include <cstring>
 
 #include "common/error.h"
-#include "common/morton.h"
+#include "protocol/morton_rows.h"
 
 namespace framelet {
 namespace {
 
-constexpr std::size_t plane_bytes = framelet_samples / 8;
-
-/// What a sample may be: one of the layers, or loose, which is the last kind. The mask has bits for the kind's number.
-constexpr int bits_of(std::uint8_t head) {
-    int const kinds = layers_of_head(head) + (head_has_loose(head) ? 1 : 0);
-    return kinds <= 1 ? 0 : kinds == 2 ? 1 : 2;
+/// What a sample may be: one of the layers, or loose, which is the last kind.
+constexpr unsigned kinds_of(std::uint8_t head) {
+    return layers_of_head(head) + (head_has_loose(head) ? 1u : 0u);
 }
 
-/// Bit `bit` of the kinds in 16 rows, each as its difference (exclusive or) from the row above.
-void put_plane(FrameletShape const& shape, int bit, std::vector<std::uint8_t>& out) {
-    std::uint8_t const loose = shape.layer_count;
-    std::array<std::uint8_t, framelet_samples> bits;
-    for (std::size_t i = 0; i < bits.size(); ++i) {
-        bits[i] = std::min(shape.layer_of[i], loose) >> bit & 1;
+/// A byte of gaps: so many samples are of the kind that is expected, then one is not; or one of these: so many are, and
+/// it goes on; all the rest are.
+constexpr std::uint8_t goes_on = 254, rest = 255;
+
+/// The kinds of a framelet in raster order, with a row of none above the first one.
+class KindRows {
+public:
+    KindRows() { std::fill_n(kinds_.begin(), margin, no_kind); }
+
+    std::uint8_t* begin() { return kinds_.data() + margin; }
+    std::uint8_t& operator[](std::size_t at) { return kinds_[margin + at]; }
+
+    /// What a sample is expected to be: as the one above it, but as that to its left where a horizontal edge lies
+    /// between that and what is above it. In the first row that to the left; 0 for the first.
+    std::uint8_t expected(std::size_t at) const {
+        std::uint8_t const* const kind = kinds_.data() + margin + at;
+        if (at % framelet_side == 0) {
+            return at == 0 ? std::uint8_t{0} : kind[above];
+        }
+        return kind[-1] == kind[above - 1] ? kind[above] : kind[-1];
     }
-    std::array<std::uint16_t, framelet_side> rows{};
-    for (std::uint32_t i = 0; i < framelet_samples; i += 4) { // two of a row, two of the next
-        std::uint32_t const x = morton_x(i), y = morton_y(i);
-        rows[y] = static_cast<std::uint16_t>(rows[y] | (bits[i] | bits[i + 1] << 1) << x);
-        rows[y + 1] = static_cast<std::uint16_t>(rows[y + 1] | (bits[i + 2] | bits[i + 3] << 1) << x);
+
+    /// 1 for every sample that is not as expected, else 0.
+    SamplePlane others() const {
+        SamplePlane others;
+        for (std::ptrdiff_t at = 0; at < framelet_samples; ++at) { // many at a time
+            std::uint8_t const* const kind = kinds_.data() + margin + at;
+            bool const is_above = kind[-1] == kind[above - 1] || at % framelet_side == 0;
+            others[static_cast<std::size_t>(at)] = kind[0] != (is_above ? kind[above] : kind[-1]) ? 1 : 0;
+        }
+        others[0] = kinds_[margin] != 0 ? 1 : 0;
+        return others;
     }
-    unsigned above = 0;
-    for (std::uint16_t const row : rows) {
-        out.push_back(static_cast<std::uint8_t>(row ^ above));
-        out.push_back(static_cast<std::uint8_t>((row ^ above) >> 8));
-        above = row;
+
+    /// Makes all from `at` to `end` what they are expected to be.
+    void extend(std::size_t at, std::size_t end) {
+        while (at < end) {
+            std::size_t const row_end = std::min(end, (at / framelet_side + 1) * framelet_side);
+            (*this)[at] = expected(at);
+            for (++at; at < row_end && !follows_above(at); ++at) {
+                (*this)[at] = (*this)[at - 1];
+            }
+            std::copy(begin() + at + above, begin() + row_end + above, begin() + at);
+            at = row_end;
+        }
+    }
+
+private:
+    /// Not of the first column: so do the rest of its row then.
+    bool follows_above(std::size_t at) const {
+        std::uint8_t const* const kind = kinds_.data() + margin + at;
+        return kind[-1] == kind[above - 1];
+    }
+
+    static constexpr std::size_t margin = 2 * framelet_side;
+    static constexpr std::ptrdiff_t above = -framelet_side;
+    static constexpr std::uint8_t no_kind = 255;
+    std::array<std::uint8_t, margin + framelet_samples> kinds_;
+};
+
+/// How far the kinds that come otherwise are from what is expected goes to `turns`, unless there are but two.
+void put_mask(FrameletShape const& shape, std::vector<std::uint8_t>& gaps, std::vector<std::uint8_t>& turns) {
+    unsigned const kinds = kinds_of(shape_head(shape));
+    SamplePlane in_order;
+    std::transform(shape.layer_of.begin(), shape.layer_of.end(), in_order.begin(),
+                   [loose = shape.layer_count](std::uint8_t layer) { return std::min(layer, loose); });
+    KindRows rows;
+    to_rows(in_order.data(), rows.begin(), framelet_side);
+    SamplePlane const others = rows.others();
+    std::size_t told = 0;
+    auto const tell_until = [&](std::size_t at) {
+        for (; at - told >= goes_on; told += goes_on) {
+            gaps.push_back(goes_on);
+        }
+    };
+    for (std::size_t eight = 0; eight < framelet_samples; eight += sizeof(std::uint64_t)) {
+        std::uint64_t left;
+        for (std::memcpy(&left, &others[eight], sizeof left); left != 0; left &= left - 1) {
+            std::size_t const at = eight + static_cast<std::size_t>(std::countr_zero(left)) / 8;
+            tell_until(at);
+            gaps.push_back(static_cast<std::uint8_t>(at - told));
+            told = at + 1;
+            if (kinds > 2) {
+                turns.push_back(static_cast<std::uint8_t>((rows[at] + kinds - rows.expected(at)) % kinds));
+            }
+        }
+    }
+    tell_until(framelet_samples);
+    if (told < framelet_samples) {
+        gaps.push_back(rest);
     }
 }
 
-/// The reverse: adds the bit to `layer_of`.
-void take_plane(std::span<std::uint8_t const> bytes, int bit, FrameletShape& shape) {
-    std::array<std::uint16_t, framelet_side> rows{};
-    unsigned above = 0;
-    for (std::size_t y = 0; y < rows.size(); ++y) {
-        above ^= static_cast<unsigned>(bytes[2 * y] | bytes[2 * y + 1] << 8);
-        rows[y] = static_cast<std::uint16_t>(above);
+/// The gaps of one framelet, and how many samples they say are not as expected.
+struct Gaps {
+    std::span<std::uint8_t const> bytes;
+    std::size_t others = 0;
+};
+
+Gaps take_gaps(ByteCursor& bytes) {
+    Gaps gaps;
+    std::uint8_t const* const first = bytes.next;
+    for (std::size_t covered = 0; covered < framelet_samples;) {
+        std::uint8_t const gap = bytes.take(1)[0];
+        if (gap == rest) {
+            break;
+        }
+        covered += gap == goes_on ? goes_on : gap + 1u;
+        gaps.others += gap == goes_on ? 0 : 1;
+        if (covered > framelet_samples) {
+            throw ProtocolError("a shape's mask is longer than its samples");
+        }
     }
-    for (std::uint32_t i = 0; i < framelet_samples; ++i) {
-        shape.layer_of[i] |= static_cast<std::uint8_t>((rows[morton_y(i)] >> morton_x(i) & 1u) << bit);
+    gaps.bytes = {first, bytes.next};
+    return gaps;
+}
+
+/// The reverse of `put_mask`: kinds in `layer_of`. `turns` is empty where there are but two.
+void read_mask(Gaps const& gaps, unsigned kinds, std::span<std::uint8_t const> turns, FrameletShape& shape) {
+    KindRows rows;
+    std::size_t at = 0, turned = 0;
+    for (std::uint8_t const gap : gaps.bytes) {
+        std::size_t const end = gap == rest ? framelet_samples : at + gap;
+        rows.extend(at, end);
+        at = end;
+        if (gap < goes_on) {
+            unsigned const turn = turns.empty() ? 1 : turns[turned++];
+            if (turn == 0 || turn >= kinds) {
+                throw ProtocolError("a shape has a sample on a layer that it does not have");
+            }
+            rows[at] = static_cast<std::uint8_t>((rows.expected(at) + turn) % kinds);
+            ++at;
+        }
     }
+    from_rows(rows.begin(), framelet_side, shape.layer_of.data());
 }
 
 /// From kinds to layers, with place for what is loose.
@@ -56,9 +159,6 @@ void resolve_kinds(std::uint8_t head, FrameletShape& shape) {
     std::size_t loose = 0;
     for (std::uint8_t& kind : shape.layer_of) {
         if (kind >= shape.layer_count) {
-            if (kind > shape.layer_count || !head_has_loose(head)) {
-                throw ProtocolError("a shape has a sample on a layer that it does not have");
-            }
             kind = FrameletShape::loose;
             ++loose;
         }
@@ -80,27 +180,27 @@ void encode_masks(std::span<FrameletShape const> shapes, std::vector<std::uint8_
         }
         FRAMELET_CHECK(loose == none && loose == shape.loose_samples.size());
     }
-    for (int bit = 0; bit < 2; ++bit) {
-        for (FrameletShape const& shape : shapes) {
-            if (bit < bits_of(shape_head(shape))) {
-                put_plane(shape, bit, out);
-            }
+    std::vector<std::uint8_t> turns;
+    for (FrameletShape const& shape : shapes) {
+        if (kinds_of(shape_head(shape)) > 1) {
+            put_mask(shape, out, turns);
         }
     }
+    out.insert(out.end(), turns.begin(), turns.end());
 }
 
 void decode_masks(ByteCursor& bytes, std::span<std::uint8_t const> heads, std::span<FrameletShape> shapes) {
-    for (FrameletShape& shape : shapes) {
-        shape.layer_of.fill(0);
-    }
-    for (int bit = 0; bit < 2; ++bit) {
-        for (std::size_t i = 0; i < shapes.size(); ++i) {
-            if (bit < bits_of(heads[i])) {
-                take_plane(bytes.take(plane_bytes), bit, shapes[i]);
-            }
-        }
+    std::vector<Gaps> gaps;
+    for (std::uint8_t const head : heads) {
+        gaps.push_back(kinds_of(head) > 1 ? take_gaps(bytes) : Gaps{});
     }
     for (std::size_t i = 0; i < shapes.size(); ++i) {
+        unsigned const kinds = kinds_of(heads[i]);
+        if (kinds > 1) {
+            read_mask(gaps[i], kinds, bytes.take(kinds > 2 ? gaps[i].others : 0), shapes[i]);
+        } else {
+            shapes[i].layer_of.fill(0);
+        }
         resolve_kinds(heads[i], shapes[i]);
     }
 }

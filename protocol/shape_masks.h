@@ -1,5 +1,5 @@
-// Which sample lies on which layer, as bits: none where there is no choice. In: shapes of a group. Out: bytes, and
-// back.
+// Which sample lies on which layer: where that is otherwise than for the sample above; nothing where there is no
+// choice. In: shapes of a group. Out: bytes, and back. PROTOCOL.md has the layout.
 #pragma once
 
 #include <cstdint>
@@ -22,6 +22,9 @@ constexpr std::uint8_t layers_of_head(std::uint8_t head) {
 constexpr bool head_has_loose(std::uint8_t head) {
     return head >= 4;
 }
+
+/// Most bytes of a framelet.
+inline constexpr std::size_t most_mask_bytes = std::size_t{2} * framelet_samples;
 
 /// Appends the masks of all shapes. Every sample must be on one of its layers or loose, and so many loose as there are
 /// loose samples.

@@ -36,7 +36,7 @@ UnitCode unit_above(double value) {
 }
 
 LayerCode quantise(Layer const& layer, int side_bits) {
-    constexpr double error_units = 16, plane_units = 1 << 14;
+    constexpr double error_units = 16, plane_units = 1 << 11;
     double const side = std::ldexp(1.0, side_bits);
     double const at = layer.at, dx = layer.dx, dy = layer.dy, error = layer.error;
     double const magnitude = std::abs(at) + side * (std::abs(dx) + std::abs(dy));
@@ -66,8 +66,8 @@ Layer dequantise(LayerCode const& code, int side_bits) {
     return layer;
 }
 
-std::uint16_t quantise_inverse_depth(float inverse_depth, UnitCode unit) {
-    return rounded<std::uint16_t>(static_cast<double>(inverse_depth), unit);
+std::uint8_t quantise_inverse_depth(float inverse_depth, UnitCode unit) {
+    return rounded<std::uint8_t>(static_cast<double>(inverse_depth), unit);
 }
 
 std::int16_t quantise_velocity(float velocity, UnitCode unit) {

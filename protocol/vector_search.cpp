@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 
 #include "protocol/morton_rows.h"
 
@@ -10,65 +11,100 @@ namespace framelet {
 namespace {
 
 /// First steps of the search, half pixels, and those from which on all rows are looked at, not every second one.
-constexpr int first_step = 32, exact_step = 2;
+constexpr int first_step = 32, exact_step = 1;
+/// Where a vector that was found before leaves no more than this of a framelet, 2 of a sample, the search begins near
+/// it.
+constexpr int hardly_any = 512, near_step = 4;
 constexpr int farthest = 127;
 /// What a vector must gain for each half pixel that it is longer: of two that are as good, the shorter one.
 constexpr int length_cost = 4;
 
-/// Sum of differences of rows `apart` from each other. `Lane` holds a row of the values that a sample covers.
+/// A row of samples.
+using Row [[gnu::vector_size(2 * framelet_side)]] = std::uint16_t;
+using Rows = std::array<Row, framelet_side>;
+
+Rows rows_of(std::array<std::uint8_t, framelet_samples> const& samples) {
+    using Narrow [[gnu::vector_size(framelet_side)]] = std::uint8_t;
+    SamplePlane bytes;
+    to_rows(samples.data(), bytes.data(), framelet_side);
+    Rows rows;
+    for (std::size_t y = 0; y < framelet_side; ++y) {
+        Narrow row;
+        std::memcpy(&row, &bytes[y * framelet_side], sizeof row);
+        rows[y] = __builtin_convertvector(row, Row);
+    }
+    return rows;
+}
+
+/// Values from the picture near the middles of a row of samples. `Lane` holds a row of those that a sample covers.
 template <typename Lane>
-int difference_of(SamplePlane const& rows, HeldPicture::Source const& from, std::size_t apart) {
+Row row_at(std::uint8_t const* held) {
     constexpr std::size_t pitch = sizeof(Lane);
-    int sum = 0;
-    for (std::size_t y = 0; y < framelet_side; y += apart) {
-        std::uint8_t const* const held = from.first + (y * pitch + pitch / 2) * from.stride;
-        for (std::size_t x = 0; x < framelet_side; ++x) { // many at a time
-            Lane values;
-            std::memcpy(&values, held + x * pitch, pitch);
-            sum += std::abs(int{rows[y * framelet_side + x]} - static_cast<int>(values >> (8 * (pitch / 2)) & 255));
-        }
-    }
-    return sum;
+    using Lanes [[gnu::vector_size(framelet_side * pitch)]] = Lane;
+    Lanes values;
+    std::memcpy(&values, held, sizeof values);
+    return __builtin_convertvector(values >> (8 * (pitch / 2)) & 255, Row);
 }
 
-/// The same of every second sample.
-int difference_of_coarsest(SamplePlane const& rows, HeldPicture::Source const& from, std::size_t apart) {
+Row doubled_row_at(std::uint8_t const* held) {
+    using Half [[gnu::vector_size(framelet_side / 2)]] = std::uint8_t;
+    using Narrow [[gnu::vector_size(framelet_side)]] = std::uint8_t;
+    Half half;
+    std::memcpy(&half, held, sizeof half);
+    Narrow const row = __builtin_shufflevector(half, half, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7);
+    return __builtin_convertvector(row, Row);
+}
+
+Row coarsest_row_at(std::uint8_t const* held) {
     constexpr std::size_t pitch = 16;
-    int sum = 0;
-    for (std::size_t y = 0; y < framelet_side; y += apart) {
-        std::uint8_t const* const held = from.first + (y * pitch + pitch / 2) * from.stride + pitch / 2;
-        for (std::size_t x = y / apart % 2; x < framelet_side; x += 2) {
-            sum += std::abs(int{rows[y * framelet_side + x]} - int{held[x * pitch]});
-        }
+    Row row;
+    for (std::size_t x = 0; x < framelet_side; ++x) {
+        row[x] = held[x * pitch + pitch / 2];
     }
-    return 2 * sum;
+    return row;
 }
 
-int difference_of_finest(SamplePlane const& rows, HeldPicture::Source const& from, std::size_t apart) {
+int sum_of(Row const& row) {
     int sum = 0;
-    for (std::size_t y = 0; y < framelet_side; y += apart) {
-        std::uint8_t const* const held = from.first + (y / 2) * from.stride;
-        for (std::size_t x = 0; x < framelet_side; ++x) {
-            sum += std::abs(int{rows[y * framelet_side + x]} - int{held[x / 2]});
-        }
+    for (std::size_t x = 0; x < framelet_side; ++x) {
+        sum += row[x];
     }
     return sum;
 }
 
-int difference(SamplePlane const& rows, HeldPicture::Source const& from, std::size_t apart) {
+/// Sum of differences of rows `apart` from each other, or any number above `most` where it is above that.
+/// `twice_pitch` rows of the picture are two rows of samples.
+template <typename RowAt>
+int difference(Rows const& rows, HeldPicture::Source const& from, std::size_t apart, int most, std::size_t twice_pitch,
+               RowAt const& row_at) {
+    constexpr std::size_t rows_at_a_time = 4;
+    std::uint8_t const* const first = from.first + twice_pitch / 4 * from.stride;
+    int sum = 0;
+    for (std::size_t y = 0; y < framelet_side && sum <= most;) {
+        Row sums{};
+        for (std::size_t i = 0; i < rows_at_a_time; ++i, y += apart) {
+            Row const held = row_at(first + y * twice_pitch / 2 * from.stride);
+            sums += rows[y] > held ? rows[y] - held : held - rows[y];
+        }
+        sum += sum_of(sums);
+    }
+    return sum;
+}
+
+int difference(Rows const& rows, HeldPicture::Source const& from, std::size_t apart, int most) {
     switch (from.pitch) {
     case 0:
-        return difference_of_finest(rows, from, apart);
+        return difference(rows, from, apart, most, 1, doubled_row_at);
     case 1:
-        return difference_of<std::uint8_t>(rows, from, apart);
+        return difference(rows, from, apart, most, 2, row_at<std::uint8_t>);
     case 2:
-        return difference_of<std::uint16_t>(rows, from, apart);
+        return difference(rows, from, apart, most, 4, row_at<std::uint16_t>);
     case 4:
-        return difference_of<std::uint32_t>(rows, from, apart);
+        return difference(rows, from, apart, most, 8, row_at<std::uint32_t>);
     case 8:
-        return difference_of<std::uint64_t>(rows, from, apart);
+        return difference(rows, from, apart, most, 16, row_at<std::uint64_t>);
     default:
-        return difference_of_coarsest(rows, from, apart);
+        return difference(rows, from, apart, most, 32, coarsest_row_at);
     }
 }
 
@@ -76,15 +112,17 @@ int difference(SamplePlane const& rows, HeldPicture::Source const& from, std::si
 
 PictureVector VectorSearch::find(HeldPicture const& held, DisplayFramelet const& framelet) {
     constexpr std::size_t green = 1;
-    SamplePlane rows;
-    to_rows(framelet.green.data(), rows.data(), framelet_side);
+    Rows const rows = rows_of(framelet.green);
+    HeldPicture::Place const place = held.place(framelet.tile);
     std::size_t apart = 2;
+    int least = std::numeric_limits<int>::max();
     auto const cost = [&](PictureVector vector) {
-        return static_cast<int>(apart) * difference(rows, held.source(framelet.tile, vector, green), apart) +
-               length_cost * (std::abs(int{vector.x}) + std::abs(int{vector.y}));
+        int const of_length = length_cost * (std::abs(int{vector.x}) + std::abs(int{vector.y}));
+        int const by = static_cast<int>(apart);
+        return by * difference(rows, held.source(place, vector, green), apart, (least - of_length) / by) + of_length;
     };
     PictureVector best;
-    int least = cost(best);
+    least = cost(best);
     auto const try_one = [&](int x, int y) {
         PictureVector const vector{static_cast<std::int8_t>(std::clamp(x, -farthest, farthest)),
                                    static_cast<std::int8_t>(std::clamp(y, -farthest, farthest))};
@@ -96,9 +134,10 @@ PictureVector VectorSearch::find(HeldPicture const& held, DisplayFramelet const&
     for (PictureVector const vector : found_) {
         try_one(vector.x, vector.y);
     }
-    for (int step = first_step; step > 0; step /= 2) {
+    for (int step = least <= hardly_any ? near_step : first_step; step > 0; step /= 2) {
         if (step == exact_step) {
             apart = 1;
+            least = std::numeric_limits<int>::max();
             least = cost(best);
         }
         PictureVector const centre = best;

@@ -54,6 +54,7 @@ public:
             layer_of_.fill(FrameletShape::loose);
             make_groups();
             fit_groups();
+            take_isolated();
             collect();
         }
     }
@@ -68,8 +69,12 @@ private:
     void fit_groups();
     void set_candidates(std::size_t group);
     void agree_on_velocity();
-    void add_found(Group const& group);
+    void add_found(std::size_t group);
     void add_layer(GridPlane const& plane, float half_width, Group const& group);
+    float error_of(Layer const& layer, float half_width) const;
+    void take_isolated();
+    bool moves_with(Vec3 velocity, int sample) const;
+    std::uint8_t nearest_layer(int at) const;
     void collect();
 
     Framelet const& framelet_;
@@ -82,6 +87,8 @@ private:
     GridFloats candidates_;
     FoundPlane found_;
     Vec3 velocity_{0}; ///< of what was found
+    std::array<GridPlane, max_layers> planes_; ///< of the layers, and which group each is of
+    std::array<std::size_t, max_layers> layer_groups_{};
     FrameletShape& shape_;
 };
 
@@ -139,6 +146,12 @@ void Fitter::set_candidates(std::size_t group) {
     }
 }
 
+/// Whether a sample (in Morton order) moves nearly so.
+bool Fitter::moves_with(Vec3 velocity, int sample) const {
+    float const off = glm::length(velocity_of(framelet_, sample) - velocity) * values_[block_order(sample)];
+    return off <= velocity_tolerance_;
+}
+
 /// Keeps the members that move nearly as they do on average.
 void Fitter::agree_on_velocity() {
     Vec3 sum(0);
@@ -149,8 +162,7 @@ void Fitter::agree_on_velocity() {
     found_.count = 0;
     for (int i = 0; i < framelet_samples; ++i) {
         float& member = found_.members[block_order(i)];
-        float const off = glm::length(velocity_of(framelet_, i) - velocity_) * values_[block_order(i)];
-        member = member != 0 && off <= velocity_tolerance_ ? 1.0f : 0.0f;
+        member = member != 0 && moves_with(velocity_, i) ? 1.0f : 0.0f;
         found_.count += member != 0 ? 1 : 0;
     }
 }
@@ -179,31 +191,70 @@ void Fitter::fit_groups() {
             *largest = 0; // what is left of it stays loose
             continue;
         }
-        add_found(group);
+        add_found(g);
         *largest -= found_.count;
     }
 }
 
 /// Those that were found, with even errors to both sides.
-void Fitter::add_found(Group const& group) {
+void Fitter::add_found(std::size_t group) {
     Range const range = residual_range(values_, found_.members, found_.plane);
     found_.plane.centre += range.middle();
     std::uint8_t const layer = shape_.layer_count; // a copy: bytes written below might alias the original
     for (std::size_t i = 0; i < framelet_samples; ++i) {
         layer_of_[i] = found_.members.value[i] != 0 ? layer : layer_of_[i];
     }
-    add_layer(found_.plane, range.half_width(), group);
+    planes_[layer] = found_.plane;
+    layer_groups_[layer] = group;
+    add_layer(found_.plane, range.half_width(), groups_[group]);
 }
 
 void Fitter::add_layer(GridPlane const& plane, float half_width, Group const& group) {
     Layer layer = layer_of_plane(plane, group, spacing_);
     layer.velocity = velocity_;
-    // The same plane in other coordinates, or in another order of operations, rounds otherwise.
+    layer.error = error_of(layer, half_width);
+    shape_.layers[shape_.layer_count++] = layer;
+}
+
+/// The same plane in other coordinates, or in another order of operations, rounds otherwise.
+float Fitter::error_of(Layer const& layer, float half_width) const {
     constexpr float rounding = 2e-6f;
     float const side = spacing_ * framelet_side;
     float const magnitude = std::abs(layer.at) + side * (std::abs(layer.dx) + std::abs(layer.dy));
-    layer.error = half_width + rounding * (magnitude + half_width);
-    shape_.layers[shape_.layer_count++] = layer;
+    return half_width + rounding * (magnitude + half_width);
+}
+
+/// Which layer of its group a sample is nearest to, if it moves as that does; `loose` where none is near.
+std::uint8_t Fitter::nearest_layer(int at) const {
+    float least = isolated_tolerances * tolerance_;
+    std::uint8_t nearest = FrameletShape::loose;
+    for (std::uint8_t l = 0; l < shape_.layer_count; ++l) {
+        float const off = std::abs(residual(values_, planes_[l], at));
+        if (layer_groups_[l] == group_of_[static_cast<std::size_t>(at)] && off <= least) {
+            least = off;
+            nearest = l;
+        }
+    }
+    return nearest;
+}
+
+/// What is left on no layer, one by one.
+void Fitter::take_isolated() {
+    std::array<float, max_layers> half_widths{};
+    for (int i = 0; i < framelet_samples; ++i) {
+        int const at = block_order(i);
+        std::uint8_t& layer_of = layer_of_[static_cast<std::size_t>(at)];
+        std::uint8_t const l = layer_of == FrameletShape::loose ? nearest_layer(at) : FrameletShape::loose;
+        if (l == FrameletShape::loose || !moves_with(shape_.layers[l].velocity, i)) {
+            continue;
+        }
+        layer_of = l;
+        half_widths[l] = std::max(half_widths[l], std::abs(residual(values_, planes_[l], at)));
+    }
+    for (std::size_t l = 0; l < shape_.layer_count; ++l) {
+        Layer& layer = shape_.layers[l];
+        layer.error = std::max(layer.error, error_of(layer, half_widths[l]));
+    }
 }
 
 void Fitter::collect() {
@@ -257,13 +308,15 @@ float median_depth(std::span<Framelet const> framelets) {
 void fit_layers(Framelet const& framelet, ImagePlane const& plane, LayerTolerance const& tolerance,
                 FrameletShape& shape) {
     float const spacing = plane.sample_spacing(framelet.tile);
-    if (tolerance.preferred_inverse_depth > 0) {
-        Fitter(framelet, spacing, {tolerance.preferred_inverse_depth, tolerance.velocity, 0}, shape).fit();
-        if (shape.loose_samples.size() <= most_loose_samples) {
-            return;
+    float const wide = wide_tolerances * tolerance.inverse_depth;
+    for (float const off : {tolerance.preferred_inverse_depth, tolerance.inverse_depth, wide}) {
+        if (off > 0) {
+            Fitter(framelet, spacing, {off, tolerance.velocity, 0}, shape).fit();
+            if (shape.loose_samples.size() <= most_loose_samples) {
+                return;
+            }
         }
     }
-    Fitter(framelet, spacing, tolerance, shape).fit();
 }
 
 } // namespace framelet

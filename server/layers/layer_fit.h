@@ -23,8 +23,13 @@ struct LayerTolerance {
     float preferred_inverse_depth = 0;
 };
 
-/// Of a framelet. They cost more than layers, on the wire and in the viewer.
+/// Of a framelet. They cost more than layers, on the wire and in the viewer: where more than these are left, layers are
+/// fitted to so many tolerances instead.
 inline constexpr std::size_t most_loose_samples = 16;
+inline constexpr float wide_tolerances = 2;
+/// A sample that no plane was found for lies on the nearest layer of its body that it is so many tolerances off at
+/// most.
+inline constexpr float isolated_tolerances = 4;
 
 /// `tolerated_pixels`, while the camera moves so far that what is at `median_depth` (metres, > 0) moves by 20 pixels,
 /// and what deforms moves on for a tenth of a second. Preferred: a tenth of a pixel, while the camera moves on as fast
@@ -35,8 +40,9 @@ LayerTolerance layer_tolerance(float median_depth, ViewRays const& rays, float s
 float median_depth(std::span<Framelet const> framelets);
 
 /// Up to `max_layers` layers, the samples that none of them takes being loose. The inverse depth of every sample of a
-/// layer is within its `error` of the layer, and that within the tolerance, or what single precision resolves. Finite
-/// for any depths > 0. The sky is at inverse depth 0. `shape` is overwritten; its memory is used again.
+/// layer is within its `error` of the layer, and that within the tolerance (times `wide_tolerances` and
+/// `isolated_tolerances`, where these apply), or what single precision resolves. Finite for any depths > 0. The sky is
+/// at inverse depth 0. `shape` is overwritten; its memory is used again.
 void fit_layers(Framelet const& framelet, ImagePlane const& plane, LayerTolerance const& tolerance,
                 FrameletShape& shape);
 

@@ -103,6 +103,9 @@ json answer_codec(VerbOptions& options) {
         study.corpus.moments = 1;
         study.rounds = 1;
     }
+    if (!options.codec_viewport.empty()) {
+        study.corpus.viewport = {options.codec_viewport[0], options.codec_viewport[1]};
+    }
     return compare_codecs(study);
 }
 

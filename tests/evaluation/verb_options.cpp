@@ -159,6 +159,13 @@ void add_ablation_options(CLI::App& verb, VerbOptions& options) {
 void add_codec_options(CLI::App& verb, VerbOptions& options) {
     add_output_options(verb, options);
     verb.add_option("--scene", options.codec.scenes, "Scene files (default: the five vehicle scenes)");
+    verb.add_option("--viewport", options.codec_viewport,
+                    "Width and height of the picture, pixels (default: 1280 720, with --quick 640 360)")
+        ->expected(2)
+        ->check(CLI::Range(16, 4096));
+    verb.add_option("--codecs", options.codec.codecs, "Which ways of coding (default: all)")
+        ->delimiter(',')
+        ->check(CLI::IsMember(codec_names));
     verb.add_option("--fps", options.codec.corpus.frames_per_second,
                     "Samples a second, in whole pictures at one sample a pixel")
         ->check(CLI::Range(0.1, 1000.0))

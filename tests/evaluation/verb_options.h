@@ -56,6 +56,7 @@ struct VerbOptions {
     StudyOptions study;
     EstimatorStudy estimators;
     CodecStudy codec;
+    std::vector<int> codec_viewport; ///< width and height; empty: what the verb has time for
     LayerStudy layers;
     AntialiasingStudy antialiasing;
     CorrespondenceStudy correspondence;

@@ -11,7 +11,7 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
     std::vector<FrameletShape> shapes(data[0] % 129u);
     std::vector<std::uint8_t> const side_bits(shapes.size(), 4);
     try {
-        ShapeCodec::decode({data + 1, size - 1}, shapes);
+        ShapeCodec::decode({data + 1, size - 1}, side_bits, shapes);
         ShapeCodec().encode(shapes, side_bits);
     } catch (ProtocolError const&) {
     }

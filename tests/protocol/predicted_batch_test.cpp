@@ -82,6 +82,61 @@ TEST(PredictedBatch, BothSidesHoldTheSameAfterAnySequence) {
     }
 }
 
+/// Anything that samples may be: noise, two extremes, one colour, the last framelet with a few samples changed.
+void fill_with_anything(DisplayFramelet& framelet, std::mt19937_64& random) {
+    std::uint64_t const kind = random() % 4;
+    for_each_plane([&](auto const plane) {
+        auto& samples = framelet.*plane;
+        for (std::size_t i = 0; i < samples.size() && kind < 2; i += sizeof(std::uint64_t)) {
+            std::uint64_t const bits = random();
+            for (std::size_t byte = 0; byte < sizeof bits; ++byte) {
+                auto const noise = static_cast<std::uint8_t>(bits >> (8 * byte));
+                samples[i + byte] = kind == 0 ? noise : noise < 40 ? std::uint8_t{0} : std::uint8_t{255};
+            }
+        }
+        if (kind == 2) {
+            samples.fill(static_cast<std::uint8_t>(random()));
+        }
+        samples[random() % samples.size()] = static_cast<std::uint8_t>(random());
+    });
+}
+
+TEST(PredictedBatch, ReadersSeeWhatWritersSayWhateverTheSamplesAre) {
+    constexpr std::size_t group = 64, groups = 2500;
+    std::mt19937_64 random(1);
+    ImagePlane const plane(small_viewport);
+    std::vector<DisplayFramelet> framelets;
+    for (std::uint32_t code = 1; framelets.size() < group; code = code * 5 % 1024 + 1) {
+        if (plane.accepts({code})) {
+            framelets.push_back({{code}, {}, {}, {}});
+        }
+    }
+    HeldPicture held;
+    held.show(small_viewport);
+    PlaneCodec codec;
+    std::vector<DisplayFramelet> said = framelets, read = framelets;
+    std::vector<std::uint8_t> quality(group), read_quality(group), bytes;
+    for (std::size_t i = 0; i < groups; ++i) {
+        for (std::size_t f = 0; f < group; ++f) {
+            fill_with_anything(framelets[f], random);
+            quality[f] = static_cast<std::uint8_t>(random() % 8 == 0 ? exact_quality : random() % 128);
+        }
+        bool const is_predicted = i % 4 != 0;
+        bytes.clear();
+        for (auto const part : codec.encode(framelets, quality, is_predicted ? &held : nullptr, said)) {
+            bytes.insert(bytes.end(), part.begin(), part.end());
+        }
+        ASSERT_LE(bytes.size(), is_predicted ? most_predicted_bytes(group) : most_plane_bytes(group));
+        codec.decode(bytes, read, read_quality, is_predicted ? &held : nullptr);
+        ASSERT_EQ(read_quality, quality);
+        ASSERT_TRUE(!is_predicted || read == said) << "group " << i;
+        for (std::size_t f = 0; f < group; ++f) {
+            ASSERT_TRUE(quality[f] != exact_quality || read[f] == framelets[f]) << "group " << i;
+        }
+        held.take(read);
+    }
+}
+
 TEST(PredictedBatch, WhatIsHeldCostsNearlyNothing) {
     std::mt19937 random(1);
     int const depth = ImagePlane(small_viewport).pixel_depth();
@@ -196,12 +251,12 @@ TEST(PredictedBatch, GoldenBytes) {
         framelet.green.fill(140);
         framelet.blue.fill(140);
     }
-    std::vector<std::uint8_t> const golden{0x08, 0x08, // qualities
-                                           0x01, 0x02, // at its place; moved
-                                           0xe0, 0x00, // by 16 pixels to the left
-                                           0x18, 0x00, 0x00, 0x00, 0x00, 0x00, // 24 steps of Y
-                                           0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,
-                                           0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00};
+    std::vector<std::uint8_t> golden{0x08, 0x08, // qualities
+                                     0x01, 0x02, // at its place; moved
+                                     0xe0, 0x00, // by 16 pixels to the left
+                                     0x00, 0x00, // no shares
+                                     0x30, 0x00, 0x00, 0x00, 0x00, 0x00}; // 24 steps of Y
+    golden.insert(golden.end(), 6 + 20, 0); // high bytes; neither escapes nor tokens
     PlaneCodec codec;
     std::vector<std::uint8_t> quality(2);
     std::array<DisplayFramelet, 2> decoded = framelets;

@@ -215,9 +215,7 @@ json compare_codecs(CodecStudy const& study) {
         {"predicted", steps, [&](auto const&... told) { return code_planes(planes, &held, told...); },
          [&] { held = {}; }},
         {"haar", steps, [&](auto const&... told) { return code_planes(planes, nullptr, told...); }},
-        {"jpeg strip",
-         {95, 93, 90, 85, 80, 70, 60, 50, 40},
-         [&](auto const&... told) { return code_strip(jpeg, told...); }},
+        {"jpeg", {95, 93, 90, 85, 80, 70, 60, 50, 40}, [&](auto const&... told) { return code_strip(jpeg, told...); }},
     };
     json result = json::array();
     for (std::filesystem::path const& file : study.scenes) {
@@ -229,6 +227,9 @@ json compare_codecs(CodecStudy const& study) {
             scene->name.c_str());
         json rows = json::array();
         for (Candidate const& candidate : candidates) {
+            if (!study.codecs.empty() && std::ranges::find(study.codecs, candidate.name) == study.codecs.end()) {
+                continue;
+            }
             for (int const quality : candidate.qualities) {
                 json const& row = rows.emplace_back(measure(corpus, candidate, quality, study));
                 std::printf("  %-12s %6d %9.4f + %.4f %13.2f %12.2f %14.0f %8.0f\n", candidate.name.c_str(), quality,

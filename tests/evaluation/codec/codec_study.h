@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
@@ -14,9 +15,13 @@ namespace framelet::bench {
 struct CodecStudy {
     std::vector<std::filesystem::path> scenes;
     CorpusOptions corpus;
+    std::vector<std::string> codecs; ///< names, of `codec_names`; empty: all
     int rounds = 3; ///< each batch is coded so often; the fastest counts
     std::filesystem::path charts; ///< folder; empty: none are drawn
 };
+
+/// Exact framelets; with loss and prediction; with loss alone; JPEG strips.
+inline std::vector<std::string> const codec_names{"planes", "predicted", "haar", "jpeg"};
 
 /// On one thread.
 nlohmann::json compare_codecs(CodecStudy const& study);
