@@ -1,7 +1,9 @@
 #include "server/layers/layer_fit.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 
 #include <glm/geometric.hpp>
 
@@ -308,13 +310,12 @@ float median_depth(std::span<Framelet const> framelets) {
 void fit_layers(Framelet const& framelet, ImagePlane const& plane, LayerTolerance const& tolerance,
                 FrameletShape& shape) {
     float const spacing = plane.sample_spacing(framelet.tile);
-    float const wide = wide_tolerances * tolerance.inverse_depth;
-    for (float const off : {tolerance.preferred_inverse_depth, tolerance.inverse_depth, wide}) {
-        if (off > 0) {
-            Fitter(framelet, spacing, {off, tolerance.velocity, 0}, shape).fit();
-            if (shape.loose_samples.size() <= most_loose_samples) {
-                return;
-            }
+    std::array const all{tolerance.preferred_inverse_depth, tolerance.inverse_depth,
+                         wide_tolerances * tolerance.inverse_depth};
+    for (float const off : std::span(all).subspan(tolerance.preferred_inverse_depth > 0 ? 0 : 1)) {
+        Fitter(framelet, spacing, {off, tolerance.velocity, 0}, shape).fit();
+        if (shape.loose_samples.size() <= most_loose_samples) {
+            return;
         }
     }
 }

@@ -225,6 +225,17 @@ TEST(LayerFit, NoiseAboveTheToleranceIsLooseAndBelowItIsNot) {
     EXPECT_GT(fit(noisy(30 * tolerance.inverse_depth)).loose_samples.size(), 150u);
 }
 
+TEST(LayerFit, WithoutAnyToleranceTheShapeIsOverwrittenAsWell) {
+    Framelet const framelet = make_framelet([](float, float) { return 4.0f; });
+    FrameletShape shape;
+    shape.layer_count = 3;
+    shape.layer_of.fill(2);
+    fit_layers(framelet, plane, {}, shape);
+    EXPECT_EQ(shape.layer_count, 1);
+    EXPECT_EQ(shape.layers[0].at, 0.25f);
+    EXPECT_EQ(shape.layer_of[77], 0);
+}
+
 TEST(LayerFit, MedianDepthAndTolerance) {
     std::vector<Framelet> framelets{make_framelet(sky),
                                     make_framelet([](float x, float) { return x < 6 ? 2.0f : 5.0f; })};
