@@ -62,7 +62,7 @@ private:
 
     Tile square_;
     int depth_ = 0;
-    int pixels_ = 0; ///< along a child's side
+    double pixels_ = 0; ///< along a child's side
     std::uint32_t usable_ = 0;
     std::array<std::uint64_t, blocks> versions_{};
     std::vector<Child> children_; ///< in Morton order
