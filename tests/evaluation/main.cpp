@@ -85,6 +85,8 @@ int main(int argc, char** argv) {
              add_layer_options, [&options] { return answer_layers(options); });
     add_verb("correspondence", "How far off the viewer shows what it moves", add_correspondence_options,
              [&options] { return answer_correspondence(options); });
+    add_verb("mirrors", "What becomes of mirror reflections that the viewer moves", add_mirror_options,
+             [&options] { return answer_mirrors(options); });
     add_verb("smoothness",
              "How steadily the scene moves where the viewer shows it a little late, and how far off that is",
              add_smoothness_options, [&options] { return answer_smoothness(options); });

@@ -142,6 +142,18 @@ json answer_correspondence(VerbOptions& options) {
     return measure_correspondence(study);
 }
 
+json answer_mirrors(VerbOptions& options) {
+    auto& study = options.mirrors;
+    if (study.scenes.empty()) {
+        study.scenes = named_scenes({"globe", "stop", "vehicle_chase", "vehicle_flyby"});
+    }
+    if (options.quick) {
+        study.viewport = {640, 360};
+        study.times = 1;
+    }
+    return measure_mirrors(study);
+}
+
 json answer_stillness(VerbOptions& options) {
     settle(options,
            options.quick ? Scale{.size = 128, .seconds = 2, .rate = 20} : Scale{.size = 512, .seconds = 4, .rate = 20});

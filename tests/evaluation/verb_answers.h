@@ -17,6 +17,7 @@ nlohmann::json answer_codec(VerbOptions& options);
 nlohmann::json answer_links(VerbOptions& options);
 nlohmann::json answer_antialiasing(VerbOptions& options);
 nlohmann::json answer_correspondence(VerbOptions& options);
+nlohmann::json answer_mirrors(VerbOptions& options);
 nlohmann::json answer_stillness(VerbOptions& options);
 nlohmann::json answer_layers(VerbOptions& options);
 nlohmann::json answer_turn(BenchScene& scene, VerbOptions& options);

@@ -70,6 +70,18 @@ void add_link_options(CLI::App& verb, VerbOptions& options) {
         ->capture_default_str();
 }
 
+/// `scenes`: which are measured with by default.
+template <class Study>
+void add_ahead_options(CLI::App& verb, VerbOptions& options, Study& study, std::string const& scenes) {
+    add_output_options(verb, options);
+    verb.add_option("--scene", study.scenes, "Scene files to measure with (default: " + scenes + ")");
+    verb.add_option("--camera", study.camera, "Which of their cameras, from 0")->capture_default_str();
+    verb.add_option("--ahead", study.ahead, "Seconds that pictures are moved ahead")
+        ->delimiter(',')
+        ->check(CLI::Range(0.0, 10.0))
+        ->capture_default_str();
+}
+
 } // namespace
 
 void settle(VerbOptions& options, Scale const& scale) {
@@ -188,14 +200,11 @@ void add_antialiasing_options(CLI::App& verb, VerbOptions& options) {
 }
 
 void add_correspondence_options(CLI::App& verb, VerbOptions& options) {
-    auto& study = options.correspondence;
-    add_output_options(verb, options);
-    verb.add_option("--scene", study.scenes, "Scene files to measure with (default: globe, windmill, the vehicles)");
-    verb.add_option("--camera", study.camera, "Which of their cameras, from 0")->capture_default_str();
-    verb.add_option("--ahead", study.ahead, "Seconds that pictures are moved ahead")
-        ->delimiter(',')
-        ->check(CLI::Range(0.0, 10.0))
-        ->capture_default_str();
+    add_ahead_options(verb, options, options.correspondence, "globe, windmill, the vehicles");
+}
+
+void add_mirror_options(CLI::App& verb, VerbOptions& options) {
+    add_ahead_options(verb, options, options.mirrors, "globe, stop, vehicle_chase, vehicle_flyby");
 }
 
 void add_smoothness_options(CLI::App& verb, VerbOptions& options) {

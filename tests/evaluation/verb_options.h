@@ -12,6 +12,7 @@
 #include "tests/evaluation/antialiasing.h"
 #include "tests/evaluation/codec/codec_study.h"
 #include "tests/evaluation/correspondence/correspondence.h"
+#include "tests/evaluation/correspondence/mirror_study.h"
 #include "tests/evaluation/estimators/estimator_verbs.h"
 #include "tests/evaluation/layer_study.h"
 #include "tests/evaluation/link_table.h"
@@ -60,6 +61,7 @@ struct VerbOptions {
     LayerStudy layers;
     AntialiasingStudy antialiasing;
     CorrespondenceStudy correspondence;
+    MirrorStudy mirrors;
     SmoothnessStudy smoothness;
     StillnessStudy stillness;
     LinkTableOptions link_table;
@@ -83,6 +85,7 @@ void add_wall_options(CLI::App& verb, VerbOptions& options);
 void add_antialiasing_options(CLI::App& verb, VerbOptions& options);
 void add_layer_options(CLI::App& verb, VerbOptions& options);
 void add_correspondence_options(CLI::App& verb, VerbOptions& options);
+void add_mirror_options(CLI::App& verb, VerbOptions& options);
 void add_smoothness_options(CLI::App& verb, VerbOptions& options);
 void add_stillness_options(CLI::App& verb, VerbOptions& options);
 void add_codec_options(CLI::App& verb, VerbOptions& options);

@@ -14,6 +14,7 @@
 #include "server/schedule/tiling.h"
 #include "tests/evaluation/bench_scene.h"
 #include "tests/evaluation/correspondence/exact_motion.h"
+#include "tests/evaluation/correspondence/flight.h"
 #include "tests/evaluation/correspondence/place_code.h"
 
 namespace framelet::bench {
@@ -223,16 +224,6 @@ void compare(Surfaces const& before, Surfaces const& after, ExactMotion const& b
             }
         }
     }
-}
-
-/// A flight for scenes that have no camera of their own.
-Camera flown(Camera camera, float median_depth, double seconds) {
-    constexpr float depths_a_second = 0.5f;
-    constexpr float radians_a_second = 0.5235988f;
-    auto const s = static_cast<float>(seconds);
-    camera.position += depths_a_second * median_depth * s * camera.right();
-    camera.orientation = glm::normalize(glm::angleAxis(radians_a_second * s, Vec3(0, 1, 0)) * camera.orientation);
-    return camera;
 }
 
 /// Where the camera is so many seconds after `time`, when it was `camera`.

@@ -21,8 +21,8 @@ struct CorrespondenceStudy {
 /// Framelets of a sample a pixel are rendered at one time, coded and decoded as on the wire, and shown by the viewer's
 /// own code for the scene's camera at a later time. For every pixel that was visible already, the place that it was
 /// taken from is compared with the exact one: primary ray, the animation's motion backwards, old camera. In a scene
-/// without cameras the default one flies sideways by half of the median depth a second and turns by 30 degrees a second.
-/// Throws InputError.
+/// without cameras the default one flies sideways by half of the median depth a second and turns by 30 degrees a
+/// second. Throws InputError.
 nlohmann::json measure_correspondence(CorrespondenceStudy const& study);
 
 } // namespace framelet::bench
