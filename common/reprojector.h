@@ -24,9 +24,10 @@ public:
     ///
     /// Where all that is held was taken with this camera and nothing in it has moved since, this is `reconstruct`, byte
     /// by byte; so is every block for which that holds while others move. Samples of or for an orthographic camera stay
-    /// on their pixels. Where what is in place leaves holes the cache's spares show, and only there. All stays on its
-    /// pixels where the camera has cut: where nearly nothing of what is held would show in the new view. Only blocks
-    /// whose samples or their places differ from the last call's are painted.
+    /// on their pixels. Where what is in place leaves holes the cache's spares show, and only there; where things lie
+    /// around a hole, only what is behind them. All stays on its pixels where the camera has cut: where nearly nothing
+    /// of what is held would show in the new view. Only blocks whose samples or their places differ from the last
+    /// call's are painted.
     void show(FrameletCache const& cache, std::span<PixelRect const> changed, Camera const& camera,
               SceneTime scene_time, BodyMotions const& motions, Picture& picture, std::vector<PixelRect>& repainted);
 

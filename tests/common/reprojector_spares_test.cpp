@@ -1,6 +1,7 @@
 #include "common/reprojector.h"
 
 #include <algorithm>
+#include <span>
 
 #include <glm/gtc/quaternion.hpp>
 #include <gtest/gtest.h>
@@ -101,6 +102,31 @@ TEST(ReprojectorSpares, ArriveInBlocksThatStayAsTheyWere) {
         show_now();
     }
     EXPECT_EQ(picture, show(cache, turned(), 0).picture);
+}
+
+/// Something stood beside a post when it was seen first and is gone when all is seen again from elsewhere. What then
+/// comes out behind the post is not that.
+TEST(ReprojectorSpares, ShowNothingNearInWhatComesOutBehindSomething) {
+    auto const camera_at = [](float x) { return look_at({x, 1, 6}, {x, 1, 0}, {0, 1, 0}, 0.8f); };
+    AnalyticScene now;
+    now.quads.push_back({{-20, -20, -3}, {40, 0, 0}, {0, 40, 0}, waves(12, 6)});
+    now.quads.push_back({{-0.3, -20, 2}, {0.6, 0, 0}, {0, 40, 0}, waves(2, 2)});
+    AnalyticScene before = now;
+    before.quads.push_back({{0.3, -20, 1.5}, {0.6, 0, 0}, {0, 40, 0}, waves(2, 2)});
+    ImagePlane const plane(viewport);
+    std::vector<Tile> const all = visible_tiles(plane, plane.pixel_depth());
+    std::span const most(all.begin() + 1, all.end()); // once all is of one camera there are no spares
+    FrameletCache cache(plane);
+    cache.insert(before.batch(plane, 1, camera_at(0), 0, all));
+    cache.insert(now.batch(plane, 2, camera_at(0.6f), 0, {most.begin(), most.end()}));
+    ASSERT_EQ(cache.spares().size(), most.size());
+    Shown const with = show(cache, camera_at(0.9f), 0);
+    auto const count_at = [&with](float depth) {
+        return std::ranges::count_if(with.inverse_depth, [&](float w) { return std::abs(w * depth - 1) < 0.05f; });
+    };
+    EXPECT_GT(count_at(4), viewport.height * 30); // the post
+    EXPECT_EQ(count_at(4.5f), 0); // what is gone
+    EXPECT_GT(std::ranges::count(with.inverse_depth, hole_depth), viewport.height * 3);
 }
 
 } // namespace
