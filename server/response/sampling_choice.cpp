@@ -39,7 +39,7 @@ BestPeriod const best_period;
 } // namespace
 
 SamplingChoice choose_sampling(PlaceModel const& place, float life, SamplingPrice const& price, int least_level,
-                               int most_level) {
+                               int most_level, LevelCosts const& costs) {
     float const time_weight = price.bias == 0 ? 1 : std::exp2(2 * price.bias);
     float const space_weight = 1 / time_weight;
     float const longest = std::max(life, price.least_period);
@@ -49,7 +49,7 @@ SamplingChoice choose_sampling(PlaceModel const& place, float life, SamplingPric
     /// Weighs a level, unless what it leaves unresolved alone is too much already.
     auto const offer = [&](int level) {
         float const unresolved = space_weight * errors.unresolved[static_cast<std::size_t>(level)];
-        float const cost = price.price * samples_per_pixel(level);
+        float const cost = price.price * samples_per_pixel(level) * costs[static_cast<std::size_t>(level)];
         if (unresolved + cost / longest >= least) {
             return;
         }

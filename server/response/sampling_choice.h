@@ -8,9 +8,16 @@
 // what is paid altogether is unresolved(l) + V (1 - exp(-r latency - x)): the error at the end of the period.
 #pragma once
 
-#include "server/response/place_model.h"
+#include "server/response/coding_cost.h"
 
 namespace framelet {
+
+/// All samples cost the same.
+inline constexpr LevelCosts equal_costs = [] {
+    LevelCosts costs{};
+    costs.fill(1);
+    return costs;
+}();
 
 struct SamplingPrice {
     float price = 0; ///< of one sample a pixel a second, in mean squared error
@@ -27,8 +34,9 @@ struct SamplingChoice {
 };
 
 /// `life`: seconds for which the place is expected to go on as it does: nothing is worth more than it saves in that
-/// time. `least_level`, `most_level`: levels to choose from.
+/// time. `least_level`, `most_level`: levels to choose from. `costs`: of a sample of each level, in those that the
+/// price is of.
 SamplingChoice choose_sampling(PlaceModel const& place, float life, SamplingPrice const& price, int least_level,
-                               int most_level);
+                               int most_level, LevelCosts const& costs = equal_costs);
 
 } // namespace framelet

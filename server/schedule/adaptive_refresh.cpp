@@ -43,6 +43,16 @@ std::size_t batch_limit(RefreshInput const& input, bool still) {
         std::clamp(timely, 1.0, static_cast<double>(std::min(input.link_framelets, max_batch_framelets))));
 }
 
+/// Of a sample, taken so far from 1.
+float mean_cost(std::span<RatedPatch const> rated, float share) {
+    double cost = 0, samples = 0;
+    for (RatedPatch const& entry : rated) {
+        cost += entry.cost;
+        samples += entry.samples;
+    }
+    return samples > 0 ? 1 + share * (static_cast<float>(cost / samples) - 1) : 1.0f;
+}
+
 } // namespace
 
 float cycle_length(bool still, double plan_seconds) {
@@ -194,11 +204,27 @@ void AdaptiveRefresh::take(Patch const& patch, double now) {
     }
 }
 
+/// Samples cost the same unless the link is what is scarce.
+void AdaptiveRefresh::find_costs(RefreshInput const& input) {
+    costs_.clear();
+    if (!(input.rendered_per_second > input.samples_per_second)) {
+        return;
+    }
+    costs_.assign(field_.size(), equal_costs);
+    for (std::uint32_t const index : field_.visible()) {
+        costs_[index] = coded_bits(field_[index].model);
+        for (float& cost : costs_[index]) {
+            cost /= mean_bits_;
+        }
+    }
+}
+
 void AdaptiveRefresh::plan_patches(RefreshInput const& input, double samples) {
     rated_.clear();
     if (samples <= 0) {
         return;
     }
+    find_costs(input);
     double const batch_samples = static_cast<double>(batch_limit(input, still_) * framelet_samples);
     double const rendering = std::min(batch_samples, samples) / input.samples_per_second;
     Budget const budget{samples / static_cast<double>(input.cycle_seconds),
@@ -206,6 +232,7 @@ void AdaptiveRefresh::plan_patches(RefreshInput const& input, double samples) {
                         static_cast<float>(rendering) + input.delivery_seconds,
                         input.bias,
                         input.limits,
+                        costs_,
                         still_};
     find_due_errors(field_, budget, due_errors_);
     price_ = solve_price(field_, advanced_, budget, due_errors_, price_, choices_);
@@ -215,7 +242,11 @@ void AdaptiveRefresh::plan_patches(RefreshInput const& input, double samples) {
     }
     make_density_patches(field_.plane(), density_, field_.depth(), tiling_scratch_, cut_);
     rate_patches(field_, choices_, due_errors_, cut_, budget, rated_);
-    select_patches(samples, rated_);
+    double const most = std::max(input.rendered_per_second, input.samples_per_second) / input.samples_per_second;
+    select_patches(samples, most * samples, rated_);
+    if (!costs_.empty()) {
+        mean_bits_ *= mean_cost(rated_, 0.2f);
+    }
     auto const inspections = static_cast<std::ptrdiff_t>(cycle_.size());
     for (RatedPatch const& entry : rated_) {
         auto const end = cycle_.begin() + inspections;

@@ -24,7 +24,10 @@ float cycle_length(bool still, double plan_seconds);
 struct RefreshInput {
     ViewState state;
     double now = 0; ///< seconds, steady
-    double samples_per_second = 0; ///< what the renderer can do for this viewer
+    double samples_per_second = 0; ///< what there is time for, to render and to send
+    /// What the renderer alone could do. Where that is more the link is what is scarce, and samples cost by the bytes
+    /// that they take: `samples_per_second` are of the mean then. 0: the same.
+    double rendered_per_second = 0;
     float cycle_seconds = least_cycle_seconds; ///< how often the response is worked out anew
     float delivery_seconds = 0; ///< from the end of its rendering until it shows
     float bias = 0;
@@ -99,6 +102,7 @@ private:
     void advance(RefreshInput const& input);
     void plan_cycle(RefreshInput const& input, RefreshPlan& plan);
     double plan_inspections(RefreshInput const& input);
+    void find_costs(RefreshInput const& input);
     void plan_patches(RefreshInput const& input, double samples);
     void plan_probes(double samples, RefreshPlan& plan);
     void plan_completion(double samples);
@@ -128,6 +132,8 @@ private:
     bool still_ = false; ///< what is to be seen is what the last plan was for
     PlaceField field_;
     LumaHistory history_;
+    std::vector<LevelCosts> costs_; ///< of samples, by place; none where all cost the same
+    float mean_bits_ = 1; ///< of a sample planned lately, as estimated
     Choices choices_;
     float price_ = 1e-6f;
     double planned_ = never; ///< when the cycle was planned

@@ -9,6 +9,8 @@ constexpr double least_inspection_period = 2;
 
 struct Gain {
     double error = 0; ///< that refreshing takes away, beyond what is tolerated, summed over pixels
+    double pixels = 0;
+    double cost = 0; ///< of a sample, summed over pixels
     bool spoils = false; ///< what is finer and still true
 };
 
@@ -17,15 +19,17 @@ Gain gain_of(PlaceField const& field, Choices const& choices, std::span<float co
     Gain gain;
     for (std::uint32_t i = range.first; i < range.last; ++i) {
         Place const& place = field[i];
-        if (field.pixels_of(i) == 0 || place.taken.level >= 0) { // what it is worth is seen once it is learnt
+        auto const pixels = static_cast<double>(field.pixels_of(i));
+        gain.pixels += pixels;
+        gain.cost += pixels * static_cast<double>(costs_at(budget, i)[static_cast<std::size_t>(level)]);
+        if (pixels == 0 || place.taken.level >= 0) { // what it is worth is seen once it is learnt
             continue;
         }
         gain.spoils =
             gain.spoils || (place.level > level && place.drift == 0 && (budget.still || place.model.motion == 0));
         float const fresh =
             unresolved_error(place.model, level) + drift_error(place.model, level, drift_on_the_way(place, budget));
-        gain.error += static_cast<double>(field.pixels_of(i)) *
-                      static_cast<double>(due[i] - std::max(choices[i].due_error, fresh));
+        gain.error += pixels * static_cast<double>(due[i] - std::max(choices[i].due_error, fresh));
     }
     return gain;
 }
@@ -39,7 +43,8 @@ void rate_patches(PlaceField const& field, Choices const& choices, std::span<flo
         Gain const gain = gain_of(field, choices, due, budget, field.range_of(patch.node), field.level_of(patch.depth));
         if (!gain.spoils) {
             double const samples = framelet_samples * tile_count(patch);
-            rated.push_back({patch, samples, gain.error / samples});
+            double const cost = samples * (gain.pixels > 0 ? gain.cost / gain.pixels : 1);
+            rated.push_back({patch, samples, cost, gain.error / cost});
         }
         return !gain.spoils;
     };
@@ -57,15 +62,17 @@ void rate_patches(PlaceField const& field, Choices const& choices, std::span<flo
     }
 }
 
-void select_patches(double samples, std::vector<RatedPatch>& rated) {
+void select_patches(double budget, double most_samples, std::vector<RatedPatch>& rated) {
     std::erase_if(rated, [](RatedPatch const& entry) { return !(entry.urgency > 0); });
     std::sort(rated.begin(), rated.end(), [](RatedPatch const& a, RatedPatch const& b) {
         return a.urgency != b.urgency ? a.urgency > b.urgency : a.patch.node < b.patch.node;
     });
     double spent = 0;
+    double samples = 0;
     std::size_t count = 0;
-    while (count < rated.size() && spent < samples) {
-        spent += rated[count].samples;
+    while (count < rated.size() && spent < budget && samples < most_samples) {
+        spent += rated[count].cost;
+        samples += rated[count].samples;
         ++count;
     }
     rated.resize(count);

@@ -1,4 +1,5 @@
-// Which patches of a tiling are rendered next: those by whose refresh the picture gains most for each sample. In: the
+// Which patches of a tiling are rendered next: those by whose refresh the picture gains most for what
+// they cost. In: the
 // field, the choices, the cut that follows from them; out: patches, the most urgent first.
 #pragma once
 
@@ -10,8 +11,9 @@ namespace framelet {
 
 struct RatedPatch {
     Patch patch;
-    double samples = 0; ///< what it costs
-    double urgency = 0; ///< error that waiting costs, summed over pixels, for each sample; above 0: due
+    double samples = 0;
+    double cost = 0; ///< of them: as many where all cost the same
+    double urgency = 0; ///< error that waiting costs, summed over pixels, for each sample's cost; above 0: due
 };
 
 /// Replaces `rated` by every patch of the cut, with its urgency; a patch that would put something coarser over what is
@@ -19,8 +21,8 @@ struct RatedPatch {
 void rate_patches(PlaceField const& field, Choices const& choices, std::span<float const> due,
                   std::vector<Patch> const& cut, Budget const& budget, std::vector<RatedPatch>& rated);
 
-/// Keeps what is due, the most urgent first, until `samples` are spent.
-void select_patches(double samples, std::vector<RatedPatch>& rated);
+/// Keeps what is due, the most urgent first, until `budget` is spent or there are so many samples.
+void select_patches(double budget, double most_samples, std::vector<RatedPatch>& rated);
 
 /// How long a place may go without a look at all of its pixels, seconds: at least two, and so long that looking takes a
 /// twentieth of the samples. It bounds how long anything small can stay unseen.

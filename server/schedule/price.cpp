@@ -35,7 +35,7 @@ void choose_all(PlaceField const& field, double now, Budget const& budget, float
             model.motion = 0;
         }
         choices[index] = choose_sampling(model, expected_life(place, now, budget.still), terms, least_level,
-                                         budget.limits.most_level);
+                                         budget.limits.most_level, costs_at(budget, index));
     }
 }
 
@@ -60,7 +60,8 @@ Demand demand_of(PlaceField const& field, Budget const& budget, std::span<float 
     for (std::uint32_t const index : field.visible()) {
         Place const& place = field[index];
         SamplingChoice const& choice = choices[index];
-        double const samples = static_cast<double>(field.pixels_of(index) * samples_per_pixel(choice.level));
+        double const samples = static_cast<double>(field.pixels_of(index) * samples_per_pixel(choice.level) *
+                                                   costs_at(budget, index)[static_cast<std::size_t>(choice.level)]);
         steady += choice.recurring ? samples / static_cast<double>(choice.period) : 0;
         float const error = due[index];
         if (error > choice.due_error) {

@@ -24,8 +24,15 @@ struct Budget {
     float latency = 0; ///< seconds from rendering to display
     float bias = 0; ///< -1 (spatial fidelity) .. 1 (temporal)
     ResponseLimits limits{};
+    /// What a sample costs of `samples_per_second`, by place and level; empty: one.
+    std::span<LevelCosts const> costs{};
     bool still = false; ///< nothing moves: what is rendered now stays true, whatever was learnt of the place's motion
 };
+
+/// What a sample costs at the place.
+inline LevelCosts const& costs_at(Budget const& budget, std::uint32_t index) {
+    return budget.costs.empty() ? equal_costs : budget.costs[index];
+}
 
 /// For every place of a field, by Morton index; what is not visible keeps its default.
 using Choices = std::vector<SamplingChoice>;
@@ -37,7 +44,7 @@ using Choices = std::vector<SamplingChoice>;
 float solve_price(PlaceField const& field, double now, Budget const& budget, std::span<float const> due,
                   float last_price, Choices& choices);
 
-/// Samples a second that the choices ask for.
+/// Samples a second that the choices ask for, by what they cost.
 struct Demand {
     double pressing = 0; ///< for what moves, or is no longer true
     double refining = 0; ///< for what is true and coarse: it can wait and makes nothing dearer

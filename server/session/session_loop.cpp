@@ -175,6 +175,7 @@ void SessionLoop::plan(Session& session, ViewerState& viewer, SessionInput const
     std::uint8_t const quality = input.takes_loss() ? viewer.choice.choose(link, rendered, wanted.now) : exact_quality;
     bool const still = viewer.refresh.is_still(state);
     wanted.samples_per_second = bounded_rate(link, rendered);
+    wanted.rendered_per_second = rendered;
     wanted.cycle_seconds = cycle_length(still, plan_seconds_);
     wanted.delivery_seconds = static_cast<float>(link.delivery_seconds);
     wanted.bias = std::clamp(static_cast<float>(options_.bias) + input.settings.bias, -1.0f, 1.0f);

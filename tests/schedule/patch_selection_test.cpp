@@ -1,6 +1,7 @@
 #include "server/schedule/patch_selection.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -71,6 +72,43 @@ TEST(RatedPatches, WhatIsTrueGetsNoCoarserOnceAllStands) {
     EXPECT_FALSE(is_wanted());
     field[0].drift = 1; // what is no longer true is rendered again
     EXPECT_TRUE(is_wanted());
+}
+
+/// What takes away the same error goes in the order of its cost, and neither what is spent nor the samples exceed what
+/// there is by more than the last patch.
+TEST(SelectedPatches, CheaperOnesGoFirst) {
+    PlaceField field{ImagePlane({128, 128})};
+    for (std::uint32_t const index : field.visible()) {
+        field[index].level = pixel_level;
+        field[index].drift = 64;
+        field[index].model.energy.fill(1e-6f);
+    }
+    Choices const choices(field.size());
+    std::vector<float> const due(field.size(), 0.1f);
+    std::vector<LevelCosts> costs(field.size(), equal_costs);
+    for (std::uint32_t const index : field.visible()) {
+        costs[index].fill(0.25f + 0.125f * static_cast<float>((index * 37) % 16));
+    }
+    std::vector<Patch> cut;
+    for (std::uint32_t const index : field.visible()) {
+        cut.push_back({{(1u << (2 * field.depth())) + index}, field.plane().pixel_depth()});
+    }
+    std::vector<RatedPatch> all;
+    rate_patches(field, choices, due, cut, {.costs = costs}, all);
+    ASSERT_EQ(all.size(), cut.size());
+    for (auto const& [budget, most] : {std::pair{8.0, 1e9}, {1e9, 8.0}, {8.0, 4.0}}) {
+        std::vector<RatedPatch> rated = all;
+        select_patches(budget * framelet_samples, most * framelet_samples, rated);
+        double cost = 0, samples = 0;
+        for (std::size_t i = 0; i < rated.size(); ++i) {
+            EXPECT_LT(cost, budget * framelet_samples);
+            EXPECT_LT(samples, most * framelet_samples);
+            EXPECT_TRUE(i == 0 || rated[i].cost >= rated[i - 1].cost);
+            cost += rated[i].cost;
+            samples += rated[i].samples;
+        }
+        EXPECT_TRUE(cost >= budget * framelet_samples || samples >= most * framelet_samples);
+    }
 }
 
 } // namespace

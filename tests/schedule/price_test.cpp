@@ -130,7 +130,7 @@ TEST(Price, SelectionStopsAtTheBudget) {
             std::for_each(times.begin() + range.first, times.begin() + range.last, [](int& count) { ++count; });
         }
         EXPECT_LE(std::ranges::max(times), 1);
-        select_patches(samples, rated);
+        select_patches(samples, samples, rated);
         double spent = 0;
         for (std::size_t i = 0; i < rated.size(); ++i) {
             EXPECT_LT(spent, samples) << "the last may exceed it, no other";

@@ -55,6 +55,7 @@ public:
             setup_.parts.loss ? choice_.choose(link, rendered, input.now) : std::uint8_t{exact_quality};
         bool const still = refresh_.is_still(state);
         refresh.samples_per_second = setup_.parts.link_budget ? bounded_rate(link, rendered) : rendered;
+        refresh.rendered_per_second = rendered;
         refresh.cycle_seconds = cycle_length(still, setup_.machine * plan_seconds());
         refresh.delivery_seconds = static_cast<float>(link.delivery_seconds);
         refresh.batch_framelets = setup_.batch_framelets;
