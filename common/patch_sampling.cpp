@@ -27,7 +27,8 @@ struct Row {
 /// is the last one that has neighbours, and tents give the weights: 0 from a sample's distance on. Outside of the box
 /// (where `in_box` is 0) and behind the camera rows have no weight.
 template <bool inside>
-Places find_places(Row const& row, float n, float stride, FloatLanes in_box) {
+Places find_places(Row const& row, WarpPatch const& patch, FloatLanes in_box) {
+    auto const stride = static_cast<float>(patch.stride);
     FloatLanes const zero{};
     FloatLanes const z = 1 / row.inverse_z;
     FloatLanes u = row.u * z;
@@ -43,6 +44,7 @@ Places find_places(Row const& row, float n, float stride, FloatLanes in_box) {
         out.above_weight = 1 - out.below_weight;
     } else {
         FloatLanes const first = zero - 1;
+        auto const n = static_cast<float>(patch.side);
         FloatLanes const end = zero + n;
         FloatLanes const last = zero + (n - 2);
         u = smaller(larger(u, first), end); // not a number becomes one
@@ -165,11 +167,12 @@ FloatLanes squares_of(IntLanes bytes) {
     return value * value;
 }
 
-/// `whole`: all samples of the grid lie on the layer.
-template <bool whole>
+constexpr auto layer_bits = static_cast<std::int32_t>(0xff000000u);
+
+/// `layer`: the bits of its samples.
 void interpolate(std::int32_t layer, Places const& places, Samples const& samples, Candidate& out) {
     auto const weight = [layer](IntLanes sample, FloatLanes product) {
-        return whole || (sample >> 24) == layer ? product : FloatLanes{};
+        return (sample & layer_bits) == layer ? product : FloatLanes{};
     };
     FloatLanes const a00 = weight(samples.above_left, places.left_weight * places.above_weight);
     FloatLanes const a10 = weight(samples.above_right, places.right_weight * places.above_weight);
@@ -185,7 +188,7 @@ void interpolate(std::int32_t layer, Places const& places, Samples const& sample
     out.blue = sum(16);
 }
 
-template <bool whole, bool inside>
+template <bool inside>
 void sample_rows(WarpPatch const& patch, float x, float y, int rows, CandidateRows& out) {
     FloatLanes const place = x + lane_numbers;
     auto const first = [&](std::size_t i) { return (patch.at[i] + y * patch.dy[i]) + place * patch.dx[i]; };
@@ -194,19 +197,17 @@ void sample_rows(WarpPatch const& patch, float x, float y, int rows, CandidateRo
     IntLanes const is_in_box = (place >= 0) & (place < static_cast<float>(patch.box.width()));
     FloatLanes const zero{};
     FloatLanes const in_box = is_in_box ? zero + 1 : zero;
-    auto const n = static_cast<float>(patch.side);
-    auto const stride = static_cast<float>(patch.stride);
     // One step after the other for all rows: a row's steps wait for each other, the rows do not.
     std::array<Places, std::tuple_size_v<CandidateRows>> places;
     auto const count = static_cast<std::size_t>(rows);
     for (std::size_t i = 0; i < count; ++i) {
-        places[i] = find_places<inside>(row, n, stride, in_box);
+        places[i] = find_places<inside>(row, patch, in_box);
         row.u += patch.dy[0];
         row.v += patch.dy[1];
         row.inverse_z += patch.dy[2];
     }
     for (std::size_t i = 0; i < count; ++i) {
-        interpolate<whole>(static_cast<std::int32_t>(patch.layer), places[i], look_up(patch, places[i].corner), out[i]);
+        interpolate(static_cast<std::int32_t>(patch.layer << 24), places[i], look_up(patch, places[i].corner), out[i]);
         out[i].inverse_depth = larger(depth, zero);
         depth += patch.inverse_depth_dy;
     }
@@ -236,11 +237,7 @@ bool is_inside(WarpPatch const& patch, float x, float y, int rows) {
 
 void sample_patch(WarpPatch const& patch, float x, float y, int rows, CandidateRows& out) {
     bool const inside = is_inside(patch, x, y, rows);
-    if (patch.is_whole) {
-        inside ? sample_rows<true, true>(patch, x, y, rows, out) : sample_rows<true, false>(patch, x, y, rows, out);
-    } else {
-        inside ? sample_rows<false, true>(patch, x, y, rows, out) : sample_rows<false, false>(patch, x, y, rows, out);
-    }
+    inside ? sample_rows<true>(patch, x, y, rows, out) : sample_rows<false>(patch, x, y, rows, out);
 }
 
 } // namespace framelet

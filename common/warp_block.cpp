@@ -166,7 +166,7 @@ void paint_warped_block(std::span<PatchView const> patches, int column, int row,
         }
         PatchView const& view = patches[i];
         WarpPatch const& patch = *view.patch;
-        if (patch.layer == FrameletShape::loose) {
+        if (patch.is_loose) {
             for (std::uint32_t k = 0; k < patch.splats; ++k) {
                 paint_splat(view.splats[patch.first_splat + k], patch.group, left, top, layers);
             }
