@@ -66,7 +66,7 @@ bool MergedSquare::load(FrameletCache const& cache) {
             continue;
         }
         changed = true;
-        children_[i] = {version, cache.find(depth_, column, row), {}, 0, false};
+        children_[i] = {version, cache.find(depth_, column, row), {}, false, false};
         if (children_[i].framelet != nullptr) {
             __builtin_prefetch(&children_[i].framelet->shape);
             __builtin_prefetch(&children_[i].framelet->shape.loose);
@@ -125,16 +125,16 @@ void MergedSquare::keep(std::span<JoinedLayer const> layers) {
     std::array<std::uint8_t, LayerJoining::most_layers> tops{};
     for (std::uint32_t i = 0; i < children_.size(); ++i) {
         CachedFramelet const* const framelet = children_[i].framelet;
-        bool const any_loose = framelet != nullptr && !framelet->shape.loose.empty();
-        children_[i].alone = any_loose ? 1u << FrameletShape::loose : 0u;
+        children_[i].has_loose = framelet != nullptr && !framelet->shape.loose.empty();
     }
     for (std::size_t i = layers.size(); i-- > 0;) {
         JoinedLayer const& joined = layers[i];
         std::uint8_t const top = joined.is_joined_further ? tops[i] : joined.number;
-        if (joined.levels == levels()) {
-            std::size_t const layer = joined.number % max_layers;
-            numbers[joined.part][layer] = top;
-            children_[joined.part].alone |= static_cast<std::uint8_t>(joined.is_joined_further ? 0u : 1u << layer);
+        bool const is_of_child = joined.levels == levels();
+        if (is_of_child) {
+            numbers[joined.part][joined.number % max_layers] = top;
+        }
+        if (is_of_child && joined.is_joined_further) {
             continue;
         }
         MergedLayer& merged = merged_.emplace_back(merge(joined));

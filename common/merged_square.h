@@ -21,7 +21,8 @@ struct MergedPart {
     std::uint16_t index = 0; ///< of the framelet among the square's, or in `MergedSquare::merged`
 };
 
-/// Layers of neighbouring framelets that are about one plane, as one layer of a larger framelet.
+/// Layers of neighbouring framelets that are about one plane, as one layer of a larger framelet; or one of one framelet
+/// that is joined to none.
 struct MergedLayer {
     Tile tile; ///< that they are below
     Tile first; ///< of a framelet of theirs
@@ -36,7 +37,7 @@ struct MergedLayer {
     bool is_top = false; ///< not joined further
     std::uint64_t newest_batch = 0;
     std::uint64_t signature = 0; ///< differs where what is held differs
-    std::array<MergedPart, 4> parts; ///< that it was joined of
+    std::array<MergedPart, 4> parts; ///< that it was joined of; none of one framelet's
 };
 
 /// Framelets of one depth below a larger tile.
@@ -51,8 +52,7 @@ public:
         std::uint64_t version = 0; ///< 0 where nothing is
         CachedFramelet const* framelet = nullptr;
         std::array<std::uint8_t, max_layers> numbers{}; ///< of its layers in the grid
-        /// Bit i: layer i is in nothing that is joined; bit `FrameletShape::loose`: there are loose samples.
-        std::uint8_t alone = 0;
+        bool has_loose = false;
         bool is_written = false; ///< to the grid
     };
 
@@ -63,7 +63,7 @@ public:
     /// What is below the square's tiles of that depth, in Morton order; empty where nothing ever was. This and what
     /// follows is valid until the next update.
     std::span<Child const> children() const { return children_; }
-    /// All that could be joined: parts after what they were joined to.
+    /// All that could be joined, parts after what they were joined to; layers of framelets only where they are in none.
     std::span<MergedLayer const> merged() const { return merged_; }
 
 private:

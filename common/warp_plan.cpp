@@ -113,8 +113,10 @@ void WarpPlan::set_squares(ImagePlane const& plane) {
 /// Of what is joined the largest that is near enough to its parts, then what is left of the framelets.
 void WarpPlan::add_square(MergedSquare const& square, FrameletWarp& warp, Chunk& chunk) {
     std::span<MergedSquare::Child const> const children = square.children();
-    std::array<std::uint8_t, MergedSquare::most_children> alone;
-    std::ranges::transform(children, alone.begin(), [](MergedSquare::Child const& child) { return child.alone; });
+    std::array<unsigned, MergedSquare::most_children> alone; // parts of framelets
+    std::ranges::transform(children, alone.begin(), [](MergedSquare::Child const& child) {
+        return child.has_loose ? 1u << FrameletShape::loose : 0u;
+    });
     std::span<MergedLayer const> const merged = square.merged();
     std::array<bool, LayerJoining::most_layers> shows{};
     for (std::size_t i = 0; i < merged.size(); ++i) {
@@ -129,7 +131,7 @@ void WarpPlan::add_square(MergedSquare const& square, FrameletWarp& warp, Chunk&
             if (part.kind == MergedPart::Kind::merged) {
                 shows[part.index] = true;
             } else if (part.kind == MergedPart::Kind::layer) {
-                alone[part.index] |= static_cast<std::uint8_t>(1u << part.layer);
+                alone[part.index] |= 1u << part.layer;
             }
         }
     }
