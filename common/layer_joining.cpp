@@ -1,6 +1,7 @@
 #include "common/layer_joining.h"
 
 #include <algorithm>
+#include <span>
 
 namespace framelet {
 
@@ -84,7 +85,7 @@ void LayerJoining::join_part(std::size_t first, std::size_t last, int levels) {
         joined.levels = levels;
         joined.signature = 0;
         for (std::int16_t const index : joined.parts) {
-            if (index != JoinedLayer::none) {
+            if (index != JoinedLayer::no_part) {
                 JoinedLayer& member = layers_[static_cast<std::size_t>(index)];
                 member.is_joined_further = true;
                 joined.signature = (joined.signature + member.signature) * 0x9e3779b97f4a7c15u;
@@ -95,64 +96,85 @@ void LayerJoining::join_part(std::size_t first, std::size_t last, int levels) {
     }
 }
 
-/// What of a part can be joined to one that is open, at most one layer of each quarter. `cheaply`: only what is cheaper
-/// joined than alone is added.
+/// What of a part can be joined to one that is open, at most one layer of each quarter: all at once where they are of
+/// one plane, else one after the other. `cheaply`: only what is cheaper joined than alone is added.
 LayerJoining::Group LayerJoining::group_of(std::size_t first, std::size_t last, int levels, bool cheaply) const {
     JoinedLayer const& seed = layers_[static_cast<std::size_t>(open_[first])];
-    Group group{seed, 1, cost(seed.extent), cost(seed.extent)};
     std::uint32_t quarter = part_at(seed, levels + 1) % 4;
-    group.layer.parts.fill(JoinedLayer::none);
+    Group group{seed, 1, cost(seed.extent), cost(seed.extent)};
+    group.layer.parts.fill(JoinedLayer::no_part);
     group.layer.parts[quarter] = open_[first];
+    if (!cheaply && join_first_ones(first, last, levels, group)) {
+        return group;
+    }
     for (std::size_t i = first + 1; i < last; ++i) {
         JoinedLayer const& other = layers_[static_cast<std::size_t>(open_[i])];
         std::uint32_t const its_quarter = part_at(other, levels + 1) % 4;
         if (its_quarter == quarter || other.is_joined_further || !may_join(group.layer, other)) {
             continue;
         }
-        double const alone = cost(other.extent);
         double const together = cost(united(group.layer.extent, other.extent));
-        if ((!cheaply || together <= group.joined_cost + alone) && join(group.layer, open_[i], its_quarter)) {
+        std::array<std::int16_t, 4> parts = group.layer.parts;
+        parts[its_quarter] = open_[i];
+        if ((!cheaply || together <= group.joined_cost + cost(other.extent)) && join(parts, group)) {
             quarter = its_quarter;
-            ++group.count;
-            group.joined_cost = together;
-            group.cost_of_parts += alone;
         }
     }
     return group;
 }
 
-/// Adds a layer to what is joined of a part, if one plane is near enough to all of it.
-bool LayerJoining::join(JoinedLayer& group, std::int16_t index, std::uint32_t quarter) const {
-    JoinedLayer const& other = layers_[static_cast<std::size_t>(index)];
-    PlaneSums sums = group.sums;
-    sums += other.sums;
+/// With the first one of each quarter that may join.
+bool LayerJoining::join_first_ones(std::size_t first, std::size_t last, int levels, Group& group) const {
+    std::array<std::int16_t, 4> parts = group.layer.parts;
+    for (std::size_t i = first + 1; i < last; ++i) {
+        JoinedLayer const& other = layers_[static_cast<std::size_t>(open_[i])];
+        std::int16_t& part = parts[part_at(other, levels + 1) % 4];
+        if (part == JoinedLayer::no_part && !other.is_joined_further && may_join(group.layer, other)) {
+            part = open_[i];
+        }
+    }
+    return parts == group.layer.parts || join(parts, group);
+}
+
+/// Makes a group of these, if one plane is near enough to all of them.
+bool LayerJoining::join(std::array<std::int16_t, 4> const& parts, Group& group) const {
+    std::array<JoinedLayer const*, 4> members;
+    std::size_t count = 0;
+    PlaneSums sums;
+    for (std::int16_t const part : parts) {
+        if (part != JoinedLayer::no_part) {
+            members[count++] = &layers_[static_cast<std::size_t>(part)];
+            sums += members[count - 1]->sums;
+        }
+    }
     AffinePlane const plane = fit_plane(sums);
-    std::array<std::int16_t, 4> parts = group.parts;
-    parts[quarter] = index;
     double difference = 0;
     double share = 0;
-    for (std::int16_t const part : parts) {
-        if (part == JoinedLayer::none) {
-            continue;
-        }
-        JoinedLayer const& member = layers_[static_cast<std::size_t>(part)];
-        double const own = largest_difference(member.plane, plane, member.extent);
-        double const own_share = own == 0 ? 0 : own / least_value(plane, member.extent);
-        if (!(own_share >= 0 && member.share + own_share <= one_surface)) {
+    for (JoinedLayer const* const member : std::span(members).first(count)) {
+        double const own = largest_difference(member->plane, plane, member->extent);
+        double const own_share = own == 0 ? 0 : own / least_value(plane, member->extent);
+        if (!(own_share >= 0 && member->share + own_share <= one_surface)) {
             return false;
         }
-        difference = std::max(difference, member.difference + own);
-        share = std::max(share, member.share + own_share);
+        difference = std::max(difference, member->difference + own);
+        share = std::max(share, member->share + own_share);
     }
-    group.plane = plane;
-    group.sums = sums;
-    group.extent = united(group.extent, other.extent);
-    group.box = united(group.box, other.box);
-    group.parts = parts;
-    group.difference = difference;
-    group.share = share;
-    group.error = std::max(group.error, other.error);
-    group.newest_batch = std::max(group.newest_batch, other.newest_batch);
+    JoinedLayer& layer = group.layer;
+    group.count = static_cast<int>(count);
+    group.cost_of_parts = 0;
+    for (JoinedLayer const* const member : std::span(members).first(count)) {
+        layer.extent = united(layer.extent, member->extent);
+        layer.box = united(layer.box, member->box);
+        layer.error = std::max(layer.error, member->error);
+        layer.newest_batch = std::max(layer.newest_batch, member->newest_batch);
+        group.cost_of_parts += cost(member->extent);
+    }
+    layer.plane = plane;
+    layer.sums = sums;
+    layer.parts = parts;
+    layer.difference = difference;
+    layer.share = share;
+    group.joined_cost = cost(layer.extent);
     return true;
 }
 

@@ -23,7 +23,7 @@ struct SampleBox {
 
 /// A layer of a framelet, or what some of them were joined to.
 struct JoinedLayer {
-    static constexpr std::int16_t none = -1;
+    static constexpr std::int16_t no_part = -1;
 
     AffinePlane plane; ///< inverse depth, pixels from the square's corner
     PlaneSums sums;
@@ -40,7 +40,8 @@ struct JoinedLayer {
     int levels = 0; ///< of the part below the square
     std::uint8_t number = 0; ///< of the first layer that it was joined of
     std::uint32_t part = 0; ///< in Morton order among those of its level
-    std::array<std::int16_t, 4> parts{none, none, none, none}; ///< what it was joined of: at most one of each quarter
+    std::array<std::int16_t, 4> parts{no_part, no_part, no_part,
+                                      no_part}; ///< what it was joined of: at most one of each quarter
     bool is_joined_further = false;
 };
 
@@ -70,7 +71,8 @@ private:
 
     void join_part(std::size_t first, std::size_t last, int levels);
     Group group_of(std::size_t first, std::size_t last, int levels, bool cheaply) const;
-    bool join(JoinedLayer& group, std::int16_t index, std::uint32_t quarter) const;
+    bool join_first_ones(std::size_t first, std::size_t last, int levels, Group& group) const;
+    bool join(std::array<std::int16_t, 4> const& parts, Group& group) const;
 
     int levels_ = 0;
     std::vector<JoinedLayer> layers_;

@@ -1,6 +1,7 @@
 #include "common/merged_square.h"
 
 #include <algorithm>
+#include <span>
 
 namespace framelet {
 
@@ -49,6 +50,8 @@ std::uint64_t MergedSquare::version(FrameletCache const& cache) const {
 bool MergedSquare::load(FrameletCache const& cache) {
     std::uint32_t const count = 1u << 2 * levels();
     bool changed = false;
+    std::array<std::uint32_t, most_children> fresh;
+    std::size_t count_of_fresh = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
         Tile const tile = tile_below(square_, levels(), i);
         int const column = static_cast<int>(tile.column());
@@ -66,24 +69,36 @@ bool MergedSquare::load(FrameletCache const& cache) {
             continue;
         }
         changed = true;
-        children_[i] = {version, cache.find(depth_, column, row), {}, false, false};
+        children_[i] = {};
+        children_[i].version = version;
+        children_[i].framelet = cache.find(depth_, column, row);
         if (children_[i].framelet != nullptr) {
-            __builtin_prefetch(&children_[i].framelet->shape);
+            __builtin_prefetch(&children_[i].framelet->view);
+            __builtin_prefetch(&children_[i].framelet->shape.layers);
             __builtin_prefetch(&children_[i].framelet->shape.loose);
+            fresh[count_of_fresh++] = i;
         }
     }
+    for (std::uint32_t const i : std::span(fresh).first(count_of_fresh)) {
+        copy_layers(children_[i]);
+    }
     return changed;
+}
+
+void MergedSquare::copy_layers(Child& child) {
+    HeldShape const& shape = child.framelet->shape;
+    child.layer_count = shape.layer_count;
+    child.has_loose = !shape.loose.empty();
+    child.view = child.framelet->view;
+    child.batch = child.framelet->moment.batch;
+    std::copy_n(shape.layers.begin(), shape.layer_count, child.layers.begin());
 }
 
 void MergedSquare::join(LayerJoining& joining) {
     joining.start(levels());
     for (std::uint32_t i = 0; i < children_.size(); ++i) {
-        if (children_[i].framelet == nullptr) {
-            continue;
-        }
-        HeldShape const& shape = children_[i].framelet->shape;
-        for (std::uint32_t layer = 0; layer < shape.layer_count; ++layer) {
-            HeldLayer const& held = shape.layers[layer];
+        for (std::uint32_t layer = 0; layer < children_[i].layer_count; ++layer) {
+            HeldLayer const& held = children_[i].layers[layer];
             if (held.last_column >= held.first_column) {
                 joining.add(layer_of_child(i, layer));
             }
@@ -94,8 +109,8 @@ void MergedSquare::join(LayerJoining& joining) {
 }
 
 JoinedLayer MergedSquare::layer_of_child(std::uint32_t index, std::uint32_t layer) const {
-    CachedFramelet const& framelet = *children_[index].framelet;
-    HeldLayer const& held = framelet.shape.layers[layer];
+    Child const& child = children_[index];
+    HeldLayer const& held = child.layers[layer];
     int const column = static_cast<int>(morton_x(index)) * child_side_;
     int const row = static_cast<int>(morton_y(index)) * child_side_;
     double const dx = held.layer.dx;
@@ -107,12 +122,12 @@ JoinedLayer MergedSquare::layer_of_child(std::uint32_t index, std::uint32_t laye
                   spacing_ * (out.box.last_row + 1)};
     out.sums = sums_over(out.plane, out.extent);
     out.error = held.layer.error;
-    out.view = framelet.view;
+    out.view = child.view;
     out.body = held.layer.body;
     out.velocity = held.layer.velocity;
-    out.newest_batch = framelet.moment.batch;
+    out.newest_batch = child.batch;
     out.number = number_of(index, layer);
-    out.signature = framelet.moment.batch * 256 + out.number;
+    out.signature = child.batch * 256 + out.number;
     out.levels = levels();
     out.part = index;
     return out;
@@ -123,10 +138,6 @@ void MergedSquare::keep(std::span<JoinedLayer const> layers) {
     merged_.clear();
     std::array<std::array<std::uint8_t, max_layers>, most_children> numbers{};
     std::array<std::uint8_t, LayerJoining::most_layers> tops{};
-    for (std::uint32_t i = 0; i < children_.size(); ++i) {
-        CachedFramelet const* const framelet = children_[i].framelet;
-        children_[i].has_loose = framelet != nullptr && !framelet->shape.loose.empty();
-    }
     for (std::size_t i = layers.size(); i-- > 0;) {
         JoinedLayer const& joined = layers[i];
         std::uint8_t const top = joined.is_joined_further ? tops[i] : joined.number;
@@ -140,7 +151,7 @@ void MergedSquare::keep(std::span<JoinedLayer const> layers) {
         MergedLayer& merged = merged_.emplace_back(merge(joined));
         merged.number = top;
         for (std::size_t k = 0; k < joined.parts.size(); ++k) {
-            if (joined.parts[k] == JoinedLayer::none) {
+            if (joined.parts[k] == JoinedLayer::no_part) {
                 continue;
             }
             auto const index = static_cast<std::size_t>(joined.parts[k]);

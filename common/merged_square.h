@@ -16,7 +16,7 @@ namespace framelet {
 
 /// What something was joined of: nothing, a layer of a framelet or what was joined itself.
 struct MergedPart {
-    enum class Kind : std::uint8_t { none, layer, merged } kind = Kind::none;
+    enum class Kind : std::uint8_t { nothing, layer, merged } kind = Kind::nothing;
     std::uint8_t layer = 0; ///< of the framelet
     std::uint16_t index = 0; ///< of the framelet among the square's, or in `MergedSquare::merged`
 };
@@ -52,8 +52,13 @@ public:
         std::uint64_t version = 0; ///< 0 where nothing is
         CachedFramelet const* framelet = nullptr;
         std::array<std::uint8_t, max_layers> numbers{}; ///< of its layers in the grid
+        std::uint8_t layer_count = 0;
         bool has_loose = false;
         bool is_written = false; ///< to the grid
+        // What joining needs of the framelet, which is far away in memory.
+        std::uint32_t view = 0;
+        std::uint64_t batch = 0;
+        std::array<HeldLayer, max_layers> layers;
     };
 
     /// Brings it up to date. Always of the same cache, square and depth. Looks at what has changed since the last call
@@ -70,6 +75,7 @@ private:
     int levels() const { return depth_ - square_.depth(); } ///< of the children below the square
     std::uint64_t version(FrameletCache const& cache) const;
     bool load(FrameletCache const& cache);
+    static void copy_layers(Child& child);
     void join(LayerJoining& joining);
     JoinedLayer layer_of_child(std::uint32_t index, std::uint32_t layer) const;
     void keep(std::span<JoinedLayer const> layers);

@@ -116,7 +116,7 @@ TEST(LayerJoining, OnlyOfOneViewBodyAndVelocity) {
         }
         std::vector<JoinedLayer> const found = tops(joined(layers));
         EXPECT_EQ(found.size(), kind == 0 ? 1u : 2u);
-        EXPECT_EQ(found[0].parts[1] != JoinedLayer::none, kind == 0);
+        EXPECT_EQ(found[0].parts[1] != JoinedLayer::no_part, kind == 0);
     }
 }
 
@@ -149,7 +149,7 @@ TEST(LayerJoining, DifferencesAreBounds) {
                 EXPECT_LE(largest_difference(layer.plane, top.plane, layer.extent), top.difference + 1e-12);
                 found += layer.levels < LayerJoining::most_levels ? 1 : 0;
                 for (std::int16_t const part : layer.parts) {
-                    if (part != JoinedLayer::none) {
+                    if (part != JoinedLayer::no_part) {
                         below.push_back(&all[static_cast<std::size_t>(part)]);
                     }
                 }
@@ -170,7 +170,7 @@ TEST(LayerJoining, WhatIsNoNumberStaysAlone) {
     }
     std::vector<JoinedLayer> const found = tops(joined(layers));
     ASSERT_EQ(found.size(), 1u);
-    EXPECT_EQ(found[0].parts[2], JoinedLayer::none);
+    EXPECT_EQ(found[0].parts[2], JoinedLayer::no_part);
     EXPECT_NEAR(found[0].plane.at, 0.5, 1e-12);
 }
 
