@@ -18,9 +18,6 @@ constexpr double nearest = 1e-3;
 constexpr double smallest_splat = 0.75;
 constexpr double largest_splat = 32;
 
-/// Inverse depths that differ by less than this share are the same for all that looks at them.
-constexpr double one_surface = 2e-3;
-
 /// Numbers as large as this, and what is not a number, do not get into a patch.
 constexpr double largest = 1e18;
 
@@ -85,23 +82,27 @@ FrameletWarp::FrameletWarp(FrameletCache const& cache, Camera const& display, Sc
     : cache_(cache), display_(display), display_rays_(make_view_rays(display, cache.plane().viewport())), time_(time),
       motions_(motions) {}
 
-void FrameletWarp::add(CachedFramelet const& framelet, std::vector<WarpPatch>& patches, std::vector<Splat>& splats) {
+void FrameletWarp::add(CachedFramelet const& framelet, unsigned parts, std::vector<WarpPatch>& patches,
+                       std::vector<Splat>& splats) {
     HeldShape const& shape = framelet.shape;
     WarpPatch common;
     common.side = common.stride = shape.side;
     common.grid = shape.side == framelet_side ? framelet.samples.data() : shape.reduced.data();
     common.group = static_cast<std::int32_t>(framelet.view) * 16 + framelet.tile.depth();
     common.batch = framelet.moment.batch;
-    common.is_whole = shape.layer_count == 1 && shape.loose.empty();
     rect_ = cache_.plane().tile_rect(framelet.tile);
     spacing_ = static_cast<double>(rect_.width()) / shape.side;
     for (std::uint32_t i = 0; i < shape.layer_count; ++i) {
+        if ((parts >> i & 1) == 0) {
+            continue;
+        }
         WarpPatch patch = common;
         patch.layer = i;
         patch.place = framelet.tile.code * 4 + i;
         add_layer(framelet.view, shape.layers[i], framelet.moment.batch, patch, patches);
     }
-    if (!shape.loose.empty()) {
+    if ((parts >> FrameletShape::loose & 1) != 0 && !shape.loose.empty()) {
+        common.is_loose = true;
         common.layer = FrameletShape::loose;
         common.place = framelet.tile.code * 4 + FrameletShape::loose;
         common.first_splat = static_cast<std::uint32_t>(splats.size());
@@ -115,15 +116,15 @@ void FrameletWarp::add(CachedFramelet const& framelet, std::vector<WarpPatch>& p
     }
 }
 
-void FrameletWarp::add(MergedFramelet const& merged, std::vector<WarpPatch>& patches) {
+void FrameletWarp::add(MergedLayer const& merged, std::vector<WarpPatch>& patches) {
     WarpPatch patch;
     patch.grid = merged.grid;
     patch.side = merged.side;
     patch.stride = merged.stride;
     patch.group = static_cast<std::int32_t>(merged.view) * 16 + merged.first.depth();
     patch.batch = merged.newest_batch;
-    patch.is_whole = true;
-    patch.place = merged.first.code * 4;
+    patch.layer = merged.number;
+    patch.place = merged.first.code * 4 + merged.first_layer;
     rect_ = cache_.plane().tile_rect(merged.tile);
     spacing_ = static_cast<double>(rect_.width()) / merged.side;
     add_layer(merged.view, merged.layer, merged.signature, patch, patches);
@@ -141,23 +142,29 @@ void FrameletWarp::add_layer(std::uint32_t view, HeldLayer const& layer, std::ui
     }
 }
 
-double FrameletWarp::inverse_depth_within(double pixels, MergedFramelet const& merged) {
-    Layer const& layer = merged.layer.layer;
+double FrameletWarp::inverse_depth_within(double pixels, MergedLayer const& merged) {
+    HeldLayer const& held = merged.layer;
+    Layer const& layer = held.layer;
     turn_to(merged.view, layer.body, layer.velocity);
     if (is_still_) {
         return 0;
     }
     PixelRect const rect = cache_.plane().tile_rect(merged.tile);
-    glm::dvec2 const middle = 0.5 * glm::dvec2(rect.width(), rect.height());
+    double const spacing = static_cast<double>(rect.width()) / merged.side;
+    glm::dvec2 const low = spacing * glm::dvec2(held.first_column, held.first_row);
+    glm::dvec2 const high = spacing * glm::dvec2(held.last_column + 1, held.last_row + 1);
+    glm::dvec2 const middle = 0.5 * (low + high);
     double const w = layer.at + layer.dx * middle.x + layer.dy * middle.y;
-    double const z = transform_.map(rect.left + middle.x, rect.top + middle.y, w).z;
+    glm::dvec3 const& parallax = transform_.parallax;
+    double const dx = transform_.far[0].z + layer.dx * parallax.z;
+    double const dy = transform_.far[1].z + layer.dy * parallax.z;
+    double const z = transform_.map(rect.left + middle.x, rect.top + middle.y, w).z -
+                     0.5 * (std::abs(dx) * (high.x - low.x) + std::abs(dy) * (high.y - low.y)); // the least one
     // What is shown at X moves by (parallax.xy - X parallax.z) / z for each 1 / metre.
     Viewport const viewport = cache_.plane().viewport();
-    glm::dvec3 const& parallax = transform_.parallax;
     double const x = std::max(std::abs(parallax.x), std::abs(parallax.x - viewport.width * parallax.z));
     double const y = std::max(std::abs(parallax.y), std::abs(parallax.y - viewport.height * parallax.z));
-    double const share = pixels * std::max(z, nearest) / std::max(std::hypot(x, y), 1 / largest);
-    double const within = std::min(share, one_surface * w);
+    double const within = pixels * std::max(z, nearest) / std::max(std::hypot(x, y), 1 / largest);
     return within > 0 ? within : 0;
 }
 

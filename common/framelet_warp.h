@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/body_motion.h"
-#include "common/fine_merge.h"
+#include "common/merged_square.h"
 #include "common/reprojection.h"
 #include "common/warp_patch.h"
 
@@ -17,14 +17,18 @@ namespace framelet {
 /// single precision does not show.
 class FrameletWarp {
 public:
+    static constexpr unsigned all_parts = (2u << FrameletShape::loose) - 1;
+
     FrameletWarp(FrameletCache const& cache, Camera const& display, SceneTime time, BodyMotions const& motions);
 
-    void add(CachedFramelet const& framelet, std::vector<WarpPatch>& patches, std::vector<Splat>& splats);
-    void add(MergedFramelet const& merged, std::vector<WarpPatch>& patches);
+    /// Bit i of `parts`: layer i; bit `FrameletShape::loose`: what is loose.
+    void add(CachedFramelet const& framelet, unsigned parts, std::vector<WarpPatch>& patches,
+             std::vector<Splat>& splats);
+    void add(MergedLayer const& merged, std::vector<WarpPatch>& patches);
 
-    /// By how much inverse depths may differ from the plane so that nobody sees it: shown less than so many pixels off,
-    /// anywhere in the picture, and as good as equal. 0 where it stays in its place or is the sky.
-    double inverse_depth_within(double pixels, MergedFramelet const& merged);
+    /// By how much inverse depths may differ from the plane so that it is shown less than so many pixels off, anywhere
+    /// in the picture. 0 where it stays in its place.
+    double inverse_depth_within(double pixels, MergedLayer const& merged);
 
 private:
     void turn_to(std::uint32_t view, BodyNumber body, Vec3 const& velocity);

@@ -22,24 +22,31 @@ using FloatLanes = float __attribute__((vector_size(4 * lane_count)));
 /// Comparisons of lanes yield these: 0 or -1.
 using IntLanes = std::int32_t __attribute__((vector_size(4 * lane_count)));
 
-/// 0, 1, ... 7.
-inline constexpr FloatLanes lane_numbers{0, 1, 2, 3, 4, 5, 6, 7};
+/// As many as the processor's widest registers take.
+#ifdef __AVX512F__
+inline constexpr int wide_count = 16;
+#else
+inline constexpr int wide_count = lane_count;
+#endif
+using WideFloats = float __attribute__((vector_size(4 * wide_count)));
+using WideInts = std::int32_t __attribute__((vector_size(4 * wide_count)));
+
+/// 0, 1, ...
+#ifdef __AVX512F__
+inline constexpr WideInts wide_numbers{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+#else
+inline constexpr WideInts wide_numbers{0, 1, 2, 3, 4, 5, 6, 7};
+#endif
 
 // Wherever they lie in memory.
-inline FloatLanes load_lanes(float const* from) {
-    FloatLanes out;
+template <class Lanes = FloatLanes>
+Lanes load_lanes(void const* from) {
+    Lanes out;
     std::memcpy(&out, from, sizeof out);
     return out;
 }
-inline IntLanes load_lanes(std::int32_t const* from) {
-    IntLanes out;
-    std::memcpy(&out, from, sizeof out);
-    return out;
-}
-inline void store_lanes(FloatLanes const& from, float* to) {
-    std::memcpy(to, &from, sizeof from);
-}
-inline void store_lanes(IntLanes const& from, std::int32_t* to) {
+template <class Lanes>
+void store_lanes(Lanes const& from, void* to) {
     std::memcpy(to, &from, sizeof from);
 }
 
@@ -60,6 +67,15 @@ inline FloatLanes smaller(FloatLanes a, FloatLanes b) {
 inline FloatLanes larger(FloatLanes a, FloatLanes b) {
     return _mm256_max_ps(a, b);
 }
+#ifdef __AVX512F__
+// (With a mask of all: GCC 12 warns of what the plain ones leave unset.)
+inline WideFloats smaller(WideFloats a, WideFloats b) {
+    return _mm512_maskz_min_ps(0xffff, a, b);
+}
+inline WideFloats larger(WideFloats a, WideFloats b) {
+    return _mm512_maskz_max_ps(0xffff, a, b);
+}
+#endif
 #else
 inline FloatLanes smaller(FloatLanes a, FloatLanes b) {
     return a < b ? a : b;

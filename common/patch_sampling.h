@@ -10,13 +10,13 @@
 
 namespace framelet {
 
-/// Pixels of a row that are worked on together: half a block, since patches seldom begin where blocks do.
-inline constexpr int sampling_lanes = lane_count;
-static_assert(sampling_lanes == FrameletCache::block_side / 2);
+/// Pixels of a row that are worked on together: a block's or half of them.
+inline constexpr int sampling_lanes = wide_count;
+static_assert(FrameletCache::block_side % sampling_lanes == 0);
 
 /// What a patch or a splat shows at each of them: sums of weights and weighted sums of squares of bytes.
 struct Candidate {
-    FloatLanes red, green, blue, weight, inverse_depth;
+    WideFloats red, green, blue, weight, inverse_depth;
 };
 
 /// The square of a byte, which stands for linear light.

