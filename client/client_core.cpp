@@ -7,6 +7,7 @@
 #include <mutex>
 #include <utility>
 
+#include "client/confidence_colors.h"
 #include "client/framelet_outlines.h"
 #include "client/server_connection.h"
 #include "client/smooth_view.h"
@@ -80,7 +81,8 @@ struct ClientCore::Impl {
     LateClock late_clock{0};
     CameraTrack batch_cameras; ///< only while the scene is smoothed
     std::optional<SceneSmoother> smoother;
-    SceneTime pictured_time = 0; ///< what the picture shows
+    Camera pictured_camera; ///< what the picture shows
+    SceneTime pictured_time = 0; ///< the same
     std::vector<PixelRect> arrived; ///< scratch: where batches have changed something
     Status status;
     Clock::time_point status_time = start;
@@ -256,6 +258,7 @@ struct ClientCore::Impl {
             return;
         }
         auto const [camera, time] = wanted_picture();
+        pictured_camera = camera;
         pictured_time = time;
         arrived.swap(changed);
         if (smoother) {
@@ -386,11 +389,20 @@ bool ClientCore::update_picture(Picture& picture, std::vector<PixelRect>& change
     return true;
 }
 
-void ClientCore::outline_framelets(Picture& picture) const {
-    std::lock_guard const lock(impl_->mutex);
-    if (impl_->cache && impl_->cache->plane().viewport() == Viewport{picture.width, picture.height}) {
-        draw_outlines(*impl_->cache, picture);
+void ClientCore::draw_overlay(DrawnOver overlay, Picture& picture) const {
+    Impl const& core = *impl_;
+    std::lock_guard const lock(core.mutex);
+    if (overlay == DrawnOver::none || !core.cache ||
+        core.cache->plane().viewport() != Viewport{picture.width, picture.height}) {
+        return;
     }
+    if (overlay == DrawnOver::outlines || !core.reproject) {
+        draw_outlines(*core.cache, picture);
+        return;
+    }
+    std::vector<PixelConfidence> confidence;
+    find_confidence(*core.cache, core.pictured_camera, core.pictured_time, core.motions, confidence);
+    draw_confidence(confidence, picture);
 }
 
 bool ClientCore::wait_for_news(std::chrono::nanoseconds at_most) {

@@ -53,6 +53,9 @@ struct ClientStatistics {
 };
 
 /// All members may be called from any thread; `update_picture` from one at a time.
+/// What is drawn over the picture.
+enum class DrawnOver : std::uint8_t { none, outlines, confidence };
+
 class ClientCore {
 public:
     /// Connects (blocks) and opens the session. `on_news` is called from the connection's thread whenever there is
@@ -85,9 +88,10 @@ public:
     /// picture stays as it is, in its old size. A picture that is not the one of the last call is written as a whole.
     bool update_picture(Picture& picture, std::vector<PixelRect>& changed);
 
-    /// Draws the outlines of the framelets that are held into a copy of the picture that `update_picture` made, as
-    /// `draw_outlines`. A picture of another size stays as it is.
-    void outline_framelets(Picture& picture) const;
+    /// Draws over a copy of the picture that `update_picture` made: outlines of the framelets that are held, as
+    /// `draw_outlines`, or how far its pixels are to be trusted, as `draw_confidence` (outlines as well, where nothing
+    /// is moved). A picture of another size stays as it is.
+    void draw_overlay(DrawnOver overlay, Picture& picture) const;
 
     /// Waits until something has come since the last call, or the time is over; true when something has.
     bool wait_for_news(std::chrono::nanoseconds at_most);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "client/age_colors.h"
 #include "common/error.h"
 
 namespace framelet {
@@ -16,22 +17,11 @@ constexpr float oldest = 1024;
 /// Small tiles would hide the picture behind their outlines.
 constexpr int small_side = 8;
 
-using Color = std::array<float, 3>;
-
-Color color_of(std::uint64_t age) {
-    constexpr std::array<Color, 4> ramp{{{255, 245, 90}, {255, 120, 20}, {170, 20, 90}, {40, 20, 120}}};
-    float const share = std::min(std::log2(1 + static_cast<float>(age)) / std::log2(1 + oldest), 1.0f);
-    float const place = share * static_cast<float>(ramp.size() - 1);
-    auto const first = std::min(static_cast<std::size_t>(place), ramp.size() - 2);
-    float const weight = place - static_cast<float>(first);
-    Color out;
-    for (std::size_t i = 0; i < out.size(); ++i) {
-        out[i] = (1 - weight) * ramp[first][i] + weight * ramp[first + 1][i];
-    }
-    return out;
+OverlayColor color_of(std::uint64_t age) {
+    return age_color(std::log2(1 + static_cast<float>(age)) / std::log2(1 + oldest));
 }
 
-void blend(Picture& picture, PixelRect const& rect, Color const& color, float opacity) {
+void blend(Picture& picture, PixelRect const& rect, OverlayColor const& color, float opacity) {
     for (int y = rect.top; y < std::min(rect.bottom, picture.height); ++y) {
         for (int x = rect.left; x < std::min(rect.right, picture.width); ++x) {
             std::uint8_t* const pixel = picture.row(y) + 4 * static_cast<std::ptrdiff_t>(x);
@@ -44,7 +34,7 @@ void blend(Picture& picture, PixelRect const& rect, Color const& color, float op
 }
 
 /// Left and upper edge: the others are those of neighbours.
-void draw_edges(Picture& picture, PixelRect const& rect, Color const& color) {
+void draw_edges(Picture& picture, PixelRect const& rect, OverlayColor const& color) {
     float const opacity = rect.width() <= small_side ? 0.35f : 0.8f;
     blend(picture, {rect.left, rect.top, rect.right, rect.top + 1}, color, opacity);
     blend(picture, {rect.left, rect.top + 1, rect.left + 1, rect.bottom}, color, opacity);

@@ -52,7 +52,7 @@ TextRows help_rows() {
         {"+ and -", "animation speed"},
         {"] and [", "brighter, darker"},
         {"F2 or Tab", "statistics"},
-        {"F3", "outlines of framelets, fresh ones bright"},
+        {"F3", "outlines of framelets; how old pixels are; neither"},
         {"F4", "move what is held to where it is now, or not"},
         {"F5", "smooth motion, the scene a little late, or not"},
         {"F11 or Alt+Enter", "full screen"},

@@ -99,18 +99,19 @@ int Viewer::run() {
 /// Uploads what has changed; true when something has.
 bool Viewer::update_shown_picture() {
     bool const changed = core_->update_picture(picture_, changed_);
-    bool const toggled = std::exchange(outlines_toggled_, false) && !picture_.rgba.empty();
+    bool const toggled = std::exchange(overlay_toggled_, false) && !picture_.rgba.empty();
     if (!changed && !toggled) {
         return false;
     }
-    if (show_outlines_ || toggled) { // outlines age everywhere
+    bool const draws = drawn_over_ != DrawnOver::none;
+    if (draws || toggled) { // what is drawn ages everywhere
         changed_.assign(1, {0, 0, picture_.width, picture_.height});
     }
-    if (show_outlines_) {
-        outlined_ = picture_;
-        core_->outline_framelets(outlined_);
+    if (draws) {
+        overlaid_ = picture_;
+        core_->draw_overlay(drawn_over_, overlaid_);
     }
-    window_.upload(show_outlines_ ? outlined_ : picture_, changed_);
+    window_.upload(draws ? overlaid_ : picture_, changed_);
     return true;
 }
 
@@ -190,9 +191,11 @@ void Viewer::apply(Command command) {
         show_statistics_ = !show_statistics_;
         statistics_.clear();
         break;
-    case Command::toggle_outlines:
-        show_outlines_ = !show_outlines_;
-        outlines_toggled_ = true;
+    case Command::next_overlay:
+        drawn_over_ = drawn_over_ == DrawnOver::none       ? DrawnOver::outlines
+                      : drawn_over_ == DrawnOver::outlines ? DrawnOver::confidence
+                                                           : DrawnOver::none;
+        overlay_toggled_ = true;
         break;
     case Command::toggle_reprojection:
         settings_.reproject = !settings_.reproject;

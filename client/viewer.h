@@ -61,9 +61,9 @@ private:
     std::vector<PixelRect> changed_;
     bool show_help_ = false;
     bool show_statistics_ = false;
-    bool show_outlines_ = false;
-    bool outlines_toggled_ = false; ///< since the picture was uploaded
-    Picture outlined_; ///< the picture with outlines, while they are shown
+    DrawnOver drawn_over_ = DrawnOver::none;
+    bool overlay_toggled_ = false; ///< since the picture was uploaded
+    Picture overlaid_; ///< the picture and what is drawn over it, if anything
     TextRows statistics_;
     RateMeter meter_;
     std::string note_;

@@ -32,7 +32,7 @@ constexpr KeyMeaning meanings[] = {
     {GLFW_KEY_0, Command::free_camera, false},         {GLFW_KEY_F11, Command::toggle_fullscreen, false},
     {GLFW_KEY_F1, Command::toggle_help, false},        {GLFW_KEY_F2, Command::toggle_statistics, false},
     {GLFW_KEY_TAB, Command::toggle_statistics, false}, {GLFW_KEY_F12, Command::screenshot, false},
-    {GLFW_KEY_F3, Command::toggle_outlines, false},    {GLFW_KEY_F4, Command::toggle_reprojection, false},
+    {GLFW_KEY_F3, Command::next_overlay, false},       {GLFW_KEY_F4, Command::toggle_reprojection, false},
     {GLFW_KEY_F5, Command::toggle_smoothing, false},
 };
 

@@ -32,7 +32,7 @@ enum class Command {
     toggle_fullscreen,
     toggle_help,
     toggle_statistics,
-    toggle_outlines,
+    next_overlay,
     toggle_reprojection,
     toggle_smoothing,
     screenshot,

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <csignal>
 #include <iostream>
+#include <map>
 #include <optional>
 
 #include <CLI/App.hpp>
@@ -34,7 +35,7 @@ struct Options {
     std::string output;
     std::string frames_file;
     bool json = false;
-    bool overlay = false;
+    DrawnOver overlay = DrawnOver::none;
     bool until_converged = false;
     DisplayArguments display;
     bool play = false;
@@ -119,7 +120,7 @@ RunFigures show(ClientCore& core, Options const& options, std::optional<CameraPa
     run.scene = core.welcome().scene_name;
     run.viewport = viewport;
     Picture picture = bare_picture(viewport);
-    Picture outlined;
+    Picture overlaid; //< and what is drawn over it
     std::vector<PixelRect> changed;
     Clock::time_point const start = Clock::now();
     Clock::time_point next = start;
@@ -141,11 +142,12 @@ RunFigures show(ClientCore& core, Options const& options, std::optional<CameraPa
         }
         ++run.frames;
         if (writer != nullptr) {
-            if (options.overlay) {
-                outlined = picture;
-                core.outline_framelets(outlined);
+            bool const draws = options.overlay != DrawnOver::none;
+            if (draws) {
+                overlaid = picture;
+                core.draw_overlay(options.overlay, overlaid);
             }
-            writer->add(options.overlay ? outlined : picture, news);
+            writer->add(draws ? overlaid : picture, news);
         }
         if (run.converged_seconds < 0 && (done || core.is_complete())) {
             run.converged_seconds = now;
@@ -223,8 +225,12 @@ int main(int argc, char** argv) {
                    "for the last frame");
     app.add_option("--frames", options.frames_file,
                    "Write a line of JSON for each frame to this file: when it was shown, the scene's time, bytes, CPU");
-    app.add_flag("--overlay", options.overlay,
-                 "Draw the outlines of the framelets that are held into the pictures, fresh ones bright");
+    std::map<std::string, DrawnOver> const overlays{{"outlines", DrawnOver::outlines},
+                                                    {"confidence", DrawnOver::confidence}};
+    app.add_flag("--overlay{outlines}", options.overlay,
+                 "Draw into the pictures the outlines of the framelets that are held, fresh ones bright, or "
+                 "(--overlay=confidence) how old and how coarse each pixel is and which are made up")
+        ->transform(CLI::CheckedTransformer(overlays));
     app.add_flag("--json", options.json, "Print the statistics as JSON");
     app.add_flag("--until-converged", options.until_converged,
                  "End once the picture is as good as it gets; exit code 1 where that takes longer than --duration");

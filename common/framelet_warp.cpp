@@ -88,7 +88,7 @@ void FrameletWarp::add(CachedFramelet const& framelet, unsigned parts, std::vect
     WarpPatch common;
     common.side = common.stride = shape.side;
     common.grid = shape.side == framelet_side ? framelet.samples.data() : shape.reduced.data();
-    common.group = static_cast<std::int32_t>(framelet.view) * 16 + framelet.tile.depth();
+    common.group = group_of(framelet.view, framelet.tile.depth());
     common.batch = framelet.moment.batch;
     rect_ = cache_.plane().tile_rect(framelet.tile);
     spacing_ = static_cast<double>(rect_.width()) / shape.side;
@@ -121,7 +121,7 @@ void FrameletWarp::add(MergedLayer const& merged, std::vector<WarpPatch>& patche
     patch.grid = merged.grid;
     patch.side = merged.side;
     patch.stride = merged.stride;
-    patch.group = static_cast<std::int32_t>(merged.view) * 16 + merged.first.depth();
+    patch.group = group_of(merged.view, merged.first.depth());
     patch.batch = merged.newest_batch;
     patch.layer = merged.number;
     patch.place = merged.first.code * 4 + merged.first_layer;

@@ -125,41 +125,6 @@ void write_colors(WarpedBlock const& block, int left, int top, Picture& picture)
     copy_rows(colors.data(), {picture.width, picture.height}, left, top, picture.rgba.data());
 }
 
-/// Where so much of a block shows, its holes are places from which something has gone.
-constexpr int mostly_covered = static_cast<int>(WarpedBlock::pixels) / 4;
-
-/// The largest inverse depth that is likely in a block's holes. What comes out behind something is behind it: farther
-/// than the middle of what shows in the block. A block of which hardly anything shows has come into the picture.
-float nearest_in_holes(WarpedBlock const& block) {
-    float least = INFINITY, most = 0;
-    int count = 0;
-    for (float const inverse_depth : block.inverse_depth) {
-        bool const shows = inverse_depth != hole_depth;
-        least = shows ? std::min(least, inverse_depth) : least;
-        most = shows ? std::max(most, inverse_depth) : most;
-        count += shows ? 1 : 0;
-    }
-    return count > mostly_covered ? 0.5f * (least + most) : INFINITY;
-}
-
-/// Shows another block's pixels where this one has holes. Only those left of `width` and above `height` are counted.
-void show_in_holes(WarpedBlock const& behind, int width, int height, WarpedBlock& block) {
-    float const nearest = nearest_in_holes(block);
-    for (std::size_t i = 0; i < WarpedBlock::pixels; ++i) {
-        if (block.inverse_depth[i] != hole_depth || behind.inverse_depth[i] == hole_depth ||
-            behind.inverse_depth[i] > nearest) {
-            continue;
-        }
-        block.inverse_depth[i] = behind.inverse_depth[i];
-        for (std::size_t channel = 0; channel < 3; ++channel) {
-            block.squares[channel][i] = behind.squares[channel][i];
-        }
-        int const x = static_cast<int>(i) % side;
-        int const y = static_cast<int>(i) / side;
-        block.holes -= x < width && y < height ? 1 : 0;
-    }
-}
-
 void write_plane(std::array<float, WarpedBlock::pixels> const& from, int left, int top, Viewport viewport,
                  std::vector<float>& plane) {
     copy_rows(from.data(), viewport, left, top, plane.data());

@@ -136,6 +136,7 @@ void finish(Layers const& layers, int width, int height, WarpedBlock& block) {
         store_lanes(shows ? load_lanes<WideFloats>(&layers.inverse_depth[i]) : zero + hole_depth,
                     &block.inverse_depth[i]);
     }
+    block.group = layers.group;
     WideInts holes{};
     for (int y = 0; y < std::min(height, side); ++y) {
         for (int x = 0; x < side; x += lanes) {
@@ -147,6 +148,23 @@ void finish(Layers const& layers, int width, int height, WarpedBlock& block) {
     for (int k = 0; k < lanes; ++k) {
         block.holes += holes[k];
     }
+}
+
+/// Where so much of a block shows, its holes are places from which something has gone.
+constexpr int mostly_covered = static_cast<int>(WarpedBlock::pixels) / 4;
+
+/// The largest inverse depth that is likely in a block's holes. What comes out behind something is behind it: farther
+/// than the middle of what shows in the block. A block of which hardly anything shows has come into the picture.
+float nearest_in_holes(WarpedBlock const& block) {
+    float least = INFINITY, most = 0;
+    int count = 0;
+    for (float const inverse_depth : block.inverse_depth) {
+        bool const shows = inverse_depth != hole_depth;
+        least = shows ? std::min(least, inverse_depth) : least;
+        most = shows ? std::max(most, inverse_depth) : most;
+        count += shows ? 1 : 0;
+    }
+    return count > mostly_covered ? 0.5f * (least + most) : INFINITY;
 }
 
 } // namespace
@@ -176,6 +194,24 @@ void paint_warped_block(std::span<PatchView const> patches, int column, int row,
         }
     }
     finish(layers, viewport.width - left, viewport.height - top, block);
+}
+
+void show_in_holes(WarpedBlock const& behind, int width, int height, WarpedBlock& block) {
+    float const nearest = nearest_in_holes(block);
+    for (std::size_t i = 0; i < WarpedBlock::pixels; ++i) {
+        if (block.inverse_depth[i] != hole_depth || behind.inverse_depth[i] == hole_depth ||
+            behind.inverse_depth[i] > nearest) {
+            continue;
+        }
+        block.inverse_depth[i] = behind.inverse_depth[i];
+        block.group[i] = behind.group[i];
+        for (std::size_t channel = 0; channel < 3; ++channel) {
+            block.squares[channel][i] = behind.squares[channel][i];
+        }
+        int const x = static_cast<int>(i) % side;
+        int const y = static_cast<int>(i) / side;
+        block.holes -= x < width && y < height ? 1 : 0;
+    }
 }
 
 } // namespace framelet

@@ -23,6 +23,7 @@ struct WarpedBlock {
     /// them nearly as on light (at most 0.04 of full light away), and bytes come back exactly.
     std::array<std::array<float, pixels>, 3> squares;
     std::array<float, pixels> inverse_depth; ///< 1 / metres; `hole_depth` in holes, where the colour is 0
+    std::array<std::int32_t, pixels> group; ///< of the patch that shows, as `WarpPatch::group`
     int holes = 0;
 };
 
@@ -32,5 +33,9 @@ struct WarpedBlock {
 /// framelets of the same view, time and spacing. A layer covers the cells of its samples enlarged by half a sample, so
 /// that neighbours overlap; but where the sum of its tents is less than 1/4 it covers only what nothing else does.
 void paint_warped_block(std::span<PatchView const> patches, int column, int row, Viewport viewport, WarpedBlock& block);
+
+/// Shows another block's pixels where this one has holes; where something shows around these, only what is behind it.
+/// Only holes left of `width` and above `height` are counted.
+void show_in_holes(WarpedBlock const& behind, int width, int height, WarpedBlock& block);
 
 } // namespace framelet

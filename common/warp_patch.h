@@ -8,6 +8,17 @@
 
 namespace framelet {
 
+/// Of the same view, the same scene time and the same spacing.
+constexpr std::int32_t group_of(std::uint32_t view, int depth) {
+    return static_cast<std::int32_t>(view) * 16 + depth;
+}
+constexpr std::uint32_t view_of_group(std::int32_t group) {
+    return static_cast<std::uint32_t>(group) / 16;
+}
+constexpr int depth_of_group(std::int32_t group) {
+    return group % 16;
+}
+
 /// A layer of a framelet in the display picture, or its loose samples.
 struct WarpPatch {
     /// Homogeneous sample coordinates (u / z, v / z, 1 / z) of the moving grid at the centre of the box's first pixel,
@@ -20,7 +31,7 @@ struct WarpPatch {
     std::int32_t side = 0; ///< of the grid
     std::int32_t stride = 0; ///< from one of its rows to the next
     std::uint32_t layer = 0; ///< number of its samples in the grid
-    std::int32_t group = 0; ///< same view, same scene time, same spacing: its samples are interpolated with the others'
+    std::int32_t group = 0; ///< its samples are interpolated with others' of the same
     std::uint32_t first_splat = 0, splats = 0; ///< of loose samples, in the chunk
     std::uint32_t place = 0; ///< by tile and layer: orders patches of one batch
     std::uint64_t batch = 0;

@@ -1,0 +1,17 @@
+// How far the pixels of a picture are to be trusted, as colours over it. In: confidence of every pixel, the picture.
+// Out: the picture in grey, washed with the colours of age.
+#pragma once
+
+#include <span>
+
+#include "common/confidence.h"
+#include "common/image.h"
+
+namespace framelet {
+
+/// `confidence` has one for each pixel, in rows. Fresh pixels are yellow, older ones orange, red and dark blue, on a
+/// logarithmic scale from a hundredth of a second to ten; what is made up is magenta, what shows for lack of anything
+/// else is green. The coarser the samples the darker.
+void draw_confidence(std::span<PixelConfidence const> confidence, Picture& picture);
+
+} // namespace framelet
