@@ -48,7 +48,9 @@ public:
     struct Place {
         int left, top, side;
         /// Half pixels from sample to sample, logarithm to base 2; -1: two samples a half pixel.
-        int pitch() const { return std::bit_width(static_cast<unsigned>(side / (framelet_side / 2))) - 2; }
+        int pitch() const {
+            return static_cast<int>(std::bit_width(static_cast<unsigned>(side / (framelet_side / 2)))) - 2;
+        }
     };
     Place place(Tile tile) const;
     /// Moved, as far as the picture reaches.

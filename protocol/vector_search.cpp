@@ -145,7 +145,7 @@ PictureVector VectorSearch::find(HeldPicture const& held, DisplayFramelet const&
         PictureVector const centre = best;
         for (int y = -step; y <= step; y += step) {
             for (int x = -step; x <= step; x += step) {
-                if ((x == 0) != (y == 0)) {
+                if (x != 0 || y != 0) {
                     try_one(centre.x + x, centre.y + y);
                 }
             }
