@@ -1,6 +1,6 @@
 #include "protocol/held_picture.h"
 
-#include <algorithm>
+#include <array>
 #include <cstring>
 
 #include "common/error.h"
@@ -13,26 +13,14 @@ namespace {
 constexpr std::uint8_t grey = 128;
 constexpr int values_per_pixel = 2;
 
-using RowOfSamples [[gnu::vector_size(framelet_side)]] = std::uint8_t;
-
 std::uint8_t mean_of_four(unsigned a, unsigned b, unsigned c, unsigned d) {
     return static_cast<std::uint8_t>((a + b + c + d + 2) >> 2);
 }
 
-/// The picture is larger than the caches near the processor, and its rows are far apart: they are asked for in time.
-constexpr std::size_t rows_ahead = 12;
-constexpr int to_read = 0, to_write = 1;
-template <int use>
-void prefetch_row(std::uint8_t const* row, std::size_t size) {
-    for (std::size_t at = 0; at < size; at += cache_line) {
-        __builtin_prefetch(row + at, use);
-    }
-}
-
 /// Two rows of two samples for each value.
-void fetch_doubled(HeldPicture::Source const& from, SamplePlane& samples) {
+void fetch_doubled(std::uint8_t const* first, std::size_t stride, SamplePlane& samples) {
     std::array<std::uint8_t, framelet_samples / 4> values;
-    from_rows(from.first, from.stride, values.data(), values.size());
+    from_rows(first, stride, values.data(), values.size());
     for (std::size_t k = 0; k < values.size(); ++k) {
         std::uint32_t const four = values[k] * 0x01010101u;
         std::memcpy(&samples[4 * k], &four, sizeof four);
@@ -41,12 +29,12 @@ void fetch_doubled(HeldPicture::Source const& from, SamplePlane& samples) {
 
 /// The mean of the four values about each sample. `Lane` holds a row of those that a sample covers.
 template <typename Lane>
-void fetch_means(HeldPicture::Source const& from, SamplePlane& rows) {
+void fetch_means(std::uint8_t const* first, std::size_t stride, SamplePlane& rows) {
     constexpr std::size_t pitch = sizeof(Lane);
     constexpr unsigned left = 8 * (pitch / 2 - 1), right = left + 8;
     for (std::size_t y = 0; y < framelet_side; ++y) {
-        std::uint8_t const* const upper = from.first + (y * pitch + pitch / 2 - 1) * from.stride;
-        std::uint8_t const* const lower = upper + from.stride;
+        std::uint8_t const* const upper = first + (y * pitch + pitch / 2 - 1) * stride;
+        std::uint8_t const* const lower = upper + stride;
         for (std::size_t x = 0; x < framelet_side; ++x) { // many at a time
             Lane above, below;
             std::memcpy(&above, upper + x * pitch, pitch);
@@ -58,11 +46,11 @@ void fetch_means(HeldPicture::Source const& from, SamplePlane& rows) {
     }
 }
 
-void fetch_means_of_coarsest(HeldPicture::Source const& from, SamplePlane& rows) {
+void fetch_means_of_coarsest(std::uint8_t const* first, std::size_t stride, SamplePlane& rows) {
     constexpr std::size_t pitch = 16;
     for (std::size_t y = 0; y < framelet_side; ++y) {
-        std::uint8_t const* const upper = from.first + (y * pitch + pitch / 2 - 1) * from.stride + pitch / 2 - 1;
-        std::uint8_t const* const lower = upper + from.stride;
+        std::uint8_t const* const upper = first + (y * pitch + pitch / 2 - 1) * stride + pitch / 2 - 1;
+        std::uint8_t const* const lower = upper + stride;
         for (std::size_t x = 0; x < framelet_side; ++x) {
             rows[y * framelet_side + x] =
                 mean_of_four(upper[x * pitch], upper[x * pitch + 1], lower[x * pitch], lower[x * pitch + 1]);
@@ -70,61 +58,30 @@ void fetch_means_of_coarsest(HeldPicture::Source const& from, SamplePlane& rows)
     }
 }
 
-void fetch(HeldPicture::Source const& from, SamplePlane& samples) {
+/// Samples 2^pitch values apart, of a level that counts in all of their square, which begins where one of its values
+/// does.
+void fetch(std::uint8_t const* first, std::size_t stride, int pitch, SamplePlane& samples) {
     SamplePlane rows;
-    switch (from.pitch) {
+    switch (pitch) {
+    case -1:
+        fetch_doubled(first, stride, samples);
+        return;
     case 0:
-        fetch_doubled(from, samples);
+        from_rows(first, stride, samples.data());
         return;
     case 1:
-        from_rows(from.first, from.stride, samples.data());
-        return;
+        fetch_means<std::uint16_t>(first, stride, rows);
+        break;
     case 2:
-        fetch_means<std::uint16_t>(from, rows);
+        fetch_means<std::uint32_t>(first, stride, rows);
         break;
-    case 4:
-        fetch_means<std::uint32_t>(from, rows);
-        break;
-    case 8:
-        fetch_means<std::uint64_t>(from, rows);
+    case 3:
+        fetch_means<std::uint64_t>(first, stride, rows);
         break;
     default:
-        fetch_means_of_coarsest(from, rows);
+        fetch_means_of_coarsest(first, stride, rows);
     }
     from_rows(rows.data(), framelet_side, samples.data());
-}
-
-/// Each value gets the sample that covers it. `Lane` holds a row of the values that a sample covers.
-template <typename Lane>
-void put_squares(SamplePlane const& samples, std::uint8_t* to, std::size_t stride) {
-    constexpr std::size_t pitch = sizeof(Lane);
-    constexpr Lane ones = static_cast<Lane>(~std::uint64_t{0}) / 255;
-    using Row [[gnu::vector_size(framelet_side * pitch)]] = Lane;
-    SamplePlane rows;
-    to_rows(samples.data(), rows.data(), framelet_side);
-    for (std::size_t y = 0; y < framelet_side; ++y) {
-        RowOfSamples row;
-        std::memcpy(&row, rows.data() + y * framelet_side, sizeof row);
-        Row const spread = __builtin_convertvector(row, Row) * ones;
-        for (std::size_t copy = 0; copy < pitch; ++copy, to += stride) {
-            prefetch_row<to_write>(to + rows_ahead * stride, sizeof spread);
-            std::memcpy(to, &spread, sizeof spread);
-        }
-    }
-}
-
-void put_squares_of_coarsest(SamplePlane const& samples, std::uint8_t* to, std::size_t stride) {
-    constexpr std::size_t pitch = 16;
-    SamplePlane rows;
-    to_rows(samples.data(), rows.data(), framelet_side);
-    for (std::size_t y = 0; y < framelet_side; ++y) {
-        for (std::size_t copy = 0; copy < pitch; ++copy, to += stride) {
-            prefetch_row<to_write>(to + rows_ahead * stride, framelet_side * pitch);
-            for (std::size_t x = 0; x < framelet_side; ++x) {
-                std::memset(to + x * pitch, rows[y * framelet_side + x], pitch);
-            }
-        }
-    }
 }
 
 /// Each value gets the mean of its four samples.
@@ -138,20 +95,42 @@ void put_means(SamplePlane const& samples, std::uint8_t* to, std::size_t stride)
     to_rows(means.data(), to, stride, means.size());
 }
 
-void put(SamplePlane const& samples, int pitch, std::uint8_t* to, std::size_t stride) {
-    switch (pitch) {
-    case 0:
-        return put_means(samples, to, stride);
-    case 1:
-        return to_rows(samples.data(), to, stride);
-    case 2:
-        return put_squares<std::uint16_t>(samples, to, stride);
-    case 4:
-        return put_squares<std::uint32_t>(samples, to, stride);
-    case 8:
-        return put_squares<std::uint64_t>(samples, to, stride);
-    default:
-        return put_squares_of_coarsest(samples, to, stride);
+using Planes = std::array<SamplePlane, PointGrids::planes>;
+
+void put_row(PointRow const& row, SamplePlane& rows, int y) {
+    std::memcpy(rows.data() + y * framelet_side, &row, sizeof row);
+}
+
+/// The point of each sample, `pitch` as of `HeldPicture::Place`, whatever levels these are of.
+void look_up(PointGrids const& points, HeldPicture::Place const& from, int level, Planes& rows) {
+    int const twice = from.pitch() < 0 ? 1 : 0, pitch = std::max(from.pitch(), 0);
+    PointRows reader(points, from.left, pitch, level, twice);
+    for (int y = 0; y < framelet_side; ++y) {
+        for (std::size_t plane = 0; plane < rows.size(); ++plane) {
+            put_row(reader.at(plane, from.top + (y << pitch >> twice)), rows[plane], y);
+        }
+    }
+}
+
+/// The mean of the four points about each sample's centre.
+void look_up_means(PointGrids const& points, HeldPicture::Place const& from, int level, Planes& rows) {
+    using Sums [[gnu::vector_size(2 * framelet_side)]] = std::uint16_t;
+    int const pitch = from.pitch();
+    int const before_centre = (1 << pitch) / 2 - 1;
+    int const x = from.left + before_centre;
+    PointRows left(points, x, pitch, level, 0), right(points, x + 1, pitch, level, 0);
+    for (int row = 0; row < framelet_side; ++row) {
+        int const y = from.top + before_centre + (row << pitch);
+        std::array<Sums, PointGrids::planes> sums{};
+        for (int below = 0; below < 2; ++below) {
+            for (std::size_t plane = 0; plane < sums.size(); ++plane) {
+                sums[plane] += __builtin_convertvector(left.at(plane, y + below), Sums) +
+                               __builtin_convertvector(right.at(plane, y + below), Sums);
+            }
+        }
+        for (std::size_t plane = 0; plane < sums.size(); ++plane) {
+            put_row(__builtin_convertvector((sums[plane] + 2) >> 2, PointRow), rows[plane], row);
+        }
     }
 }
 
@@ -165,12 +144,14 @@ void HeldPicture::show(Viewport viewport) {
     plane_ = ImagePlane(viewport);
     int const coarsest = plane_.side() >> plane_.min_depth();
     auto const rounded_up = [&](int pixels) { return (pixels + coarsest - 1) / coarsest * coarsest; };
-    width_ = values_per_pixel * rounded_up(viewport.width);
-    height_ = values_per_pixel * rounded_up(viewport.height);
-    Line grey_line;
-    grey_line.values.fill(grey);
-    for (auto& values : values_) {
-        values.assign(at(0, height_) / grey_line.values.size(), grey_line);
+    points_.fill(values_per_pixel * rounded_up(viewport.width), values_per_pixel * rounded_up(viewport.height), grey);
+    search_ = {};
+}
+
+void HeldPicture::keep_for_search() {
+    constexpr std::size_t green = 1;
+    if (!is_searched()) {
+        search_.copy(points_, green);
     }
 }
 
@@ -181,36 +162,70 @@ HeldPicture::Place HeldPicture::place(Tile tile) const {
 
 void HeldPicture::expect(Tile tile) const {
     Place const from = place(tile);
-    for (std::size_t plane = 0; plane < values_.size(); ++plane) {
-        Source const rows = source(from, {}, plane);
-        auto const pitch = static_cast<std::size_t>(rows.pitch);
-        auto const side = static_cast<std::size_t>(from.side);
-        if (pitch <= 2) {
-            for (std::size_t y = 0; y < side; ++y) {
-                prefetch_row<to_read>(rows.first + y * rows.stride, side);
+    if (is_searched()) {
+        search_.expect(from.left, from.top, from.side);
+    }
+    int const level = points_.level_at(from.left, from.top);
+    int const side = std::max(from.side >> level, 1); // values
+    bool const is_sparse = from.pitch() > level + 1; // of the rows that a sample covers only two are read
+    std::size_t const stride = points_.stride(level);
+    for (std::size_t plane = 0; plane < PointGrids::planes; ++plane) {
+        std::uint8_t const* const first = points_.value(plane, level, from.left, from.top);
+        auto const prefetch_row = [&](int y) {
+            for (int x = 0; x < side; x += int{cache_line}) {
+                __builtin_prefetch(first + static_cast<std::size_t>(y) * stride + x);
             }
-        } else { // of the rows that a sample covers only the two in the middle are read
-            for (std::size_t y = pitch / 2 - 1; y < side; y += pitch) {
-                prefetch_row<to_read>(rows.first + y * rows.stride, side);
-                prefetch_row<to_read>(rows.first + (y + 1) * rows.stride, side);
+        };
+        int const step = is_sparse ? 1 << (from.pitch() - level) : 1;
+        for (int y = is_sparse ? step / 2 - 1 : 0; y < side; y += step) {
+            prefetch_row(y);
+            if (is_sparse) {
+                prefetch_row(y + 1);
             }
         }
     }
 }
 
 void HeldPicture::predict(Tile tile, PictureVector vector, DisplayFramelet& out) const {
-    Place const from = place(tile);
+    Place const from = moved(place(tile), vector);
+    int const pitch = from.pitch();
+    int const level = points_.level_in(from.left, from.top, from.side);
+    bool const is_one = level != PointGrids::mixed_levels;
+    auto const begins_value = [&](int l) { return ((from.left | from.top) & ((1 << l) - 1)) == 0; };
     std::size_t plane = 0;
-    for_each_plane([&](auto const samples) { fetch(source(from, vector, plane++), out.*samples); });
+    if (is_one && level <= std::max(pitch, 0) && begins_value(level)) {
+        for_each_plane([&](auto const samples) {
+            fetch(points_.value(plane++, level, from.left, from.top), points_.stride(level), pitch - level,
+                  out.*samples);
+        });
+        return;
+    }
+    Planes rows;
+    // Four points about a sample's centre may be of several values, unless all are coarse.
+    if (pitch < 1 || (level >= pitch && begins_value(pitch))) {
+        look_up(points_, from, level, rows);
+    } else {
+        look_up_means(points_, from, level, rows);
+    }
+    for_each_plane([&](auto const samples) { from_rows(rows[plane++].data(), framelet_side, (out.*samples).data()); });
 }
 
 void HeldPicture::write(DisplayFramelet const& framelet) {
     Place const to = place(framelet.tile);
+    int const level = std::max(to.pitch(), 0);
     std::size_t plane = 0;
     for_each_plane([&](auto const samples) {
-        std::uint8_t* const first = reinterpret_cast<std::uint8_t*>(values_[plane++].data()) + at(to.left, to.top);
-        put(framelet.*samples, to.side / framelet_side, first, static_cast<std::size_t>(width_));
+        PointGrids::Rows const rows = points_.rows(plane++, level, to.left, to.top);
+        if (to.pitch() < 0) {
+            put_means(framelet.*samples, rows.first, rows.stride);
+        } else {
+            to_rows((framelet.*samples).data(), rows.first, rows.stride);
+        }
     });
+    points_.set_level(level, to.left, to.top, to.side);
+    if (is_searched()) {
+        search_.write(framelet.green, to.left, to.top, to.side);
+    }
 }
 
 void HeldPicture::take(std::span<DisplayFramelet const> framelets) {

@@ -4,17 +4,15 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
-#include <cstddef>
+#include <bit>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "common/framelet.h"
+#include "protocol/point_grids.h"
+#include "protocol/search_picture.h"
 
 namespace framelet {
-
-inline constexpr std::size_t cache_line = 64;
 
 /// Half pixels.
 struct PictureVector {
@@ -23,7 +21,8 @@ struct PictureVector {
 };
 
 /// Four values a pixel and plane: at half the spacing of the pixels coarse and fine framelets alike find what they
-/// were. 12 bytes a pixel of the viewport, rounded up to tiles of the coarsest kind: 11.8 MB at 1280x720.
+/// were. Nothing coarse is spread over the values that it stands for (`point_grids.h`). 16 bytes a pixel of the
+/// viewport, rounded up to tiles of the coarsest kind, 15.8 MB at 1280x720; 4 more where it is kept for searches.
 class HeldPicture {
 public:
     /// Larger viewports have no such picture: their framelets are coded without.
@@ -35,7 +34,7 @@ public:
     /// Grey everywhere, unless it is that viewport's already. The viewport is one that it `holds`. Until then there is
     /// no picture, and no memory.
     void show(Viewport viewport);
-    bool shows(Viewport viewport) const { return width_ != 0 && viewport == plane_.viewport(); }
+    bool shows(Viewport viewport) const { return points_.width() != 0 && viewport == plane_.viewport(); }
     /// The framelets of one batch of the viewport that it shows; where they overlap the finer ones count.
     void take(std::span<DisplayFramelet const> framelets);
 
@@ -45,44 +44,37 @@ public:
     /// Says that a prediction from near the tile's place will be asked for soon.
     void expect(Tile tile) const;
 
-    /// Where a tile lies: half pixels.
+    /// Where a tile lies, or what is moved from there: half pixels.
     struct Place {
         int left, top, side;
+        /// Half pixels from sample to sample, logarithm to base 2; -1: two samples a half pixel.
+        int pitch() const {
+            return static_cast<int>(std::bit_width(static_cast<unsigned>(side / (framelet_side / 2)))) - 2;
+        }
     };
     Place place(Tile tile) const;
-
-    /// Where the prediction of what lies there comes from: half pixels, of one plane.
-    struct Source {
-        std::uint8_t const* first; ///< upper left value of the tile moved
-        std::size_t stride; ///< from one row to the next
-        int pitch; ///< half pixels from sample to sample; 0: two samples a half pixel
-    };
-    Source source(Place const& place, PictureVector vector, std::size_t plane) const {
-        int const left = std::clamp(place.left + vector.x, 0, width_ - place.side);
-        int const top = std::clamp(place.top + vector.y, 0, height_ - place.side);
-        return {values(plane) + at(left, top), static_cast<std::size_t>(width_), place.side / framelet_side};
+    /// Moved, as far as the picture reaches.
+    Place moved(Place const& place, PictureVector vector) const {
+        return {std::clamp(place.left + vector.x, 0, points_.width() - place.side),
+                std::clamp(place.top + vector.y, 0, points_.height() - place.side), place.side};
+    }
+    /// For whoever looks for vectors, from now on and until another viewport is shown.
+    void keep_for_search();
+    bool is_searched() const { return search_.is_kept(); }
+    SearchPicture::Source searched(Place const& place, PictureVector vector) const {
+        Place const from = moved(place, vector);
+        return search_.source(from.left, from.top, from.side);
     }
 
-    bool operator==(HeldPicture const&) const = default;
+    /// Whether predictions from them are the same.
+    bool operator==(HeldPicture const& other) const { return plane_ == other.plane_ && points_ == other.points_; }
 
 private:
-    /// Rows of coarse tiles are whole lines of the cache where they are written.
-    struct alignas(cache_line) Line {
-        std::array<std::uint8_t, cache_line> values;
-        bool operator==(Line const&) const = default;
-    };
-
-    std::size_t at(int x, int y) const {
-        return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
-    }
-    std::uint8_t const* values(std::size_t plane) const {
-        return reinterpret_cast<std::uint8_t const*>(values_[plane].data());
-    }
     void write(DisplayFramelet const& framelet);
 
     ImagePlane plane_;
-    int width_ = 0, height_ = 0; ///< half pixels
-    std::array<std::vector<Line>, 3> values_; ///< red, green, blue, rows from the top
+    PointGrids points_; ///< red, green, blue; half pixels
+    SearchPicture search_; ///< the same of green, if it is kept
 };
 
 } // namespace framelet

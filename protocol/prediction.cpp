@@ -6,7 +6,7 @@ namespace {
 /// What saying so takes, bits.
 constexpr int bits_of_kind = 2, bits_of_vector = 12;
 /// Below this, looking further gains nothing.
-constexpr int few_bits = 40;
+constexpr int few_bits = 70;
 
 /// A way of coding a framelet.
 struct Way {

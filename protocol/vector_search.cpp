@@ -75,8 +75,8 @@ int sum_of(Row const& row) {
 /// Sum of differences of rows `apart` from each other, or any number above `most` where it is above that.
 /// `twice_pitch` rows of the picture are two rows of samples.
 template <typename RowAt>
-int difference(Rows const& rows, HeldPicture::Source const& from, std::size_t apart, int most, std::size_t twice_pitch,
-               RowAt const& row_at) {
+int difference(Rows const& rows, SearchPicture::Source const& from, std::size_t apart, int most,
+               std::size_t twice_pitch, RowAt const& row_at) {
     constexpr std::size_t rows_at_a_time = 4;
     std::uint8_t const* const first = from.first + twice_pitch / 4 * from.stride;
     int sum = 0;
@@ -91,7 +91,7 @@ int difference(Rows const& rows, HeldPicture::Source const& from, std::size_t ap
     return sum;
 }
 
-int difference(Rows const& rows, HeldPicture::Source const& from, std::size_t apart, int most) {
+int difference(Rows const& rows, SearchPicture::Source const& from, std::size_t apart, int most) {
     switch (from.pitch) {
     case 0:
         return difference(rows, from, apart, most, 1, doubled_row_at);
@@ -111,7 +111,9 @@ int difference(Rows const& rows, HeldPicture::Source const& from, std::size_t ap
 } // namespace
 
 PictureVector VectorSearch::find(HeldPicture const& held, DisplayFramelet const& framelet) {
-    constexpr std::size_t green = 1;
+    if (!held.is_searched()) {
+        return {};
+    }
     Rows const rows = rows_of(framelet.green);
     HeldPicture::Place const place = held.place(framelet.tile);
     std::size_t apart = 2;
@@ -119,7 +121,7 @@ PictureVector VectorSearch::find(HeldPicture const& held, DisplayFramelet const&
     auto const cost = [&](PictureVector vector) {
         int const of_length = length_cost * (std::abs(int{vector.x}) + std::abs(int{vector.y}));
         int const by = static_cast<int>(apart);
-        return by * difference(rows, held.source(place, vector, green), apart, (least - of_length) / by) + of_length;
+        return by * difference(rows, held.searched(place, vector), apart, (least - of_length) / by) + of_length;
     };
     PictureVector best;
     least = cost(best);

@@ -13,7 +13,8 @@ class VectorSearch {
 public:
     /// Forgets.
     void begin() { *this = {}; }
-    /// The best vector of those tried: what was found before and steps from there, down to half a pixel.
+    /// The best vector of those tried: what was found before and steps from there, down to half a pixel. Zero where the
+    /// picture is not kept for searches.
     PictureVector find(HeldPicture const& held, DisplayFramelet const& framelet);
 
 private:

@@ -125,9 +125,96 @@ TEST(HeldPicture, OfOneBatchTheFinerCountsWhateverTheOrder) {
     EXPECT_EQ(red_at(predicted(later, fine.tile), 4, 4), 10);
 }
 
+/// The held picture of one plane as PROTOCOL.md states it: all of it points.
+struct FlatPicture {
+    int width, height;
+    std::vector<std::uint8_t> points = std::vector<std::uint8_t>(static_cast<std::size_t>(width * height), 128);
+
+    std::uint8_t& at(int x, int y) { return points[static_cast<std::size_t>(y * width + x)]; }
+
+    void take(HeldPicture::Place place, std::array<std::uint8_t, framelet_samples> const& samples) {
+        auto const sample = [&](int x, int y) {
+            return unsigned{samples[morton_index(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y))]};
+        };
+        for (int y = 0; y < place.side; ++y) {
+            for (int x = 0; x < place.side; ++x) {
+                int const i = x * framelet_side / place.side, j = y * framelet_side / place.side;
+                unsigned const mean =
+                    (sample(i, j) + sample(i + 1, j) + sample(i, j + 1) + sample(i + 1, j + 1) + 2) / 4;
+                at(place.left + x, place.top + y) =
+                    static_cast<std::uint8_t>(place.side < framelet_side ? mean : sample(i, j));
+            }
+        }
+    }
+
+    int predicted(HeldPicture::Place place, PictureVector vector, int i, int j) {
+        int const left = std::clamp(place.left + vector.x, 0, width - place.side);
+        int const top = std::clamp(place.top + vector.y, 0, height - place.side);
+        int const t = place.side / framelet_side;
+        if (t < 2) {
+            return t == 1 ? at(left + i, top + j) : at(left + i / 2, top + j / 2);
+        }
+        int const x = left + i * t + t / 2 - 1, y = top + j * t + t / 2 - 1;
+        return (at(x, y) + at(x + 1, y) + at(x, y + 1) + at(x + 1, y + 1) + 2) / 4;
+    }
+};
+
+TEST(HeldPicture, PredictsAsIfAllOfItWerePoints) {
+    std::mt19937 random(1);
+    ImagePlane const plane(viewport);
+    auto const any_tile = [&] {
+        for (;;) {
+            int const depth =
+                plane.min_depth() + static_cast<int>(random() % unsigned(plane.max_depth() - plane.min_depth() + 1));
+            Tile const tile = make_tile(depth, static_cast<std::uint32_t>(random() % (1u << depth)),
+                                        static_cast<std::uint32_t>(random() % (1u << depth)));
+            if (plane.accepts(tile)) {
+                return tile;
+            }
+        }
+    };
+    auto const component = [&] { return static_cast<std::int8_t>(random() % 3 == 0 ? 0 : random() % 256 - 128); };
+    HeldPicture held = grey_picture();
+    FlatPicture flat{512, 256}, flat_green = flat;
+    for (int i = 0; i < 1500; ++i) {
+        DisplayFramelet const framelet = framelet_of(any_tile(), [&](int, int) { return random(); });
+        take(held, framelet);
+        flat.take(held.place(framelet.tile), framelet.red);
+        flat_green.take(held.place(framelet.tile), framelet.green);
+        if (i == 500) {
+            held.keep_for_search();
+        }
+        Tile const tile = any_tile();
+        PictureVector const vector{component(), component()};
+        DisplayFramelet const out = predicted(held, tile, vector);
+        HeldPicture::Place const place = held.place(tile);
+        for (std::uint32_t k = 0; k < framelet_samples; ++k) {
+            int const x = static_cast<int>(morton_x(k)), y = static_cast<int>(morton_y(k));
+            ASSERT_EQ(out.red[k], flat.predicted(place, vector, x, y)) << i << " tile " << tile.code;
+        }
+        if (held.is_searched()) {
+            SearchPicture::Source const source = held.searched(place, vector);
+            HeldPicture::Place const from = held.moved(place, vector);
+            int const y = static_cast<int>(random() % unsigned(from.side));
+            for (int x = 0; x < from.side; ++x) {
+                auto const green = source.first[static_cast<std::size_t>(y) * source.stride + std::size_t(x)];
+                ASSERT_EQ(green, flat_green.at(from.left + x, from.top + y)) << i;
+            }
+        }
+    }
+}
+
+TEST(VectorSearch, FindsNothingInWhatIsNotKeptForIt) {
+    HeldPicture const held = grey_picture();
+    VectorSearch search;
+    DisplayFramelet const framelet = framelet_of(make_tile(pixel_depth, 2, 2), [](int x, int y) { return 9 * x + y; });
+    EXPECT_EQ(search.find(held, framelet), PictureVector{});
+}
+
 TEST(VectorSearch, FindsWhatHasMoved) {
     std::mt19937 random(1);
     HeldPicture held = grey_picture();
+    held.keep_for_search();
     ImagePlane const plane(viewport);
     auto const scene = [](double x, double y) {
         return 128 + 60 * std::sin(0.13 * x) + 60 * std::cos(0.17 * y + 0.05 * x);

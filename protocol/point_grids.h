@@ -1,0 +1,188 @@
+// A plane of points that has been written coarsely in one place and finely in another, without spreading what is
+// coarse: each level is a grid of its own, and each cell of 8x8 points says which of them counts there. In: squares of
+// 16x16 values of one level. Out: rows of points, wherever they lie.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <vector>
+
+#include "common/tile.h"
+
+namespace framelet {
+
+inline constexpr std::size_t cache_line = 64;
+
+/// 16 values of a plane.
+using PointRow [[gnu::vector_size(framelet_side)]] = std::uint8_t;
+
+namespace point_rows {
+
+inline PointRow load(std::uint8_t const* from) {
+    PointRow row;
+    std::memcpy(&row, from, sizeof row);
+    return row;
+}
+
+/// Every n-th value, n = sizeof(Lane).
+template <typename Lane>
+PointRow every(std::uint8_t const* from) {
+    using Lanes [[gnu::vector_size(framelet_side * sizeof(Lane))]] = Lane;
+    Lanes values;
+    std::memcpy(&values, from, sizeof values);
+    return __builtin_convertvector(values, PointRow);
+}
+
+inline PointRow every_16th(std::uint8_t const* from) {
+    PointRow row;
+    for (int i = 0; i < framelet_side; ++i) {
+        row[i] = from[i * framelet_side];
+    }
+    return row;
+}
+
+/// Each value n times, the first `skip` of these left out.
+template <typename Lane>
+PointRow repeated(std::uint8_t const* from, std::size_t skip) {
+    constexpr std::size_t lanes = 2 * framelet_side / sizeof(Lane); // more than are needed
+    constexpr Lane ones = static_cast<Lane>(~std::uint64_t{0}) / 255;
+    using Narrow [[gnu::vector_size(lanes)]] = std::uint8_t;
+    using Lanes [[gnu::vector_size(2 * framelet_side)]] = Lane;
+    Narrow values;
+    std::memcpy(&values, from, sizeof values);
+    Lanes const spread = __builtin_convertvector(values, Lanes) * ones;
+    std::array<std::uint8_t, sizeof spread> bytes;
+    std::memcpy(bytes.data(), &spread, sizeof spread);
+    return load(bytes.data() + skip);
+}
+
+/// Values (first + i 2^pitch) / 2^level of a row, i = 0..15.
+inline PointRow row_of(std::uint8_t const* row, int first, int pitch, int level) {
+    std::uint8_t const* const from = row + (first >> level);
+    auto const skip = static_cast<std::size_t>((first >> pitch) & ((1 << std::max(level - pitch, 0)) - 1));
+    switch (pitch - level) {
+    case 0:
+        return load(from);
+    case 1:
+        return every<std::uint16_t>(from);
+    case 2:
+        return every<std::uint32_t>(from);
+    case 3:
+        return every<std::uint64_t>(from);
+    case -1:
+        return repeated<std::uint16_t>(from, skip);
+    case -2:
+        return repeated<std::uint32_t>(from, skip);
+    case -3:
+        return repeated<std::uint64_t>(from, skip);
+    case 4:
+        return every_16th(from);
+    default:
+        PointRow out;
+        for (int i = 0; i < framelet_side; ++i) {
+            out[i] = row[(first + (i << pitch)) >> level];
+        }
+        return out;
+    }
+}
+
+} // namespace point_rows
+
+/// Planes alike in what counts where.
+class PointGrids {
+public:
+    /// Level l has a value for every 2^l x 2^l points.
+    static constexpr int levels = 5;
+    static constexpr int cell_bits = 3, cell_side = 1 << cell_bits;
+    static constexpr std::size_t planes = 3;
+
+    /// One value everywhere. Width and height are multiples of 32.
+    void fill(int width, int height, std::uint8_t value);
+    int width() const { return width_; }
+    int height() const { return height_; }
+
+    /// That this level counts from now on in a square of `side` points, a multiple of 8, as are left and top.
+    void set_level(int level, int left, int top, int side);
+
+    struct Rows {
+        std::uint8_t* first;
+        std::size_t stride;
+    };
+    /// Where the level has its value for the point, and from there the next row.
+    Rows rows(std::size_t plane, int level, int x, int y) {
+        return {bytes(planes_[plane]) + at(level, x, y), stride(level)};
+    }
+    std::uint8_t const* value(std::size_t plane, int level, int x, int y) const {
+        return bytes(planes_[plane]) + at(level, x, y);
+    }
+    std::size_t stride(int level) const { return static_cast<std::size_t>(width_ >> level); }
+
+    static constexpr int mixed_levels = -1;
+    /// Which level counts in all of a square, or `mixed_levels`.
+    int level_in(int left, int top, int side) const;
+    int level_at(int x, int y) const { return bytes(cells_)[cell_at(x, y)]; }
+    std::uint8_t const* cells(int y) const { return bytes(cells_) + cell_at(0, y); }
+
+    bool operator==(PointGrids const&) const = default;
+
+private:
+    struct alignas(cache_line) Line {
+        std::array<std::uint8_t, cache_line> values;
+        bool operator==(Line const&) const = default;
+    };
+    using Lines = std::vector<Line>;
+
+    static std::uint8_t* bytes(Lines& lines) { return reinterpret_cast<std::uint8_t*>(lines.data()); }
+    static std::uint8_t const* bytes(Lines const& lines) { return reinterpret_cast<std::uint8_t const*>(lines.data()); }
+    std::size_t at(int level, int x, int y) const {
+        return first_[static_cast<std::size_t>(level)] + static_cast<std::size_t>(y >> level) * stride(level) +
+               static_cast<std::size_t>(x >> level);
+    }
+    std::size_t cell_at(int x, int y) const {
+        return static_cast<std::size_t>(y >> cell_bits) * static_cast<std::size_t>(width_ >> cell_bits) +
+               static_cast<std::size_t>(x >> cell_bits);
+    }
+
+    int width_ = 0, height_ = 0; ///< points
+    std::array<std::size_t, levels> first_{}; ///< value of each level in a plane
+    std::array<Lines, planes> planes_; ///< rows from the top; behind the last, room to read a row
+    Lines cells_; ///< level that counts
+};
+
+/// Reads 16 points of a row, 2^pitch apart from each other, x being that of the first. All of them are in the plane;
+/// rows are best asked for in order. `level`: that which counts wherever rows will be asked for, or `mixed_levels`.
+/// With `twice` 1 and pitch 0, eight points, each twice.
+class PointRows {
+public:
+    PointRows(PointGrids const& grids, int x, int pitch, int level, int twice)
+        : grids_(grids), x_(x << twice), pitch_(pitch), twice_(twice), level_(level),
+          is_mixed_(level == PointGrids::mixed_levels) {}
+
+    PointRow at(std::size_t plane, int y) {
+        if (is_mixed_ && y >> PointGrids::cell_bits != cell_row_) {
+            find_levels(y);
+        }
+        return level_ != PointGrids::mixed_levels ? of_level(plane, level_, y) : mixed(plane, y);
+    }
+
+private:
+    PointRow of_level(std::size_t plane, int level, int y) const {
+        return point_rows::row_of(grids_.value(plane, level, 0, y), x_, pitch_, level + twice_);
+    }
+    void find_levels(int y);
+    PointRow mixed(std::size_t plane, int y) const;
+
+    PointGrids const& grids_;
+    int x_, pitch_, twice_;
+    int level_;
+    bool is_mixed_;
+    int cell_row_ = -1;
+    PointRow levels_{}; ///< of the points in that row of cells
+    unsigned there_ = 0; ///< a bit for each of these
+};
+
+} // namespace framelet
