@@ -392,7 +392,7 @@ bool ClientCore::update_picture(Picture& picture, std::vector<PixelRect>& change
 void ClientCore::draw_overlay(DrawnOver overlay, Picture& picture) const {
     Impl const& core = *impl_;
     std::lock_guard const lock(core.mutex);
-    if (overlay == DrawnOver::none || !core.cache ||
+    if (overlay == DrawnOver::none || !core.cache || core.cache->framelet_count() == 0 ||
         core.cache->plane().viewport() != Viewport{picture.width, picture.height}) {
         return;
     }

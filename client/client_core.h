@@ -52,10 +52,10 @@ struct ClientStatistics {
     double reconstruct_ns_per_pixel() const;
 };
 
-/// All members may be called from any thread; `update_picture` from one at a time.
 /// What is drawn over the picture.
 enum class DrawnOver : std::uint8_t { none, outlines, confidence };
 
+/// All members may be called from any thread; `update_picture` from one at a time.
 class ClientCore {
 public:
     /// Connects (blocks) and opens the session. `on_news` is called from the connection's thread whenever there is
@@ -90,7 +90,7 @@ public:
 
     /// Draws over a copy of the picture that `update_picture` made: outlines of the framelets that are held, as
     /// `draw_outlines`, or how far its pixels are to be trusted, as `draw_confidence` (outlines as well, where nothing
-    /// is moved). A picture of another size stays as it is.
+    /// is moved; while the scene is smoothed, of what came last). A picture of another size stays as it is.
     void draw_overlay(DrawnOver overlay, Picture& picture) const;
 
     /// Waits until something has come since the last call, or the time is over; true when something has.

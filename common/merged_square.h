@@ -62,7 +62,7 @@ public:
     };
 
     /// Brings it up to date. Always of the same cache, square and depth. Looks at what has changed since the last call
-    /// only; allocates the first time that something is held. `joining` is scratch.
+    /// only; allocates where more is held or joined than ever before. `joining` is scratch.
     void update(FrameletCache const& cache, Tile square, int depth, LayerJoining& joining);
 
     /// What is below the square's tiles of that depth, in Morton order; empty where nothing ever was. This and what

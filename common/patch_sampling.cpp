@@ -32,8 +32,14 @@ Places find_places(Row const& row, WarpPatch const& patch, WideFloats in_box) {
     WideFloats v = row.v * z;
     Places out;
     if constexpr (inside) {
-        WideFloats const column = __builtin_convertvector(__builtin_convertvector(u, WideInts), WideFloats);
-        WideFloats const line = __builtin_convertvector(__builtin_convertvector(v, WideInts), WideFloats);
+        // Rounding adds up along large grids that are seen at a low angle: what is read stays within the grid.
+        WideInts const last = WideInts{} + (patch.side - 2);
+        auto const whole = [&](WideFloats value) {
+            WideInts const truncated = __builtin_convertvector(value, WideInts);
+            return __builtin_convertvector(truncated < last ? truncated : last, WideFloats);
+        };
+        WideFloats const column = whole(u);
+        WideFloats const line = whole(v);
         out.corner = __builtin_convertvector(line * stride + column, WideInts);
         out.right_weight = u - column;
         out.left_weight = 1 - out.right_weight;

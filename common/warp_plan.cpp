@@ -58,7 +58,7 @@ void WarpPlan::make(FrameletCache const& cache, Camera const& display, SceneTime
         Chunk& chunk = chunks_[i];
         chunk.clear();
         FrameletWarp warp(cache, display, display_time, motions);
-        LayerJoining joining;
+        LayerJoining& joining = joinings_.local();
         std::size_t const first = i * squares_per_chunk;
         for (std::size_t k = first; k < std::min(first + squares_per_chunk, squares_.size()); ++k) {
             Square& square = squares_[k];

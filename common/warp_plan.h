@@ -10,6 +10,7 @@
 #include "common/framelet_cache.h"
 #include "common/framelet_warp.h"
 #include "common/merged_square.h"
+#include "common/per_thread.h"
 #include "common/warp_patch.h"
 
 namespace framelet {
@@ -62,6 +63,7 @@ private:
     int columns_ = 0, rows_ = 0;
     ImagePlane plane_; ///< of the squares
     std::vector<Square> squares_; ///< all that can be held
+    PerThread<LayerJoining> joinings_; ///< scratch
     std::vector<Chunk> chunks_; ///< of squares or spares
     std::vector<std::uint32_t> first_entry_; ///< by block; one more at the end
     std::vector<std::uint32_t> next_entry_;

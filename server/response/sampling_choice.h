@@ -3,9 +3,10 @@
 //
 // A place that is refreshed at level l every P seconds shows on average the error
 //     F = unresolved(l) + mean over ages a in [latency, latency + P] of drift_error(l, motion a),
-// and costs samples_per_pixel(l) / P. The choice minimises F + price * cost. With drift_error taken as one exponential,
-// V (1 - exp(-r a)), the best period solves 1 - exp(-x)(1 + x) = price * spp * r / (V exp(-r latency)) for x = r P, and
-// what is paid altogether is unresolved(l) + V (1 - exp(-r latency - x)): the error at the end of the period.
+// and costs samples_per_pixel(l) / P (times what a sample costs). The choice minimises F + price * cost. With
+// drift_error taken as one exponential, V (1 - exp(-r a)), the best period solves 1 - exp(-x)(1 + x) = price * spp * r
+// / (V exp(-r latency)) for x = r P, and what is paid altogether is unresolved(l) + V (1 - exp(-r latency - x)): the
+// error at the end of the period.
 #pragma once
 
 #include "server/response/coding_cost.h"

@@ -89,7 +89,7 @@ public:
     Choices const& choices() const { return choices_; }
     float price() const { return price_; }
     /// The cycle that was planned last: how many there have been, its tiling, the patches to render, the samples
-    /// that it has time for, the rays that each is made of, and its length.
+    /// that it has time for (by what they cost), the rays that each is made of, and its length.
     std::uint64_t cycle_count() const { return cycle_count_; }
     std::vector<Patch> const& cut() const { return cut_; }
     std::vector<Patch> const& cycle() const { return cycle_; }
