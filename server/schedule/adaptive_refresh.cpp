@@ -83,8 +83,6 @@ void AdaptiveRefresh::advance(RefreshInput const& input) {
     if (!seen_ || seen_->view.viewport != state.view.viewport) {
         field_ = PlaceField(ImagePlane(state.view.viewport));
         history_.clear();
-        choices_.clear();
-        costs_.clear();
         price_ = 1e-6f;
         still_since_ = input.now;
         scene_moves_ = false;
@@ -209,24 +207,13 @@ void AdaptiveRefresh::take(Patch const& patch, double now) {
 /// Samples cost the same unless the link is what is scarce and something moves: what stands is refined at a price that
 /// only falls.
 void AdaptiveRefresh::find_costs(RefreshInput const& input) {
-    bool const begins = costs_.empty();
     costs_.clear();
     if (still_ || !(input.rendered_per_second > input.samples_per_second)) {
         return;
     }
     costs_.assign(field_.size(), equal_costs);
-    double bits = 0, samples = 0;
     for (std::uint32_t const index : field_.visible()) {
         costs_[index] = coded_bits(field_[index].model);
-        int const level = index < choices_.size() ? choices_[index].level : pixel_level;
-        auto const chosen = static_cast<double>(field_.pixels_of(index) * samples_per_pixel(level));
-        bits += chosen * static_cast<double>(costs_[index][static_cast<std::size_t>(level)]);
-        samples += chosen;
-    }
-    if (begins && samples > 0) { // what was planned when they last cost by bytes is long ago
-        mean_bits_ = static_cast<float>(bits / samples);
-    }
-    for (std::uint32_t const index : field_.visible()) {
         for (float& cost : costs_[index]) {
             cost /= mean_bits_;
         }
