@@ -204,11 +204,10 @@ void AdaptiveRefresh::take(Patch const& patch, double now) {
     }
 }
 
-/// Samples cost the same unless the link is what is scarce and something moves: what stands is refined at a price that
-/// only falls.
+/// Samples cost the same unless the link is what is scarce.
 void AdaptiveRefresh::find_costs(RefreshInput const& input) {
     costs_.clear();
-    if (still_ || !(input.rendered_per_second > input.samples_per_second)) {
+    if (!(input.rendered_per_second > input.samples_per_second)) {
         return;
     }
     costs_.assign(field_.size(), equal_costs);

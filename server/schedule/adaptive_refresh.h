@@ -134,7 +134,7 @@ private:
     LumaHistory history_;
     std::vector<LevelCosts> costs_; ///< of samples, by place; none where all cost the same
     /// Of a sample planned lately, as estimated. It begins below what pictures have, so that a slow link is not filled
-    /// with the first of them (measured: from the first plan's own mean on MSE is up to a third higher).
+    /// with the first of them (measured).
     float mean_bits_ = 1;
     Choices choices_;
     float price_ = 1e-6f;

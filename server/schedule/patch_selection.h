@@ -1,5 +1,5 @@
-// Which patches of a tiling are rendered next: those by whose refresh the picture gains most for what they cost. In: the
-// field, the choices, the cut that follows from them; out: patches, the most urgent first.
+// Which patches of a tiling are rendered next: those by whose refresh the picture gains most for what they cost. In:
+// the field, the choices, the cut that follows from them; out: patches, the most urgent first.
 #pragma once
 
 #include <vector>
