@@ -13,10 +13,6 @@ namespace {
 constexpr std::uint8_t grey = 128;
 constexpr int values_per_pixel = 2;
 
-std::uint8_t mean_of_four(unsigned a, unsigned b, unsigned c, unsigned d) {
-    return static_cast<std::uint8_t>((a + b + c + d + 2) >> 2);
-}
-
 /// Two rows of two samples for each value.
 void fetch_doubled(std::uint8_t const* first, std::size_t stride, SamplePlane& samples) {
     std::array<std::uint8_t, framelet_samples / 4> values;
@@ -82,17 +78,6 @@ void fetch(std::uint8_t const* first, std::size_t stride, int pitch, SamplePlane
         fetch_means_of_coarsest(first, stride, rows);
     }
     from_rows(rows.data(), framelet_side, samples.data());
-}
-
-/// Each value gets the mean of its four samples.
-void put_means(SamplePlane const& samples, std::uint8_t* to, std::size_t stride) {
-    std::array<std::uint8_t, framelet_samples / 4> means;
-    for (std::size_t k = 0; k < means.size(); ++k) { // many at a time
-        std::uint32_t four;
-        std::memcpy(&four, &samples[4 * k], sizeof four);
-        means[k] = mean_of_four(four & 255, four >> 8 & 255, four >> 16 & 255, four >> 24);
-    }
-    to_rows(means.data(), to, stride, means.size());
 }
 
 using Planes = std::array<SamplePlane, PointGrids::planes>;

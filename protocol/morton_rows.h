@@ -71,4 +71,19 @@ inline void to_rows(std::uint8_t const* in, std::uint8_t* rows, std::size_t stri
     }
 }
 
+inline std::uint8_t mean_of_four(unsigned a, unsigned b, unsigned c, unsigned d) {
+    return static_cast<std::uint8_t>((a + b + c + d + 2) >> 2);
+}
+
+/// Each value gets the mean of its four samples.
+inline void put_means(SamplePlane const& samples, std::uint8_t* to, std::size_t stride) {
+    std::array<std::uint8_t, framelet_samples / 4> means;
+    for (std::size_t k = 0; k < means.size(); ++k) { // many at a time
+        std::uint32_t four;
+        std::memcpy(&four, &samples[4 * k], sizeof four);
+        means[k] = mean_of_four(four & 255, four >> 8 & 255, four >> 16 & 255, four >> 24);
+    }
+    to_rows(means.data(), to, stride, means.size());
+}
+
 } // namespace framelet

@@ -9,10 +9,6 @@ namespace {
 
 using RowOfSamples [[gnu::vector_size(framelet_side)]] = std::uint8_t;
 
-std::uint8_t mean_of_four(unsigned a, unsigned b, unsigned c, unsigned d) {
-    return static_cast<std::uint8_t>((a + b + c + d + 2) >> 2);
-}
-
 /// The picture is larger than the caches near the processor, and its rows are far apart: they are asked for in time.
 constexpr std::size_t rows_ahead = 12;
 constexpr int to_read = 0, to_write = 1;
@@ -54,17 +50,6 @@ void put_squares_of_coarsest(SamplePlane const& samples, std::uint8_t* to, std::
             }
         }
     }
-}
-
-/// Each value gets the mean of its four samples.
-void put_means(SamplePlane const& samples, std::uint8_t* to, std::size_t stride) {
-    std::array<std::uint8_t, framelet_samples / 4> means;
-    for (std::size_t k = 0; k < means.size(); ++k) { // many at a time
-        std::uint32_t four;
-        std::memcpy(&four, &samples[4 * k], sizeof four);
-        means[k] = mean_of_four(four & 255, four >> 8 & 255, four >> 16 & 255, four >> 24);
-    }
-    to_rows(means.data(), to, stride, means.size());
 }
 
 void put(SamplePlane const& samples, int pitch, std::uint8_t* to, std::size_t stride) {
