@@ -1,5 +1,6 @@
 #include "protocol/coefficient_tokens.h"
 
+#include <array>
 #include <cstdlib>
 #include <cstring>
 
@@ -29,14 +30,14 @@ std::uint8_t* put_escape(std::int16_t level, std::uint8_t* escapes) {
     return escapes;
 }
 
-unsigned take_escape(ByteCursor& escapes) {
+std::int16_t take_escape(ByteCursor& escapes) {
     unsigned const code = escapes.take(1)[0];
     if (code == long_escape) {
         auto const bits = escapes.take(2);
-        return bits[0] | unsigned{bits[1]} << 8;
+        return static_cast<std::int16_t>(bits[0] | unsigned{bits[1]} << 8);
     }
-    unsigned const size = largest_token_level + 1 + code / 2;
-    return code % 2 == 0 ? size : 0u - size;
+    int const size = largest_token_level + 1 + static_cast<int>(code / 2);
+    return static_cast<std::int16_t>(code % 2 == 0 ? size : -size);
 }
 
 } // namespace
@@ -81,30 +82,67 @@ std::uint8_t* TokenWriter::write(std::int16_t const* fours, std::size_t places, 
     return escapes;
 }
 
-void TokenReader::read(std::int16_t* fours, std::size_t places, std::uint16_t step, ByteCursor& escapes) {
+namespace {
+
+/// Of a piece.
+constexpr std::size_t most_details = 3 * 64;
+
+/// Where the details of a sequence are among fours: three a place.
+constexpr auto make_places_of_details() {
+    std::array<std::uint8_t, most_details> places{};
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        places[i] = static_cast<std::uint8_t>(i + i / 3 + 1);
+    }
+    return places;
+}
+constexpr auto places_of_details = make_places_of_details();
+
+/// What each token says: how far its level, or what comes after its zeros, is from where it begins; the level.
+struct Meaning {
+    std::int32_t zeros;
+    std::int16_t level; ///< 0: none here
+};
+constexpr auto make_meanings() {
+    std::array<Meaning, 256> meanings{};
+    for (unsigned token = 0; token < meanings.size(); ++token) {
+        unsigned const zeros = token >> 4, code = token & 15;
+        bool const is_alone = zeros == zeros_alone;
+        int const size = static_cast<int>((code + 1) / 2);
+        meanings[token] = {static_cast<std::int32_t>(is_alone ? zeros << code : zeros),
+                           static_cast<std::int16_t>(is_alone ? 0 : code % 2 == 0 ? size : -size)};
+    }
+    return meanings;
+}
+constexpr auto meanings = make_meanings();
+
+} // namespace
+
+void TokenReader::read(std::int16_t* fours, std::size_t places, ByteCursor& escapes) {
+    FRAMELET_CHECK(3 * places <= most_details);
     auto const count = static_cast<std::ptrdiff_t>(3 * places);
     std::ptrdiff_t at = at_;
     std::uint8_t const* next = tokens_.next;
     while (at < count && next != tokens_.end) {
         unsigned const token = *next;
-        unsigned const zeros = token >> 4, code = token & 15;
-        if (zeros == zeros_alone) {
-            at += static_cast<std::ptrdiff_t>(zeros_alone) << code;
-            ++next;
-            continue;
+        Meaning const meaning = meanings[token];
+        std::ptrdiff_t const to = at + meaning.zeros;
+        std::int16_t level = meaning.level;
+        if (level == 0) { // seldom
+            if (token >> 4 == zeros_alone) {
+                at = to;
+                ++next;
+                continue;
+            }
+            if (to < count) {
+                level = take_escape(escapes);
+            }
         }
-        if (at + zeros >= count) {
+        if (to >= count) {
             break; // its level belongs to a later piece
         }
-        at += zeros;
+        fours[places_of_details[static_cast<std::size_t>(to)]] = level;
+        at = to + 1;
         ++next;
-        unsigned level = code % 2 == 0 ? code / 2 : 0u - (code + 1) / 2;
-        if (code == escape) {
-            level = take_escape(escapes);
-        }
-        // Three details a place, four values.
-        fours[at + at / 3 + 1] = static_cast<std::int16_t>(static_cast<std::uint16_t>(level * step));
-        ++at;
     }
     tokens_.next = next;
     at_ = at - count;

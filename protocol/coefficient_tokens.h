@@ -44,9 +44,9 @@ public:
     explicit TokenReader(std::span<std::uint8_t const> tokens)
         : tokens_{tokens.data(), tokens.data() + tokens.size()} {}
 
-    /// Writes level * step, modulo 2^16, where the sequence has a level; the rest of `fours` must be zero.
-    /// ProtocolError where `escapes` is too short.
-    void read(std::int16_t* fours, std::size_t places, std::uint16_t step, ByteCursor& escapes);
+    /// Writes the levels that the sequence has for at most 64 places; the rest of `fours` must be zero. ProtocolError
+    /// where `escapes` is too short.
+    void read(std::int16_t* fours, std::size_t places, ByteCursor& escapes);
 
     bool is_at_end() const { return tokens_.next == tokens_.end; }
 

@@ -98,10 +98,10 @@ DisplayValues synthesise(std::array<Fours, 3>& details, std::array<std::int16_t,
         std::int16_t const* means = &plane_means[plane];
         for (std::size_t octave = octaves; octave-- > 0;) {
             std::int16_t* const fours = &details[plane][first_four[octave]];
-            haar_inverse(means, fours, places(octave));
-            means = fours;
+            std::int16_t* const out = octave == 0 ? values.planes[plane].data() : fours;
+            haar_inverse(means, fours, places(octave), out);
+            means = out;
         }
-        std::copy(means, means + framelet_samples, values.planes[plane].begin());
     }
     return values;
 }
@@ -270,10 +270,10 @@ DisplayValues HaarReader::read(std::uint8_t quality) {
     std::array<std::int16_t, 3> means;
     for (std::size_t plane = 0; plane < 3; ++plane) {
         std::uint16_t const base = base_step(plane, quality);
-        for (std::size_t octave = octaves; octave-- > 0;) {
-            readers_[token_part(plane, octave == 0)].read(&details[plane][first_four[octave]], places(octave),
-                                                          octave_step(base, octave), escapes_);
-        }
+        std::int16_t* const fours = details[plane].data();
+        readers_[token_part(plane, false)].read(fours, first_four[0] / 4, escapes_);
+        readers_[token_part(plane, true)].read(fours + first_four[0], places(0), escapes_);
+        dequantise(details[plane], base);
         means[plane] = times(mean(plane), base);
     }
     unsigned const shares = shares_[read_];

@@ -5,84 +5,94 @@
 namespace framelet {
 namespace {
 
-/// Two places side by side, and the means of four.
-using Pair [[gnu::vector_size(16)]] = std::uint16_t;
-using SignedPair [[gnu::vector_size(16)]] = std::int16_t;
+/// Four places side by side, and the means of eight.
+using Places [[gnu::vector_size(32)]] = std::uint16_t;
+using SignedPlaces [[gnu::vector_size(32)]] = std::int16_t;
 using Means [[gnu::vector_size(8)]] = std::uint16_t;
+using Words [[gnu::vector_size(32)]] = std::uint64_t; ///< a place each
 
-constexpr Pair every_second{0, 0xffff, 0, 0xffff, 0, 0xffff, 0, 0xffff};
-constexpr Pair upper_two{0, 0, 0xffff, 0xffff, 0, 0, 0xffff, 0xffff};
+constexpr std::size_t at_a_time = 4;
+
+Places one_place(std::int16_t const* four) {
+    std::uint64_t word;
+    std::memcpy(&word, four, sizeof word);
+    return reinterpret_cast<Places>(Words{word});
+}
 
 /// -x where the mask is set, x elsewhere.
-Pair negate(Pair x, Pair mask) {
+Places negate(Places const& x, Places const& mask) {
     return (x ^ mask) - mask;
 }
 
 /// [a+b+c+d, a-b+c-d, a+b-c-d, a-b-c+d] of each place; twice that gives four times what there was.
-Pair hadamard(Pair x) {
-    x = __builtin_shufflevector(x, x, 1, 0, 3, 2, 5, 4, 7, 6) + negate(x, every_second);
-    return __builtin_shufflevector(x, x, 2, 3, 0, 1, 6, 7, 4, 5) + negate(x, upper_two);
+Places hadamard(Places const& x) {
+    constexpr std::uint16_t all = 0xffff;
+    constexpr Places every_second{0, all, 0, all, 0, all, 0, all, 0, all, 0, all, 0, all, 0, all};
+    constexpr Places upper_two{0, 0, all, all, 0, 0, all, all, 0, 0, all, all, 0, 0, all, all};
+    Places const sums = __builtin_shufflevector(x, x, 1, 0, 3, 2, 5, 4, 7, 6, 9, 8, 11, 10, 13, 12, 15, 14) +
+                        negate(x, every_second);
+    return __builtin_shufflevector(sums, sums, 2, 3, 0, 1, 6, 7, 4, 5, 10, 11, 8, 9, 14, 15, 12, 13) +
+           negate(sums, upper_two);
 }
 
-Pair load(std::int16_t const* from) {
-    Pair x;
-    std::memcpy(&x, from, sizeof x);
-    return x;
+Places forward(Places const& children) {
+    Places const sums = hadamard(children) + 2;
+    return reinterpret_cast<Places>(reinterpret_cast<SignedPlaces>(sums) >> 2);
 }
 
-Pair forward(Pair children) {
-    Pair const sums = hadamard(children) + 2;
-    return reinterpret_cast<Pair>(reinterpret_cast<SignedPair>(sums) >> 2);
+Means means_of(Places const& places) {
+    return __builtin_shufflevector(places, places, 0, 4, 8, 12);
 }
 
-Pair inverse(Pair spread_means, Pair details) {
-    constexpr Pair not_mean{0, 0xffff, 0xffff, 0xffff, 0, 0xffff, 0xffff, 0xffff};
-    return hadamard(spread_means | (details & not_mean));
+/// `means` has four, one after the other.
+Places inverse(std::uint64_t means, Places const& details) {
+    constexpr std::uint16_t all = 0xffff;
+    constexpr Places not_mean{0, all, all, all, 0, all, all, all, 0, all, all, all, 0, all, all, all}, none{};
+    auto const everywhere = reinterpret_cast<Places>(means - Words{});
+    // Each half of the register has them all: what moves stays in its half.
+    Places const spread =
+        __builtin_shufflevector(everywhere, none, 0, 16, 16, 16, 1, 16, 16, 16, 10, 16, 16, 16, 11, 16, 16, 16);
+    return hadamard(spread | (details & not_mean));
 }
 
 } // namespace
 
 void haar_forward(std::int16_t* fours, std::int16_t* means, std::size_t places) {
-    for (; places >= 4; places -= 4) {
-        Pair const first = forward(load(fours));
-        Pair const second = forward(load(fours + 8));
-        std::memcpy(fours, &first, sizeof first);
-        std::memcpy(fours + 8, &second, sizeof second);
-        Means const mean = __builtin_shufflevector(first, second, 0, 4, 8, 12);
+    for (; places >= at_a_time; places -= at_a_time) {
+        Places children;
+        std::memcpy(&children, fours, sizeof children);
+        Places const out = forward(children);
+        Means const mean = means_of(out);
+        std::memcpy(fours, &out, sizeof out);
         std::memcpy(means, &mean, sizeof mean);
-        fours += 16;
-        means += 4;
+        fours += 4 * at_a_time;
+        means += at_a_time;
     }
     for (; places > 0; --places) {
-        Pair children{};
-        std::memcpy(&children, fours, 4 * sizeof *fours);
-        Pair const out = forward(children);
+        Places const out = forward(one_place(fours));
         std::memcpy(fours, &out, 4 * sizeof *fours);
         *means++ = *fours;
         fours += 4;
     }
 }
 
-void haar_inverse(std::int16_t const* means, std::int16_t* fours, std::size_t places) {
-    constexpr Means none{};
-    for (; places >= 4; places -= 4) {
-        Means mean;
-        std::memcpy(&mean, means, sizeof mean);
-        Pair const first = inverse(__builtin_shufflevector(mean, none, 0, 4, 4, 4, 1, 4, 4, 4), load(fours));
-        Pair const second = inverse(__builtin_shufflevector(mean, none, 2, 4, 4, 4, 3, 4, 4, 4), load(fours + 8));
-        std::memcpy(fours, &first, sizeof first);
-        std::memcpy(fours + 8, &second, sizeof second);
-        fours += 16;
-        means += 4;
+void haar_inverse(std::int16_t const* means, std::int16_t const* fours, std::size_t places, std::int16_t* out) {
+    for (; places >= at_a_time; places -= at_a_time) {
+        std::uint64_t four_means;
+        Places details;
+        std::memcpy(&four_means, means, sizeof four_means);
+        std::memcpy(&details, fours, sizeof details);
+        Places const children = inverse(four_means, details);
+        std::memcpy(out, &children, sizeof children);
+        fours += 4 * at_a_time;
+        out += 4 * at_a_time;
+        means += at_a_time;
     }
     for (; places > 0; --places) {
-        Pair details{}, mean{};
-        std::memcpy(&details, fours, 4 * sizeof *fours);
-        std::memcpy(&mean, means, sizeof *means);
-        Pair const children = inverse(mean, details);
-        std::memcpy(fours, &children, 4 * sizeof *fours);
+        Places const children = inverse(static_cast<std::uint16_t>(*means++), one_place(fours));
+        std::memcpy(out, &children, 4 * sizeof *fours);
         fours += 4;
-        ++means;
+        out += 4;
     }
 }
 

@@ -12,7 +12,7 @@ namespace framelet {
 void haar_forward(std::int16_t* fours, std::int16_t* means, std::size_t places);
 
 /// The other way: details h, v, d and the means m give m+h+v+d, m-h+v-d, m+h-v-d, m-h-v+d. The first of each four is
-/// not read.
-void haar_inverse(std::int16_t const* means, std::int16_t* fours, std::size_t places);
+/// not read. `out` may be `fours`.
+void haar_inverse(std::int16_t const* means, std::int16_t const* fours, std::size_t places, std::int16_t* out);
 
 } // namespace framelet

@@ -16,7 +16,7 @@ constexpr int values_per_pixel = 2;
 /// Two rows of two samples for each value.
 void fetch_doubled(std::uint8_t const* first, std::size_t stride, SamplePlane& samples) {
     std::array<std::uint8_t, framelet_samples / 4> values;
-    from_rows(first, stride, values.data(), values.size());
+    quarter_from_rows(first, stride, values.data());
     for (std::size_t k = 0; k < values.size(); ++k) {
         std::uint32_t const four = values[k] * 0x01010101u;
         std::memcpy(&samples[4 * k], &four, sizeof four);

@@ -20,28 +20,68 @@ using Samples [[gnu::vector_size(samples)]] = std::uint8_t;
 inline Samples transposed(Samples block) {
     return __builtin_shufflevector(block, block, 0, 1, 4, 5, 2, 3, 6, 7, 8, 9, 12, 13, 10, 11, 14, 15);
 }
-
-struct Place {
-    std::uint8_t x, y;
-};
-/// Of each block of a framelet, its upper left sample.
-constexpr auto make_places() {
-    std::array<Place, framelet_samples / samples> places{};
-    for (std::uint32_t block = 0; block < places.size(); ++block) {
-        places[block] = {static_cast<std::uint8_t>(side * morton_x(block)),
-                         static_cast<std::uint8_t>(side * morton_y(block))};
-    }
-    return places;
-}
-inline constexpr auto places = make_places();
 } // namespace morton_block
 
-/// `count` samples (16, 64 or 256) of a square whose rows are `stride` apart.
-inline void from_rows(std::uint8_t const* rows, std::size_t stride, std::uint8_t* out,
-                      std::size_t count = framelet_samples) {
+namespace morton_block {
+using Rows [[gnu::vector_size(samples)]] = std::uint32_t; ///< a row of a block in each lane
+
+/// Rows of four blocks side by side to rows of 16 samples; the same leads back.
+inline void transpose(std::array<Rows, side>& rows) {
+    auto const low = [](Rows const& a, Rows const& b) { return __builtin_shufflevector(a, b, 0, 4, 1, 5); };
+    auto const high = [](Rows const& a, Rows const& b) { return __builtin_shufflevector(a, b, 2, 6, 3, 7); };
+    Rows const ac_low = low(rows[0], rows[2]), ac_high = high(rows[0], rows[2]);
+    Rows const bd_low = low(rows[1], rows[3]), bd_high = high(rows[1], rows[3]);
+    rows = {low(ac_low, bd_low), high(ac_low, bd_low), low(ac_high, bd_high), high(ac_high, bd_high)};
+}
+
+/// Where the blocks of a row of blocks are in Morton order.
+inline std::array<std::size_t, side> blocks_of_row(std::size_t row) {
+    std::size_t const first = 8 * (row / 2) + 2 * (row % 2);
+    return {first, first + 1, first + 4, first + 5};
+}
+} // namespace morton_block
+
+/// The samples of a framelet whose rows are `stride` apart.
+inline void from_rows(std::uint8_t const* rows, std::size_t stride, std::uint8_t* out) {
     using namespace morton_block;
-    for (std::size_t block = 0; block < count / samples; ++block) {
-        std::uint8_t const* row = rows + places[block].y * stride + places[block].x;
+    for (std::size_t row = 0; row < side; ++row) {
+        std::array<Rows, side> four;
+        for (Rows& part : four) {
+            std::memcpy(&part, rows, sizeof part);
+            rows += stride;
+        }
+        transpose(four);
+        auto const blocks = blocks_of_row(row);
+        for (std::size_t i = 0; i < side; ++i) {
+            auto const values = transposed(reinterpret_cast<Samples const&>(four[i]));
+            std::memcpy(out + blocks[i] * samples, &values, sizeof values);
+        }
+    }
+}
+
+inline void to_rows(std::uint8_t const* in, std::uint8_t* rows, std::size_t stride) {
+    using namespace morton_block;
+    for (std::size_t row = 0; row < side; ++row) {
+        std::array<Rows, side> four;
+        auto const blocks = blocks_of_row(row);
+        for (std::size_t i = 0; i < side; ++i) {
+            Samples values;
+            std::memcpy(&values, in + blocks[i] * samples, sizeof values);
+            four[i] = reinterpret_cast<Rows>(transposed(values));
+        }
+        transpose(four);
+        for (Rows const& part : four) {
+            std::memcpy(rows, &part, sizeof part);
+            rows += stride;
+        }
+    }
+}
+
+/// The same for a quarter of a framelet, 8x8.
+inline void quarter_from_rows(std::uint8_t const* rows, std::size_t stride, std::uint8_t* out) {
+    using namespace morton_block;
+    for (std::size_t block = 0; block < 4; ++block) {
+        std::uint8_t const* row = rows + block / 2 * side * stride + block % 2 * side;
         std::array<std::uint32_t, side> four;
         for (std::uint32_t& part : four) {
             std::memcpy(&part, row, sizeof part);
@@ -54,16 +94,15 @@ inline void from_rows(std::uint8_t const* rows, std::size_t stride, std::uint8_t
     }
 }
 
-inline void to_rows(std::uint8_t const* in, std::uint8_t* rows, std::size_t stride,
-                    std::size_t count = framelet_samples) {
+inline void quarter_to_rows(std::uint8_t const* in, std::uint8_t* rows, std::size_t stride) {
     using namespace morton_block;
-    for (std::size_t block = 0; block < count / samples; ++block) {
+    for (std::size_t block = 0; block < 4; ++block) {
         Samples values;
         std::memcpy(&values, in + block * samples, sizeof values);
         values = transposed(values);
         std::array<std::uint32_t, side> four;
         std::memcpy(four.data(), &values, sizeof values);
-        std::uint8_t* row = rows + places[block].y * stride + places[block].x;
+        std::uint8_t* row = rows + block / 2 * side * stride + block % 2 * side;
         for (std::uint32_t const part : four) {
             std::memcpy(row, &part, sizeof part);
             row += stride;
@@ -83,7 +122,7 @@ inline void put_means(SamplePlane const& samples, std::uint8_t* to, std::size_t 
         std::memcpy(&four, &samples[4 * k], sizeof four);
         means[k] = mean_of_four(four & 255, four >> 8 & 255, four >> 16 & 255, four >> 24);
     }
-    to_rows(means.data(), to, stride, means.size());
+    quarter_to_rows(means.data(), to, stride);
 }
 
 } // namespace framelet

@@ -77,7 +77,7 @@ TEST(HaarTransform, KnownValues) {
     EXPECT_EQ(mean, 20);
     EXPECT_EQ(four, (std::array<std::int16_t, 4>{20, 6, 10, 4}));
     four[0] = 99; // not read
-    haar_inverse(&mean, four.data(), 1);
+    haar_inverse(&mean, four.data(), 1, four.data());
     EXPECT_EQ(four, (std::array<std::int16_t, 4>{40, 20, 12, 8}));
 }
 
@@ -95,9 +95,9 @@ TEST(HaarTransform, AllNumbersOfPlacesAreAlike) {
     }
     EXPECT_EQ(values, single);
     EXPECT_EQ(means, single_means);
-    haar_inverse(means.data(), values.data(), 7);
+    haar_inverse(means.data(), values.data(), 7, values.data());
     for (std::size_t i = 0; i < 7; ++i) {
-        haar_inverse(&means[i], &single[4 * i], 1);
+        haar_inverse(&means[i], &single[4 * i], 1, &single[4 * i]);
     }
     EXPECT_EQ(values, single);
 }
