@@ -109,7 +109,9 @@ constexpr auto make_meanings() {
         bool const is_alone = zeros == zeros_alone;
         int const size = static_cast<int>((code + 1) / 2);
         meanings[token] = {static_cast<std::int32_t>(is_alone ? zeros << code : zeros),
-                           static_cast<std::int16_t>(is_alone ? 0 : code % 2 == 0 ? size : -size)};
+                           static_cast<std::int16_t>(is_alone        ? 0
+                                                     : code % 2 == 0 ? size
+                                                                     : -size)};
     }
     return meanings;
 }

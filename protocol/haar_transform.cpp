@@ -29,8 +29,8 @@ Places hadamard(Places const& x) {
     constexpr std::uint16_t all = 0xffff;
     constexpr Places every_second{0, all, 0, all, 0, all, 0, all, 0, all, 0, all, 0, all, 0, all};
     constexpr Places upper_two{0, 0, all, all, 0, 0, all, all, 0, 0, all, all, 0, 0, all, all};
-    Places const sums = __builtin_shufflevector(x, x, 1, 0, 3, 2, 5, 4, 7, 6, 9, 8, 11, 10, 13, 12, 15, 14) +
-                        negate(x, every_second);
+    Places const sums =
+        __builtin_shufflevector(x, x, 1, 0, 3, 2, 5, 4, 7, 6, 9, 8, 11, 10, 13, 12, 15, 14) + negate(x, every_second);
     return __builtin_shufflevector(sums, sums, 2, 3, 0, 1, 6, 7, 4, 5, 10, 11, 8, 9, 14, 15, 12, 13) +
            negate(sums, upper_two);
 }

@@ -91,8 +91,9 @@ void look_up(PointGrids const& points, HeldPicture::Place const& from, int level
     int const twice = from.pitch() < 0 ? 1 : 0, pitch = std::max(from.pitch(), 0);
     PointRows reader(points, from.left, pitch, level, twice);
     for (int y = 0; y < framelet_side; ++y) {
+        auto const row = reader.at(from.top + (y << pitch >> twice));
         for (std::size_t plane = 0; plane < rows.size(); ++plane) {
-            put_row(reader.at(plane, from.top + (y << pitch >> twice)), rows[plane], y);
+            put_row(row[plane], rows[plane], y);
         }
     }
 }
@@ -108,9 +109,10 @@ void look_up_means(PointGrids const& points, HeldPicture::Place const& from, int
         int const y = from.top + before_centre + (row << pitch);
         std::array<Sums, PointGrids::planes> sums{};
         for (int below = 0; below < 2; ++below) {
+            auto const lefts = left.at(y + below), rights = right.at(y + below);
             for (std::size_t plane = 0; plane < sums.size(); ++plane) {
-                sums[plane] += __builtin_convertvector(left.at(plane, y + below), Sums) +
-                               __builtin_convertvector(right.at(plane, y + below), Sums);
+                sums[plane] +=
+                    __builtin_convertvector(lefts[plane], Sums) + __builtin_convertvector(rights[plane], Sums);
             }
         }
         for (std::size_t plane = 0; plane < sums.size(); ++plane) {

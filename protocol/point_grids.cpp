@@ -85,7 +85,7 @@ int PointGrids::level_in(int left, int top, int side) const {
 
 void PointRows::find_levels(int y) {
     cell_row_ = y >> PointGrids::cell_bits;
-    levels_ = point_rows::row_of(grids_.cells(y), x_, pitch_, PointGrids::cell_bits + twice_);
+    levels_ = point_rows::rows_of<1>({grids_.cells(y)}, x_, pitch_, PointGrids::cell_bits + twice_)[0];
     there_ = 0;
     for (int i = 0; i < framelet_side; ++i) {
         there_ |= 1u << levels_[i];
@@ -93,12 +93,15 @@ void PointRows::find_levels(int y) {
     level_ = std::has_single_bit(there_) ? std::countr_zero(there_) : PointGrids::mixed_levels;
 }
 
-PointRow PointRows::mixed(std::size_t plane, int y) const {
-    PointRow out{};
+PointRows::Rows PointRows::mixed(int y) const {
+    Rows out{};
     for (unsigned left = there_; left != 0; left &= left - 1) {
         int const level = std::countr_zero(left);
         auto const is_it = levels_ == static_cast<std::uint8_t>(level);
-        out = is_it ? of_level(plane, level, y) : out;
+        Rows const rows = of_level(level, y);
+        for (std::size_t plane = 0; plane < out.size(); ++plane) {
+            out[plane] = is_it ? rows[plane] : out[plane];
+        }
     }
     return out;
 }

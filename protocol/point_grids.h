@@ -60,33 +60,44 @@ PointRow repeated(std::uint8_t const* from, std::size_t skip) {
     return load(bytes.data() + skip);
 }
 
-/// Values (first + i 2^pitch) / 2^level of a row, i = 0..15.
-inline PointRow row_of(std::uint8_t const* row, int first, int pitch, int level) {
-    std::uint8_t const* const from = row + (first >> level);
+/// Values (first + i 2^pitch) / 2^level of rows alike, i = 0..15.
+template <std::size_t count>
+std::array<PointRow, count> rows_of(std::array<std::uint8_t const*, count> const& rows, int first, int pitch,
+                                    int level) {
+    int const begin = first >> level;
+    auto const each = [&](auto const& read) {
+        std::array<PointRow, count> out;
+        for (std::size_t i = 0; i < count; ++i) {
+            out[i] = read(rows[i] + begin);
+        }
+        return out;
+    };
     auto const skip = static_cast<std::size_t>((first >> pitch) & ((1 << std::max(level - pitch, 0)) - 1));
     switch (pitch - level) {
     case 0:
-        return load(from);
+        return each(load);
     case 1:
-        return every<std::uint16_t>(from);
+        return each(every<std::uint16_t>);
     case 2:
-        return every<std::uint32_t>(from);
+        return each(every<std::uint32_t>);
     case 3:
-        return every<std::uint64_t>(from);
-    case -1:
-        return repeated<std::uint16_t>(from, skip);
-    case -2:
-        return repeated<std::uint32_t>(from, skip);
-    case -3:
-        return repeated<std::uint64_t>(from, skip);
+        return each(every<std::uint64_t>);
     case 4:
-        return every_16th(from);
+        return each(every_16th);
+    case -1:
+        return each([skip](std::uint8_t const* from) { return repeated<std::uint16_t>(from, skip); });
+    case -2:
+        return each([skip](std::uint8_t const* from) { return repeated<std::uint32_t>(from, skip); });
+    case -3:
+        return each([skip](std::uint8_t const* from) { return repeated<std::uint64_t>(from, skip); });
     default:
-        PointRow out;
-        for (int i = 0; i < framelet_side; ++i) {
-            out[i] = row[(first + (i << pitch)) >> level];
-        }
-        return out;
+        return each([&](std::uint8_t const* from) {
+            PointRow out;
+            for (int i = 0; i < framelet_side; ++i) {
+                out[i] = from[((first + (i << pitch)) >> level) - begin];
+            }
+            return out;
+        });
     }
 }
 
@@ -118,6 +129,10 @@ public:
     }
     std::uint8_t const* value(std::size_t plane, int level, int x, int y) const {
         return bytes(planes_[plane]) + at(level, x, y);
+    }
+    std::array<std::uint8_t const*, planes> values(int level, int x, int y) const {
+        std::size_t const to = at(level, x, y);
+        return {bytes(planes_[0]) + to, bytes(planes_[1]) + to, bytes(planes_[2]) + to};
     }
     std::size_t stride(int level) const { return static_cast<std::size_t>(width_ >> level); }
 
@@ -153,28 +168,29 @@ private:
     Lines cells_; ///< level that counts
 };
 
-/// Reads 16 points of a row, 2^pitch apart from each other, x being that of the first. All of them are in the plane;
-/// rows are best asked for in order. `level`: that which counts wherever rows will be asked for, or `mixed_levels`.
-/// With `twice` 1 and pitch 0, eight points, each twice.
+/// Reads 16 points of a row of each plane, 2^pitch apart from each other, x being that of the first. All of them are in
+/// the plane; rows are best asked for in order. `level`: that which counts wherever rows will be asked for, or
+/// `mixed_levels`. With `twice` 1 and pitch 0, eight points, each twice.
 class PointRows {
 public:
     PointRows(PointGrids const& grids, int x, int pitch, int level, int twice)
         : grids_(grids), x_(x << twice), pitch_(pitch), twice_(twice), level_(level),
           is_mixed_(level == PointGrids::mixed_levels) {}
 
-    PointRow at(std::size_t plane, int y) {
+    using Rows = std::array<PointRow, PointGrids::planes>;
+    Rows at(int y) {
         if (is_mixed_ && y >> PointGrids::cell_bits != cell_row_) {
             find_levels(y);
         }
-        return level_ != PointGrids::mixed_levels ? of_level(plane, level_, y) : mixed(plane, y);
+        return level_ != PointGrids::mixed_levels ? of_level(level_, y) : mixed(y);
     }
 
 private:
-    PointRow of_level(std::size_t plane, int level, int y) const {
-        return point_rows::row_of(grids_.value(plane, level, 0, y), x_, pitch_, level + twice_);
+    Rows of_level(int level, int y) const {
+        return point_rows::rows_of(grids_.values(level, 0, y), x_, pitch_, level + twice_);
     }
     void find_levels(int y);
-    PointRow mixed(std::size_t plane, int y) const;
+    Rows mixed(int y) const;
 
     PointGrids const& grids_;
     int x_, pitch_, twice_;

@@ -77,7 +77,7 @@ void SearchPicture::copy(PointGrids const& grids, std::size_t plane) {
     for (int x = 0; x < width_; x += framelet_side) {
         PointRows rows(grids, x, 0, PointGrids::mixed_levels, 0);
         for (int y = 0; y < grids.height(); ++y) {
-            PointRow const row = rows.at(plane, y);
+            PointRow const row = rows.at(y)[plane];
             std::memcpy(values() + at(x, y), &row, sizeof row);
         }
     }

@@ -59,7 +59,8 @@ public:
             for (++at; at < row_end && !follows_above(at); ++at) {
                 (*this)[at] = (*this)[at - 1];
             }
-            std::copy(begin() + at + above, begin() + row_end + above, begin() + at);
+            // A whole row at once, whatever is left of this one: what comes behind is written later.
+            std::memcpy(begin() + at, begin() + at + above, framelet_side);
             at = row_end;
         }
     }
@@ -74,7 +75,7 @@ private:
     static constexpr std::size_t margin = 2 * framelet_side;
     static constexpr std::ptrdiff_t above = -framelet_side;
     static constexpr std::uint8_t no_kind = 255;
-    std::array<std::uint8_t, margin + framelet_samples> kinds_;
+    std::array<std::uint8_t, margin + framelet_samples + framelet_side> kinds_; ///< and a row behind them
 };
 
 /// How far the kinds that come otherwise are from what is expected goes to `turns`, unless there are but two.
