@@ -5,34 +5,31 @@
 #include <cstring>
 #include <limits>
 
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
+
 #include "protocol/morton_rows.h"
 
 namespace framelet {
 namespace {
 
 /// First steps of the search, half pixels, and those from which on all rows are looked at, not every second one.
-constexpr int first_step = 32, exact_step = 1;
-/// Where a vector that was found before leaves no more than this of a framelet, 2 of a sample, the search begins near
+constexpr int first_step = 16, exact_step = 1;
+/// Where a vector that was found before leaves no more than this of a framelet, 8 of a sample, the search begins near
 /// it.
-constexpr int hardly_any = 512, near_step = 4;
+constexpr int hardly_any = 2048, near_step = 4;
 constexpr int farthest = 127;
 /// What a vector must gain for each half pixel that it is longer: of two that are as good, the shorter one.
 constexpr int length_cost = 4;
 
 /// A row of samples.
-using Row [[gnu::vector_size(2 * framelet_side)]] = std::uint16_t;
+using Row [[gnu::vector_size(framelet_side)]] = std::uint8_t;
 using Rows = std::array<Row, framelet_side>;
 
-Rows rows_of(std::array<std::uint8_t, framelet_samples> const& samples) {
-    using Narrow [[gnu::vector_size(framelet_side)]] = std::uint8_t;
-    SamplePlane bytes;
-    to_rows(samples.data(), bytes.data(), framelet_side);
+Rows rows_of(SamplePlane const& samples) {
     Rows rows;
-    for (std::size_t y = 0; y < framelet_side; ++y) {
-        Narrow row;
-        std::memcpy(&row, &bytes[y * framelet_side], sizeof row);
-        rows[y] = __builtin_convertvector(row, Row);
-    }
+    to_rows(samples.data(), reinterpret_cast<std::uint8_t*>(rows.data()), framelet_side);
     return rows;
 }
 
@@ -43,16 +40,14 @@ Row row_at(std::uint8_t const* held) {
     using Lanes [[gnu::vector_size(framelet_side * pitch)]] = Lane;
     Lanes values;
     std::memcpy(&values, held, sizeof values);
-    return __builtin_convertvector(values >> (8 * (pitch / 2)) & 255, Row);
+    return __builtin_convertvector(values >> (8 * (pitch / 2)), Row);
 }
 
 Row doubled_row_at(std::uint8_t const* held) {
     using Half [[gnu::vector_size(framelet_side / 2)]] = std::uint8_t;
-    using Narrow [[gnu::vector_size(framelet_side)]] = std::uint8_t;
     Half half;
     std::memcpy(&half, held, sizeof half);
-    Narrow const row = __builtin_shufflevector(half, half, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7);
-    return __builtin_convertvector(row, Row);
+    return __builtin_shufflevector(half, half, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7);
 }
 
 Row coarsest_row_at(std::uint8_t const* held) {
@@ -64,12 +59,20 @@ Row coarsest_row_at(std::uint8_t const* held) {
     return row;
 }
 
-int sum_of(Row const& row) {
-    int sum = 0;
+using Sums [[gnu::vector_size(framelet_side)]] = std::uint64_t;
+
+/// Sums of the differences in each half of a row.
+Sums differences(Row const& a, Row const& b) {
+#ifdef __SSE2__
+    return reinterpret_cast<Sums>(_mm_sad_epu8(reinterpret_cast<__m128i>(a), reinterpret_cast<__m128i>(b)));
+#else
+    Row const apart = a > b ? a - b : b - a;
+    Sums sums{};
     for (std::size_t x = 0; x < framelet_side; ++x) {
-        sum += row[x];
+        sums[x / 8] += apart[x];
     }
-    return sum;
+    return sums;
+#endif
 }
 
 /// Sum of differences of rows `apart` from each other, or any number above `most` where it is above that.
@@ -81,12 +84,11 @@ int difference(Rows const& rows, SearchPicture::Source const& from, std::size_t 
     std::uint8_t const* const first = from.first + twice_pitch / 4 * from.stride;
     int sum = 0;
     for (std::size_t y = 0; y < framelet_side && sum <= most;) {
-        Row sums{};
+        Sums sums{};
         for (std::size_t i = 0; i < rows_at_a_time; ++i, y += apart) {
-            Row const held = row_at(first + y * twice_pitch / 2 * from.stride);
-            sums += rows[y] > held ? rows[y] - held : held - rows[y];
+            sums += differences(rows[y], row_at(first + y * twice_pitch / 2 * from.stride));
         }
-        sum += sum_of(sums);
+        sum += static_cast<int>(sums[0] + sums[1]);
     }
     return sum;
 }
