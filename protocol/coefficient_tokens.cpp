@@ -64,7 +64,18 @@ std::uint8_t* TokenWriter::put(std::int16_t level, std::uint8_t* escapes) {
 }
 
 std::uint8_t* TokenWriter::write(std::int16_t const* fours, std::size_t places, std::uint8_t* escapes) {
+    using Four [[gnu::vector_size(4 * sizeof(std::uint64_t))]] = std::uint64_t;
+    constexpr std::size_t at_a_time = 4;
     for (std::size_t place = 0; place < places; ++place) {
+        if (place % at_a_time == 0 && place + at_a_time <= places) {
+            Four four;
+            std::memcpy(&four, fours + 4 * place, sizeof four);
+            if ((four[0] | four[1] | four[2] | four[3]) == 0) {
+                run_ += 3 * at_a_time;
+                place += at_a_time - 1;
+                continue;
+            }
+        }
         std::uint64_t word;
         std::memcpy(&word, fours + 4 * place, sizeof word);
         if (word == 0) {

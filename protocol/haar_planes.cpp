@@ -134,27 +134,25 @@ int bits_of(std::int16_t const* levels, std::size_t count) {
 
 } // namespace
 
-HaarValues analyse(DisplayValues const& values) {
-    HaarValues haar;
-    for (std::size_t plane = 0; plane < 3; ++plane) {
-        Fours& fours = haar.details[plane];
+int code(DisplayValues const& values, std::uint8_t quality, int most, HaarCode& out) {
+    int bits = 0;
+    for (std::size_t plane = 0; plane < 3 && bits <= most; ++plane) {
+        Fours& fours = out.values[plane];
         std::copy(values.planes[plane].begin(), values.planes[plane].end(), fours.begin() + first_four[0]);
+        std::int16_t mean = 0;
         for (std::size_t octave = 0; octave < octaves; ++octave) {
-            std::int16_t* const means = octave + 1 < octaves ? &fours[first_four[octave + 1]] : &haar.means[plane];
+            std::int16_t* const means = octave + 1 < octaves ? &fours[first_four[octave + 1]] : &mean;
             haar_forward(&fours[first_four[octave]], means, places(octave));
         }
-    }
-    return haar;
-}
-
-HaarLevels quantise(HaarValues const& values, std::uint8_t quality) {
-    HaarLevels levels{values.details, {}, {}};
-    for (std::size_t plane = 0; plane < 3; ++plane) {
         std::uint16_t const base = base_step(plane, quality);
-        quantise(levels.details[plane], base);
-        levels.means[plane] = quantised_mean(values.means[plane], base);
+        Fours& levels = out.levels.details[plane];
+        levels = fours;
+        quantise(levels, base);
+        out.levels.means[plane] = quantised_mean(mean, base);
+        bits += bits_of(levels.data(), levels.size()) + bits_of(&out.levels.means[plane], 1);
     }
-    return levels;
+    out.levels.shares = {};
+    return bits;
 }
 
 namespace {
@@ -180,17 +178,18 @@ int fitted_share(Fours const& luma, Fours const& chroma) {
 
 } // namespace
 
-void share_luma(HaarValues const& values, std::uint8_t quality, HaarLevels& levels) {
+void share_luma(std::uint8_t quality, HaarCode& code) {
+    HaarLevels& levels = code.levels;
     Fours luma = levels.details[0];
     dequantise(luma, base_step(0, quality));
     for (std::size_t chroma = 0; chroma < levels.shares.size(); ++chroma) {
         std::size_t const plane = 1 + chroma;
         int const bits = bits_of(levels.details[plane].data(), levels.details[plane].size());
-        auto const share = static_cast<std::int8_t>(bits > 0 ? fitted_share(luma, values.details[plane]) : 0);
+        auto const share = static_cast<std::int8_t>(bits > 0 ? fitted_share(luma, code.values[plane]) : 0);
         if (share == 0) {
             continue;
         }
-        Fours tried = values.details[plane];
+        Fours tried = code.values[plane];
         for (std::size_t i = 0; i < tried.size(); ++i) {
             tried[i] = static_cast<std::int16_t>(tried[i] - shared(luma[i], share));
         }
@@ -211,14 +210,6 @@ DisplayValues dequantise(HaarLevels const& levels, std::uint8_t quality) {
         means[plane] = times(levels.means[plane], base);
     }
     return synthesise(details, means, levels.shares);
-}
-
-int expected_bits(HaarLevels const& levels) {
-    int bits = bits_of(levels.means.data(), levels.means.size());
-    for (auto const& details : levels.details) {
-        bits += bits_of(details.data(), details.size());
-    }
-    return bits;
 }
 
 namespace {

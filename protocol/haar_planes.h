@@ -23,28 +23,27 @@ inline constexpr std::size_t fine_details = 3 * 64;
 /// Of one plane, its octaves from the coarsest, each [mean, h, v, d] a place.
 using Fours = std::array<std::int16_t, 4 * (64 + 16 + 4 + 1)>;
 
-/// Details of a framelet's three planes and the planes' means, sixteenths.
-struct HaarValues {
-    std::array<Fours, 3> details;
-    std::array<std::int16_t, 3> means;
-};
-/// The same, quantised; 0 instead of the means of places.
+/// Details of a framelet's three planes and the planes' means, quantised; 0 instead of the means of places.
 struct HaarLevels {
     std::array<Fours, 3> details;
     std::array<std::int16_t, 3> means;
     /// Eighths of luma's details that those of Co and of Cg have besides, -8..7.
-    std::array<std::int8_t, 2> shares{};
+    std::array<std::int8_t, 2> shares;
 };
 
-HaarValues analyse(DisplayValues const& values);
-/// `quality` is 1..coarsest_quality.
-HaarLevels quantise(HaarValues const& values, std::uint8_t quality);
+/// A way of coding a framelet, and the details that it was made of, sixteenths.
+struct HaarCode {
+    std::array<Fours, 3> values;
+    HaarLevels levels;
+};
+
+/// Returns the bits that the levels will take, roughly: what ways of coding a framelet are compared by. Above `most` it
+/// gives up, and the levels are not to be used. `quality` is 1..coarsest_quality.
+int code(DisplayValues const& values, std::uint8_t quality, int most, HaarCode& out);
 /// Quantises chroma again, beside a share of luma, where that takes less.
-void share_luma(HaarValues const& values, std::uint8_t quality, HaarLevels& levels);
+void share_luma(std::uint8_t quality, HaarCode& code);
 /// What a reader makes of the levels.
 DisplayValues dequantise(HaarLevels const& levels, std::uint8_t quality);
-/// Bits that levels will take, roughly: what two ways of coding a framelet are compared by.
-int expected_bits(HaarLevels const& levels);
 
 /// Token parts: luma and chroma of the coarser octaves, of the finest.
 inline constexpr std::size_t token_parts = 4;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "common/error.h"
 
@@ -114,10 +115,10 @@ PlaneParts PlaneCodec::encode(std::span<DisplayFramelet const> framelets, std::s
                 decoded[i] = framelets[i];
             }
         } else if (held == nullptr) {
-            HaarValues const values = analyse(display_values(framelets[i]));
-            HaarLevels levels = quantise(values, quality[i]);
-            share_luma(values, quality[i], levels);
-            haar.write(levels);
+            HaarCode alone;
+            code(display_values(framelets[i]), quality[i], std::numeric_limits<int>::max(), alone);
+            share_luma(quality[i], alone);
+            haar.write(alone.levels);
         } else {
             expect_next(*held, framelets, i);
             HaarLevels const levels = predict(*held, framelets[i], quality[i], search_, prediction_);

@@ -62,8 +62,8 @@ PointRow repeated(std::uint8_t const* from, std::size_t skip) {
 
 /// Values (first + i 2^pitch) / 2^level of rows alike, i = 0..15.
 template <std::size_t count>
-[[gnu::always_inline]] inline std::array<PointRow, count> rows_of(std::array<std::uint8_t const*, count> const& rows, int first, int pitch,
-                                    int level) {
+[[gnu::always_inline]] inline std::array<PointRow, count> rows_of(std::array<std::uint8_t const*, count> const& rows,
+                                                                  int first, int pitch, int level) {
     int const begin = first >> level;
     auto const each = [&](auto const& read) {
         std::array<PointRow, count> out;

@@ -1,5 +1,7 @@
 #include "protocol/prediction.h"
 
+#include <limits>
+
 namespace framelet {
 namespace {
 
@@ -11,44 +13,39 @@ constexpr int few_bits = 70;
 /// A way of coding a framelet.
 struct Way {
     Prediction prediction;
-    HaarValues left;
-    HaarLevels levels; ///< of what is left
-    int bits = 0; ///< expected
+    HaarCode code; ///< of what is left
+    int bits = 0; ///< expected; at least so many
 };
-
-void code(DisplayValues const& left, std::uint8_t quality, int bits_beside, Way& way) {
-    way.left = analyse(left);
-    way.levels = quantise(way.left, quality);
-    way.bits = expected_bits(way.levels) + bits_beside;
-}
 
 } // namespace
 
 HaarLevels predict(HeldPicture const& held, DisplayFramelet const& framelet, std::uint8_t quality, VectorSearch& search,
                    Prediction& prediction) {
     DisplayValues const values = display_values(framelet);
-    auto const code_at = [&](PictureVector vector, int bits_beside, Way& way) {
+    auto const code_at = [&](PictureVector vector, int bits_beside, int most, Way& way) {
         way.prediction.vector = vector;
         held.predict(framelet.tile, vector, way.prediction.samples);
-        code(values - display_values(way.prediction.samples), quality, bits_beside, way);
+        DisplayValues const left = values - display_values(way.prediction.samples);
+        way.bits = code(left, quality, most - bits_beside, way.code) + bits_beside;
     };
+    constexpr int any = std::numeric_limits<int>::max();
     Way at_place, alone, moved;
     at_place.prediction.kind = PredictionKind::same_place;
-    code_at({}, bits_of_kind, at_place);
+    code_at({}, bits_of_kind, any, at_place);
     Way* best = &at_place;
     if (best->bits > few_bits) {
-        code(values, quality, 0, alone);
+        alone.bits = code(values, quality, best->bits, alone.code);
         best = alone.bits <= best->bits ? &alone : best;
         PictureVector const vector = search.find(held, framelet);
         if (best->bits > few_bits && vector != PictureVector{}) {
             moved.prediction.kind = PredictionKind::moved;
-            code_at(vector, bits_of_kind + bits_of_vector, moved);
+            code_at(vector, bits_of_kind + bits_of_vector, best->bits, moved);
             best = moved.bits < best->bits ? &moved : best;
         }
-        share_luma(best->left, quality, best->levels);
+        share_luma(quality, best->code);
     }
     prediction = best->prediction;
-    return best->levels;
+    return best->code.levels;
 }
 
 } // namespace framelet
