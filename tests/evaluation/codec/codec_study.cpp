@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
-#include <limits>
 
 #include <nlohmann/json.hpp>
 #include <tbb/global_control.h>
@@ -26,15 +25,7 @@ struct Coded {
     Batch decoded;
     std::size_t bytes = 0; ///< of colour
     std::size_t shape_bytes = 0;
-    double encode_seconds = std::numeric_limits<double>::infinity();
-    double decode_seconds = std::numeric_limits<double>::infinity();
-};
-
-struct Candidate {
-    std::string name;
-    std::vector<int> qualities;
-    std::function<Coded(Batch const&, int quality, int rounds)> code;
-    std::function<void()> begin = nullptr; ///< before each moment, where earlier batches count
+    double encode_seconds = 0, decode_seconds = 0;
 };
 
 /// What both sides of the predicting codec hold.
@@ -42,34 +33,31 @@ struct Held {
     HeldPicture sent, received;
 };
 
-/// `held`: null where each batch is coded alone; else it holds this one afterwards.
-Coded code_planes(BatchCodec& codec, Held* held, Batch batch, int quality, int rounds) {
+struct Candidate {
+    std::string name;
+    std::vector<int> qualities;
+    std::function<Coded(Batch const&, int quality)> code;
+    Held* held = nullptr; ///< where what batches before it left counts
+};
+
+/// `held`: null where each batch is coded alone.
+Coded code_planes(BatchCodec& codec, Held* held, Batch batch, int quality) {
     if (quality != exact_quality) {
         batch.quality.assign(batch.framelets.size(), static_cast<std::uint8_t>(quality));
     }
     Coded coded;
     EncodedBatch encoded;
-    Held after;
-    HeldPicture* const sent = held == nullptr ? nullptr : &after.sent;
-    HeldPicture* const received = held == nullptr ? nullptr : &after.received;
-    for (int round = 0; round < rounds; ++round) {
-        after = held == nullptr ? Held{} : *held;
-        coded.encode_seconds =
-            std::min(coded.encode_seconds, processor_seconds_of([&] { encoded = codec.encode(batch, sent); }));
-        coded.decode_seconds = std::min(coded.decode_seconds,
-                                        processor_seconds_of([&] { coded.decoded = codec.decode(encoded, received); }));
-    }
-    if (held != nullptr) {
-        FRAMELET_CHECK(after.sent == after.received);
-        *held = std::move(after);
-    }
+    coded.encode_seconds =
+        processor_seconds_of([&] { encoded = codec.encode(batch, held == nullptr ? nullptr : &held->sent); });
+    coded.decode_seconds = processor_seconds_of(
+        [&] { coded.decoded = codec.decode(encoded, held == nullptr ? nullptr : &held->received); });
     coded.bytes = encoded.payload.size();
     coded.shape_bytes = encoded.shapes.size();
     return coded;
 }
 
 /// One picture of 16 pixels' width, the framelets below each other.
-Coded code_strip(JpegCodec& codec, Batch const& batch, int quality, int rounds) {
+Coded code_strip(JpegCodec& codec, Batch const& batch, int quality) {
     Picture strip(framelet_side, framelet_side * static_cast<int>(batch.framelets.size()));
     std::size_t pixel = 0;
     auto const for_each_pixel = [&pixel](auto& framelets, auto const& body) {
@@ -87,14 +75,10 @@ Coded code_strip(JpegCodec& codec, Batch const& batch, int quality, int rounds) 
     });
     Coded coded{batch};
     Picture decoded;
-    for (int round = 0; round < rounds; ++round) {
-        std::span<std::byte const> bytes;
-        coded.encode_seconds =
-            std::min(coded.encode_seconds, processor_seconds_of([&] { bytes = codec.encode(strip, quality); }));
-        coded.decode_seconds =
-            std::min(coded.decode_seconds, processor_seconds_of([&] { codec.decode(bytes, decoded); }));
-        coded.bytes = bytes.size();
-    }
+    std::span<std::byte const> bytes;
+    coded.encode_seconds = processor_seconds_of([&] { bytes = codec.encode(strip, quality); });
+    coded.decode_seconds = processor_seconds_of([&] { codec.decode(bytes, decoded); });
+    coded.bytes = bytes.size();
     for_each_pixel(coded.decoded.framelets, [&](DisplayFramelet& framelet, std::uint32_t k) {
         framelet.red[k] = decoded.rgba[pixel];
         framelet.green[k] = decoded.rgba[pixel + 1];
@@ -142,27 +126,51 @@ Picture picture_of(CorpusMoment const& moment, std::vector<Batch> const& batches
     return picture;
 }
 
+/// A moment's batches one after the other, as a session codes them, so many times: of each the shortest times.
+std::vector<Coded> code(CorpusMoment const& moment, Candidate const& candidate, int quality, int rounds) {
+    Held after_lead;
+    if (candidate.held != nullptr) {
+        *candidate.held = {};
+        for (Batch const& batch : moment.lead) {
+            candidate.code(batch, quality);
+        }
+        after_lead = *candidate.held;
+    }
+    std::vector<Coded> best;
+    for (int round = 0; round < rounds; ++round) {
+        if (candidate.held != nullptr) {
+            *candidate.held = after_lead;
+        }
+        for (std::size_t i = 0; i < moment.batches.size(); ++i) {
+            Coded coded = candidate.code(moment.batches[i], quality);
+            if (round == 0) {
+                best.push_back(std::move(coded));
+            } else {
+                best[i].encode_seconds = std::min(best[i].encode_seconds, coded.encode_seconds);
+                best[i].decode_seconds = std::min(best[i].decode_seconds, coded.decode_seconds);
+            }
+        }
+        FRAMELET_CHECK(candidate.held == nullptr || candidate.held->sent == candidate.held->received);
+    }
+    return best;
+}
+
 json measure(std::vector<CorpusMoment> const& corpus, Candidate const& candidate, int quality,
              CodecStudy const& study) {
     Error samples, pictures;
     double count = 0, bytes = 0, shape_bytes = 0, encode = 0, decode = 0;
     for (CorpusMoment const& moment : corpus) {
-        if (candidate.begin) {
-            candidate.begin();
-            for (Batch const& batch : moment.lead) {
-                candidate.code(batch, quality, 1);
-            }
-        }
+        std::vector<Coded> coded = code(moment, candidate, quality, study.rounds);
         std::vector<Batch> decoded;
-        for (Batch const& batch : moment.batches) {
-            Coded coded = candidate.code(batch, quality, study.rounds);
-            compare(batch.framelets, coded.decoded.framelets, samples);
+        for (std::size_t i = 0; i < coded.size(); ++i) {
+            Batch const& batch = moment.batches[i];
+            compare(batch.framelets, coded[i].decoded.framelets, samples);
             count += static_cast<double>(batch.framelets.size() * framelet_samples);
-            bytes += static_cast<double>(coded.bytes);
-            shape_bytes += static_cast<double>(coded.shape_bytes);
-            encode += coded.encode_seconds;
-            decode += coded.decode_seconds;
-            decoded.push_back(std::move(coded.decoded));
+            bytes += static_cast<double>(coded[i].bytes);
+            shape_bytes += static_cast<double>(coded[i].shape_bytes);
+            encode += coded[i].encode_seconds;
+            decode += coded[i].decode_seconds;
+            decoded.push_back(std::move(coded[i].decoded));
         }
         Picture const exact = picture_of(moment, moment.batches, study.corpus.viewport);
         Picture const shown = picture_of(moment, decoded, study.corpus.viewport);
@@ -212,8 +220,7 @@ json compare_codecs(CodecStudy const& study) {
     Held held;
     std::vector<Candidate> const candidates{
         {"planes", {exact_quality}, [&](auto const&... told) { return code_planes(planes, nullptr, told...); }},
-        {"predicted", steps, [&](auto const&... told) { return code_planes(planes, &held, told...); },
-         [&] { held = {}; }},
+        {"predicted", steps, [&](auto const&... told) { return code_planes(planes, &held, told...); }, &held},
         {"haar", steps, [&](auto const&... told) { return code_planes(planes, nullptr, told...); }},
         {"jpeg", {95, 93, 90, 85, 80, 70, 60, 50, 40}, [&](auto const&... told) { return code_strip(jpeg, told...); }},
     };
