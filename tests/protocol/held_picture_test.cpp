@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <random>
 
 #include <gtest/gtest.h>
 
+#include "protocol/morton_rows.h"
 #include "protocol/vector_search.h"
 
 namespace framelet {
@@ -30,6 +32,28 @@ DisplayFramelet framelet_of(Tile tile, Value const& value) {
         framelet.blue[k] = static_cast<std::uint8_t>(255 - v);
     }
     return framelet;
+}
+
+TEST(MortonRows, EachSampleIsAtItsPlace) {
+    constexpr std::size_t stride = framelet_side + 5;
+    SamplePlane samples, back{};
+    std::iota(samples.begin(), samples.end(), std::uint8_t{0});
+    std::array<std::uint8_t, framelet_side * stride> rows{};
+    to_rows(samples.data(), rows.data(), stride);
+    from_rows(rows.data(), stride, back.data());
+    EXPECT_EQ(back, samples);
+    for (std::uint32_t k = 0; k < framelet_samples; ++k) {
+        EXPECT_EQ(rows[morton_y(k) * stride + morton_x(k)], k);
+    }
+    rows.fill(0);
+    back.fill(0);
+    quarter_to_rows(samples.data(), rows.data(), stride);
+    quarter_from_rows(rows.data(), stride, back.data());
+    for (std::uint32_t k = 0; k < framelet_samples; ++k) {
+        bool const is_of_quarter = k < framelet_samples / 4;
+        EXPECT_EQ(back[k], is_of_quarter ? k : 0);
+        EXPECT_EQ(rows[morton_y(k) * stride + morton_x(k)], is_of_quarter ? k : 0);
+    }
 }
 
 DisplayFramelet predicted(HeldPicture const& held, Tile tile, PictureVector vector = {}) {

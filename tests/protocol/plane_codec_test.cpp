@@ -102,6 +102,43 @@ TEST(HaarTransform, AllNumbersOfPlacesAreAlike) {
     EXPECT_EQ(values, single);
 }
 
+/// From hardly any level to hardly a zero, long runs over the ends of pieces, and the largest levels.
+TEST(CoefficientTokens, PiecesAreReadAsTheyWereWritten) {
+    constexpr std::array<std::size_t, 2> pieces{21, 64};
+    constexpr std::size_t framelets = 40;
+    std::mt19937 random(2);
+    for (unsigned const density : {1u, 4u, 30u, 300u, 1000u}) {
+        std::vector<std::int16_t> written;
+        std::vector<std::uint8_t> tokens(framelets * 85 * 3), escapes(3 * tokens.size());
+        TokenWriter writer(tokens.data());
+        std::uint8_t* escape = escapes.data();
+        for (std::size_t i = 0; i < framelets; ++i) {
+            for (std::size_t const places : pieces) {
+                std::vector<std::int16_t> fours(4 * places);
+                for (std::size_t k = 0; k < fours.size(); ++k) {
+                    int const level = random() % 10 == 0 ? static_cast<std::int16_t>(random()) : int(random() % 19) - 9;
+                    fours[k] = static_cast<std::int16_t>(k % 4 != 0 && random() % 1000 < density ? level : 0);
+                }
+                escape = writer.write(fours.data(), places, escape);
+                written.insert(written.end(), fours.begin(), fours.end());
+            }
+        }
+        TokenReader reader(writer.tokens());
+        ByteCursor cursor{escapes.data(), escape};
+        std::vector<std::int16_t> read(written.size());
+        std::int16_t* to = read.data();
+        for (std::size_t i = 0; i < framelets; ++i) {
+            for (std::size_t const places : pieces) {
+                reader.read(to, places, cursor);
+                to += 4 * places;
+            }
+        }
+        EXPECT_EQ(read, written) << density << " of 1000";
+        EXPECT_TRUE(reader.is_at_end());
+        EXPECT_EQ(cursor.left(), 0u);
+    }
+}
+
 TEST(PlaneCodec, ExactFrameletsAmongOthersStayExact) {
     auto const framelets = make_framelets(128);
     Bytes8 quality(framelets.size()), decoded_quality(framelets.size());
