@@ -160,11 +160,7 @@ double FrameletWarp::inverse_depth_within(double pixels, MergedLayer const& merg
     double const dy = transform_.far[1].z + layer.dy * parallax.z;
     double const z = transform_.map(rect.left + middle.x, rect.top + middle.y, w).z -
                      0.5 * (std::abs(dx) * (high.x - low.x) + std::abs(dy) * (high.y - low.y)); // the least one
-    // What is shown at X moves by (parallax.xy - X parallax.z) / z for each 1 / metre.
-    Viewport const viewport = cache_.plane().viewport();
-    double const x = std::max(std::abs(parallax.x), std::abs(parallax.x - viewport.width * parallax.z));
-    double const y = std::max(std::abs(parallax.y), std::abs(parallax.y - viewport.height * parallax.z));
-    double const within = pixels * std::max(z, nearest) / std::max(std::hypot(x, y), 1 / largest);
+    double const within = pixels * std::max(z, nearest) / parallax_;
     return within > 0 ? within : 0;
 }
 
@@ -184,6 +180,12 @@ void FrameletWarp::turn_to(std::uint32_t view, BodyNumber body, Vec3 const& velo
     transform_ = is_still_ ? ViewTransform{}
                            : make_view_transform(make_view_rays(from.camera, cache_.plane().viewport()), display_rays_,
                                                  motion, drift);
+    glm::dvec3 const& parallax = transform_.parallax;
+    // What is shown at X moves by (parallax.xy - X parallax.z) / z for each 1 / metre.
+    Viewport const viewport = cache_.plane().viewport();
+    double const x = std::max(std::abs(parallax.x), std::abs(parallax.x - viewport.width * parallax.z));
+    double const y = std::max(std::abs(parallax.y), std::abs(parallax.y - viewport.height * parallax.z));
+    parallax_ = std::max(std::hypot(x, y), 1 / largest);
     lens_ratio_ = std::sqrt(std::abs(glm::determinant(transform_.far)));
 }
 
