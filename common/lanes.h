@@ -31,11 +31,18 @@ inline constexpr int wide_count = lane_count;
 using WideFloats = float __attribute__((vector_size(4 * wide_count)));
 using WideInts = std::int32_t __attribute__((vector_size(4 * wide_count)));
 
-/// 0, 1, ...
+/// They stand for eight pixels of a row, and where there are more for those of the rows below too: what has edges in it
+/// takes less of these than of longer rows.
+inline constexpr int wide_columns = lane_count;
+inline constexpr int wide_rows = wide_count / lane_count;
+
+/// Where in that each of them lies.
 #ifdef __AVX512F__
-inline constexpr WideInts wide_numbers{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+inline constexpr WideInts wide_column{0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7};
+inline constexpr WideInts wide_row{0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1};
 #else
-inline constexpr WideInts wide_numbers{0, 1, 2, 3, 4, 5, 6, 7};
+inline constexpr WideInts wide_column{0, 1, 2, 3, 4, 5, 6, 7};
+inline constexpr WideInts wide_row{};
 #endif
 
 // Wherever they lie in memory.
