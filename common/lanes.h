@@ -22,6 +22,9 @@ using FloatLanes = float __attribute__((vector_size(4 * lane_count)));
 /// Comparisons of lanes yield these: 0 or -1.
 using IntLanes = std::int32_t __attribute__((vector_size(4 * lane_count)));
 
+/// Half of them.
+using HalfFloats = float __attribute__((vector_size(2 * lane_count)));
+
 /// As many as the processor's widest registers take.
 #ifdef __AVX512F__
 inline constexpr int wide_count = 16;
@@ -57,12 +60,18 @@ void store_lanes(Lanes const& from, void* to) {
     std::memcpy(to, &from, sizeof from);
 }
 
-/// Every other one of sixteen, from the first on and from the second on.
-inline FloatLanes even_of(float const* from) {
-    return __builtin_shufflevector(load_lanes(from), load_lanes(from + lane_count), 0, 2, 4, 6, 8, 10, 12, 14);
+/// Every other one of those in two registers, from the first on and from the second on.
+inline FloatLanes even_of(FloatLanes a, FloatLanes b) {
+    return __builtin_shufflevector(a, b, 0, 2, 4, 6, 8, 10, 12, 14);
 }
-inline FloatLanes odd_of(float const* from) {
-    return __builtin_shufflevector(load_lanes(from), load_lanes(from + lane_count), 1, 3, 5, 7, 9, 11, 13, 15);
+inline FloatLanes odd_of(FloatLanes a, FloatLanes b) {
+    return __builtin_shufflevector(a, b, 1, 3, 5, 7, 9, 11, 13, 15);
+}
+inline HalfFloats even_of(HalfFloats a, HalfFloats b) {
+    return __builtin_shufflevector(a, b, 0, 2, 4, 6);
+}
+inline HalfFloats odd_of(HalfFloats a, HalfFloats b) {
+    return __builtin_shufflevector(a, b, 1, 3, 5, 7);
 }
 
 #ifdef __AVX2__
@@ -92,6 +101,9 @@ inline FloatLanes larger(FloatLanes a, FloatLanes b) {
 }
 #endif
 
+inline HalfFloats smaller(HalfFloats a, HalfFloats b) {
+    return a < b ? a : b;
+}
 inline float smaller(float a, float b) {
     return std::min(a, b);
 }
