@@ -24,12 +24,12 @@ struct Homogeneous {
 /// is the last one that has neighbours, and tents give the weights: 0 from a sample's distance on. Outside of the box
 /// (where `in_box` is 0) and behind the camera there is no weight.
 template <bool inside>
-Places find_places(Homogeneous const& at, WarpPatch const& patch, WideFloats in_box) {
+Places find_places(Homogeneous const& at, WarpPatch const& patch, WideInts in_box) {
     auto const stride = static_cast<float>(patch.stride);
     WideFloats const zero{};
     WideFloats const z = 1 / at.inverse_z;
-    WideFloats u = at.u * z;
-    WideFloats v = at.v * z;
+    WideFloats const u = at.u * z;
+    WideFloats const v = at.v * z;
     Places out;
     if constexpr (inside) {
         // Rounding adds up along large grids that are seen at a low angle: what is read stays within the grid.
@@ -46,26 +46,21 @@ Places find_places(Homogeneous const& at, WarpPatch const& patch, WideFloats in_
         out.below_weight = v - line;
         out.above_weight = 1 - out.below_weight;
     } else {
-        WideFloats const first = zero - 1;
-        auto const n = static_cast<float>(patch.side);
-        WideFloats const end = zero + n;
-        WideFloats const last = zero + (n - 2);
-        u = smaller(larger(u, first), end); // not a number becomes one
-        v = smaller(larger(v, first), end);
-        auto const whole = [&](WideFloats value) {
+        WideFloats const last = zero + static_cast<float>(patch.side - 2);
+        auto const whole = [&](WideFloats value) { // not a number becomes one
             return __builtin_convertvector(__builtin_convertvector(smaller(larger(value, zero), last), WideInts),
                                            WideFloats);
         };
         WideFloats const column = whole(u);
         WideFloats const line = whole(v);
         out.corner = __builtin_convertvector(line * stride + column, WideInts);
-        WideFloats const x = u - column; // from -1 to 2
+        WideFloats const x = u - column;
         WideFloats const y = v - line;
-        WideFloats const scale = at.inverse_z > 0 ? in_box : zero;
+        WideInts const shows = (at.inverse_z > 0) & in_box;
         out.right_weight = larger(smaller(x, 2 - x), zero);
         out.left_weight = larger(smaller(1 - x, 1 + x), zero);
-        out.below_weight = scale * larger(smaller(y, 2 - y), zero);
-        out.above_weight = scale * larger(smaller(1 - y, 1 + y), zero);
+        out.below_weight = shows ? larger(smaller(y, 2 - y), zero) : zero;
+        out.above_weight = shows ? larger(smaller(1 - y, 1 + y), zero) : zero;
     }
     return out;
 }
@@ -105,8 +100,7 @@ void sample_column(WarpPatch const& patch, float x, float y, int count, Candidat
     Homogeneous at{first(0), first(1), first(2)};
     WideFloats depth = (patch.inverse_depth + row * patch.inverse_depth_dy) + column * patch.inverse_depth_dx;
     WideFloats const zero{};
-    auto const ones_where = [&](WideInts flags) { return flags ? zero + 1 : zero; };
-    WideFloats const in_box = ones_where((column >= 0) & (column < static_cast<float>(patch.box.width())));
+    WideInts const in_box = (column >= 0) & (column < static_cast<float>(patch.box.width()));
     // One step after the other for all of them: the steps of one wait for each other.
     std::array<Places, std::tuple_size_v<CandidateColumn>> places;
     auto const last = static_cast<std::size_t>(count);
@@ -118,8 +112,8 @@ void sample_column(WarpPatch const& patch, float x, float y, int count, Candidat
     }
     if constexpr (!inside && wide_rows > 1) { // rows may be above the box or below it
         auto const leave_out = [&](Places& some, WideInts flags) {
-            some.above_weight *= ones_where(flags);
-            some.below_weight *= ones_where(flags);
+            some.above_weight = flags ? some.above_weight : zero;
+            some.below_weight = flags ? some.below_weight : zero;
         };
         leave_out(places[0], row >= 0);
         leave_out(places[last - 1], row < static_cast<float>(patch.box.height() - (count - 1) * wide_rows));
