@@ -28,7 +28,9 @@ public:
         state_ = (state_ ^ value) * 0x9e3779b97f4a7c15u;
         state_ ^= state_ >> 32;
     }
-    void add(float value) { add(std::uint64_t{std::bit_cast<std::uint32_t>(value)}); }
+    void add(float a, float b) {
+        add(std::uint64_t{std::bit_cast<std::uint32_t>(a)} << 32 | std::bit_cast<std::uint32_t>(b));
+    }
     std::uint64_t value() const { return state_; }
 
 private:
@@ -39,22 +41,17 @@ std::uint64_t signature_of(WarpPatch const& patch, std::uint64_t content, std::s
     Signature out;
     out.add(content);
     out.add(std::uint64_t{patch.place} << 32 | static_cast<std::uint32_t>(patch.side));
-    for (int i = 0; i < 3; ++i) {
-        auto const k = static_cast<std::size_t>(i);
-        out.add(patch.at[k]);
-        out.add(patch.dx[k]);
-        out.add(patch.dy[k]);
-    }
-    out.add(patch.inverse_depth);
-    out.add(patch.inverse_depth_dx);
-    out.add(patch.inverse_depth_dy);
+    out.add(patch.at[0], patch.at[1]);
+    out.add(patch.dx[0], patch.dx[1]);
+    out.add(patch.dy[0], patch.dy[1]);
+    out.add(patch.at[2], patch.dx[2]);
+    out.add(patch.dy[2], patch.inverse_depth);
+    out.add(patch.inverse_depth_dx, patch.inverse_depth_dy);
     out.add(std::uint64_t(static_cast<std::uint32_t>(patch.box.left)) << 32 |
             static_cast<std::uint32_t>(patch.box.top));
     for (Splat const& splat : splats) {
-        out.add(splat.x);
-        out.add(splat.y);
-        out.add(splat.inverse_depth);
-        out.add(splat.spacing);
+        out.add(splat.x, splat.y);
+        out.add(splat.inverse_depth, splat.spacing);
     }
     return out.value();
 }

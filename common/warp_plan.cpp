@@ -67,7 +67,6 @@ void WarpPlan::make(FrameletCache const& cache, Camera const& display, SceneTime
             add_square(square.merged, warp, chunk);
         }
     });
-    limit_entries();
     make_bins();
 }
 
@@ -85,7 +84,6 @@ void WarpPlan::make_spares(FrameletCache const& cache, Camera const& display, Sc
             warp.add(cache.at(spare), FrameletWarp::all_parts, chunk.patches, chunk.splats);
         }
     });
-    limit_entries();
     make_bins();
 }
 
@@ -142,18 +140,20 @@ void WarpPlan::add_merged(MergedSquare const& square, std::uint16_t index, Frame
     }
 }
 
-void WarpPlan::limit_entries() {
-    std::size_t const most =
-        most_patches_per_block * static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
+/// How many patches each block has, in `first_entry_`; returns how many that is together.
+std::size_t WarpPlan::count_entries() {
+    first_entry_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_) + 1, 0);
     std::size_t total = 0;
     for (Chunk const& chunk : chunks_) {
         for (WarpPatch const& patch : chunk.patches) {
+            for_each_block(patch.box, columns_, [&](std::size_t block) { ++first_entry_[block + 1]; });
             total += block_count(patch.box);
         }
     }
-    if (total <= most) {
-        return;
-    }
+    return total;
+}
+
+void WarpPlan::limit_entries(std::size_t most) {
     std::vector<WarpPatch*> order;
     for (Chunk& chunk : chunks_) {
         for (WarpPatch& patch : chunk.patches) {
@@ -161,7 +161,7 @@ void WarpPlan::limit_entries() {
         }
     }
     std::sort(order.begin(), order.end(), [](WarpPatch const* a, WarpPatch const* b) { return is_before(*a, *b); });
-    total = 0;
+    std::size_t total = 0;
     for (WarpPatch* const patch : order) {
         total += block_count(patch->box);
         if (total > most) {
@@ -173,11 +173,9 @@ void WarpPlan::limit_entries() {
 
 void WarpPlan::make_bins() {
     std::size_t const blocks = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
-    first_entry_.assign(blocks + 1, 0);
-    for (Chunk const& chunk : chunks_) {
-        for (WarpPatch const& patch : chunk.patches) {
-            for_each_block(patch.box, columns_, [&](std::size_t block) { ++first_entry_[block + 1]; });
-        }
+    if (count_entries() > most_patches_per_block * blocks) {
+        limit_entries(most_patches_per_block * blocks);
+        count_entries();
     }
     for (std::size_t i = 0; i < blocks; ++i) {
         first_entry_[i + 1] += first_entry_[i];

@@ -67,7 +67,8 @@ private:
     static void add_square(MergedSquare const& square, FrameletWarp& warp, Chunk& chunk);
     static void add_merged(MergedSquare const& square, std::uint16_t index, FrameletWarp& warp, Chunk& chunk,
                            Alone& alone);
-    void limit_entries();
+    std::size_t count_entries();
+    void limit_entries(std::size_t most);
     void make_bins();
 
     int columns_ = 0, rows_ = 0;
