@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 
@@ -33,6 +34,7 @@ inline constexpr int wide_count = lane_count;
 #endif
 using WideFloats = float __attribute__((vector_size(4 * wide_count)));
 using WideInts = std::int32_t __attribute__((vector_size(4 * wide_count)));
+using WideWords = std::uint32_t __attribute__((vector_size(4 * wide_count)));
 
 /// They stand for eight pixels of a row, and where there are more for those of the rows below too: what has edges in it
 /// takes less of these than of longer rows.
@@ -98,6 +100,27 @@ inline FloatLanes smaller(FloatLanes a, FloatLanes b) {
 }
 inline FloatLanes larger(FloatLanes a, FloatLanes b) {
     return a > b ? a : b;
+}
+#endif
+
+#ifdef __AVX512F__
+/// Within 2^-22 of it: one step of Newton's after the processor's estimate, in a third of the time. Not of less than 0.
+inline WideFloats root(WideFloats value) {
+    __mmask16 const is_more = _mm512_cmp_ps_mask(value, _mm512_setzero_ps(), _CMP_GT_OQ);
+    WideFloats const estimate = _mm512_maskz_rsqrt14_ps(is_more, value);
+    WideFloats const out = value * estimate;
+    return out + out * (0.5f - 0.5f * out * estimate);
+}
+#elif defined(__AVX2__)
+inline WideFloats root(WideFloats value) {
+    return _mm256_sqrt_ps(value);
+}
+#else
+inline WideFloats root(WideFloats value) {
+    for (int i = 0; i < wide_count; ++i) {
+        value[i] = std::sqrt(value[i]);
+    }
+    return value;
 }
 #endif
 
