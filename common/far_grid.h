@@ -71,32 +71,34 @@ struct FarthestOfFour {
 /// Cells of twice the side, each of the farthest of four.
 template <int n>
 void pull(FarGrid<2 * n> const& fine, FarGrid<n>& coarse) {
-    using T = std::conditional_t<n % lane_count == 0, FloatLanes, float>;
-    constexpr std::size_t step = sizeof(T) / sizeof(float);
-    for (std::size_t y = 0; y < n; ++y) {
-        for (std::size_t x = 0; x < n; x += step) {
-            // The four fine cells of each coarse one.
-            auto const four_of = [&](std::array<float, FarGrid<2 * n>::cells> const& plane) {
-                float const* const above = &plane[4 * y * n + 2 * x];
-                float const* const below = above + 2 * n;
-                if constexpr (step == 1) {
-                    return std::array{above[0], above[1], below[0], below[1]};
-                } else {
-                    return std::array{even_of(above), odd_of(above), even_of(below), odd_of(below)};
-                }
-            };
-            auto const depths = four_of(fine.inverse_depth);
-            FarthestOfFour<T> const four({1, 1, 1, 1}, depths[0], depths[1], depths[2], depths[3]);
-            auto const put_mean = [&](auto const& from, auto& to) {
-                auto const values = four_of(from);
-                T const mean = four.mean(values[0], values[1], values[2], values[3]);
-                std::memcpy(&to[y * n + x], &mean, sizeof mean);
-            };
-            put_mean(fine.red, coarse.red);
-            put_mean(fine.green, coarse.green);
-            put_mean(fine.blue, coarse.blue);
-            std::memcpy(&coarse.inverse_depth[y * n + x], &four.farthest, sizeof four.farthest);
-        }
+    using T = std::conditional_t<n % lane_count == 0, FloatLanes, std::conditional_t<n == 1, float, HalfFloats>>;
+    constexpr int step = sizeof(T) / sizeof(float);
+    static_assert(n % step == 0 || n * n == step);
+    for (int i = 0; i < n * n; i += step) {
+        // The four fine cells of each coarse one.
+        auto const four_of = [&](std::array<float, FarGrid<2 * n>::cells> const& plane) {
+            float const* const above = &plane[static_cast<std::size_t>(i / n * 4 * n + i % n * 2)];
+            float const* const below = above + 2 * n;
+            if constexpr (n == 1) {
+                return std::array{above[0], above[1], below[0], below[1]};
+            } else {
+                constexpr int next = n < step ? 4 * n : step; // in the same row or that of the next coarse one
+                auto const a = load_lanes<T>(above), b = load_lanes<T>(above + next);
+                auto const c = load_lanes<T>(below), d = load_lanes<T>(below + next);
+                return std::array{even_of(a, b), odd_of(a, b), even_of(c, d), odd_of(c, d)};
+            }
+        };
+        auto const depths = four_of(fine.inverse_depth);
+        FarthestOfFour<T> const four({1, 1, 1, 1}, depths[0], depths[1], depths[2], depths[3]);
+        auto const put_mean = [&](auto const& from, auto& to) {
+            auto const values = four_of(from);
+            T const mean = four.mean(values[0], values[1], values[2], values[3]);
+            std::memcpy(&to[static_cast<std::size_t>(i)], &mean, sizeof mean);
+        };
+        put_mean(fine.red, coarse.red);
+        put_mean(fine.green, coarse.green);
+        put_mean(fine.blue, coarse.blue);
+        std::memcpy(&coarse.inverse_depth[static_cast<std::size_t>(i)], &four.farthest, sizeof four.farthest);
     }
 }
 

@@ -34,8 +34,11 @@ FarMean far_mean(WarpedBlock const& block) {
     if (block.holes == 0) {
         // Of rows 1, 5, 9, 13 the same columns, two rows at a time.
         auto const pick = [](std::array<float, WarpedBlock::pixels> const& plane, std::size_t row) {
-            return __builtin_shufflevector(odd_of(&plane[row * block_side]), odd_of(&plane[(row + 4) * block_side]), 0,
-                                           2, 4, 6, 8, 10, 12, 14);
+            auto const odd_ones = [&](std::size_t y) {
+                float const* const from = &plane[y * block_side];
+                return odd_of(load_lanes(from), load_lanes(from + lane_count));
+            };
+            return even_of(odd_ones(row), odd_ones(row + 4));
         };
         FloatLanes const zero{};
         for (std::size_t half = 0; half < 2; ++half) {

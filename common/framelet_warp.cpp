@@ -28,7 +28,9 @@ public:
         state_ = (state_ ^ value) * 0x9e3779b97f4a7c15u;
         state_ ^= state_ >> 32;
     }
-    void add(float value) { add(std::uint64_t{std::bit_cast<std::uint32_t>(value)}); }
+    void add(float a, float b) {
+        add(std::uint64_t{std::bit_cast<std::uint32_t>(a)} << 32 | std::bit_cast<std::uint32_t>(b));
+    }
     std::uint64_t value() const { return state_; }
 
 private:
@@ -39,22 +41,17 @@ std::uint64_t signature_of(WarpPatch const& patch, std::uint64_t content, std::s
     Signature out;
     out.add(content);
     out.add(std::uint64_t{patch.place} << 32 | static_cast<std::uint32_t>(patch.side));
-    for (int i = 0; i < 3; ++i) {
-        auto const k = static_cast<std::size_t>(i);
-        out.add(patch.at[k]);
-        out.add(patch.dx[k]);
-        out.add(patch.dy[k]);
-    }
-    out.add(patch.inverse_depth);
-    out.add(patch.inverse_depth_dx);
-    out.add(patch.inverse_depth_dy);
+    out.add(patch.at[0], patch.at[1]);
+    out.add(patch.dx[0], patch.dx[1]);
+    out.add(patch.dy[0], patch.dy[1]);
+    out.add(patch.at[2], patch.dx[2]);
+    out.add(patch.dy[2], patch.inverse_depth);
+    out.add(patch.inverse_depth_dx, patch.inverse_depth_dy);
     out.add(std::uint64_t(static_cast<std::uint32_t>(patch.box.left)) << 32 |
             static_cast<std::uint32_t>(patch.box.top));
     for (Splat const& splat : splats) {
-        out.add(splat.x);
-        out.add(splat.y);
-        out.add(splat.inverse_depth);
-        out.add(splat.spacing);
+        out.add(splat.x, splat.y);
+        out.add(splat.inverse_depth, splat.spacing);
     }
     return out.value();
 }
@@ -160,11 +157,7 @@ double FrameletWarp::inverse_depth_within(double pixels, MergedLayer const& merg
     double const dy = transform_.far[1].z + layer.dy * parallax.z;
     double const z = transform_.map(rect.left + middle.x, rect.top + middle.y, w).z -
                      0.5 * (std::abs(dx) * (high.x - low.x) + std::abs(dy) * (high.y - low.y)); // the least one
-    // What is shown at X moves by (parallax.xy - X parallax.z) / z for each 1 / metre.
-    Viewport const viewport = cache_.plane().viewport();
-    double const x = std::max(std::abs(parallax.x), std::abs(parallax.x - viewport.width * parallax.z));
-    double const y = std::max(std::abs(parallax.y), std::abs(parallax.y - viewport.height * parallax.z));
-    double const within = pixels * std::max(z, nearest) / std::max(std::hypot(x, y), 1 / largest);
+    double const within = pixels * std::max(z, nearest) / parallax_;
     return within > 0 ? within : 0;
 }
 
@@ -184,6 +177,12 @@ void FrameletWarp::turn_to(std::uint32_t view, BodyNumber body, Vec3 const& velo
     transform_ = is_still_ ? ViewTransform{}
                            : make_view_transform(make_view_rays(from.camera, cache_.plane().viewport()), display_rays_,
                                                  motion, drift);
+    glm::dvec3 const& parallax = transform_.parallax;
+    // What is shown at X moves by (parallax.xy - X parallax.z) / z for each 1 / metre.
+    Viewport const viewport = cache_.plane().viewport();
+    double const x = std::max(std::abs(parallax.x), std::abs(parallax.x - viewport.width * parallax.z));
+    double const y = std::max(std::abs(parallax.y), std::abs(parallax.y - viewport.height * parallax.z));
+    parallax_ = std::max(std::hypot(x, y), 1 / largest);
     lens_ratio_ = std::sqrt(std::abs(glm::determinant(transform_.far)));
 }
 

@@ -56,6 +56,7 @@ private:
     Vec3 velocity_{0};
     bool is_still_ = false;
     ViewTransform transform_;
+    double parallax_ = 0; ///< at most, anywhere in the picture: pixels for each 1 / metre at depth 1
     double lens_ratio_ = 1;
 };
 

@@ -26,10 +26,14 @@ struct Picture {
     }
 };
 
-/// A pixel of a picture as one number: its bytes lie in memory as the picture's do.
-constexpr std::uint32_t picture_pixel(std::uint32_t red, std::uint32_t green, std::uint32_t blue) {
+/// Pixels of a picture as numbers of 32 bits, or lanes of them: their bytes lie in memory as the picture's do.
+template <class Words>
+constexpr Words picture_pixels(Words red, Words green, Words blue) {
     return std::endian::native == std::endian::little ? red | green << 8 | blue << 16 | 255u << 24
                                                       : red << 24 | green << 16 | blue << 8 | 255u;
+}
+constexpr std::uint32_t picture_pixel(std::uint32_t red, std::uint32_t green, std::uint32_t blue) {
+    return picture_pixels(red, green, blue);
 }
 
 /// Linear float RGB.

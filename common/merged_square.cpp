@@ -136,6 +136,7 @@ JoinedLayer MergedSquare::layer_of_child(std::uint32_t index, std::uint32_t laye
 /// What was joined comes after its parts.
 void MergedSquare::keep(std::span<JoinedLayer const> layers) {
     merged_.clear();
+    tops_.clear();
     std::array<std::array<std::uint8_t, max_layers>, most_children> numbers{};
     std::array<std::uint8_t, LayerJoining::most_layers> tops{};
     for (std::size_t i = layers.size(); i-- > 0;) {
@@ -147,6 +148,9 @@ void MergedSquare::keep(std::span<JoinedLayer const> layers) {
         }
         if (is_of_child && joined.is_joined_further) {
             continue;
+        }
+        if (!joined.is_joined_further) {
+            tops_.push_back(static_cast<std::uint16_t>(merged_.size()));
         }
         MergedLayer& merged = merged_.emplace_back(merge(joined));
         merged.number = top;
@@ -163,8 +167,10 @@ void MergedSquare::keep(std::span<JoinedLayer const> layers) {
                     : MergedPart{MergedPart::Kind::merged, 0, static_cast<std::uint16_t>(layers.size() - 1 - index)};
         }
     }
+    loose_children_ = 0;
     for (std::uint32_t i = 0; i < children_.size(); ++i) {
         Child& child = children_[i];
+        loose_children_ |= std::uint64_t{child.has_loose} << i;
         if (!child.is_written || child.numbers != numbers[i]) {
             child.numbers = numbers[i];
             child.is_written = true;
@@ -196,7 +202,6 @@ MergedLayer MergedSquare::merge(JoinedLayer const& joined) const {
     out.layer.last_column = static_cast<std::int8_t>(joined.box.last_column - column);
     out.layer.last_row = static_cast<std::int8_t>(joined.box.last_row - row);
     out.difference = static_cast<float>(joined.difference);
-    out.is_top = !joined.is_joined_further;
     out.newest_batch = joined.newest_batch;
     out.signature = joined.signature;
     return out;

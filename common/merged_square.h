@@ -34,7 +34,6 @@ struct MergedLayer {
     std::int32_t stride = 0; ///< from one of their rows to the next
     PackedSample const* grid = nullptr;
     std::uint32_t number = 0; ///< that its samples have in the grid, as it were a layer's
-    bool is_top = false; ///< not joined further
     std::uint64_t newest_batch = 0;
     std::uint64_t signature = 0; ///< differs where what is held differs
     std::array<MergedPart, 4> parts; ///< that it was joined of; none of one framelet's
@@ -46,6 +45,7 @@ public:
     /// As many levels above framelets; less where there are less.
     static constexpr int most_levels = LayerJoining::most_levels;
     static constexpr std::uint32_t most_children = 1u << 2 * most_levels;
+    static_assert(most_children <= 64); // a bit each
 
     /// What is held for a tile.
     struct Child {
@@ -70,6 +70,10 @@ public:
     std::span<Child const> children() const { return children_; }
     /// All that could be joined, parts after what they were joined to; layers of framelets only where they are in none.
     std::span<MergedLayer const> merged() const { return merged_; }
+    /// Which of these are joined no further.
+    std::span<std::uint16_t const> tops() const { return tops_; }
+    /// Bit i: child i has loose samples.
+    std::uint64_t loose_children() const { return loose_children_; }
 
 private:
     int levels() const { return depth_ - square_.depth(); } ///< of the children below the square
@@ -90,6 +94,8 @@ private:
     std::uint64_t version_ = 0;
     std::vector<Child> children_;
     std::vector<MergedLayer> merged_;
+    std::vector<std::uint16_t> tops_;
+    std::uint64_t loose_children_ = 0;
     std::vector<PackedSample> grid_; ///< of the square, in rows
 };
 

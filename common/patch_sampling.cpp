@@ -15,21 +15,21 @@ struct Places {
     WideFloats left_weight, right_weight, above_weight, below_weight;
 };
 
-/// Where a row's pixels lie in the grid: homogeneous, see `WarpPatch`.
-struct Row {
+/// Where pixels lie in the grid: homogeneous, see `WarpPatch`.
+struct Homogeneous {
     WideFloats u, v, inverse_z;
 };
 
 /// Of pixels between samples, whose four neighbours there all are, or of any. Beyond the outermost samples the corner
 /// is the last one that has neighbours, and tents give the weights: 0 from a sample's distance on. Outside of the box
-/// (where `in_box` is 0) and behind the camera rows have no weight.
+/// (where `in_box` is 0) and behind the camera there is no weight.
 template <bool inside>
-Places find_places(Row const& row, WarpPatch const& patch, WideFloats in_box) {
+Places find_places(Homogeneous const& at, WarpPatch const& patch, WideInts in_box) {
     auto const stride = static_cast<float>(patch.stride);
     WideFloats const zero{};
-    WideFloats const z = 1 / row.inverse_z;
-    WideFloats u = row.u * z;
-    WideFloats v = row.v * z;
+    WideFloats const z = 1 / at.inverse_z;
+    WideFloats const u = at.u * z;
+    WideFloats const v = at.v * z;
     Places out;
     if constexpr (inside) {
         // Rounding adds up along large grids that are seen at a low angle: what is read stays within the grid.
@@ -46,26 +46,21 @@ Places find_places(Row const& row, WarpPatch const& patch, WideFloats in_box) {
         out.below_weight = v - line;
         out.above_weight = 1 - out.below_weight;
     } else {
-        WideFloats const first = zero - 1;
-        auto const n = static_cast<float>(patch.side);
-        WideFloats const end = zero + n;
-        WideFloats const last = zero + (n - 2);
-        u = smaller(larger(u, first), end); // not a number becomes one
-        v = smaller(larger(v, first), end);
-        auto const whole = [&](WideFloats value) {
+        WideFloats const last = zero + static_cast<float>(patch.side - 2);
+        auto const whole = [&](WideFloats value) { // not a number becomes one
             return __builtin_convertvector(__builtin_convertvector(smaller(larger(value, zero), last), WideInts),
                                            WideFloats);
         };
         WideFloats const column = whole(u);
         WideFloats const line = whole(v);
         out.corner = __builtin_convertvector(line * stride + column, WideInts);
-        WideFloats const x = u - column; // from -1 to 2
+        WideFloats const x = u - column;
         WideFloats const y = v - line;
-        WideFloats const scale = row.inverse_z > 0 ? in_box : zero;
+        WideInts const shows = (at.inverse_z > 0) & in_box;
         out.right_weight = larger(smaller(x, 2 - x), zero);
         out.left_weight = larger(smaller(1 - x, 1 + x), zero);
-        out.below_weight = scale * larger(smaller(y, 2 - y), zero);
-        out.above_weight = scale * larger(smaller(1 - y, 1 + y), zero);
+        out.below_weight = shows ? larger(smaller(y, 2 - y), zero) : zero;
+        out.above_weight = shows ? larger(smaller(1 - y, 1 + y), zero) : zero;
     }
     return out;
 }
@@ -97,55 +92,66 @@ void interpolate(std::int32_t layer, Places const& places, SamplesAround const& 
 }
 
 template <bool inside>
-void sample_rows(WarpPatch const& patch, float x, float y, int rows, CandidateRows& out) {
-    WideFloats const place = x + __builtin_convertvector(wide_numbers, WideFloats);
-    auto const first = [&](std::size_t i) { return (patch.at[i] + y * patch.dy[i]) + place * patch.dx[i]; };
-    Row row{first(0), first(1), first(2)};
-    WideFloats depth = (patch.inverse_depth + y * patch.inverse_depth_dy) + place * patch.inverse_depth_dx;
-    WideInts const is_in_box = (place >= 0) & (place < static_cast<float>(patch.box.width()));
+void sample_column(WarpPatch const& patch, float x, float y, int count, CandidateColumn& out) {
+    WideFloats const column = x + __builtin_convertvector(wide_column, WideFloats);
+    WideFloats const row = y + __builtin_convertvector(wide_row, WideFloats);
+    auto const first = [&](std::size_t i) { return (patch.at[i] + row * patch.dy[i]) + column * patch.dx[i]; };
+    constexpr auto step = static_cast<float>(wide_rows);
+    Homogeneous at{first(0), first(1), first(2)};
+    WideFloats depth = (patch.inverse_depth + row * patch.inverse_depth_dy) + column * patch.inverse_depth_dx;
     WideFloats const zero{};
-    WideFloats const in_box = is_in_box ? zero + 1 : zero;
-    // One step after the other for all rows: a row's steps wait for each other, the rows do not.
-    std::array<Places, std::tuple_size_v<CandidateRows>> places;
-    auto const count = static_cast<std::size_t>(rows);
-    for (std::size_t i = 0; i < count; ++i) {
-        places[i] = find_places<inside>(row, patch, in_box);
-        row.u += patch.dy[0];
-        row.v += patch.dy[1];
-        row.inverse_z += patch.dy[2];
+    WideInts const in_box = (column >= 0) & (column < static_cast<float>(patch.box.width()));
+    // One step after the other for all of them: the steps of one wait for each other.
+    std::array<Places, std::tuple_size_v<CandidateColumn>> places;
+    auto const last = static_cast<std::size_t>(count);
+    for (std::size_t i = 0; i < last; ++i) {
+        places[i] = find_places<inside>(at, patch, in_box);
+        at.u += step * patch.dy[0];
+        at.v += step * patch.dy[1];
+        at.inverse_z += step * patch.dy[2];
     }
-    for (std::size_t i = 0; i < count; ++i) {
+    if constexpr (!inside && wide_rows > 1) { // rows may be above the box or below it
+        auto const leave_out = [&](Places& some, WideInts flags) {
+            some.above_weight = flags ? some.above_weight : zero;
+            some.below_weight = flags ? some.below_weight : zero;
+        };
+        leave_out(places[0], row >= 0);
+        leave_out(places[last - 1], row < static_cast<float>(patch.box.height() - (count - 1) * wide_rows));
+    }
+    for (std::size_t i = 0; i < last; ++i) {
         interpolate(static_cast<std::int32_t>(patch.layer << 24), places[i], look_up(patch, places[i].corner), out[i]);
         out[i].inverse_depth = larger(depth, zero);
-        depth += patch.inverse_depth_dy;
+        depth += step * patch.inverse_depth_dy;
     }
 }
 
 /// All of these pixels lie in the box and between four samples.
 bool is_inside(WarpPatch const& patch, float x, float y, int rows) {
     constexpr float margin = 1e-3f; // more than rounding
-    if (!(x >= 0 && x + sampling_lanes <= static_cast<float>(patch.box.width()))) {
+    if (!(x >= 0 && x + wide_columns <= static_cast<float>(patch.box.width()) && y >= 0 &&
+          y + static_cast<float>(rows) <= static_cast<float>(patch.box.height()))) {
         return false;
     }
+    // At four corners.
+    using Four = float __attribute__((vector_size(16)));
+    auto const right = static_cast<float>(wide_columns - 1);
+    auto const below = static_cast<float>(rows - 1);
+    Four const cx{x, x + right, x, x + right};
+    Four const cy{y, y, y + below, y + below};
+    auto const at = [&](std::size_t i) { return patch.at[i] + cx * patch.dx[i] + cy * patch.dy[i]; };
+    Four const z = at(2);
+    Four const u = at(0);
+    Four const v = at(1);
     float const most = static_cast<float>(patch.side) - 1 - margin;
-    bool inside = true;
-    for (int corner = 0; corner < 4; ++corner) {
-        float const cx = x + static_cast<float>(corner % 2 * (sampling_lanes - 1));
-        float const cy = y + static_cast<float>(corner / 2 * (rows - 1));
-        auto const at = [&](std::size_t i) { return patch.at[i] + cx * patch.dx[i] + cy * patch.dy[i]; };
-        float const z = at(2);
-        float const u = at(0);
-        float const v = at(1);
-        inside &= (z > 0) & (u > margin * z) & (v > margin * z) & (u < most * z) & (v < most * z);
-    }
-    return inside;
+    auto const is = (z > 0) & (u > margin * z) & (v > margin * z) & (u < most * z) & (v < most * z);
+    return (is[0] & is[1] & is[2] & is[3]) != 0;
 }
 
 } // namespace
 
-void sample_patch(WarpPatch const& patch, float x, float y, int rows, CandidateRows& out) {
-    bool const inside = is_inside(patch, x, y, rows);
-    inside ? sample_rows<true>(patch, x, y, rows, out) : sample_rows<false>(patch, x, y, rows, out);
+void sample_patch(WarpPatch const& patch, float x, float y, int count, CandidateColumn& out) {
+    bool const inside = is_inside(patch, x, y, count * wide_rows);
+    inside ? sample_column<true>(patch, x, y, count, out) : sample_column<false>(patch, x, y, count, out);
 }
 
 } // namespace framelet

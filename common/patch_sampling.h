@@ -1,5 +1,5 @@
-// The samples of a layer at a few pixels of a row: bilinear interpolation between those that lie on the layer. In: a
-// patch, a place in the picture. Out: weighted sums that compete for the pixels.
+// The samples of a layer at a few pixels of some rows: bilinear interpolation between those that lie on the layer. In:
+// a patch, a place in the picture. Out: weighted sums that compete for the pixels.
 #pragma once
 
 #include <array>
@@ -10,11 +10,8 @@
 
 namespace framelet {
 
-/// Pixels of a row that are worked on together: a block's or half of them.
-inline constexpr int sampling_lanes = wide_count;
-static_assert(FrameletCache::block_side % sampling_lanes == 0);
-
-/// What a patch or a splat shows at each of them: sums of weights and weighted sums of squares of bytes.
+/// What a patch or a splat shows at each of some pixels, as `wide_column` and `wide_row` have them: sums of weights and
+/// weighted sums of squares of bytes.
 struct Candidate {
     WideFloats red, green, blue, weight, inverse_depth;
 };
@@ -25,11 +22,12 @@ inline float square(std::uint32_t byte) {
     return value * value;
 }
 
-/// The same for some rows of a block.
-using CandidateRows = std::array<Candidate, static_cast<std::size_t>(FrameletCache::block_side)>;
+/// The same for as many pixels of a block's rows, one below the other.
+using CandidateColumn = std::array<Candidate, static_cast<std::size_t>(FrameletCache::block_side / wide_rows)>;
+static_assert(FrameletCache::block_side % wide_columns == 0 && FrameletCache::block_side % wide_rows == 0);
 
-/// In `rows` rows, the first pixel of the first of which lies (x, y) from the centre of the box's first pixel. Pixels
-/// outside of the box, which are only beside it, get no weight.
-void sample_patch(WarpPatch const& patch, float x, float y, int rows, CandidateRows& out);
+/// At the first `count` of them, the first pixel of the first of which lies (x, y) from the centre of the box's first
+/// pixel. Pixels outside of the box, which are only beside it, get no weight.
+void sample_patch(WarpPatch const& patch, float x, float y, int count, CandidateColumn& out);
 
 } // namespace framelet

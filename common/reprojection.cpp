@@ -76,9 +76,11 @@ PixelRect display_box(glm::dmat3 const& to_display, glm::dvec2 low, glm::dvec2 h
     if (!(least.x < width && least.y < height && most.x > 0 && most.y > 0)) {
         return {};
     }
-    return {static_cast<int>(std::floor(std::max(least.x, 0.0))), static_cast<int>(std::floor(std::max(least.y, 0.0))),
-            static_cast<int>(std::ceil(std::min(most.x, width))),
-            static_cast<int>(std::ceil(std::min(most.y, height)))};
+    auto const first_centre_after = [](double value, double last) {
+        return static_cast<int>(std::ceil(std::clamp(value - 0.5, 0.0, last)));
+    };
+    return {first_centre_after(least.x, width), first_centre_after(least.y, height), first_centre_after(most.x, width),
+            first_centre_after(most.y, height)};
 }
 
 } // namespace framelet

@@ -48,8 +48,8 @@ struct PlaneTransform {
 std::optional<PlaneTransform> make_plane_transform(ViewTransform const& view, Layer const& layer,
                                                    glm::dvec2 tile_corner);
 
-/// Pixel box of the display picture that holds everything that a source rectangle [low, high] shows in front of the
-/// display camera, rounded outwards, clipped to the viewport; empty where nothing shows.
+/// Pixel box of the display picture that holds every pixel in the centre of which a source rectangle [low, high] shows
+/// in front of the display camera, clipped to the viewport; empty where there is none.
 PixelRect display_box(glm::dmat3 const& to_display, glm::dvec2 low, glm::dvec2 high, Viewport viewport);
 
 } // namespace framelet

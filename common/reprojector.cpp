@@ -96,10 +96,6 @@ std::uint64_t signature_of(std::span<PatchView const> patches, bool in_place) {
     return state;
 }
 
-std::uint32_t byte_of(float square) {
-    return static_cast<std::uint32_t>(static_cast<std::int32_t>(std::sqrt(square) + 0.5f));
-}
-
 /// Copies a block of four-byte values into a plane of the viewport's size.
 void copy_rows(void const* block, Viewport viewport, int left, int top, void* plane) {
     constexpr std::size_t row_bytes = 4 * side;
@@ -117,10 +113,13 @@ void copy_rows(void const* block, Viewport viewport, int left, int top, void* pl
 }
 
 void write_colors(WarpedBlock const& block, int left, int top, Picture& picture) {
-    std::array<std::uint32_t, WarpedBlock::pixels> colors;
-    for (std::size_t i = 0; i < WarpedBlock::pixels; ++i) {
-        colors[i] =
-            picture_pixel(byte_of(block.squares[0][i]), byte_of(block.squares[1][i]), byte_of(block.squares[2][i]));
+    alignas(64) std::array<std::uint32_t, WarpedBlock::pixels> colors;
+    for (std::size_t i = 0; i < WarpedBlock::pixels; i += wide_count) {
+        auto const bytes = [&](std::size_t channel) {
+            WideFloats const value = root(load_lanes<WideFloats>(&block.squares[channel][i])) + 0.5f;
+            return reinterpret_cast<WideWords>(__builtin_convertvector(value, WideInts));
+        };
+        store_lanes(picture_pixels(bytes(0), bytes(1), bytes(2)), &colors[i]);
     }
     copy_rows(colors.data(), {picture.width, picture.height}, left, top, picture.rgba.data());
 }

@@ -24,26 +24,28 @@ inline WideInts gather(PackedSample const* grid, __m512i index) {
         _mm512_mask_i32gather_epi32(_mm512_setzero_si512(), all_lanes, index, grid, sizeof(PackedSample)));
 }
 
-/// Thirty-two samples in a row in two registers, from which any sixteen are picked.
-class SampleRow {
+/// Sixteen samples in a row for each of the two rows of pixels, from which those of each are picked.
+class SampleRows {
 public:
-    explicit SampleRow(PackedSample const* row) : low_(_mm512_loadu_si512(row)), high_(_mm512_loadu_si512(row + 16)) {}
+    SampleRows(PackedSample const* first, PackedSample const* second)
+        : first_(_mm512_loadu_si512(first)), second_(_mm512_loadu_si512(second)) {}
 
     WideInts pick(__m512i index) const {
-        return reinterpret_cast<WideInts>(_mm512_permutex2var_epi32(low_, index, high_));
+        return reinterpret_cast<WideInts>(_mm512_permutex2var_epi32(first_, index, second_));
     }
 
 private:
-    __m512i low_, high_;
+    __m512i first_, second_;
 };
 
 [[gnu::always_inline]] inline SamplesAround look_up(WarpPatch const& patch, WideInts corners) {
+    constexpr int register_samples = 16;
     PackedSample const* const grid = patch.grid;
     std::int32_t const n = patch.stride;
     SamplesAround out;
     std::int32_t const last = n * (patch.side - 2) + patch.side; // where samples end of which the row below is there
     auto const corner = reinterpret_cast<__m512i>(corners);
-    if (last < 32) { // the smallest grid fits into one register
+    if (last < register_samples) { // the smallest grid fits into one register
         __m512i const all = _mm512_loadu_si512(grid);
         auto const pick = [&](int offset) {
             return reinterpret_cast<WideInts>(
@@ -55,16 +57,23 @@ private:
         out.below_right = pick(n + 1);
         return out;
     }
-    std::int32_t const base = std::min(corners[0], last - 32);
-    __m512i const index = _mm512_sub_epi32(corner, _mm512_set1_epi32(base));
-    __m512i const next = _mm512_add_epi32(index, _mm512_set1_epi32(1));
-    if (_mm512_test_epi32_mask(_mm512_or_si512(index, next), _mm512_set1_epi32(-32)) == 0) {
-        SampleRow const above(grid + base);
-        SampleRow const below(grid + base + n);
-        out.above_left = above.pick(index);
-        out.above_right = above.pick(next);
-        out.below_left = below.pick(index);
-        out.below_right = below.pick(next);
+    // From the first pixel's sample on in each row of pixels.
+    __m512i const first_ones = reinterpret_cast<__m512i>(wide_columns * wide_row);
+    __m512i const base =
+        _mm512_maskz_min_epi32(all_lanes, _mm512_maskz_permutexvar_epi32(all_lanes, first_ones, corner),
+                               _mm512_set1_epi32(last - register_samples));
+    __m512i const left = _mm512_sub_epi32(corner, base);
+    if (_mm512_cmpge_epu32_mask(left, _mm512_set1_epi32(register_samples - 1)) == 0) {
+        PackedSample const* const first = grid + std::min(corners[0], last - register_samples);
+        PackedSample const* const second = grid + std::min(corners[wide_columns], last - register_samples);
+        SampleRows const above(first, second);
+        SampleRows const below(first + n, second + n);
+        __m512i const left_index = _mm512_add_epi32(left, reinterpret_cast<__m512i>(register_samples * wide_row));
+        __m512i const right_index = _mm512_add_epi32(left, reinterpret_cast<__m512i>(register_samples * wide_row + 1));
+        out.above_left = above.pick(left_index);
+        out.above_right = above.pick(right_index);
+        out.below_left = below.pick(left_index);
+        out.below_right = below.pick(right_index);
         return out;
     }
     out.above_left = gather(grid, corner);

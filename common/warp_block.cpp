@@ -10,7 +10,6 @@ namespace framelet {
 namespace {
 
 constexpr int side = WarpedBlock::side;
-constexpr int lanes = sampling_lanes;
 constexpr std::size_t pixels = WarpedBlock::pixels;
 
 /// Share of an interpolation that must come from a layer's own samples for it to cover what lies behind it.
@@ -20,15 +19,21 @@ constexpr float faint = 1e-3f;
 /// Inverse depths that differ by this share belong to one surface.
 constexpr float same_surface = 0.01f;
 
-/// What is in front at each pixel so far.
+/// What is in front at each pixel so far. The left half of the block comes first, so that what is worked on together
+/// lies together.
 struct Layers {
     alignas(64) std::array<float, pixels> red, green, blue, weight, inverse_depth;
     alignas(64) std::array<std::int32_t, pixels> group;
 };
 
-/// Lets candidates compete with what pixels of a row have. Of two that cover firmly or both do not, the clearly nearer
+/// Where a pixel lies in `Layers`.
+constexpr std::size_t place_of(int x, int y) {
+    return static_cast<std::size_t>(x / wide_columns * (wide_columns * side) + y * wide_columns + x % wide_columns);
+}
+
+/// Lets candidates compete with what pixels have. Of two that cover firmly or both do not, the clearly nearer
 /// one wins; else the one that was there, which is newer. Those of one group on one surface add up.
-void merge_row(Candidate const& candidate, std::int32_t group, float tolerance, std::size_t first, Layers& layers) {
+void merge(Candidate const& candidate, std::int32_t group, float tolerance, std::size_t first, Layers& layers) {
     WideFloats const there = load_lanes<WideFloats>(&layers.inverse_depth[first]);
     WideFloats const weight = load_lanes<WideFloats>(&layers.weight[first]);
     WideInts const groups = load_lanes<WideInts>(&layers.group[first]);
@@ -53,24 +58,18 @@ void merge_row(Candidate const& candidate, std::int32_t group, float tolerance, 
 }
 
 void paint_layer(WarpPatch const& patch, int left, int top, Layers& layers) {
-    CandidateRows rows;
-    int const first_row = std::max(patch.box.top - top, 0);
-    int const row_count = std::min(patch.box.bottom - top, side) - first_row;
-    int const first = std::max(patch.box.left - left, 0);
+    CandidateColumn column;
+    int const first_row = std::max(patch.box.top - top, 0) / wide_rows * wide_rows;
+    int const last_row = std::min(patch.box.bottom - top, side);
+    int const count = (last_row - first_row + wide_rows - 1) / wide_rows;
     int const last = std::min(patch.box.right - left, side);
-    auto const paint = [&](int x) {
+    for (int x = std::max(patch.box.left - left, 0) / wide_columns * wide_columns; x < last; x += wide_columns) {
         sample_patch(patch, static_cast<float>(left + x - patch.box.left),
-                     static_cast<float>(top + first_row - patch.box.top), row_count, rows);
-        for (int i = 0; i < row_count; ++i) {
-            merge_row(rows[static_cast<std::size_t>(i)], patch.group, patch.tolerance,
-                      static_cast<std::size_t>((first_row + i) * side + x), layers);
+                     static_cast<float>(top + first_row - patch.box.top), count, column);
+        for (int i = 0; i < count; ++i) {
+            merge(column[static_cast<std::size_t>(i)], patch.group, patch.tolerance,
+                  place_of(x, first_row + i * wide_rows), layers);
         }
-    };
-    if (last - first <= lanes) {
-        paint(std::min(first, side - lanes));
-    } else {
-        paint(0);
-        paint(lanes);
     }
 }
 
@@ -105,47 +104,58 @@ void paint_splat(Splat const& splat, std::int32_t group, int left, int top, Laye
         return;
     }
     WideFloats const zero{};
-    Candidate half;
-    for (int from = 0; from < side; from += lanes) {
-        if (x + splat.spacing < static_cast<float>(from) || x - splat.spacing > static_cast<float>(from + lanes - 1)) {
+    auto const tent = [&](WideFloats distance) { return larger(1 - larger(distance, -distance) * scale, zero); };
+    Candidate some;
+    for (int from = 0; from < side; from += wide_columns) {
+        if (x + splat.spacing < static_cast<float>(from) ||
+            x - splat.spacing > static_cast<float>(from + wide_columns - 1)) {
             continue;
         }
-        WideFloats const distance = __builtin_convertvector(wide_numbers, WideFloats) + (static_cast<float>(from) - x);
-        WideFloats const wx = larger(1 - larger(distance, -distance) * scale, zero);
-        for (int j = first_row; j <= last_row; ++j) {
-            half.weight = wx * std::max(1 - std::abs(static_cast<float>(j) - y) * scale, 0.0f);
-            half.red = half.weight * square(red_of(splat.sample));
-            half.green = half.weight * square(green_of(splat.sample));
-            half.blue = half.weight * square(blue_of(splat.sample));
-            half.inverse_depth = zero + splat.inverse_depth;
-            merge_row(half, group, 0, static_cast<std::size_t>(j * side + from), layers);
+        WideFloats const wx = tent(__builtin_convertvector(wide_column + from, WideFloats) - x);
+        for (int j = first_row / wide_rows * wide_rows; j <= last_row; j += wide_rows) {
+            some.weight = wx * tent(__builtin_convertvector(wide_row + j, WideFloats) - y);
+            some.red = some.weight * square(red_of(splat.sample));
+            some.green = some.weight * square(green_of(splat.sample));
+            some.blue = some.weight * square(blue_of(splat.sample));
+            some.inverse_depth = zero + splat.inverse_depth;
+            merge(some, group, 0, place_of(from, j), layers);
         }
     }
+}
+
+/// To the rows of a block what lies together in `Layers`.
+template <class Lanes, class T>
+void store_pixels(Lanes const& values, int x, int y, std::array<T, pixels>& plane) {
+    T* const to = &plane[static_cast<std::size_t>(y * side + x)];
+#ifdef __AVX512F__
+    store_lanes(__builtin_shufflevector(values, values, 0, 1, 2, 3, 4, 5, 6, 7), to);
+    store_lanes(__builtin_shufflevector(values, values, 8, 9, 10, 11, 12, 13, 14, 15), to + side);
+#else
+    store_lanes(values, to);
+#endif
 }
 
 /// Divides by the weights.
 void finish(Layers const& layers, int width, int height, WarpedBlock& block) {
     WideFloats const zero{};
-    for (std::size_t i = 0; i < pixels; i += lanes) {
-        WideFloats const weight = load_lanes<WideFloats>(&layers.weight[i]);
-        WideInts const shows = weight > 0;
-        WideFloats const scale = shows ? 1 / weight : zero;
-        store_lanes(scale * load_lanes<WideFloats>(&layers.red[i]), &block.squares[0][i]);
-        store_lanes(scale * load_lanes<WideFloats>(&layers.green[i]), &block.squares[1][i]);
-        store_lanes(scale * load_lanes<WideFloats>(&layers.blue[i]), &block.squares[2][i]);
-        store_lanes(shows ? load_lanes<WideFloats>(&layers.inverse_depth[i]) : zero + hole_depth,
-                    &block.inverse_depth[i]);
-    }
-    block.group = layers.group;
     WideInts holes{};
-    for (int y = 0; y < std::min(height, side); ++y) {
-        for (int x = 0; x < side; x += lanes) {
-            holes -= (wide_numbers < width - x) &
-                     ~(load_lanes<WideFloats>(&layers.weight[static_cast<std::size_t>(y * side + x)]) > 0);
+    for (int x = 0; x < side; x += wide_columns) {
+        for (int y = 0; y < side; y += wide_rows) {
+            std::size_t const i = place_of(x, y);
+            WideFloats const weight = load_lanes<WideFloats>(&layers.weight[i]);
+            WideInts const shows = weight > 0;
+            WideFloats const scale = shows ? 1 / weight : zero;
+            store_pixels(scale * load_lanes<WideFloats>(&layers.red[i]), x, y, block.squares[0]);
+            store_pixels(scale * load_lanes<WideFloats>(&layers.green[i]), x, y, block.squares[1]);
+            store_pixels(scale * load_lanes<WideFloats>(&layers.blue[i]), x, y, block.squares[2]);
+            store_pixels(shows ? load_lanes<WideFloats>(&layers.inverse_depth[i]) : zero + hole_depth, x, y,
+                         block.inverse_depth);
+            store_pixels(load_lanes<WideInts>(&layers.group[i]), x, y, block.group);
+            holes -= (wide_column < width - x) & (wide_row < height - y) & ~shows;
         }
     }
     block.holes = 0;
-    for (int k = 0; k < lanes; ++k) {
+    for (int k = 0; k < wide_count; ++k) {
         block.holes += holes[k];
     }
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 
 #include <tbb/parallel_for.h>
 
@@ -66,7 +67,6 @@ void WarpPlan::make(FrameletCache const& cache, Camera const& display, SceneTime
             add_square(square.merged, warp, chunk);
         }
     });
-    limit_entries();
     make_bins();
 }
 
@@ -84,7 +84,6 @@ void WarpPlan::make_spares(FrameletCache const& cache, Camera const& display, Sc
             warp.add(cache.at(spare), FrameletWarp::all_parts, chunk.patches, chunk.splats);
         }
     });
-    limit_entries();
     make_bins();
 }
 
@@ -112,48 +111,49 @@ void WarpPlan::set_squares(ImagePlane const& plane) {
 
 /// Of what is joined the largest that is near enough to its parts, then what is left of the framelets.
 void WarpPlan::add_square(MergedSquare const& square, FrameletWarp& warp, Chunk& chunk) {
-    std::span<MergedSquare::Child const> const children = square.children();
-    std::array<unsigned, MergedSquare::most_children> alone; // parts of framelets
-    std::ranges::transform(children, alone.begin(), [](MergedSquare::Child const& child) {
-        return child.has_loose ? 1u << FrameletShape::loose : 0u;
-    });
-    std::span<MergedLayer const> const merged = square.merged();
-    std::array<bool, LayerJoining::most_layers> shows{};
-    for (std::size_t i = 0; i < merged.size(); ++i) {
-        if (!merged[i].is_top && !shows[i]) {
-            continue;
-        }
-        if (merged[i].difference <= warp.inverse_depth_within(merging_pixels, merged[i])) {
-            warp.add(merged[i], chunk.patches); // nothing where it is out of the picture
-            continue;
-        }
-        for (MergedPart const& part : merged[i].parts) {
-            if (part.kind == MergedPart::Kind::merged) {
-                shows[part.index] = true;
-            } else if (part.kind == MergedPart::Kind::layer) {
-                alone[part.index] |= 1u << part.layer;
-            }
-        }
+    Alone alone;
+    for (std::uint16_t const top : square.tops()) {
+        add_merged(square, top, warp, chunk, alone);
     }
-    for (std::size_t i = 0; i < children.size(); ++i) {
-        if (alone[i] != 0) {
-            warp.add(*children[i].framelet, alone[i], chunk.patches, chunk.splats);
+    std::span<MergedSquare::Child const> const children = square.children();
+    for (std::uint64_t left = alone.children | square.loose_children(); left != 0; left &= left - 1) {
+        auto const i = static_cast<std::size_t>(std::countr_zero(left));
+        unsigned const loose = children[i].has_loose ? 1u << FrameletShape::loose : 0u;
+        warp.add(*children[i].framelet, alone.layers[i] | loose, chunk.patches, chunk.splats);
+    }
+}
+
+void WarpPlan::add_merged(MergedSquare const& square, std::uint16_t index, FrameletWarp& warp, Chunk& chunk,
+                          Alone& alone) {
+    MergedLayer const& merged = square.merged()[index];
+    if (merged.difference == 0 || merged.difference <= warp.inverse_depth_within(merging_pixels, merged)) {
+        warp.add(merged, chunk.patches); // nothing where it is out of the picture
+        return;
+    }
+    for (MergedPart const& part : merged.parts) {
+        if (part.kind == MergedPart::Kind::merged) {
+            add_merged(square, part.index, warp, chunk, alone);
+        } else if (part.kind == MergedPart::Kind::layer) {
+            alone.children |= std::uint64_t{1} << part.index;
+            alone.layers[part.index] |= 1u << part.layer;
         }
     }
 }
 
-void WarpPlan::limit_entries() {
-    std::size_t const most =
-        most_patches_per_block * static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
+/// How many patches each block has, in `first_entry_`; returns how many that is together.
+std::size_t WarpPlan::count_entries() {
+    first_entry_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_) + 1, 0);
     std::size_t total = 0;
     for (Chunk const& chunk : chunks_) {
         for (WarpPatch const& patch : chunk.patches) {
+            for_each_block(patch.box, columns_, [&](std::size_t block) { ++first_entry_[block + 1]; });
             total += block_count(patch.box);
         }
     }
-    if (total <= most) {
-        return;
-    }
+    return total;
+}
+
+void WarpPlan::limit_entries(std::size_t most) {
     std::vector<WarpPatch*> order;
     for (Chunk& chunk : chunks_) {
         for (WarpPatch& patch : chunk.patches) {
@@ -161,7 +161,7 @@ void WarpPlan::limit_entries() {
         }
     }
     std::sort(order.begin(), order.end(), [](WarpPatch const* a, WarpPatch const* b) { return is_before(*a, *b); });
-    total = 0;
+    std::size_t total = 0;
     for (WarpPatch* const patch : order) {
         total += block_count(patch->box);
         if (total > most) {
@@ -173,11 +173,9 @@ void WarpPlan::limit_entries() {
 
 void WarpPlan::make_bins() {
     std::size_t const blocks = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
-    first_entry_.assign(blocks + 1, 0);
-    for (Chunk const& chunk : chunks_) {
-        for (WarpPatch const& patch : chunk.patches) {
-            for_each_block(patch.box, columns_, [&](std::size_t block) { ++first_entry_[block + 1]; });
-        }
+    if (count_entries() > most_patches_per_block * blocks) {
+        limit_entries(most_patches_per_block * blocks);
+        count_entries();
     }
     for (std::size_t i = 0; i < blocks; ++i) {
         first_entry_[i + 1] += first_entry_[i];
@@ -193,11 +191,22 @@ void WarpPlan::make_bins() {
     }
 }
 
+WarpPatch const& WarpPlan::patch_at(std::uint32_t entry) const {
+    return chunks_[entry / patches_per_chunk].patches[entry % patches_per_chunk];
+}
+
 void WarpPlan::block(std::size_t index, std::vector<PatchView>& patches) const {
     patches.clear();
     for (std::uint32_t i = first_entry_[index]; i < first_entry_[index + 1]; ++i) {
-        Chunk const& chunk = chunks_[entries_[i] / patches_per_chunk];
-        patches.push_back({&chunk.patches[entries_[i] % patches_per_chunk], chunk.splats.data()});
+        patches.push_back({&patch_at(entries_[i]), chunks_[entries_[i] / patches_per_chunk].splats.data()});
+    }
+    // Those of the block that is most likely asked for next.
+    std::size_t const next = std::min(index + 2, first_entry_.size() - 1);
+    for (std::uint32_t i = first_entry_[index + 1]; i < first_entry_[next]; ++i) {
+        auto const* const patch = reinterpret_cast<char const*>(&patch_at(entries_[i]));
+        for (std::size_t at = 0; at < sizeof(WarpPatch); at += 64) {
+            __builtin_prefetch(patch + at);
+        }
     }
     std::sort(patches.begin(), patches.end(),
               [](PatchView const& a, PatchView const& b) { return is_before(*a.patch, *b.patch); });

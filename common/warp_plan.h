@@ -3,6 +3,7 @@
 // time, motions. Out: the plan, from which every block is painted on its own.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -54,10 +55,20 @@ private:
         MergedSquare merged;
     };
 
+    /// Layers of a square's framelets that show on their own.
+    struct Alone {
+        std::uint64_t children = 0; ///< a bit for each that has any
+        std::array<unsigned, MergedSquare::most_children> layers{};
+    };
+
+    WarpPatch const& patch_at(std::uint32_t entry) const;
     void set_size(Viewport viewport);
     void set_squares(ImagePlane const& plane);
     static void add_square(MergedSquare const& square, FrameletWarp& warp, Chunk& chunk);
-    void limit_entries();
+    static void add_merged(MergedSquare const& square, std::uint16_t index, FrameletWarp& warp, Chunk& chunk,
+                           Alone& alone);
+    std::size_t count_entries();
+    void limit_entries(std::size_t most);
     void make_bins();
 
     int columns_ = 0, rows_ = 0;

@@ -1,6 +1,7 @@
 #include "common/merged_square.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <random>
 
@@ -29,6 +30,8 @@ void expect_same(MergedSquare const& kept, MergedSquare const& fresh) {
         EXPECT_EQ(kept.children()[i].has_loose, fresh.children()[i].has_loose);
         EXPECT_EQ(kept.children()[i].numbers, fresh.children()[i].numbers);
     }
+    EXPECT_EQ(kept.loose_children(), fresh.loose_children());
+    EXPECT_TRUE(std::ranges::equal(kept.tops(), fresh.tops()));
     ASSERT_EQ(kept.merged().size(), fresh.merged().size());
     for (std::size_t i = 0; i < kept.merged().size(); ++i) {
         MergedLayer const& a = kept.merged()[i];
@@ -99,13 +102,12 @@ TEST(MergedSquare, OnePlaneIsFound) {
         square.update(cache, make_tile(depth - MergedSquare::most_levels, 0, 0), depth, joining);
         ASSERT_FALSE(square.merged().empty());
         MergedLayer const& merged = square.merged()[0];
-        EXPECT_TRUE(merged.is_top);
         EXPECT_EQ(merged.side, std::min(8 * plane.tile_side(make_tile(depth, 0, 0)), 128));
         Layer const& first = cache.find(depth, 0, 0)->shape.layers[0].layer;
         EXPECT_NEAR(merged.layer.layer.at, first.at, 1e-5 * first.at);
         EXPECT_NEAR(merged.layer.layer.dx, first.dx, 1e-5 * first.at);
         EXPECT_LT(merged.difference, 1e-5f * first.at);
-        EXPECT_EQ(std::ranges::count_if(square.merged(), &MergedLayer::is_top), 1);
+        EXPECT_TRUE(std::ranges::equal(square.tops(), std::array{0}));
     }
 }
 
@@ -126,10 +128,8 @@ TEST(MergedSquare, SamplesHaveTheNumberOfTheirLayer) {
         for (Tile const tile : squares) {
             MergedSquare square;
             square.update(cache, tile, depth, joining);
-            for (MergedLayer const& merged : square.merged()) {
-                if (!merged.is_top) {
-                    continue;
-                }
+            for (std::uint16_t const top : square.tops()) {
+                MergedLayer const& merged = square.merged()[top];
                 ++(merged.tile == merged.first ? alone : joined);
                 int const n = std::min(plane.tile_side(merged.first), framelet_side);
                 for (int y = 0; y < merged.side; ++y) {

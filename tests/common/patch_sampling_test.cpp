@@ -41,7 +41,7 @@ TEST(PatchSampling, IsBilinearInterpolationWhereverSamplesLie) {
         return std::uniform_real_distribution<float>(low, high)(random);
     };
     constexpr int largest = 32;
-    CandidateRows rows;
+    CandidateColumn column;
     for (int trial = 0; trial < 4000; ++trial) {
         WarpPatch patch;
         patch.side = 4 << trial % 4;
@@ -61,16 +61,22 @@ TEST(PatchSampling, IsBilinearInterpolationWhereverSamplesLie) {
         patch.dx = {scale * std::cos(angle), scale * std::sin(angle), uniform(-0.01f, 0.01f)};
         patch.dy = {-scale * std::sin(angle), scale * std::cos(angle), uniform(-0.01f, 0.01f)};
         patch.at = {uniform(-2, 2 + n), uniform(-2, 2 + n), uniform(0.1f, 1.2f)};
-        patch.box = {0, 0, 3 + static_cast<int>(random() % 16), 16};
+        patch.box = {0, 0, 3 + static_cast<int>(random() % 16), 3 + static_cast<int>(random() % 14)};
         float const x = static_cast<float>(static_cast<int>(random() % 12) - 4);
-        sample_patch(patch, x, 0, 16, rows);
-        for (int row = 0; row < 16; ++row) {
-            Candidate const& found = rows[static_cast<std::size_t>(row)];
-            for (int k = 0; k < sampling_lanes; ++k) {
-                double const px = x + static_cast<float>(k);
-                bool const in_box = px >= 0 && px < patch.box.width();
+        float const y = -static_cast<float>(trial % wide_rows); // the first row of some is above the box
+        int const count = (patch.box.height() - static_cast<int>(y) + wide_rows - 1) / wide_rows;
+        if (count > static_cast<int>(column.size())) {
+            continue;
+        }
+        sample_patch(patch, x, y, count, column);
+        for (int i = 0; i < count; ++i) {
+            Candidate const& found = column[static_cast<std::size_t>(i)];
+            for (int k = 0; k < wide_count; ++k) {
+                double const px = x + static_cast<float>(wide_column[k]);
+                double const row = y + static_cast<float>(i * wide_rows + wide_row[k]);
+                bool const in_box = px >= 0 && px < patch.box.width() && row >= 0 && row < patch.box.height();
                 Expected const expected = in_box ? expect(patch, px, row) : Expected{};
-                double const z = patch.at[2] + px * patch.dx[2] + static_cast<double>(row) * patch.dy[2];
+                double const z = patch.at[2] + px * patch.dx[2] + row * patch.dy[2];
                 if (std::abs(z) < 0.05) {
                     continue; // near the horizon of the plane rounding shows
                 }
