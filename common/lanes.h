@@ -1,4 +1,4 @@
-// Eight numbers that are worked on at a time: the compiler's vectors, whatever the processor has.
+// Four, eight or sixteen numbers that are worked on at a time: the compiler's vectors, whatever the processor has.
 #pragma once
 
 #include <algorithm>

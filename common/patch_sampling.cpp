@@ -33,10 +33,12 @@ Places find_places(Homogeneous const& at, WarpPatch const& patch, WideInts in_bo
     Places out;
     if constexpr (inside) {
         // Rounding adds up along large grids that are seen at a low angle: what is read stays within the grid.
-        WideInts const last = WideInts{} + (patch.side - 2);
+        WideInts const first{};
+        WideInts const last = first + (patch.side - 2);
         auto const whole = [&](WideFloats value) {
             WideInts const truncated = __builtin_convertvector(value, WideInts);
-            return __builtin_convertvector(truncated < last ? truncated : last, WideFloats);
+            WideInts const bounded = truncated < last ? truncated : last;
+            return __builtin_convertvector(bounded > first ? bounded : first, WideFloats);
         };
         WideFloats const column = whole(u);
         WideFloats const line = whole(v);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <cstddef>
 #include <cstring>
 
@@ -10,6 +9,7 @@
 
 #include "common/block_flags.h"
 #include "common/error.h"
+#include "common/lanes.h"
 #include "common/reconstruction.h"
 #include "common/reprojection.h"
 

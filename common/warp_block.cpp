@@ -93,6 +93,11 @@ void prefetch_grid(WarpPatch const& patch, int left, int top) {
     }
 }
 
+/// 1 at no distance, falling to 0 at 1 / scale.
+WideFloats tent(WideFloats distance, float scale) {
+    return larger(1 - larger(distance, -distance) * scale, WideFloats{});
+}
+
 /// Loose samples: a tent each, as wide as its neighbours are far.
 void paint_splat(Splat const& splat, std::int32_t group, int left, int top, Layers& layers) {
     float const x = splat.x - static_cast<float>(left) - 0.5f;
@@ -104,16 +109,15 @@ void paint_splat(Splat const& splat, std::int32_t group, int left, int top, Laye
         return;
     }
     WideFloats const zero{};
-    auto const tent = [&](WideFloats distance) { return larger(1 - larger(distance, -distance) * scale, zero); };
     Candidate some;
     for (int from = 0; from < side; from += wide_columns) {
         if (x + splat.spacing < static_cast<float>(from) ||
             x - splat.spacing > static_cast<float>(from + wide_columns - 1)) {
             continue;
         }
-        WideFloats const wx = tent(__builtin_convertvector(wide_column + from, WideFloats) - x);
+        WideFloats const wx = tent(__builtin_convertvector(wide_column + from, WideFloats) - x, scale);
         for (int j = first_row / wide_rows * wide_rows; j <= last_row; j += wide_rows) {
-            some.weight = wx * tent(__builtin_convertvector(wide_row + j, WideFloats) - y);
+            some.weight = wx * tent(__builtin_convertvector(wide_row + j, WideFloats) - y, scale);
             some.red = some.weight * square(red_of(splat.sample));
             some.green = some.weight * square(green_of(splat.sample));
             some.blue = some.weight * square(blue_of(splat.sample));

@@ -140,17 +140,20 @@ void WarpPlan::add_merged(MergedSquare const& square, std::uint16_t index, Frame
     }
 }
 
-/// How many patches each block has, in `first_entry_`; returns how many that is together.
-std::size_t WarpPlan::count_entries() {
+/// How many patches each block has, in `first_entry_`, unless they are more than `most` together.
+bool WarpPlan::count_entries(std::size_t most) {
     first_entry_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_) + 1, 0);
     std::size_t total = 0;
     for (Chunk const& chunk : chunks_) {
         for (WarpPatch const& patch : chunk.patches) {
-            for_each_block(patch.box, columns_, [&](std::size_t block) { ++first_entry_[block + 1]; });
             total += block_count(patch.box);
+            if (total > most) {
+                return false;
+            }
+            for_each_block(patch.box, columns_, [&](std::size_t block) { ++first_entry_[block + 1]; });
         }
     }
-    return total;
+    return true;
 }
 
 void WarpPlan::limit_entries(std::size_t most) {
@@ -173,9 +176,10 @@ void WarpPlan::limit_entries(std::size_t most) {
 
 void WarpPlan::make_bins() {
     std::size_t const blocks = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
-    if (count_entries() > most_patches_per_block * blocks) {
-        limit_entries(most_patches_per_block * blocks);
-        count_entries();
+    std::size_t const most = most_patches_per_block * blocks;
+    if (!count_entries(most)) {
+        limit_entries(most);
+        count_entries(most);
     }
     for (std::size_t i = 0; i < blocks; ++i) {
         first_entry_[i + 1] += first_entry_[i];

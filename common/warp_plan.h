@@ -67,7 +67,7 @@ private:
     static void add_square(MergedSquare const& square, FrameletWarp& warp, Chunk& chunk);
     static void add_merged(MergedSquare const& square, std::uint16_t index, FrameletWarp& warp, Chunk& chunk,
                            Alone& alone);
-    std::size_t count_entries();
+    bool count_entries(std::size_t most);
     void limit_entries(std::size_t most);
     void make_bins();
 

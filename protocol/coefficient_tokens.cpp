@@ -127,6 +127,7 @@ constexpr auto make_meanings() {
     return meanings;
 }
 constexpr auto meanings = make_meanings();
+static_assert(meanings[escape].level == 0);
 
 } // namespace
 
@@ -140,7 +141,7 @@ void TokenReader::read(std::int16_t* fours, std::size_t places, ByteCursor& esca
         Meaning const meaning = meanings[token];
         std::ptrdiff_t const to = at + meaning.zeros;
         std::int16_t level = meaning.level;
-        if (level == 0) { // seldom
+        if (level == 0) { // zeros alone, or an escape
             if (token >> 4 == zeros_alone) {
                 at = to;
                 ++next;

@@ -2,6 +2,8 @@
 
 #include <cstring>
 
+#pragma GCC diagnostic ignored "-Wpsabi" // how processors without AVX would pass these matters to no other file
+
 namespace framelet {
 namespace {
 

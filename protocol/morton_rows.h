@@ -20,9 +20,7 @@ using Samples [[gnu::vector_size(samples)]] = std::uint8_t;
 inline Samples transposed(Samples block) {
     return __builtin_shufflevector(block, block, 0, 1, 4, 5, 2, 3, 6, 7, 8, 9, 12, 13, 10, 11, 14, 15);
 }
-} // namespace morton_block
 
-namespace morton_block {
 using Rows [[gnu::vector_size(samples)]] = std::uint32_t; ///< a row of a block in each lane
 
 /// Rows of four blocks side by side to rows of 16 samples; the same leads back.
@@ -53,7 +51,7 @@ inline void from_rows(std::uint8_t const* rows, std::size_t stride, std::uint8_t
         transpose(four);
         auto const blocks = blocks_of_row(row);
         for (std::size_t i = 0; i < side; ++i) {
-            auto const values = transposed(reinterpret_cast<Samples const&>(four[i]));
+            auto const values = transposed(reinterpret_cast<Samples>(four[i]));
             std::memcpy(out + blocks[i] * samples, &values, sizeof values);
         }
     }

@@ -15,6 +15,8 @@ namespace {
 /// Of one framelet's part that are followed.
 constexpr std::size_t most_followed = 4;
 constexpr double most_speed = 1e5;
+/// Depths a second: a camera that follows something goes slower, and one that was cut to another place follows nothing.
+constexpr double most_following = 8;
 /// A quarter of a display step, squared.
 constexpr float noise = 1e-6f;
 /// Of what the motion would have changed.
@@ -92,8 +94,8 @@ void bind_to_picture(Tile tile, ImagePlane const& plane, RenderedMoment const& m
         double const depth = 1 / inverse_depth;
         Vec3 const velocity((point_at(moment.rays, pixel, depth) - point_at(moment.rays_before, pixel, depth)) /
                             seconds);
-        float const speed = glm::length(velocity);
-        return std::isfinite(speed) && speed < static_cast<float>(most_speed) ? velocity : Vec3(0);
+        return static_cast<double>(glm::length(velocity)) < std::min(most_following * depth, most_speed) ? velocity
+                                                                                                         : Vec3(0);
     };
     for (Layer& layer : std::span(shape.layers).first(shape.layer_count)) {
         if (layer.body == static_body && layer.velocity == Vec3(0)) {

@@ -32,7 +32,7 @@ CarriedChange carried_change(PlaceModel const& model, Observation const& seen, f
 bool stays(CarriedChange const& change);
 
 /// Lets the layers and loose samples that nothing carries go with the camera as it goes now: they stay in the picture
-/// while scene time runs on. Nothing where it does not.
+/// while scene time runs on. Nothing where it does not, nor where the camera goes as only a cut makes it go.
 void bind_to_picture(Tile tile, ImagePlane const& plane, RenderedMoment const& moment, FrameletShape& shape);
 
 } // namespace framelet

@@ -132,6 +132,25 @@ TEST(BindToPicture, ABoundLayerStaysInPlace) {
     EXPECT_LT(off(0.25, shape.loose_samples[0].velocity), 0.02);
 }
 
+/// A velocity from before a cut would carry framelets off as long as they are held.
+TEST(BindToPicture, ACutIsNoMotion) {
+    BodyMotions const motions;
+    RenderedMoment moment = moment_of(motions);
+    FrameletShape shape;
+    shape.layer_count = 1;
+    shape.layers[0].at = 0.2f;
+    shape.loose_samples = {{.inverse_depth = 0.25f}};
+    FrameletShape const before = shape;
+    moment.rays_before.origin.x += 20;
+    bind_to_picture(make_tile(2, 2, 1), ImagePlane(viewport), moment, shape);
+    EXPECT_EQ(shape, before);
+    Camera turned = camera_at(0);
+    turned.orientation = glm::angleAxis(1.0f, Vec3(0, 1, 0));
+    moment.rays_before = make_view_rays(turned, viewport);
+    bind_to_picture(make_tile(2, 2, 1), ImagePlane(viewport), moment, shape);
+    EXPECT_EQ(shape, before);
+}
+
 TEST(BindToPicture, DoesNothingWhereNoTimePasses) {
     BodyMotions const motions;
     FrameletShape shape;
