@@ -7,7 +7,7 @@
 namespace framelet {
 namespace {
 
-/// Four places side by side, and the means of eight.
+/// Four places side by side, and their means.
 using Places [[gnu::vector_size(32)]] = std::uint16_t;
 using SignedPlaces [[gnu::vector_size(32)]] = std::int16_t;
 using Means [[gnu::vector_size(8)]] = std::uint16_t;
