@@ -24,7 +24,7 @@ constexpr int farthest = 127;
 constexpr int length_cost = 4;
 
 /// A row of samples.
-using Row [[gnu::vector_size(framelet_side)]] = std::uint8_t;
+using Row = PointRow;
 using Rows = std::array<Row, framelet_side>;
 
 Rows rows_of(SamplePlane const& samples) {
@@ -52,11 +52,7 @@ Row doubled_row_at(std::uint8_t const* held) {
 
 Row coarsest_row_at(std::uint8_t const* held) {
     constexpr std::size_t pitch = 16;
-    Row row;
-    for (std::size_t x = 0; x < framelet_side; ++x) {
-        row[x] = held[x * pitch + pitch / 2];
-    }
-    return row;
+    return point_rows::every_16th(held + pitch / 2);
 }
 
 using Sums [[gnu::vector_size(framelet_side)]] = std::uint64_t;
