@@ -109,7 +109,7 @@ EncodedBatch BatchCodec::encode(Batch const& batch, HeldPicture* held) {
     std::span<DisplayFramelet> decoded;
     if (is_predicted) {
         held->show(viewport);
-        held->keep_for_search();
+        held->prepare_search(batch.framelets);
         scratch_->decoded.resize(std::max(scratch_->decoded.size(), count));
         decoded = std::span(scratch_->decoded).first(count);
         for (std::size_t i = 0; i < count; ++i) {

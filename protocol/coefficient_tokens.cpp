@@ -1,8 +1,13 @@
 #include "protocol/coefficient_tokens.h"
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdlib>
-#include <cstring>
+
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
 
 #include "common/error.h"
 
@@ -63,32 +68,51 @@ std::uint8_t* TokenWriter::put(std::int16_t level, std::uint8_t* escapes) {
     return escapes;
 }
 
+namespace {
+
+/// Places whose values have a bit each.
+constexpr std::size_t mask_places = 16;
+
+/// Bit i: value i is not zero.
+std::uint64_t levels_of(std::int16_t const* fours) {
+    std::uint64_t mask = 0;
+#ifdef __SSE2__
+    constexpr std::size_t half = 8, bits = 16;
+    auto const load = [](std::int16_t const* from) { return _mm_loadu_si128(reinterpret_cast<__m128i const*>(from)); };
+    for (std::size_t i = 0; i < 4 * mask_places; i += bits) {
+        __m128i const bytes = _mm_packs_epi16(load(fours + i), load(fours + i + half));
+        auto const zeros = static_cast<unsigned>(_mm_movemask_epi8(_mm_cmpeq_epi8(bytes, _mm_setzero_si128())));
+        mask |= std::uint64_t{zeros ^ 0xffff} << i;
+    }
+#else
+    for (std::size_t i = 0; i < 4 * mask_places; ++i) {
+        mask |= std::uint64_t{fours[i] != 0} << i;
+    }
+#endif
+    return mask;
+}
+
+} // namespace
+
 std::uint8_t* TokenWriter::write(std::int16_t const* fours, std::size_t places, std::uint8_t* escapes) {
-    using Four [[gnu::vector_size(4 * sizeof(std::uint64_t))]] = std::uint64_t;
-    constexpr std::size_t at_a_time = 4;
-    for (std::size_t place = 0; place < places; ++place) {
-        if (place % at_a_time == 0 && place + at_a_time <= places) {
-            Four four;
-            std::memcpy(&four, fours + 4 * place, sizeof four);
-            if ((four[0] | four[1] | four[2] | four[3]) == 0) {
-                run_ += 3 * at_a_time;
-                place += at_a_time - 1;
-                continue;
-            }
+    for (std::size_t first = 0; first < places; first += mask_places) {
+        std::size_t const some = std::min(mask_places, places - first);
+        std::int16_t const* values = fours + 4 * first;
+        std::array<std::int16_t, 4 * mask_places> rest;
+        if (some < mask_places) {
+            rest = {};
+            std::copy_n(values, 4 * some, rest.begin());
+            values = rest.data();
         }
-        std::uint64_t word;
-        std::memcpy(&word, fours + 4 * place, sizeof word);
-        if (word == 0) {
-            run_ += 3;
-            continue;
+        std::size_t covered = 0; // details
+        for (std::uint64_t left = levels_of(values); left != 0; left &= left - 1) {
+            auto const i = static_cast<std::size_t>(std::countr_zero(left));
+            std::size_t const detail = i - i / 4 - 1;
+            run_ += detail - covered;
+            covered = detail + 1;
+            escapes = put(values[i], escapes);
         }
-        for (std::size_t i = 4 * place + 1; i < 4 * place + 4; ++i) {
-            if (fours[i] == 0) {
-                ++run_;
-            } else {
-                escapes = put(fours[i], escapes);
-            }
-        }
+        run_ += 3 * some - covered;
     }
     return escapes;
 }

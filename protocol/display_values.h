@@ -16,9 +16,11 @@ struct DisplayValues {
 };
 
 DisplayValues display_values(DisplayFramelet const& framelet);
-DisplayValues operator-(DisplayValues const& a, DisplayValues const& b);
-DisplayValues operator+(DisplayValues const& a, DisplayValues const& b);
+/// What `framelet` has more than `predicted`.
+DisplayValues difference(DisplayFramelet const& framelet, DisplayFramelet const& predicted);
 /// Rounds and clamps; the tile stays.
 void to_samples(DisplayValues const& values, DisplayFramelet& framelet);
+/// The same of the sum of `left` and what is predicted.
+void add_to_samples(DisplayValues const& left, DisplayFramelet const& predicted, DisplayFramelet& framelet);
 
 } // namespace framelet

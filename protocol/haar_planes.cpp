@@ -9,6 +9,8 @@
 #include "protocol/haar_transform.h"
 #include "protocol/zigzag.h"
 
+#pragma GCC diagnostic ignored "-Wpsabi" // how processors without AVX would pass vectors matters to no other file
+
 namespace framelet {
 namespace {
 
@@ -29,31 +31,11 @@ std::uint16_t octave_step(std::uint16_t base, std::size_t octave) {
     return static_cast<std::uint16_t>(base << (octaves - 1 - octave));
 }
 
-/// Smallest share of a step that rounds up, in 64ths: what is nearer to zero costs more bytes than it removes error.
-constexpr unsigned detail_rounding = 22, mean_rounding = 32;
-
-/// Levels of details, the means between them cleared.
-void quantise_details(std::int16_t* fours, std::size_t count, unsigned step) {
-    if (step == 1) { // they are levels; its reciprocal would not fit 16 bits
-        for (std::size_t i = 0; i < count; i += 4) {
-            fours[i] = 0;
-        }
-        return;
-    }
-    // floor(x / step) of 16-bit x, or one more where x is just below a multiple.
-    auto const reciprocal = static_cast<std::uint16_t>(65536 / step + 1);
-    auto const rounding = static_cast<std::uint16_t>(step * detail_rounding / 64);
-    for (std::size_t i = 0; i < count; ++i) { // many at a time: products of 16 bits
-        std::int16_t const value = fours[i];
-        auto const sign = static_cast<std::int16_t>(value >> 15);
-        auto const size = static_cast<std::uint16_t>(static_cast<std::uint16_t>((value ^ sign) - sign) + rounding);
-        auto const level = static_cast<std::int16_t>(size * unsigned{reciprocal} >> 16);
-        fours[i] = static_cast<std::int16_t>(i % 4 == 0 ? 0 : (level ^ sign) - sign);
-    }
-}
+/// Smallest share of a step that rounds a mean up, in 64ths.
+constexpr int mean_rounding = 32;
 
 std::int16_t quantised_mean(int value, int step) {
-    int const size = ((value < 0 ? -value : value) + step * static_cast<int>(mean_rounding) / 64) / step;
+    int const size = ((value < 0 ? -value : value) + step * mean_rounding / 64) / step;
     return static_cast<std::int16_t>(value < 0 ? -size : size);
 }
 
@@ -61,20 +43,31 @@ std::int16_t times(std::int16_t level, std::uint16_t step) {
     return static_cast<std::int16_t>(static_cast<std::uint16_t>(static_cast<std::uint16_t>(level) * unsigned{step}));
 }
 
-/// Of all octaves of a plane, from its levels.
-void dequantise(Fours& fours, std::uint16_t base) {
+/// Details of all octaves of a plane, from its levels.
+Fours details_of(Fours const& levels, std::uint16_t base) {
+    Fours details;
     for (std::size_t octave = 0; octave < octaves; ++octave) {
         std::uint16_t const step = octave_step(base, octave);
-        std::int16_t* const of_octave = &fours[first_four[octave]];
-        std::transform(of_octave, of_octave + 4 * places(octave), of_octave,
+        std::size_t const first = first_four[octave];
+        std::transform(&levels[first], &levels[first] + 4 * places(octave), &details[first],
                        [step](std::int16_t level) { return times(level, step); });
     }
+    return details;
 }
 
-void quantise(Fours& fours, std::uint16_t base) {
+/// Returns the bits of the levels.
+int quantise(Fours const& details, std::uint16_t base, Fours& levels) {
+    int bits = 0;
     for (std::size_t octave = 0; octave < octaves; ++octave) {
-        quantise_details(&fours[first_four[octave]], 4 * places(octave), octave_step(base, octave));
+        std::size_t const first = first_four[octave];
+        bits += quantise(&details[first], places(octave), DetailStep(octave_step(base, octave)), &levels[first]);
     }
+    return bits;
+}
+
+int bits_of_level(std::int16_t level) {
+    int const size = std::abs(int{level});
+    return size == 0 ? 0 : std::min(size, int{most_bits_of_size}) + int{bits_of_any};
 }
 
 /// What details of chroma have from those of luma.
@@ -82,74 +75,71 @@ std::int16_t shared(std::int16_t luma, std::int8_t share) {
     return static_cast<std::int16_t>(times(luma, static_cast<std::uint16_t>(share)) >> 3);
 }
 
-/// Values of the planes from their means and details, which are overwritten.
-DisplayValues synthesise(std::array<Fours, 3>& details, std::array<std::int16_t, 3> const& plane_means,
-                         std::array<std::int8_t, 2> const& shares) {
-    for (std::size_t chroma = 0; chroma < shares.size(); ++chroma) {
-        if (shares[chroma] != 0) {
-            std::transform(details[1 + chroma].begin(), details[1 + chroma].end(), details[0].begin(),
-                           details[1 + chroma].begin(), [share = shares[chroma]](std::int16_t own, std::int16_t luma) {
-                               return static_cast<std::int16_t>(own + shared(luma, share));
-                           });
-        }
+/// Values of a plane from its mean and levels, which are overwritten. `base`: 0 where they are details.
+void synthesise(Fours& levels, std::uint16_t base, std::int16_t mean, std::int16_t* values) {
+    constexpr std::uint16_t one = 1;
+    std::int16_t const* means = &mean;
+    for (std::size_t octave = octaves; octave-- > 0;) {
+        std::int16_t* const fours = &levels[first_four[octave]];
+        std::int16_t* const out = octave == 0 ? values : fours;
+        haar_inverse(means, fours, base == 0 ? one : octave_step(base, octave), places(octave), out);
+        means = out;
     }
-    DisplayValues values;
-    for (std::size_t plane = 0; plane < 3; ++plane) {
-        std::int16_t const* means = &plane_means[plane];
-        for (std::size_t octave = octaves; octave-- > 0;) {
-            std::int16_t* const fours = &details[plane][first_four[octave]];
-            std::int16_t* const out = octave == 0 ? values.planes[plane].data() : fours;
-            haar_inverse(means, fours, places(octave), out);
-            means = out;
-        }
-    }
-    return values;
 }
 
-/// Roughly what levels take behind the entropy stage.
-int bits_of(std::int16_t const* levels, std::size_t count) {
-    constexpr std::int16_t any = 5, most = 8;
-    using Lanes [[gnu::vector_size(32)]] = std::int16_t;
-    constexpr std::size_t lanes = sizeof(Lanes) / sizeof(std::int16_t);
-    Lanes sums{};
-    std::size_t i = 0;
-    for (; i + lanes <= count; i += lanes) {
-        Lanes level;
-        std::memcpy(&level, levels + i, sizeof level);
-        Lanes const sign = level < 0, there = level != 0;
-        Lanes const size = (level ^ sign) - sign;
-        Lanes const large = size > most;
-        sums += (size & ~large) + (large & most) + (there & any);
+/// The levels are overwritten.
+DisplayValues synthesise(HaarLevels& levels, std::uint8_t quality) {
+    DisplayValues out;
+    std::array<std::uint16_t, 3> bases;
+    std::array<std::int16_t, 3> means;
+    for (std::size_t plane = 0; plane < bases.size(); ++plane) {
+        bases[plane] = base_step(plane, quality);
+        means[plane] = times(levels.means[plane], bases[plane]);
     }
-    int bits = 0;
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-        bits += sums[lane];
+    if (levels.shares[0] != 0 || levels.shares[1] != 0) {
+        Fours const luma = details_of(levels.details[0], bases[0]);
+        for (std::size_t chroma = 0; chroma < levels.shares.size(); ++chroma) {
+            if (std::int8_t const share = levels.shares[chroma]; share != 0) {
+                Fours& details = levels.details[1 + chroma];
+                details = details_of(details, bases[1 + chroma]);
+                std::transform(details.begin(), details.end(), luma.begin(), details.begin(),
+                               [share](std::int16_t own, std::int16_t of_luma) {
+                                   return static_cast<std::int16_t>(own + shared(of_luma, share));
+                               });
+                bases[1 + chroma] = 0;
+            }
+        }
     }
-    for (; i < count; ++i) {
-        int const size = std::abs(int{levels[i]});
-        bits += std::min(size, int{most}) + (size == 0 ? 0 : any);
+    for (std::size_t plane = 0; plane < bases.size(); ++plane) {
+        synthesise(levels.details[plane], bases[plane], means[plane], out.planes[plane].data());
     }
-    return bits;
+    return out;
 }
 
 } // namespace
 
 int code(DisplayValues const& values, std::uint8_t quality, int most, HaarCode& out) {
     int bits = 0;
-    for (std::size_t plane = 0; plane < 3 && bits <= most; ++plane) {
-        Fours& fours = out.values[plane];
-        std::copy(values.planes[plane].begin(), values.planes[plane].end(), fours.begin() + first_four[0]);
-        std::int16_t mean = 0;
-        for (std::size_t octave = 0; octave < octaves; ++octave) {
-            std::int16_t* const means = octave + 1 < octaves ? &fours[first_four[octave + 1]] : &mean;
-            haar_forward(&fours[first_four[octave]], means, places(octave));
-        }
+    for (std::size_t plane = 0; plane < values.planes.size(); ++plane) {
         std::uint16_t const base = base_step(plane, quality);
+        Fours& details = out.values[plane];
         Fours& levels = out.levels.details[plane];
-        levels = fours;
-        quantise(levels, base);
+        std::int16_t const* fours = values.planes[plane].data();
+        std::int16_t mean = 0;
+        int const bits_before = bits;
+        for (std::size_t octave = 0; octave < octaves; ++octave) {
+            std::size_t const first = first_four[octave];
+            std::int16_t* const means = octave + 1 < octaves ? &details[first_four[octave + 1]] : &mean;
+            bits += haar_forward(fours, places(octave), DetailStep(octave_step(base, octave)), means, &details[first],
+                                 &levels[first]);
+            if (bits > most) {
+                return bits;
+            }
+            fours = means;
+        }
+        out.bits[plane] = bits - bits_before;
         out.levels.means[plane] = quantised_mean(mean, base);
-        bits += bits_of(levels.data(), levels.size()) + bits_of(&out.levels.means[plane], 1);
+        bits += bits_of_level(out.levels.means[plane]);
     }
     out.levels.shares = {};
     return bits;
@@ -160,56 +150,64 @@ namespace {
 /// Least squares: how many eighths of luma, as it will be read, the details of chroma have. Each counts as much as it
 /// does in the picture.
 int fitted_share(Fours const& luma, Fours const& chroma) {
-    float products = 0, squares = 0;
+    using Words [[gnu::vector_size(32)]] = std::int16_t;
+    using Integers [[gnu::vector_size(64)]] = std::int32_t;
+    using Floats [[gnu::vector_size(64)]] = float;
+    constexpr std::size_t at_a_time = sizeof(Words) / sizeof(std::int16_t);
+    auto const load = [](std::int16_t const* from, std::size_t count) {
+        Words words{};
+        std::memcpy(&words, from, count * sizeof *from);
+        return __builtin_convertvector(__builtin_convertvector(words, Integers), Floats);
+    };
+    Floats products{}, squares{};
     for (std::size_t octave = 0; octave < octaves; ++octave) {
-        float product = 0, square = 0;
-        for (std::size_t i = first_four[octave]; i < first_four[octave] + 4 * places(octave); ++i) {
-            auto const y = static_cast<float>(luma[i]);
-            product += y * static_cast<float>(chroma[i]);
-            square += y * y;
+        Floats const weight = Floats{} + static_cast<float>(1u << (2 * octave));
+        std::size_t const count = 4 * places(octave);
+        for (std::size_t i = 0; i < count; i += at_a_time) {
+            std::size_t const first = first_four[octave] + i, some = std::min(at_a_time, count - i);
+            Floats const y = load(&luma[first], some);
+            products += weight * y * load(&chroma[first], some);
+            squares += weight * y * y;
         }
-        auto const weight = static_cast<float>(1u << (2 * octave));
-        products += weight * product;
-        squares += weight * square;
+    }
+    float product = 0, square = 0;
+    for (std::size_t lane = 0; lane < at_a_time; ++lane) {
+        product += products[lane];
+        square += squares[lane];
     }
     constexpr float eighths = 8;
-    return squares > 0 ? static_cast<int>(std::lround(std::clamp(eighths * products / squares, -8.0f, 7.0f))) : 0;
+    return square > 0 ? static_cast<int>(std::lround(std::clamp(eighths * product / square, -8.0f, 7.0f))) : 0;
 }
 
 } // namespace
 
 void share_luma(std::uint8_t quality, HaarCode& code) {
     HaarLevels& levels = code.levels;
-    Fours luma = levels.details[0];
-    dequantise(luma, base_step(0, quality));
+    Fours const luma = details_of(levels.details[0], base_step(0, quality));
     for (std::size_t chroma = 0; chroma < levels.shares.size(); ++chroma) {
         std::size_t const plane = 1 + chroma;
-        int const bits = bits_of(levels.details[plane].data(), levels.details[plane].size());
-        auto const share = static_cast<std::int8_t>(bits > 0 ? fitted_share(luma, code.values[plane]) : 0);
+        if (code.bits[plane] == 0) {
+            continue;
+        }
+        auto const share = static_cast<std::int8_t>(fitted_share(luma, code.values[plane]));
         if (share == 0) {
             continue;
         }
-        Fours tried = code.values[plane];
-        for (std::size_t i = 0; i < tried.size(); ++i) {
-            tried[i] = static_cast<std::int16_t>(tried[i] - shared(luma[i], share));
-        }
-        quantise(tried, base_step(plane, quality));
-        if (bits_of(tried.data(), tried.size()) < bits) {
-            levels.details[plane] = tried;
+        Fours tried, tried_levels;
+        std::transform(code.values[plane].begin(), code.values[plane].end(), luma.begin(), tried.begin(),
+                       [share](std::int16_t own, std::int16_t of_luma) {
+                           return static_cast<std::int16_t>(own - shared(of_luma, share));
+                       });
+        if (quantise(tried, base_step(plane, quality), tried_levels) < code.bits[plane]) {
+            levels.details[plane] = tried_levels;
             levels.shares[chroma] = share;
         }
     }
 }
 
 DisplayValues dequantise(HaarLevels const& levels, std::uint8_t quality) {
-    std::array<Fours, 3> details = levels.details;
-    std::array<std::int16_t, 3> means;
-    for (std::size_t plane = 0; plane < 3; ++plane) {
-        std::uint16_t const base = base_step(plane, quality);
-        dequantise(details[plane], base);
-        means[plane] = times(levels.means[plane], base);
-    }
-    return synthesise(details, means, levels.shares);
+    HaarLevels copy = levels;
+    return synthesise(copy, quality);
 }
 
 namespace {
@@ -257,20 +255,19 @@ std::int16_t HaarReader::mean(std::size_t plane) const {
 }
 
 DisplayValues HaarReader::read(std::uint8_t quality) {
-    std::array<Fours, 3> details{};
-    std::array<std::int16_t, 3> means;
-    for (std::size_t plane = 0; plane < 3; ++plane) {
-        std::uint16_t const base = base_step(plane, quality);
-        std::int16_t* const fours = details[plane].data();
+    HaarLevels levels;
+    levels.details = {};
+    for (std::size_t plane = 0; plane < levels.details.size(); ++plane) {
+        std::int16_t* const fours = levels.details[plane].data();
         readers_[token_part(plane, false)].read(fours, first_four[0] / 4, escapes_);
         readers_[token_part(plane, true)].read(fours + first_four[0], places(0), escapes_);
-        dequantise(details[plane], base);
-        means[plane] = times(mean(plane), base);
+        levels.means[plane] = mean(plane);
     }
     unsigned const shares = shares_[read_];
     ++read_;
     auto const share = [](unsigned nibble) { return static_cast<std::int8_t>(nibble < 8 ? nibble : nibble - 16); };
-    return synthesise(details, means, {share(shares & 15), share(shares >> 4)});
+    levels.shares = {share(shares & 15), share(shares >> 4)};
+    return synthesise(levels, quality);
 }
 
 bool HaarReader::is_at_end() const {

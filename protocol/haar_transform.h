@@ -1,5 +1,5 @@
 // One octave of the Haar transform of a plane of samples in Morton order, where the four children of a place are
-// neighbours. In: fours of values. Out: their mean and three details, and back.
+// neighbours, and its quantisation. In: fours of values. Out: their means, details and levels of these, and back.
 #pragma once
 
 #include <cstddef>
@@ -7,12 +7,31 @@
 
 namespace framelet {
 
-/// Arithmetic is modulo 2^16. `fours` has four values for each place: children a b / c d in; out the mean
-/// (a+b+c+d)/4 and the details (a-b+c-d)/4, (a+b-c-d)/4, (a-b-c+d)/4, each rounded. `means` gets the means alone.
-void haar_forward(std::int16_t* fours, std::int16_t* means, std::size_t places);
+/// How details become levels.
+struct DetailStep {
+    /// `step` is 1 .. 32767.
+    explicit DetailStep(std::uint16_t step);
 
-/// The other way: details h, v, d and the means m give m+h+v+d, m-h+v-d, m+h-v-d, m-h-v+d. The first of each four is
-/// not read. `out` may be `fours`.
-void haar_inverse(std::int16_t const* means, std::int16_t const* fours, std::size_t places, std::int16_t* out);
+    std::uint16_t step;
+    std::uint16_t reciprocal; ///< floor(size reciprocal / 2^16) is the level
+    std::uint16_t rounding; ///< is added to sizes before: rounds up what is no more than this short of the next level
+};
+
+/// What a level that is not zero takes behind the entropy stage, roughly: this and its size, as far as that counts.
+inline constexpr std::uint16_t bits_of_any = 5, most_bits_of_size = 8;
+
+/// Arithmetic is modulo 2^16. `fours` has four values for each place: children a b / c d. Their mean (a+b+c+d)/4 and
+/// the details (a-b+c-d)/4, (a+b-c-d)/4, (a-b-c+d)/4, each rounded, become four `details`; `means` gets the means
+/// alone, and `levels` the same as `quantise` gives. `details` may be `fours`. Returns the bits of the levels.
+int haar_forward(std::int16_t const* fours, std::size_t places, DetailStep const& step, std::int16_t* means,
+                 std::int16_t* details, std::int16_t* levels);
+
+/// Levels of details, 0 in place of the means. Returns their bits.
+int quantise(std::int16_t const* details, std::size_t places, DetailStep const& step, std::int16_t* levels);
+
+/// The other way: details h, v, d, which are levels times `step`, and the means m give m+h+v+d, m-h+v-d, m+h-v-d,
+/// m-h-v+d. The first of each four is not read. `out` may be `levels`.
+void haar_inverse(std::int16_t const* means, std::int16_t const* levels, std::uint16_t step, std::size_t places,
+                  std::int16_t* out);
 
 } // namespace framelet

@@ -135,10 +135,14 @@ void HeldPicture::show(Viewport viewport) {
     search_ = {};
 }
 
-void HeldPicture::keep_for_search() {
+void HeldPicture::prepare_search(std::span<DisplayFramelet const> framelets) {
     constexpr std::size_t green = 1;
     if (!is_searched()) {
         search_.copy(points_, green);
+    }
+    for (DisplayFramelet const& framelet : framelets) {
+        Place const at = place(framelet.tile);
+        search_.prepare(at.left, at.top, at.side);
     }
 }
 

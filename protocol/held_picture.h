@@ -22,7 +22,7 @@ struct PictureVector {
 
 /// Four values a pixel and plane: at half the spacing of the pixels coarse and fine framelets alike find what they
 /// were. Nothing coarse is spread over the values that it stands for (`point_grids.h`). 16 bytes a pixel of the
-/// viewport, rounded up to tiles of the coarsest kind, 15.8 MB at 1280x720; 4 more where it is kept for searches.
+/// viewport, rounded up to tiles of the coarsest kind, 15.8 MB at 1280x720; 4.2 more where it is kept for searches.
 class HeldPicture {
 public:
     /// Larger viewports have no such picture: their framelets are coded without.
@@ -58,8 +58,9 @@ public:
         return {std::clamp(place.left + vector.x, 0, points_.width() - place.side),
                 std::clamp(place.top + vector.y, 0, points_.height() - place.side), place.side};
     }
-    /// For whoever looks for vectors, from now on and until another viewport is shown.
-    void keep_for_search();
+    /// For whoever is about to look for vectors of these framelets. From the first call on more is kept, until another
+    /// viewport is shown.
+    void prepare_search(std::span<DisplayFramelet const> framelets);
     bool is_searched() const { return search_.is_kept(); }
     SearchPicture::Source searched(Place const& place, PictureVector vector) const {
         Place const from = moved(place, vector);

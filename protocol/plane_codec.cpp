@@ -131,8 +131,11 @@ PlaneParts PlaneCodec::encode(std::span<DisplayFramelet const> framelets, std::s
 }
 
 void PlaneCodec::add_prediction(DisplayValues const& left, DisplayFramelet& framelet) const {
-    bool const alone = prediction_.kind == PredictionKind::none;
-    to_samples(alone ? left : left + display_values(prediction_.samples), framelet);
+    if (prediction_.kind == PredictionKind::none) {
+        to_samples(left, framelet);
+    } else {
+        add_to_samples(left, prediction_.samples, framelet);
+    }
 }
 
 void PlaneCodec::put_prediction() {

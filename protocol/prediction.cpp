@@ -21,12 +21,11 @@ struct Way {
 
 HaarLevels predict(HeldPicture const& held, DisplayFramelet const& framelet, std::uint8_t quality, VectorSearch& search,
                    Prediction& prediction) {
-    DisplayValues const values = display_values(framelet);
     auto const code_at = [&](PictureVector vector, int bits_beside, int most, Way& way) {
         way.prediction.vector = vector;
         held.predict(framelet.tile, vector, way.prediction.samples);
-        DisplayValues const left = values - display_values(way.prediction.samples);
-        way.bits = code(left, quality, most - bits_beside, way.code) + bits_beside;
+        way.bits =
+            code(difference(framelet, way.prediction.samples), quality, most - bits_beside, way.code) + bits_beside;
     };
     constexpr int any = std::numeric_limits<int>::max();
     Way at_place, alone, moved;
@@ -34,7 +33,7 @@ HaarLevels predict(HeldPicture const& held, DisplayFramelet const& framelet, std
     code_at({}, bits_of_kind, any, at_place);
     Way* best = &at_place;
     if (best->bits > few_bits) {
-        alone.bits = code(values, quality, best->bits, alone.code);
+        alone.bits = code(display_values(framelet), quality, best->bits, alone.code);
         best = alone.bits <= best->bits ? &alone : best;
         PictureVector const vector = search.find(held, framelet);
         if (best->bits > few_bits && vector != PictureVector{}) {

@@ -51,31 +51,11 @@ public:
         return others;
     }
 
-    /// Makes all from `at` to `end` what they are expected to be.
-    void extend(std::size_t at, std::size_t end) {
-        while (at < end) {
-            std::size_t const row_end = std::min(end, (at / framelet_side + 1) * framelet_side);
-            (*this)[at] = expected(at);
-            for (++at; at < row_end && !follows_above(at); ++at) {
-                (*this)[at] = (*this)[at - 1];
-            }
-            // A whole row at once, whatever is left of this one: what comes behind is written later.
-            std::memcpy(begin() + at, begin() + at + above, framelet_side);
-            at = row_end;
-        }
-    }
-
 private:
-    /// Not of the first column: so do the rest of its row then.
-    bool follows_above(std::size_t at) const {
-        std::uint8_t const* const kind = kinds_.data() + margin + at;
-        return kind[-1] == kind[above - 1];
-    }
-
     static constexpr std::size_t margin = 2 * framelet_side;
     static constexpr std::ptrdiff_t above = -framelet_side;
     static constexpr std::uint8_t no_kind = 255;
-    std::array<std::uint8_t, margin + framelet_samples + framelet_side> kinds_; ///< and a row behind them
+    std::array<std::uint8_t, margin + framelet_samples> kinds_;
 };
 
 /// How far the kinds that come otherwise are from what is expected goes to `turns`, unless there are but two.
@@ -135,37 +115,92 @@ Gaps take_gaps(ByteCursor& bytes) {
     return gaps;
 }
 
+/// The kinds of a row's samples, two bits each: a bit in each word.
+class KindRow {
+public:
+    unsigned operator[](std::size_t x) const { return (low_ >> x & 1) | (high_ >> x & 1) << 1; }
+
+    /// The sample at x is of a kind that was not expected there. To its right others follow it, as far as to where the
+    /// row above has its kind: from there on they are as those. `above`: null for the first row, all of which follows.
+    void turn(std::size_t x, unsigned kind, KindRow const* above) {
+        Word const right = ~Word{0} << x;
+        Word follows = right;
+        if (above != nullptr) {
+            low_ = (low_ & ~right) | (above->low_ & right);
+            high_ = (high_ & ~right) | (above->high_ & right);
+            Word const met = ~(above->low_ ^ everywhere(kind & 1)) & ~(above->high_ ^ everywhere(kind >> 1)) & right;
+            follows &= (met & (~met + 1)) - 1; // all, if it meets none
+        }
+        low_ = (low_ & ~follows) | (everywhere(kind & 1) & follows);
+        high_ = (high_ & ~follows) | (everywhere(kind >> 1) & follows);
+    }
+
+    void write(std::uint8_t* kinds) const {
+        Bytes const row = (bytes(low_) & 1) | (bytes(high_) & 2);
+        std::memcpy(kinds, &row, sizeof row);
+    }
+
+private:
+    using Word = std::uint32_t; // its upper half says nothing
+    using Bytes [[gnu::vector_size(framelet_side)]] = std::uint8_t;
+    using Halves [[gnu::vector_size(framelet_side)]] = std::uint64_t;
+
+    static constexpr Word everywhere(unsigned bit) { return ~(bit - 1); }
+    /// 255 for each bit that is set.
+    static Bytes bytes(Word word) {
+        constexpr std::uint64_t ones = 0x0101010101010101;
+        constexpr Bytes bits{1, 2, 4, 8, 16, 32, 64, 128, 1, 2, 4, 8, 16, 32, 64, 128};
+        auto const spread = reinterpret_cast<Bytes>(Halves{(word & 255) * ones, (word >> 8 & 255) * ones});
+        return reinterpret_cast<Bytes>((spread & bits) != 0);
+    }
+
+    Word low_ = 0, high_ = 0;
+};
+
 /// The reverse of `put_mask`: kinds in `layer_of`. `turns` is empty where there are but two.
 void read_mask(Gaps const& gaps, unsigned kinds, std::span<std::uint8_t const> turns, FrameletShape& shape) {
-    KindRows rows;
+    std::array<KindRow, framelet_side> rows;
+    KindRow row; // all but what has turned in it is as above it
+    std::size_t y = 0;
+    auto const finish_rows = [&](std::size_t end) {
+        for (; (y + 1) * framelet_side <= end; ++y) {
+            rows[y] = row;
+        }
+    };
     std::size_t at = 0, turned = 0;
     for (std::uint8_t const gap : gaps.bytes) {
-        std::size_t const end = gap == rest ? framelet_samples : at + gap;
-        rows.extend(at, end);
-        at = end;
+        at = gap == rest ? framelet_samples : at + gap;
+        finish_rows(at);
         if (gap < goes_on) {
             unsigned const turn = turns.empty() ? 1 : turns[turned++];
             if (turn == 0 || turn >= kinds) {
                 throw ProtocolError("a shape has a sample on a layer that it does not have");
             }
-            rows[at] = static_cast<std::uint8_t>((rows.expected(at) + turn) % kinds);
+            std::size_t const x = at % framelet_side;
+            row.turn(x, (row[x] + turn) % kinds, y == 0 ? nullptr : &rows[y - 1]);
             ++at;
         }
     }
-    from_rows(rows.begin(), framelet_side, shape.layer_of.data());
+    finish_rows(framelet_samples);
+    SamplePlane in_order;
+    for (y = 0; y < framelet_side; ++y) {
+        rows[y].write(in_order.data() + y * framelet_side);
+    }
+    from_rows(in_order.data(), framelet_side, shape.layer_of.data());
 }
 
 /// From kinds to layers, with place for what is loose.
 void resolve_kinds(std::uint8_t head, FrameletShape& shape) {
-    std::size_t loose = 0;
-    for (std::uint8_t& kind : shape.layer_of) {
-        if (kind >= shape.layer_count) {
-            kind = FrameletShape::loose;
-            ++loose;
+    std::uint16_t loose = 0;
+    if (head_has_loose(head)) {
+        for (std::uint8_t& kind : shape.layer_of) { // without an early end: many at a time
+            bool const is_loose = kind >= shape.layer_count;
+            kind = is_loose ? FrameletShape::loose : kind;
+            loose = static_cast<std::uint16_t>(loose + (is_loose ? 1 : 0));
         }
-    }
-    if (head_has_loose(head) && loose == 0) {
-        throw ProtocolError("a shape has none of the loose samples that it announces");
+        if (loose == 0) {
+            throw ProtocolError("a shape has none of the loose samples that it announces");
+        }
     }
     shape.loose_samples.resize(loose);
 }

@@ -31,7 +31,7 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
     static PlaneCodec codec;
     static HeldPicture picture;
     picture.show(viewport);
-    picture.keep_for_search();
+    picture.prepare_search({});
     HeldPicture* const held = data[1] % 2 == 0 ? nullptr : &picture;
     std::vector<DisplayFramelet> framelets = framelets_of(data[0] % 129u);
     std::vector<std::uint8_t> quality(framelets.size());

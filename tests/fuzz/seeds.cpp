@@ -142,7 +142,7 @@ int main(int argc, char** argv) {
         if (count < 128) {
             HeldPicture held;
             held.show(batch.view.viewport);
-            held.keep_for_search();
+            held.prepare_search({});
             held.take(batch.framelets);
             write_planes(folder, batch, &held);
             write_planes(folder, batch, nullptr);

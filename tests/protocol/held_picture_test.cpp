@@ -205,10 +205,12 @@ TEST(HeldPicture, PredictsAsIfAllOfItWerePoints) {
         take(held, framelet);
         flat.take(held.place(framelet.tile), framelet.red);
         flat_green.take(held.place(framelet.tile), framelet.green);
-        if (i == 500) {
-            held.keep_for_search();
-        }
         Tile const tile = any_tile();
+        if (i >= 500) {
+            DisplayFramelet looked_for;
+            looked_for.tile = tile;
+            held.prepare_search({&looked_for, 1});
+        }
         PictureVector const vector{component(), component()};
         DisplayFramelet const out = predicted(held, tile, vector);
         HeldPicture::Place const place = held.place(tile);
@@ -217,12 +219,16 @@ TEST(HeldPicture, PredictsAsIfAllOfItWerePoints) {
             ASSERT_EQ(out.red[k], flat.predicted(place, vector, x, y)) << i << " tile " << tile.code;
         }
         if (held.is_searched()) {
-            SearchPicture::Source const source = held.searched(place, vector);
-            HeldPicture::Place const from = held.moved(place, vector);
-            int const y = static_cast<int>(random() % unsigned(from.side));
-            for (int x = 0; x < from.side; ++x) {
+            // Of coarse framelets every fourth point, wherever they may have been; fine ones only where they are.
+            int const step = SearchPicture::is_coarse(place.side) ? SearchPicture::coarse : 1;
+            PictureVector const to = step > 1 ? vector : PictureVector{};
+            SearchPicture::Source const source = held.searched(place, to);
+            HeldPicture::Place const from = held.moved(place, to);
+            int const y = static_cast<int>(random() % unsigned(from.side / step));
+            for (int x = 0; x < from.side / step; ++x) {
                 auto const green = source.first[static_cast<std::size_t>(y) * source.stride + std::size_t(x)];
-                ASSERT_EQ(green, flat_green.at(from.left + x, from.top + y)) << i;
+                auto const at = [&](int first, int points) { return (first / step + points) * step + step / 2; };
+                ASSERT_EQ(green, flat_green.at(at(from.left, x), at(from.top, y))) << i;
             }
         }
     }
@@ -238,7 +244,7 @@ TEST(VectorSearch, FindsNothingInWhatIsNotKeptForIt) {
 TEST(VectorSearch, FindsWhatHasMoved) {
     std::mt19937 random(1);
     HeldPicture held = grey_picture();
-    held.keep_for_search();
+    held.prepare_search({});
     ImagePlane const plane(viewport);
     auto const scene = [](double x, double y) {
         return 128 + 60 * std::sin(0.13 * x) + 60 * std::cos(0.17 * y + 0.05 * x);

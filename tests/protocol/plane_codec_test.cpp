@@ -71,35 +71,91 @@ DisplayFramelet documented_framelet() {
 }
 
 TEST(HaarTransform, KnownValues) {
-    std::array<std::int16_t, 4> four{40, 20, 12, 8};
+    std::array<std::int16_t, 4> const four{40, 20, 12, 8};
+    std::array<std::int16_t, 4> details, levels;
     std::int16_t mean = 0;
-    haar_forward(four.data(), &mean, 1);
+    int const bits = haar_forward(four.data(), 1, DetailStep(3), &mean, details.data(), levels.data());
     EXPECT_EQ(mean, 20);
-    EXPECT_EQ(four, (std::array<std::int16_t, 4>{20, 6, 10, 4}));
-    four[0] = 99; // not read
-    haar_inverse(&mean, four.data(), 1, four.data());
-    EXPECT_EQ(four, (std::array<std::int16_t, 4>{40, 20, 12, 8}));
+    EXPECT_EQ(details, (std::array<std::int16_t, 4>{20, 6, 10, 4}));
+    EXPECT_EQ(levels, (std::array<std::int16_t, 4>{0, 2, 3, 1})); // 4 and 10 are a third above a level: down
+    EXPECT_EQ(bits, 3 * bits_of_any + 6);
+    details[0] = 99; // not read
+    haar_inverse(&mean, details.data(), 1, 1, details.data());
+    EXPECT_EQ(details, four);
+    haar_inverse(&mean, levels.data(), 3, 1, levels.data());
+    EXPECT_EQ(levels, (std::array<std::int16_t, 4>{20 + 6 + 9 + 3, 20 - 6 + 9 - 3, 20 + 6 - 9 - 3, 20 - 6 - 9 + 3}));
 }
 
 TEST(HaarTransform, AllNumbersOfPlacesAreAlike) {
     std::mt19937 random(1);
-    std::array<std::int16_t, 4 * 7> values, single;
+    constexpr std::size_t places = 7;
+    std::array<std::int16_t, 4 * places> values, details, levels, again;
+    std::array<std::int16_t, places> means;
     for (auto& value : values) {
         value = static_cast<std::int16_t>(random());
     }
-    single = values;
-    std::array<std::int16_t, 7> means, single_means;
-    haar_forward(values.data(), means.data(), 7);
-    for (std::size_t i = 0; i < 7; ++i) {
-        haar_forward(&single[4 * i], &single_means[i], 1);
+    for (std::uint16_t const size : std::array<std::uint16_t, 4>{1, 2, 9, 1016}) {
+        DetailStep const step(size);
+        int const bits = haar_forward(values.data(), places, step, means.data(), details.data(), levels.data());
+        EXPECT_EQ(quantise(details.data(), places, step, again.data()), bits);
+        EXPECT_EQ(again, levels);
+        int sum = 0;
+        for (std::size_t i = 0; i < places; ++i) {
+            std::array<std::int16_t, 4> of_details, of_levels;
+            std::int16_t mean = 0;
+            sum += haar_forward(&values[4 * i], 1, step, &mean, of_details.data(), of_levels.data());
+            EXPECT_EQ(mean, means[i]);
+            EXPECT_TRUE(std::equal(of_details.begin(), of_details.end(), &details[4 * i]));
+            EXPECT_TRUE(std::equal(of_levels.begin(), of_levels.end(), &levels[4 * i]));
+        }
+        EXPECT_EQ(sum, bits);
+        haar_inverse(means.data(), levels.data(), size, places, again.data());
+        for (std::size_t i = 0; i < places; ++i) {
+            std::array<std::int16_t, 4> single;
+            haar_inverse(&means[i], &levels[4 * i], size, 1, single.data());
+            EXPECT_TRUE(std::equal(single.begin(), single.end(), &again[4 * i]));
+        }
     }
-    EXPECT_EQ(values, single);
-    EXPECT_EQ(means, single_means);
-    haar_inverse(means.data(), values.data(), 7, values.data());
-    for (std::size_t i = 0; i < 7; ++i) {
-        haar_inverse(&means[i], &single[4 * i], 1, &single[4 * i]);
+}
+
+/// Against what the declaration says, for every step that a quality makes and every detail.
+TEST(HaarTransform, LevelsAreTheNearestButForWhatIsNearerToZero) {
+    std::vector<std::int16_t> details, levels;
+    for (int value = -32768; value < 32768; value += 1) {
+        if (details.size() % 4 == 0) {
+            details.push_back(77); // a mean
+        }
+        details.push_back(static_cast<std::int16_t>(value));
     }
-    EXPECT_EQ(values, single);
+    details.resize((details.size() + 3) / 4 * 4);
+    levels.resize(details.size());
+    for (int base = 1; base <= 159; base += base < 20 ? 1 : 7) {
+        for (int const step : {base, 2 * base, 4 * base, 8 * base}) {
+            for (std::size_t first = 0; first < details.size(); first += 256) { // an octave at a time
+                std::size_t const some = std::min<std::size_t>(256, details.size() - first);
+                int const bits =
+                    quantise(&details[first], some / 4, DetailStep(static_cast<std::uint16_t>(step)), &levels[first]);
+                int expected_bits = 0;
+                for (std::size_t i = first; i < first + some; ++i) {
+                    int const level = i % 4 == 0 ? 0 : int{levels[i]};
+                    expected_bits += level == 0 ? 0 : bits_of_any + std::min(std::abs(level), int{most_bits_of_size});
+                }
+                EXPECT_EQ(bits, expected_bits);
+            }
+            for (std::size_t i = 0; i < details.size(); ++i) {
+                int const size = std::abs(int{details[i]}) + step * 22 / 64;
+                int const level = details[i] < 0 ? -int{levels[i]} : int{levels[i]};
+                if (i % 4 == 0) {
+                    ASSERT_EQ(levels[i], 0);
+                } else if (details[i] == -32768 && step == 1) {
+                    ASSERT_EQ(levels[i], details[i]); // has no counterpart
+                } else {
+                    ASSERT_GE(level, size / step) << details[i] << " / " << step;
+                    ASSERT_LE(level, (size + size * step / 65536 + 1) / step) << details[i] << " / " << step;
+                }
+            }
+        }
+    }
 }
 
 /// From hardly any level to hardly a zero, long runs over the ends of pieces, and the largest levels.

@@ -113,7 +113,7 @@ TEST(PredictedBatch, ReadersSeeWhatWritersSayWhateverTheSamplesAre) {
     }
     HeldPicture held;
     held.show(small_viewport);
-    held.keep_for_search();
+    held.prepare_search({});
     PlaneCodec codec;
     std::vector<DisplayFramelet> said = framelets, read = framelets;
     std::vector<std::uint8_t> quality(group), read_quality(group), bytes;
@@ -211,7 +211,7 @@ TEST(PredictedBatch, DamagedGroupsAreRefusedOrDecoded) {
     }
     HeldPicture held;
     held.show(small_viewport);
-    held.keep_for_search();
+    held.prepare_search({});
     held.take(make_batch(random, small_viewport, 100, 2, 0).framelets);
     PlaneCodec codec;
     std::vector<DisplayFramelet> decoded = batch.framelets;
