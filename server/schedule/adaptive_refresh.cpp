@@ -179,20 +179,27 @@ double AdaptiveRefresh::plan_inspections(RefreshInput const& input) {
     return tiles * framelet_samples;
 }
 
-/// The next patches of the cycle, as many as a batch may hold, at least one.
+/// The next patches of the cycle, as many as a batch may hold, at least one; in order of their places, since neighbours
+/// are coded in fewer bytes beside each other.
 void AdaptiveRefresh::take_batch(std::size_t most_framelets, RefreshPlan& plan) {
-    while (next_ < cycle_.size()) {
-        Patch const& patch = cycle_[next_];
-        std::size_t const tiles = plan.tiles.size();
-        append_tiles(field_.plane(), patch, plan.tiles);
-        if (tiles > 0 && plan.tiles.size() > most_framelets) {
-            plan.tiles.resize(tiles);
-            return;
+    std::size_t tiles = 0;
+    for (; next_ < cycle_.size(); ++next_) {
+        plan.tiles.clear();
+        append_tiles(field_.plane(), cycle_[next_], plan.tiles);
+        if (tiles > 0 && tiles + plan.tiles.size() > most_framelets) {
+            break;
         }
-        plan.patches.push_back(patch);
-        plan.tile_counts.push_back(plan.tiles.size() - tiles);
+        tiles += plan.tiles.size();
+        plan.patches.push_back(cycle_[next_]);
+    }
+    std::ranges::sort(plan.patches, {},
+                      [&](Patch const& patch) { return std::pair(field_.range_of(patch.node).first, patch.depth); });
+    plan.tiles.clear();
+    for (Patch const& patch : plan.patches) {
+        std::size_t const before = plan.tiles.size();
+        append_tiles(field_.plane(), patch, plan.tiles);
+        plan.tile_counts.push_back(plan.tiles.size() - before);
         take(patch, plan.now);
-        ++next_;
     }
 }
 

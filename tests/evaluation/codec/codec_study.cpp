@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <limits>
 
 #include <nlohmann/json.hpp>
 #include <tbb/global_control.h>
@@ -20,11 +21,19 @@ namespace {
 
 using nlohmann::json;
 
-/// A batch through a codec and back.
-struct Coded {
-    Batch decoded;
+/// What goes over the wire, of whichever codec.
+struct Message {
+    Batch const* original = nullptr; ///< not on the wire: what a picture's codec does not say of tiles
+    EncodedBatch batch;
+    std::vector<std::byte> picture;
     std::size_t bytes = 0; ///< of colour
     std::size_t shape_bytes = 0;
+};
+
+/// A batch through a codec and back.
+struct Coded {
+    Message message;
+    Batch decoded;
     double encode_seconds = 0, decode_seconds = 0;
 };
 
@@ -36,55 +45,63 @@ struct Held {
 struct Candidate {
     std::string name;
     std::vector<int> qualities;
-    std::function<Coded(Batch const&, int quality)> code;
+    std::function<void(Batch const&, int quality, Coded&)> encode;
+    std::function<void(Coded&)> decode;
     Held* held = nullptr; ///< where what batches before it left counts
 };
 
 /// `held`: null where each batch is coded alone.
-Coded code_planes(BatchCodec& codec, Held* held, Batch batch, int quality) {
+void encode_planes(BatchCodec& codec, Held* held, Batch batch, int quality, Coded& coded) {
     if (quality != exact_quality) {
         batch.quality.assign(batch.framelets.size(), static_cast<std::uint8_t>(quality));
     }
-    Coded coded;
-    EncodedBatch encoded;
+    Message& message = coded.message;
     coded.encode_seconds =
-        processor_seconds_of([&] { encoded = codec.encode(batch, held == nullptr ? nullptr : &held->sent); });
-    coded.decode_seconds = processor_seconds_of(
-        [&] { coded.decoded = codec.decode(encoded, held == nullptr ? nullptr : &held->received); });
-    coded.bytes = encoded.payload.size();
-    coded.shape_bytes = encoded.shapes.size();
-    return coded;
+        processor_seconds_of([&] { message.batch = codec.encode(batch, held == nullptr ? nullptr : &held->sent); });
+    message.bytes = message.batch.payload.size();
+    message.shape_bytes = message.batch.shapes.size();
 }
 
-/// One picture of 16 pixels' width, the framelets below each other.
-Coded code_strip(JpegCodec& codec, Batch const& batch, int quality) {
-    Picture strip(framelet_side, framelet_side * static_cast<int>(batch.framelets.size()));
+void decode_planes(BatchCodec& codec, Held* held, Coded& coded) {
+    coded.decode_seconds = processor_seconds_of(
+        [&] { coded.decoded = codec.decode(coded.message.batch, held == nullptr ? nullptr : &held->received); });
+}
+
+/// Calls `body(framelet, k, pixel)` for all samples, the framelets below each other in a picture.
+template <typename Framelets, typename Body>
+void for_each_pixel(Framelets& framelets, Body const& body) {
     std::size_t pixel = 0;
-    auto const for_each_pixel = [&pixel](auto& framelets, auto const& body) {
-        pixel = 0;
-        for (auto& framelet : framelets) {
-            for (std::uint32_t i = 0; i < framelet_samples; ++i, pixel += 4) {
-                body(framelet, morton_index(i % framelet_side, i / framelet_side));
-            }
+    for (auto& framelet : framelets) {
+        for (std::uint32_t i = 0; i < framelet_samples; ++i, pixel += 4) {
+            body(framelet, morton_index(i % framelet_side, i / framelet_side), pixel);
         }
-    };
-    for_each_pixel(batch.framelets, [&](DisplayFramelet const& framelet, std::uint32_t k) {
+    }
+}
+
+/// One picture of 16 pixels' width.
+void encode_strip(JpegCodec& codec, Batch const& batch, int quality, Coded& coded) {
+    Picture strip(framelet_side, framelet_side * static_cast<int>(batch.framelets.size()));
+    for_each_pixel(batch.framelets, [&](DisplayFramelet const& framelet, std::uint32_t k, std::size_t pixel) {
         strip.rgba[pixel] = framelet.red[k];
         strip.rgba[pixel + 1] = framelet.green[k];
         strip.rgba[pixel + 2] = framelet.blue[k];
     });
-    Coded coded{batch};
-    Picture decoded;
     std::span<std::byte const> bytes;
     coded.encode_seconds = processor_seconds_of([&] { bytes = codec.encode(strip, quality); });
-    coded.decode_seconds = processor_seconds_of([&] { codec.decode(bytes, decoded); });
-    coded.bytes = bytes.size();
-    for_each_pixel(coded.decoded.framelets, [&](DisplayFramelet& framelet, std::uint32_t k) {
+    coded.message.original = &batch;
+    coded.message.picture.assign(bytes.begin(), bytes.end());
+    coded.message.bytes = bytes.size();
+}
+
+void decode_strip(JpegCodec& codec, Coded& coded) {
+    Picture decoded;
+    coded.decode_seconds = processor_seconds_of([&] { codec.decode(coded.message.picture, decoded); });
+    coded.decoded = *coded.message.original;
+    for_each_pixel(coded.decoded.framelets, [&](DisplayFramelet& framelet, std::uint32_t k, std::size_t pixel) {
         framelet.red[k] = decoded.rgba[pixel];
         framelet.green[k] = decoded.rgba[pixel + 1];
         framelet.blue[k] = decoded.rgba[pixel + 2];
     });
-    return coded;
 }
 
 double square(std::uint8_t a, std::uint8_t b) {
@@ -126,33 +143,40 @@ Picture picture_of(CorpusMoment const& moment, std::vector<Batch> const& batches
     return picture;
 }
 
-/// A moment's batches one after the other, as a session codes them, so many times: of each the shortest times.
+/// A moment's batches one after the other, as a session codes them, so many times, then the same on the other side:
+/// these are two machines', whose caches hold one side's picture each. Of each batch the shortest times.
 std::vector<Coded> code(CorpusMoment const& moment, Candidate const& candidate, int quality, int rounds) {
     Held after_lead;
     if (candidate.held != nullptr) {
         *candidate.held = {};
         for (Batch const& batch : moment.lead) {
-            candidate.code(batch, quality);
+            Coded coded;
+            candidate.encode(batch, quality, coded);
+            candidate.decode(coded);
         }
         after_lead = *candidate.held;
     }
-    std::vector<Coded> best;
-    for (int round = 0; round < rounds; ++round) {
-        if (candidate.held != nullptr) {
-            *candidate.held = after_lead;
-        }
-        for (std::size_t i = 0; i < moment.batches.size(); ++i) {
-            Coded coded = candidate.code(moment.batches[i], quality);
-            if (round == 0) {
-                best.push_back(std::move(coded));
-            } else {
-                best[i].encode_seconds = std::min(best[i].encode_seconds, coded.encode_seconds);
-                best[i].decode_seconds = std::min(best[i].decode_seconds, coded.decode_seconds);
+    std::vector<Coded> all(moment.batches.size());
+    auto const repeat = [&](double Coded::*seconds, auto const& step) {
+        std::vector<double> least(all.size(), std::numeric_limits<double>::max());
+        for (int round = 0; round < rounds; ++round) {
+            if (candidate.held != nullptr) {
+                *candidate.held = after_lead;
+            }
+            for (std::size_t i = 0; i < all.size(); ++i) {
+                step(i);
+                least[i] = std::min(least[i], all[i].*seconds);
             }
         }
-        FRAMELET_CHECK(candidate.held == nullptr || candidate.held->sent == candidate.held->received);
-    }
-    return best;
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            all[i].*seconds = least[i];
+        }
+    };
+    repeat(&Coded::encode_seconds, [&](std::size_t i) { candidate.encode(moment.batches[i], quality, all[i]); });
+    HeldPicture const sent = candidate.held != nullptr ? candidate.held->sent : HeldPicture{};
+    repeat(&Coded::decode_seconds, [&](std::size_t i) { candidate.decode(all[i]); });
+    FRAMELET_CHECK(candidate.held == nullptr || sent == candidate.held->received);
+    return all;
 }
 
 json measure(std::vector<CorpusMoment> const& corpus, Candidate const& candidate, int quality,
@@ -166,8 +190,8 @@ json measure(std::vector<CorpusMoment> const& corpus, Candidate const& candidate
             Batch const& batch = moment.batches[i];
             compare(batch.framelets, coded[i].decoded.framelets, samples);
             count += static_cast<double>(batch.framelets.size() * framelet_samples);
-            bytes += static_cast<double>(coded[i].bytes);
-            shape_bytes += static_cast<double>(coded[i].shape_bytes);
+            bytes += static_cast<double>(coded[i].message.bytes);
+            shape_bytes += static_cast<double>(coded[i].message.shape_bytes);
             encode += coded[i].encode_seconds;
             decode += coded[i].decode_seconds;
             decoded.push_back(std::move(coded[i].decoded));
@@ -218,11 +242,21 @@ json compare_codecs(CodecStudy const& study) {
     JpegCodec jpeg;
     std::vector<int> const steps{4, 6, 8, 10, 12, 14, 18, 24, 32, 48};
     Held held;
+    auto const planes_of = [&](std::string name, std::vector<int> qualities, Held* of) {
+        return Candidate{std::move(name), std::move(qualities),
+                         [&planes, of](Batch const& batch, int quality, Coded& coded) {
+                             encode_planes(planes, of, batch, quality, coded);
+                         },
+                         [&planes, of](Coded& coded) { decode_planes(planes, of, coded); }, of};
+    };
     std::vector<Candidate> const candidates{
-        {"planes", {exact_quality}, [&](auto const&... told) { return code_planes(planes, nullptr, told...); }},
-        {"predicted", steps, [&](auto const&... told) { return code_planes(planes, &held, told...); }, &held},
-        {"haar", steps, [&](auto const&... told) { return code_planes(planes, nullptr, told...); }},
-        {"jpeg", {95, 93, 90, 85, 80, 70, 60, 50, 40}, [&](auto const&... told) { return code_strip(jpeg, told...); }},
+        planes_of("planes", {exact_quality}, nullptr),
+        planes_of("predicted", steps, &held),
+        planes_of("haar", steps, nullptr),
+        {"jpeg",
+         {95, 93, 90, 85, 80, 70, 60, 50, 40},
+         [&](Batch const& batch, int quality, Coded& coded) { encode_strip(jpeg, batch, quality, coded); },
+         [&](Coded& coded) { decode_strip(jpeg, coded); }},
     };
     json result = json::array();
     for (std::filesystem::path const& file : study.scenes) {
