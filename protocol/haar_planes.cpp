@@ -9,8 +9,6 @@
 #include "protocol/haar_transform.h"
 #include "protocol/zigzag.h"
 
-#pragma GCC diagnostic ignored "-Wpsabi" // how processors without AVX would pass vectors matters to no other file
-
 namespace framelet {
 namespace {
 
@@ -150,39 +148,30 @@ namespace {
 /// Least squares: how many eighths of luma, as it will be read, the details of chroma have. Each counts as much as it
 /// does in the picture.
 int fitted_share(Fours const& luma, Fours const& chroma) {
-    using Words [[gnu::vector_size(32)]] = std::int16_t;
-    using Integers [[gnu::vector_size(64)]] = std::int32_t;
-    using Floats [[gnu::vector_size(64)]] = float;
-    constexpr std::size_t at_a_time = sizeof(Words) / sizeof(std::int16_t);
-    auto const load = [](std::int16_t const* from, std::size_t count) {
-        Words words{};
-        std::memcpy(&words, from, count * sizeof *from);
-        return __builtin_convertvector(__builtin_convertvector(words, Integers), Floats);
-    };
-    Floats products{}, squares{};
+    float products = 0, squares = 0;
     for (std::size_t octave = 0; octave < octaves; ++octave) {
-        Floats const weight = Floats{} + static_cast<float>(1u << (2 * octave));
-        std::size_t const count = 4 * places(octave);
-        for (std::size_t i = 0; i < count; i += at_a_time) {
-            std::size_t const first = first_four[octave] + i, some = std::min(at_a_time, count - i);
-            Floats const y = load(&luma[first], some);
-            products += weight * y * load(&chroma[first], some);
-            squares += weight * y * y;
+        // Sums stay within 31 bits: details of a place have at most the squares of its samples, 64 times 4080^2
+        // together.
+        std::int32_t product = 0, square = 0;
+        for (std::size_t i = first_four[octave]; i < first_four[octave] + 4 * places(octave); ++i) {
+            product += luma[i] * chroma[i];
+            square += luma[i] * luma[i];
         }
-    }
-    float product = 0, square = 0;
-    for (std::size_t lane = 0; lane < at_a_time; ++lane) {
-        product += products[lane];
-        square += squares[lane];
+        auto const weight = static_cast<float>(1u << (2 * octave));
+        products += weight * static_cast<float>(product);
+        squares += weight * static_cast<float>(square);
     }
     constexpr float eighths = 8;
-    return square > 0 ? static_cast<int>(std::lround(std::clamp(eighths * product / square, -8.0f, 7.0f))) : 0;
+    return squares > 0 ? static_cast<int>(std::lround(std::clamp(eighths * products / squares, -8.0f, 7.0f))) : 0;
 }
 
 } // namespace
 
 void share_luma(std::uint8_t quality, HaarCode& code) {
     HaarLevels& levels = code.levels;
+    if (code.bits[0] == 0 || code.bits[1] + code.bits[2] == 0) {
+        return; // nothing to share, or nobody to share it
+    }
     Fours const luma = details_of(levels.details[0], base_step(0, quality));
     for (std::size_t chroma = 0; chroma < levels.shares.size(); ++chroma) {
         std::size_t const plane = 1 + chroma;

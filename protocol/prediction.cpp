@@ -21,28 +21,42 @@ struct Way {
 
 HaarLevels predict(HeldPicture const& held, DisplayFramelet const& framelet, std::uint8_t quality, VectorSearch& search,
                    Prediction& prediction) {
-    auto const code_at = [&](PictureVector vector, int bits_beside, int most, Way& way) {
-        way.prediction.vector = vector;
-        held.predict(framelet.tile, vector, way.prediction.samples);
-        way.bits =
-            code(difference(framelet, way.prediction.samples), quality, most - bits_beside, way.code) + bits_beside;
-    };
-    constexpr int any = std::numeric_limits<int>::max();
     Way at_place, alone, moved;
     at_place.prediction.kind = PredictionKind::same_place;
-    code_at({}, bits_of_kind, any, at_place);
-    Way* best = &at_place;
-    if (best->bits > few_bits) {
-        alone.bits = code(display_values(framelet), quality, best->bits, alone.code);
-        best = alone.bits <= best->bits ? &alone : best;
+    moved.prediction.kind = PredictionKind::moved;
+    Way* best = nullptr;
+    int least = std::numeric_limits<int>::max();
+    // The way that is likely the best one comes first: all others end where they take more.
+    auto const consider = [&](Way& way, DisplayValues const& values, int bits_beside) {
+        way.bits = code(values, quality, least - bits_beside, way.code) + bits_beside;
+        if (way.bits < least) {
+            best = &way;
+            least = way.bits;
+        }
+    };
+    auto const consider_from = [&](PictureVector vector, Way& way, int bits_beside) {
+        way.prediction.vector = vector;
+        held.predict(framelet.tile, vector, way.prediction.samples);
+        consider(way, difference(framelet, way.prediction.samples), bits_beside);
+    };
+    bool const may_have_moved = search.has_moved();
+    if (!may_have_moved) {
+        consider_from({}, at_place, bits_of_kind);
+    }
+    if (least > few_bits) {
         PictureVector const vector = search.find(held, framelet);
-        if (best->bits > few_bits && vector != PictureVector{}) {
-            moved.prediction.kind = PredictionKind::moved;
-            code_at(vector, bits_of_kind + bits_of_vector, best->bits, moved);
-            best = moved.bits < best->bits ? &moved : best;
+        if (vector != PictureVector{}) {
+            consider_from(vector, moved, bits_of_kind + bits_of_vector);
+        }
+        if (may_have_moved) {
+            consider_from({}, at_place, bits_of_kind);
+        }
+        if (least > few_bits) {
+            consider(alone, display_values(framelet), 0);
         }
         share_luma(quality, best->code);
     }
+    search.found(best == &moved);
     prediction = best->prediction;
     return best->code.levels;
 }

@@ -17,9 +17,14 @@ public:
     /// picture is not kept for searches.
     PictureVector find(HeldPicture const& held, DisplayFramelet const& framelet);
 
+    /// Whether the framelet before was best predicted from elsewhere.
+    bool has_moved() const { return has_moved_; }
+    void found(bool has_moved) { has_moved_ = has_moved; }
+
 private:
     std::array<PictureVector, 6> found_{}; ///< lately, different ones
     std::size_t next_ = 0;
+    bool has_moved_ = false;
 };
 
 } // namespace framelet
