@@ -16,7 +16,7 @@ struct CodecStudy {
     std::vector<std::filesystem::path> scenes;
     CorpusOptions corpus;
     std::vector<std::string> codecs; ///< names, of `codec_names`; empty: all
-    int rounds = 9; ///< each moment's batches are coded so often; the fastest time of each counts
+    int rounds = 25; ///< each moment's batches are coded so often; of each the fastest time counts: machines are shared
     std::filesystem::path charts; ///< folder; empty: none are drawn
 };
 
