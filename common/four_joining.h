@@ -36,6 +36,7 @@ AffineOf<Number> plane_in_square(Number at, Number dx, Number dy, Number column,
     return {at - grid.side * grid.spacing * (dx * column + dy * row), dx, dy};
 }
 
+/// Of all framelets of a square.
 class FourJoining {
 public:
     static constexpr std::size_t most_fours = 16;
@@ -47,6 +48,8 @@ public:
         at_of_[quarter][four] = held.layer.at;
         dx_of_[quarter][four] = held.layer.dx;
         dy_of_[quarter][four] = held.layer.dy;
+        // Four bytes one after the other.
+        static_assert(offsetof(HeldLayer, last_row) == offsetof(HeldLayer, first_column) + 3);
         std::memcpy(&boxes_[quarter][four], &held.first_column, sizeof(std::int32_t));
     }
     /// The first `count` fours; what is found of those that are not complete means nothing.

@@ -1,7 +1,6 @@
 #include "common/layer_joining.h"
 
 #include <algorithm>
-#include <bit>
 #include <utility>
 
 #include "common/lanes.h"
@@ -40,19 +39,6 @@ double largest_of(Four values) {
     return larger(larger(values[0], values[1]), larger(values[2], values[3]));
 }
 
-/// The first bit that is set from one on; `count` where there is none before.
-template <class Bits>
-std::size_t next_of(Bits const& bits, std::size_t from, std::size_t count) {
-    for (std::size_t word = from / 64; 64 * word < count; ++word) {
-        std::uint64_t const left =
-            bits[word] & (word == from / 64 ? ~std::uint64_t{0} << from % 64 : ~std::uint64_t{0});
-        if (left != 0) {
-            return std::min(64 * word + static_cast<std::size_t>(std::countr_zero(left)), count);
-        }
-    }
-    return count;
-}
-
 std::uint64_t combine(std::uint64_t signature, std::uint64_t part) {
     return (signature + part) * 0x9e3779b97f4a7c15u;
 }
@@ -63,19 +49,7 @@ std::uint64_t signature_of(std::uint64_t batch, std::uint8_t number) {
 
 } // namespace
 
-void LayerJoining::OpenLayers::add(std::size_t of_layer, double of_motion, std::uint8_t of_part,
-                                   AffinePlane const& plane, PlaneExtent const& extent) {
-    layer[count] = static_cast<std::int16_t>(of_layer);
-    part[count] = of_part;
-    motion[count] = of_motion;
-    x[count] = extent.middle_x();
-    y[count] = extent.middle_y();
-    value[count] = plane(x[count], y[count]);
-    ++count;
-}
-
-LayerJoining::LayerJoining()
-    : layers_(most_layers), open_(std::make_unique<OpenLayers>()), next_(std::make_unique<OpenLayers>()) {}
+LayerJoining::LayerJoining() : layers_(most_layers), open_(std::make_unique<Open>()), next_(std::make_unique<Open>()) {}
 
 void LayerJoining::start(int levels, SampleGrid const& grid) {
     levels_ = levels;
@@ -143,7 +117,7 @@ void LayerJoining::join_framelets() {
             keep_four(first);
             continue;
         }
-        OpenLayers& open = levels_ > 0 ? *open_ : *next_;
+        Open& open = levels_ > 0 ? *open_ : *next_;
         open.clear();
         for (std::size_t i = first; i < last; ++i) {
             complete(i);
@@ -230,7 +204,7 @@ void LayerJoining::join_part(std::size_t first, std::size_t last, int levels) {
         }
     }
     for (std::size_t i = first; i < last; ++i) {
-        if (open_->motion[i] == taken) {
+        if (open_->motion[i] == Open::taken) {
             continue;
         }
         Group group = group_of(i, part, false);
@@ -267,7 +241,7 @@ void LayerJoining::keep(Group const& group, std::size_t seed, int levels) {
             continue;
         }
         auto const open = static_cast<std::size_t>(group.members[k]);
-        open_->motion[open] = taken;
+        open_->motion[open] = Open::taken;
         joined.parts[k] = open_->layer[open];
         JoinedLayer& member = layers_[static_cast<std::size_t>(open_->layer[open])];
         member.is_joined_further = true;
@@ -286,14 +260,14 @@ LayerJoining::Group LayerJoining::group_of(std::size_t seed, Part const& part, b
     group.members.fill(JoinedLayer::no_part);
     group.members[quarter] = static_cast<std::int16_t>(seed);
     std::size_t const last = part.quarters[4];
-    Candidates some = candidates(part, seed, own.plane);
-    std::size_t i = next_of(some, part.quarters[quarter + 1], last);
+    Open::Bits some = candidates(part, seed, own.plane);
+    std::size_t i = Open::next(some, part.quarters[quarter + 1], last);
     if (!cheaply && i < last) {
         std::size_t const tried = join_first_ones(seed, quarter, part, some, group);
         if (tried == 0) {
             return group;
         }
-        i = tried == 2 ? next_of(some, i + 1, last) : i; // two that were not of one plane will not be now
+        i = tried == 2 ? Open::next(some, i + 1, last) : i; // two that were not of one plane will not be now
     }
     group.plane = own.plane;
     group.extent = own.extent;
@@ -306,9 +280,9 @@ LayerJoining::Group LayerJoining::group_of(std::size_t seed, Part const& part, b
         if ((!cheaply || showing_cost(united(group.extent, extent)) <= group.joined_cost + showing_cost(extent)) &&
             join(members, seed, group)) {
             some = candidates(part, seed, group.plane);
-            i = next_of(some, part.quarters[its_quarter + 1], last);
+            i = Open::next(some, part.quarters[its_quarter + 1], last);
         } else {
-            i = next_of(some, i + 1, last);
+            i = Open::next(some, i + 1, last);
         }
     }
     return group;
@@ -316,11 +290,11 @@ LayerJoining::Group LayerJoining::group_of(std::size_t seed, Part const& part, b
 
 /// With the first candidate of each quarter. 0 where they are of one plane, else how many they are.
 std::size_t LayerJoining::join_first_ones(std::size_t seed, std::size_t quarter, Part const& part,
-                                          Candidates const& candidates, Group& group) const {
+                                          Open::Bits const& candidates, Group& group) const {
     Members members = group.members;
     std::size_t count = 1;
     for (std::size_t k = quarter + 1; k < members.size(); ++k) {
-        std::size_t const i = next_of(candidates, part.quarters[k], part.quarters[k + 1]);
+        std::size_t const i = Open::next(candidates, part.quarters[k], part.quarters[k + 1]);
         if (i < part.quarters[k + 1]) {
             members[k] = static_cast<std::int16_t>(i);
             ++count;
@@ -330,19 +304,8 @@ std::size_t LayerJoining::join_first_ones(std::size_t seed, std::size_t quarter,
 }
 
 /// Of those that are open, bit by bit: what is of the seed's view, body and velocity and about of this plane.
-LayerJoining::Candidates LayerJoining::candidates(Part const& part, std::size_t seed, AffinePlane const& plane) const {
-    Candidates out{};
-    WideDoubles const zero{};
-    AffineOf<WideDoubles> const lanes{zero + plane.at, zero + plane.dx, zero + plane.dy};
-    for (std::size_t i = part.quarters[0] / wide_doubles * wide_doubles; i < part.quarters[4]; i += wide_doubles) {
-        WideDoubles const value = load_lanes<WideDoubles>(&open_->value[i]);
-        WideDoubles const apart =
-            absolute(lanes(load_lanes<WideDoubles>(&open_->x[i]), load_lanes<WideDoubles>(&open_->y[i])) - value);
-        auto const is = (load_lanes<WideDoubles>(&open_->motion[i]) == open_->motion[seed]) &
-                        (apart <= hopeless * one_surface * value);
-        out[i / 64] |= std::uint64_t{bits_of(is)} << i % 64;
-    }
-    return out;
+LayerJoining::Open::Bits LayerJoining::candidates(Part const& part, std::size_t seed, AffinePlane const& plane) const {
+    return open_->find(part.quarters[0], part.quarters[4], open_->motion[seed], plane, hopeless * one_surface);
 }
 
 /// Makes a group of these, of which the seed is one, if one plane is near enough to all of them.

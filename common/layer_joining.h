@@ -13,6 +13,7 @@
 #include "common/four_joining.h"
 #include "common/held_shape.h"
 #include "common/morton.h"
+#include "common/open_layers.h"
 #include "common/plane_fit.h"
 
 namespace framelet {
@@ -76,26 +77,7 @@ private:
         double motion = 0; ///< the same for all of one view, body and velocity
     };
 
-    /// Those that may be joined further, in Morton order.
-    struct OpenLayers {
-        static constexpr std::size_t most = max_layers << 2 * most_levels;
-        template <class T>
-        using Row = std::array<T, most + wide_doubles>; ///< whole lanes are read
-
-        void clear() { count = 0; }
-        void add(std::size_t of_layer, double of_motion, std::uint8_t of_part, AffinePlane const& plane,
-                 PlaneExtent const& extent);
-
-        std::size_t count = 0;
-        Row<std::int16_t> layer{};
-        Row<std::uint8_t> part{}; ///< of the first framelet below it
-        Row<double> motion{}; ///< `taken` when it has been joined
-        Row<double> x{}, y{}, value{}; ///< its middle, and the inverse depth there
-    };
-    static constexpr double taken = -1;
-
-    /// Of those of one part: a bit for each.
-    using Candidates = std::array<std::uint64_t, OpenLayers::most / 64 + 1>;
+    using Open = OpenLayers<(max_layers << 2 * most_levels)>; ///< in Morton order
 
     /// Of `open_`: those of one part, and where its quarters begin.
     struct Part {
@@ -128,9 +110,9 @@ private:
     void join_part(std::size_t first, std::size_t last, int levels);
     void keep(Group const& group, std::size_t seed, int levels);
     Group group_of(std::size_t seed, Part const& part, bool cheaply) const;
-    std::size_t join_first_ones(std::size_t seed, std::size_t quarter, Part const& part, Candidates const& candidates,
+    std::size_t join_first_ones(std::size_t seed, std::size_t quarter, Part const& part, Open::Bits const& candidates,
                                 Group& group) const;
-    Candidates candidates(Part const& part, std::size_t seed, AffinePlane const& plane) const;
+    Open::Bits candidates(Part const& part, std::size_t seed, AffinePlane const& plane) const;
     bool join(Members const& members, std::size_t seed, Group& group) const;
     std::uint32_t part_at(std::size_t open, int levels) const {
         return static_cast<std::uint32_t>(open_->part[open] >> 2 * (levels_ - levels));
@@ -143,7 +125,7 @@ private:
     FourJoining fours_; ///< of the leaves
     std::vector<JoinedLayer> layers_; ///< room for all there can be
     std::size_t layer_count_ = 0;
-    std::unique_ptr<OpenLayers> open_, next_; ///< at the level at hand, and one level up
+    std::unique_ptr<Open> open_, next_; ///< at the level at hand, and one level up
 };
 
 } // namespace framelet

@@ -49,6 +49,7 @@ std::uint64_t MergedSquare::changes(SquareVersions const& versions) {
     return out;
 }
 
+/// What is far away in memory is fetched before it is looked at.
 void MergedSquare::load(FrameletCache const& cache, std::uint64_t changed) {
     if (children_.empty()) {
         make_room(cache.plane());
