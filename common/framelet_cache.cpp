@@ -29,16 +29,20 @@ bool deforms(HeldShape const& shape) {
 FrameletCache::FrameletCache(ImagePlane plane) : plane_(plane), spares_(0) {
     Viewport const viewport = plane.viewport();
     std::size_t nodes = 0;
+    std::size_t squares = 0;
+    constexpr int square_side = SquareVersions::side;
     for (int depth = plane.min_depth(); depth <= plane.max_depth(); ++depth) {
         int const side = plane.tile_side(make_tile(depth, 0, 0));
-        Level const level{ceil_div(viewport.width, side), ceil_div(viewport.height, side), nodes};
+        Level level{ceil_div(viewport.width, side), ceil_div(viewport.height, side), nodes, 0, squares};
         nodes += static_cast<std::size_t>(level.columns) * static_cast<std::size_t>(level.rows);
+        level.square_columns = static_cast<std::size_t>(ceil_div(level.columns, square_side));
+        squares += level.square_columns * static_cast<std::size_t>(ceil_div(level.rows, square_side));
         levels_.push_back(level);
     }
     nodes_.resize(nodes);
+    versions_.resize(squares);
     Level const& blocks = level(plane.pixel_depth());
     changed_blocks_.resize(static_cast<std::size_t>(blocks.columns) * static_cast<std::size_t>(blocks.rows));
-    block_versions_.resize(changed_blocks_.size());
     spares_ = SparePool(spares_per_block * changed_blocks_.size());
 }
 
@@ -112,7 +116,7 @@ bool FrameletCache::insert_one(DisplayFramelet const& framelet, FrameletShape co
     CachedFramelet& cached = held(own.slot);
     cached.tile = framelet.tile;
     slot_tiles_[static_cast<std::size_t>(own.slot)] = framelet.tile;
-    slot_versions_[static_cast<std::size_t>(own.slot)] = ++insertions_;
+    set_version(framelet.tile, changes_ + 1);
     cached.moment = moment;
     cached.view = view;
     shape_bytes_ -= bytes_behind(cached.shape);
@@ -164,6 +168,7 @@ void FrameletCache::drop_older_below(int depth, int column, int row, std::uint64
 void FrameletCache::drop(Node& owner, std::uint32_t view) {
     CachedFramelet const& gone = held(owner.slot);
     mark_neighbours(gone.tile, gone.moment); // those that interpolated with it
+    set_version(gone.tile, 0);
     --views_[gone.view].framelets;
     views_[gone.view].moving_framelets -= gone.shape.moves ? 1 : 0;
     if (views_[gone.view].camera == views_[view].camera || deforms(gone.shape)) {
@@ -173,6 +178,16 @@ void FrameletCache::drop(Node& owner, std::uint32_t view) {
     }
     owner.slot = no_slot;
     --count_;
+}
+
+void FrameletCache::set_version(Tile tile, std::uint64_t version) {
+    Level const& l = level(tile.depth());
+    std::uint32_t const column = tile.column();
+    std::uint32_t const row = tile.row();
+    constexpr std::uint32_t side = SquareVersions::side;
+    SquareVersions& square = versions_[l.first_square + row / side * l.square_columns + column / side];
+    square.tiles[morton_index(column % side, row % side)] = version;
+    square.newest = ++changes_;
 }
 
 void FrameletCache::set_aside(std::int32_t slot) {
@@ -215,7 +230,6 @@ std::int32_t FrameletCache::take_slot() {
         chunks_.push_back(std::make_unique<Chunk>());
         free_slots_.reserve(chunks_.size() * size);
         slot_tiles_.resize(chunks_.size() * size, no_tile);
-        slot_versions_.resize(chunks_.size() * size);
         for (auto slot = first + static_cast<std::int32_t>(size) - 1; slot >= first; --slot) {
             free_slots_.push_back(slot);
         }
@@ -249,7 +263,6 @@ void FrameletCache::mark_block(int column, int row) {
     std::size_t const index =
         static_cast<std::size_t>(row) * static_cast<std::size_t>(blocks.columns) + static_cast<std::size_t>(column);
     changed_blocks_[index] = 1;
-    block_versions_[index] = ++changes_;
     has_changes_ = true;
 }
 
@@ -339,9 +352,8 @@ double FrameletCache::coverage() const {
 
 std::size_t FrameletCache::memory_bytes() const {
     return chunks_.size() * sizeof(Chunk) + nodes_.capacity() * sizeof(Node) + slot_tiles_.capacity() * sizeof(Tile) +
-           slot_versions_.capacity() * sizeof(std::uint64_t) + free_slots_.capacity() * sizeof(std::int32_t) +
-           views_.capacity() * sizeof(HeldView) + changed_blocks_.capacity() +
-           block_versions_.capacity() * sizeof(std::uint64_t) + shape_bytes_ + spares_.memory_bytes();
+           versions_.capacity() * sizeof(SquareVersions) + free_slots_.capacity() * sizeof(std::int32_t) +
+           views_.capacity() * sizeof(HeldView) + changed_blocks_.capacity() + shape_bytes_ + spares_.memory_bytes();
 }
 
 } // namespace framelet

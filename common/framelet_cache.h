@@ -39,13 +39,24 @@ struct HeldView {
     std::uint32_t spares = 0; ///< held besides; neither these nor framelets: the entry is free
 };
 
-/// A framelet as it is held: samples in rows, sample (i, j) at [16 * j + i].
+/// A framelet as it is held: samples in rows, sample (i, j) at [16 * j + i]. In lines of the processor's cache, since
+/// few are looked at: the first one has what all framelets need.
 struct CachedFramelet {
-    Tile tile{0};
+    alignas(64) Tile tile{0};
     std::uint32_t view = 0; ///< in the cache's `views`
     Moment moment;
     HeldShape shape;
-    std::array<PackedSample, framelet_samples> samples;
+    alignas(64) std::array<PackedSample, framelet_samples> samples;
+};
+
+/// What has changed where, in a square of 8x8 tiles of one depth.
+struct SquareVersions {
+    static constexpr int levels = 3; ///< of the tiles below the square
+    static constexpr std::uint32_t side = 1u << levels;
+
+    std::uint64_t newest = 0; ///< changes where anything does
+    /// In Morton order: another number for another framelet that `find` finds, 0 where there is none.
+    std::array<std::uint64_t, side * side> tiles{};
 };
 
 /// Code 0 names no tile.
@@ -110,24 +121,10 @@ public:
     }
     /// Its tile, without a look at it; `no_tile` where there is nothing.
     Tile tile_at_slot(std::size_t slot) const { return slot_tiles_[slot]; }
-    /// Of the framelet that `find` finds, without a look at it: another number for another framelet; 0 where there is
-    /// none.
-    std::uint64_t version_of(int depth, int column, int row) const {
+    /// Of the tiles of that depth in a square that is visible, which is counted in squares.
+    SquareVersions const& versions(int depth, std::uint32_t square_column, std::uint32_t square_row) const {
         Level const& l = level(depth);
-        if (column < 0 || row < 0 || column >= l.columns || row >= l.rows) {
-            return 0;
-        }
-        std::int32_t const slot = node(depth, column, row).slot;
-        return slot == no_slot ? 0 : slot_versions_[static_cast<std::size_t>(slot)];
-    }
-    /// Of a block of the picture: changes where what is in place there changes. 0 where nothing ever was, and outside
-    /// of the picture.
-    std::uint64_t block_version(int column, int row) const {
-        Level const& blocks = level(plane_.pixel_depth());
-        return column < blocks.columns && row < blocks.rows
-                   ? block_versions_[static_cast<std::size_t>(row) * static_cast<std::size_t>(blocks.columns) +
-                                     static_cast<std::size_t>(column)]
-                   : 0;
+        return versions_[l.first_square + square_row * l.square_columns + square_column];
     }
     /// In no particular order.
     std::span<Spare const> spares() const { return spares_.all(); }
@@ -149,6 +146,8 @@ private:
         int columns = 0;
         int rows = 0;
         std::size_t first = 0;
+        std::size_t square_columns = 0;
+        std::size_t first_square = 0;
     };
     using Chunk = std::array<CachedFramelet, 256>;
 
@@ -173,6 +172,7 @@ private:
     bool is_hidden(int depth, int column, int row, std::uint64_t batch) const;
     void drop_older_below(int depth, int column, int row, std::uint64_t batch, std::uint32_t view);
     void drop(Node& node, std::uint32_t view);
+    void set_version(Tile tile, std::uint64_t version);
     void set_aside(std::int32_t slot);
     void release(std::int32_t slot);
     void release(Spare const& spare);
@@ -189,15 +189,13 @@ private:
     std::vector<Node> nodes_;
     std::vector<std::unique_ptr<Chunk>> chunks_;
     std::vector<Tile> slot_tiles_; ///< of what is in place
-    std::vector<std::uint64_t> slot_versions_; ///< the number of insertions when it came
+    std::vector<SquareVersions> versions_; ///< squares of each level in rows
+    std::uint64_t changes_ = 0; ///< of these
     std::vector<std::int32_t> free_slots_;
     SparePool spares_;
     std::vector<HeldView> views_;
     std::size_t shape_bytes_ = 0; ///< what the shapes hold besides
     std::vector<std::uint8_t> changed_blocks_; ///< a byte for each block, in rows
-    std::vector<std::uint64_t> block_versions_; ///< the number of changes when they changed last
-    std::uint64_t changes_ = 0;
-    std::uint64_t insertions_ = 0;
     std::size_t count_ = 0;
     bool has_changes_ = false;
 };

@@ -35,6 +35,10 @@ inline constexpr int wide_count = lane_count;
 using WideFloats = float __attribute__((vector_size(4 * wide_count)));
 using WideInts = std::int32_t __attribute__((vector_size(4 * wide_count)));
 using WideWords = std::uint32_t __attribute__((vector_size(4 * wide_count)));
+using FourDoubles = double __attribute__((vector_size(32)));
+/// In a register as wide.
+inline constexpr int wide_doubles = wide_count / 2;
+using WideDoubles = double __attribute__((vector_size(8 * wide_doubles)));
 
 /// They stand for eight pixels of a row, and where there are more for those of the rows below too: what has edges in it
 /// takes less of these than of longer rows.
@@ -129,6 +133,40 @@ inline HalfFloats smaller(HalfFloats a, HalfFloats b) {
 }
 inline float smaller(float a, float b) {
     return std::min(a, b);
+}
+
+using FourLongs = std::int64_t __attribute__((vector_size(32)));
+
+/// A bit for each lane of a comparison.
+inline unsigned bits_of(FourLongs flags) {
+#ifdef __AVX2__
+    return static_cast<unsigned>(_mm256_movemask_pd(reinterpret_cast<__m256d>(flags)));
+#else
+    unsigned out = 0;
+    for (unsigned i = 0; i < 4; ++i) {
+        out |= (flags[i] != 0 ? 1u : 0u) << i;
+    }
+    return out;
+#endif
+}
+#ifdef __AVX512F__
+inline unsigned bits_of(std::int64_t __attribute__((vector_size(64))) flags) {
+    return _mm512_test_epi64_mask(reinterpret_cast<__m512i>(flags), reinterpret_cast<__m512i>(flags));
+}
+#endif
+
+// Of one double or of lanes; `b` where one of them is not a number.
+template <class Doubles>
+Doubles smaller(Doubles a, Doubles b) {
+    return a < b ? a : b;
+}
+template <class Doubles>
+Doubles larger(Doubles a, Doubles b) {
+    return a > b ? a : b;
+}
+template <class Doubles>
+Doubles absolute(Doubles value) {
+    return value < 0 ? -value : value;
 }
 
 } // namespace framelet

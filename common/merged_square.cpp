@@ -1,7 +1,10 @@
 #include "common/merged_square.h"
 
 #include <algorithm>
+#include <bit>
 #include <span>
+
+#include "common/lanes.h"
 
 namespace framelet {
 
@@ -9,11 +12,12 @@ namespace {
 
 constexpr std::uint32_t no_number = 255; ///< of samples that are on no layer
 
-/// What is joined has the number of its first layer.
-constexpr std::uint8_t number_of(std::uint32_t child, std::uint32_t layer) {
-    return static_cast<std::uint8_t>(child * max_layers + layer);
-}
 static_assert(MergedSquare::most_children * max_layers <= no_number);
+
+/// The moving grid, of so many samples along a side.
+PackedSample const* samples_of(CachedFramelet const& framelet, int side) {
+    return side == framelet_side ? framelet.samples.data() : framelet.shape.reduced.data();
+}
 
 Tile tile_below(Tile tile, int levels, std::uint32_t part) {
     return {(tile.code << 2 * levels) + part};
@@ -24,113 +28,91 @@ Tile tile_below(Tile tile, int levels, std::uint32_t part) {
 void MergedSquare::update(FrameletCache const& cache, Tile square, int depth, LayerJoining& joining) {
     square_ = square;
     depth_ = depth;
-    std::uint64_t const newest = version(cache);
-    if (newest != version_) {
-        version_ = newest;
-        if (load(cache)) {
-            join(joining);
-        }
+    SquareVersions const& versions = cache.versions(depth, square.column(), square.row());
+    if (versions.newest == versions_.newest) {
+        return;
+    }
+    std::uint64_t const changed = changes(versions);
+    versions_ = versions;
+    if (changed != 0) {
+        load(cache, changed);
+        join(joining);
     }
 }
 
-/// The newest one of its blocks.
-std::uint64_t MergedSquare::version(FrameletCache const& cache) const {
-    PixelRect const rect = cache.plane().tile_rect(square_);
-    constexpr int block = FrameletCache::block_side;
-    std::uint64_t newest = 0;
-    for (int row = rect.top / block; row < (rect.bottom + block - 1) / block; ++row) {
-        for (int column = rect.left / block; column < (rect.right + block - 1) / block; ++column) {
-            newest = std::max(newest, cache.block_version(column, row));
-        }
+/// A bit for each tile below the square where something else is held than before.
+std::uint64_t MergedSquare::changes(SquareVersions const& versions) {
+    std::uint64_t out = 0;
+    for (std::size_t i = 0; i < most_children; ++i) {
+        out |= std::uint64_t{versions.tiles[i] != versions_.tiles[i]} << i;
     }
-    return newest;
+    return out;
 }
 
-/// True where something else is held than before.
-bool MergedSquare::load(FrameletCache const& cache) {
-    std::uint32_t const count = 1u << 2 * levels();
-    bool changed = false;
-    std::array<std::uint32_t, most_children> fresh;
-    std::size_t count_of_fresh = 0;
-    for (std::uint32_t i = 0; i < count; ++i) {
+/// What is far away in memory is fetched before it is looked at.
+void MergedSquare::load(FrameletCache const& cache, std::uint64_t changed) {
+    if (children_.empty()) {
+        make_room(cache.plane());
+    }
+    for (std::uint64_t left = changed; left != 0; left &= left - 1) {
+        auto const i = static_cast<std::uint32_t>(std::countr_zero(left));
         Tile const tile = tile_below(square_, levels(), i);
-        int const column = static_cast<int>(tile.column());
-        int const row = static_cast<int>(tile.row());
-        std::uint64_t const version = cache.version_of(depth_, column, row);
-        if (version > 0 && children_.empty()) {
-            int const pixels = cache.plane().tile_side(tile);
-            child_side_ = std::min(framelet_side, pixels);
-            side_ = child_side_ << levels();
-            spacing_ = static_cast<double>(pixels) / child_side_;
-            children_.resize(count);
-            grid_.assign(static_cast<std::size_t>(side_ * side_), no_number << 24);
-        }
-        if (children_.empty() || version == children_[i].version) {
-            continue;
-        }
-        changed = true;
+        CachedFramelet const* const framelet =
+            cache.find(depth_, static_cast<int>(tile.column()), static_cast<int>(tile.row()));
         children_[i] = {};
-        children_[i].version = version;
-        children_[i].framelet = cache.find(depth_, column, row);
-        if (children_[i].framelet != nullptr) {
-            __builtin_prefetch(&children_[i].framelet->view);
-            __builtin_prefetch(&children_[i].framelet->shape.layers);
-            __builtin_prefetch(&children_[i].framelet->shape.loose);
-            fresh[count_of_fresh++] = i;
+        children_[i].framelet = framelet;
+        if (framelet != nullptr) {
+            __builtin_prefetch(framelet);
+            __builtin_prefetch(&framelet->shape.layers);
+            __builtin_prefetch(samples_of(*framelet, child_side_));
+            for (int row = 0; row < child_side_; ++row) {
+                __builtin_prefetch(place_of(i) + row * side_, 1);
+            }
         }
     }
-    for (std::uint32_t const i : std::span(fresh).first(count_of_fresh)) {
-        copy_layers(children_[i]);
+    for (std::uint64_t left = changed; left != 0; left &= left - 1) {
+        copy_layers(static_cast<std::size_t>(std::countr_zero(left)));
     }
-    return changed;
 }
 
-void MergedSquare::copy_layers(Child& child) {
+void MergedSquare::make_room(ImagePlane const& plane) {
+    std::size_t const count = std::size_t{1} << 2 * levels();
+    int const pixels = plane.tile_side(tile_below(square_, levels(), 0));
+    child_side_ = std::min(framelet_side, pixels);
+    side_ = child_side_ << levels();
+    spacing_ = static_cast<double>(pixels) / child_side_;
+    children_.resize(count);
+    layers_.resize(count * max_layers);
+    grid_.assign(static_cast<std::size_t>(side_ * side_), no_number << 24);
+}
+
+void MergedSquare::copy_layers(std::size_t index) {
+    Child& child = children_[index];
+    if (child.framelet == nullptr) {
+        return;
+    }
     HeldShape const& shape = child.framelet->shape;
     child.layer_count = shape.layer_count;
     child.has_loose = !shape.loose.empty();
     child.view = child.framelet->view;
     child.batch = child.framelet->moment.batch;
-    std::copy_n(shape.layers.begin(), shape.layer_count, child.layers.begin());
+    for (std::size_t i = 0; i < shape.layer_count; ++i) {
+        layer(index, i) = shape.layers[i];
+    }
 }
 
 void MergedSquare::join(LayerJoining& joining) {
-    joining.start(levels());
+    joining.start(levels(), {child_side_, spacing_});
     for (std::uint32_t i = 0; i < children_.size(); ++i) {
-        for (std::uint32_t layer = 0; layer < children_[i].layer_count; ++layer) {
-            HeldLayer const& held = children_[i].layers[layer];
+        for (std::uint32_t k = 0; k < children_[i].layer_count; ++k) {
+            HeldLayer const& held = layer(i, k);
             if (held.last_column >= held.first_column) {
-                joining.add(layer_of_child(i, layer));
+                joining.add(held, children_[i].batch, children_[i].view, i, k);
             }
         }
     }
     joining.finish();
     keep(joining.layers());
-}
-
-JoinedLayer MergedSquare::layer_of_child(std::uint32_t index, std::uint32_t layer) const {
-    Child const& child = children_[index];
-    HeldLayer const& held = child.layers[layer];
-    int const column = static_cast<int>(morton_x(index)) * child_side_;
-    int const row = static_cast<int>(morton_y(index)) * child_side_;
-    double const dx = held.layer.dx;
-    double const dy = held.layer.dy;
-    JoinedLayer out;
-    out.plane = {held.layer.at - spacing_ * (dx * column + dy * row), dx, dy};
-    out.box = {column + held.first_column, row + held.first_row, column + held.last_column, row + held.last_row};
-    out.extent = {spacing_ * out.box.first_column, spacing_ * out.box.first_row, spacing_ * (out.box.last_column + 1),
-                  spacing_ * (out.box.last_row + 1)};
-    out.sums = sums_over(out.plane, out.extent);
-    out.error = held.layer.error;
-    out.view = child.view;
-    out.body = held.layer.body;
-    out.velocity = held.layer.velocity;
-    out.newest_batch = child.batch;
-    out.number = number_of(index, layer);
-    out.signature = child.batch * 256 + out.number;
-    out.levels = levels();
-    out.part = index;
-    return out;
 }
 
 /// What was joined comes after its parts.
@@ -152,7 +134,8 @@ void MergedSquare::keep(std::span<JoinedLayer const> layers) {
         if (!joined.is_joined_further) {
             tops_.push_back(static_cast<std::uint16_t>(merged_.size()));
         }
-        MergedLayer& merged = merged_.emplace_back(merge(joined));
+        MergedLayer& merged = merged_.emplace_back();
+        merge(joined, merged);
         merged.number = top;
         for (std::size_t k = 0; k < joined.parts.size(); ++k) {
             if (joined.parts[k] == JoinedLayer::no_part) {
@@ -179,8 +162,7 @@ void MergedSquare::keep(std::span<JoinedLayer const> layers) {
     }
 }
 
-MergedLayer MergedSquare::merge(JoinedLayer const& joined) const {
-    MergedLayer out;
+void MergedSquare::merge(JoinedLayer const& joined, MergedLayer& out) const {
     out.tile = tile_below(square_, joined.levels, joined.part);
     out.side = side_ >> joined.levels;
     out.stride = side_;
@@ -197,40 +179,59 @@ MergedLayer MergedSquare::merge(JoinedLayer const& joined) const {
     layer.error = static_cast<float>(joined.error + joined.difference);
     layer.body = joined.body;
     layer.velocity = joined.velocity;
-    out.layer.first_column = static_cast<std::int8_t>(joined.box.first_column - column);
-    out.layer.first_row = static_cast<std::int8_t>(joined.box.first_row - row);
-    out.layer.last_column = static_cast<std::int8_t>(joined.box.last_column - column);
-    out.layer.last_row = static_cast<std::int8_t>(joined.box.last_row - row);
+    double const samples = 1 / spacing_; // a pixel: a power of two
+    out.layer.first_column = static_cast<std::int8_t>(static_cast<int>(samples * joined.extent.left) - column);
+    out.layer.first_row = static_cast<std::int8_t>(static_cast<int>(samples * joined.extent.top) - row);
+    out.layer.last_column = static_cast<std::int8_t>(static_cast<int>(samples * joined.extent.right) - 1 - column);
+    out.layer.last_row = static_cast<std::int8_t>(static_cast<int>(samples * joined.extent.bottom) - 1 - row);
     out.difference = static_cast<float>(joined.difference);
     out.newest_batch = joined.newest_batch;
     out.signature = joined.signature;
-    return out;
+}
+
+/// Where its samples lie.
+PackedSample* MergedSquare::place_of(std::uint32_t index) {
+    return grid_.data() + static_cast<std::uint32_t>(child_side_) *
+                              (morton_y(index) * static_cast<std::uint32_t>(side_) + morton_x(index));
 }
 
 /// The child's samples to the grid, with the numbers of what they are joined to.
 void MergedSquare::write(Child const& child, std::uint32_t index) {
-    int const n = child_side_;
-    PackedSample* to = grid_.data() + morton_y(index) * static_cast<std::uint32_t>(n * side_) +
-                       morton_x(index) * static_cast<std::uint32_t>(n);
+    PackedSample* const to = place_of(index);
+    switch (child_side_) {
+    case 4:
+        write_samples<4>(child, to);
+        break;
+    case 8:
+        write_samples<8>(child, to);
+        break;
+    default:
+        write_samples<16>(child, to);
+    }
+}
+
+template <int side>
+void MergedSquare::write_samples(Child const& child, PackedSample* to) const {
     if (child.framelet == nullptr) {
-        for (int y = 0; y < n; ++y, to += side_) {
-            std::fill_n(to, n, no_number << 24);
+        for (int y = 0; y < side; ++y, to += side_) {
+            std::fill_n(to, side, no_number << 24);
         }
         return;
     }
-    constexpr PackedSample color = 0xffffff;
-    std::array<PackedSample, max_layers> numbers;
-    std::ranges::transform(child.numbers, numbers.begin(), [](std::uint32_t number) { return number << 24; });
-    PackedSample const* from =
-        n == framelet_side ? child.framelet->samples.data() : child.framelet->shape.reduced.data();
-    for (int y = 0; y < n; ++y, from += n, to += side_) {
-        for (int x = 0; x < n; ++x) {
-            std::uint32_t const layer = layer_of(from[x]);
-            std::uint32_t const number = layer == 0   ? numbers[0]
-                                         : layer == 1 ? numbers[1]
-                                         : layer == 2 ? numbers[2]
-                                                      : no_number << 24;
-            to[x] = (from[x] & color) | number;
+    using Row = std::uint32_t __attribute__((vector_size(4 * std::min(side, wide_count))));
+    constexpr int step = sizeof(Row) / sizeof(PackedSample);
+    std::uint32_t const first = std::uint32_t{child.numbers[0]} << 24;
+    std::uint32_t const second = std::uint32_t{child.numbers[1]} << 24;
+    std::uint32_t const third = std::uint32_t{child.numbers[2]} << 24;
+    PackedSample const* from = samples_of(*child.framelet, side);
+    for (int y = 0; y < side; ++y, from += side, to += side_) {
+        for (int x = 0; x < side; x += step) {
+            Row const samples = load_lanes<Row>(from + x);
+            Row const layers = samples >> 24;
+            Row const none = Row{} + (no_number << 24);
+            Row const numbers =
+                layers == 0 ? Row{} + first : (layers == 1 ? Row{} + second : (layers == 2 ? Row{} + third : none));
+            store_lanes((samples & 0xffffffu) | numbers, to + x);
         }
     }
 }

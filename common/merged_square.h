@@ -49,16 +49,14 @@ public:
 
     /// What is held for a tile.
     struct Child {
-        std::uint64_t version = 0; ///< 0 where nothing is
         CachedFramelet const* framelet = nullptr;
         std::array<std::uint8_t, max_layers> numbers{}; ///< of its layers in the grid
         std::uint8_t layer_count = 0;
         bool has_loose = false;
         bool is_written = false; ///< to the grid
-        // What joining needs of the framelet, which is far away in memory.
+        // What joining needs of the framelet, which is far away in memory, besides its layers.
         std::uint32_t view = 0;
         std::uint64_t batch = 0;
-        std::array<HeldLayer, max_layers> layers;
     };
 
     /// Brings it up to date. Always of the same cache, square and depth. Looks at what has changed since the last call
@@ -77,22 +75,27 @@ public:
 
 private:
     int levels() const { return depth_ - square_.depth(); } ///< of the children below the square
-    std::uint64_t version(FrameletCache const& cache) const;
-    bool load(FrameletCache const& cache);
-    static void copy_layers(Child& child);
+    std::uint64_t changes(SquareVersions const& versions);
+    void load(FrameletCache const& cache, std::uint64_t changed);
+    void make_room(ImagePlane const& plane);
+    void copy_layers(std::size_t index);
+    HeldLayer& layer(std::size_t child, std::size_t layer) { return layers_[layer * children_.size() + child]; }
     void join(LayerJoining& joining);
-    JoinedLayer layer_of_child(std::uint32_t index, std::uint32_t layer) const;
     void keep(std::span<JoinedLayer const> layers);
-    MergedLayer merge(JoinedLayer const& joined) const;
+    void merge(JoinedLayer const& joined, MergedLayer& out) const;
+    PackedSample* place_of(std::uint32_t index);
     void write(Child const& child, std::uint32_t index);
+    template <int side>
+    void write_samples(Child const& child, PackedSample* to) const;
 
     Tile square_;
     int depth_ = 0;
     double spacing_ = 0; ///< of its samples, pixels
     int child_side_ = 0; ///< of framelets' grids
     int side_ = 0; ///< of the grid
-    std::uint64_t version_ = 0;
+    SquareVersions versions_; ///< that it is up to date with
     std::vector<Child> children_;
+    std::vector<HeldLayer> layers_; ///< copies: first ones of the children, then second ones, then third ones
     std::vector<MergedLayer> merged_;
     std::vector<std::uint16_t> tops_;
     std::uint64_t loose_children_ = 0;
