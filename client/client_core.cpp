@@ -60,6 +60,7 @@ struct ClientCore::Impl {
     Clock::time_point const start = Clock::now();
     BatchCodec codec; // the connection's thread only
     HeldPicture held; // the same
+    Batch received_batch; // the same: the last one, whose memory the next one gets
 
     mutable std::mutex mutex; // guards all that follows, but the connection
     std::condition_variable news_arrived;
@@ -167,18 +168,18 @@ struct ClientCore::Impl {
                 return;
             }
         }
-        Batch const batch = codec.decode(encoded, &held);
+        codec.decode(encoded, &held, received_batch);
         Clock::time_point const decoded = Clock::now();
-        Ack ack{batch.number, 0, 0};
+        Ack ack{received_batch.number, 0, 0};
         ack.received_us = static_cast<std::uint64_t>(
             std::chrono::duration_cast<std::chrono::microseconds>(received.time_since_epoch()).count());
         ack.decode_us = static_cast<std::uint32_t>(std::min(seconds_between(received, decoded) * 1e6, 4e9));
         {
             std::lock_guard const lock(mutex);
-            take_in(batch);
+            take_in(received_batch);
             statistics.bytes += encoded.payload.size() + encoded.tiles.size() * sizeof(Tile) + batch_header_bytes;
             statistics.decode_seconds += seconds_between(received, decoded);
-            note_round_trip(batch.view.number, received);
+            note_round_trip(received_batch.view.number, received);
         }
         connection->send(ack);
     }

@@ -160,6 +160,12 @@ Bytes BatchCodec::encode_shapes(Batch const& batch) {
 }
 
 Batch BatchCodec::decode(EncodedBatch const& encoded, HeldPicture* held) {
+    Batch batch;
+    decode(encoded, held, batch);
+    return batch;
+}
+
+void BatchCodec::decode(EncodedBatch const& encoded, HeldPicture* held, Batch& batch) {
     std::size_t const count = encoded.tiles.size();
     if (count > max_batch_framelets) {
         throw ProtocolError("a batch has more than 32768 framelets");
@@ -185,7 +191,10 @@ Batch BatchCodec::decode(EncodedBatch const& encoded, HeldPicture* held) {
         check_frame(frames[group], is_exact ? exact : 0, is_exact ? exact : lossy);
     }
     // Memory is asked for only now: the frames have said that they fill it, or how much less they hold.
-    Batch batch{encoded.number, encoded.view, encoded.scene_time, std::vector<DisplayFramelet>(count)};
+    batch.number = encoded.number;
+    batch.view = encoded.view;
+    batch.scene_time = encoded.scene_time;
+    batch.framelets.resize(count);
     batch.quality.resize(is_exact ? 0 : count);
     if (is_predicted) {
         held->show(viewport);
@@ -201,26 +210,26 @@ Batch BatchCodec::decode(EncodedBatch const& encoded, HeldPicture* held) {
     if (is_held) {
         held->take(batch.framelets);
     }
-    if (!encoded.shapes.empty()) {
-        batch.shapes = decode_shapes(encoded);
-    }
+    decode_shapes(encoded, batch.shapes);
     batch.tracks = encoded.tracks;
-    return batch;
 }
 
-std::vector<FrameletShape> BatchCodec::decode_shapes(EncodedBatch const& encoded) {
+void BatchCodec::decode_shapes(EncodedBatch const& encoded, std::vector<FrameletShape>& shapes) {
+    if (encoded.shapes.empty()) {
+        shapes.clear();
+        return;
+    }
     std::size_t const count = encoded.tiles.size();
     std::vector<ByteView> const frames = split_frames(encoded.shapes, group_count(count));
     for (std::size_t group = 0; group < frames.size(); ++group) {
         check_frame(frames[group], 0, most_shape_bytes(std::min(group_framelets, count - group * group_framelets)));
     }
     auto const side_bits = side_bits_of(encoded.tiles, encoded.view.viewport, std::identity{});
-    std::vector<FrameletShape> shapes(count);
+    shapes.resize(count);
     for_each_group(count, [&](std::size_t group, std::size_t first, std::size_t size) {
         ShapeCodec::decode(scratch_->workers.local().frames.decompress(frames[group]),
                            std::span(side_bits).subspan(first, size), std::span(shapes).subspan(first, size));
     });
-    return shapes;
 }
 
 } // namespace framelet

@@ -25,12 +25,14 @@ public:
     /// `held`: as it was for the encoder; null: a batch that is predicted is refused. Throws ProtocolError where
     /// payload and shapes are not exactly what the tiles ask for.
     Batch decode(EncodedBatch const& encoded, HeldPicture* held = nullptr);
+    /// The same, into the memory of a batch that was decoded before. What is in it after an error says nothing.
+    void decode(EncodedBatch const& encoded, HeldPicture* held, Batch& batch);
 
 private:
     struct Scratch;
 
     Bytes encode_shapes(Batch const& batch);
-    std::vector<FrameletShape> decode_shapes(EncodedBatch const& encoded);
+    void decode_shapes(EncodedBatch const& encoded, std::vector<FrameletShape>& shapes);
 
     std::unique_ptr<Scratch> scratch_;
 };

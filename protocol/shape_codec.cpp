@@ -222,6 +222,8 @@ void ShapeCodec::decode(std::span<std::uint8_t const> bytes, std::span<std::uint
             throw ProtocolError("a shape has an unknown number of layers");
         }
         shapes[i].layer_count = layers_of_head(heads[i]);
+        shapes[i].layers = {};
+        shapes[i].loose_samples.clear();
     }
     decode_layers(rest, side_bits, shapes);
     decode_masks(rest, heads, shapes);

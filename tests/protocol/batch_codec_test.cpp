@@ -8,6 +8,7 @@
 #include <zstd.h>
 
 #include "common/error.h"
+#include "random_shape.h"
 
 namespace framelet {
 namespace {
@@ -112,6 +113,27 @@ TEST(BatchCodec, RoundTrip) {
             EXPECT_EQ(encoded.scene_time, batch.scene_time);
             EXPECT_TRUE(codec.decode(encoded) == batch) << count;
         }
+    }
+}
+
+TEST(BatchCodec, MemoryOfAnotherBatchLeavesNoTrace) {
+    BatchCodec codec;
+    RandomShapes random(1);
+    Batch reused;
+    for (int i = 0; i < 60; ++i) {
+        Batch batch = make_batch(random.integer(0, 300), i % 2 == 0 ? noise : smooth);
+        bool const deforms = random.integer(0, 1) == 1;
+        if (random.integer(0, 3) > 0) {
+            for (std::size_t k = 0; k < batch.framelets.size(); ++k) {
+                batch.shapes.push_back(random.shape(deforms));
+            }
+        }
+        if (random.integer(0, 1) == 1) {
+            batch.quality.assign(batch.framelets.size(), 12);
+        }
+        EncodedBatch const encoded = codec.encode(batch);
+        codec.decode(encoded, nullptr, reused);
+        EXPECT_TRUE(reused == codec.decode(encoded)) << i;
     }
 }
 

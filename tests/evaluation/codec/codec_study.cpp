@@ -64,7 +64,7 @@ void encode_planes(BatchCodec& codec, Held* held, Batch batch, int quality, Code
 
 void decode_planes(BatchCodec& codec, Held* held, Coded& coded) {
     coded.decode_seconds = processor_seconds_of(
-        [&] { coded.decoded = codec.decode(coded.message.batch, held == nullptr ? nullptr : &held->received); });
+        [&] { codec.decode(coded.message.batch, held == nullptr ? nullptr : &held->received, coded.decoded); });
 }
 
 /// Calls `body(framelet, k, pixel)` for all samples, the framelets below each other in a picture.
