@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstring>
 #include <functional>
+#include <memory>
 #include <thread>
 
 #include <nlohmann/json.hpp>
@@ -79,75 +80,125 @@ double cpu_seconds_to(std::function<void()> const& work) {
     return cpu_seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
 }
 
-/// One stage on one thread, which returns its processor time, beside a memcpy of the bytes it has to move. What a
-/// median says depends on what shares the machine; the fastest round says most of what the stage itself costs.
-json measure_seconds(int rounds, double units, std::size_t bytes, std::function<double()> const& stage) {
-    std::vector<std::byte> from(bytes), to(bytes);
-    std::vector<double> stage_ns, copy_ns, ratios;
-    for (int round = 0; round < rounds; ++round) {
-        double const copy = cpu_seconds_to([&] { std::memcpy(to.data(), from.data(), bytes); });
+/// Rounds of one stage on one thread, each beside a memcpy of the bytes that it has to move. What a median says depends
+/// on what shares the machine; the fastest round says most of what the stage itself costs.
+class Rounds {
+public:
+    Rounds(double units, std::size_t bytes) : units_(units), from_(bytes), to_(bytes) {}
+
+    /// `stage` returns the processor time that it took.
+    void add(std::function<double()> const& stage) {
+        double const copy = cpu_seconds_to([&] { std::memcpy(to_.data(), from_.data(), from_.size()); });
         double const work = stage();
-        stage_ns.push_back(1e9 * work / units);
-        copy_ns.push_back(1e9 * copy / units);
-        ratios.push_back(work / copy);
+        stage_ns_.push_back(1e9 * work / units_);
+        copy_ns_.push_back(1e9 * copy / units_);
+        ratios_.push_back(work / copy);
     }
-    return {{"ns", median(stage_ns)},
-            {"fastest_ns", *std::ranges::min_element(stage_ns)},
-            {"memcpy_ns", median(copy_ns)},
-            {"times_memcpy", median(ratios)}};
-}
+
+    json figures() const {
+        return {{"ns", median(stage_ns_)},
+                {"fastest_ns", *std::ranges::min_element(stage_ns_)},
+                {"memcpy_ns", median(copy_ns_)},
+                {"times_memcpy", median(ratios_)}};
+    }
+
+private:
+    double units_;
+    std::vector<std::byte> from_, to_;
+    std::vector<double> stage_ns_, copy_ns_, ratios_;
+};
 
 json measure_stage(int rounds, double units, std::size_t bytes, std::function<void()> const& stage) {
-    return measure_seconds(rounds, units, bytes, [&] { return cpu_seconds_to(stage); });
+    Rounds all(units, bytes);
+    for (int round = 0; round < rounds; ++round) {
+        all.add([&] { return cpu_seconds_to(stage); });
+    }
+    return all.figures();
 }
 
 /// Everything held was taken with the scene's camera by `levels` levels more than a sample a pixel; the camera moves a
-/// little on for each picture, so that every pixel changes. `arriving`: every fifth framelet is replaced before each
-/// picture, which is not counted.
-json measure_reprojection(BenchScene& scene, LimitsOptions const& options, int levels, bool arriving) {
-    constexpr std::size_t parts = 5;
-    constexpr int pictures = 4; // a round
-    ImagePlane const plane(options.viewport);
-    Tiling const tiling = make_uniform_tiling(plane, plane.pixel_depth() + levels);
-    std::vector<Framelet> rendered(tiling.tiles.size());
-    render_framelets(*scene.render_scene, scene.camera, plane, tiling.tiles, 0, rendered);
-    float const depth = median_depth(rendered);
-    LayerTolerance const tolerance = layer_tolerance(depth, make_view_rays(scene.camera, options.viewport));
-    FrameletCache cache(plane);
-    std::array<Batch, parts> batches;
-    for (std::size_t part = 0; part < parts; ++part) {
-        Batch& batch = batches[part];
-        batch.number = part + 1;
-        batch.view = {1, scene.camera, options.viewport};
-        for (std::size_t i = part; i < rendered.size(); i += parts) {
-            batch.framelets.push_back(to_display(rendered[i], scene.exposure));
-            fit_layers(rendered[i], plane, tolerance, batch.shapes.emplace_back());
+/// little on for each picture, so that every pixel changes.
+class MovedPictures {
+public:
+    static constexpr int pictures = 4; ///< a round
+
+    MovedPictures(BenchScene& scene, Viewport viewport, int levels)
+        : camera_(scene.camera), cache_(ImagePlane(viewport)), picture_(viewport.width, viewport.height) {
+        ImagePlane const plane(viewport);
+        Tiling const tiling = make_uniform_tiling(plane, plane.pixel_depth() + levels);
+        std::vector<Framelet> rendered(tiling.tiles.size());
+        render_framelets(*scene.render_scene, scene.camera, plane, tiling.tiles, 0, rendered);
+        depth_ = median_depth(rendered);
+        LayerTolerance const tolerance = layer_tolerance(depth_, make_view_rays(scene.camera, viewport));
+        for (std::size_t part = 0; part < parts; ++part) {
+            Batch& batch = batches_[part];
+            batch.number = part + 1;
+            batch.view = {1, scene.camera, viewport};
+            for (std::size_t i = part; i < rendered.size(); i += parts) {
+                batch.framelets.push_back(to_display(rendered[i], scene.exposure));
+                fit_layers(rendered[i], plane, tolerance, batch.shapes.emplace_back());
+            }
+            cache_.insert(batch);
         }
-        cache.insert(batch);
     }
-    tbb::global_control const one_thread(tbb::global_control::max_allowed_parallelism, 1);
-    Reprojector reprojector;
-    Picture picture(options.viewport.width, options.viewport.height);
-    std::vector<PixelRect> arrived, changed;
-    std::size_t shown = 0;
-    double const pixels = static_cast<double>(picture.rgba.size() / 4);
-    return measure_seconds(options.rounds, pictures * pixels, pictures * picture.rgba.size(), [&] {
+
+    /// Processor time of a round on one thread. `arriving`: every fifth framelet is replaced before each picture, which
+    /// is not counted.
+    double show(bool arriving) {
+        tbb::global_control const one_thread(tbb::global_control::max_allowed_parallelism, 1);
         double seconds = 0;
         for (int i = 0; i < pictures; ++i) {
-            Batch& batch = batches[shown % parts];
+            Batch& batch = batches_[shown_ % parts];
             if (arriving) {
                 batch.number += parts;
-                cache.insert(batch);
+                cache_.insert(batch);
             }
-            cache.take_changed(arrived);
-            auto const way = static_cast<float>(++shown);
-            Camera camera = scene.camera;
-            camera.position += 1e-3f * way * depth * scene.camera.right();
+            cache_.take_changed(arrived_);
+            auto const way = static_cast<float>(++shown_);
+            Camera camera = camera_;
+            camera.position += 1e-3f * way * depth_ * camera_.right();
             camera.orientation = glm::normalize(glm::angleAxis(2e-3f * way, Vec3(0, 1, 0)) * camera.orientation);
-            seconds += cpu_seconds_to([&] { reprojector.show(cache, arrived, camera, 0, {}, picture, changed); });
+            seconds += cpu_seconds_to([&] { reprojector_.show(cache_, arrived_, camera, 0, {}, picture_, changed_); });
         }
         return seconds;
-    });
+    }
+
+private:
+    static constexpr std::size_t parts = 5;
+
+    Camera camera_;
+    FrameletCache cache_;
+    Reprojector reprojector_;
+    Picture picture_;
+    float depth_ = 0;
+    std::array<Batch, parts> batches_;
+    std::vector<PixelRect> arrived_, changed_;
+    std::size_t shown_ = 0;
+};
+
+constexpr std::array reprojections{"reproject, spacing 2", "reproject, spacing 1", "reproject, spacing 1/2",
+                                   "reproject, spacing 1/4"};
+
+/// Rounds of all spacings in turn: what else the machine does meanwhile hits all of them alike.
+void measure_reprojection(BenchScene& scene, LimitsOptions const& options, json& stages) {
+    std::size_t const pixels =
+        static_cast<std::size_t>(options.viewport.width) * static_cast<std::size_t>(options.viewport.height);
+    Rounds const none(MovedPictures::pictures * static_cast<double>(pixels), MovedPictures::pictures * 4 * pixels);
+    std::vector<Rounds> staying(reprojections.size(), none), arriving(reprojections.size(), none);
+    std::vector<std::unique_ptr<MovedPictures>> pictures;
+    for (std::size_t i = 0; i < reprojections.size(); ++i) {
+        pictures.push_back(std::make_unique<MovedPictures>(scene, options.viewport, static_cast<int>(i) - 1));
+    }
+    for (int round = 0; round < options.rounds; ++round) {
+        for (std::size_t i = 0; i < reprojections.size(); ++i) {
+            staying[i].add([&] { return pictures[i]->show(false); });
+            arriving[i].add([&] { return pictures[i]->show(true); });
+        }
+    }
+    for (std::size_t i = 0; i < reprojections.size(); ++i) {
+        stages[reprojections[i]] = staying[i].figures();
+        stages[reprojections[i]]["arriving"] = arriving[i].figures();
+    }
 }
 
 /// The viewer alone on all threads: a fifth of the picture arrives for each one shown, the camera moves all the time.
@@ -245,14 +296,7 @@ json measure_limits(BenchScene& scene, LimitsOptions const& options) {
     result["threads"] = tbb::info::default_concurrency();
     result["server"] = measure_server(scene, options);
     result["stages"] = measure_stages(scene, options);
-    std::array const reprojections{"reproject, spacing 2", "reproject, spacing 1", "reproject, spacing 1/2",
-                                   "reproject, spacing 1/4"};
-    for (std::size_t i = 0; i < reprojections.size(); ++i) {
-        int const levels = static_cast<int>(i) - 1;
-        json& figures = result["stages"][reprojections[i]];
-        figures = measure_reprojection(scene, options, levels, false);
-        figures["arriving"] = measure_reprojection(scene, options, levels, true);
-    }
+    measure_reprojection(scene, options, result["stages"]);
     result["viewer"] = measure_viewer(scene, options);
 
     json const& server = result["server"];
