@@ -60,7 +60,7 @@ struct ClientCore::Impl {
     Clock::time_point const start = Clock::now();
     BatchCodec codec; // the connection's thread only
     HeldPicture held; // the same
-    Batch received_batch; // the same: the last one, whose memory the next one gets
+    Batch received_batch; // the same: the last one, whose memory the next one gets, at most some 200 MB
 
     mutable std::mutex mutex; // guards all that follows, but the connection
     std::condition_variable news_arrived;

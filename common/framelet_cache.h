@@ -73,7 +73,7 @@ inline constexpr Tile no_tile{0};
 /// in place is of one camera. What deforms is not kept, since nobody knows how it goes on.
 ///
 /// At most 2.1 KB are held for each 4x4 pixels and for each spare (129 MB at 1280x720), whatever the batches bring.
-/// Changes are counted in blocks of 16x16 pixels, aligned to the picture's corner.
+/// What has changed is reported in blocks of 16x16 pixels, aligned to the picture's corner, and counted by tile.
 class FrameletCache {
 public:
     static constexpr int block_side = framelet_side;

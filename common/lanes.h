@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 
 #ifdef __AVX2__
 #include <immintrin.h>
@@ -155,16 +156,20 @@ inline unsigned bits_of(std::int64_t __attribute__((vector_size(64))) flags) {
 }
 #endif
 
-// Of one double or of lanes; `b` where one of them is not a number.
-template <class Doubles>
+/// One of them, or lanes.
+template <class Numbers>
+concept OfDoubles = sizeof(Numbers) % sizeof(double) == 0 && !std::is_integral_v<Numbers>;
+
+// `b` where one of them is not a number.
+template <OfDoubles Doubles>
 Doubles smaller(Doubles a, Doubles b) {
     return a < b ? a : b;
 }
-template <class Doubles>
+template <OfDoubles Doubles>
 Doubles larger(Doubles a, Doubles b) {
     return a > b ? a : b;
 }
-template <class Doubles>
+template <OfDoubles Doubles>
 Doubles absolute(Doubles value) {
     return value < 0 ? -value : value;
 }

@@ -154,7 +154,7 @@ void LayerJoining::keep_four(std::size_t first) {
     joined.difference = fours_.difference(four);
     joined.newest_batch = 0;
     joined.signature = 0;
-    joined.error = 0;
+    joined.error = leaf.held->layer.error; // also where that is not a number
     joined.view = leaf.view;
     joined.velocity = leaf.held->layer.velocity;
     joined.body = leaf.held->layer.body;
@@ -229,6 +229,7 @@ void LayerJoining::keep(Group const& group, std::size_t seed, int levels) {
     joined.extent = group.extent;
     joined.sums = group.sums;
     joined.difference = group.difference;
+    joined.error = first.error; // also where that is not a number
     joined.view = first.view;
     joined.velocity = first.velocity;
     joined.body = first.body;

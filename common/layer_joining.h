@@ -52,6 +52,7 @@ constexpr std::uint8_t number_of(std::uint32_t part, std::uint32_t layer) {
 class LayerJoining {
 public:
     static constexpr int most_levels = 3;
+    static_assert(FourJoining::most_fours == std::size_t{1} << 2 * (most_levels - 1));
     /// Every one that is joined is of at least two, so that there are less of them than layers.
     static constexpr std::size_t most_layers = 2 * max_layers << 2 * most_levels;
 

@@ -44,6 +44,7 @@ class MergedSquare {
 public:
     /// As many levels above framelets; less where there are less.
     static constexpr int most_levels = LayerJoining::most_levels;
+    static_assert(most_levels == SquareVersions::levels);
     static constexpr std::uint32_t most_children = 1u << 2 * most_levels;
     static_assert(most_children <= 64); // a bit each
 

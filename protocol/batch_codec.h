@@ -25,7 +25,8 @@ public:
     /// `held`: as it was for the encoder; null: a batch that is predicted is refused. Throws ProtocolError where
     /// payload and shapes are not exactly what the tiles ask for.
     Batch decode(EncodedBatch const& encoded, HeldPicture* held = nullptr);
-    /// The same, into the memory of a batch that was decoded before. What is in it after an error says nothing.
+    /// The same, into the memory of a batch that was decoded before, which grows to what the largest one needs. What is
+    /// in it after an error says nothing.
     void decode(EncodedBatch const& encoded, HeldPicture* held, Batch& batch);
 
 private:

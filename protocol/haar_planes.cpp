@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
 
 #include "common/error.h"
 #include "protocol/haar_transform.h"
@@ -150,8 +149,8 @@ namespace {
 int fitted_share(Fours const& luma, Fours const& chroma) {
     float products = 0, squares = 0;
     for (std::size_t octave = 0; octave < octaves; ++octave) {
-        // Sums stay within 31 bits: details of a place have at most the squares of its samples, 64 times 4080^2
-        // together.
+        // Below 1.5e9: details of a place have at most the squares of its samples, 64 times 4080^2 together; rounding
+        // adds at most 349 to each of 192 of luma.
         std::int32_t product = 0, square = 0;
         for (std::size_t i = first_four[octave]; i < first_four[octave] + 4 * places(octave); ++i) {
             product += luma[i] * chroma[i];

@@ -35,7 +35,7 @@ struct HaarLevels {
 struct HaarCode {
     std::array<Fours, 3> values;
     HaarLevels levels;
-    std::array<int, 3> bits; ///< that each plane's details will take, roughly
+    std::array<int, 3> bits; ///< that each plane's details will take, roughly, before luma is shared
 };
 
 /// Returns the bits that the levels will take, roughly: what ways of coding a framelet are compared by. Above `most` it

@@ -22,7 +22,8 @@ inline constexpr std::uint16_t bits_of_any = 5, most_bits_of_size = 8;
 
 /// Arithmetic is modulo 2^16. `fours` has four values for each place: children a b / c d. Their mean (a+b+c+d)/4 and
 /// the details (a-b+c-d)/4, (a+b-c-d)/4, (a-b-c+d)/4, each rounded, become four `details`; `means` gets the means
-/// alone, and `levels` the same as `quantise` gives. `details` may be `fours`. Returns the bits of the levels.
+/// alone, and `levels` the same as `quantise` gives. `details` may be `fours`. Returns the bits of the levels, of
+/// at most 1000 places.
 int haar_forward(std::int16_t const* fours, std::size_t places, DetailStep const& step, std::int16_t* means,
                  std::int16_t* details, std::int16_t* levels);
 

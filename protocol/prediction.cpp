@@ -56,7 +56,7 @@ HaarLevels predict(HeldPicture const& held, DisplayFramelet const& framelet, std
         }
         share_luma(quality, best->code);
     }
-    search.found(best == &moved);
+    search.note_moved(best == &moved);
     prediction = best->prediction;
     return best->code.levels;
 }

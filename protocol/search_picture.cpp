@@ -54,8 +54,7 @@ void SearchPicture::copy(PointGrids const& grids, std::size_t plane) {
             std::memcpy(values() + at(x, y), &row, sizeof row);
         }
     }
-    constexpr std::size_t behind = cache_line; // a row that is read may reach farther than what is needed of it
-    coarse_values_.resize(coarse_at(0, height_) + behind);
+    coarse_values_.resize(coarse_at(0, height_));
     for (int y = 0; y < height_; y += framelet_side) {
         for (int x = 0; x < width_; x += framelet_side) {
             put_coarse_points(x, y, framelet_side);
@@ -64,10 +63,11 @@ void SearchPicture::copy(PointGrids const& grids, std::size_t plane) {
     coarse_only_.assign(static_cast<std::size_t>(block_columns() * block_rows()), 0);
 }
 
-/// The points in the middle of what they stand for.
+/// The first of the points that each stands for: what looks for coarse framelets takes the first one behind the middle
+/// of a sample.
 void SearchPicture::put_coarse_points(int left, int top, int side) {
     for (int y = top; y < top + side; y += coarse) {
-        std::uint8_t const* const row = values() + at(left + coarse / 2, y + coarse / 2);
+        std::uint8_t const* const row = values() + at(left, y);
         std::uint8_t* const to = &coarse_values_[coarse_at(left, y)];
         for (int i = 0; i < side / coarse; ++i) {
             to[i] = row[i * coarse];
@@ -94,19 +94,19 @@ void SearchPicture::write(Samples const& samples, int left, int top, int side) {
     put_coarse_points(left, top, side);
 }
 
-/// Each point of a block gets the coarse one that stands for it.
+/// Each point of a block gets the coarse one that stands for it. Where there are coarse framelets the picture has whole
+/// blocks.
 void SearchPicture::spread(int column, int row) {
     using Points [[gnu::vector_size(block_side)]] = std::uint32_t;
     using CoarsePoints [[gnu::vector_size(block_side / coarse)]] = std::uint8_t;
     static_assert(coarse == sizeof(std::uint32_t));
     int const left = column * block_side, top = row * block_side;
-    auto const size = static_cast<std::size_t>(std::min(block_side, width_ - left));
-    for (int y = top; y < std::min(top + block_side, height_); y += coarse) {
+    for (int y = top; y < top + block_side; y += coarse) {
         CoarsePoints points;
         std::memcpy(&points, &coarse_values_[coarse_at(left, y)], sizeof points);
         Points const spread = __builtin_convertvector(points, Points) * 0x01010101u;
         for (int copy = 0; copy < coarse; ++copy) {
-            std::memcpy(values() + at(left, y + copy), &spread, size);
+            std::memcpy(values() + at(left, y + copy), &spread, sizeof spread);
         }
     }
     is_coarse_only(column, row) = 0;

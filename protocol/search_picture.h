@@ -13,8 +13,8 @@
 
 namespace framelet {
 
-/// Four values a pixel, and a quarter of one. What is coarse is written to the coarse points alone, until what is finer
-/// is looked for near it.
+/// Four values a pixel, and a quarter of one. What is coarse is written to the coarse points alone, until something
+/// finer is looked for or written in its place.
 class SearchPicture {
 public:
     using Samples = std::array<std::uint8_t, framelet_samples>;
@@ -28,7 +28,8 @@ public:
     void copy(PointGrids const& grids, std::size_t plane);
     bool is_kept() const { return width_ != 0; }
 
-    /// Each point gets the sample that covers it, or the mean of those that it covers. Left, top and side: points.
+    /// Each point gets the sample that covers it, or the mean of those that it covers; where `is_coarse(side)` only
+    /// each coarse point does. Left, top and side: points.
     void write(Samples const& samples, int left, int top, int side);
 
     /// To be called before what is there is looked for. What lies farther away may be found as it was when it was last
@@ -49,7 +50,7 @@ public:
     void expect(int left, int top, int side) const;
 
 private:
-    /// Rows of tiles are whole lines of the cache where they are written.
+    /// No row of a tile reaches over the end of a line of the cache.
     struct alignas(cache_line) Line {
         std::array<std::uint8_t, cache_line> values;
     };

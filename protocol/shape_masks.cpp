@@ -21,13 +21,13 @@ constexpr unsigned kinds_of(std::uint8_t head) {
 /// it goes on; all the rest are.
 constexpr std::uint8_t goes_on = 254, rest = 255;
 
-/// The kinds of a framelet in raster order, with a row of none above the first one.
+/// The kinds of a framelet in raster order, with rows of none above the first one.
 class KindRows {
 public:
     KindRows() { std::fill_n(kinds_.begin(), margin, no_kind); }
 
     std::uint8_t* begin() { return kinds_.data() + margin; }
-    std::uint8_t& operator[](std::size_t at) { return kinds_[margin + at]; }
+    std::uint8_t operator[](std::size_t at) const { return kinds_[margin + at]; }
 
     /// What a sample is expected to be: as the one above it, but as that to its left where a horizontal edge lies
     /// between that and what is above it. In the first row that to the left; 0 for the first.

@@ -99,7 +99,7 @@ public:
     PictureVector best() const { return best_; }
     bool leaves_hardly_any() const { return least_ <= hardly_any; }
 
-    /// Begins anew with the best one so far, if rows are compared that were not before.
+    /// These rows are compared from now on: begins anew with the best one so far.
     template <std::size_t apart>
     void compare_rows() {
         least_ = std::numeric_limits<int>::max();

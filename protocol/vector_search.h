@@ -13,13 +13,13 @@ class VectorSearch {
 public:
     /// Forgets.
     void begin() { *this = {}; }
-    /// The best vector of those tried: what was found before and steps from there, down to half a pixel. Zero where the
-    /// picture is not kept for searches.
+    /// The best vector of those tried: what was found before and steps from there, down to half a pixel, of coarse
+    /// framelets two. Zero where the picture is not kept for searches.
     PictureVector find(HeldPicture const& held, DisplayFramelet const& framelet);
 
-    /// Whether the framelet before was best predicted from elsewhere.
+    /// Whether the last framelet for which this was noted was best predicted from elsewhere.
     bool has_moved() const { return has_moved_; }
-    void found(bool has_moved) { has_moved_ = has_moved; }
+    void note_moved(bool has_moved) { has_moved_ = has_moved; }
 
 private:
     std::array<PictureVector, 6> found_{}; ///< lately, different ones

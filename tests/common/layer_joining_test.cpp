@@ -138,11 +138,12 @@ TEST(LayerJoining, OnlyOfOneViewBodyAndVelocity) {
 TEST(LayerJoining, DifferencesAreBounds) {
     std::mt19937 random(11);
     std::normal_distribution<double> normal;
-    int found = 0;
+    int found = 0, fours = 0;
     for (int round = 0; round < 200; ++round) {
+        int const of_each = 1 + round / 4 % 2; // fours of framelets with one layer each are joined by themselves
         std::vector<TestLayer> layers;
         for (std::uint32_t part = 0; part < 64; ++part) {
-            for (int i = 0; i < 2; ++i) {
+            for (int i = 0; i < of_each; ++i) {
                 double const rough = 3e-4 * (round % 4);
                 double const at = 0.3 * (i + 1) * (1 + rough * normal(random));
                 layers.push_back(
@@ -159,6 +160,10 @@ TEST(LayerJoining, DifferencesAreBounds) {
             for (std::int16_t const part : top.parts) {
                 uses[static_cast<std::size_t>(std::max<std::int16_t>(part, 0))] += part >= 0 ? 1 : 0;
             }
+            fours += of_each == 1 && top.levels == LayerJoining::most_levels - 1 && top.difference > 0 &&
+                             std::ranges::count(top.parts, JoinedLayer::no_part) == 0
+                         ? 1
+                         : 0;
             std::vector<JoinedLayer const*> below{&top};
             while (!below.empty()) {
                 JoinedLayer const& layer = *below.back();
@@ -182,6 +187,7 @@ TEST(LayerJoining, DifferencesAreBounds) {
         EXPECT_LE(all.size(), LayerJoining::most_layers);
     }
     EXPECT_GT(found, 1000);
+    EXPECT_GT(fours, 100);
 }
 
 TEST(LayerJoining, WhatIsNoNumberStaysAlone) {

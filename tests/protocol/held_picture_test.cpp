@@ -227,7 +227,7 @@ TEST(HeldPicture, PredictsAsIfAllOfItWerePoints) {
             int const y = static_cast<int>(random() % unsigned(from.side / step));
             for (int x = 0; x < from.side / step; ++x) {
                 auto const green = source.first[static_cast<std::size_t>(y) * source.stride + std::size_t(x)];
-                auto const at = [&](int first, int points) { return (first / step + points) * step + step / 2; };
+                auto const at = [&](int first, int points) { return (first / step + points) * step; };
                 ASSERT_EQ(green, flat_green.at(at(from.left, x), at(from.top, y))) << i;
             }
         }
@@ -239,6 +239,32 @@ TEST(VectorSearch, FindsNothingInWhatIsNotKeptForIt) {
     VectorSearch search;
     DisplayFramelet const framelet = framelet_of(make_tile(pixel_depth, 2, 2), [](int x, int y) { return 9 * x + y; });
     EXPECT_EQ(search.find(held, framelet), PictureVector{});
+}
+
+/// What is coarse is looked for among coarse points of what is finer.
+TEST(VectorSearch, WhatIsCoarseAndStillHasHardlyMoved) {
+    HeldPicture held = grey_picture();
+    held.prepare_search({});
+    ImagePlane const plane(viewport);
+    auto const scene = [](double x, double y) {
+        return 128 + 60 * std::sin(0.13 * x) + 60 * std::cos(0.17 * y + 0.05 * x);
+    };
+    for (std::uint32_t row = 0; row < 8; ++row) {
+        for (std::uint32_t column = 0; column < 13; ++column) {
+            Tile const tile = make_tile(pixel_depth, column, row);
+            if (plane.accepts(tile)) {
+                take(held, framelet_of(tile, [&](int x, int y) { return scene(16. * column + x, 16. * row + y); }));
+            }
+        }
+    }
+    constexpr int levels = 2, spacing = 1 << levels; // pixels
+    Tile const tile = make_tile(pixel_depth - levels, 1, 1);
+    PixelRect const rect = plane.tile_rect(tile);
+    DisplayFramelet const still = framelet_of(tile, [&](int x, int y) {
+        return scene(rect.left + spacing * (x + 0.5) - 0.5, rect.top + spacing * (y + 0.5) - 0.5);
+    });
+    PictureVector const found = VectorSearch().find(held, still);
+    EXPECT_EQ(found, PictureVector{}) << int{found.x} << " " << int{found.y};
 }
 
 TEST(VectorSearch, FindsWhatHasMoved) {

@@ -118,7 +118,7 @@ TEST(HaarTransform, AllNumbersOfPlacesAreAlike) {
     }
 }
 
-/// Against what the declaration says, for every step that a quality makes and every detail.
+/// Against what the declaration says, for many steps that qualities make and every detail.
 TEST(HaarTransform, LevelsAreTheNearestButForWhatIsNearerToZero) {
     std::vector<std::int16_t> details, levels;
     for (int value = -32768; value < 32768; value += 1) {
@@ -129,7 +129,7 @@ TEST(HaarTransform, LevelsAreTheNearestButForWhatIsNearerToZero) {
     }
     details.resize((details.size() + 3) / 4 * 4);
     levels.resize(details.size());
-    for (int base = 1; base <= 159; base += base < 20 ? 1 : 7) {
+    for (int base = 1; base <= 159; base += base < 19 ? 1 : 7) { // 159: the coarsest of all
         for (int const step : {base, 2 * base, 4 * base, 8 * base}) {
             for (std::size_t first = 0; first < details.size(); first += 256) { // an octave at a time
                 std::size_t const some = std::min<std::size_t>(256, details.size() - first);
