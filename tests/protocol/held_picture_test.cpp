@@ -241,14 +241,15 @@ TEST(VectorSearch, FindsNothingInWhatIsNotKeptForIt) {
     EXPECT_EQ(search.find(held, framelet), PictureVector{});
 }
 
-/// What is coarse is looked for among coarse points of what is finer.
-TEST(VectorSearch, WhatIsCoarseAndStillHasHardlyMoved) {
+double scene(double x, double y) {
+    return 128 + 60 * std::sin(0.13 * x) + 60 * std::cos(0.17 * y + 0.05 * x);
+}
+
+/// All of the scene, a sample a pixel.
+HeldPicture searched_picture() {
     HeldPicture held = grey_picture();
     held.prepare_search({});
     ImagePlane const plane(viewport);
-    auto const scene = [](double x, double y) {
-        return 128 + 60 * std::sin(0.13 * x) + 60 * std::cos(0.17 * y + 0.05 * x);
-    };
     for (std::uint32_t row = 0; row < 8; ++row) {
         for (std::uint32_t column = 0; column < 13; ++column) {
             Tile const tile = make_tile(pixel_depth, column, row);
@@ -257,6 +258,13 @@ TEST(VectorSearch, WhatIsCoarseAndStillHasHardlyMoved) {
             }
         }
     }
+    return held;
+}
+
+/// What is coarse is looked for among coarse points of what is finer.
+TEST(VectorSearch, WhatIsCoarseAndStillHasHardlyMoved) {
+    HeldPicture const held = searched_picture();
+    ImagePlane const plane(viewport);
     constexpr int levels = 2, spacing = 1 << levels; // pixels
     Tile const tile = make_tile(pixel_depth - levels, 1, 1);
     PixelRect const rect = plane.tile_rect(tile);
@@ -269,20 +277,8 @@ TEST(VectorSearch, WhatIsCoarseAndStillHasHardlyMoved) {
 
 TEST(VectorSearch, FindsWhatHasMoved) {
     std::mt19937 random(1);
-    HeldPicture held = grey_picture();
-    held.prepare_search({});
+    HeldPicture const held = searched_picture();
     ImagePlane const plane(viewport);
-    auto const scene = [](double x, double y) {
-        return 128 + 60 * std::sin(0.13 * x) + 60 * std::cos(0.17 * y + 0.05 * x);
-    };
-    for (std::uint32_t row = 0; row < 8; ++row) {
-        for (std::uint32_t column = 0; column < 13; ++column) {
-            Tile const tile = make_tile(pixel_depth, column, row);
-            if (plane.accepts(tile)) {
-                take(held, framelet_of(tile, [&](int x, int y) { return scene(16. * column + x, 16. * row + y); }));
-            }
-        }
-    }
     VectorSearch search;
     for (int i = 0; i < 50; ++i) {
         int const dx = static_cast<int>(random() % 9) - 4, dy = static_cast<int>(random() % 9) - 4; // pixels
