@@ -40,6 +40,9 @@ void for_each_block(PixelRect const& box, int columns, Visit const& visit) {
 }
 
 std::size_t block_count(PixelRect const& box) {
+    if (box.empty()) {
+        return 0;
+    }
     PixelRect const blocks = blocks_of(box);
     return static_cast<std::size_t>(blocks.width()) * static_cast<std::size_t>(blocks.height());
 }
