@@ -160,6 +160,19 @@ inline unsigned bits_of(std::int64_t __attribute__((vector_size(64))) flags) {
 template <class Numbers>
 concept OfDoubles = sizeof(Numbers) % sizeof(double) == 0 && !std::is_integral_v<Numbers>;
 
+/// Comparisons of doubles yield these: 0 or -1.
+using WideLongs = std::int64_t __attribute__((vector_size(8 * wide_doubles)));
+
+/// -1 where the bit of the lane is set.
+inline WideLongs lanes_of(unsigned bits) {
+#ifdef __AVX512F__
+    constexpr WideLongs bit{1, 2, 4, 8, 16, 32, 64, 128};
+#else
+    constexpr WideLongs bit{1, 2, 4, 8};
+#endif
+    return (bit & bits) != 0;
+}
+
 // `b` where one of them is not a number.
 template <OfDoubles Doubles>
 Doubles smaller(Doubles a, Doubles b) {
@@ -172,6 +185,29 @@ Doubles larger(Doubles a, Doubles b) {
 template <OfDoubles Doubles>
 Doubles absolute(Doubles value) {
     return value < 0 ? -value : value;
+}
+
+/// Of all lanes, `combine`d pairwise.
+template <class Combine>
+double of_all(WideDoubles lanes, Combine const& combine) {
+#ifdef __AVX512F__
+    FourDoubles const four =
+        combine(__builtin_shufflevector(lanes, lanes, 0, 1, 2, 3), __builtin_shufflevector(lanes, lanes, 4, 5, 6, 7));
+#else
+    FourDoubles const four = lanes;
+#endif
+    using Two = double __attribute__((vector_size(16)));
+    Two const two = combine(__builtin_shufflevector(four, four, 0, 1), __builtin_shufflevector(four, four, 2, 3));
+    return combine(two[0], two[1]);
+}
+inline double sum_of(WideDoubles lanes) {
+    return of_all(lanes, [](auto a, auto b) { return a + b; });
+}
+inline double smallest_of(WideDoubles lanes) {
+    return of_all(lanes, [](auto a, auto b) { return smaller(a, b); });
+}
+inline double largest_of(WideDoubles lanes) {
+    return of_all(lanes, [](auto a, auto b) { return larger(a, b); });
 }
 
 } // namespace framelet

@@ -1,348 +1,424 @@
 #include "common/layer_joining.h"
 
-#include <algorithm>
-#include <utility>
-
-#include "common/lanes.h"
+#include "common/morton.h"
 
 namespace framelet {
 
 namespace {
 
-/// A number of each of four layers.
-using Four = FourDoubles;
-using FourLayers = std::array<JoinedLayer const*, 4>;
+using Lanes = WideDoubles;
+using Floats = float __attribute__((vector_size(4 * wide_doubles)));
+using Ints = std::int32_t __attribute__((vector_size(4 * wide_doubles)));
+using Piece = PieceOf<Lanes>;
 
+/// Inverse depths that differ by less than this share are the same for all that looks at them.
+constexpr double one_surface = 2e-3;
+
+/// This many times that off, each in the other's middle, two are not worth a fit.
+constexpr double hopeless = 2;
+
+/// So many times what is near is not of the plane until no more is looked for.
+constexpr int most_failures = 2;
+
+/// The framelets of a four.
+constexpr std::uint64_t quarters = 0x0001000100010001u;
+
+/// What it costs to show what lies there, in pixels: blocks and lanes reach beyond it.
 template <class Number>
-Four each_of(FourLayers const& layers, Number const& number) {
-    return Four{number(*layers[0]), number(*layers[1]), number(*layers[2]), number(*layers[3])};
+Number showing_cost(Number half_width, Number half_height) {
+    return (2 * half_width + 12) * (2 * half_height + 6);
+}
+template <class Number>
+Number showing_cost(ExtentOf<Number> const& extent) {
+    return (extent.right - extent.left + 12) * (extent.bottom - extent.top + 6);
 }
 
-AffineOf<Four> planes_of(FourLayers const& layers) {
-    return {each_of(layers, [](JoinedLayer const& layer) { return layer.plane.at; }),
-            each_of(layers, [](JoinedLayer const& layer) { return layer.plane.dx; }),
-            each_of(layers, [](JoinedLayer const& layer) { return layer.plane.dy; })};
+Lanes doubles_of(Floats values) {
+    return __builtin_convertvector(values, Lanes);
+}
+Lanes doubles_of(Ints values) {
+    return __builtin_convertvector(values, Lanes);
+}
+Lanes all_of(double value) {
+    return Lanes{} + value;
+}
+AffineOf<Lanes> all_of(AffinePlane const& plane) {
+    return {all_of(plane.at), all_of(plane.dx), all_of(plane.dy)};
+}
+ExtentOf<Lanes> all_of(PlaneExtent const& extent) {
+    return {all_of(extent.left), all_of(extent.top), all_of(extent.right), all_of(extent.bottom)};
 }
 
-ExtentOf<Four> extents_of(FourLayers const& layers) {
-    return {each_of(layers, [](JoinedLayer const& layer) { return layer.extent.left; }),
-            each_of(layers, [](JoinedLayer const& layer) { return layer.extent.top; }),
-            each_of(layers, [](JoinedLayer const& layer) { return layer.extent.right; }),
-            each_of(layers, [](JoinedLayer const& layer) { return layer.extent.bottom; })};
+/// Columns or rows of framelets in the square, by place.
+constexpr auto coordinates(std::uint32_t (*coordinate)(std::uint32_t)) {
+    std::array<float, SquareLayers::places> out{};
+    for (std::size_t place = 0; place < out.size(); ++place) {
+        out[place] = static_cast<float>(coordinate(static_cast<std::uint32_t>(SquareLayers::part_at(place))));
+    }
+    return out;
+}
+constexpr auto columns = coordinates(morton_x);
+constexpr auto rows = coordinates(morton_y);
+
+/// Byte `i` of boxes, which is signed.
+Lanes byte_of(Ints boxes, int i) {
+    return doubles_of(boxes << (24 - 8 * i) >> 24);
 }
 
-double smallest_of(Four values) {
-    return smaller(smaller(values[0], values[1]), smaller(values[2], values[3]));
+template <class Rows>
+Piece load_piece(Rows const& from, std::size_t i) {
+    auto const load = [i](auto const& row) { return load_lanes<Lanes>(&row[i]); };
+    return {load(from.x),     load(from.y),  load(from.half_width), load(from.half_height),
+            load(from.value), load(from.dx), load(from.dy)};
+}
+template <class Rows>
+void store_piece(Piece const& piece, Rows& to, std::size_t i) {
+    store_lanes(piece.x, &to.x[i]);
+    store_lanes(piece.y, &to.y[i]);
+    store_lanes(piece.half_width, &to.half_width[i]);
+    store_lanes(piece.half_height, &to.half_height[i]);
+    store_lanes(piece.value, &to.value[i]);
+    store_lanes(piece.dx, &to.dx[i]);
+    store_lanes(piece.dy, &to.dy[i]);
 }
 
-double largest_of(Four values) {
-    return larger(larger(values[0], values[1]), larger(values[2], values[3]));
+/// Of a fit from each piece; not a number where that has no sense.
+Lanes share_of(Lanes difference, AffineOf<Lanes> const& fit, Piece const& piece) {
+    return difference == 0 ? Lanes{} : difference / least_value(fit, piece);
 }
 
-std::uint64_t combine(std::uint64_t signature, std::uint64_t part) {
-    return (signature + part) * 0x9e3779b97f4a7c15u;
-}
-
-std::uint64_t signature_of(std::uint64_t batch, std::uint8_t number) {
-    return batch * 256 + number;
+/// Where one plane is, in the middle of another piece.
+template <class Number>
+Number difference_in_middle(PieceOf<Number> const& of, PieceOf<Number> const& at) {
+    return absolute(of.value + of.dx * (at.x - of.x) + of.dy * (at.y - of.y) - at.value);
 }
 
 } // namespace
 
-LayerJoining::LayerJoining() : layers_(most_layers), open_(std::make_unique<Open>()), next_(std::make_unique<Open>()) {}
-
-void LayerJoining::start(int levels, SampleGrid const& grid) {
-    levels_ = levels;
-    grid_ = grid;
-    leaves_.clear();
-    motions_.clear();
-    layer_count_ = 0;
+LayerJoining::Bits LayerJoining::Bits::first(std::size_t count) {
+    Bits out;
+    for (std::size_t word = 0; word < out.words.size(); ++word) {
+        std::size_t const left = count - std::min(count, 64 * word);
+        out.words[word] = left >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << left) - 1;
+    }
+    return out;
 }
 
-void LayerJoining::add(HeldLayer const& held, std::uint64_t batch, std::uint32_t view, std::uint32_t part,
-                       std::uint32_t layer) {
-    FrameletLayer& leaf = leaves_.emplace_back();
-    leaf.held = &held;
-    leaf.batch = batch;
-    leaf.view = view;
-    leaf.part = static_cast<std::uint8_t>(part);
-    leaf.layer = static_cast<std::uint8_t>(layer);
-    leaf.motion = motion_of(leaf);
-    fours_.set(part, held);
-    JoinedLayer& out = layers_[layer_count_++];
-    out.parts.fill(JoinedLayer::no_part);
-    out.levels = static_cast<std::uint8_t>(levels_);
-    out.part = leaf.part;
-    out.number = number_of(part, layer);
-    out.is_joined_further = false;
+LayerJoining::Bits LayerJoining::Bits::only(std::size_t index) {
+    Bits out;
+    out.words[index / 64] = std::uint64_t{1} << index % 64;
+    return out;
 }
 
-double LayerJoining::motion_of(FrameletLayer const& layer) {
-    // Mostly that of the layer before.
-    for (std::size_t i = motions_.size(); i-- > 0;) {
-        FrameletLayer const& known = leaves_[static_cast<std::size_t>(motions_[i])];
-        if (known.view == layer.view && known.held->layer.body == layer.held->layer.body &&
-            known.held->layer.velocity == layer.held->layer.velocity) {
-            return static_cast<double>(i);
+/// Of any.
+std::size_t LayerJoining::Bits::lowest() const {
+    std::size_t word = 0;
+    while (words[word] == 0) {
+        ++word;
+    }
+    return 64 * word + static_cast<std::size_t>(std::countr_zero(words[word]));
+}
+
+LayerJoining::Bits LayerJoining::Bits::operator|(Bits const& other) const {
+    Bits out;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        out.words[i] = words[i] | other.words[i];
+    }
+    return out;
+}
+LayerJoining::Bits LayerJoining::Bits::operator&(Bits const& other) const {
+    Bits out;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        out.words[i] = words[i] & other.words[i];
+    }
+    return out;
+}
+LayerJoining::Bits LayerJoining::Bits::without(Bits const& other) const {
+    Bits out;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        out.words[i] = words[i] & ~other.words[i];
+    }
+    return out;
+}
+
+/// Framelets of one layer each first, four at a time; then whatever there is.
+void LayerJoining::join(SquareLayers const& layers, SampleGrid const& grid) {
+    joined_.clear();
+    fours_.clear();
+    open_count_ = 0;
+    std::uint64_t several = 0;
+    for (std::size_t k = 1; k < max_layers; ++k) {
+        several |= layers.rows(k).held;
+    }
+    std::uint64_t const one = layers.rows(0).held & ~several;
+    std::uint64_t left = layers.rows(0).held;
+    load(layers, 0, grid);
+    left &= ~join_fours(one & one >> 16 & one >> 32 & one >> 48 & 0xffffu);
+    four_count_ = open_count_;
+    for (std::size_t i = 0; i < four_count_; ++i) {
+        fours_.push_back(joined(alone(i)));
+    }
+    for (std::size_t k = 0; k < max_layers; ++k) {
+        if (k > 0) {
+            left = layers.rows(k).held;
+            load(layers, k, grid);
+        }
+        for (; left != 0; left &= left - 1) {
+            auto const place = static_cast<std::size_t>(std::countr_zero(left));
+            open_piece(loaded_, place, 0, 0, place, k);
         }
     }
-    motions_.push_back(static_cast<std::int16_t>(leaves_.size() - 1));
-    return static_cast<double>(motions_.size() - 1);
-}
-
-void LayerJoining::finish() {
-    join_framelets();
-    for (int levels = levels_ - 2; levels >= 0; --levels) {
-        next_->clear();
-        for (std::size_t first = 0, last = 0; first < open_->count; first = last) {
-            while (last < open_->count && part_at(last, levels) == part_at(first, levels)) {
-                ++last;
-            }
-            join_part(first, last, levels);
-        }
-        std::swap(open_, next_);
+    for (Bits open = Bits::first(open_count_); open.any();) {
+        Group const group = grow(open.lowest(), open);
+        open = open.without(group.members);
+        joined_.push_back(joined(group));
     }
 }
 
-/// Within four of them: all fours of framelets of one layer each are tried at once.
-void LayerJoining::join_framelets() {
-    next_->clear();
-    fours_.join(levels_ > 0 ? std::size_t{1} << 2 * (levels_ - 1) : 0, grid_);
-    for (std::size_t first = 0, last = 0; first < leaves_.size(); first = last) {
-        int const four = leaves_[first].part / 4;
-        while (last < leaves_.size() && leaves_[last].part / 4 == four) {
-            ++last;
-        }
-        if (levels_ > 0 && is_four(first, last) && fours_.is_joined(static_cast<std::size_t>(four))) {
-            keep_four(first);
+/// One layer of each framelet.
+void LayerJoining::load(SquareLayers const& layers, std::size_t layer, SampleGrid const& grid) {
+    SquareLayers::Rows const& from = layers.rows(layer);
+    double const tile = grid.side * grid.spacing; // pixels
+    for (std::size_t i = 0; i < SquareLayers::places; i += wide_doubles) {
+        if ((from.held >> i & ((1u << wide_doubles) - 1)) == 0) {
             continue;
         }
-        Open& open = levels_ > 0 ? *open_ : *next_;
-        open.clear();
-        for (std::size_t i = first; i < last; ++i) {
-            complete(i);
-            open.add(i, leaves_[i].motion, leaves_[i].part, layers_[i].plane, layers_[i].extent);
-        }
-        if (levels_ > 0) {
-            join_part(0, open.count, levels_ - 1);
-        }
-    }
-    std::swap(open_, next_);
-}
-
-/// One layer of each of four framelets that share a parent, all of one view, body and velocity.
-bool LayerJoining::is_four(std::size_t first, std::size_t last) const {
-    if (last - first != 4) {
-        return false;
-    }
-    bool is = true;
-    for (std::size_t k = 0; k < 4; ++k) {
-        is &= leaves_[first + k].part % 4 == k && leaves_[first + k].motion == leaves_[first].motion;
-    }
-    return is;
-}
-
-void LayerJoining::keep_four(std::size_t first) {
-    FrameletLayer const& leaf = leaves_[first];
-    std::size_t const four = leaf.part / 4;
-    JoinedLayer& joined = layers_[layer_count_];
-    joined.plane = fours_.plane(four);
-    joined.share = fours_.share(four);
-    joined.extent = fours_.extent(four);
-    next_->add(layer_count_++, leaf.motion, leaf.part, joined.plane, joined.extent);
-    joined.sums = fours_.sums(four);
-    joined.difference = fours_.difference(four);
-    joined.newest_batch = 0;
-    joined.signature = 0;
-    joined.error = leaf.held->layer.error; // also where that is not a number
-    joined.view = leaf.view;
-    joined.velocity = leaf.held->layer.velocity;
-    joined.body = leaf.held->layer.body;
-    joined.levels = static_cast<std::uint8_t>(levels_ - 1);
-    joined.part = static_cast<std::uint8_t>(four);
-    joined.number = number_of(leaf.part, leaf.layer);
-    joined.is_joined_further = false;
-    for (std::size_t k = 0; k < 4; ++k) {
-        FrameletLayer const& member = leaves_[first + k];
-        joined.error = std::max(joined.error, member.held->layer.error);
-        joined.newest_batch = std::max(joined.newest_batch, member.batch);
-        joined.signature = combine(joined.signature, signature_of(member.batch, layers_[first + k].number));
-        joined.parts[k] = static_cast<std::int16_t>(first + k);
-        layers_[first + k].is_joined_further = true;
+        Ints const box = load_lanes<Ints>(&from.box[i]);
+        Lanes const left = byte_of(box, 0), top = byte_of(box, 1);
+        Lanes const right = byte_of(box, 2) + 1, bottom = byte_of(box, 3) + 1;
+        Lanes const x = 0.5 * grid.spacing * (left + right); // from the tile's corner on
+        Lanes const y = 0.5 * grid.spacing * (top + bottom);
+        Lanes const dx = doubles_of(load_lanes<Floats>(&from.dx[i]));
+        Lanes const dy = doubles_of(load_lanes<Floats>(&from.dy[i]));
+        store_piece({tile * doubles_of(load_lanes<Floats>(&columns[i])) + x,
+                     tile * doubles_of(load_lanes<Floats>(&rows[i])) + y, 0.5 * grid.spacing * (right - left),
+                     0.5 * grid.spacing * (bottom - top), doubles_of(load_lanes<Floats>(&from.at[i])) + dx * x + dy * y,
+                     dx, dy},
+                    loaded_, i);
+        store_lanes(doubles_of(load_lanes<Ints>(&from.motion[i])), &loaded_.motion[i]);
     }
 }
 
-/// What `add` leaves out.
-void LayerJoining::complete(std::size_t leaf) {
-    FrameletLayer const& from = leaves_[leaf];
-    JoinedLayer& out = layers_[leaf];
-    HeldLayer const& held = *from.held;
-    double const column = morton_x(from.part);
-    double const row = morton_y(from.part);
-    double const left = grid_.side * column;
-    double const top = grid_.side * row;
-    out.plane = plane_in_square<double>(held.layer.at, held.layer.dx, held.layer.dy, column, row, grid_);
-    out.share = 0;
-    out.extent = {grid_.spacing * (left + held.first_column), grid_.spacing * (top + held.first_row),
-                  grid_.spacing * (left + held.last_column + 1), grid_.spacing * (top + held.last_row + 1)};
-    out.sums = sums_over(out.plane, out.extent);
-    out.difference = 0;
-    out.newest_batch = from.batch;
-    out.signature = signature_of(from.batch, out.number);
-    out.error = held.layer.error;
-    out.view = from.view;
-    out.velocity = held.layer.velocity;
-    out.body = held.layer.body;
-}
-
-/// Greedily, in Morton order.
-void LayerJoining::join_part(std::size_t first, std::size_t last, int levels) {
-    Part part{levels, {first, first, first, first, last}};
-    for (std::size_t i = first; i < last; ++i) {
-        for (std::size_t k = part_at(i, levels + 1) % 4; k < 3; ++k) {
-            part.quarters[k + 1] = i + 1;
-        }
-    }
-    for (std::size_t i = first; i < last; ++i) {
-        if (open_->motion[i] == Open::taken) {
+/// Of what is loaded, a lane for each four, those that are `complete`. Returns a bit for each framelet of those that
+/// one plane is near enough to; these are open then.
+std::uint64_t LayerJoining::join_fours(std::uint64_t complete) {
+    std::uint64_t out = 0;
+    for (std::size_t first = 0; first < SquareLayers::most_fours; first += wide_doubles) {
+        unsigned const wanted = static_cast<unsigned>(complete >> first) & ((1u << wide_doubles) - 1);
+        if (wanted == 0) {
             continue;
         }
-        Group group = group_of(i, part, false);
-        if (group.joined_cost > group.cost_of_parts) {
-            group = group_of(i, part, true);
+        std::array<Piece, 4> parts;
+        SumsOf<Lanes> sums;
+        Lanes cost_of_parts{};
+        Lanes const motion = load_lanes<Lanes>(&loaded_.motion[first]);
+        WideLongs is_one = lanes_of(wanted);
+        for (std::size_t k = 0; k < parts.size(); ++k) {
+            std::size_t const i = SquareLayers::most_fours * k + first;
+            parts[k] = load_piece(loaded_, i);
+            sums += sums_over(parts[k]);
+            cost_of_parts += showing_cost(parts[k].half_width, parts[k].half_height);
+            is_one &= load_lanes<Lanes>(&loaded_.motion[i]) == motion;
         }
-        if (std::ranges::count(group.members, JoinedLayer::no_part) == 3) {
-            next_->add(static_cast<std::size_t>(open_->layer[i]), open_->motion[i], open_->part[i], open_layer(i).plane,
-                       open_layer(i).extent);
+        AffineOf<Lanes> const plane = fit_plane(sums);
+        Lanes difference{}, share{};
+        ExtentOf<Lanes> extent = parts[0].extent();
+        for (Piece const& part : parts) {
+            Lanes const own = largest_difference(part, plane);
+            Lanes const own_share = share_of(own, plane, part);
+            is_one &= (difference_in_middle(parts[0], part) <= hopeless * one_surface * part.value) & (own_share >= 0) &
+                      (own_share <= one_surface);
+            difference = larger(difference, own);
+            share = larger(share, own_share);
+            extent = united(extent, part.extent());
+        }
+        is_one &= showing_cost(extent) <= cost_of_parts;
+        unsigned const found = bits_of(is_one);
+        out |= std::uint64_t{found} << first;
+        // All of them, then those that are.
+        Rows<wide_doubles> fours;
+        store_piece(piece_of(plane, extent), fours, 0);
+        store_lanes(motion, fours.motion.data());
+        std::array<double, wide_doubles> shares, differences;
+        store_lanes(share, shares.data());
+        store_lanes(difference, differences.data());
+        for (unsigned left = found; left != 0; left &= left - 1) {
+            auto const lane = static_cast<std::size_t>(std::countr_zero(left));
+            open_piece(fours, lane, shares[lane], differences[lane], first + lane, 0);
+        }
+    }
+    return out * quarters;
+}
+
+template <class From>
+void LayerJoining::open_piece(From const& from, std::size_t i, double share, double difference, std::size_t place,
+                              std::size_t layer) {
+    std::size_t const to = open_count_++;
+    open_.x[to] = from.x[i];
+    open_.y[to] = from.y[i];
+    open_.half_width[to] = from.half_width[i];
+    open_.half_height[to] = from.half_height[i];
+    open_.value[to] = from.value[i];
+    open_.dx[to] = from.dx[i];
+    open_.dy[to] = from.dy[i];
+    open_.motion[to] = from.motion[i];
+    share_[to] = share;
+    difference_[to] = difference;
+    place_[to] = static_cast<std::uint8_t>(place);
+    layer_[to] = static_cast<std::uint8_t>(layer);
+}
+
+PlanePiece LayerJoining::piece(std::size_t open) const {
+    return {open_.x[open],     open_.y[open],  open_.half_width[open], open_.half_height[open],
+            open_.value[open], open_.dx[open], open_.dy[open]};
+}
+
+LayerJoining::Group LayerJoining::alone(std::size_t seed) const {
+    PlanePiece const own = piece(seed);
+    double const cost = showing_cost(own.half_width, own.half_height);
+    return {Bits::only(seed), sums_over(own), own.plane(), own.extent(), difference_[seed], cost, cost};
+}
+
+/// What can be joined to one of the `open`: all that may be of its plane at once, else what is near, and near to that,
+/// and then all once more. (Around a single layer too little of what is far is of its plane to begin with all.)
+LayerJoining::Group LayerJoining::grow(std::size_t seed, Bits const& open) const {
+    Group group = alone(seed);
+    Bits rest = open.without(group.members);
+    bool near = seed >= four_count_;
+    bool has_grown = false; // since all were tried
+    for (int failures = 0; failures < most_failures && rest.any();) {
+        Bits const some = find(seed, group, rest, near);
+        if (near && !some.any() && has_grown) {
+            near = has_grown = false;
+        } else if (!some.any()) {
+            break;
+        } else if (join(some, near, group, rest)) {
+            has_grown = near;
+            near = true;
         } else {
-            keep(group, i, levels);
-        }
-    }
-}
-
-void LayerJoining::keep(Group const& group, std::size_t seed, int levels) {
-    JoinedLayer& joined = layers_[layer_count_];
-    JoinedLayer const& first = open_layer(seed);
-    joined = {};
-    joined.plane = group.plane;
-    joined.share = group.share;
-    joined.extent = group.extent;
-    joined.sums = group.sums;
-    joined.difference = group.difference;
-    joined.error = first.error; // also where that is not a number
-    joined.view = first.view;
-    joined.velocity = first.velocity;
-    joined.body = first.body;
-    joined.levels = static_cast<std::uint8_t>(levels);
-    joined.part = static_cast<std::uint8_t>(part_at(seed, levels));
-    joined.number = first.number;
-    next_->add(layer_count_++, open_->motion[seed], open_->part[seed], joined.plane, joined.extent);
-    for (std::size_t k = 0; k < group.members.size(); ++k) {
-        if (group.members[k] == JoinedLayer::no_part) {
-            continue;
-        }
-        auto const open = static_cast<std::size_t>(group.members[k]);
-        open_->motion[open] = Open::taken;
-        joined.parts[k] = open_->layer[open];
-        JoinedLayer& member = layers_[static_cast<std::size_t>(open_->layer[open])];
-        member.is_joined_further = true;
-        joined.error = std::max(joined.error, member.error);
-        joined.newest_batch = std::max(joined.newest_batch, member.newest_batch);
-        joined.signature = combine(joined.signature, member.signature);
-    }
-}
-
-/// What of a part can be joined to one that is open, at most one layer of each quarter: all at once where they are of
-/// one plane, else one after the other. `cheaply`: only what is cheaper joined than alone is added.
-LayerJoining::Group LayerJoining::group_of(std::size_t seed, Part const& part, bool cheaply) const {
-    JoinedLayer const& own = open_layer(seed);
-    std::size_t quarter = part_at(seed, part.levels + 1) % 4;
-    Group group;
-    group.members.fill(JoinedLayer::no_part);
-    group.members[quarter] = static_cast<std::int16_t>(seed);
-    std::size_t const last = part.quarters[4];
-    Open::Bits some = candidates(part, seed, own.plane);
-    std::size_t i = Open::next(some, part.quarters[quarter + 1], last);
-    if (!cheaply && i < last) {
-        std::size_t const tried = join_first_ones(seed, quarter, part, some, group);
-        if (tried == 0) {
-            return group;
-        }
-        i = tried == 2 ? Open::next(some, i + 1, last) : i; // two that were not of one plane will not be now
-    }
-    group.plane = own.plane;
-    group.extent = own.extent;
-    group.joined_cost = group.cost_of_parts = showing_cost(own.extent);
-    while (i < last) {
-        PlaneExtent const& extent = open_layer(i).extent;
-        std::size_t const its_quarter = part_at(i, part.levels + 1) % 4;
-        Members members = group.members;
-        members[its_quarter] = static_cast<std::int16_t>(i);
-        if ((!cheaply || showing_cost(united(group.extent, extent)) <= group.joined_cost + showing_cost(extent)) &&
-            join(members, seed, group)) {
-            some = candidates(part, seed, group.plane);
-            i = Open::next(some, part.quarters[its_quarter + 1], last);
-        } else {
-            i = Open::next(some, i + 1, last);
+            failures += near ? 1 : 0;
+            near = true;
         }
     }
     return group;
 }
 
-/// With the first candidate of each quarter. 0 where they are of one plane, else how many they are.
-std::size_t LayerJoining::join_first_ones(std::size_t seed, std::size_t quarter, Part const& part,
-                                          Open::Bits const& candidates, Group& group) const {
-    Members members = group.members;
-    std::size_t count = 1;
-    for (std::size_t k = quarter + 1; k < members.size(); ++k) {
-        std::size_t const i = Open::next(candidates, part.quarters[k], part.quarters[k + 1]);
-        if (i < part.quarters[k + 1]) {
-            members[k] = static_cast<std::int16_t>(i);
-            ++count;
+/// Adds `some` to the group, or those of them that agree, or the first one of those that are `near`. Of these no more
+/// is in `rest` then that is joined or not of the plane.
+bool LayerJoining::join(Bits some, bool near, Group& group, Bits& rest) const {
+    for (int i = 0; i < 2 && some.any(); ++i) {
+        Group larger = group;
+        add(some, larger);
+        if (larger.cost <= larger.cost_of_parts) {
+            Bits const agreeing = fit(larger);
+            if (agreeing == larger.members) {
+                group = larger;
+                group.cost_of_parts = group.cost;
+                rest = rest.without(group.members);
+                return true;
+            }
+            rest = near ? rest.without(some.without(agreeing)) : rest;
+            some = some & agreeing;
+        } else if (near && !(some == Bits::only(some.lowest()))) {
+            some = Bits::only(some.lowest());
+        } else {
+            break;
         }
     }
-    return join(members, seed, group) ? 0 : count;
+    rest = near ? rest.without(some) : rest;
+    return false;
 }
 
-/// Of those that are open, bit by bit: what is of the seed's view, body and velocity and about of this plane.
-LayerJoining::Open::Bits LayerJoining::candidates(Part const& part, std::size_t seed, AffinePlane const& plane) const {
-    return open_->find(part.quarters[0], part.quarters[4], open_->motion[seed], plane, hopeless * one_surface);
+/// Those of the `open` that are of the seed's motion and may be of the group's plane; `near`: and with each of which
+/// alone it would be cheaper to show.
+LayerJoining::Bits LayerJoining::find(std::size_t seed, Group const& group, Bits const& open, bool near) const {
+    Bits out;
+    AffineOf<Lanes> const plane = all_of(group.plane);
+    ExtentOf<Lanes> const extent = all_of(group.extent);
+    PlanePiece const own = piece(seed);
+    Piece const in_lanes{all_of(own.x), all_of(own.y), {}, {}, all_of(own.value), all_of(own.dx), all_of(own.dy)};
+    Lanes const off = all_of(hopeless * one_surface * own.value);
+    for (std::size_t i = 0; i < open_count_; i += wide_doubles) {
+        unsigned const wanted = open.at(i);
+        if (wanted == 0) {
+            continue;
+        }
+        Piece const other = load_piece(open_, i);
+        WideLongs is = (load_lanes<Lanes>(&open_.motion[i]) == open_.motion[seed]) &
+                       (absolute(plane(other.x, other.y) - other.value) <= hopeless * one_surface * other.value) &
+                       (difference_in_middle(other, in_lanes) <= off);
+        if (near) {
+            is &= showing_cost(united(extent, other.extent())) <=
+                  group.cost + showing_cost(other.half_width, other.half_height);
+        }
+        out.set(i, bits_of(is) & wanted);
+    }
+    return out;
 }
 
-/// Makes a group of these, of which the seed is one, if one plane is near enough to all of them.
-bool LayerJoining::join(Members const& members, std::size_t seed, Group& group) const {
-    static JoinedLayer const nothing{};
-    FourLayers layers; // the seed stands for those that are not there
-    PlaneSums sums;
-    for (std::size_t k = 0; k < members.size(); ++k) {
-        bool const is = members[k] != JoinedLayer::no_part;
-        layers[k] = &open_layer(is ? static_cast<std::size_t>(members[k]) : seed);
-        sums += (is ? layers[k] : &nothing)->sums;
+/// Without the fit, which is not needed where all together cost more.
+void LayerJoining::add(Bits const& added, Group& group) const {
+    constexpr double far = 1e30;
+    SumsOf<Lanes> sums;
+    ExtentOf<Lanes> extent{all_of(far), all_of(far), all_of(-far), all_of(-far)};
+    Lanes cost{};
+    for (std::size_t i = 0; i < open_count_; i += wide_doubles) {
+        unsigned const wanted = added.at(i);
+        if (wanted == 0) {
+            continue;
+        }
+        WideLongs const is = lanes_of(wanted);
+        Piece piece = load_piece(open_, i);
+        ExtentOf<Lanes> const own = piece.extent();
+        extent = {is ? smaller(own.left, extent.left) : extent.left, is ? smaller(own.top, extent.top) : extent.top,
+                  is ? larger(own.right, extent.right) : extent.right,
+                  is ? larger(own.bottom, extent.bottom) : extent.bottom};
+        cost += is ? showing_cost(piece.half_width, piece.half_height) : Lanes{};
+        // Of the others any numbers are loaded.
+        piece = {is ? piece.x : Lanes{}, is ? piece.y : Lanes{},     is ? piece.half_width : Lanes{},
+                 piece.half_height,      is ? piece.value : Lanes{}, is ? piece.dx : Lanes{},
+                 is ? piece.dy : Lanes{}};
+        piece.half_height = is ? piece.half_height : Lanes{};
+        sums += sums_over(piece);
     }
-    AffinePlane const plane = fit_plane(sums);
-    AffineOf<Four> const one{Four{} + plane.at, Four{} + plane.dx, Four{} + plane.dy};
-    AffineOf<Four> const planes = planes_of(layers);
-    ExtentOf<Four> const extents = extents_of(layers);
-    Four const own = largest_difference(planes, one, extents);
-    Four const own_share = own == 0 ? Four{} : own / least_value(one, extents);
-    Four const share = each_of(layers, [](JoinedLayer const& layer) { return layer.share; }) + own_share;
-    if (bits_of((own_share >= 0) & (share <= one_surface)) != 15) {
-        return false;
+    group.members = group.members | added;
+    group.extent = united(group.extent, {smallest_of(extent.left), smallest_of(extent.top), largest_of(extent.right),
+                                         largest_of(extent.bottom)});
+    group.cost = showing_cost(group.extent);
+    group.cost_of_parts += sum_of(cost);
+    if (group.cost <= group.cost_of_parts) {
+        group.sums +=
+            {sum_of(sums.area), sum_of(sums.x),     sum_of(sums.y),       sum_of(sums.xx),     sum_of(sums.xy),
+             sum_of(sums.yy),   sum_of(sums.value), sum_of(sums.value_x), sum_of(sums.value_y)};
     }
-    group.members = members;
-    group.plane = plane;
-    group.sums = sums;
-    group.extent = {smallest_of(extents.left), smallest_of(extents.top), largest_of(extents.right),
-                    largest_of(extents.bottom)};
-    group.difference = largest_of(each_of(layers, [](JoinedLayer const& layer) { return layer.difference; }) + own);
-    group.share = largest_of(share);
-    group.joined_cost = showing_cost(group.extent);
-    group.cost_of_parts = 0;
-    Four const costs = showing_cost(extents);
-    for (std::size_t k = 0; k < members.size(); ++k) {
-        group.cost_of_parts += members[k] == JoinedLayer::no_part ? 0 : costs[k];
+}
+
+/// Sets its plane. Returns those that it is near enough to.
+LayerJoining::Bits LayerJoining::fit(Group& group) const {
+    group.plane = fit_plane(group.sums);
+    AffineOf<Lanes> const plane = all_of(group.plane);
+    Lanes difference{};
+    Bits out;
+    for (std::size_t i = 0; i < open_count_; i += wide_doubles) {
+        unsigned const wanted = group.members.at(i);
+        if (wanted == 0) {
+            continue;
+        }
+        Piece const piece = load_piece(open_, i);
+        Lanes const own = largest_difference(piece, plane);
+        Lanes const share = one_surface - load_lanes<Lanes>(&share_[i]); // that is left
+        out.set(i, bits_of(own <= share * least_value(plane, piece)) & wanted);
+        difference = lanes_of(wanted) ? larger(own + load_lanes<Lanes>(&difference_[i]), difference) : difference;
     }
-    return true;
+    group.difference = largest_of(difference);
+    return out;
+}
+
+JoinedLayer LayerJoining::joined(Group const& group) const {
+    JoinedLayer out{group.plane, group.extent, group.difference, {}};
+    group.members.for_each(
+        [&](std::size_t i) { out.parts[layer_[i]] |= (i < four_count_ ? quarters : std::uint64_t{1}) << place_[i]; });
+    return out;
 }
 
 } // namespace framelet

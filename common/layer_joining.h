@@ -1,132 +1,120 @@
-// Which layers of neighbouring framelets are about one plane: joined from the bottom up in the quadtree of a square,
-// first within four framelets, then within four of those. In: layers and where they lie. Out: the planes of what is
-// joined, as a forest, so that a picture for which a plane is too rough shows those that it was joined of. None of this
-// depends on the camera that shows it.
+// Which layers of neighbouring framelets are about one plane. In: the layers of a square. Out: planes, each with what
+// is joined to it. None of this depends on the camera that shows it.
 #pragma once
 
 #include <array>
+#include <bit>
+#include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
-#include "common/four_joining.h"
-#include "common/held_shape.h"
-#include "common/morton.h"
-#include "common/open_layers.h"
+#include "common/lanes.h"
 #include "common/plane_fit.h"
+#include "common/square_layers.h"
 
 namespace framelet {
 
-/// A layer of a framelet below a square, or what some of them were joined to.
-struct JoinedLayer {
-    static constexpr std::int16_t no_part = -1;
-
-    // Not set where it is a framelet's and joined further.
-    AffinePlane plane; ///< inverse depth, pixels from the square's corner
-    double share = 0; ///< at most: of `difference` and the inverse depth there
-    PlaneExtent extent; ///< of its samples
-    PlaneSums sums;
-    double difference = 0; ///< at most: of the plane from the layers that it was joined of, 1 / metres
-    std::uint64_t newest_batch = 0;
-    std::uint64_t signature = 0; ///< differs where what it was made of differs
-    float error = 0; ///< largest of theirs
-    std::uint32_t view = 0;
-    Vec3 velocity{0};
-    BodyNumber body = static_body;
-
-    std::array<std::int16_t, 4> parts{no_part, no_part, no_part,
-                                      no_part}; ///< what it was joined of: at most one of each quarter
-    std::uint8_t levels = 0; ///< of the part below the square
-    std::uint8_t part = 0; ///< in Morton order among those of its level
-    std::uint8_t number = 0; ///< of the first layer that it was joined of
-    bool is_joined_further = false;
+/// Layers of framelets of a square, which have `side` x `side` samples, `spacing` pixels apart.
+struct SampleGrid {
+    int side = framelet_side;
+    double spacing = 1;
 };
 
-/// Of a layer of a framelet among all those of a square.
-constexpr std::uint8_t number_of(std::uint32_t part, std::uint32_t layer) {
-    return static_cast<std::uint8_t>(part * max_layers + layer);
-}
+/// What layers were joined to, or one that is joined to none.
+struct JoinedLayer {
+    AffinePlane plane; ///< inverse depth, pixels from the square's corner
+    PlaneExtent extent; ///< of its samples
+    double difference = 0; ///< at most: of the plane from the layers that it was joined of, 1 / metres
+    /// Bit p of word k: layer k of the framelet at place p.
+    std::array<std::uint64_t, max_layers> parts{};
+};
 
-/// Joins layers below a square.
+/// Joins layers of a square: what is of one view, body and velocity and of about one plane, where all of that together
+/// is cheaper to show than each by itself. Greedily: what is found first may take what would suit others better.
 class LayerJoining {
 public:
-    static constexpr int most_levels = 3;
-    static_assert(FourJoining::most_fours == std::size_t{1} << 2 * (most_levels - 1));
-    /// Every one that is joined is of at least two, so that there are less of them than layers.
-    static constexpr std::size_t most_layers = 2 * max_layers << 2 * most_levels;
+    void join(SquareLayers const& layers, SampleGrid const& grid);
 
-    LayerJoining();
-
-    /// `levels`: of framelets below the square.
-    void start(int levels, SampleGrid const& grid);
-    /// A layer of framelet `part` (in Morton order, in which they are added); some of its samples lie on it. What is
-    /// held must stay until all is finished.
-    void add(HeldLayer const& held, std::uint64_t batch, std::uint32_t view, std::uint32_t part, std::uint32_t layer);
-    void finish();
-
-    /// Layers first, in the order in which they were added.
-    std::span<JoinedLayer const> layers() const { return std::span(layers_).first(layer_count_); }
+    /// Each layer is part of one of these.
+    std::span<JoinedLayer const> joined() const { return joined_; }
+    /// Four framelets of one layer and one parent each, which all are part of one of `joined`.
+    std::span<JoinedLayer const> fours() const { return fours_; }
 
 private:
-    struct FrameletLayer {
-        HeldLayer const* held = nullptr;
-        std::uint64_t batch = 0;
-        std::uint32_t view = 0;
-        std::uint8_t part = 0; ///< the framelet, in Morton order
-        std::uint8_t layer = 0; ///< of the framelet's
-        double motion = 0; ///< the same for all of one view, body and velocity
+    /// Pieces of planes; whole lanes are read.
+    template <std::size_t count>
+    struct Rows {
+        using Row = std::array<double, count>;
+
+        alignas(64) Row x{}, y{}, half_width{}, half_height{}, value{}, dx{}, dy{};
+        Row motion{}; ///< its index
     };
 
-    using Open = OpenLayers<(max_layers << 2 * most_levels)>; ///< in Morton order
+    static constexpr std::size_t most_open = (max_layers + 1) * SquareLayers::places; ///< a fourth of it never all used
 
-    /// Of `open_`: those of one part, and where its quarters begin.
-    struct Part {
-        int levels = 0; ///< below the square
-        std::array<std::size_t, 5> quarters{}; ///< one more at the end
+    /// Of what is open.
+    struct Bits {
+        std::array<std::uint64_t, most_open / 64> words{};
+
+        static Bits first(std::size_t count);
+        static Bits only(std::size_t index);
+        bool any() const { return (words[0] | words[1] | words[2] | words[3]) != 0; }
+        unsigned at(std::size_t first_lane) const {
+            return static_cast<unsigned>(words[first_lane / 64] >> first_lane % 64) & ((1u << wide_doubles) - 1);
+        }
+        void set(std::size_t first_lane, unsigned bits) {
+            words[first_lane / 64] |= std::uint64_t{bits} << first_lane % 64;
+        }
+        std::size_t lowest() const;
+        Bits operator|(Bits const& other) const;
+        Bits operator&(Bits const& other) const;
+        Bits without(Bits const& other) const;
+        bool operator==(Bits const&) const = default;
+        template <class Visit>
+        void for_each(Visit const& visit) const {
+            for (std::size_t word = 0; word < words.size(); ++word) {
+                for (std::uint64_t left = words[word]; left != 0; left &= left - 1) {
+                    visit(64 * word + static_cast<std::size_t>(std::countr_zero(left)));
+                }
+            }
+        }
     };
 
-    using Members = std::array<std::int16_t, 4>;
-
-    /// What of one part is about to be joined.
+    /// What is about to be joined.
     struct Group {
-        Members members{}; ///< of `open_`: one of each quarter or none
-        AffinePlane plane;
+        Bits members;
         PlaneSums sums;
+        AffinePlane plane;
         PlaneExtent extent;
         double difference = 0;
-        double share = 0;
-        double joined_cost = 0;
+        double cost = 0; ///< of all together
         double cost_of_parts = 0;
     };
 
-    JoinedLayer const& open_layer(std::size_t open) const {
-        return layers_[static_cast<std::size_t>(open_->layer[open])];
-    }
-    double motion_of(FrameletLayer const& layer);
-    void join_framelets();
-    bool is_four(std::size_t first, std::size_t last) const;
-    void keep_four(std::size_t first);
-    void complete(std::size_t leaf);
-    void join_part(std::size_t first, std::size_t last, int levels);
-    void keep(Group const& group, std::size_t seed, int levels);
-    Group group_of(std::size_t seed, Part const& part, bool cheaply) const;
-    std::size_t join_first_ones(std::size_t seed, std::size_t quarter, Part const& part, Open::Bits const& candidates,
-                                Group& group) const;
-    Open::Bits candidates(Part const& part, std::size_t seed, AffinePlane const& plane) const;
-    bool join(Members const& members, std::size_t seed, Group& group) const;
-    std::uint32_t part_at(std::size_t open, int levels) const {
-        return static_cast<std::uint32_t>(open_->part[open] >> 2 * (levels_ - levels));
-    }
+    void load(SquareLayers const& layers, std::size_t layer, SampleGrid const& grid);
+    std::uint64_t join_fours(std::uint64_t complete);
+    template <class From>
+    void open_piece(From const& from, std::size_t i, double share, double difference, std::size_t place,
+                    std::size_t layer);
+    PlanePiece piece(std::size_t open) const;
+    Group alone(std::size_t seed) const;
+    Group grow(std::size_t seed, Bits const& open) const;
+    bool join(Bits some, bool near, Group& group, Bits& rest) const;
+    Bits find(std::size_t seed, Group const& group, Bits const& open, bool near) const;
+    void add(Bits const& added, Group& group) const;
+    Bits fit(Group& group) const;
+    JoinedLayer joined(Group const& group) const;
 
-    int levels_ = 0;
-    SampleGrid grid_;
-    std::vector<FrameletLayer> leaves_;
-    std::vector<std::int16_t> motions_; ///< the first leaf of each
-    FourJoining fours_; ///< of the leaves
-    std::vector<JoinedLayer> layers_; ///< room for all there can be
-    std::size_t layer_count_ = 0;
-    std::unique_ptr<Open> open_, next_; ///< at the level at hand, and one level up
+    Rows<SquareLayers::places> loaded_; ///< of all framelets: one layer each
+    // What is open: fours first, then layers.
+    std::size_t four_count_ = 0, open_count_ = 0;
+    Rows<most_open> open_;
+    /// Of a four from its layers at most, in itself and as a share of the inverse depth there; of layers 0.
+    alignas(64) std::array<double, most_open> difference_{}, share_{};
+    std::array<std::uint8_t, most_open> place_{}; ///< or which four
+    std::array<std::uint8_t, most_open> layer_{};
+    std::vector<JoinedLayer> joined_, fours_;
 };
 
 } // namespace framelet

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 #include <span>
 
 #include "common/lanes.h"
+#include "common/morton.h"
 
 namespace framelet {
 
@@ -19,8 +21,17 @@ PackedSample const* samples_of(CachedFramelet const& framelet, int side) {
     return side == framelet_side ? framelet.samples.data() : framelet.shape.reduced.data();
 }
 
-Tile tile_below(Tile tile, int levels, std::uint32_t part) {
-    return {(tile.code << 2 * levels) + part};
+Tile tile_below(Tile tile, int levels, std::size_t part) {
+    return {(tile.code << 2 * levels) + static_cast<std::uint32_t>(part)};
+}
+
+std::uint64_t combine(std::uint64_t signature, std::uint64_t part) {
+    return (signature + part) * 0x9e3779b97f4a7c15u;
+}
+
+/// Of a layer among all those of a square.
+std::uint32_t number_of(std::size_t place, std::size_t layer) {
+    return static_cast<std::uint32_t>(place * max_layers + layer);
 }
 
 } // namespace
@@ -36,15 +47,20 @@ void MergedSquare::update(FrameletCache const& cache, Tile square, int depth, La
     versions_ = versions;
     if (changed != 0) {
         load(cache, changed);
-        join(joining);
+        joining.join(*layers_, {child_side_, spacing_});
+        keep(joining);
     }
 }
 
-/// A bit for each tile below the square where something else is held than before.
-std::uint64_t MergedSquare::changes(SquareVersions const& versions) {
+Tile MergedSquare::child_tile(std::size_t place) const {
+    return tile_below(square_, levels(), SquareLayers::part_at(place));
+}
+
+/// A bit for each place where something else is held than before.
+std::uint64_t MergedSquare::changes(SquareVersions const& versions) const {
     std::uint64_t out = 0;
     for (std::size_t i = 0; i < most_children; ++i) {
-        out |= std::uint64_t{versions.tiles[i] != versions_.tiles[i]} << i;
+        out |= std::uint64_t{versions.tiles[i] != versions_.tiles[i]} << SquareLayers::place_of(i);
     }
     return out;
 }
@@ -55,149 +71,140 @@ void MergedSquare::load(FrameletCache const& cache, std::uint64_t changed) {
         make_room(cache.plane());
     }
     for (std::uint64_t left = changed; left != 0; left &= left - 1) {
-        auto const i = static_cast<std::uint32_t>(std::countr_zero(left));
-        Tile const tile = tile_below(square_, levels(), i);
+        auto const place = static_cast<std::size_t>(std::countr_zero(left));
+        Tile const tile = child_tile(place);
         CachedFramelet const* const framelet =
             cache.find(depth_, static_cast<int>(tile.column()), static_cast<int>(tile.row()));
-        children_[i] = {};
-        children_[i].framelet = framelet;
+        children_[place] = {};
+        children_[place].framelet = framelet;
         if (framelet != nullptr) {
             __builtin_prefetch(framelet);
             __builtin_prefetch(&framelet->shape.layers);
             __builtin_prefetch(samples_of(*framelet, child_side_));
             for (int row = 0; row < child_side_; ++row) {
-                __builtin_prefetch(place_of(i) + row * side_, 1);
+                __builtin_prefetch(grid_.data() + offset_of(place) + row * side_, 1);
             }
         }
     }
-    for (std::uint64_t left = changed; left != 0; left &= left - 1) {
-        copy_layers(static_cast<std::size_t>(std::countr_zero(left)));
+    if (!set_layers(changed)) {
+        layers_->forget_motions();
+        set_layers(~std::uint64_t{0});
     }
 }
 
 void MergedSquare::make_room(ImagePlane const& plane) {
-    std::size_t const count = std::size_t{1} << 2 * levels();
     int const pixels = plane.tile_side(tile_below(square_, levels(), 0));
     child_side_ = std::min(framelet_side, pixels);
     side_ = child_side_ << levels();
     spacing_ = static_cast<double>(pixels) / child_side_;
-    children_.resize(count);
-    layers_.resize(count * max_layers);
+    children_.resize(most_children);
+    layers_ = std::make_unique<SquareLayers>();
     grid_.assign(static_cast<std::size_t>(side_ * side_), no_number << 24);
 }
 
-void MergedSquare::copy_layers(std::size_t index) {
-    Child& child = children_[index];
-    if (child.framelet == nullptr) {
-        return;
-    }
-    HeldShape const& shape = child.framelet->shape;
-    child.layer_count = shape.layer_count;
-    child.has_loose = !shape.loose.empty();
-    child.view = child.framelet->view;
-    child.batch = child.framelet->moment.batch;
-    for (std::size_t i = 0; i < shape.layer_count; ++i) {
-        layer(index, i) = shape.layers[i];
-    }
-}
-
-void MergedSquare::join(LayerJoining& joining) {
-    joining.start(levels(), {child_side_, spacing_});
-    for (std::uint32_t i = 0; i < children_.size(); ++i) {
-        for (std::uint32_t k = 0; k < children_[i].layer_count; ++k) {
-            HeldLayer const& held = layer(i, k);
-            if (held.last_column >= held.first_column) {
-                joining.add(held, children_[i].batch, children_[i].view, i, k);
-            }
-        }
-    }
-    joining.finish();
-    keep(joining.layers());
-}
-
-/// What was joined comes after its parts.
-void MergedSquare::keep(std::span<JoinedLayer const> layers) {
-    merged_.clear();
-    tops_.clear();
-    std::array<std::array<std::uint8_t, max_layers>, most_children> numbers{};
-    std::array<std::uint8_t, LayerJoining::most_layers> tops{};
-    for (std::size_t i = layers.size(); i-- > 0;) {
-        JoinedLayer const& joined = layers[i];
-        std::uint8_t const top = joined.is_joined_further ? tops[i] : joined.number;
-        bool const is_of_child = joined.levels == levels();
-        if (is_of_child) {
-            numbers[joined.part][joined.number % max_layers] = top;
-        }
-        if (is_of_child && joined.is_joined_further) {
+bool MergedSquare::set_layers(std::uint64_t places) {
+    for (std::uint64_t left = places; left != 0; left &= left - 1) {
+        auto const place = static_cast<std::size_t>(std::countr_zero(left));
+        Child& child = children_[place];
+        if (child.framelet == nullptr) {
+            layers_->clear(place);
             continue;
         }
-        if (!joined.is_joined_further) {
-            tops_.push_back(static_cast<std::uint16_t>(merged_.size()));
+        child.has_loose = !child.framelet->shape.loose.empty();
+        if (!layers_->set(place, child.framelet->view, child.framelet->moment.batch, child.framelet->shape)) {
+            return false;
         }
-        MergedLayer& merged = merged_.emplace_back();
-        merge(joined, merged);
-        merged.number = top;
-        for (std::size_t k = 0; k < joined.parts.size(); ++k) {
-            if (joined.parts[k] == JoinedLayer::no_part) {
-                continue;
+    }
+    return true;
+}
+
+/// Framelets that are as they were and joined as they were are written to the grid already.
+void MergedSquare::keep(LayerJoining const& joining) {
+    fours_.assign(joining.fours().begin(), joining.fours().end());
+    merged_.clear();
+    std::array<std::array<std::uint8_t, max_layers>, most_children> numbers{};
+    for (JoinedLayer const& joined : joining.joined()) {
+        MergedLayer const& merged = merged_.emplace_back(merge(joined));
+        for (std::size_t k = 0; k < max_layers; ++k) {
+            for (std::uint64_t left = joined.parts[k]; left != 0; left &= left - 1) {
+                numbers[static_cast<std::size_t>(std::countr_zero(left))][k] = static_cast<std::uint8_t>(merged.number);
             }
-            auto const index = static_cast<std::size_t>(joined.parts[k]);
-            tops[index] = top;
-            merged.parts[k] =
-                layers[index].levels == levels()
-                    ? MergedPart{MergedPart::Kind::layer, static_cast<std::uint8_t>(layers[index].number % max_layers),
-                                 static_cast<std::uint16_t>(layers[index].part)}
-                    : MergedPart{MergedPart::Kind::merged, 0, static_cast<std::uint16_t>(layers.size() - 1 - index)};
         }
     }
     loose_children_ = 0;
-    for (std::uint32_t i = 0; i < children_.size(); ++i) {
-        Child& child = children_[i];
-        loose_children_ |= std::uint64_t{child.has_loose} << i;
-        if (!child.is_written || child.numbers != numbers[i]) {
-            child.numbers = numbers[i];
+    for (std::size_t place = 0; place < most_children; ++place) {
+        Child& child = children_[place];
+        loose_children_ |= std::uint64_t{child.has_loose} << place;
+        if (!child.is_written || child.numbers != numbers[place]) {
+            child.numbers = numbers[place];
             child.is_written = true;
-            write(child, i);
+            if (SquareLayers::part_at(place) >> 2 * levels() == 0) {
+                write(child, grid_.data() + offset_of(place));
+            }
         }
     }
 }
 
-void MergedSquare::merge(JoinedLayer const& joined, MergedLayer& out) const {
-    out.tile = tile_below(square_, joined.levels, joined.part);
-    out.side = side_ >> joined.levels;
+MergedLayer MergedSquare::merge(JoinedLayer const& joined) const {
+    MergedLayer out;
+    HeldLayer& held = out.layer;
+    bool is_first = true;
+    int count = 0;
+    for (std::size_t k = 0; k < max_layers; ++k) {
+        SquareLayers::Rows const& rows = layers_->rows(k);
+        for (std::uint64_t left = joined.parts[k]; left != 0; left &= left - 1, ++count) {
+            auto const place = static_cast<std::size_t>(std::countr_zero(left));
+            std::uint32_t const number = number_of(place, k);
+            if (is_first) {
+                is_first = false;
+                out.first = child_tile(place);
+                out.first_layer = static_cast<std::uint32_t>(k);
+                out.number = number;
+                SquareLayers::Motion const& motion = layers_->motion(rows.motion[place]);
+                out.view = motion.view;
+                held.layer = {rows.at[place],    rows.dx[place], rows.dy[place],
+                              rows.error[place], motion.body,    motion.velocity};
+                std::memcpy(&held.first_column, &rows.box[place], sizeof rows.box[place]);
+            }
+            held.layer.error = std::max(held.layer.error, rows.error[place]); // the first also where it is no number
+            out.newest_batch = std::max(out.newest_batch, layers_->batch(place));
+            out.signature = combine(out.signature, layers_->batch(place) * 256 + number);
+        }
+    }
     out.stride = side_;
-    int const column = static_cast<int>(morton_x(joined.part)) * out.side;
-    int const row = static_cast<int>(morton_y(joined.part)) * out.side;
-    out.grid = grid_.data() + row * side_ + column;
-    out.first = tile_below(square_, levels(), joined.number / max_layers);
-    out.first_layer = joined.number % max_layers;
-    out.view = joined.view;
-    Layer& layer = out.layer.layer;
-    layer.at = static_cast<float>(joined.plane(spacing_ * column, spacing_ * row));
-    layer.dx = static_cast<float>(joined.plane.dx);
-    layer.dy = static_cast<float>(joined.plane.dy);
-    layer.error = static_cast<float>(joined.error + joined.difference);
-    layer.body = joined.body;
-    layer.velocity = joined.velocity;
+    if (count == 1) {
+        std::size_t const place = out.number / max_layers;
+        out.tile = out.first;
+        out.side = child_side_;
+        out.grid = grid_.data() + offset_of(place);
+        return out;
+    }
+    out.tile = square_;
+    out.side = side_;
+    out.grid = grid_.data();
+    out.parts = joined.parts;
+    held.layer.at = static_cast<float>(joined.plane.at);
+    held.layer.dx = static_cast<float>(joined.plane.dx);
+    held.layer.dy = static_cast<float>(joined.plane.dy);
+    held.layer.error += static_cast<float>(joined.difference);
     double const samples = 1 / spacing_; // a pixel: a power of two
-    out.layer.first_column = static_cast<std::int8_t>(static_cast<int>(samples * joined.extent.left) - column);
-    out.layer.first_row = static_cast<std::int8_t>(static_cast<int>(samples * joined.extent.top) - row);
-    out.layer.last_column = static_cast<std::int8_t>(static_cast<int>(samples * joined.extent.right) - 1 - column);
-    out.layer.last_row = static_cast<std::int8_t>(static_cast<int>(samples * joined.extent.bottom) - 1 - row);
+    held.first_column = static_cast<std::int8_t>(samples * joined.extent.left);
+    held.first_row = static_cast<std::int8_t>(samples * joined.extent.top);
+    held.last_column = static_cast<std::int8_t>(samples * joined.extent.right - 1);
+    held.last_row = static_cast<std::int8_t>(samples * joined.extent.bottom - 1);
     out.difference = static_cast<float>(joined.difference);
-    out.newest_batch = joined.newest_batch;
-    out.signature = joined.signature;
+    return out;
 }
 
-/// Where its samples lie.
-PackedSample* MergedSquare::place_of(std::uint32_t index) {
-    return grid_.data() + static_cast<std::uint32_t>(child_side_) *
-                              (morton_y(index) * static_cast<std::uint32_t>(side_) + morton_x(index));
+/// Where a child's samples lie.
+std::size_t MergedSquare::offset_of(std::size_t place) const {
+    auto const part = static_cast<std::uint32_t>(SquareLayers::part_at(place));
+    return static_cast<std::uint32_t>(child_side_) *
+           (morton_y(part) * static_cast<std::uint32_t>(side_) + morton_x(part));
 }
 
 /// The child's samples to the grid, with the numbers of what they are joined to.
-void MergedSquare::write(Child const& child, std::uint32_t index) {
-    PackedSample* const to = place_of(index);
+void MergedSquare::write(Child const& child, PackedSample* to) const {
     switch (child_side_) {
     case 4:
         write_samples<4>(child, to);

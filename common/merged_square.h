@@ -6,20 +6,15 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "common/framelet_cache.h"
 #include "common/layer_joining.h"
+#include "common/square_layers.h"
 
 namespace framelet {
-
-/// What something was joined of: nothing, a layer of a framelet or what was joined itself.
-struct MergedPart {
-    enum class Kind : std::uint8_t { nothing, layer, merged } kind = Kind::nothing;
-    std::uint8_t layer = 0; ///< of the framelet
-    std::uint16_t index = 0; ///< of the framelet among the square's, or in `MergedSquare::merged`
-};
 
 /// Layers of neighbouring framelets that are about one plane, as one layer of a larger framelet; or one of one framelet
 /// that is joined to none.
@@ -36,56 +31,52 @@ struct MergedLayer {
     std::uint32_t number = 0; ///< that its samples have in the grid, as it were a layer's
     std::uint64_t newest_batch = 0;
     std::uint64_t signature = 0; ///< differs where what is held differs
-    std::array<MergedPart, 4> parts; ///< that it was joined of; none of one framelet's
+    /// That it was joined of; bit p of word k: layer k of child p.
+    std::array<std::uint64_t, max_layers> parts{};
 };
 
 /// Framelets of one depth below a larger tile.
 class MergedSquare {
 public:
     /// As many levels above framelets; less where there are less.
-    static constexpr int most_levels = LayerJoining::most_levels;
+    static constexpr int most_levels = SquareLayers::most_levels;
     static_assert(most_levels == SquareVersions::levels);
-    static constexpr std::uint32_t most_children = 1u << 2 * most_levels;
-    static_assert(most_children <= 64); // a bit each
+    static constexpr std::size_t most_children = SquareLayers::places;
 
     /// What is held for a tile.
     struct Child {
         CachedFramelet const* framelet = nullptr;
         std::array<std::uint8_t, max_layers> numbers{}; ///< of its layers in the grid
-        std::uint8_t layer_count = 0;
         bool has_loose = false;
         bool is_written = false; ///< to the grid
-        // What joining needs of the framelet, which is far away in memory, besides its layers.
-        std::uint32_t view = 0;
-        std::uint64_t batch = 0;
     };
 
     /// Brings it up to date. Always of the same cache, square and depth. Looks at what has changed since the last call
     /// only; allocates where more is held or joined than ever before. `joining` is scratch.
     void update(FrameletCache const& cache, Tile square, int depth, LayerJoining& joining);
 
-    /// What is below the square's tiles of that depth, in Morton order; empty where nothing ever was. This and what
-    /// follows is valid until the next update.
+    /// What is held of that depth below the square, by place (as in `SquareLayers`); empty where nothing ever was. This
+    /// and what follows is valid until the next update.
     std::span<Child const> children() const { return children_; }
-    /// All that could be joined, parts after what they were joined to; layers of framelets only where they are in none.
+    /// Each layer is part of one of these.
     std::span<MergedLayer const> merged() const { return merged_; }
-    /// Which of these are joined no further.
-    std::span<std::uint16_t const> tops() const { return tops_; }
+    /// Of what is part of one of these but nearer to its own parts.
+    std::span<JoinedLayer const> fours() const { return fours_; }
+    /// In the square, or in the framelet where it is of one.
+    MergedLayer merge(JoinedLayer const& joined) const;
     /// Bit i: child i has loose samples.
     std::uint64_t loose_children() const { return loose_children_; }
 
 private:
     int levels() const { return depth_ - square_.depth(); } ///< of the children below the square
-    std::uint64_t changes(SquareVersions const& versions);
+    Tile child_tile(std::size_t place) const;
+    std::uint64_t changes(SquareVersions const& versions) const;
     void load(FrameletCache const& cache, std::uint64_t changed);
     void make_room(ImagePlane const& plane);
-    void copy_layers(std::size_t index);
-    HeldLayer& layer(std::size_t child, std::size_t layer) { return layers_[layer * children_.size() + child]; }
-    void join(LayerJoining& joining);
-    void keep(std::span<JoinedLayer const> layers);
-    void merge(JoinedLayer const& joined, MergedLayer& out) const;
-    PackedSample* place_of(std::uint32_t index);
-    void write(Child const& child, std::uint32_t index);
+    bool set_layers(std::uint64_t places);
+    void keep(LayerJoining const& joining);
+    std::size_t offset_of(std::size_t place) const;
+    void write(Child const& child, PackedSample* to) const;
     template <int side>
     void write_samples(Child const& child, PackedSample* to) const;
 
@@ -96,9 +87,9 @@ private:
     int side_ = 0; ///< of the grid
     SquareVersions versions_; ///< that it is up to date with
     std::vector<Child> children_;
-    std::vector<HeldLayer> layers_; ///< copies: first ones of the children, then second ones, then third ones
+    std::unique_ptr<SquareLayers> layers_;
     std::vector<MergedLayer> merged_;
-    std::vector<std::uint16_t> tops_;
+    std::vector<JoinedLayer> fours_;
     std::uint64_t loose_children_ = 0;
     std::vector<PackedSample> grid_; ///< of the square, in rows
 };

@@ -1,6 +1,6 @@
 // One plane for several that about agree: the least-squares fit to their values all over the rectangles in which they
-// stand for something. In: planes and rectangles. Out: the fit, and how far it is from them. Numbers are doubles, or
-// lanes of them where several are fitted at a time.
+// stand for something. In: pieces of planes. Out: the fit, and how far it is from them. Numbers are doubles, or lanes
+// of them where several are worked on at a time.
 #pragma once
 
 #include "common/lanes.h"
@@ -19,9 +19,6 @@ struct AffineOf {
 template <class Number>
 struct ExtentOf {
     Number left{}, top{}, right{}, bottom{};
-
-    Number middle_x() const { return 0.5 * (left + right); }
-    Number middle_y() const { return 0.5 * (top + bottom); }
 };
 
 template <class Number>
@@ -29,18 +26,36 @@ ExtentOf<Number> united(ExtentOf<Number> const& a, ExtentOf<Number> const& b) {
     return {smaller(a.left, b.left), smaller(a.top, b.top), larger(a.right, b.right), larger(a.bottom, b.bottom)};
 }
 
-/// Largest difference of two planes within a rectangle.
+/// A plane within a rectangle.
 template <class Number>
-Number largest_difference(AffineOf<Number> const& a, AffineOf<Number> const& b, ExtentOf<Number> const& in) {
-    AffineOf<Number> const difference{a.at - b.at, a.dx - b.dx, a.dy - b.dy};
-    return absolute(difference(in.middle_x(), in.middle_y())) +
-           0.5 * (absolute(difference.dx) * (in.right - in.left) + absolute(difference.dy) * (in.bottom - in.top));
-}
+struct PieceOf {
+    Number x{}, y{}; ///< its middle, pixels
+    Number half_width{}, half_height{};
+    Number value{}, dx{}, dy{}; ///< of the plane, in the middle
+
+    AffineOf<Number> plane() const { return {value - dx * x - dy * y, dx, dy}; }
+    ExtentOf<Number> extent() const { return {x - half_width, y - half_height, x + half_width, y + half_height}; }
+};
 
 template <class Number>
-Number least_value(AffineOf<Number> const& plane, ExtentOf<Number> const& in) {
-    return plane(in.middle_x(), in.middle_y()) -
-           0.5 * (absolute(plane.dx) * (in.right - in.left) + absolute(plane.dy) * (in.bottom - in.top));
+PieceOf<Number> piece_of(AffineOf<Number> const& plane, ExtentOf<Number> const& extent) {
+    Number const x = 0.5 * (extent.left + extent.right);
+    Number const y = 0.5 * (extent.top + extent.bottom);
+    return {x,        y,       0.5 * (extent.right - extent.left), 0.5 * (extent.bottom - extent.top), plane(x, y),
+            plane.dx, plane.dy};
+}
+
+/// From a plane, within the rectangle.
+template <class Number>
+Number largest_difference(PieceOf<Number> const& piece, AffineOf<Number> const& plane) {
+    return absolute(plane(piece.x, piece.y) - piece.value) + absolute(plane.dx - piece.dx) * piece.half_width +
+           absolute(plane.dy - piece.dy) * piece.half_height;
+}
+
+/// Of a plane, within the piece's rectangle.
+template <class Number>
+Number least_value(AffineOf<Number> const& plane, PieceOf<Number> const& piece) {
+    return plane(piece.x, piece.y) - absolute(plane.dx) * piece.half_width - absolute(plane.dy) * piece.half_height;
 }
 
 /// Integrals over rectangles, of which a fit is made; they add up.
@@ -64,24 +79,21 @@ struct SumsOf {
 };
 
 template <class Number>
-SumsOf<Number> sums_over(AffineOf<Number> const& plane, ExtentOf<Number> const& extent) {
-    Number const width = extent.right - extent.left;
-    Number const height = extent.bottom - extent.top;
-    Number const area = width * height;
-    Number const x = extent.middle_x();
-    Number const y = extent.middle_y();
-    Number const value = plane(x, y);
-    Number const xx = width * width / 12; // about the middle
-    Number const yy = height * height / 12;
+SumsOf<Number> sums_over(PieceOf<Number> const& piece) {
+    Number const x = piece.x;
+    Number const y = piece.y;
+    Number const area = 4 * piece.half_width * piece.half_height;
+    Number const xx = piece.half_width * piece.half_width / 3; // about the middle
+    Number const yy = piece.half_height * piece.half_height / 3;
     return {area,
             area * x,
             area * y,
             area * (x * x + xx),
             area * x * y,
             area * (y * y + yy),
-            area * value,
-            area * (value * x + plane.dx * xx),
-            area * (value * y + plane.dy * yy)};
+            area * piece.value,
+            area * (piece.value * x + piece.dx * xx),
+            area * (piece.value * y + piece.dy * yy)};
 }
 
 /// Of sums over some area.
@@ -104,6 +116,7 @@ AffineOf<Number> fit_plane(SumsOf<Number> const& sums) {
 
 using AffinePlane = AffineOf<double>;
 using PlaneExtent = ExtentOf<double>;
+using PlanePiece = PieceOf<double>;
 using PlaneSums = SumsOf<double>;
 
 } // namespace framelet

@@ -112,34 +112,47 @@ void WarpPlan::set_squares(ImagePlane const& plane) {
     }
 }
 
-/// Of what is joined the largest that is near enough to its parts, then what is left of the framelets.
-void WarpPlan::add_square(MergedSquare const& square, FrameletWarp& warp, Chunk& chunk) {
-    Alone alone;
-    for (std::uint16_t const top : square.tops()) {
-        add_merged(square, top, warp, chunk, alone);
+/// Nothing is added where it is out of the picture. False where what is joined is not near enough to its parts.
+bool WarpPlan::add_joined(MergedLayer const& merged, FrameletWarp& warp, Chunk& chunk) {
+    if (merged.difference > 0 && !(merged.difference <= warp.inverse_depth_within(merging_pixels, merged))) {
+        return false;
     }
-    std::span<MergedSquare::Child const> const children = square.children();
-    for (std::uint64_t left = alone.children | square.loose_children(); left != 0; left &= left - 1) {
-        auto const i = static_cast<std::size_t>(std::countr_zero(left));
-        unsigned const loose = children[i].has_loose ? 1u << FrameletShape::loose : 0u;
-        warp.add(*children[i].framelet, alone.layers[i] | loose, chunk.patches, chunk.splats);
+    warp.add(merged, chunk.patches);
+    return true;
+}
+
+/// Fours as far as they are near enough; what is left is `alone`.
+void WarpPlan::add_parts(MergedSquare const& square, MergedLayer const& merged, FrameletWarp& warp, Chunk& chunk,
+                         LayerBits& alone) {
+    LayerBits left = merged.parts;
+    for (JoinedLayer const& four : square.fours()) {
+        if ((four.parts[0] & ~left[0]) == 0 && four.parts != merged.parts) {
+            MergedLayer part = square.merge(four);
+            part.number = merged.number; // as its samples have
+            left[0] &= add_joined(part, warp, chunk) ? ~four.parts[0] : ~std::uint64_t{0};
+        }
+    }
+    for (std::size_t k = 0; k < max_layers; ++k) {
+        alone[k] |= left[k];
     }
 }
 
-void WarpPlan::add_merged(MergedSquare const& square, std::uint16_t index, FrameletWarp& warp, Chunk& chunk,
-                          Alone& alone) {
-    MergedLayer const& merged = square.merged()[index];
-    if (merged.difference == 0 || merged.difference <= warp.inverse_depth_within(merging_pixels, merged)) {
-        warp.add(merged, chunk.patches); // nothing where it is out of the picture
-        return;
-    }
-    for (MergedPart const& part : merged.parts) {
-        if (part.kind == MergedPart::Kind::merged) {
-            add_merged(square, part.index, warp, chunk, alone);
-        } else if (part.kind == MergedPart::Kind::layer) {
-            alone.children |= std::uint64_t{1} << part.index;
-            alone.layers[part.index] |= 1u << part.layer;
+/// What is joined, then what is left of the framelets.
+void WarpPlan::add_square(MergedSquare const& square, FrameletWarp& warp, Chunk& chunk) {
+    LayerBits alone{};
+    for (MergedLayer const& merged : square.merged()) {
+        if (!add_joined(merged, warp, chunk)) {
+            add_parts(square, merged, warp, chunk, alone);
         }
+    }
+    std::span<MergedSquare::Child const> const children = square.children();
+    for (std::uint64_t left = alone[0] | alone[1] | alone[2] | square.loose_children(); left != 0; left &= left - 1) {
+        auto const place = static_cast<std::size_t>(std::countr_zero(left));
+        unsigned parts = children[place].has_loose ? 1u << FrameletShape::loose : 0u;
+        for (std::size_t k = 0; k < max_layers; ++k) {
+            parts |= static_cast<unsigned>(alone[k] >> place & 1) << k;
+        }
+        warp.add(*children[place].framelet, parts, chunk.patches, chunk.splats);
     }
 }
 

@@ -55,18 +55,16 @@ private:
         MergedSquare merged;
     };
 
-    /// Layers of a square's framelets that show on their own.
-    struct Alone {
-        std::uint64_t children = 0; ///< a bit for each that has any
-        std::array<unsigned, MergedSquare::most_children> layers{};
-    };
+    /// Bit p of word k: layer k of the framelet at place p.
+    using LayerBits = std::array<std::uint64_t, max_layers>;
 
     WarpPatch const& patch_at(std::uint32_t entry) const;
     void set_size(Viewport viewport);
     void set_squares(ImagePlane const& plane);
     static void add_square(MergedSquare const& square, FrameletWarp& warp, Chunk& chunk);
-    static void add_merged(MergedSquare const& square, std::uint16_t index, FrameletWarp& warp, Chunk& chunk,
-                           Alone& alone);
+    static bool add_joined(MergedLayer const& merged, FrameletWarp& warp, Chunk& chunk);
+    static void add_parts(MergedSquare const& square, MergedLayer const& merged, FrameletWarp& warp, Chunk& chunk,
+                          LayerBits& alone);
     bool count_entries(std::size_t most);
     void limit_entries(std::size_t most);
     void make_bins();

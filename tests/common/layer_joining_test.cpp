@@ -1,8 +1,14 @@
 #include "common/layer_joining.h"
 
+#include <algorithm>
+#include <bit>
+#include <iterator>
+#include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
+
+#include "common/morton.h"
 
 namespace framelet {
 namespace {
@@ -10,12 +16,13 @@ namespace {
 /// A layer of framelet `part` of 8x8 whose tiles have a side of 16 pixels and samples, all of which lie on it.
 struct TestLayer {
     HeldLayer held;
-    std::uint32_t part = 0, layer = 0, view = 0;
+    std::uint32_t part = 0, view = 0;
+    std::size_t layer = 0; ///< set by `joined`
 };
 
 /// `plane`: from the square's corner on.
-TestLayer layer_at(AffinePlane const& plane, std::uint32_t part, std::uint32_t layer) {
-    TestLayer out{{}, part, layer};
+TestLayer layer_at(AffinePlane const& plane, std::uint32_t part) {
+    TestLayer out{{}, part};
     double const column = 16.0 * morton_x(part);
     double const row = 16.0 * morton_y(part);
     out.held.layer.at = static_cast<float>(plane(column, row));
@@ -25,43 +32,55 @@ TestLayer layer_at(AffinePlane const& plane, std::uint32_t part, std::uint32_t l
     return out;
 }
 
-AffinePlane plane_of(TestLayer const& of) {
+PlanePiece piece_of(TestLayer const& of) {
     AffinePlane const own{of.held.layer.at, of.held.layer.dx, of.held.layer.dy}; // from the tile's corner on
-    return {own(-16.0 * morton_x(of.part), -16.0 * morton_y(of.part)), own.dx, own.dy};
+    double const column = 16.0 * morton_x(of.part);
+    double const row = 16.0 * morton_y(of.part);
+    return piece_of(AffinePlane{own(-column, -row), own.dx, own.dy}, PlaneExtent{column, row, column + 16, row + 16});
 }
 
-PlaneExtent extent_of(TestLayer const& layer) {
-    double const column = 16.0 * morton_x(layer.part);
-    double const row = 16.0 * morton_y(layer.part);
-    return {column, row, column + 16, row + 16};
+std::uint64_t bit_of(std::uint32_t part) {
+    return std::uint64_t{1} << SquareLayers::place_of(part);
 }
 
-LayerJoining joined(std::vector<TestLayer> const& layers) {
-    LayerJoining out;
-    out.start(LayerJoining::most_levels, {});
-    for (TestLayer const& layer : layers) {
-        out.add(layer.held, 1, layer.view, layer.part, layer.layer);
+bool is_part(JoinedLayer const& joined, TestLayer const& layer) {
+    return (joined.parts[layer.layer] & bit_of(layer.part)) != 0;
+}
+
+int part_count(JoinedLayer const& joined) {
+    return std::popcount(joined.parts[0]) + std::popcount(joined.parts[1]) + std::popcount(joined.parts[2]);
+}
+
+/// Layers of one part come one after the other.
+LayerJoining joined(std::vector<TestLayer>& layers) {
+    SquareLayers square;
+    HeldShape shape;
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        bool const is_first = i == 0 || layers[i].part != layers[i - 1].part;
+        shape.layer_count = static_cast<std::uint8_t>(is_first ? 1 : shape.layer_count + 1);
+        layers[i].layer = shape.layer_count - 1u;
+        shape.layers[layers[i].layer] = layers[i].held;
+        EXPECT_TRUE(square.set(SquareLayers::place_of(layers[i].part), layers[i].view, 1, shape));
     }
-    out.finish();
+    LayerJoining out;
+    out.join(square, {});
     return out;
 }
 
-/// Those that are joined no further, of more than one.
-std::vector<JoinedLayer> tops(LayerJoining const& joining) {
+/// Those of more than one.
+std::vector<JoinedLayer> several(LayerJoining const& joining) {
     std::vector<JoinedLayer> out;
-    for (JoinedLayer const& layer : joining.layers()) {
-        if (!layer.is_joined_further && layer.levels < LayerJoining::most_levels) {
-            out.push_back(layer);
-        }
-    }
+    std::ranges::copy_if(joining.joined(), std::back_inserter(out),
+                         [](JoinedLayer const& layer) { return part_count(layer) > 1; });
     return out;
 }
 
 TEST(PlaneFit, OfOnePlaneIsThatPlane) {
     AffinePlane const plane{0.3, 2e-3, -1e-3};
-    PlaneSums sums = sums_over(plane, {0, 0, 16, 16});
-    sums += sums_over(plane, {16, 0, 20, 3});
-    sums += sums_over(plane, {40, 64, 72, 66});
+    PlaneSums sums;
+    for (PlaneExtent const& extent : {PlaneExtent{0, 0, 16, 16}, {16, 0, 20, 3}, {40, 64, 72, 66}}) {
+        sums += sums_over(piece_of(plane, extent));
+    }
     AffinePlane const fit = fit_plane(sums);
     EXPECT_NEAR(fit.at, plane.at, 1e-12);
     EXPECT_NEAR(fit.dx, plane.dx, 1e-12);
@@ -76,7 +95,7 @@ TEST(PlaneFit, IsTheBestOne) {
     PlaneSums sums;
     for (int i = 0; i < 3; ++i) {
         planes[i] = {normal(random), normal(random), normal(random)};
-        sums += sums_over(planes[i], extents[i]);
+        sums += sums_over(piece_of(planes[i], extents[i]));
     }
     auto const error = [&](AffinePlane const& fit) {
         double sum = 0;
@@ -97,21 +116,47 @@ TEST(PlaneFit, IsTheBestOne) {
     }
 }
 
+TEST(PlaneFit, PiecesKnowHowFarAPlaneIs) {
+    std::mt19937 random(17);
+    std::normal_distribution<double> normal;
+    for (int round = 0; round < 1000; ++round) {
+        AffinePlane const own{normal(random), normal(random), normal(random)};
+        AffinePlane const plane{normal(random), normal(random), normal(random)};
+        PlaneExtent extent{normal(random), normal(random), 0, 0};
+        extent.right = extent.left + std::abs(normal(random));
+        extent.bottom = extent.top + std::abs(normal(random));
+        double most = 0, least = std::numeric_limits<double>::max();
+        for (double const x : {extent.left, extent.right}) {
+            for (double const y : {extent.top, extent.bottom}) {
+                most = std::max(most, std::abs(own(x, y) - plane(x, y)));
+                least = std::min(least, plane(x, y));
+            }
+        }
+        PlanePiece const piece = piece_of(own, extent);
+        EXPECT_NEAR(largest_difference(piece, plane), most, 1e-12);
+        EXPECT_NEAR(least_value(plane, piece), least, 1e-12);
+        EXPECT_NEAR(piece.plane()(0.5, 2), own(0.5, 2), 1e-12);
+        EXPECT_NEAR(piece.extent().right, extent.right, 1e-12);
+        EXPECT_NEAR(piece.extent().top, extent.top, 1e-12);
+    }
+}
+
 TEST(LayerJoining, TwoPlanesInEveryFrameletAreTwo) {
     std::vector<TestLayer> layers;
     for (std::uint32_t part = 0; part < 64; ++part) {
-        layers.push_back(layer_at({0.5, 1e-4, 0}, part, 0));
-        layers.push_back(layer_at({0.2, 0, -1e-4}, part, 1));
+        layers.push_back(layer_at({0.5, 1e-4, 0}, part));
+        layers.push_back(layer_at({0.2, 0, -1e-4}, part));
     }
-    std::vector<JoinedLayer> const found = tops(joined(layers));
-    ASSERT_EQ(found.size(), 2u);
-    EXPECT_NEAR(found[0].plane.at, 0.5, 1e-7);
-    EXPECT_NEAR(found[1].plane.at, 0.2, 1e-7);
-    EXPECT_EQ(found[0].number, 0);
-    EXPECT_EQ(found[1].number, 1);
-    for (JoinedLayer const& layer : found) {
-        EXPECT_EQ(layer.levels, 0);
+    LayerJoining const joining = joined(layers);
+    ASSERT_EQ(joining.joined().size(), 2u);
+    for (std::size_t i = 0; i < 2; ++i) {
+        JoinedLayer const& layer = joining.joined()[i];
+        EXPECT_NEAR(layer.plane.at, i == 0 ? 0.5 : 0.2, 1e-7);
+        EXPECT_EQ(layer.parts[i], ~std::uint64_t{0});
+        EXPECT_EQ(layer.parts[1 - i], 0u);
         EXPECT_LT(layer.difference, 1e-6);
+        EXPECT_EQ(layer.extent.left, 0);
+        EXPECT_EQ(layer.extent.top, 0);
         EXPECT_EQ(layer.extent.right, 128);
         EXPECT_EQ(layer.extent.bottom, 128);
     }
@@ -121,24 +166,25 @@ TEST(LayerJoining, OnlyOfOneViewBodyAndVelocity) {
     for (int kind = 0; kind < 4; ++kind) {
         std::vector<TestLayer> layers;
         for (std::uint32_t part = 0; part < 4; ++part) {
-            TestLayer layer = layer_at({0.5, 0, 0}, part, 0);
+            TestLayer layer = layer_at({0.5, 0, 0}, part);
             bool const other = part % 2 == 1;
             layer.view = kind == 1 && other ? 7 : 0;
             layer.held.layer.body = kind == 2 && other ? 7 : static_body;
             layer.held.layer.velocity = Vec3(kind == 3 && other ? 7.0f : 0.0f);
             layers.push_back(layer);
         }
-        std::vector<JoinedLayer> const found = tops(joined(layers));
-        EXPECT_EQ(found.size(), kind == 0 ? 1u : 2u);
-        EXPECT_EQ(found[0].parts[1] != JoinedLayer::no_part, kind == 0);
+        LayerJoining const joining = joined(layers);
+        EXPECT_EQ(joining.joined().size(), kind == 0 ? 1u : 2u);
+        EXPECT_EQ(is_part(joining.joined()[0], layers[1]), kind == 0);
+        EXPECT_TRUE(is_part(joining.joined()[0], layers[2]));
     }
 }
 
-/// Whatever is joined is as near to all layers it was joined of as it says, and in every layer once.
+/// Whatever is joined is as near to all layers it was joined of as it says, and each layer is in one.
 TEST(LayerJoining, DifferencesAreBounds) {
     std::mt19937 random(11);
     std::normal_distribution<double> normal;
-    int found = 0, fours = 0;
+    int of_fours = 0, of_layers = 0, alone = 0;
     for (int round = 0; round < 200; ++round) {
         int const of_each = 1 + round / 4 % 2; // fours of framelets with one layer each are joined by themselves
         std::vector<TestLayer> layers;
@@ -146,67 +192,111 @@ TEST(LayerJoining, DifferencesAreBounds) {
             for (int i = 0; i < of_each; ++i) {
                 double const rough = 3e-4 * (round % 4);
                 double const at = 0.3 * (i + 1) * (1 + rough * normal(random));
-                layers.push_back(
-                    layer_at({at, 1e-3 * i, 1e-5 * rough * normal(random)}, part, static_cast<unsigned>(i)));
+                layers.push_back(layer_at({at, 1e-3 * i, 1e-5 * rough * normal(random)}, part));
             }
         }
         LayerJoining const joining = joined(layers);
-        std::span<JoinedLayer const> const all = joining.layers();
-        std::vector<int> uses(all.size(), 0);
-        for (JoinedLayer const& top : all) {
-            if (top.levels == LayerJoining::most_levels) {
-                continue;
-            }
-            for (std::int16_t const part : top.parts) {
-                uses[static_cast<std::size_t>(std::max<std::int16_t>(part, 0))] += part >= 0 ? 1 : 0;
-            }
-            fours += of_each == 1 && top.levels == LayerJoining::most_levels - 1 && top.difference > 0 &&
-                             std::ranges::count(top.parts, JoinedLayer::no_part) == 0
-                         ? 1
-                         : 0;
-            std::vector<JoinedLayer const*> below{&top};
-            while (!below.empty()) {
-                JoinedLayer const& layer = *below.back();
-                below.pop_back();
-                auto const i = static_cast<std::size_t>(&layer - all.data());
-                bool const is_given = i < layers.size();
-                AffinePlane const& plane = is_given ? plane_of(layers[i]) : layer.plane;
-                PlaneExtent const& extent = is_given ? extent_of(layers[i]) : layer.extent;
-                EXPECT_LE(largest_difference(plane, top.plane, extent), top.difference + 1e-12);
-                found += layer.levels < LayerJoining::most_levels ? 1 : 0;
-                for (std::int16_t const part : layer.parts) {
-                    if (part != JoinedLayer::no_part) {
-                        below.push_back(&all[static_cast<std::size_t>(part)]);
-                    }
+        int parts = 0;
+        for (JoinedLayer const& found : joining.joined()) {
+            parts += part_count(found);
+            (part_count(found) == 1 ? alone : of_each == 1 ? of_fours : of_layers) += 1;
+            PlaneExtent extent;
+            bool is_first = true;
+            for (TestLayer const& layer : layers) {
+                if (is_part(found, layer)) {
+                    PlanePiece const piece = piece_of(layer);
+                    double const off = largest_difference(piece, found.plane);
+                    EXPECT_LE(off, found.difference + 1e-12);
+                    EXPECT_LE(off, 2e-3 * least_value(found.plane, piece));
+                    extent = is_first ? piece.extent() : united(extent, piece.extent());
+                    is_first = false;
                 }
             }
+            EXPECT_EQ(extent.left, found.extent.left);
+            EXPECT_EQ(extent.top, found.extent.top);
+            EXPECT_EQ(extent.right, found.extent.right);
+            EXPECT_EQ(extent.bottom, found.extent.bottom);
         }
-        for (std::size_t i = 0; i < all.size(); ++i) {
-            EXPECT_EQ(uses[i], all[i].is_joined_further ? 1 : 0);
+        EXPECT_EQ(static_cast<std::size_t>(parts), layers.size());
+        for (TestLayer const& layer : layers) {
+            EXPECT_EQ(std::ranges::count_if(joining.joined(),
+                                            [&](JoinedLayer const& found) { return is_part(found, layer); }),
+                      1);
         }
-        EXPECT_LE(all.size(), LayerJoining::most_layers);
     }
-    EXPECT_GT(found, 1000);
-    EXPECT_GT(fours, 100);
+    EXPECT_GT(of_fours, 100);
+    EXPECT_GT(of_layers, 100);
+    EXPECT_GT(alone, 20);
 }
 
 TEST(LayerJoining, WhatIsNoNumberStaysAlone) {
-    std::vector<TestLayer> layers;
-    for (std::uint32_t part = 0; part < 4; ++part) {
-        layers.push_back(layer_at({0.5, part == 2 ? NAN : 0.0, 0}, part, 0));
+    for (int kind = 0; kind < 2; ++kind) {
+        std::vector<TestLayer> layers;
+        for (std::uint32_t part = 0; part < 8; ++part) {
+            layers.push_back(
+                layer_at({kind == 0 && part == 2 ? NAN : 0.5, kind == 1 && part == 2 ? NAN : 0.0, 0}, part));
+        }
+        std::vector<JoinedLayer> const found = several(joined(layers));
+        ASSERT_EQ(found.size(), 1u);
+        EXPECT_FALSE(is_part(found[0], layers[2]));
+        EXPECT_EQ(part_count(found[0]), 7);
+        EXPECT_NEAR(found[0].plane.at, 0.5, 1e-12);
     }
-    std::vector<JoinedLayer> const found = tops(joined(layers));
-    ASSERT_EQ(found.size(), 1u);
-    EXPECT_EQ(found[0].parts[2], JoinedLayer::no_part);
-    EXPECT_NEAR(found[0].plane.at, 0.5, 1e-12);
+}
+
+/// What is infinitely far is of one plane too.
+TEST(LayerJoining, TheSkyIsOne) {
+    std::vector<TestLayer> layers;
+    for (std::uint32_t part = 0; part < 64; ++part) {
+        layers.push_back(layer_at({0, 0, 0}, part));
+    }
+    LayerJoining const joining = joined(layers);
+    ASSERT_EQ(joining.joined().size(), 1u);
+    EXPECT_EQ(joining.joined()[0].difference, 0);
 }
 
 /// Far apart from each other two cost less than what holds both.
 TEST(LayerJoining, OnlyWhereThatIsCheaper) {
-    std::vector<TestLayer> const layers{layer_at({0.5, 0, 0}, 0, 0), layer_at({0.5, 0, 0}, 63, 0)};
-    EXPECT_TRUE(tops(joined(layers)).empty());
-    std::vector<TestLayer> const beside{layer_at({0.5, 0, 0}, 0, 0), layer_at({0.5, 0, 0}, 1, 0)};
-    EXPECT_EQ(tops(joined(beside)).size(), 1u);
+    std::vector<TestLayer> layers{layer_at({0.5, 0, 0}, 0), layer_at({0.5, 0, 0}, 63)};
+    EXPECT_TRUE(several(joined(layers)).empty());
+    std::vector<TestLayer> beside{layer_at({0.5, 0, 0}, 0), layer_at({0.5, 0, 0}, 1)};
+    EXPECT_EQ(several(joined(beside)).size(), 1u);
+}
+
+/// A column of framelets grows piece by piece, past what is of another plane.
+TEST(LayerJoining, WhatIsNearIsAddedUntilNothingIs) {
+    std::vector<TestLayer> layers;
+    for (std::uint32_t row = 0; row < 8; ++row) {
+        std::uint32_t const part = morton_index(3, row);
+        layers.push_back(layer_at({0.2, 0, 1e-4}, part));
+        layers.push_back(layer_at({0.5, 0, 0}, part));
+    }
+    LayerJoining const joining = joined(layers);
+    ASSERT_EQ(joining.joined().size(), 2u);
+    EXPECT_EQ(part_count(joining.joined()[0]), 8);
+    EXPECT_EQ(part_count(joining.joined()[1]), 8);
+}
+
+TEST(SquareLayers, MotionsAreNumbered) {
+    SquareLayers square;
+    HeldShape shape;
+    shape.layer_count = 1;
+    shape.layers[0].last_column = shape.layers[0].last_row = 3;
+    std::uint32_t view = 0;
+    int sets = 0;
+    for (; square.set(sets % 64, view, 1, shape); ++sets) {
+        view = static_cast<std::uint32_t>(sets);
+    }
+    EXPECT_GT(sets, 192); // all that can be held at once
+    EXPECT_LT(sets, 1000);
+    square.forget_motions();
+    for (std::size_t place = 0; place < SquareLayers::places; ++place) {
+        ASSERT_TRUE(square.set(place, 7 + static_cast<std::uint32_t>(place % 2), 1, shape));
+    }
+    EXPECT_EQ(square.motion(square.rows(0).motion[5]).view, 8u);
+    EXPECT_EQ(square.rows(0).motion[5], square.rows(0).motion[7]);
+    square.clear(5);
+    EXPECT_EQ(square.rows(0).held, ~std::uint64_t{1u << 5});
 }
 
 } // namespace
