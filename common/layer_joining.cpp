@@ -9,7 +9,7 @@ namespace {
 using Lanes = WideDoubles;
 using Floats = float __attribute__((vector_size(4 * wide_doubles)));
 using Ints = std::int32_t __attribute__((vector_size(4 * wide_doubles)));
-using Piece = PieceOf<Lanes>;
+using Piece = PieceLanes;
 
 /// Inverse depths that differ by less than this share are the same for all that looks at them.
 constexpr double one_surface = 2e-3;
@@ -65,81 +65,18 @@ Lanes byte_of(Ints boxes, int i) {
     return doubles_of(boxes << (24 - 8 * i) >> 24);
 }
 
-template <class Rows>
-Piece load_piece(Rows const& from, std::size_t i) {
-    auto const load = [i](auto const& row) { return load_lanes<Lanes>(&row[i]); };
-    return {load(from.x),     load(from.y),  load(from.half_width), load(from.half_height),
-            load(from.value), load(from.dx), load(from.dy)};
-}
-template <class Rows>
-void store_piece(Piece const& piece, Rows& to, std::size_t i) {
-    store_lanes(piece.x, &to.x[i]);
-    store_lanes(piece.y, &to.y[i]);
-    store_lanes(piece.half_width, &to.half_width[i]);
-    store_lanes(piece.half_height, &to.half_height[i]);
-    store_lanes(piece.value, &to.value[i]);
-    store_lanes(piece.dx, &to.dx[i]);
-    store_lanes(piece.dy, &to.dy[i]);
-}
-
-/// Of a fit from each piece; not a number where that has no sense.
+/// Of the difference of a fit and the inverse depth there.
 Lanes share_of(Lanes difference, AffineOf<Lanes> const& fit, Piece const& piece) {
     return difference == 0 ? Lanes{} : difference / least_value(fit, piece);
 }
 
-/// Where one plane is, in the middle of another piece.
+/// Of two planes, in the middle of one of them.
 template <class Number>
 Number difference_in_middle(PieceOf<Number> const& of, PieceOf<Number> const& at) {
     return absolute(of.value + of.dx * (at.x - of.x) + of.dy * (at.y - of.y) - at.value);
 }
 
 } // namespace
-
-LayerJoining::Bits LayerJoining::Bits::first(std::size_t count) {
-    Bits out;
-    for (std::size_t word = 0; word < out.words.size(); ++word) {
-        std::size_t const left = count - std::min(count, 64 * word);
-        out.words[word] = left >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << left) - 1;
-    }
-    return out;
-}
-
-LayerJoining::Bits LayerJoining::Bits::only(std::size_t index) {
-    Bits out;
-    out.words[index / 64] = std::uint64_t{1} << index % 64;
-    return out;
-}
-
-/// Of any.
-std::size_t LayerJoining::Bits::lowest() const {
-    std::size_t word = 0;
-    while (words[word] == 0) {
-        ++word;
-    }
-    return 64 * word + static_cast<std::size_t>(std::countr_zero(words[word]));
-}
-
-LayerJoining::Bits LayerJoining::Bits::operator|(Bits const& other) const {
-    Bits out;
-    for (std::size_t i = 0; i < words.size(); ++i) {
-        out.words[i] = words[i] | other.words[i];
-    }
-    return out;
-}
-LayerJoining::Bits LayerJoining::Bits::operator&(Bits const& other) const {
-    Bits out;
-    for (std::size_t i = 0; i < words.size(); ++i) {
-        out.words[i] = words[i] & other.words[i];
-    }
-    return out;
-}
-LayerJoining::Bits LayerJoining::Bits::without(Bits const& other) const {
-    Bits out;
-    for (std::size_t i = 0; i < words.size(); ++i) {
-        out.words[i] = words[i] & ~other.words[i];
-    }
-    return out;
-}
 
 /// Framelets of one layer each first, four at a time; then whatever there is.
 void LayerJoining::join(SquareLayers const& layers, SampleGrid const& grid) {
@@ -165,7 +102,8 @@ void LayerJoining::join(SquareLayers const& layers, SampleGrid const& grid) {
         }
         for (; left != 0; left &= left - 1) {
             auto const place = static_cast<std::size_t>(std::countr_zero(left));
-            open_piece(loaded_, place, 0, 0, place, k);
+            open_.copy(loaded_, place, open_count_);
+            open(0, 0, place, k);
         }
     }
     for (Bits open = Bits::first(open_count_); open.any();) {
@@ -190,12 +128,14 @@ void LayerJoining::load(SquareLayers const& layers, std::size_t layer, SampleGri
         Lanes const y = 0.5 * grid.spacing * (top + bottom);
         Lanes const dx = doubles_of(load_lanes<Floats>(&from.dx[i]));
         Lanes const dy = doubles_of(load_lanes<Floats>(&from.dy[i]));
-        store_piece({tile * doubles_of(load_lanes<Floats>(&columns[i])) + x,
-                     tile * doubles_of(load_lanes<Floats>(&rows[i])) + y, 0.5 * grid.spacing * (right - left),
-                     0.5 * grid.spacing * (bottom - top), doubles_of(load_lanes<Floats>(&from.at[i])) + dx * x + dy * y,
-                     dx, dy},
-                    loaded_, i);
-        store_lanes(doubles_of(load_lanes<Ints>(&from.motion[i])), &loaded_.motion[i]);
+        Piece const piece{tile * doubles_of(load_lanes<Floats>(&columns[i])) + x,
+                          tile * doubles_of(load_lanes<Floats>(&rows[i])) + y,
+                          0.5 * grid.spacing * (right - left),
+                          0.5 * grid.spacing * (bottom - top),
+                          doubles_of(load_lanes<Floats>(&from.at[i])) + dx * x + dy * y,
+                          dx,
+                          dy};
+        loaded_.store(piece, doubles_of(load_lanes<Ints>(&from.motion[i])), i);
     }
 }
 
@@ -211,14 +151,14 @@ std::uint64_t LayerJoining::join_fours(std::uint64_t complete) {
         std::array<Piece, 4> parts;
         SumsOf<Lanes> sums;
         Lanes cost_of_parts{};
-        Lanes const motion = load_lanes<Lanes>(&loaded_.motion[first]);
+        Lanes const motion = loaded_.load_motion(first);
         WideLongs is_one = lanes_of(wanted);
         for (std::size_t k = 0; k < parts.size(); ++k) {
             std::size_t const i = SquareLayers::most_fours * k + first;
-            parts[k] = load_piece(loaded_, i);
+            parts[k] = loaded_.load(i);
             sums += sums_over(parts[k]);
             cost_of_parts += showing_cost(parts[k].half_width, parts[k].half_height);
-            is_one &= load_lanes<Lanes>(&loaded_.motion[i]) == motion;
+            is_one &= loaded_.load_motion(i) == motion;
         }
         AffineOf<Lanes> const plane = fit_plane(sums);
         Lanes difference{}, share{};
@@ -236,45 +176,31 @@ std::uint64_t LayerJoining::join_fours(std::uint64_t complete) {
         unsigned const found = bits_of(is_one);
         out |= std::uint64_t{found} << first;
         // All of them, then those that are.
-        Rows<wide_doubles> fours;
-        store_piece(piece_of(plane, extent), fours, 0);
-        store_lanes(motion, fours.motion.data());
+        PieceRows<wide_doubles> fours;
+        fours.store(piece_of(plane, extent), motion, 0);
         std::array<double, wide_doubles> shares, differences;
         store_lanes(share, shares.data());
         store_lanes(difference, differences.data());
         for (unsigned left = found; left != 0; left &= left - 1) {
             auto const lane = static_cast<std::size_t>(std::countr_zero(left));
-            open_piece(fours, lane, shares[lane], differences[lane], first + lane, 0);
+            open_.copy(fours, lane, open_count_);
+            open(shares[lane], differences[lane], first + lane, 0);
         }
     }
     return out * quarters;
 }
 
-template <class From>
-void LayerJoining::open_piece(From const& from, std::size_t i, double share, double difference, std::size_t place,
-                              std::size_t layer) {
-    std::size_t const to = open_count_++;
-    open_.x[to] = from.x[i];
-    open_.y[to] = from.y[i];
-    open_.half_width[to] = from.half_width[i];
-    open_.half_height[to] = from.half_height[i];
-    open_.value[to] = from.value[i];
-    open_.dx[to] = from.dx[i];
-    open_.dy[to] = from.dy[i];
-    open_.motion[to] = from.motion[i];
-    share_[to] = share;
-    difference_[to] = difference;
-    place_[to] = static_cast<std::uint8_t>(place);
-    layer_[to] = static_cast<std::uint8_t>(layer);
-}
-
-PlanePiece LayerJoining::piece(std::size_t open) const {
-    return {open_.x[open],     open_.y[open],  open_.half_width[open], open_.half_height[open],
-            open_.value[open], open_.dx[open], open_.dy[open]};
+/// What was last copied to the rows.
+void LayerJoining::open(double share, double difference, std::size_t place, std::size_t layer) {
+    share_[open_count_] = share;
+    difference_[open_count_] = difference;
+    place_[open_count_] = static_cast<std::uint8_t>(place);
+    layer_[open_count_] = static_cast<std::uint8_t>(layer);
+    ++open_count_;
 }
 
 LayerJoining::Group LayerJoining::alone(std::size_t seed) const {
-    PlanePiece const own = piece(seed);
+    PlanePiece const own = open_.piece(seed);
     double const cost = showing_cost(own.half_width, own.half_height);
     return {Bits::only(seed), sums_over(own), own.plane(), own.extent(), difference_[seed], cost, cost};
 }
@@ -303,8 +229,8 @@ LayerJoining::Group LayerJoining::grow(std::size_t seed, Bits const& open) const
     return group;
 }
 
-/// Adds `some` to the group, or those of them that agree, or the first one of those that are `near`. Of these no more
-/// is in `rest` then that is joined or not of the plane.
+/// Adds `some` to the group, or those of them that agree, or the first one of those that are `near`. What is joined, or
+/// near and not of the plane, leaves `rest`.
 bool LayerJoining::join(Bits some, bool near, Group& group, Bits& rest) const {
     for (int i = 0; i < 2 && some.any(); ++i) {
         Group larger = group;
@@ -335,23 +261,23 @@ LayerJoining::Bits LayerJoining::find(std::size_t seed, Group const& group, Bits
     Bits out;
     AffineOf<Lanes> const plane = all_of(group.plane);
     ExtentOf<Lanes> const extent = all_of(group.extent);
-    PlanePiece const own = piece(seed);
+    PlanePiece const own = open_.piece(seed);
     Piece const in_lanes{all_of(own.x), all_of(own.y), {}, {}, all_of(own.value), all_of(own.dx), all_of(own.dy)};
     Lanes const off = all_of(hopeless * one_surface * own.value);
     for (std::size_t i = 0; i < open_count_; i += wide_doubles) {
-        unsigned const wanted = open.at(i);
+        unsigned const wanted = open.lanes(i);
         if (wanted == 0) {
             continue;
         }
-        Piece const other = load_piece(open_, i);
-        WideLongs is = (load_lanes<Lanes>(&open_.motion[i]) == open_.motion[seed]) &
+        Piece const other = open_.load(i);
+        WideLongs is = (open_.load_motion(i) == open_.motion[seed]) &
                        (absolute(plane(other.x, other.y) - other.value) <= hopeless * one_surface * other.value) &
                        (difference_in_middle(other, in_lanes) <= off);
         if (near) {
             is &= showing_cost(united(extent, other.extent())) <=
                   group.cost + showing_cost(other.half_width, other.half_height);
         }
-        out.set(i, bits_of(is) & wanted);
+        out.add_lanes(i, bits_of(is) & wanted);
     }
     return out;
 }
@@ -359,26 +285,21 @@ LayerJoining::Bits LayerJoining::find(std::size_t seed, Group const& group, Bits
 /// Without the fit, which is not needed where all together cost more.
 void LayerJoining::add(Bits const& added, Group& group) const {
     constexpr double far = 1e30;
+    ExtentOf<Lanes> const nothing{all_of(far), all_of(far), all_of(-far), all_of(-far)};
+    ExtentOf<Lanes> extent = nothing;
     SumsOf<Lanes> sums;
-    ExtentOf<Lanes> extent{all_of(far), all_of(far), all_of(-far), all_of(-far)};
     Lanes cost{};
     for (std::size_t i = 0; i < open_count_; i += wide_doubles) {
-        unsigned const wanted = added.at(i);
+        unsigned const wanted = added.lanes(i);
         if (wanted == 0) {
             continue;
         }
         WideLongs const is = lanes_of(wanted);
-        Piece piece = load_piece(open_, i);
+        Piece const piece = open_.load(i, is);
         ExtentOf<Lanes> const own = piece.extent();
-        extent = {is ? smaller(own.left, extent.left) : extent.left, is ? smaller(own.top, extent.top) : extent.top,
-                  is ? larger(own.right, extent.right) : extent.right,
-                  is ? larger(own.bottom, extent.bottom) : extent.bottom};
+        extent = united(extent, {is ? own.left : nothing.left, is ? own.top : nothing.top,
+                                 is ? own.right : nothing.right, is ? own.bottom : nothing.bottom});
         cost += is ? showing_cost(piece.half_width, piece.half_height) : Lanes{};
-        // Of the others any numbers are loaded.
-        piece = {is ? piece.x : Lanes{}, is ? piece.y : Lanes{},     is ? piece.half_width : Lanes{},
-                 piece.half_height,      is ? piece.value : Lanes{}, is ? piece.dx : Lanes{},
-                 is ? piece.dy : Lanes{}};
-        piece.half_height = is ? piece.half_height : Lanes{};
         sums += sums_over(piece);
     }
     group.members = group.members | added;
@@ -400,14 +321,14 @@ LayerJoining::Bits LayerJoining::fit(Group& group) const {
     Lanes difference{};
     Bits out;
     for (std::size_t i = 0; i < open_count_; i += wide_doubles) {
-        unsigned const wanted = group.members.at(i);
+        unsigned const wanted = group.members.lanes(i);
         if (wanted == 0) {
             continue;
         }
-        Piece const piece = load_piece(open_, i);
+        Piece const piece = open_.load(i);
         Lanes const own = largest_difference(piece, plane);
         Lanes const share = one_surface - load_lanes<Lanes>(&share_[i]); // that is left
-        out.set(i, bits_of(own <= share * least_value(plane, piece)) & wanted);
+        out.add_lanes(i, bits_of(own <= share * least_value(plane, piece)) & wanted);
         difference = lanes_of(wanted) ? larger(own + load_lanes<Lanes>(&difference_[i]), difference) : difference;
     }
     group.difference = largest_of(difference);

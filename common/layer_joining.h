@@ -3,13 +3,13 @@
 #pragma once
 
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "common/lanes.h"
+#include "common/lane_bits.h"
+#include "common/piece_rows.h"
 #include "common/plane_fit.h"
 #include "common/square_layers.h"
 
@@ -42,44 +42,9 @@ public:
     std::span<JoinedLayer const> fours() const { return fours_; }
 
 private:
-    /// Pieces of planes; whole lanes are read.
-    template <std::size_t count>
-    struct Rows {
-        using Row = std::array<double, count>;
-
-        alignas(64) Row x{}, y{}, half_width{}, half_height{}, value{}, dx{}, dy{};
-        Row motion{}; ///< its index
-    };
-
     static constexpr std::size_t most_open = (max_layers + 1) * SquareLayers::places; ///< a fourth of it never all used
 
-    /// Of what is open.
-    struct Bits {
-        std::array<std::uint64_t, most_open / 64> words{};
-
-        static Bits first(std::size_t count);
-        static Bits only(std::size_t index);
-        bool any() const { return (words[0] | words[1] | words[2] | words[3]) != 0; }
-        unsigned at(std::size_t first_lane) const {
-            return static_cast<unsigned>(words[first_lane / 64] >> first_lane % 64) & ((1u << wide_doubles) - 1);
-        }
-        void set(std::size_t first_lane, unsigned bits) {
-            words[first_lane / 64] |= std::uint64_t{bits} << first_lane % 64;
-        }
-        std::size_t lowest() const;
-        Bits operator|(Bits const& other) const;
-        Bits operator&(Bits const& other) const;
-        Bits without(Bits const& other) const;
-        bool operator==(Bits const&) const = default;
-        template <class Visit>
-        void for_each(Visit const& visit) const {
-            for (std::size_t word = 0; word < words.size(); ++word) {
-                for (std::uint64_t left = words[word]; left != 0; left &= left - 1) {
-                    visit(64 * word + static_cast<std::size_t>(std::countr_zero(left)));
-                }
-            }
-        }
-    };
+    using Bits = LaneBits<most_open>; ///< of what is open
 
     /// What is about to be joined.
     struct Group {
@@ -94,10 +59,7 @@ private:
 
     void load(SquareLayers const& layers, std::size_t layer, SampleGrid const& grid);
     std::uint64_t join_fours(std::uint64_t complete);
-    template <class From>
-    void open_piece(From const& from, std::size_t i, double share, double difference, std::size_t place,
-                    std::size_t layer);
-    PlanePiece piece(std::size_t open) const;
+    void open(double share, double difference, std::size_t place, std::size_t layer);
     Group alone(std::size_t seed) const;
     Group grow(std::size_t seed, Bits const& open) const;
     bool join(Bits some, bool near, Group& group, Bits& rest) const;
@@ -106,10 +68,10 @@ private:
     Bits fit(Group& group) const;
     JoinedLayer joined(Group const& group) const;
 
-    Rows<SquareLayers::places> loaded_; ///< of all framelets: one layer each
+    PieceRows<SquareLayers::places> loaded_; ///< of all framelets: one layer each
     // What is open: fours first, then layers.
     std::size_t four_count_ = 0, open_count_ = 0;
-    Rows<most_open> open_;
+    PieceRows<most_open> open_;
     /// Of a four from its layers at most, in itself and as a share of the inverse depth there; of layers 0.
     alignas(64) std::array<double, most_open> difference_{}, share_{};
     std::array<std::uint8_t, most_open> place_{}; ///< or which four
