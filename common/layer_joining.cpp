@@ -14,7 +14,7 @@ using Piece = PieceLanes;
 /// Inverse depths that differ by less than this share are the same for all that looks at them.
 constexpr double one_surface = 2e-3;
 
-/// This many times that off, each in the other's middle, two are not worth a fit.
+/// What is this many times that off in the middle of a piece is not worth a fit.
 constexpr double hopeless = 2;
 
 /// So many times what is near is not of the plane until no more is looked for.
@@ -93,7 +93,8 @@ void LayerJoining::join(SquareLayers const& layers, SampleGrid const& grid) {
     left &= ~join_fours(one & one >> 16 & one >> 32 & one >> 48 & 0xffffu);
     four_count_ = open_count_;
     for (std::size_t i = 0; i < four_count_; ++i) {
-        fours_.push_back(joined(alone(i)));
+        PlanePiece const own = open_.piece(i);
+        fours_.push_back({own.plane(), own.extent(), difference_[i], {quarters << place_[i]}});
     }
     for (std::size_t k = 0; k < max_layers; ++k) {
         if (k > 0) {
@@ -109,7 +110,7 @@ void LayerJoining::join(SquareLayers const& layers, SampleGrid const& grid) {
     for (Bits open = Bits::first(open_count_); open.any();) {
         Group const group = grow(open.lowest(), open);
         open = open.without(group.members);
-        joined_.push_back(joined(group));
+        joined_.push_back(layer_of(group));
     }
 }
 
@@ -218,7 +219,7 @@ LayerJoining::Group LayerJoining::grow(std::size_t seed, Bits const& open) const
             near = has_grown = false;
         } else if (!some.any()) {
             break;
-        } else if (join(some, near, group, rest)) {
+        } else if (extend(some, near, group, rest)) {
             has_grown = near;
             near = true;
         } else {
@@ -231,17 +232,20 @@ LayerJoining::Group LayerJoining::grow(std::size_t seed, Bits const& open) const
 
 /// Adds `some` to the group, or those of them that agree, or the first one of those that are `near`. What is joined, or
 /// near and not of the plane, leaves `rest`.
-bool LayerJoining::join(Bits some, bool near, Group& group, Bits& rest) const {
-    for (int i = 0; i < 2 && some.any(); ++i) {
-        Group larger = group;
-        add(some, larger);
-        if (larger.cost <= larger.cost_of_parts) {
-            Bits const agreeing = fit(larger);
-            if (agreeing == larger.members) {
-                group = larger;
+bool LayerJoining::extend(Bits some, bool near, Group& group, Bits& rest) const {
+    for (int i = 0; i < 3 && some.any(); ++i) {
+        Group extended = group;
+        add(some, extended);
+        if (extended.cost <= extended.cost_of_parts) {
+            Bits const agreeing = fit(extended);
+            if (agreeing == extended.members) {
+                group = extended;
                 group.cost_of_parts = group.cost;
                 rest = rest.without(group.members);
                 return true;
+            }
+            if ((some & agreeing) == some) { // what the group had before does not agree
+                break;
             }
             rest = near ? rest.without(some.without(agreeing)) : rest;
             some = some & agreeing;
@@ -335,7 +339,7 @@ LayerJoining::Bits LayerJoining::fit(Group& group) const {
     return out;
 }
 
-JoinedLayer LayerJoining::joined(Group const& group) const {
+JoinedLayer LayerJoining::layer_of(Group const& group) const {
     JoinedLayer out{group.plane, group.extent, group.difference, {}};
     group.members.for_each(
         [&](std::size_t i) { out.parts[layer_[i]] |= (i < four_count_ ? quarters : std::uint64_t{1}) << place_[i]; });

@@ -15,7 +15,7 @@
 
 namespace framelet {
 
-/// Layers of framelets of a square, which have `side` x `side` samples, `spacing` pixels apart.
+/// The samples of a framelet: `side` x `side`, `spacing` pixels apart.
 struct SampleGrid {
     int side = framelet_side;
     double spacing = 1;
@@ -42,7 +42,8 @@ public:
     std::span<JoinedLayer const> fours() const { return fours_; }
 
 private:
-    static constexpr std::size_t most_open = (max_layers + 1) * SquareLayers::places; ///< a fourth of it never all used
+    /// A four takes the place of four layers.
+    static constexpr std::size_t most_open = max_layers * SquareLayers::places;
 
     using Bits = LaneBits<most_open>; ///< of what is open
 
@@ -62,17 +63,17 @@ private:
     void open(double share, double difference, std::size_t place, std::size_t layer);
     Group alone(std::size_t seed) const;
     Group grow(std::size_t seed, Bits const& open) const;
-    bool join(Bits some, bool near, Group& group, Bits& rest) const;
+    bool extend(Bits some, bool near, Group& group, Bits& rest) const;
     Bits find(std::size_t seed, Group const& group, Bits const& open, bool near) const;
     void add(Bits const& added, Group& group) const;
     Bits fit(Group& group) const;
-    JoinedLayer joined(Group const& group) const;
+    JoinedLayer layer_of(Group const& group) const;
 
     PieceRows<SquareLayers::places> loaded_; ///< of all framelets: one layer each
     // What is open: fours first, then layers.
     std::size_t four_count_ = 0, open_count_ = 0;
     PieceRows<most_open> open_;
-    /// Of a four from its layers at most, in itself and as a share of the inverse depth there; of layers 0.
+    /// Of a four from its layers at most, in itself and as a share of its inverse depth there; of layers 0.
     alignas(64) std::array<double, most_open> difference_{}, share_{};
     std::array<std::uint8_t, most_open> place_{}; ///< or which four
     std::array<std::uint8_t, most_open> layer_{};

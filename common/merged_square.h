@@ -31,7 +31,7 @@ struct MergedLayer {
     std::uint32_t number = 0; ///< that its samples have in the grid, as it were a layer's
     std::uint64_t newest_batch = 0;
     std::uint64_t signature = 0; ///< differs where what is held differs
-    /// That it was joined of; bit p of word k: layer k of child p.
+    /// Bit p of word k: layer k of the framelet at place p; none where it is one of one framelet.
     std::array<std::uint64_t, max_layers> parts{};
 };
 
@@ -60,7 +60,7 @@ public:
     std::span<Child const> children() const { return children_; }
     /// Each layer is part of one of these.
     std::span<MergedLayer const> merged() const { return merged_; }
-    /// Of what is part of one of these but nearer to its own parts.
+    /// Four framelets each, which are part of one of these.
     std::span<JoinedLayer const> fours() const { return fours_; }
     /// In the square, or in the framelet where it is of one.
     MergedLayer merge(JoinedLayer const& joined) const;

@@ -51,7 +51,8 @@ void expect_same(MergedSquare const& kept, MergedSquare const& fresh) {
     }
 }
 
-/// Framelets come and go, of two views, coarse ones over fine ones too, on the floor, the wall and the board.
+/// Framelets come and go, of two views, with velocities of their own, coarse ones over fine ones too, on the floor, the
+/// wall and the board.
 TEST(MergedSquare, WhatIsKeptIsWhatIsThere) {
     ImagePlane const plane(viewport);
     AnalyticScene const scene = room();
@@ -74,6 +75,11 @@ TEST(MergedSquare, WhatIsKeptIsWhatIsThere) {
         }
         Batch batch = scene.batch(plane, number, front(), 0, tiles, random() % 8 == 0);
         batch.view.number = random() % 16 == 0 ? 2 : 1;
+        if (number > 100) { // what deforms, differently everywhere: more than a square numbers
+            for (FrameletShape& shape : batch.shapes) {
+                shape.layers[0].velocity.x = static_cast<float>(random() % 10000);
+            }
+        }
         cache.insert(batch);
         for (int d = plane.min_depth(); d <= plane.max_depth(); ++d) {
             int const down = d - parent.depth();
