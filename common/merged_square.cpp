@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
 #include <span>
 
 #include "common/lanes.h"
@@ -145,14 +144,26 @@ void MergedSquare::keep(LayerJoining const& joining) {
     }
 }
 
+/// The smallest of framelet, four and square that has all of them.
+Tile MergedSquare::tile_around(std::array<std::uint64_t, max_layers> const& parts) const {
+    std::uint64_t const places = parts[0] | parts[1] | parts[2];
+    if (std::has_single_bit(places)) {
+        return child_tile(static_cast<std::size_t>(std::countr_zero(places)));
+    }
+    std::uint64_t const fours = (places | places >> 16 | places >> 32 | places >> 48) & 0xffffu;
+    if (std::has_single_bit(fours)) {
+        return tile_below(square_, levels() - 1, static_cast<std::size_t>(std::countr_zero(fours)));
+    }
+    return square_;
+}
+
 MergedLayer MergedSquare::merge(JoinedLayer const& joined) const {
     MergedLayer out;
-    HeldLayer& held = out.layer;
+    Layer& layer = out.layer.layer;
     bool is_first = true;
-    int count = 0;
     for (std::size_t k = 0; k < max_layers; ++k) {
         SquareLayers::Rows const& rows = layers_->rows(k);
-        for (std::uint64_t left = joined.parts[k]; left != 0; left &= left - 1, ++count) {
+        for (std::uint64_t left = joined.parts[k]; left != 0; left &= left - 1) {
             auto const place = static_cast<std::size_t>(std::countr_zero(left));
             std::uint32_t const number = number_of(place, k);
             if (is_first) {
@@ -162,38 +173,41 @@ MergedLayer MergedSquare::merge(JoinedLayer const& joined) const {
                 out.number = number;
                 SquareLayers::Motion const& motion = layers_->motion(rows.motion[place]);
                 out.view = motion.view;
-                held.layer = {rows.at[place],    rows.dx[place], rows.dy[place],
-                              rows.error[place], motion.body,    motion.velocity};
-                std::memcpy(&held.first_column, &rows.box[place], sizeof rows.box[place]);
+                layer.body = motion.body;
+                layer.velocity = motion.velocity;
+                layer.error = rows.error[place]; // also where it is no number
             }
-            held.layer.error = std::max(held.layer.error, rows.error[place]); // the first also where it is no number
+            layer.error = std::max(layer.error, rows.error[place]);
             out.newest_batch = std::max(out.newest_batch, layers_->batch(place));
             out.signature = combine(out.signature, layers_->batch(place) * 256 + number);
         }
     }
-    out.stride = side_;
-    if (count == 1) {
-        std::size_t const place = out.number / max_layers;
-        out.tile = out.first;
-        out.side = child_side_;
-        out.grid = grid_.data() + offset_of(place);
-        return out;
-    }
-    out.tile = square_;
-    out.side = side_;
-    out.grid = grid_.data();
+    layer.error += static_cast<float>(joined.difference);
+    out.difference = static_cast<float>(joined.difference);
     out.parts = joined.parts;
-    held.layer.at = static_cast<float>(joined.plane.at);
+    set_tile(joined, tile_around(joined.parts), out);
+    return out;
+}
+
+/// What of a layer depends on the tile that it is looked at in. (Samples beyond the tile are not its own, though they
+/// may have its number.)
+void MergedSquare::set_tile(JoinedLayer const& joined, Tile tile, MergedLayer& out) const {
+    int const down = tile.depth() - square_.depth();
+    out.tile = tile;
+    out.side = side_ >> down;
+    out.stride = side_;
+    int const column = static_cast<int>(tile.column() - (square_.column() << down)) * out.side;
+    int const row = static_cast<int>(tile.row() - (square_.row() << down)) * out.side;
+    out.grid = grid_.data() + row * side_ + column;
+    HeldLayer& held = out.layer;
+    held.layer.at = static_cast<float>(joined.plane(spacing_ * column, spacing_ * row));
     held.layer.dx = static_cast<float>(joined.plane.dx);
     held.layer.dy = static_cast<float>(joined.plane.dy);
-    held.layer.error += static_cast<float>(joined.difference);
     double const samples = 1 / spacing_; // a pixel: a power of two
-    held.first_column = static_cast<std::int8_t>(samples * joined.extent.left);
-    held.first_row = static_cast<std::int8_t>(samples * joined.extent.top);
-    held.last_column = static_cast<std::int8_t>(samples * joined.extent.right - 1);
-    held.last_row = static_cast<std::int8_t>(samples * joined.extent.bottom - 1);
-    out.difference = static_cast<float>(joined.difference);
-    return out;
+    held.first_column = static_cast<std::int8_t>(static_cast<int>(samples * joined.extent.left) - column);
+    held.first_row = static_cast<std::int8_t>(static_cast<int>(samples * joined.extent.top) - row);
+    held.last_column = static_cast<std::int8_t>(static_cast<int>(samples * joined.extent.right) - 1 - column);
+    held.last_row = static_cast<std::int8_t>(static_cast<int>(samples * joined.extent.bottom) - 1 - row);
 }
 
 /// Where a child's samples lie.

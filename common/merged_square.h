@@ -19,7 +19,7 @@ namespace framelet {
 /// Layers of neighbouring framelets that are about one plane, as one layer of a larger framelet; or one of one framelet
 /// that is joined to none.
 struct MergedLayer {
-    Tile tile; ///< that they are below
+    Tile tile; ///< that they are below, or that it is
     Tile first; ///< of a framelet of theirs
     std::uint32_t first_layer = 0; ///< its layer
     std::uint32_t view = 0; ///< of all of them
@@ -31,7 +31,7 @@ struct MergedLayer {
     std::uint32_t number = 0; ///< that its samples have in the grid, as it were a layer's
     std::uint64_t newest_batch = 0;
     std::uint64_t signature = 0; ///< differs where what is held differs
-    /// Bit p of word k: layer k of the framelet at place p; none where it is one of one framelet.
+    /// Bit p of word k: layer k of the framelet at place p.
     std::array<std::uint64_t, max_layers> parts{};
 };
 
@@ -62,7 +62,7 @@ public:
     std::span<MergedLayer const> merged() const { return merged_; }
     /// Four framelets each, which are part of one of these.
     std::span<JoinedLayer const> fours() const { return fours_; }
-    /// In the square, or in the framelet where it is of one.
+    /// One of these, or a four.
     MergedLayer merge(JoinedLayer const& joined) const;
     /// Bit i: child i has loose samples.
     std::uint64_t loose_children() const { return loose_children_; }
@@ -75,6 +75,8 @@ private:
     void make_room(ImagePlane const& plane);
     bool set_layers(std::uint64_t places);
     void keep(LayerJoining const& joining);
+    Tile tile_around(std::array<std::uint64_t, max_layers> const& parts) const;
+    void set_tile(JoinedLayer const& joined, Tile tile, MergedLayer& out) const;
     std::size_t offset_of(std::size_t place) const;
     void write(Child const& child, PackedSample* to) const;
     template <int side>

@@ -187,6 +187,7 @@ TEST(LayerJoining, DifferencesAreBounds) {
     std::mt19937 random(11);
     std::normal_distribution<double> normal;
     int of_fours = 0, of_layers = 0, alone = 0;
+    std::ptrdiff_t fours = 0;
     for (int round = 0; round < 200; ++round) {
         int const of_each = 1 + round / 4 % 2; // fours of framelets with one layer each are joined by themselves
         std::vector<TestLayer> layers;
@@ -225,12 +226,24 @@ TEST(LayerJoining, DifferencesAreBounds) {
             EXPECT_EQ(extent.bottom, found.extent.bottom);
         }
         EXPECT_EQ(static_cast<std::size_t>(parts), layers.size());
+        for (JoinedLayer const& four : joining.fours()) {
+            EXPECT_EQ(part_count(four), 4);
+            for (TestLayer const& layer : layers) {
+                if (is_part(four, layer)) {
+                    EXPECT_LE(largest_difference(piece_of(layer), four.plane), four.difference + 1e-12);
+                }
+            }
+            fours += std::ranges::count_if(
+                joining.joined(), [&](JoinedLayer const& found) { return (four.parts[0] & ~found.parts[0]) == 0; });
+        }
+        fours -= static_cast<std::ptrdiff_t>(joining.fours().size()); // each is in one
         for (TestLayer const& layer : layers) {
             EXPECT_EQ(std::ranges::count_if(joining.joined(),
                                             [&](JoinedLayer const& found) { return is_part(found, layer); }),
                       1);
         }
     }
+    EXPECT_EQ(fours, 0);
     EXPECT_GT(of_fours, 100);
     EXPECT_GT(of_layers, 100);
     EXPECT_GT(alone, 20);

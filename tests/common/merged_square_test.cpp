@@ -126,7 +126,7 @@ TEST(MergedSquare, SamplesHaveTheNumberOfTheirLayer) {
     }
     scene.quads[2].body = 3;
     LayerJoining joining;
-    int joined = 0, alone = 0, loose = 0;
+    int joined = 0, alone = 0, loose = 0, fours = 0;
     for (int levels = 0; levels <= finest_levels; ++levels) {
         FrameletCache const cache = filled(scene, front(), levels);
         int const depth = plane.pixel_depth() + levels;
@@ -164,10 +164,19 @@ TEST(MergedSquare, SamplesHaveTheNumberOfTheirLayer) {
                     }
                 }
             }
+            for (JoinedLayer const& four :
+                 square.fours()) { // shown apart it must not reach for its neighbours' samples
+                MergedLayer const part = square.merge(four);
+                EXPECT_EQ(part.tile.code, part.first.code >> 2);
+                EXPECT_EQ(part.layer.first_column, 0);
+                EXPECT_EQ(part.layer.last_row, part.side - 1);
+                ++fours;
+            }
             loose += static_cast<int>(std::ranges::count_if(square.children(), &MergedSquare::Child::has_loose));
         }
     }
     EXPECT_GT(joined, 20);
+    EXPECT_GT(fours, 20);
     EXPECT_GT(loose, 0);
     EXPECT_GT(alone, 0);
 }
