@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "client/picture_maker.h"
 #include "client/server_address.h"
 #include "common/image.h"
 #include "common/tile.h"
@@ -52,10 +53,8 @@ struct ClientStatistics {
     double reconstruct_ns_per_pixel() const;
 };
 
-/// What is drawn over the picture.
-enum class DrawnOver : std::uint8_t { none, outlines, confidence };
-
-/// All members may be called from any thread; `update_picture` from one at a time.
+/// All members may be called from any thread; `update_picture` and `draw_overlay` from one at a time. Painting holds
+/// nothing up: what comes meanwhile is decoded and answered, and shows in the next picture.
 class ClientCore {
 public:
     /// Connects (blocks) and opens the session. `on_news` is called from the connection's thread whenever there is
@@ -104,7 +103,7 @@ public:
     Status status() const;
     /// The scene clock as it should stand now.
     ClockState clock() const;
-    /// The camera of the newest batch: where a scene camera was last seen.
+    /// What the last picture was seen from.
     Camera shown_camera() const;
     ClientStatistics statistics() const;
 

@@ -32,4 +32,11 @@ struct BodyTrack {
     bool operator==(BodyTrack const&) const = default;
 };
 
+/// Under which number a track is of a camera of the scene, and not of a body.
+constexpr BodyNumber camera_body(int scene_camera) {
+    return static_cast<BodyNumber>(scene_camera + 1);
+}
+/// So that each has a number.
+inline constexpr int most_scene_cameras = 65534;
+
 } // namespace framelet

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -113,6 +114,7 @@ struct EncodedBatch {
     SampleEncoding encoding = SampleEncoding::exact;
     Bytes shapes{}; ///< of all framelets; empty: the viewer has no use for them
     std::vector<BodyTrack> tracks{};
+    std::optional<BodyTrack> camera_track{};
     bool operator==(EncodedBatch const&) const = default;
 };
 

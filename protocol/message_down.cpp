@@ -104,11 +104,13 @@ Offset<wire::Batch> write(Builder& builder, EncodedBatch const& value) {
     }
     auto const sections = builder.CreateVector(list);
     Offset<TrackList> const tracks = value.tracks.empty() ? Offset<TrackList>() : write(builder, value.tracks);
+    Offset<wire::BodyTrack> const camera_track =
+        value.camera_track ? write(builder, *value.camera_track) : Offset<wire::BodyTrack>();
     std::uint32_t* codes = nullptr;
     auto const tiles = builder.CreateUninitializedVector(value.tiles.size(), &codes);
     std::transform(value.tiles.begin(), value.tiles.end(), codes, [](Tile tile) { return tile.code; });
     auto const view = write(builder, value.view);
-    return wire::CreateBatch(builder, value.number, view, value.scene_time, tiles, sections, tracks);
+    return wire::CreateBatch(builder, value.number, view, value.scene_time, tiles, sections, tracks, camera_track);
 }
 
 EncodedBatch read(wire::Batch const& wire) {
@@ -148,6 +150,9 @@ EncodedBatch read(wire::Batch const& wire) {
     if (wire.tracks() != nullptr) {
         value.tracks = read(*wire.tracks());
     }
+    if (wire.camera_track() != nullptr) {
+        value.camera_track = read(*wire.camera_track());
+    }
     return value;
 }
 
@@ -168,7 +173,13 @@ char const* problem(EncodedBatch const& value) {
     if (!std::all_of(value.tiles.begin(), value.tiles.end(), [&](Tile tile) { return plane.accepts(tile); })) {
         return "a batch has a tile that its viewport does not have";
     }
-    return has_duplicate(value.tiles) ? "a batch has the same tile twice" : problem(value.tracks);
+    if (has_duplicate(value.tiles)) {
+        return "a batch has the same tile twice";
+    }
+    if (char const* const fault = value.camera_track ? problem(*value.camera_track) : nullptr) {
+        return fault;
+    }
+    return problem(value.tracks);
 }
 
 Offset<wire::Status> write(Builder& builder, Status const& value) {

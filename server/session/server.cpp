@@ -176,7 +176,7 @@ struct Server::Impl {
     void set_clock(ClockRequest const& request) {
         clock.apply(request, steady_clock::now());
         for (auto const& session : open_sessions()) {
-            session->invalidate();
+            session->note_clock_change();
         }
         loop.wake();
         send_status();

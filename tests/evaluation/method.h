@@ -36,7 +36,6 @@ struct FrameletParts {
     bool price = true; ///< of a sample, follows the budget; else it is always cheap, and urgency alone decides
     bool probes = true;
     bool inspections = true;
-    bool pipelining = true; ///< what follows rendering overlaps the next; else a batch is learnt before the next plan
     bool link_budget = true; ///< rate and batches are bounded by what the link carries
     bool loss = true; ///< where the link asks for it
     bool withholding = true; ///< of what the viewer has already

@@ -32,7 +32,8 @@ struct Drive {
     /// Keys that the batch of `time` took.
     std::size_t batch(SceneTime time) {
         std::vector<BodyTrack> tracks;
-        feed.track(scene, clips, bodies, time, tracks);
+        std::optional<BodyTrack> camera;
+        feed.track(scene, clips, bodies, -1, time, tracks, camera);
         std::size_t keys = 0;
         for (BodyTrack const& track : tracks) {
             keys += track.keys.size();

@@ -124,7 +124,7 @@ TEST_P(ServerOfThreads, CoarseFirstThenFinerThenConverged) {
 
 TEST_P(ServerOfThreads, WaitsForAcknowledgements) {
     ServerOptions options;
-    options.loop.batch_framelets = 16; // so that the picture takes more batches than may be in flight, however fast
+    options.loop.stream.batch_framelets = 16; // so that the picture takes more batches than may be in flight, however fast
     RunningServer const server(options);
     Conversation viewer(server.port());
     viewer.stream->send(Hello{});
@@ -147,7 +147,7 @@ TEST(Server, NothingOlderComesFirstWhenThereIsRoomAgain) {
     // Latest wins without a queue to replace in: while there is no room nothing is rendered, so the first batch after
     // that is of the newest camera.
     ServerOptions options;
-    options.loop.batch_framelets = 16;
+    options.loop.stream.batch_framelets = 16;
     RunningServer const server(options);
     Conversation viewer(server.port());
     viewer.stream->send(Hello{});

@@ -41,7 +41,7 @@ public:
         std::vector<std::uint8_t> const all(batch.framelets.size(), 1);
         shapes_.fit(frame_.rendered(), all, make_view_rays(input.view.camera, setup_.viewport), plane_, input.now,
                     batch.shapes);
-        shapes_.track(input.scene.scene, input.scene.clips, input.scene.render_scene->bodies(), batch.scene_time,
+        shapes_.track(input.scene.scene, input.scene.clips, input.scene.render_scene->bodies(), -1, batch.scene_time,
                       batch.tracks);
         // The message is a batch's whose payload is the access unit and whose tiles go without saying.
         EncodedBatch message = codec_.encode(batch);
