@@ -31,4 +31,7 @@ static_assert(FrameletCache::block_side % wide_columns == 0 && FrameletCache::bl
 /// its first or below its last.
 void sample_patch(WarpPatch const& patch, float x, float y, int count, CandidateColumn& out);
 
+/// False where all of them would get no weight, since none of the patch's samples is near: looks at `occupied`.
+bool may_show(WarpPatch const& patch, float x, float y, int count);
+
 } // namespace framelet
