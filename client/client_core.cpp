@@ -72,6 +72,7 @@ struct ClientCore::Impl {
     std::optional<CameraUpdate> waiting_view;
     CameraUpdate view; ///< the newest, sent or not
     std::deque<SentCamera> sent_cameras;
+    std::deque<SentCamera> set_cameras; ///< and not shown yet
     std::optional<Clock::time_point> first_camera_time;
     PictureSettings picture_settings;
     bool has_picture = false; ///< something is held of the newest viewport
@@ -262,8 +263,28 @@ struct ClientCore::Impl {
     PictureRequest picture_request() const {
         std::lock_guard const lock(mutex);
         ClockState const clock = clock_now();
-        return {view.view.camera, view.scene_camera, clock.time, static_cast<double>(clock.speed),
+        return {view.view.camera,
+                view.view.number,
+                view.scene_camera,
+                clock.time,
+                static_cast<double>(clock.speed),
                 seconds_between(start, Clock::now())};
+    }
+
+    /// How old what the last picture shows is; -1: nothing new. Under the lock.
+    double photon_seconds(Clock::time_point now) {
+        ClockState const clock = clock_now();
+        if (view.scene_camera >= 0) {
+            bool const moves = clock.playing && clock.speed != 0 && picture_settings.scene_moves;
+            return moves ? (clock.time - shown_time) / static_cast<double>(clock.speed) : -1;
+        }
+        std::uint64_t const number = maker->shown_camera_number();
+        double seconds = -1;
+        while (!set_cameras.empty() && set_cameras.front().number <= number) {
+            seconds = set_cameras.front().number == number ? seconds_between(set_cameras.front().time, now) : seconds;
+            set_cameras.pop_front();
+        }
+        return seconds;
     }
 
     /// Under the lock.
@@ -304,6 +325,10 @@ void ClientCore::set_view(Camera const& camera, Viewport viewport, int scene_cam
     impl_->has_picture = impl_->has_picture && view.view.viewport == viewport;
     view = {{view.view.number + 1, camera, viewport}, scene_camera};
     impl_->statistics.converged = false;
+    impl_->set_cameras.push_back({view.view.number, Clock::now()});
+    if (impl_->set_cameras.size() > Impl::most_sent_cameras) {
+        impl_->set_cameras.pop_front();
+    }
     impl_->waiting_view = view;
     impl_->send_waiting_view();
 }
@@ -355,6 +380,7 @@ bool ClientCore::update_picture(Picture& picture, std::vector<PixelRect>& change
     std::lock_guard const lock(core.mutex);
     core.shown_camera = core.maker->shown_camera();
     core.shown_time = core.maker->shown_time();
+    core.statistics.photon_seconds = drawn ? core.photon_seconds(after) : -1;
     if (!drawn) {
         return false;
     }

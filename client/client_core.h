@@ -46,6 +46,9 @@ struct ClientStatistics {
     std::uint64_t cameras_sent = 0;
     double server_samples_per_second = 0;
     bool converged = false;
+    /// From when the camera of the last picture was set, or the moment that it shows was the present, until the picture
+    /// was ready; -1: it shows no new one.
+    double photon_seconds = -1;
     double lag_seconds = 0; ///< by which the scene is shown late, as asked for; 0: it is not
 
     double bytes_per_sample() const;

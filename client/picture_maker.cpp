@@ -36,7 +36,8 @@ void PictureMaker::insert(Batch const& batch) {
         shown_camera_ = batch.view.camera;
         shown_time_ = batch.scene_time;
     }
-    batch_camera_ = batch.view.camera;
+    batch_view_ = batch.view;
+    batch_time_ = batch.scene_time;
     cache_.insert(batch);
     if (smoother_) {
         smoother_->insert(batch);
@@ -59,7 +60,8 @@ std::pair<Camera, SceneTime> PictureMaker::wanted(PictureRequest const& request)
         return {request.camera, time};
     }
     BodyTrack const* const track = cameras_.find(camera_body(request.scene_camera));
-    return {track == nullptr ? batch_camera_ : camera_at(*track, time, batch_camera_), time};
+    Camera const& newest = batch_view_.camera;
+    return {track == nullptr ? newest : camera_at(*track, time, newest), time};
 }
 
 bool PictureMaker::show(PictureRequest const& request, Picture& picture, std::vector<PixelRect>& changed) {
@@ -81,12 +83,15 @@ bool PictureMaker::show(PictureRequest const& request, Picture& picture, std::ve
         shown_pixels_ = picture.rgba.data();
     }
     if (!settings_.reproject) {
-        shown_camera_ = batch_camera_;
+        shown_camera_ = batch_view_.camera;
+        shown_camera_number_ = batch_view_.number;
+        shown_time_ = batch_time_;
         reconstruct(cache_, changed, picture);
         return !changed.empty();
     }
     auto const [camera, time] = wanted(request);
     shown_camera_ = camera;
+    shown_camera_number_ = request.camera_number;
     shown_time_ = time;
     arrived_.swap(changed);
     if (smoother_) {
@@ -99,7 +104,7 @@ bool PictureMaker::show(PictureRequest const& request, Picture& picture, std::ve
 }
 
 void PictureMaker::draw_over(DrawnOver what, Picture& picture) const {
-    if (what == DrawnOver::none || is_empty() || viewport() != Viewport{picture.width, picture.height}) {
+    if (what == DrawnOver::nothing || is_empty() || viewport() != Viewport{picture.width, picture.height}) {
         return;
     }
     if (what == DrawnOver::outlines || !settings_.reproject) {

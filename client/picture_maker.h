@@ -24,6 +24,7 @@ struct PictureSettings {
 /// What a picture is to be of.
 struct PictureRequest {
     Camera camera; ///< where `scene_camera` is -1
+    std::uint64_t camera_number = 0; ///< its
     int scene_camera = -1; ///< >= 0: as that camera of the scene goes
     SceneTime present = 0; ///< what the scene's clock says
     double clock_speed = 1; ///< scene seconds a second
@@ -31,7 +32,7 @@ struct PictureRequest {
 };
 
 /// What drawing over the picture shows.
-enum class DrawnOver : std::uint8_t { none, outlines, confidence };
+enum class DrawnOver : std::uint8_t { nothing, outlines, confidence };
 
 class PictureMaker {
 public:
@@ -56,6 +57,8 @@ public:
     /// What the last picture shows; before there is one, what the newest batch was seen from.
     Camera const& shown_camera() const { return shown_camera_; }
     SceneTime shown_time() const { return shown_time_; }
+    /// The number of that camera, where the viewer gave it.
+    std::uint64_t shown_camera_number() const { return shown_camera_number_; }
     /// True when it was `reconstruct`'s as a whole: nothing in it was moved.
     bool is_exact() const { return !settings_.reproject || (!smoother_ && reprojector_.is_exact()); }
     bool is_smooth() const { return smoother_.has_value(); }
@@ -72,8 +75,10 @@ private:
     Reprojector reprojector_;
     LateClock late_clock_{0};
     std::optional<SceneSmoother> smoother_;
-    Camera batch_camera_; ///< of the newest batch
+    NumberedView batch_view_; ///< of the newest batch
+    SceneTime batch_time_ = 0; ///< likewise
     Camera shown_camera_;
+    std::uint64_t shown_camera_number_ = 0;
     SceneTime shown_time_ = 0;
     std::uint8_t const* shown_pixels_ = nullptr; ///< recognises the caller's picture
     std::vector<PixelRect> arrived_; ///< scratch: where batches have changed something

@@ -103,7 +103,7 @@ bool Viewer::update_shown_picture() {
     if (!changed && !toggled) {
         return false;
     }
-    bool const draws = drawn_over_ != DrawnOver::none;
+    bool const draws = drawn_over_ != DrawnOver::nothing;
     if (draws || toggled) { // what is drawn ages everywhere
         changed_.assign(1, {0, 0, picture_.width, picture_.height});
     }
@@ -192,9 +192,9 @@ void Viewer::apply(Command command) {
         statistics_.clear();
         break;
     case Command::next_overlay:
-        drawn_over_ = drawn_over_ == DrawnOver::none       ? DrawnOver::outlines
+        drawn_over_ = drawn_over_ == DrawnOver::nothing       ? DrawnOver::outlines
                       : drawn_over_ == DrawnOver::outlines ? DrawnOver::confidence
-                                                           : DrawnOver::none;
+                                                           : DrawnOver::nothing;
         overlay_toggled_ = true;
         break;
     case Command::toggle_reprojection:

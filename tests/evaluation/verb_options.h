@@ -44,7 +44,7 @@ struct VerbOptions {
     std::string json_file;
     std::filesystem::path costs_file = source_folder / "tests/evaluation/costs.json";
     bool quick = false;
-    std::optional<int> size;
+    std::optional<Viewport> size;
     std::optional<double> seconds, rate;
     double megabits = 0;
     double delay_ms = 0;

@@ -136,11 +136,11 @@ TEST_P(ServerOfThreads, WaitsForAcknowledgements) {
         } else if (std::holds_alternative<EncodedBatch>(message)) {
             ++batches;
         } else if (std::holds_alternative<Status>(message)) {
-            beats += batches >= Session::max_batches_in_flight ? 1 : 0; // time for one too many
+            beats += batches >= FrameletStream::max_batches_in_flight ? 1 : 0; // time for one too many
         }
         return beats < 3;
     });
-    EXPECT_EQ(batches, Session::max_batches_in_flight) << "and not one more while nothing is acknowledged";
+    EXPECT_EQ(batches, FrameletStream::max_batches_in_flight) << "and not one more while nothing is acknowledged";
 }
 
 TEST(Server, NothingOlderComesFirstWhenThereIsRoomAgain) {
@@ -158,13 +158,13 @@ TEST(Server, NothingOlderComesFirstWhenThereIsRoomAgain) {
         if (std::holds_alternative<Welcome>(message)) {
             viewer.stream->send(camera_update(1, {640, 480}));
         } else if (auto const* const batch = std::get_if<EncodedBatch>(&message)) {
-            if (++batches > Session::max_batches_in_flight) {
+            if (++batches > FrameletStream::max_batches_in_flight) {
                 next_camera = batch->view.number;
-            } else if (batches == Session::max_batches_in_flight) {
+            } else if (batches == FrameletStream::max_batches_in_flight) {
                 viewer.stream->send(camera_update(2, {640, 480}));
                 viewer.stream->send(camera_update(3, {640, 480}));
             }
-        } else if (std::holds_alternative<Status>(message) && batches == Session::max_batches_in_flight &&
+        } else if (std::holds_alternative<Status>(message) && batches == FrameletStream::max_batches_in_flight &&
                    ++beats == 2) { // the cameras have arrived
             viewer.stream->send(Ack{batches, 0, 0});
         }

@@ -24,7 +24,7 @@ ViewerStep WarpViewer::insert(Batch const& batch) {
 }
 
 ViewerStep WarpViewer::present(Camera const& camera, SceneTime time, int scene_camera) {
-    maker_.show({camera, scene_camera, time, 1, time}, picture_, changed_);
+    maker_.show({camera, 0, scene_camera, time, 1, time}, picture_, changed_);
     double pixels = 0;
     for (PixelRect const& rect : changed_) {
         pixels += static_cast<double>(rect.width()) * rect.height();
