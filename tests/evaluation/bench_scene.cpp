@@ -46,8 +46,13 @@ void pose_at(BenchScene& scene, SceneTime time) {
 }
 
 Camera camera_at(BenchScene const& scene, SceneTime time) {
-    return scene.scene_camera == none ? turned(scene.default_camera, scene.turn, time)
-                                      : camera_of(scene, evaluate_pose(scene.scene, scene.clips, time));
+    return turned(own_camera_at(scene, time), scene.turn, time);
+}
+
+Camera own_camera_at(BenchScene const& scene, SceneTime time) {
+    return scene.scene_camera == none
+               ? scene.default_camera
+               : scene_camera(scene.scene, evaluate_pose(scene.scene, scene.clips, time), scene.scene_camera);
 }
 
 } // namespace framelet::bench
