@@ -36,9 +36,11 @@ void pose_at(BenchScene& scene, SceneTime time) {
 }
 
 Camera camera_at(BenchScene const& scene, SceneTime time) {
-    Camera const camera =
-        scene.scene_camera == none ? scene.default_camera : scene.posed->camera(scene.scene_camera, time);
-    return turned(camera, scene.turn, time);
+    return turned(own_camera_at(scene, time), scene.turn, time);
+}
+
+Camera own_camera_at(BenchScene const& scene, SceneTime time) {
+    return scene.scene_camera == none ? scene.default_camera : scene.posed->camera(scene.scene_camera, time);
 }
 
 } // namespace framelet::bench

@@ -41,5 +41,7 @@ void pose_at(BenchScene& scene, SceneTime time);
 
 /// Where the camera is at `time`; the scene stays as it is.
 Camera camera_at(BenchScene const& scene, SceneTime time);
+/// Where the scene itself has it, whatever its viewer does with it.
+Camera own_camera_at(BenchScene const& scene, SceneTime time);
 
 } // namespace framelet::bench

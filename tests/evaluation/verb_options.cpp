@@ -9,6 +9,8 @@
 namespace framelet::bench {
 namespace {
 
+std::vector<std::string> const rival_part_names{"accumulation", "ahead", "spacing", "margin"};
+
 void add_output_options(CLI::App& verb, VerbOptions& options) {
     verb.add_option("--json", options.json_file, "Write the figures to this file as well");
     verb.add_flag("--quick", options.quick, "Smaller pictures, less time");
@@ -60,6 +62,13 @@ void add_machine_options(CLI::App& verb, VerbOptions& options) {
         ->check(CLI::Range(-1.0, 1.0))
         ->capture_default_str();
     verb.add_option("--seed", study.run.seed, "Of everything that is random")->capture_default_str();
+    verb.add_option("--rivals-without", options.rivals_without,
+                    "What the rivals do not do, of accumulation, ahead, spacing and margin")
+        ->delimiter(',')
+        ->check(CLI::IsMember(rival_part_names));
+    verb.add_option("--rivals-spacing", study.run.rivals.spacing,
+                    "Pixels from sample to sample of whole frames while something moves (default: the best)")
+        ->check(CLI::IsMember({1, 2, 4}));
     add_result_options(verb, options);
 }
 
@@ -98,6 +107,13 @@ void add_ahead_options(CLI::App& verb, VerbOptions& options, Study& study, std::
 
 void settle(VerbOptions& options, Scale const& scale) {
     auto& study = options.study;
+    for (std::string const& part : options.rivals_without) {
+        RivalParts& rivals = study.run.rivals;
+        rivals.accumulate &= part != "accumulation";
+        rivals.ahead &= part != "ahead";
+        rivals.spacing = part == "spacing" ? 1 : rivals.spacing;
+        rivals.margin = part == "margin" ? 0 : rivals.margin;
+    }
     study.run.viewport = options.size.value_or(Viewport{scale.size, scale.size});
     study.run.seconds = options.seconds.value_or(scale.seconds);
     study.run.reference_rate = options.rate.value_or(scale.rate);

@@ -50,6 +50,7 @@ struct VerbOptions {
     double delay_ms = 0;
     double jitter_ms = 0;
     bool total = false;
+    std::vector<std::string> rivals_without; ///< which parts they lack
     StabilityOptions stability;
     AblationOptions ablation;
     std::vector<int> table_runs;
