@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "server/flow/link_estimate.h"
+#include "server/schedule/view_state.h"
 #include "server/stream/viewer_stream.h"
 #include "tests/evaluation/method.h"
 
