@@ -33,6 +33,19 @@ void Session::close(std::string const& farewell) {
     stream_->close_after_sending();
 }
 
+void Session::end(std::string const& reason) {
+    {
+        std::scoped_lock const lock(mutex_);
+        if (std::exchange(ended_, true)) {
+            return;
+        }
+        open_ = false;
+    }
+    stream_->send(Failure{reason});
+    stream_->close_after_sending();
+    events_.ended(reason);
+}
+
 bool Session::is_open() const {
     std::scoped_lock const lock(mutex_);
     return open_;
@@ -113,18 +126,18 @@ bool Session::has_stopped_answering(std::chrono::steady_clock::time_point now) c
 }
 
 void Session::receive(Message message) {
-    if (!is_open()) {
+    bool open = false;
+    {
+        std::scoped_lock const lock(mutex_);
+        if (ended_) {
+            return; // by another thread, while this message was on its way here
+        }
+        open = open_;
+    }
+    if (!open) {
         receive_hello(message);
     } else if (auto* const camera = std::get_if<CameraUpdate>(&message)) {
-        {
-            std::scoped_lock const lock(mutex_);
-            if (input_.camera && camera->view.number <= input_.camera->view.number) {
-                return; // late: a newer one is here already
-            }
-            input_.camera = std::move(*camera);
-            ++input_.version;
-        }
-        events_.changed();
+        receive_camera(std::move(*camera));
     } else if (auto const* const settings = std::get_if<ViewerSettings>(&message)) {
         {
             std::scoped_lock const lock(mutex_);
@@ -156,6 +169,25 @@ void Session::receive(Message message) {
         close("unexpected message");
         events_.ended("the viewer sent a message that only a server may send");
     }
+}
+
+void Session::receive_camera(CameraUpdate camera) {
+    SessionInput const before = newest_input();
+    if (before.camera && camera.view.number <= before.camera->view.number) {
+        return; // late: a newer one is here already
+    }
+    if (!before.camera || camera.view.viewport != before.camera->view.viewport) {
+        if (auto const refusal = events_.resize(camera.view.viewport, before.takes_predictions())) {
+            end(*refusal);
+            return;
+        }
+    }
+    {
+        std::scoped_lock const lock(mutex_);
+        input_.camera = std::move(camera);
+        ++input_.version;
+    }
+    events_.changed();
 }
 
 void Session::receive_hello(Message const& message) {

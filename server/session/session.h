@@ -36,9 +36,11 @@ public:
         /// The viewer said hello; the answer is sent back. A Failure ends the connection.
         std::function<std::variant<Welcome, Failure>(Hello const&)> admit;
         std::function<void(ClockRequest const&)> clock_request;
+        /// The viewer's picture gets this size; a line that says why it cannot ends the session.
+        std::function<std::optional<std::string>(Viewport, bool predicts)> resize;
         /// There is new input, or room for another batch.
         std::function<void()> changed;
-        /// Once, when the connection is over; `reason` is one line.
+        /// Once, when the connection is over; `reason` is one line. The only one that may come from any thread.
         std::function<void(std::string const& reason)> ended;
     };
 
@@ -57,6 +59,8 @@ public:
     std::string peer() const { return stream_->peer(); }
 
     // From any thread:
+    /// The server cannot go on with this viewer, which is told the reason, one line, as is whoever waits for `ended`.
+    void end(std::string const& reason);
     bool is_open() const;
     SessionInput newest_input() const;
     /// True while another batch may be sent, beyond `unsent` others that are not begun yet: there are few in flight,
@@ -85,6 +89,7 @@ public:
 private:
     void receive(Message message);
     void receive_hello(Message const& message);
+    void receive_camera(CameraUpdate camera);
     void fail(std::string const& reason);
 
     std::uint64_t const id_;

@@ -9,6 +9,7 @@
 #include <tbb/global_control.h>
 #include <tbb/task_group.h>
 
+#include "server/session/contained.h"
 #include "server/session/laps.h"
 
 namespace framelet {
@@ -89,7 +90,11 @@ bool SessionLoop::cycle(Sessions const& sessions, WallTime now) {
     double const share = 1 / static_cast<double>(sessions.size());
     bool rendered = false;
     for (auto const& session : sessions) {
-        rendered |= render_session(*session, viewers_[session->id()], time, share);
+        bool const served =
+            contain(*session, [&] { rendered |= render_session(*session, viewers_[session->id()], time, share); });
+        if (!served) {
+            drop_rendered(*session);
+        }
     }
     return rendered;
 }
@@ -212,13 +217,17 @@ bool SessionLoop::send_exactly(Session& session, ViewerState& viewer, SessionInp
 }
 
 void SessionLoop::start_finishing() {
-    auto const finish = [this, learnt = pipeline_->learnt] {
-        if (!learnt) {
-            pipeline_->rendered->learn(shared());
-        }
-        if (pipeline_->rendered->send(pipeline_->codec)) {
-            events_.convergence_changed();
-        }
+    // It counts as learnt from here on: whatever fails meanwhile, it is not begun a second time.
+    auto const finish = [this, learnt = std::exchange(pipeline_->learnt, true)] {
+        BatchWork& work = *pipeline_->rendered;
+        contain(*work.order.session, [&] {
+            if (!learnt && work.order.session->is_open()) {
+                work.learn(shared());
+            }
+            if (work.order.session->is_open() && work.send(pipeline_->codec)) {
+                events_.convergence_changed();
+            }
+        });
     };
     // With one thread it would not begin before the next batch is rendered, and be late by that.
     if (thread_count() > 1) {
@@ -235,9 +244,20 @@ void SessionLoop::wait_for_finishing() {
         return;
     }
     if (options_.recorder != nullptr && !done->order.again) {
-        options_.recorder->add(done->record, done->order.viewer->refresh, done->order.plan.now);
+        contain(*done->order.session, [&] {
+            options_.recorder->add(done->record, done->order.viewer->refresh, done->order.plan.now);
+        });
     }
     done->order.session.reset();
+}
+
+/// What failed is not tried again when it is to be finished.
+void SessionLoop::drop_rendered(Session const& session) {
+    if (pipeline_->rendered != nullptr && pipeline_->rendered->order.session.get() == &session) {
+        pipeline_->finishing.wait();
+        pipeline_->rendered->order.session.reset();
+        pipeline_->rendered = nullptr;
+    }
 }
 
 bool SessionLoop::finish_rendered() {

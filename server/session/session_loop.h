@@ -66,6 +66,7 @@ private:
     void wait_for_finishing();
     /// Waits for all that was rendered to be sent; true where some of it had not been learnt.
     bool finish_rendered();
+    void drop_rendered(Session const& session);
     void forget_ended(Sessions const& sessions);
 
     Scene const& scene_;
