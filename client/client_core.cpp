@@ -255,7 +255,7 @@ struct ClientCore::Impl {
         ClockState out = status.clock;
         if (out.playing) {
             double const elapsed = seconds_between(status_time, Clock::now());
-            out.time = std::max(0.0, out.time + elapsed * static_cast<double>(out.speed));
+            out.time = std::clamp(out.time + elapsed * static_cast<double>(out.speed), 0.0, max_scene_time);
         }
         return out;
     }
@@ -314,7 +314,8 @@ Welcome const& ClientCore::welcome() const {
     return impl_->connection->welcome();
 }
 
-void ClientCore::set_view(Camera const& camera, Viewport viewport, int scene_camera) {
+void ClientCore::set_view(Camera const& wanted, Viewport viewport, int scene_camera) {
+    Camera const camera = within_bounds(wanted); // a hand may lead it out
     std::lock_guard const lock(impl_->mutex);
     CameraUpdate& view = impl_->view;
     if (view.view.number > 0 && view.view.camera == camera && view.view.viewport == viewport &&

@@ -220,7 +220,7 @@ void Viewer::ask_clock(std::uint8_t fields, ClockState const& state) {
 
 void Viewer::step_clock(double seconds) {
     ClockState clock = core_->clock();
-    clock.time = std::max(0.0, clock.time + seconds);
+    clock.time = std::clamp(clock.time + seconds, 0.0, max_scene_time);
     clock.playing = false;
     ask_clock(ClockRequest::time | ClockRequest::playing, clock);
 }

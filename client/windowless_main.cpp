@@ -239,7 +239,7 @@ int main(int argc, char** argv) {
     add_display_options(app, options.display);
     CLI::Option* const play = app.add_flag("--play", options.play, "Let the scene's clock run");
     app.add_flag("--pause", options.pause, "Stop the scene's clock")->excludes(play);
-    app.add_option("--seek", options.seek, "Set the scene's clock to this second")->check(CLI::Range(0.0, 1e9));
+    app.add_option("--seek", options.seek, "Set the scene's clock to this second")->check(CLI::Range(0.0, max_scene_time));
 
     Viewport viewport;
     ConnectionOptions connection;

@@ -85,7 +85,7 @@ char const* problem(Welcome const& value) {
         return "the scene's bounds are not a box";
     }
     if (!is_time(value.animation_duration)) {
-        return "the animation's duration is not a finite number >= 0";
+        return "the animation's duration is not within 0..1e9";
     }
     for (SceneCameraInfo const& info : value.cameras) {
         if (char const* const fault = problem(info.camera)) {
@@ -164,7 +164,7 @@ char const* problem(EncodedBatch const& value) {
         return fault;
     }
     if (!is_time(value.scene_time)) {
-        return "a batch's scene time is not a finite number >= 0";
+        return "a batch's scene time is not within 0..1e9";
     }
     if (value.tiles.size() > max_batch_framelets) {
         return "a batch has more than 32768 framelets";
@@ -200,8 +200,10 @@ Status read(wire::Status const& wire) {
 }
 
 char const* problem(Status const& value) {
-    return is_time(value.samples_per_second) ? problem(value.clock)
-                                             : "the samples per second are not a finite number >= 0";
+    if (!std::isfinite(value.samples_per_second) || value.samples_per_second < 0) {
+        return "the samples per second are not a finite number >= 0";
+    }
+    return problem(value.clock);
 }
 
 Offset<wire::Failure> write(Builder& builder, Failure const& value) {

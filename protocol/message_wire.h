@@ -23,7 +23,7 @@ inline bool in_range(double value, double lowest, double highest) {
     return value >= lowest && value <= highest; // false for NaN
 }
 inline bool is_time(double seconds) {
-    return std::isfinite(seconds) && seconds >= 0;
+    return in_range(seconds, 0, max_scene_time);
 }
 
 // --- parts of messages

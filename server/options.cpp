@@ -53,6 +53,11 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
     app.add_option("--max-sessions", options.server.max_sessions, "Most viewers at a time")
         ->check(CLI::Range(1, 1024))
         ->capture_default_str();
+    app.add_option("--session-memory", options.server.session_megabytes,
+                   "Most memory for the pictures of all viewers together, MB: 20 bytes a pixel each; a viewer whose "
+                   "picture does not fit is refused")
+        ->check(CLI::Range(1, 1 << 20))
+        ->capture_default_str();
     app.add_option("--token-file", token_file, "File whose first line a viewer has to know");
     app.add_option("--tls-cert", options.server.tls_certificate, "Certificate chain (PEM): encrypt connections");
     app.add_option("--tls-key", options.server.tls_key, "Private key (PEM) of the certificate");

@@ -23,8 +23,10 @@ public:
         std::array<std::uint16_t, framelet_samples> luma{}; ///< [0, luma_steps], in Morton order
     };
 
+    static constexpr std::size_t default_entries = 8192;
+
     /// `entries`: a power of 2; more than that many tiles are never remembered.
-    explicit LumaHistory(std::size_t entries = 8192);
+    explicit LumaHistory(std::size_t entries = default_entries);
 
     /// Null where the tile is not remembered.
     Entry const* find(Tile tile) const;

@@ -33,6 +33,19 @@ void Session::close(std::string const& farewell) {
     stream_->close_after_sending();
 }
 
+void Session::end(std::string const& reason) {
+    {
+        std::scoped_lock const lock(mutex_);
+        if (std::exchange(ended_, true)) {
+            return;
+        }
+        open_ = false;
+    }
+    stream_->send(Failure{reason});
+    stream_->close_after_sending();
+    events_.ended(reason);
+}
+
 bool Session::is_open() const {
     std::scoped_lock const lock(mutex_);
     return open_;
@@ -107,18 +120,18 @@ bool Session::has_stopped_answering(std::chrono::steady_clock::time_point now) c
 }
 
 void Session::receive(Message message) {
-    if (!is_open()) {
+    bool open = false;
+    {
+        std::scoped_lock const lock(mutex_);
+        if (ended_) {
+            return; // by another thread, while this message was on its way here
+        }
+        open = open_;
+    }
+    if (!open) {
         receive_hello(message);
     } else if (auto const* const camera = std::get_if<CameraUpdate>(&message)) {
-        {
-            std::scoped_lock const lock(mutex_);
-            if (camera->view.number <= camera_number_) {
-                return; // late: a newer one is here already
-            }
-            camera_number_ = camera->view.number;
-            add_newest(*camera);
-        }
-        events_.changed();
+        receive_camera(*camera);
     } else if (auto const* const settings = std::get_if<ViewerSettings>(&message)) {
         {
             std::scoped_lock const lock(mutex_);
@@ -150,6 +163,31 @@ bool Session::receive_ack(Ack const& ack) {
     last_progress_ = std::chrono::steady_clock::now();
     waiting_events_.push_back({seconds_of(last_progress_), ack});
     return true;
+}
+
+void Session::receive_camera(CameraUpdate const& camera) {
+    bool is_resized = false;
+    {
+        std::scoped_lock const lock(mutex_);
+        if (camera.view.number <= camera_number_) {
+            return; // late: a newer one is here already
+        }
+        is_resized = camera_number_ == 0 || camera.view.viewport != viewport_;
+    }
+    if (is_resized) {
+        bool const takes_predictions = (codings() & coding::haar_colour) != 0 && (codings() & coding::predicted_colour) != 0;
+        if (auto const refusal = events_.resize(camera.view.viewport, takes_predictions)) {
+            end(*refusal);
+            return;
+        }
+    }
+    {
+        std::scoped_lock const lock(mutex_);
+        camera_number_ = camera.view.number;
+        viewport_ = camera.view.viewport;
+        add_newest(camera);
+    }
+    events_.changed();
 }
 
 void Session::receive_hello(Message const& message) {

@@ -24,9 +24,11 @@ public:
         /// The viewer said hello; the answer is sent back. A Failure ends the connection.
         std::function<std::variant<Welcome, Failure>(Hello const&)> admit;
         std::function<void(ClockRequest const&)> clock_request;
+        /// The viewer's picture gets this size; a line that says why it cannot ends the session.
+        std::function<std::optional<std::string>(Viewport, bool predicts)> resize;
         /// There is new input, or room for another batch.
         std::function<void()> changed;
-        /// Once, when the connection is over; `reason` is one line.
+        /// Once, when the connection is over; `reason` is one line. The only one that may come from any thread.
         std::function<void(std::string const& reason)> ended;
     };
 
@@ -42,6 +44,8 @@ public:
     std::string peer() const { return stream_->peer(); }
 
     // From any thread:
+    /// The server cannot go on with this viewer, which is told the reason, one line, as is whoever waits for `ended`.
+    void end(std::string const& reason);
     bool is_open() const;
     /// What the viewer can read, as its Hello said.
     std::uint32_t codings() const;
@@ -64,6 +68,7 @@ public:
 private:
     void receive(Message message);
     void receive_hello(Message const& message);
+    void receive_camera(CameraUpdate const& camera);
     bool receive_ack(Ack const& ack);
     template <class What> void add_newest(What const& what);
     void fail(std::string const& reason);
@@ -77,6 +82,7 @@ private:
     bool ended_ = false;
     std::uint32_t codings_ = coding::exact_colour;
     std::uint64_t camera_number_ = 0; ///< newest that came; 0: none
+    Viewport viewport_; ///< its
     std::vector<StreamEvent> waiting_events_; ///< few: none of those that a newer one replaces
     std::uint64_t version_ = 0;
     std::uint64_t last_batch_ = 0;

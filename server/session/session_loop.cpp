@@ -7,6 +7,7 @@
 #include <tbb/global_control.h>
 #include <tbb/task_group.h>
 
+#include "server/session/contained.h"
 #include "server/session/laps.h"
 #include "server/stream/event_log.h"
 
@@ -97,7 +98,11 @@ bool SessionLoop::give_turns(Sessions const& sessions, WallTime now) {
     double const share = sessions.empty() ? 1 : 1 / static_cast<double>(sessions.size());
     bool worked = false;
     for (auto const& session : sessions) {
-        worked |= give_turn(session, viewer_of(*session), present, share);
+        bool const served =
+            contain(*session, [&] { worked |= give_turn(session, viewer_of(*session), present, share); });
+        if (!served) {
+            drop_rendered(*session);
+        }
     }
     return worked;
 }
@@ -217,11 +222,17 @@ void SessionLoop::finish_one(bool learns) {
 }
 
 void SessionLoop::start_finishing() {
-    auto const finish = [this, learnt = pipeline_->rendered->learnt] {
-        if (!learnt) {
-            finish_one(true);
-        }
-        finish_one(false);
+    // It counts as learnt from here on: whatever fails meanwhile, it is not begun a second time.
+    auto const finish = [this, learnt = std::exchange(pipeline_->rendered->learnt, true)] {
+        Session& session = *pipeline_->rendered->session;
+        contain(session, [&] {
+            if (!learnt && session.is_open()) {
+                finish_one(true);
+            }
+            if (session.is_open()) {
+                finish_one(false);
+            }
+        });
     };
     // With one thread it would not begin before the next batch is rendered, and be late by that.
     if (thread_count() > 1) {
@@ -234,8 +245,18 @@ void SessionLoop::start_finishing() {
 void SessionLoop::wait_for_finishing() {
     pipeline_->finishing.wait();
     auto const done = std::exchange(pipeline_->rendered, std::nullopt);
-    if (done && options_.recorder != nullptr && done->record.cycle > 0 && done->viewer->stream->scheduler() != nullptr) {
-        options_.recorder->add(done->record, *done->viewer->stream->scheduler(), done->now);
+    if (done && options_.recorder != nullptr && done->record.cycle > 0) {
+        contain(*done->session, [&] {
+            options_.recorder->add(done->record, *done->viewer->stream->scheduler(), done->now);
+        });
+    }
+}
+
+/// What failed is not tried again when it is to be finished.
+void SessionLoop::drop_rendered(Session const& session) {
+    if (pipeline_->rendered && pipeline_->rendered->session.get() == &session) {
+        pipeline_->finishing.wait();
+        pipeline_->rendered.reset();
     }
 }
 

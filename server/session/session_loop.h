@@ -66,6 +66,7 @@ private:
     void finish_one(bool learns);
     void wait_for_finishing();
     bool finish_rendered();
+    void drop_rendered(Session const& session);
     void forget_ended(Sessions const& sessions);
 
     PosedScene scene_;

@@ -110,7 +110,7 @@ TEST(ClientCore, AnswersWhileItPaints) {
     Viewport const viewport{4096, 4096};
     ImagePlane const plane(viewport);
     core.set_view({}, viewport);
-    server.send(constant_batch(plane, plane.pixel_depth(), 50, 1));
+    server.send(constant_batch(plane, plane.pixel_depth() - 1, 50, 1));
     ASSERT_TRUE(wait_for(core, [&] { return core.statistics().batches == 1; }));
     std::atomic<std::uint64_t> begun = 0, ended = 0; // pictures
     std::jthread const painter([&](std::stop_token const& stop) {

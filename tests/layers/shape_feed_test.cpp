@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "common/body_motion.h"
+#include "common/scene_clock.h"
 
 namespace framelet {
 namespace {
@@ -80,6 +81,12 @@ TEST(ShapeFeed, AfterALeapOfTheClockOnlyWhatIsNearIsGivenOut) {
     EXPECT_NEAR(static_cast<double>(drive.batch(50)), once, 3) << "forwards";
     EXPECT_NEAR(static_cast<double>(drive.batch(1)), once, 3) << "backwards";
     EXPECT_NEAR(drive.moved(1, 1.2), 0.6, 1e-4);
+}
+
+TEST(ShapeFeed, TheLastMomentHasKeys) {
+    Drive drive;
+    drive.batch(2);
+    EXPECT_NEAR(static_cast<double>(drive.batch(max_scene_time)), 0.3 * body_keys_per_second, 3);
 }
 
 TEST(ShapeFeed, ManyBodiesAfterAPauseFitABatch) {

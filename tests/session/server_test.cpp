@@ -10,48 +10,13 @@
 
 #include "common/error.h"
 #include "protocol/framed_stream.h"
+#include "running_server.h"
 
 namespace framelet {
 namespace {
 
 namespace asio = boost::asio;
 using namespace std::chrono_literals;
-
-/// One triangle in front of the origin, and a box-free background.
-Scene triangle_scene() {
-    Scene scene;
-    scene.name = "triangle";
-    scene.materials.emplace_back();
-    Primitive primitive;
-    primitive.positions = {{-1, -1, -5}, {1, -1, -5}, {0, 1, -5}};
-    primitive.normals = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
-    primitive.triangles = {{0, 1, 2}};
-    scene.meshes.push_back({"triangle", {primitive}, {}});
-    scene.nodes.emplace_back();
-    scene.nodes.back().mesh = 0;
-    return scene;
-}
-
-class RunningServer {
-public:
-    explicit RunningServer(ServerOptions options = {})
-        : scene_(triangle_scene()), render_scene_(scene_, std::nullopt),
-          server_(scene_, {}, render_scene_, on_free_port(options)), thread_([this] { server_.run(false); }) {}
-    ~RunningServer() { server_.stop(); }
-
-    std::uint16_t port() const { return server_.port(); }
-
-private:
-    static ServerOptions on_free_port(ServerOptions options) {
-        options.port = 0;
-        return options;
-    }
-
-    Scene const scene_;
-    RenderScene render_scene_;
-    Server server_;
-    std::jthread thread_;
-};
 
 /// Runs a conversation: `answer` is called with every message and says whether to go on.
 struct Conversation {
