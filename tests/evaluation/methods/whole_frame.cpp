@@ -12,6 +12,7 @@ constexpr double worth_sending = 4.0 / 3;
 constexpr double longest_saved = 0.25;
 /// Bytes a pixel of a repeated picture that say that it had not come through as well as it might.
 constexpr double worth_repeating = 1.0 / 32;
+constexpr int most_repeats = 16;
 
 bool same_pose(ScenePose const& a, ScenePose const& b) {
     return a.world_from_node == b.world_from_node && a.morph_weights == b.morph_weights;
@@ -48,7 +49,7 @@ void WholeFrame::begin(StepInput const& input, FrameMoment const& moment) {
     }
     exposure_ = input.scene.exposure;
     pose_ = input.scene.pose;
-    passes_ = sent_passes_ = 0;
+    passes_ = sent_passes_ = repeated_ = 0;
     shown_ = &moving_;
 }
 
@@ -105,7 +106,7 @@ double WholeFrame::budget(StepInput const& input, ServerStep const& rendered, do
 }
 
 bool WholeFrame::repeats(StepInput const& input, std::size_t last_bytes) {
-    bool const more = is_converged() && std::isfinite(rate_.bytes_per_second) && input.waiting_bytes == 0 &&
+    bool const more = is_converged() && repeated_ < most_repeats && std::isfinite(rate_.bytes_per_second) && input.waiting_bytes == 0 &&
                       static_cast<double>(last_bytes) > worth_repeating * pixel_count(viewport());
     if (more) {
         repeat(input.now);
