@@ -49,7 +49,8 @@ Between between(int pixel, int spacing, int samples) {
 
 FrameGrid::FrameGrid(Viewport viewport, int spacing)
     : plane_(viewport), spacing_(spacing),
-      tiles_(make_uniform_tiling(plane_, plane_.pixel_depth() - std::countr_zero(static_cast<unsigned>(spacing))).tiles),
+      tiles_(
+          make_uniform_tiling(plane_, plane_.pixel_depth() - std::countr_zero(static_cast<unsigned>(spacing))).tiles),
       rendered_(tiles_.size()), sums_(tiles_.size()), displayed_(tiles_.size()),
       picture_(samples_along(viewport.width, spacing), samples_along(viewport.height, spacing)) {
     FRAMELET_CHECK(spacing == 1 || spacing == 2 || spacing == 4);

@@ -52,8 +52,8 @@ private:
 /// A picture of one pixel a sample, samples `spacing` pixels apart, at full size: bilinear, in linear light.
 void upsample(Picture const& samples, int spacing, Picture& out);
 
-/// Writes the framelet's samples to a picture of one pixel a sample, reads them from there. Beyond its border nothing is
-/// written, and its last pixels repeat.
+/// Writes the framelet's samples to a picture of one pixel a sample, reads them from there. Beyond its border nothing
+/// is written, and its last pixels repeat.
 void place_samples(DisplayFramelet const& framelet, Picture& picture);
 void take_samples(Picture const& picture, DisplayFramelet& framelet);
 

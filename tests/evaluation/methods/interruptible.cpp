@@ -22,7 +22,8 @@ ServerStep Interruptible::produce(StepInput const& input) {
     for (DeliveredMessage const& message : input.delivered) {
         rate_ = update_delivery_rate(rate_, message.bytes, message.seconds);
     }
-    FrameMoment const moment = setup_.rivals.ahead ? forecast_.moment(input) : FrameMoment{input.view.camera, input.time};
+    FrameMoment const moment =
+        setup_.rivals.ahead ? forecast_.moment(input) : FrameMoment{input.view.camera, input.time};
     bool const still = level_ >= 0 && moment.camera == moment_.camera && moment.time == moment_.time;
     if (still) {
         gain_.forget_motion();
@@ -73,8 +74,7 @@ ServerStep Interruptible::render(StepInput const& input, bool still) {
     }
     double const encoding = 1e-9 * samples * costs.h264_encode_pixel;
     double const period = setup_.machine * (step.seconds.server() + encoding);
-    auto const bytes =
-        encoder_.encode(grid.spacing(), picture, frame_budget(rate_, period, input.waiting_bytes));
+    auto const bytes = encoder_.encode(grid.spacing(), picture, frame_budget(rate_, period, input.waiting_bytes));
     step.message = frame_message({moment_.time, static_cast<double>(grid.spacing())}, bytes);
     step.seconds.encode += encoding;
     seconds_[static_cast<std::size_t>(level_)] = setup_.machine * step.seconds.server();

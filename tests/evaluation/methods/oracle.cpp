@@ -22,8 +22,9 @@ constexpr double seen_after = 0.02;
 class Oracle final : public Method {
 public:
     explicit Oracle(MethodSetup const& setup)
-        : setup_(setup), plane_(setup.viewport), forecast_(setup, 0), gain_(setup.viewport, setup.costs, std::max(setup.rivals.spacing, 1)),
-          mirror_(setup.viewport, setup.costs), viewer_(setup.viewport, setup.costs) {}
+        : setup_(setup), plane_(setup.viewport), forecast_(setup, 0),
+          gain_(setup.viewport, setup.costs, std::max(setup.rivals.spacing, 1)), mirror_(setup.viewport, setup.costs),
+          viewer_(setup.viewport, setup.costs) {}
 
     ServerStep produce(StepInput const& input) override {
         FrameMoment moment = forecast_.moment(input);

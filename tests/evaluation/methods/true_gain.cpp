@@ -115,8 +115,8 @@ double TrueGain::gain_of(Level const& level, Tile tile) const {
     double sum = 0;
     for (int y = rect.top; y < std::min(rect.bottom, height); ++y) {
         for (int x = rect.left; x < std::min(rect.right, width); ++x) {
-            std::size_t const i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                                  static_cast<std::size_t>(x);
+            std::size_t const i =
+                static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
             sum += level.depth > depths_[i] ? held_errors_[i] - level.errors[i] : 0;
         }
     }
@@ -128,8 +128,8 @@ void TrueGain::take(Level const& level, Tile tile) {
     auto const [width, height] = plane_.viewport();
     for (int y = rect.top; y < std::min(rect.bottom, height); ++y) {
         for (int x = rect.left; x < std::min(rect.right, width); ++x) {
-            std::size_t const i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                                  static_cast<std::size_t>(x);
+            std::size_t const i =
+                static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
             if (level.depth > depths_[i]) {
                 held_errors_[i] = level.errors[i];
                 depths_[i] = static_cast<std::int8_t>(level.depth);

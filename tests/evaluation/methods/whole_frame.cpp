@@ -23,8 +23,10 @@ bool same_pose(ScenePose const& a, ScenePose const& b) {
 WholeFrame::WholeFrame(MethodSetup const& setup, double viewer_seconds)
     : costs_(setup.costs), machine_(setup.machine), parts_(setup.rivals),
       margin_x_(margin_pixels(parts_.margin, setup.viewport.width)),
-      margin_y_(margin_pixels(parts_.margin, setup.viewport.height)),
-      rate_{setup.bits_per_second > 0 ? setup.bits_per_second / 8 : INFINITY}, forecast_(setup, viewer_seconds),
+      margin_y_(margin_pixels(parts_.margin, setup.viewport.height)), rate_{setup.bits_per_second > 0
+                                                                                ? setup.bits_per_second / 8
+                                                                                : INFINITY},
+      forecast_(setup, viewer_seconds),
       moving_(with_margin(setup.viewport, margin_x_, margin_y_), std::max(parts_.spacing, 1)) {
     view_.viewport = moving_.plane().viewport();
     if (parts_.accumulate && moving_.spacing() > 1) {
@@ -106,7 +108,8 @@ double WholeFrame::budget(StepInput const& input, ServerStep const& rendered, do
 }
 
 bool WholeFrame::repeats(StepInput const& input, std::size_t last_bytes) {
-    bool const more = is_converged() && repeated_ < most_repeats && std::isfinite(rate_.bytes_per_second) && input.waiting_bytes == 0 &&
+    bool const more = is_converged() && repeated_ < most_repeats && std::isfinite(rate_.bytes_per_second) &&
+                      input.waiting_bytes == 0 &&
                       static_cast<double>(last_bytes) > worth_repeating * pixel_count(viewport());
     if (more) {
         repeat(input.now);
