@@ -1,6 +1,7 @@
 // `interruptible`: whole frames from coarse to fine (Woolley et al. 2003, "Interruptible rendering"), shown level by
-// level. A frame is given up for a new one when what has moved since would cost more than the next level brings; while
-// nothing moves, samples are added until the picture is as good as it gets. Through x264 as `framed+h264`.
+// level. A frame is given up for a new one when what has moved since would cost more than the next level brings; the
+// new one begins with the coarsest level that is better than what is on display. While nothing moves, samples are added
+// until the picture is as good as it gets. Through x264 as `framed+h264`.
 #include "tests/evaluation/methods/interruptible.h"
 
 #include <algorithm>
@@ -24,21 +25,43 @@ ServerStep Interruptible::produce(StepInput const& input) {
     }
     FrameMoment const moment =
         setup_.rivals.ahead ? forecast_.moment(input) : FrameMoment{input.view.camera, input.time};
-    bool const still = level_ >= 0 && moment.camera == moment_.camera && moment.time == moment_.time;
+    pose_at(input.scene, moment.time);
+    bool const still = is_still(input, moment);
     if (still) {
         gain_.forget_motion();
     }
     if (still && level_ == last_level && grids_[last_level].frames() == FrameGrid::places) {
         return {};
     }
-    if (!still && (level_ < 0 || level_ == last_level || is_outdated(input.now))) {
+    begins_ = !still && (level_ < 0 || level_ == last_level || is_outdated(input.now));
+    if (begins_) {
+        level_ = first_level(input.now) - 1;
         meant_ = input.now + forecast_.lead();
-        moved_ = meant_ - last_meant_;
-        last_meant_ = meant_;
         moment_ = moment;
-        level_ = -1;
+        pose_ = input.scene.pose;
+        ++frame_;
     }
     return render(input, still);
+}
+
+bool Interruptible::is_still(StepInput const& input, FrameMoment const& moment) const {
+    return level_ >= 0 && moment.camera == moment_.camera &&
+           input.scene.pose.world_from_node == pose_.world_from_node &&
+           input.scene.pose.morph_weights == pose_.morph_weights;
+}
+
+/// The coarsest that is nearer to the scene than what is on display, which has been moved away from by then.
+int Interruptible::first_level(double now) const {
+    if (level_ < 0) {
+        return 0;
+    }
+    int level = 0;
+    while (level < last_level &&
+           gain_.residual(level) >=
+               gain_.residual(level_) + gain_.drift(now + seconds_[static_cast<std::size_t>(level)] - meant_)) {
+        ++level;
+    }
+    return level;
 }
 
 bool Interruptible::is_outdated(double now) const {
@@ -50,7 +73,7 @@ ServerStep Interruptible::render(StepInput const& input, bool still) {
     pose_at(input.scene, moment_.time);
     RenderScene const& scene = *input.scene.render_scene;
     float const exposure = input.scene.exposure;
-    bool const adds = level_ == last_level;
+    bool const adds = level_ == last_level && !begins_;
     level_ = std::min(level_ + 1, last_level);
     FrameGrid& grid = grids_[static_cast<std::size_t>(level_)];
     std::uint64_t const segments =
@@ -64,11 +87,7 @@ ServerStep Interruptible::render(StepInput const& input, bool still) {
     Picture const& picture = grid.picture();
     if (!adds) {
         step.seconds.response = 1e-9 * samples * costs.estimate_sample;
-        if (level_ == 0 && !still) {
-            gain_.add_moved(picture, moved_);
-        } else {
-            gain_.add_level(level_, picture);
-        }
+        gain_.add(frame_, level_, picture, still ? NAN : meant_);
     } else if (!std::has_single_bit(static_cast<unsigned>(grid.frames()))) {
         return step; // of as many samples again: what is in between brings little
     }
@@ -78,8 +97,8 @@ ServerStep Interruptible::render(StepInput const& input, bool still) {
     step.message = frame_message({moment_.time, static_cast<double>(grid.spacing())}, bytes);
     step.seconds.encode += encoding;
     seconds_[static_cast<std::size_t>(level_)] = setup_.machine * step.seconds.server();
-    if (level_ == 0) {
-        forecast_.begin(input.now, !still);
+    if (begins_) {
+        forecast_.begin(input.now, true);
     } else {
         forecast_.follow(input.now);
     }

@@ -28,11 +28,15 @@ public:
 
     /// Of what was rendered last: 0 the coarsest. -1: nothing was.
     int level() const { return level_; }
+    /// Whether that was the first one of its frame.
+    bool begins() const { return begins_; }
 
 private:
     static constexpr int last_level = RefinementGain::levels - 1;
 
+    bool is_still(StepInput const& input, FrameMoment const& moment) const;
     bool is_outdated(double now) const;
+    int first_level(double now) const;
     ServerStep render(StepInput const& input, bool still);
 
     MethodSetup const setup_;
@@ -43,8 +47,10 @@ private:
     std::array<double, RefinementGain::levels> seconds_{}; ///< that each level took
     int level_ = -1;
     FrameMoment moment_;
-    double meant_ = 0, last_meant_ = 0; ///< when the frame is to be seen, and the one before, by the run's clock
-    double moved_ = 0; ///< seconds between the two
+    ScenePose pose_;
+    double meant_ = 0; ///< when the frame is to be seen, by the run's clock
+    int frame_ = 0;
+    bool begins_ = false; ///< the frame, with the level that comes
     ScaledH264Encoder encoder_;
     ScaledH264Decoder decoder_;
     Picture decoded_, picture_;

@@ -27,27 +27,43 @@ double detail_of(Picture const& picture) {
 
 } // namespace
 
-void RefinementGain::add_level(int level, Picture const& picture) {
-    auto const index = static_cast<std::size_t>(level);
-    if (level > 0 && details_[index - 1] > 0) {
-        Picture coarser(picture.width, picture.height);
-        upsample(pictures_[index - 1], 2, coarser);
-        ratios_[index - 1] = mean_squared_error(coarser, picture) / details_[index - 1];
+void RefinementGain::add(int frame, int level, Picture const& picture, double time) {
+    Level& own = levels_[static_cast<std::size_t>(level)];
+    if (level > 0) {
+        Level& coarser = levels_[static_cast<std::size_t>(level - 1)];
+        if (coarser.frame == frame && coarser.detail > 0) {
+            Picture before(picture.width, picture.height);
+            upsample(coarser.picture, 2, before);
+            coarser.ratio = mean_squared_error(before, picture) / coarser.detail;
+        }
     }
-    pictures_[index] = picture;
-    details_[index] = detail_of(picture);
-}
-
-void RefinementGain::add_moved(Picture const& picture, double seconds) {
-    if (!pictures_[0].rgba.empty() && seconds > 0) {
-        drift_ = mean_squared_error(pictures_[0], picture) / seconds;
+    if (own.frame != frame && time > own.time) {
+        drift_ = mean_squared_error(own.picture, picture) / (time - own.time);
     }
-    add_level(0, picture);
+    own.picture = picture;
+    own.frame = frame;
+    own.time = time;
+    own.detail = detail_of(picture);
 }
 
 double RefinementGain::gain(int level) const {
-    auto const index = static_cast<std::size_t>(level);
-    return ratios_[index] * details_[index];
+    Level const& own = levels_[static_cast<std::size_t>(level)];
+    return own.ratio * own.detail;
+}
+
+double RefinementGain::residual(int level) const {
+    double sum = 0;
+    for (int l = level; l < levels - 1; ++l) {
+        sum += gain(l);
+    }
+    return sum;
+}
+
+void RefinementGain::forget_motion() {
+    drift_ = INFINITY;
+    for (Level& level : levels_) {
+        level.time = NAN;
+    }
 }
 
 double RefinementGain::drift(double seconds) const {

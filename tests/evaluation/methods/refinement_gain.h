@@ -13,23 +13,28 @@ class RefinementGain {
 public:
     static constexpr int levels = 3;
 
-    /// Level 0 is the coarsest. `picture` has one pixel a sample.
-    void add_level(int level, Picture const& picture);
-    /// The same of a new frame's level 0, which shows things as they are `seconds` after the last frame.
-    void add_moved(Picture const& picture, double seconds);
+    /// Level 0 is the coarsest. `picture` has one pixel a sample; `time`: when its frame is to be seen, seconds.
+    void add(int frame, int level, Picture const& picture, double time);
 
     /// What the level after this one brings: from how much neighbouring samples of it differ, and from what that meant
     /// for the frames of which both levels are known.
     double gain(int level) const;
     /// What it costs that a picture is so many seconds off; without motion so far, infinite: it has only begun.
     double drift(double seconds) const;
+    /// What all levels after this one would bring: how far off it is where nothing has moved.
+    double residual(int level) const;
     /// Nothing moves: what moves next may be something else.
-    void forget_motion() { drift_ = INFINITY; }
+    void forget_motion();
 
 private:
-    std::array<Picture, levels> pictures_;
-    std::array<double, levels> details_{};
-    std::array<double, levels> ratios_{0.5, 0.5, 0.5}; ///< of gain to detail
+    struct Level {
+        Picture picture;
+        int frame = -1;
+        double time = NAN; ///< NaN: from before what moves now began to
+        double detail = 0;
+        double ratio = 0.5; ///< of gain to detail
+    };
+    std::array<Level, levels> levels_;
     double drift_ = INFINITY; ///< a second
 };
 
