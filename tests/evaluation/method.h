@@ -46,7 +46,8 @@ struct FrameletParts {
 struct RivalParts {
     bool accumulate = true; ///< while nothing moves, a picture becomes better and better
     bool ahead = true; ///< frames are rendered for when they will be shown
-    int spacing = 0; ///< pixels from sample to sample while something moves: 1, 2 or 4; 0: whichever errs least
+    /// Pixels from sample to sample while something moves, of the oracle the most: 1, 2 or 4; 0: whichever errs least.
+    int spacing = 0;
     double margin = -1; ///< around the viewport, of its sides, where the viewer moves frames; < 0: whichever errs least
 };
 /// Whole frames anew in turn, one sample a pixel.

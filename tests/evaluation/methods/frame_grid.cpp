@@ -14,17 +14,19 @@
 namespace framelet::bench {
 namespace {
 
-/// Place in the cell, relative to its middle, of the frames after the first: Sobol's sequence, of which 2, 4, 8 and 16
-/// are as even as each other, turned about so that it begins in the middle. The mean of all 16 is the middle.
+/// Place in the cell, relative to its middle, of the frames after the first: Sobol's sequence, of which 2, 4, 8 and so
+/// on are each as even as can be, shifted so that it begins in the middle. The mean of all is the middle.
 Vec2 place_of(int frame) {
     auto const i = static_cast<std::uint32_t>(frame);
+    constexpr std::uint32_t places = FrameGrid::places;
     std::uint32_t x = 0, y = 0;
-    for (std::uint32_t bit = 0, row = 8; bit < 4; ++bit, row ^= row >> 1) {
-        x |= (i >> bit & 1) << (3 - bit);
+    for (std::uint32_t bit = 0, row = places / 2; places >> bit > 1; ++bit, row ^= row >> 1) {
+        x |= (i >> bit & 1) * (places / 2 >> bit);
         y ^= (i >> bit & 1) * row;
     }
-    constexpr float step = 1.0f / 16;
-    return Vec2(static_cast<float>((x + 8) % 16), static_cast<float>((y + 8) % 16)) * step + Vec2(0.5f * step - 0.5f);
+    constexpr float step = 1.0f / places;
+    Vec2 const place((x + places / 2) % places, (y + places / 2) % places);
+    return place * step + Vec2(0.5f * step - 0.5f);
 }
 
 int samples_along(int pixels, int spacing) {
@@ -47,7 +49,8 @@ Between between(int pixel, int spacing, int samples) {
 
 FrameGrid::FrameGrid(Viewport viewport, int spacing)
     : plane_(viewport), spacing_(spacing),
-      tiles_(make_uniform_tiling(plane_, plane_.pixel_depth() - std::countr_zero(static_cast<unsigned>(spacing))).tiles),
+      tiles_(
+          make_uniform_tiling(plane_, plane_.pixel_depth() - std::countr_zero(static_cast<unsigned>(spacing))).tiles),
       rendered_(tiles_.size()), sums_(tiles_.size()), displayed_(tiles_.size()),
       picture_(samples_along(viewport.width, spacing), samples_along(viewport.height, spacing)) {
     FRAMELET_CHECK(spacing == 1 || spacing == 2 || spacing == 4);

@@ -12,6 +12,7 @@ constexpr double worth_sending = 4.0 / 3;
 constexpr double longest_saved = 0.25;
 /// Bytes a pixel of a repeated picture that say that it had not come through as well as it might.
 constexpr double worth_repeating = 1.0 / 32;
+constexpr int most_repeats = 16;
 
 bool same_pose(ScenePose const& a, ScenePose const& b) {
     return a.world_from_node == b.world_from_node && a.morph_weights == b.morph_weights;
@@ -22,8 +23,10 @@ bool same_pose(ScenePose const& a, ScenePose const& b) {
 WholeFrame::WholeFrame(MethodSetup const& setup, double viewer_seconds)
     : costs_(setup.costs), machine_(setup.machine), parts_(setup.rivals),
       margin_x_(margin_pixels(parts_.margin, setup.viewport.width)),
-      margin_y_(margin_pixels(parts_.margin, setup.viewport.height)),
-      rate_{setup.bits_per_second > 0 ? setup.bits_per_second / 8 : INFINITY}, forecast_(setup, viewer_seconds),
+      margin_y_(margin_pixels(parts_.margin, setup.viewport.height)), rate_{setup.bits_per_second > 0
+                                                                                ? setup.bits_per_second / 8
+                                                                                : INFINITY},
+      forecast_(setup, viewer_seconds),
       moving_(with_margin(setup.viewport, margin_x_, margin_y_), std::max(parts_.spacing, 1)) {
     view_.viewport = moving_.plane().viewport();
     if (parts_.accumulate && moving_.spacing() > 1) {
@@ -48,7 +51,7 @@ void WholeFrame::begin(StepInput const& input, FrameMoment const& moment) {
     }
     exposure_ = input.scene.exposure;
     pose_ = input.scene.pose;
-    passes_ = sent_passes_ = 0;
+    passes_ = sent_passes_ = repeated_ = 0;
     shown_ = &moving_;
 }
 
@@ -105,7 +108,8 @@ double WholeFrame::budget(StepInput const& input, ServerStep const& rendered, do
 }
 
 bool WholeFrame::repeats(StepInput const& input, std::size_t last_bytes) {
-    bool const more = is_converged() && std::isfinite(rate_.bytes_per_second) && input.waiting_bytes == 0 &&
+    bool const more = is_converged() && repeated_ < most_repeats && std::isfinite(rate_.bytes_per_second) &&
+                      input.waiting_bytes == 0 &&
                       static_cast<double>(last_bytes) > worth_repeating * pixel_count(viewport());
     if (more) {
         repeat(input.now);

@@ -30,7 +30,10 @@ public:
     /// of it and nothing else is on its way. `last_bytes`: what it took the last time.
     bool repeats(StepInput const& input, std::size_t last_bytes);
     /// What was rendered is sent once more.
-    void repeat(double now) { forecast_.follow(now); }
+    void repeat(double now) {
+        ++repeated_;
+        forecast_.follow(now);
+    }
 
     /// What was rendered last, and for when.
     FrameGrid& grid() { return *shown_; }
@@ -68,6 +71,7 @@ private:
     NumberedView view_;
     int passes_ = 0; ///< of the whole picture at one sample a pixel, of what does not move
     int sent_passes_ = 0;
+    int repeated_ = 0; ///< of the same picture
     bool due_ = false;
     double sent_at_ = 0;
 };
