@@ -101,7 +101,8 @@ void TrueGain::compare(BenchScene const& scene, SceneTime rendered, SceneTime se
     std::vector<std::uint8_t> const all(batch.framelets.size(), 1);
     level.shapes.fit(level.rendered, all, make_view_rays(camera_, plane_.viewport()), plane_, now, batch.shapes);
     // Each time a viewer that knows nothing yet, which is told of all bodies.
-    ShapeFeed().track(scene.scene, scene.clips, scene.render_scene->bodies(), rendered, batch.tracks);
+    ShapeFeed().track(scene.scene, scene.clips, scene.render_scene->bodies(), -1, rendered, batch.tracks,
+                      batch.camera_track);
     WarpViewer viewer(plane_.viewport(), costs_);
     viewer.insert(batch);
     viewer.present(scene.camera, seen);
