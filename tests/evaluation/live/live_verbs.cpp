@@ -15,6 +15,17 @@ namespace framelet::bench {
 
 using nlohmann::json;
 
+namespace {
+
+void add_rival_options(CLI::App& verb, RivalParts& rivals) {
+    rivals.spacing = 1;
+    rivals.margin = 0;
+    verb.add_option("--spacing", rivals.spacing, "Pixels from sample to sample of whole frames");
+    verb.add_option("--margin", rivals.margin, "Around the viewport, of its sides");
+}
+
+} // namespace
+
 void add_live_options(CLI::App& verb, LiveVerbOptions& options) {
     verb.add_option("--scenes,--scene", options.scenes, "Scene files (default: all bundled ones)");
     verb.add_option("--scene-camera", options.camera, "Which of their cameras, from 0")->capture_default_str();
@@ -51,6 +62,7 @@ void add_serve_options(CLI::App& verb, LiveVerbOptions& options) {
     verb.add_option("SCENE", options.serve.scene)->required();
     verb.add_option("--exposure", options.serve.exposure_ev, "Stops");
     verb.add_option("--threads", options.serve.threads, "0: one a core");
+    add_rival_options(verb, options.serve.rivals);
 }
 
 void add_look_options(CLI::App& verb, LiveVerbOptions& options) {
@@ -62,6 +74,7 @@ void add_look_options(CLI::App& verb, LiveVerbOptions& options) {
     verb.add_option("--duration", look.duration, "Seconds");
     verb.add_option("--rate", look.rate, "Display frames a second");
     verb.add_option("--camera", look.camera_file, "Camera file");
+    add_rival_options(verb, look.rivals);
     verb.add_option("--output", look.output, "Picture files")->required();
     verb.add_option("--frames", look.frames_file, "A line of JSON for each frame")->required();
 }

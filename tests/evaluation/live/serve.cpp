@@ -10,6 +10,7 @@
 #include "client/frame_log.h"
 #include "client/frame_writer.h"
 #include "client/server_connection.h"
+#include "common/error.h"
 #include "common/cpu_clock.h"
 #include "server/session/server.h"
 #include "tests/evaluation/live/method_stream.h"
@@ -73,6 +74,7 @@ void serve_method(ServeOptions const& options) {
     server_options.loop.make_stream = [&](StreamOptions const&, std::uint32_t) {
         MethodSetup setup;
         setup.costs = options.costs;
+        setup.rivals = options.rivals;
         return std::make_unique<MethodStream>(options.method, *scene, setup);
     };
     Server server(scene->scene, scene->clips, *scene->render_scene, server_options);
@@ -88,6 +90,7 @@ void look_at_method(LookOptions const& options) {
     MethodSetup setup;
     setup.viewport = options.viewport;
     setup.costs = options.costs;
+    setup.rivals = options.rivals;
     auto const method = make_method(options.method, setup);
     FrameWriter writer{FramePattern(options.output)};
     FrameLog log(options.frames_file);
@@ -108,7 +111,11 @@ void look_at_method(LookOptions const& options) {
         }
         mailbox.add(std::move(message));
     };
-    handlers.on_lost = [](std::string const&) {};
+    std::string lost;
+    handlers.on_lost = [&](std::string const& reason) {
+        std::scoped_lock const lock(mutex);
+        lost = reason;
+    };
     handlers.on_sent = [] {};
     ServerConnection connection(options.connection, handlers);
     {
@@ -152,6 +159,10 @@ void look_at_method(LookOptions const& options) {
                                                   std::chrono::duration<double>(1 / options.rate)));
     }
     writer.finish();
+    std::scoped_lock const lock(mutex);
+    if (!lost.empty()) {
+        throw ConnectionError(lost);
+    }
 }
 
 } // namespace framelet::bench

@@ -7,7 +7,7 @@
 
 #include "client/camera_path.h"
 #include "client/server_address.h"
-#include "tests/evaluation/cost_table.h"
+#include "tests/evaluation/method.h"
 
 namespace framelet::bench {
 
@@ -16,6 +16,7 @@ struct ServeOptions {
     std::filesystem::path scene;
     float exposure_ev = 0; ///< stops
     int threads = 0; ///< 0: one a core
+    RivalParts rivals; ///< the same for both programs
     CostTable costs;
 };
 
@@ -32,6 +33,7 @@ struct LookOptions {
     std::string camera_file;
     std::string output;
     std::string frames_file;
+    RivalParts rivals;
     CostTable costs;
 };
 

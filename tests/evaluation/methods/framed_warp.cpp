@@ -85,7 +85,7 @@ public:
     }
 
     ViewerStep present(NumberedView const& view, SceneTime time) override {
-        return viewer_.present(view.camera, moves_ ? time : 0);
+        return viewer_.present(view.camera, time);
     }
 
     Picture const& picture() const override { return viewer_.picture(); }
