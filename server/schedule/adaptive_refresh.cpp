@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include <tbb/parallel_for.h>
 
@@ -163,7 +164,7 @@ void AdaptiveRefresh::plan_cycle(RefreshInput const& input, RefreshPlan& plan) {
     }
     plan_patches(input, samples);
     if (rated_.empty() && samples > 0) {
-        plan_completion(samples);
+        input.moment ? plan_refinement(samples) : plan_completion(samples);
     }
     if (cycle_.empty() && !scene_moves_) {
         plan_supersampling(samples);
@@ -244,6 +245,7 @@ void AdaptiveRefresh::plan_patches(RefreshInput const& input, double samples) {
                         input.bias,
                         input.limits,
                         costs_,
+                        input.moment ? input.moment->begun : std::numeric_limits<double>::infinity(),
                         still_};
     find_due_errors(field_, budget, due_errors_);
     price_ = solve_price(field_, advanced_, budget, due_errors_, price_, choices_);
@@ -263,6 +265,32 @@ void AdaptiveRefresh::plan_patches(RefreshInput const& input, double samples) {
         auto const end = cycle_.begin() + inspections;
         if (std::find(cycle_.begin(), end, entry.patch) == end) { // once is enough
             cycle_.push_back(entry.patch);
+        }
+    }
+}
+
+/// Of a moment that is not to be seen for long: a level finer where that shows most for its samples.
+void AdaptiveRefresh::plan_refinement(double samples) {
+    unresolved_.clear();
+    for (std::uint32_t const index : field_.visible()) {
+        Place const& place = field_[index];
+        if (place.level < 0 || place.level + 1 >= sampling_levels || place.taken.level >= 0) {
+            continue;
+        }
+        int const finer = place.level + 1;
+        float const gain = unresolved_error(place.model, place.level) - unresolved_error(place.model, finer);
+        if (gain > 0) {
+            unresolved_.push_back({gain / samples_per_pixel(finer), index});
+        }
+    }
+    std::ranges::sort(unresolved_, std::ranges::greater());
+    double planned = 0;
+    for (auto const& [gain, index] : unresolved_) {
+        Patch const patch{{(1u << (2 * field_.depth())) + index}, std::max(field_.depth_of(field_[index].level + 1), field_.depth())};
+        cycle_.push_back(patch);
+        planned += tile_count(patch) * framelet_samples;
+        if (planned >= samples) {
+            return;
         }
     }
 }

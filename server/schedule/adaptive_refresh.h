@@ -107,6 +107,7 @@ private:
     void find_costs(RefreshInput const& input);
     void plan_patches(RefreshInput const& input, double samples);
     void plan_probes(double samples, RefreshPlan& plan);
+    void plan_refinement(double samples);
     void plan_completion(double samples);
     void plan_supersampling(double samples);
     void take_batch(std::size_t most_framelets, RefreshPlan& plan);
