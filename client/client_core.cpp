@@ -182,13 +182,17 @@ struct ClientCore::Impl {
             statistics.bytes += encoded.payload.size() + encoded.tiles.size() * sizeof(Tile) + batch_header_bytes;
             statistics.decode_seconds += seconds_between(received, decoded);
             std::size_t const samples = batch.framelets.size() * framelet_samples;
+            bool const is_stale = batch.view.viewport != view.view.viewport;
             ++statistics.batches;
             statistics.framelets += batch.framelets.size();
             statistics.samples += samples;
             note_round_trip(batch.view.number, received);
             last_batch = std::max(last_batch, batch.number);
-            arrived_samples += samples;
-            arrived.push_back(std::move(batch));
+            statistics.stale_batches += is_stale ? 1 : 0;
+            if (!is_stale) {
+                arrived_samples += samples;
+                arrived.push_back(std::move(batch));
+            }
             is_full = arrived_samples > most_waiting_samples;
         }
         if (is_full) {

@@ -65,7 +65,7 @@ struct ClockRequest {
     bool operator==(ClockRequest const&) const = default;
 };
 
-/// A batch has been decoded and inserted.
+/// A batch has been decoded.
 struct Ack {
     std::uint64_t batch = 0;
     std::uint64_t received_us = 0; ///< viewer's steady clock when the batch's last byte had arrived

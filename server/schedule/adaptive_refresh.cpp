@@ -284,9 +284,14 @@ void AdaptiveRefresh::plan_refinement(double samples) {
         }
     }
     std::ranges::sort(unresolved_, std::ranges::greater());
+    auto const inspections = static_cast<std::ptrdiff_t>(cycle_.size());
     double planned = 0;
     for (auto const& [gain, index] : unresolved_) {
         Patch const patch{{(1u << (2 * field_.depth())) + index}, std::max(field_.depth_of(field_[index].level + 1), field_.depth())};
+        auto const end = cycle_.begin() + inspections;
+        if (std::find(cycle_.begin(), end, patch) != end) { // once is enough
+            continue;
+        }
         cycle_.push_back(patch);
         planned += tile_count(patch) * framelet_samples;
         if (planned >= samples) {

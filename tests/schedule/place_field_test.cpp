@@ -233,8 +233,8 @@ TEST(PlaceField, WhatComesIsNoLessNewThanWhatGoes) {
     drift_on(field, make_view_rays(here, viewport), make_view_rays(ahead, viewport), false, 0.02f);
     EXPECT_GT(at(200, 140).drift, 1) << "where the thing is now";
     EXPECT_GT(at(140, 256).drift, 1);
-    EXPECT_EQ(at(40, 256).drift, 0) << "where it is not";
-    EXPECT_EQ(at(256, 480).drift, 0);
+    EXPECT_LT(at(40, 256).drift, 1e-3f) << "where it is not";
+    EXPECT_LT(at(256, 480).drift, 1e-3f);
 }
 
 } // namespace
