@@ -192,7 +192,7 @@ void Viewer::apply(Command command) {
         statistics_.clear();
         break;
     case Command::next_overlay:
-        drawn_over_ = drawn_over_ == DrawnOver::nothing       ? DrawnOver::outlines
+        drawn_over_ = drawn_over_ == DrawnOver::nothing    ? DrawnOver::outlines
                       : drawn_over_ == DrawnOver::outlines ? DrawnOver::confidence
                                                            : DrawnOver::nothing;
         overlay_toggled_ = true;

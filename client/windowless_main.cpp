@@ -139,8 +139,8 @@ RunFigures show(ClientCore& core, Options const& options, std::optional<CameraPa
             double const writing = writer != nullptr ? writer->cpu_seconds() : 0;
             ClientStatistics const statistics = core.statistics();
             log->add({run.frames, unix_seconds(), core.clock().time, news, core.is_complete(), statistics.bytes,
-                      cpu_seconds_of(CLOCK_PROCESS_CPUTIME_ID) - writing, statistics.samples,
-                      statistics.photon_seconds, path ? path->scene_camera : core.start_scene_camera(), camera});
+                      cpu_seconds_of(CLOCK_PROCESS_CPUTIME_ID) - writing, statistics.samples, statistics.photon_seconds,
+                      path ? path->scene_camera : core.start_scene_camera(), camera});
         }
         ++run.frames;
         if (writer != nullptr) {
@@ -239,7 +239,8 @@ int main(int argc, char** argv) {
     add_display_options(app, options.display);
     CLI::Option* const play = app.add_flag("--play", options.play, "Let the scene's clock run");
     app.add_flag("--pause", options.pause, "Stop the scene's clock")->excludes(play);
-    app.add_option("--seek", options.seek, "Set the scene's clock to this second")->check(CLI::Range(0.0, max_scene_time));
+    app.add_option("--seek", options.seek, "Set the scene's clock to this second")
+        ->check(CLI::Range(0.0, max_scene_time));
 
     Viewport viewport;
     ConnectionOptions connection;

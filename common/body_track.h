@@ -9,7 +9,8 @@
 
 namespace framelet {
 
-/// World from body: scale, then rotation, then translation. Bodies that shear are not rigid and have velocities instead.
+/// World from body: scale, then rotation, then translation. Bodies that shear are not rigid and have velocities
+/// instead.
 struct BodyPose {
     Vec3 translation{0};
     Quat rotation{1, 0, 0, 0};

@@ -74,10 +74,11 @@ void serve(Options& options) {
     std::optional<EventLog> event_log;
     if (!options.record_events.empty()) {
         StreamOptions const& stream = options.server.loop.stream;
-        event_log.emplace(options.record_events,
-                          ServedScene{std::filesystem::absolute(options.scene).string(),
-                                      options.environment ? std::filesystem::absolute(*options.environment).string() : "",
-                                      clips, stream.exposure, stream.bias, stream.batch_framelets});
+        event_log.emplace(
+            options.record_events,
+            ServedScene{std::filesystem::absolute(options.scene).string(),
+                        options.environment ? std::filesystem::absolute(*options.environment).string() : "", clips,
+                        stream.exposure, stream.bias, stream.batch_framelets});
         options.server.loop.event_log = &*event_log;
     }
     Server server(scene, clips, render_scene, options.server);

@@ -67,8 +67,8 @@ void ShapeFeed::track(Scene const& scene, std::span<Index const> clips, SceneBod
     }
     auto const key = static_cast<std::int64_t>(std::floor(time * body_keys_per_second));
     auto const most_keys = static_cast<std::int64_t>(max_batch_keys / bodies.frames.size());
-    bool const goes_on = camera == camera_ && end_key_ > first_key_ && key >= first_key_ && key <= end_key_ + most_missed_keys &&
-                         key_behind(time) <= end_key_ + most_keys;
+    bool const goes_on = camera == camera_ && end_key_ > first_key_ && key >= first_key_ &&
+                         key <= end_key_ + most_missed_keys && key_behind(time) <= end_key_ + most_keys;
     if (!goes_on) {
         first_key_ = end_key_ = key;
         camera_ = camera;

@@ -287,7 +287,8 @@ void AdaptiveRefresh::plan_refinement(double samples) {
     auto const inspections = static_cast<std::ptrdiff_t>(cycle_.size());
     double planned = 0;
     for (auto const& [gain, index] : unresolved_) {
-        Patch const patch{{(1u << (2 * field_.depth())) + index}, std::max(field_.depth_of(field_[index].level + 1), field_.depth())};
+        Patch const patch{{(1u << (2 * field_.depth())) + index},
+                          std::max(field_.depth_of(field_[index].level + 1), field_.depth())};
         auto const end = cycle_.begin() + inspections;
         if (std::find(cycle_.begin(), end, patch) != end) { // once is enough
             continue;
@@ -509,10 +510,10 @@ void AdaptiveRefresh::examine(RefreshPlan const& plan, std::span<DisplayFramelet
         auto const on_body = [](Framelet const& framelet) {
             return std::ranges::any_of(framelet.body, [](BodyNumber body) { return body != static_body; });
         };
-        double const same_since =
-            examine_patch(field_, patch, framelets.subspan(tile, count), rendered.subspan(tile, count), {plan.now, plan.moment_begun},
-                          plan.moment, history_, std::span(entries_).subspan(tile, count),
-                          std::span(findings_).subspan(place, place_count(patch)));
+        double const same_since = examine_patch(field_, patch, framelets.subspan(tile, count),
+                                                rendered.subspan(tile, count), {plan.now, plan.moment_begun},
+                                                plan.moment, history_, std::span(entries_).subspan(tile, count),
+                                                std::span(findings_).subspan(place, place_count(patch)));
         // The same picture may be of a body that has moved, and that the viewer has moved away.
         bool const moved =
             plan.moment.motions != nullptr && std::ranges::any_of(rendered.subspan(tile, count), on_body);

@@ -103,8 +103,8 @@ void drift_on(PlaceField& field, ViewRays const& from, ViewRays const& to, bool 
         float pixels = 0;
         if (turning) {
             Vec2 const centre = centre_of(field.rect_of(index));
-            pixels = std::max(view_displacement(from, to, centre, place.inverse_depth, most_displacement),
-                              place.arriving);
+            pixels =
+                std::max(view_displacement(from, to, centre, place.inverse_depth, most_displacement), place.arriving);
         }
         float const expected = place.speed * seconds; // pixels that the learnt motion is about
         float own = moving || turning ? place.model.motion * seconds : 0;

@@ -14,8 +14,8 @@ struct ViewState {
     bool operator==(ViewState const&) const = default;
 };
 
-/// What is rendered for a while instead of the present: a viewer that moves what it holds loses little by it, and has to
-/// join samples of few moments only.
+/// What is rendered for a while instead of the present: a viewer that moves what it holds loses little by it, and has
+/// to join samples of few moments only.
 struct HeldMoment {
     ViewState state;
     double begun = 0; ///< when it was the present, seconds, steady

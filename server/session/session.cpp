@@ -93,7 +93,8 @@ void Session::note_clock_change() {
 }
 
 /// Under the lock.
-template <class What> void Session::add_newest(What const& what) {
+template <class What>
+void Session::add_newest(What const& what) {
     std::erase_if(waiting_events_, [](StreamEvent const& event) { return std::holds_alternative<What>(event.what); });
     waiting_events_.push_back({seconds_of(std::chrono::steady_clock::now()), what});
     ++version_;
@@ -175,7 +176,8 @@ void Session::receive_camera(CameraUpdate const& camera) {
         is_resized = camera_number_ == 0 || camera.view.viewport != viewport_;
     }
     if (is_resized) {
-        bool const takes_predictions = (codings() & coding::haar_colour) != 0 && (codings() & coding::predicted_colour) != 0;
+        bool const takes_predictions =
+            (codings() & coding::haar_colour) != 0 && (codings() & coding::predicted_colour) != 0;
         if (auto const refusal = events_.resize(camera.view.viewport, takes_predictions)) {
             end(*refusal);
             return;

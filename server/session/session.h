@@ -70,7 +70,8 @@ private:
     void receive_hello(Message const& message);
     void receive_camera(CameraUpdate const& camera);
     bool receive_ack(Ack const& ack);
-    template <class What> void add_newest(What const& what);
+    template <class What>
+    void add_newest(What const& what);
     void fail(std::string const& reason);
 
     std::uint64_t const id_;

@@ -123,7 +123,6 @@ SessionLoop::Viewer& SessionLoop::viewer_of(Session const& session) {
 
 bool SessionLoop::give_turn(std::shared_ptr<Session> const& session, Viewer& viewer, SceneTime present, double share) {
     ViewerStream& stream = *viewer.stream;
-    // What is being finished may be this viewer's: its answers may be here, but nothing that it has learnt is missing.
     viewer.version = session->take_events(viewer.events);
     double const rate = rate_.samples_per_second > 0 ? rate_.samples_per_second : first_rate;
     Turn const turn{seconds_of(std::chrono::steady_clock::now()), present, share * rate, plan_seconds_};
@@ -246,9 +245,8 @@ void SessionLoop::wait_for_finishing() {
     pipeline_->finishing.wait();
     auto const done = std::exchange(pipeline_->rendered, std::nullopt);
     if (done && options_.recorder != nullptr && done->record.cycle > 0) {
-        contain(*done->session, [&] {
-            options_.recorder->add(done->record, *done->viewer->stream->scheduler(), done->now);
-        });
+        contain(*done->session,
+                [&] { options_.recorder->add(done->record, *done->viewer->stream->scheduler(), done->now); });
     }
 }
 

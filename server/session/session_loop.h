@@ -1,6 +1,6 @@
-// The server's loop: for every viewer, what has come -> its stream's turn -> rendering -> learning -> encoding -> socket.
-// Encoding and sending of one batch overlap the rendering of the next; with many threads all that follows the rendering
-// does, and the next batch is planned before that is learnt.
+// The server's loop: for every viewer, what has come -> its stream's turn -> rendering -> learning -> encoding ->
+// socket. Encoding and sending of one batch overlap the rendering of the next; with many threads all that follows the
+// rendering does, and the next batch is planned before that is learnt.
 #pragma once
 
 #include <atomic>

@@ -16,7 +16,8 @@ constexpr char const* first_line = "framelet events 1";
 
 enum Kind : std::uint8_t { viewer = 1, camera, settings, ack, clock_changed, batch_sent, turn, learning, batch };
 
-template <class T> void put(Bytes& out, T const& value) {
+template <class T>
+void put(Bytes& out, T const& value) {
     auto const* const bytes = reinterpret_cast<std::byte const*>(&value);
     out.insert(out.end(), bytes, bytes + sizeof(T));
 }
@@ -26,7 +27,8 @@ class Content {
 public:
     Content(ByteView bytes, std::filesystem::path const& file) : bytes_(bytes), file_(file) {}
 
-    template <class T> T take() {
+    template <class T>
+    T take() {
         if (bytes_.size() < sizeof(T)) {
             throw InputError("'" + file_.string() + "': a record is too short");
         }
@@ -35,7 +37,8 @@ public:
         bytes_ = bytes_.subspan(sizeof(T));
         return value;
     }
-    template <class M> M message() const {
+    template <class M>
+    M message() const {
         try {
             return std::get<M>(decode_message(bytes_));
         } catch (std::exception const& error) {
@@ -49,7 +52,8 @@ private:
     std::filesystem::path const& file_;
 };
 
-template <class M> Bytes event_content(double seconds, M const& message) {
+template <class M>
+Bytes event_content(double seconds, M const& message) {
     Bytes out;
     put(out, seconds);
     append_message(message, out);
@@ -61,9 +65,9 @@ template <class M> Bytes event_content(double seconds, M const& message) {
 EventLog::EventLog(std::filesystem::path const& file, ServedScene const& served)
     : out_(file, std::ios::binary | std::ios::trunc) {
     nlohmann::ordered_json const line{
-        {"scene", served.scene},       {"environment", served.environment},
-        {"clips", served.clips},       {"exposure_bits", std::bit_cast<std::uint32_t>(served.exposure)},
-        {"bias", served.bias},         {"batch_framelets", served.batch_framelets}};
+        {"scene", served.scene}, {"environment", served.environment},
+        {"clips", served.clips}, {"exposure_bits", std::bit_cast<std::uint32_t>(served.exposure)},
+        {"bias", served.bias},   {"batch_framelets", served.batch_framelets}};
     out_ << first_line << '\n' << line.dump() << '\n' << std::flush;
     if (!out_) {
         throw InputError("cannot write '" + file.string() + "': give --record-events a file in a folder that exists");
@@ -133,12 +137,9 @@ EventLogReader::EventLogReader(std::filesystem::path const& file) : file_(file),
     }
     try {
         nlohmann::json const told = nlohmann::json::parse(line);
-        served_ = {told.at("scene"),
-                   told.at("environment"),
-                   told.at("clips"),
-                   std::bit_cast<float>(told.at("exposure_bits").get<std::uint32_t>()),
-                   told.at("bias"),
-                   told.at("batch_framelets")};
+        served_ = {told.at("scene"), told.at("environment"),
+                   told.at("clips"), std::bit_cast<float>(told.at("exposure_bits").get<std::uint32_t>()),
+                   told.at("bias"),  told.at("batch_framelets")};
     } catch (nlohmann::json::exception const& error) {
         throw InputError("'" + file.string() + "' does not say what was served: " + error.what());
     }

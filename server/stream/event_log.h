@@ -2,8 +2,8 @@
 // that a loop makes. Out: the same, to be made again (`replay.h`).
 //
 // The file: "framelet events 1\n", a line of JSON that says what was served, then records: a byte for the kind, the
-// session's number (8 bytes), the length of what follows (4), and that. Numbers are little-endian, times doubles; what a
-// viewer says and batches are message bodies as on the wire.
+// session's number (8 bytes), the length of what follows (4), and that. Numbers are little-endian, times doubles; what
+// a viewer says and batches are message bodies as on the wire.
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,5 @@
-// A recorded session once more: the same events and turns to the same pipeline. In: a recording, its scene. Out: whether
-// the same bytes come out, batch by batch.
+// A recorded session once more: the same events and turns to the same pipeline. In: a recording, its scene. Out:
+// whether the same bytes come out, batch by batch.
 #pragma once
 
 #include "server/stream/event_log.h"

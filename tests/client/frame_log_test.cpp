@@ -15,7 +15,8 @@ TEST(FrameLog, EachLineCanBeReadAtOnce) {
     for (std::uint64_t frame = 0; frame < 3; ++frame) {
         Camera camera;
         camera.position = {1, 2, 3};
-        log.add({frame, 1.7e9 + 0.125 * static_cast<double>(frame), 2.5, frame == 1, true, 77, 0.25, 512, 0.5, -1, camera});
+        log.add(
+            {frame, 1.7e9 + 0.125 * static_cast<double>(frame), 2.5, frame == 1, true, 77, 0.25, 512, 0.5, -1, camera});
         std::ifstream stream(file);
         std::string line;
         for (std::uint64_t i = 0; i <= frame; ++i) {

@@ -130,7 +130,8 @@ TEST(AdaptiveRefresh, PipelinedConvergesToTheSame) {
 
 /// What stood while the clock ran is known to the viewer; it has to be seen once more when the clock stops, but that
 /// has to end.
-/// What is held for a while is rendered once and then more finely, but for patches of which a part was not rendered yet.
+/// What is held for a while is rendered once and then more finely, but for patches of which a part was not rendered
+/// yet.
 TEST(AdaptiveRefresh, AMomentIsHardlyEverRenderedTwice) {
     for (bool const pipelined : {true, false}) {
         SyntheticRefresh synthetic(small, moving_texture);

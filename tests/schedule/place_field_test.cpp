@@ -36,7 +36,8 @@ public:
         std::vector<LumaHistory::Entry> entries(tiles.size());
         PlaceField::Range const range = field.range_of(patch.node);
         std::vector<PlaceFindings> places(range.last - range.first);
-        double const same_since = examine_patch(field, patch, display, rendered, {now, now}, moment, history, entries, places);
+        double const same_since =
+            examine_patch(field, patch, display, rendered, {now, now}, moment, history, entries, places);
         for (LumaHistory::Entry const& entry : entries) {
             history.store(entry);
         }

@@ -89,7 +89,8 @@ TEST_P(ServerOfThreads, CoarseFirstThenFinerThenConverged) {
 
 TEST_P(ServerOfThreads, WaitsForAcknowledgements) {
     ServerOptions options;
-    options.loop.stream.batch_framelets = 16; // so that the picture takes more batches than may be in flight, however fast
+    options.loop.stream.batch_framelets =
+        16; // so that the picture takes more batches than may be in flight, however fast
     RunningServer const server(options);
     Conversation viewer(server.port());
     viewer.stream->send(Hello{});

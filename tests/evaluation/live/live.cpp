@@ -45,8 +45,16 @@ struct LiveFrame {
 };
 
 LiveFrame parse_frame(json const& line) {
-    LiveFrame frame{line["frame"],       line["unix_seconds"], line["scene_seconds"],  line["changed"], line["bytes"],
-                    line["samples"],     line["cpu_seconds"],  line["photon_seconds"], {},              0};
+    LiveFrame frame{line["frame"],
+                    line["unix_seconds"],
+                    line["scene_seconds"],
+                    line["changed"],
+                    line["bytes"],
+                    line["samples"],
+                    line["cpu_seconds"],
+                    line["photon_seconds"],
+                    {},
+                    0};
     json const& position = line["position"];
     json const& turn = line["orientation"];
     frame.camera.position = {position[0], position[1], position[2]};
@@ -146,9 +154,9 @@ void run_programs(BenchScene const& scene, std::string const& method, RivalParts
     if (!options.camera_file.empty()) {
         client_options = joined(client_options, {"--camera", options.camera_file.string()});
     } else if (scene.scene_camera != none) {
-        client_options = joined(
-            client_options, {"--camera", run.folder.write("camera.json",
-                                                          json{{"scene_camera", scene.scene_camera}}.dump())});
+        client_options =
+            joined(client_options,
+                   {"--camera", run.folder.write("camera.json", json{{"scene_camera", scene.scene_camera}}.dump())});
     }
     if (options.pinned) {
         pin(server.process().pid(), 0);
@@ -307,13 +315,12 @@ void print(std::string const& method, json const& f) {
     if (f.contains("spacing")) {
         name += " (" + std::to_string(f["spacing"].get<int>()) + (f["margin"] > 0 ? "+m)" : ")");
     }
-    std::printf("%-18s %6.1f %6.0f %6.2f %6.2f %7.2f %7.0f %7s %6.2f %6.4f %6.4f %9.2e\n", name.c_str(),
-                f["pictures_per_second"].get<double>(), f["gap_p99_ms"].get<double>(), f["server_busy"].get<double>(),
-                f["viewer_busy"].get<double>(), f["samples_per_second"].get<double>() / 1e6,
-                f["kB_per_second"].get<double>(),
-                f["photon_ms"].is_null() ? "-" : std::to_string(std::lround(f["photon_ms"].get<double>())).c_str(),
-                f["psnr"].get<double>(), f["ssim"].get<double>(), f["flip"].get<double>(),
-                f["steadiness"].get<double>());
+    std::printf(
+        "%-18s %6.1f %6.0f %6.2f %6.2f %7.2f %7.0f %7s %6.2f %6.4f %6.4f %9.2e\n", name.c_str(),
+        f["pictures_per_second"].get<double>(), f["gap_p99_ms"].get<double>(), f["server_busy"].get<double>(),
+        f["viewer_busy"].get<double>(), f["samples_per_second"].get<double>() / 1e6, f["kB_per_second"].get<double>(),
+        f["photon_ms"].is_null() ? "-" : std::to_string(std::lround(f["photon_ms"].get<double>())).c_str(),
+        f["psnr"].get<double>(), f["ssim"].get<double>(), f["flip"].get<double>(), f["steadiness"].get<double>());
     std::fflush(stdout);
 }
 
@@ -324,20 +331,20 @@ json measure_live(BenchScene& scene, LiveOptions const& options) {
         std::filesystem::create_directories(options.charts);
     }
     std::printf("%s, %dx%d, %g s%s\n%-18s %6s %6s %6s %6s %7s %7s %7s %6s %6s %6s %9s\n", scene.name.c_str(),
-                options.viewport.width, options.viewport.height, options.seconds,
-                options.pinned ? ", a core each" : "", "method", "pict/s", "gap ms", "server", "viewer", "Msam/s",
-                "kB/s", "photon", "PSNR", "SSIM", "FLIP", "unsteady");
+                options.viewport.width, options.viewport.height, options.seconds, options.pinned ? ", a core each" : "",
+                "method", "pict/s", "gap ms", "server", "viewer", "Msam/s", "kB/s", "photon", "PSNR", "SSIM", "FLIP",
+                "unsteady");
     json methods;
     for (std::string const& method : options.methods) {
         methods[method] = best_run(scene, method, options);
         print(method, methods[method]);
     }
-    return {{"scene", scene.name},
-            {"size", {options.viewport.width, options.viewport.height}},
-            {"seconds", options.seconds},
-            {"link",
-             {{"bits_per_second", options.link.bits_per_second}, {"delay_seconds", options.link.delay_seconds}}},
-            {"methods", methods}};
+    return {
+        {"scene", scene.name},
+        {"size", {options.viewport.width, options.viewport.height}},
+        {"seconds", options.seconds},
+        {"link", {{"bits_per_second", options.link.bits_per_second}, {"delay_seconds", options.link.delay_seconds}}},
+        {"methods", methods}};
 }
 
 } // namespace framelet::bench

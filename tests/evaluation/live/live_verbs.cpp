@@ -125,13 +125,13 @@ json answer_replay(LiveVerbOptions& options) {
                 static_cast<unsigned long long>(figures.bytes));
     if (!figures.is_identical()) {
         std::printf("differs\n");
-        throw InputError(figures.other_steps > 0
-                             ? "turn " + std::to_string(figures.turns) + " was answered otherwise"
-                             : std::to_string(figures.other_batches) + " batches have other bytes, the first is batch " +
-                                   std::to_string(figures.first_other));
+        throw InputError(figures.other_steps > 0 ? "turn " + std::to_string(figures.turns) + " was answered otherwise"
+                                                 : std::to_string(figures.other_batches) +
+                                                       " batches have other bytes, the first is batch " +
+                                                       std::to_string(figures.first_other));
     }
     std::printf("byte-identical\n");
-    return {{"scene", served.scene}, {"turns", figures.turns},     {"batches", figures.batches},
+    return {{"scene", served.scene},  {"turns", figures.turns},     {"batches", figures.batches},
             {"bytes", figures.bytes}, {"seconds", figures.seconds}, {"identical", true}};
 }
 

@@ -10,8 +10,8 @@
 #include "client/frame_log.h"
 #include "client/frame_writer.h"
 #include "client/server_connection.h"
-#include "common/error.h"
 #include "common/cpu_clock.h"
+#include "common/error.h"
 #include "server/session/server.h"
 #include "tests/evaluation/live/method_stream.h"
 
@@ -63,9 +63,9 @@ private:
 } // namespace
 
 void serve_method(ServeOptions const& options) {
-    std::size_t const threads =
-        options.threads > 0 ? static_cast<std::size_t>(options.threads)
-                            : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+    std::size_t const threads = options.threads > 0
+                                    ? static_cast<std::size_t>(options.threads)
+                                    : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
     tbb::global_control const limit(tbb::global_control::max_allowed_parallelism, threads);
     auto const scene = load_bench_scene(options.scene);
     scene->exposure = std::exp2(options.exposure_ev);
@@ -101,7 +101,8 @@ void look_at_method(LookOptions const& options) {
     ServerConnection::Handlers handlers;
     handlers.on_message = [&](Message message) {
         if (auto const* const batch = std::get_if<EncodedBatch>(&message)) {
-            auto const received = std::chrono::duration_cast<std::chrono::microseconds>(Clock::now().time_since_epoch());
+            auto const received =
+                std::chrono::duration_cast<std::chrono::microseconds>(Clock::now().time_since_epoch());
             std::scoped_lock const lock(mutex);
             batches = batch->number;
             bytes += batch->payload.size();
@@ -129,8 +130,9 @@ void look_at_method(LookOptions const& options) {
     for (std::uint64_t frame = 0; seconds_between(start, Clock::now()) < options.duration; ++frame) {
         Clock::time_point const begun = Clock::now();
         SceneTime const time = mailbox.scene_time();
-        Camera const camera =
-            scene_camera >= 0 ? camera_at(*scene, time) : path ? path->at(seconds_between(start, begun)) : scene->camera;
+        Camera const camera = scene_camera >= 0 ? camera_at(*scene, time)
+                              : path            ? path->at(seconds_between(start, begun))
+                                                : scene->camera;
         if (view.number == 0 || !(view.camera == camera)) {
             bool const tells = view.number == 0 || scene_camera < 0;
             view = {view.number + 1, camera, options.viewport};
@@ -155,8 +157,8 @@ void look_at_method(LookOptions const& options) {
         log.add({frame, unix_seconds(), mailbox.scene_time(), changed, false, received,
                  cpu_seconds_of(CLOCK_PROCESS_CPUTIME_ID) - writer.cpu_seconds(), 0, photon, scene_camera, camera});
         writer.add(*shown, true);
-        std::this_thread::sleep_until(begun + std::chrono::duration_cast<Clock::duration>(
-                                                  std::chrono::duration<double>(1 / options.rate)));
+        std::this_thread::sleep_until(
+            begun + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / options.rate)));
     }
     writer.finish();
     std::scoped_lock const lock(mutex);

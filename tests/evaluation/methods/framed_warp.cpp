@@ -84,9 +84,7 @@ public:
         return step;
     }
 
-    ViewerStep present(NumberedView const& view, SceneTime time) override {
-        return viewer_.present(view.camera, time);
-    }
+    ViewerStep present(NumberedView const& view, SceneTime time) override { return viewer_.present(view.camera, time); }
 
     Picture const& picture() const override { return viewer_.picture(); }
     double mean_sample_time() const override { return time_; }
