@@ -27,8 +27,8 @@ inline constexpr std::uint16_t protocol_version = 2;
 namespace coding {
 inline constexpr std::uint32_t exact_colour = 1; ///< every viewer can
 inline constexpr std::uint32_t haar_colour = 2; ///< framelets with a quality
-inline constexpr std::uint32_t shapes_and_tracks = 4;
 inline constexpr std::uint32_t predicted_colour = 8; ///< framelets predicted from those of earlier batches
+inline constexpr std::uint32_t shapes_and_tracks = 16;
 inline constexpr std::uint32_t all = exact_colour | haar_colour | shapes_and_tracks | predicted_colour; ///< known here
 } // namespace coding
 

@@ -100,7 +100,7 @@ Offset<wire::Batch> write(Builder& builder, EncodedBatch const& value) {
     std::vector<Offset<wire::Section>> list{
         write_section(builder, wire::Content::colour, static_cast<wire::Encoding>(value.encoding), value.payload)};
     if (!value.shapes.empty()) {
-        list.push_back(write_section(builder, wire::Content::shape, wire::Encoding::layers_zstd, value.shapes));
+        list.push_back(write_section(builder, wire::Content::shape, wire::Encoding::fading_layers_zstd, value.shapes));
     }
     auto const sections = builder.CreateVector(list);
     Offset<TrackList> const tracks = value.tracks.empty() ? Offset<TrackList>() : write(builder, value.tracks);
@@ -128,7 +128,7 @@ EncodedBatch read(wire::Batch const& wire) {
         section.encoding() != wire::Encoding::predicted_haar_zstd) {
         throw ProtocolError("a batch's samples are in an unknown encoding");
     }
-    if (shapes != nullptr && shapes->encoding() != wire::Encoding::layers_zstd) {
+    if (shapes != nullptr && shapes->encoding() != wire::Encoding::fading_layers_zstd) {
         throw ProtocolError("a batch's shapes are in an unknown encoding");
     }
     if (wire.tiles()->size() > max_batch_framelets) {

@@ -204,6 +204,7 @@ ShapeParts ShapeCodec::encode(std::span<FrameletShape const> shapes, std::span<s
     }
     UnitCode const unit = velocity_unit(shapes);
     layers_.push_back(unit);
+    std::ranges::transform(shapes, std::back_inserter(layers_), &FrameletShape::fading);
     encode_layers(shapes, side_bits, layers_);
     encode_masks(shapes, masks_);
     encode_loose(shapes, loose_);
@@ -217,11 +218,13 @@ void ShapeCodec::decode(std::span<std::uint8_t const> bytes, std::span<std::uint
     ByteCursor rest{bytes.data(), bytes.data() + bytes.size()};
     auto const heads = rest.take(shapes.size());
     UnitCode const velocity = take_unit(rest.take(1)[0]);
+    auto const fadings = rest.take(shapes.size());
     for (std::size_t i = 0; i < shapes.size(); ++i) {
         if (heads[i] == 0 || heads[i] > largest_shape_head) {
             throw ProtocolError("a shape has an unknown number of layers");
         }
         shapes[i].layer_count = layers_of_head(heads[i]);
+        shapes[i].fading = fadings[i];
         shapes[i].layers = {};
         shapes[i].loose_samples.clear();
     }

@@ -14,8 +14,8 @@ namespace framelet {
 
 /// Most bytes of a group of so many framelets, each with all layers, everything loose and all of it with velocities.
 constexpr std::size_t most_shape_bytes(std::size_t framelets) {
-    constexpr std::size_t head = 1, layer = 10, velocity = 6, loose = 3;
-    return 1 + framelets * (head + max_layers * (layer + velocity) + most_mask_bytes + 1 +
+    constexpr std::size_t head = 1, fading = 1, layer = 10, velocity = 6, loose = 3;
+    return 1 + framelets * (head + fading + max_layers * (layer + velocity) + most_mask_bytes + 1 +
                             framelet_samples * (loose + velocity));
 }
 

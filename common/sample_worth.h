@@ -1,0 +1,34 @@
+// What held samples are worth at a pixel, so that of several of one surface the best shows. In: how far apart they lie
+// once moved, their age, how soon the looks of what they show fade. Out: one number.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/framelet_shape.h"
+
+namespace framelet {
+
+/// Finer than this nothing shows any better, pixels.
+inline constexpr float finest_shown_spacing = 0.5f;
+
+/// By how many pixels a second (of scene time) samples become worse, as if they lay so much farther apart. 0 for code 0.
+inline float fading_rate(FadingCode code) {
+    return code == 0 ? 0.0f : std::exp2(static_cast<float>(code - 128) / 8);
+}
+
+/// The nearest code of a rate >= 0; 0 for what is not a number.
+inline FadingCode fading_code(float rate) {
+    if (!(rate > std::exp2(-127.0f / 8))) {
+        return 0;
+    }
+    return static_cast<FadingCode>(std::lround(std::clamp(8 * std::log2(rate) + 128, 1.0f, 255.0f)));
+}
+
+/// The spacing, pixels, of fresh samples that would be as bad: what detail is missed grows about as the spacing does.
+/// `spacing`: once moved, pixels; `age`: seconds of scene time, of either sign.
+inline float worn_spacing(float spacing, float age, FadingCode fading) {
+    return std::max(spacing, finest_shown_spacing) + fading_rate(fading) * std::abs(age);
+}
+
+} // namespace framelet
