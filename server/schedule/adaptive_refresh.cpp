@@ -9,6 +9,7 @@
 
 #include "common/error.h"
 #include "common/reprojection.h"
+#include "common/sample_worth.h"
 #include "server/schedule/picture_bound.h"
 
 namespace framelet {
@@ -24,6 +25,10 @@ constexpr double most_unseen = 0.5;
 constexpr float enough = 5e-5f;
 /// What moves is looked at over so many seconds.
 constexpr double least_earlier = 0.03, most_earlier = 0.25;
+/// The samples of so many seconds are planned together: what they cannot do at their price can wait.
+constexpr double planned_seconds = 0.1;
+/// How soon looks fade of which nothing is known, and of what deforms or reflects: pixels of spacing a second.
+constexpr float usual_fading = 0.5f, fast_fading = 16;
 /// A scene time that jumps by more than this over what has passed has been set.
 constexpr double most_time_step = 0.5;
 
@@ -84,6 +89,8 @@ void AdaptiveRefresh::advance(RefreshInput const& input) {
     if (!seen_ || seen_->view.viewport != state.view.viewport) {
         field_ = PlaceField(ImagePlane(state.view.viewport));
         history_.clear();
+        mirror_ = Mirror(state.view.viewport);
+        looked_ = never;
         price_ = 1e-6f;
         still_since_ = input.now;
         scene_moves_ = false;
@@ -93,6 +100,10 @@ void AdaptiveRefresh::advance(RefreshInput const& input) {
             still_since_ = input.now;
         }
         scene_moves_ = seen_->scene_time != state.scene_time;
+        if (seen_->exposure != state.exposure) {
+            mirror_ = Mirror(state.view.viewport);
+            looked_ = never;
+        }
         if (is_cut(*seen_, state, seconds)) {
             invalidate(field_);
         } else {
@@ -110,6 +121,7 @@ bool AdaptiveRefresh::goes_on(RefreshInput const& input) const {
     double const seconds = input.now - planned_;
     return next_ < cycle_.size() && seconds < static_cast<double>(input.cycle_seconds) &&
            (rays_per_sample_ == single_ray || same_picture(*seen_, input.state)) &&
+           (!input.moment || looked_ == never || looked_ == input.moment->begun) &&
            seen_->view.viewport == input.state.view.viewport && !is_cut(*seen_, input.state, seconds);
 }
 
@@ -136,6 +148,7 @@ void AdaptiveRefresh::plan(RefreshInput const& input, RefreshPlan& plan) {
         earlier_ = recent_;
         recent_ = {plan.moment.rays, plan.moment.scene_time, moment.begun};
     }
+    plan.is_mirrored = input.moment && plan.moment.motions != nullptr;
     still_ = !input.moment && is_still(input.state);
     plan.is_new_cycle = !goes_on(input);
     if (plan.is_new_cycle) {
@@ -157,6 +170,10 @@ void AdaptiveRefresh::plan_cycle(RefreshInput const& input, RefreshPlan& plan) {
     cycle_seconds_ = static_cast<double>(input.cycle_seconds);
     cycle_budget_ = input.samples_per_second * cycle_seconds_;
     double samples = cycle_budget_;
+    if (plan.is_mirrored) {
+        plan_moment(input, plan.moment, samples);
+        return;
+    }
     if (scene_moves_) {
         plan_probes(input.limits.probe_share * samples, plan);
         samples -= probe_cost * static_cast<double>(plan.probes.size());
@@ -266,6 +283,26 @@ void AdaptiveRefresh::plan_patches(RefreshInput const& input, double samples) {
         if (std::find(cycle_.begin(), end, entry.patch) == end) { // once is enough
             cycle_.push_back(entry.patch);
         }
+    }
+}
+
+/// Where what the viewer holds shows the moment worst.
+void AdaptiveRefresh::plan_moment(RefreshInput const& input, RenderedMoment const& moment, double samples) {
+    if (looked_ != input.moment->begun) {
+        mirror_.look({moment.rays, moment.scene_time}, *moment.motions);
+        looked_ = input.moment->begun;
+    }
+    find_costs(input);
+    MomentBudget const budget{std::max(input.samples_per_second * planned_seconds, samples), input.limits, costs_,
+                              input.moment->begun};
+    moment_plan_.find(mirror_, field_, budget, rated_);
+    double const most = std::max(input.rendered_per_second, input.samples_per_second) / input.samples_per_second;
+    select_patches(samples, most * samples, rated_);
+    if (!costs_.empty()) {
+        mean_bits_ *= mean_cost(rated_, 0.2f);
+    }
+    for (RatedPatch const& entry : rated_) {
+        cycle_.push_back(entry.patch);
     }
 }
 
@@ -409,6 +446,7 @@ std::vector<std::uint8_t> const& AdaptiveRefresh::learn(RefreshPlan const& plan,
     if (plan.viewport != field_.plane().viewport()) {
         send_.assign(framelets.size(), 0);
         stays_.assign(framelets.size(), 0);
+        fadings_.assign(framelets.size(), 0);
         return send_;
     }
     if (plan.rays_per_sample != single_ray) {
@@ -416,6 +454,7 @@ std::vector<std::uint8_t> const& AdaptiveRefresh::learn(RefreshPlan const& plan,
         release(plan);
         send_.assign(framelets.size(), 1);
         stays_.assign(framelets.size(), 0);
+        mirror_learnt(plan, framelets, rendered);
         return send_;
     }
     std::size_t probe = 0;
@@ -442,7 +481,36 @@ std::vector<std::uint8_t> const& AdaptiveRefresh::learn(RefreshPlan const& plan,
     for (LumaHistory::Entry const& entry : entries_) {
         history_.store(entry);
     }
+    if (plan.is_mirrored) { // it does not hold the same where it is needed, or this would not have been planned
+        std::ranges::fill(send_, std::uint8_t{1});
+        std::ranges::fill(stays_, std::uint8_t{0});
+    }
+    mirror_learnt(plan, framelets, rendered);
     return send_;
+}
+
+/// The viewer gets what is sent of this.
+void AdaptiveRefresh::mirror_learnt(RefreshPlan const& plan, std::span<DisplayFramelet const> framelets,
+                                    std::span<Framelet const> rendered) {
+    fadings_.assign(framelets.size(), 0);
+    if (plan.moment.motions == nullptr) {
+        return;
+    }
+    pieces_.clear();
+    for (std::size_t i = 0; i < framelets.size(); ++i) {
+        auto const moves = [](Vec3 const& velocity) { return velocity != Vec3(0); };
+        bool const deforms = std::ranges::any_of(rendered[i].velocity, moves);
+        bool const reflects = rendered[i].reflects.count() > framelet_samples / 4;
+        fadings_[i] = fading_code(deforms || reflects ? fast_fading : usual_fading);
+        if (send_[i] != 0) {
+            std::size_t const first = pieces_.size();
+            cut_pieces(rendered[i], framelets[i], field_.plane(), pieces_);
+            for (Piece& piece : std::span(pieces_).subspan(first)) {
+                piece.fading = fading_rate(fadings_[i]);
+            }
+        }
+    }
+    mirror_.add({plan.moment.rays, plan.moment.scene_time}, *plan.moment.motions, pieces_);
 }
 
 /// Nothing is learnt of the picture: compared with single rays it would seem to have changed.

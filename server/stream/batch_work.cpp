@@ -61,6 +61,13 @@ void BatchWork::describe_shapes(PosedScene const& scene, ViewerKnowledge& viewer
                       order.plan.moment_begun, batch_.shapes);
     if (!order.again) {
         bind_to_picture(order.plan, needed_, viewer.refresh.staying(), batch_.shapes);
+        std::span<FadingCode const> const fadings = viewer.refresh.fadings();
+        std::size_t shape = 0;
+        for (std::size_t i = 0; i < needed_.size(); ++i) {
+            if (needed_[i] != 0) {
+                batch_.shapes[shape++].fading = fadings[i];
+            }
+        }
     }
     viewer.shapes.track(scene.scene(), scene.clips(), scene.render_scene().bodies(), order.scene_camera,
                         order.state.scene_time, batch_.tracks, batch_.camera_track);
