@@ -199,8 +199,8 @@ void Mirror::splat(Moment& moment, std::size_t index, float scale) {
     Vec2 const half = glm::min(widening * scale * piece.half_side + margin, Vec2(most_pixels));
     Vec2 const low = placed.at - half - 0.5f;
     Vec2 const high = placed.at + half + 0.5f;
-    auto const width = static_cast<float>(viewport_.width);
-    auto const height = static_cast<float>(viewport_.height);
+    auto const width = static_cast<float>(columns_ * cell_side); // the last cells are whole, too
+    auto const height = static_cast<float>(rows_ * cell_side);
     if (!(low.x <= width - 1 && low.y <= height - 1 && high.x >= 1 && high.y >= 1 && low.x > -most_pixels &&
           low.y > -most_pixels && high.x < most_pixels && high.y < most_pixels)) {
         placed.inverse_depth = -1;

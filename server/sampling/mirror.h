@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -36,6 +37,7 @@ struct Cell {
     std::uint8_t share = 0; ///< of its pixels that what shows covers, of 16
 
     bool is_shown() const { return share > 0; }
+    float covered_share() const { return static_cast<float>(std::popcount(covered)) / (cell_side * cell_side); }
 };
 
 class Mirror {

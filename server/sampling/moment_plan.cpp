@@ -1,7 +1,6 @@
 #include "server/sampling/moment_plan.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "common/error.h"
@@ -47,8 +46,11 @@ void MomentPlan::find(Mirror const& mirror, PlaceField const& field, MomentBudge
             float const middle = std::sqrt(low * high);
             (solve(field, budget, middle) > budget.samples ? low : high) = middle;
         }
-        price_ = low; // rather a little more than none at all
-        solve(field, budget, price_);
+        price_ = high;
+        if (!(solve(field, budget, high) > 0)) { // rather a little more than none at all
+            price_ = low;
+            solve(field, budget, low);
+        }
     }
     collect(field, 0, 0, rated);
 }
@@ -94,7 +96,7 @@ void MomentPlan::add_gains(Mirror const& mirror, PlaceField const& field, std::u
         for (int column = rect.left / cell_side; column < last_column; ++column) {
             Cell const& cell = mirror.cell(column, row);
             auto const pixels = static_cast<float>(mirror.pixels_of(column, row));
-            float covered = std::min(static_cast<float>(std::popcount(cell.covered)), pixels);
+            float covered = cell.covered_share() * pixels;
             float const detail = cell.is_shown() ? cell.detail : hidden_detail;
             float worn = cell.is_shown() ? cell.worn : INFINITY;
             if (had >= 0) {
