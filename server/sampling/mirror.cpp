@@ -13,7 +13,7 @@ namespace {
 
 /// Nearer than this (depth in the picture over depth where it was rendered) nothing is drawn.
 constexpr float nearest = 1e-3f;
-constexpr float most_pixels = 1e6f;
+constexpr float most_pixels = 1e6f, most_scale = 1e6f;
 /// A moved piece covers somewhat more, or the gaps that turning and tilting leave between neighbours were holes.
 constexpr float widening = 1.1f, margin = 0.5f;
 constexpr int cell_pixels = cell_side * cell_side;
@@ -55,8 +55,8 @@ int Mirror::pixels_of(int column, int row) const {
            std::min(cell_side, viewport_.height - row * cell_side);
 }
 
-Vec2 Mirror::place_of(Cell const& cell) const {
-    return moments_[cell.moment].placed[cell.piece].at;
+bool Mirror::looks_at(MirrorView const& view) const {
+    return same_view(target_, view);
 }
 
 std::size_t Mirror::piece_count() const {
@@ -187,15 +187,17 @@ void Mirror::place(Moment& moment, std::size_t first, BodyMotions const& motions
             continue;
         }
         float const inverse_z = 1 / at.z;
-        moment.placed[i] = {inverse_z * Vec2(at), inverse_z * piece.inverse_depth, false};
-        splat(moment, i, turned.lens * inverse_z);
+        float const scale = std::min(turned.lens * inverse_z, most_scale);
+        moment.placed[i] = {inverse_z * Vec2(at), inverse_z * piece.inverse_depth, std::max(scale, 1 / most_scale),
+                            false};
+        splat(moment, i);
     }
 }
 
-/// `scale`: how much larger it is than where it was rendered.
-void Mirror::splat(Moment& moment, std::size_t index, float scale) {
+void Mirror::splat(Moment& moment, std::size_t index) {
     Piece const& piece = moment.pieces[index];
     Placed& placed = moment.placed[index];
+    float const scale = placed.scale;
     Vec2 const half = glm::min(widening * scale * piece.half_side + margin, Vec2(most_pixels));
     Vec2 const low = placed.at - half - 0.5f;
     Vec2 const high = placed.at + half + 0.5f;

@@ -56,8 +56,13 @@ public:
     /// Pixels of a cell that lie in the viewport.
     int pixels_of(int column, int row) const;
     Piece const& piece_of(Cell const& cell) const { return moments_[cell.moment].pieces[cell.piece]; }
-    /// Where that piece is in the picture of the cell: pixels.
-    Vec2 place_of(Cell const& cell) const;
+    /// Where the middle of that piece is in the picture of the cell, pixels; how much larger it is than it was
+    /// rendered; of when it is.
+    Vec2 place_of(Cell const& cell) const { return moments_[cell.moment].placed[cell.piece].at; }
+    float scale_of(Cell const& cell) const { return moments_[cell.moment].placed[cell.piece].scale; }
+    SceneTime time_of(Cell const& cell) const { return moments_[cell.moment].view.scene_time; }
+    /// True when the picture is of this moment.
+    bool looks_at(MirrorView const& view) const;
 
     /// Finds what the viewer shows of `view` as bodies move by `motions`; forgets what has shown nothing for long.
     void look(MirrorView const& view, BodyMotions const& motions);
@@ -72,6 +77,7 @@ private:
     struct Placed { ///< a piece in the picture that is looked at
         Vec2 at{0};
         float inverse_depth = -1; ///< < 0: not in the picture
+        float scale = 1;
         bool shows = false;
     };
     struct Moment {
@@ -94,7 +100,7 @@ private:
     Moment& slot_of(MirrorView const& view);
     TurnedBody const& turn_to(Moment const& moment, BodyNumber body, BodyMotions const& motions);
     void place(Moment& moment, std::size_t first, BodyMotions const& motions);
-    void splat(Moment& moment, std::size_t index, float scale);
+    void splat(Moment& moment, std::size_t index);
     void count_shown();
 
     Viewport viewport_;

@@ -28,7 +28,7 @@ float spacing_error(float detail, float spacing) {
     constexpr float alias = 4.0f / 9.0f;
     float const missed = s <= 1   ? s * s * s // the mean of 1 / s^2 samples, of what lies between them
                          : s <= 2 ? 1 + (s - 1) * 2 * alias
-                                  : (1 + alias) * s - 1;
+                                  : error_growth * s - 1;
     return std::min(detail * missed, most_error);
 }
 

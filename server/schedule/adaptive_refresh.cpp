@@ -9,7 +9,6 @@
 
 #include "common/error.h"
 #include "common/reprojection.h"
-#include "common/sample_worth.h"
 #include "server/schedule/picture_bound.h"
 
 namespace framelet {
@@ -27,8 +26,6 @@ constexpr float enough = 5e-5f;
 constexpr double least_earlier = 0.03, most_earlier = 0.25;
 /// The samples of so many seconds are planned together: what they cannot do at their price can wait.
 constexpr double planned_seconds = 0.1;
-/// How soon looks fade of which nothing is known, and of what deforms or reflects: pixels of spacing a second.
-constexpr float usual_fading = 0.5f, fast_fading = 16;
 /// A scene time that jumps by more than this over what has passed has been set.
 constexpr double most_time_step = 0.5;
 
@@ -90,6 +87,7 @@ void AdaptiveRefresh::advance(RefreshInput const& input) {
         field_ = PlaceField(ImagePlane(state.view.viewport));
         history_.clear();
         mirror_ = Mirror(state.view.viewport);
+        looks_ = Looks(state.view.viewport);
         looked_ = never;
         price_ = 1e-6f;
         still_since_ = input.now;
@@ -496,21 +494,17 @@ void AdaptiveRefresh::mirror_learnt(RefreshPlan const& plan, std::span<DisplayFr
     if (plan.moment.motions == nullptr) {
         return;
     }
+    MirrorView const view{plan.moment.rays, plan.moment.scene_time};
+    bool const comparable = plan.is_mirrored && mirror_.looks_at(view);
     pieces_.clear();
     for (std::size_t i = 0; i < framelets.size(); ++i) {
-        auto const moves = [](Vec3 const& velocity) { return velocity != Vec3(0); };
-        bool const deforms = std::ranges::any_of(rendered[i].velocity, moves);
-        bool const reflects = rendered[i].reflects.count() > framelet_samples / 4;
-        fadings_[i] = fading_code(deforms || reflects ? fast_fading : usual_fading);
         if (send_[i] != 0) {
             std::size_t const first = pieces_.size();
             cut_pieces(rendered[i], framelets[i], field_.plane(), pieces_);
-            for (Piece& piece : std::span(pieces_).subspan(first)) {
-                piece.fading = fading_rate(fadings_[i]);
-            }
+            fadings_[i] = looks_.learn(mirror_, std::span(pieces_).subspan(first), view.scene_time, comparable);
         }
     }
-    mirror_.add({plan.moment.rays, plan.moment.scene_time}, *plan.moment.motions, pieces_);
+    mirror_.add(view, *plan.moment.motions, pieces_);
 }
 
 /// Nothing is learnt of the picture: compared with single rays it would seem to have changed.

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/rays_per_sample.h"
-#include "server/sampling/mirror.h"
+#include "server/sampling/looks.h"
 #include "server/sampling/moment_plan.h"
 #include "server/schedule/patch_selection.h"
 #include "server/schedule/place_learning.h"
@@ -162,6 +162,7 @@ private:
     std::vector<std::uint8_t> send_;
     std::vector<FadingCode> fadings_;
     Mirror mirror_;
+    Looks looks_;
     MomentPlan moment_plan_;
     double looked_ = never; ///< when the moment began at which the mirror looks
 
