@@ -19,16 +19,18 @@ constexpr float widening = 1.1f, margin = 0.5f;
 constexpr int cell_pixels = cell_side * cell_side;
 /// A piece that covers less of a cell than this is not what it shows, where there is another.
 constexpr int least_share = cell_pixels / 2;
-/// A piece is forgotten when others showed instead of it in so many moments.
-constexpr std::uint8_t most_idle = 4;
-/// A viewer's memory: framelets for each 16x16 pixels, and pieces of a usual framelet.
-constexpr std::size_t most_framelets = 4, usual_pieces = 4;
-/// Newest moments that are never forgotten.
-constexpr std::uint64_t newest_kept = 2;
+/// A viewer lets go of what did not show lately, and of none of its newest moments.
+constexpr std::uint8_t most_unshown = 2;
+constexpr std::uint64_t newest_kept = 3;
+constexpr std::uint8_t replaced_piece = 255; ///< instead of how long it has shown nowhere: it is held no longer
+
+bool same_camera(ViewRays const& a, ViewRays const& b) {
+    return a.origin == b.origin && a.direction == b.direction && a.direction_dx == b.direction_dx &&
+           a.direction_dy == b.direction_dy;
+}
 
 bool same_view(MirrorView const& a, MirrorView const& b) {
-    return a.scene_time == b.scene_time && a.rays.origin == b.rays.origin && a.rays.direction == b.rays.direction &&
-           a.rays.direction_dx == b.rays.direction_dx && a.rays.direction_dy == b.rays.direction_dy;
+    return a.scene_time == b.scene_time && same_camera(a.rays, b.rays);
 }
 
 /// Bits [first, last) of four, clipped.
@@ -73,7 +75,7 @@ std::size_t Mirror::moment_count() const {
 }
 
 void Mirror::look(MirrorView const& view, BodyMotions const& motions) {
-    forget_idle();
+    forget_unshown();
     evict();
     target_ = view;
     std::ranges::fill(cells_, Cell{});
@@ -88,6 +90,7 @@ void Mirror::add(MirrorView const& view, BodyMotions const& motions, std::span<P
     if (pieces.empty()) {
         return;
     }
+    replace(view, pieces);
     Moment& moment = slot_of(view);
     std::size_t const first = moment.pieces.size();
     moment.pieces.insert(moment.pieces.end(), pieces.begin(), pieces.end());
@@ -115,19 +118,21 @@ Mirror::Moment& Mirror::slot_of(MirrorView const& view) {
     return *free;
 }
 
-/// What others show instead of, and moments of which nothing is left.
-void Mirror::forget_idle() {
+/// Pieces that show nowhere, and moments of which nothing is left.
+void Mirror::forget_unshown() {
     for (Moment& moment : moments_) {
-        std::erase_if(moment.pieces, [](Piece const& piece) { return piece.idle >= most_idle; });
+        if (moment.number + newest_kept <= last_number_) {
+            std::erase_if(moment.pieces, [](Piece const& piece) { return piece.unshown >= most_unshown; });
+        } else {
+            std::erase_if(moment.pieces, [](Piece const& piece) { return piece.unshown == replaced_piece; });
+        }
         moment.number = moment.pieces.empty() ? 0 : moment.number;
     }
 }
 
-/// The moments that show least, until there is room for one more and the pieces are no more than a viewer keeps.
+/// The moments that show least, until there is room for one more.
 void Mirror::evict() {
-    std::size_t const area = static_cast<std::size_t>(viewport_.width) * static_cast<std::size_t>(viewport_.height);
-    std::size_t const most_pieces = std::max<std::size_t>(area / framelet_samples, 1) * most_framelets * usual_pieces;
-    while (moment_count() > 1 && (moment_count() > mirrored_moments - 1 || piece_count() > most_pieces)) {
+    while (moment_count() >= mirrored_moments) {
         Moment* least = nullptr;
         for (Moment& moment : moments_) {
             if (moment.number > 0 && moment.number + newest_kept <= last_number_ &&
@@ -141,6 +146,40 @@ void Mirror::evict() {
         }
         least->number = 0;
         least->pieces.clear();
+    }
+}
+
+/// What a viewer holds of one camera is the newest at each place, of whatever time: the older goes.
+void Mirror::replace(MirrorView const& view, std::span<Piece const> pieces) {
+    auto const is_replaced = [&](Moment const& moment) {
+        return moment.number > 0 && same_camera(moment.view.rays, view.rays) &&
+               moment.view.scene_time != view.scene_time;
+    };
+    if (std::ranges::none_of(moments_, is_replaced)) {
+        return;
+    }
+    auto const clamped = [](float pixel, int count) {
+        return std::clamp(static_cast<int>(std::floor(pixel)) / cell_side, 0, count - 1);
+    };
+    replaced_.assign(cells_.size(), 0);
+    for (Piece const& piece : pieces) {
+        Vec2 const low = piece.centre - piece.half_side + 0.1f;
+        Vec2 const high = piece.centre + piece.half_side - 0.1f;
+        for (int row = clamped(low.y, rows_); row <= clamped(high.y, rows_); ++row) {
+            for (int column = clamped(low.x, columns_); column <= clamped(high.x, columns_); ++column) {
+                replaced_[index_of(column, row)] = 1;
+            }
+        }
+    }
+    for (Moment& moment : moments_) {
+        if (!is_replaced(moment)) {
+            continue;
+        }
+        for (Piece& piece : moment.pieces) {
+            if (replaced_[index_of(clamped(piece.centre.x, columns_), clamped(piece.centre.y, rows_))] != 0) {
+                piece.unshown = replaced_piece;
+            }
+        }
     }
 }
 
@@ -171,6 +210,7 @@ Mirror::TurnedBody const& Mirror::turn_to(Moment const& moment, BodyNumber body,
 /// Of a moment, from piece `first` on.
 void Mirror::place(Moment& moment, std::size_t first, BodyMotions const& motions) {
     ++stamp_;
+    moment.is_of_camera = same_camera(moment.view.rays, target_.rays);
     auto const age = static_cast<float>(target_.scene_time - moment.view.scene_time);
     moment.placed.resize(moment.pieces.size());
     for (std::size_t i = first; i < moment.pieces.size(); ++i) {
@@ -221,8 +261,7 @@ void Mirror::splat(Moment& moment, std::size_t index) {
         unsigned const down = spread_rows(bits_between(top - row * cell_side, bottom - row * cell_side));
         for (int column = left / cell_side; column * cell_side < right; ++column) {
             unsigned const mask = down * bits_between(left - column * cell_side, right - column * cell_side);
-            Cell& cell = cells_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
-                                static_cast<std::size_t>(column)];
+            Cell& cell = cells_[index_of(column, row)];
             cell.covered = static_cast<std::uint16_t>(cell.covered | mask);
             int const share = std::popcount(mask);
             bool shows = false;
@@ -258,20 +297,9 @@ void Mirror::count_shown() {
     }
     for (Moment& moment : moments_) {
         for (std::size_t i = 0; i < moment.pieces.size(); ++i) {
-            Placed const& placed = moment.placed[i];
             Piece& piece = moment.pieces[i];
-            if (placed.shows) {
-                piece.idle = 0;
-                continue;
-            }
-            if (!(placed.inverse_depth >= 0)) {
-                continue;
-            }
-            int const column = std::clamp(static_cast<int>(placed.at.x) / cell_side, 0, columns_ - 1);
-            int const row = std::clamp(static_cast<int>(placed.at.y) / cell_side, 0, rows_ - 1);
-            Cell const& there = cell(column, row);
-            bool const hidden = there.inverse_depth * (1 - surface_tolerance) > placed.inverse_depth;
-            piece.idle = static_cast<std::uint8_t>(piece.idle + (hidden ? 0 : 1));
+            piece.unshown =
+                moment.placed[i].shows ? std::uint8_t{0} : static_cast<std::uint8_t>(std::min(piece.unshown + 1, 254));
         }
     }
 }

@@ -15,8 +15,8 @@
 
 namespace framelet {
 
-/// Moments that a viewer keeps, at most.
-inline constexpr std::size_t mirrored_moments = 24;
+/// Moments that a viewer keeps, at most, as its `FrameletPool` does.
+inline constexpr std::size_t mirrored_moments = 12;
 /// Side of a cell, pixels.
 inline constexpr int cell_side = 4;
 
@@ -49,10 +49,7 @@ public:
     int rows() const { return rows_; }
     /// Of what was looked at last, row by row.
     std::span<Cell const> cells() const { return cells_; }
-    Cell const& cell(int column, int row) const {
-        return cells_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
-                      static_cast<std::size_t>(column)];
-    }
+    Cell const& cell(int column, int row) const { return cells_[index_of(column, row)]; }
     /// Pixels of a cell that lie in the viewport.
     int pixels_of(int column, int row) const;
     Piece const& piece_of(Cell const& cell) const { return moments_[cell.moment].pieces[cell.piece]; }
@@ -61,6 +58,8 @@ public:
     Vec2 place_of(Cell const& cell) const { return moments_[cell.moment].placed[cell.piece].at; }
     float scale_of(Cell const& cell) const { return moments_[cell.moment].placed[cell.piece].scale; }
     SceneTime time_of(Cell const& cell) const { return moments_[cell.moment].view.scene_time; }
+    /// True where a new framelet takes the place of what shows, be it better or not: it is of the same camera.
+    bool gives_way(Cell const& cell) const { return moments_[cell.moment].is_of_camera; }
     /// True when the picture is of this moment.
     bool looks_at(MirrorView const& view) const;
 
@@ -86,6 +85,7 @@ private:
         std::vector<Piece> pieces;
         std::vector<Placed> placed; ///< one each
         std::size_t shown = 0; ///< cells
+        bool is_of_camera = false; ///< that is looked through
     };
     struct TurnedBody { ///< takes pixels of a moment to the picture that is looked at
         std::uint64_t stamp = 0; ///< for which it holds
@@ -95,8 +95,12 @@ private:
         float lens = 1;
     };
 
-    void forget_idle();
+    std::size_t index_of(int column, int row) const {
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
+    }
+    void forget_unshown();
     void evict();
+    void replace(MirrorView const& view, std::span<Piece const> pieces);
     Moment& slot_of(MirrorView const& view);
     TurnedBody const& turn_to(Moment const& moment, BodyNumber body, BodyMotions const& motions);
     void place(Moment& moment, std::size_t first, BodyMotions const& motions);
@@ -110,6 +114,7 @@ private:
     std::uint64_t last_number_ = 0;
     MirrorView target_;
 
+    std::vector<std::uint8_t> replaced_; ///< by cell
     std::vector<TurnedBody> turned_; ///< by body
     std::uint64_t stamp_ = 0;
 };

@@ -103,11 +103,13 @@ void MomentPlan::add_gains(Mirror const& mirror, PlaceField const& field, std::u
                 covered = pixels;
                 worn = std::min(worn, spacing_of(had));
             }
+            // What comes is shown although it is worse, or only where it is better.
+            float const least = cell.is_shown() && mirror.gives_way(cell) ? -most_error : 0.0f;
             float const now = covered > 0 ? spacing_error(detail, worn) : 0;
             for (int level = field.least_level(); level < sampling_levels; ++level) {
                 float const then = spacing_error(detail, spacing_of(level));
                 leaf.gain[static_cast<std::size_t>(level)] +=
-                    covered * std::max(now - then, 0.0f) + (pixels - covered) * std::max(hole_error - then, 0.0f);
+                    covered * std::max(now - then, least) + (pixels - covered) * std::max(hole_error - then, 0.0f);
             }
         }
     }

@@ -25,7 +25,7 @@ struct Piece {
     Vec3 velocity{0}; ///< of what deforms, metres a second in the world at its scene time
     BodyNumber body = static_body;
     bool reflects = false; ///< shows a reflection somewhere, which moves otherwise than the surface
-    std::uint8_t idle = 0; ///< moments in which other pieces showed everywhere instead of it
+    std::uint8_t unshown = 0; ///< in so many moments' pictures, one after the other, it showed nowhere
 };
 
 /// Inverse depths of one surface differ by less than this share of the greater one.

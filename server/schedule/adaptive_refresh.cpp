@@ -115,11 +115,11 @@ void AdaptiveRefresh::advance(RefreshInput const& input) {
 }
 
 /// True while the last cycle's plan still holds.
-bool AdaptiveRefresh::goes_on(RefreshInput const& input) const {
+bool AdaptiveRefresh::goes_on(RefreshInput const& input, bool mirrored) const {
     double const seconds = input.now - planned_;
     return next_ < cycle_.size() && seconds < static_cast<double>(input.cycle_seconds) &&
            (rays_per_sample_ == single_ray || same_picture(*seen_, input.state)) &&
-           (!input.moment || looked_ == never || looked_ == input.moment->begun) &&
+           (!mirrored || looked_ == input.moment->begun) &&
            seen_->view.viewport == input.state.view.viewport && !is_cut(*seen_, input.state, seconds);
 }
 
@@ -148,7 +148,7 @@ void AdaptiveRefresh::plan(RefreshInput const& input, RefreshPlan& plan) {
     }
     plan.is_mirrored = input.moment && plan.moment.motions != nullptr;
     still_ = !input.moment && is_still(input.state);
-    plan.is_new_cycle = !goes_on(input);
+    plan.is_new_cycle = !goes_on(input, plan.is_mirrored);
     if (plan.is_new_cycle) {
         advance(input);
         plan_cycle(input, plan);

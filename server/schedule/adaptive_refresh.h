@@ -107,7 +107,7 @@ public:
     double cycle_seconds() const { return cycle_seconds_; }
 
 private:
-    bool goes_on(RefreshInput const& input) const;
+    bool goes_on(RefreshInput const& input, bool mirrored) const;
     void advance(RefreshInput const& input);
     void plan_cycle(RefreshInput const& input, RefreshPlan& plan);
     double plan_inspections(RefreshInput const& input);
