@@ -24,6 +24,8 @@ constexpr double most_unseen = 0.5;
 constexpr float enough = 5e-5f;
 /// What moves is looked at over so many seconds.
 constexpr double least_earlier = 0.03, most_earlier = 0.25;
+/// The samples of so many seconds are planned together: what they cannot do at their price can wait.
+constexpr double planned_seconds = 0.1;
 /// A scene time that jumps by more than this over what has passed has been set.
 constexpr double most_time_step = 0.5;
 
@@ -84,6 +86,9 @@ void AdaptiveRefresh::advance(RefreshInput const& input) {
     if (!seen_ || seen_->view.viewport != state.view.viewport) {
         field_ = PlaceField(ImagePlane(state.view.viewport));
         history_.clear();
+        mirror_ = Mirror(state.view.viewport);
+        looks_ = Looks(state.view.viewport);
+        looked_ = never;
         price_ = 1e-6f;
         still_since_ = input.now;
         scene_moves_ = false;
@@ -93,6 +98,10 @@ void AdaptiveRefresh::advance(RefreshInput const& input) {
             still_since_ = input.now;
         }
         scene_moves_ = seen_->scene_time != state.scene_time;
+        if (seen_->exposure != state.exposure) {
+            mirror_ = Mirror(state.view.viewport);
+            looked_ = never;
+        }
         if (is_cut(*seen_, state, seconds)) {
             invalidate(field_);
         } else {
@@ -106,10 +115,11 @@ void AdaptiveRefresh::advance(RefreshInput const& input) {
 }
 
 /// True while the last cycle's plan still holds.
-bool AdaptiveRefresh::goes_on(RefreshInput const& input) const {
+bool AdaptiveRefresh::goes_on(RefreshInput const& input, bool mirrored) const {
     double const seconds = input.now - planned_;
     return next_ < cycle_.size() && seconds < static_cast<double>(input.cycle_seconds) &&
            (rays_per_sample_ == single_ray || same_picture(*seen_, input.state)) &&
+           (!mirrored || looked_ == input.moment->begun) &&
            seen_->view.viewport == input.state.view.viewport && !is_cut(*seen_, input.state, seconds);
 }
 
@@ -136,8 +146,9 @@ void AdaptiveRefresh::plan(RefreshInput const& input, RefreshPlan& plan) {
         earlier_ = recent_;
         recent_ = {plan.moment.rays, plan.moment.scene_time, moment.begun};
     }
+    plan.is_mirrored = input.moment && plan.moment.motions != nullptr;
     still_ = !input.moment && is_still(input.state);
-    plan.is_new_cycle = !goes_on(input);
+    plan.is_new_cycle = !goes_on(input, plan.is_mirrored);
     if (plan.is_new_cycle) {
         advance(input);
         plan_cycle(input, plan);
@@ -157,6 +168,10 @@ void AdaptiveRefresh::plan_cycle(RefreshInput const& input, RefreshPlan& plan) {
     cycle_seconds_ = static_cast<double>(input.cycle_seconds);
     cycle_budget_ = input.samples_per_second * cycle_seconds_;
     double samples = cycle_budget_;
+    if (plan.is_mirrored) {
+        plan_moment(input, plan.moment, samples);
+        return;
+    }
     if (scene_moves_) {
         plan_probes(input.limits.probe_share * samples, plan);
         samples -= probe_cost * static_cast<double>(plan.probes.size());
@@ -266,6 +281,26 @@ void AdaptiveRefresh::plan_patches(RefreshInput const& input, double samples) {
         if (std::find(cycle_.begin(), end, entry.patch) == end) { // once is enough
             cycle_.push_back(entry.patch);
         }
+    }
+}
+
+/// Where what the viewer holds shows the moment worst.
+void AdaptiveRefresh::plan_moment(RefreshInput const& input, RenderedMoment const& moment, double samples) {
+    if (looked_ != input.moment->begun) {
+        mirror_.look({moment.rays, moment.scene_time}, *moment.motions);
+        looked_ = input.moment->begun;
+    }
+    find_costs(input);
+    MomentBudget const budget{std::max(input.samples_per_second * planned_seconds, samples), input.limits, costs_,
+                              input.moment->begun};
+    moment_plan_.find(mirror_, field_, budget, rated_);
+    double const most = std::max(input.rendered_per_second, input.samples_per_second) / input.samples_per_second;
+    select_patches(samples, most * samples, rated_);
+    if (!costs_.empty()) {
+        mean_bits_ *= mean_cost(rated_, 0.2f);
+    }
+    for (RatedPatch const& entry : rated_) {
+        cycle_.push_back(entry.patch);
     }
 }
 
@@ -409,6 +444,7 @@ std::vector<std::uint8_t> const& AdaptiveRefresh::learn(RefreshPlan const& plan,
     if (plan.viewport != field_.plane().viewport()) {
         send_.assign(framelets.size(), 0);
         stays_.assign(framelets.size(), 0);
+        fadings_.assign(framelets.size(), 0);
         return send_;
     }
     if (plan.rays_per_sample != single_ray) {
@@ -416,6 +452,7 @@ std::vector<std::uint8_t> const& AdaptiveRefresh::learn(RefreshPlan const& plan,
         release(plan);
         send_.assign(framelets.size(), 1);
         stays_.assign(framelets.size(), 0);
+        mirror_learnt(plan, framelets, rendered);
         return send_;
     }
     std::size_t probe = 0;
@@ -442,7 +479,32 @@ std::vector<std::uint8_t> const& AdaptiveRefresh::learn(RefreshPlan const& plan,
     for (LumaHistory::Entry const& entry : entries_) {
         history_.store(entry);
     }
+    if (plan.is_mirrored) { // it does not hold the same where it is needed, or this would not have been planned
+        std::ranges::fill(send_, std::uint8_t{1});
+        std::ranges::fill(stays_, std::uint8_t{0});
+    }
+    mirror_learnt(plan, framelets, rendered);
     return send_;
+}
+
+/// The viewer gets what is sent of this.
+void AdaptiveRefresh::mirror_learnt(RefreshPlan const& plan, std::span<DisplayFramelet const> framelets,
+                                    std::span<Framelet const> rendered) {
+    fadings_.assign(framelets.size(), 0);
+    if (plan.moment.motions == nullptr) {
+        return;
+    }
+    MirrorView const view{plan.moment.rays, plan.moment.scene_time};
+    bool const comparable = plan.is_mirrored && mirror_.looks_at(view);
+    pieces_.clear();
+    for (std::size_t i = 0; i < framelets.size(); ++i) {
+        if (send_[i] != 0) {
+            std::size_t const first = pieces_.size();
+            cut_pieces(rendered[i], framelets[i], field_.plane(), pieces_);
+            fadings_[i] = looks_.learn(mirror_, std::span(pieces_).subspan(first), view.scene_time, comparable);
+        }
+    }
+    mirror_.add(view, *plan.moment.motions, pieces_);
 }
 
 /// Nothing is learnt of the picture: compared with single rays it would seem to have changed.

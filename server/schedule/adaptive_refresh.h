@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "common/rays_per_sample.h"
+#include "server/sampling/looks.h"
+#include "server/sampling/moment_plan.h"
 #include "server/schedule/patch_selection.h"
 #include "server/schedule/place_learning.h"
 #include "server/schedule/view_state.h"
@@ -49,6 +51,7 @@ struct RefreshPlan {
     double moment_begun = 0; ///< when what is rendered was the present
     RenderedMoment moment; ///< whose motions must live until it is learnt
     bool is_new_cycle = false; ///< worked out anew, not what the last one left
+    bool is_mirrored = false; ///< of a held moment, by what the viewer will see of it
     std::vector<Patch> patches;
     std::vector<std::size_t> tile_counts; ///< of each patch
     std::vector<Tile> tiles; ///< of the patches, in order
@@ -86,7 +89,11 @@ public:
     /// though its surfaces go by.
     std::span<std::uint8_t const> staying() const { return stays_; }
 
+    /// For each of these framelets, how soon what it shows fades.
+    std::span<FadingCode const> fadings() const { return fadings_; }
+
     // To look at it.
+    Mirror const& mirror() const { return mirror_; }
     PlaceField const& field() const { return field_; }
     Choices const& choices() const { return choices_; }
     float price() const { return price_; }
@@ -100,12 +107,15 @@ public:
     double cycle_seconds() const { return cycle_seconds_; }
 
 private:
-    bool goes_on(RefreshInput const& input) const;
+    bool goes_on(RefreshInput const& input, bool mirrored) const;
     void advance(RefreshInput const& input);
     void plan_cycle(RefreshInput const& input, RefreshPlan& plan);
     double plan_inspections(RefreshInput const& input);
     void find_costs(RefreshInput const& input);
     void plan_patches(RefreshInput const& input, double samples);
+    void plan_moment(RefreshInput const& input, RenderedMoment const& moment, double samples);
+    void mirror_learnt(RefreshPlan const& plan, std::span<DisplayFramelet const> framelets,
+                       std::span<Framelet const> rendered);
     void plan_probes(double samples, RefreshPlan& plan);
     void plan_refinement(double samples);
     void plan_completion(double samples);
@@ -150,6 +160,11 @@ private:
     std::size_t next_ = 0; ///< of these
     std::vector<std::uint8_t> stays_;
     std::vector<std::uint8_t> send_;
+    std::vector<FadingCode> fadings_;
+    Mirror mirror_;
+    Looks looks_;
+    MomentPlan moment_plan_;
+    double looked_ = never; ///< when the moment began at which the mirror looks
 
     // Scratch.
     std::vector<float> due_errors_;
@@ -157,6 +172,7 @@ private:
     TilingScratch tiling_scratch_;
     std::vector<Patch> cut_;
     std::vector<RatedPatch> rated_;
+    std::vector<Piece> pieces_; ///< of a framelet
     std::vector<std::uint32_t> suspects_;
     std::vector<std::pair<float, std::uint32_t>> unresolved_; ///< error and index of places
     std::vector<std::uint8_t> active_; ///< of the places: whether it moves

@@ -159,6 +159,50 @@ TEST(AdaptiveRefresh, AMomentIsHardlyEverRenderedTwice) {
     }
 }
 
+/// Samples rendered in so many seconds, as a share of those that there was time for.
+double busy_share(SyntheticRefresh& synthetic, double seconds) {
+    std::size_t tiles = 0;
+    synthetic.run(seconds, [&] { tiles += synthetic.tiles.size(); });
+    return static_cast<double>(tiles * framelet_samples) / (seconds * synthetic.input.samples_per_second);
+}
+
+TEST(AdaptiveRefresh, AViewerThatMovesItsSamplesKeepsWhatDoesNotChange) {
+    BodyMotions const motions;
+    for (bool const pipelined : {true, false}) {
+        SyntheticRefresh synthetic(small, texture);
+        synthetic.pipelined = pipelined;
+        synthetic.moment_length = 0.1;
+        synthetic.input.motions = &motions;
+        EXPECT_GT(busy_share(synthetic, 1), 0.5);
+        EXPECT_LT(busy_share(synthetic, 3), 0.25) << "its clock runs, and nothing changes";
+        synthetic.stop();
+        EXPECT_LT(synthetic.finish(30), 30);
+        EXPECT_TRUE(is_all_finest(synthetic.refresh));
+    }
+}
+
+TEST(AdaptiveRefresh, OfAMomentNoTileIsRenderedTwice) {
+    BodyMotions const motions;
+    SyntheticRefresh synthetic(small, moving_texture);
+    synthetic.moment_length = 0.1;
+    synthetic.input.motions = &motions;
+    std::map<Tile, double> rendered; // and of which moment last
+    std::size_t tiles = 0;
+    synthetic.run(3, [&] {
+        for (Tile const tile : synthetic.tiles) {
+            double const moment = synthetic.input.moment->begun;
+            auto const [entry, is_new] = rendered.try_emplace(tile, moment);
+            EXPECT_TRUE(is_new || entry->second < moment);
+            entry->second = moment;
+            ++tiles;
+        }
+    });
+    EXPECT_GT(tiles, 1000u);
+    synthetic.stop();
+    EXPECT_LT(synthetic.finish(30), 30);
+    EXPECT_TRUE(is_all_finest(synthetic.refresh));
+}
+
 TEST(AdaptiveRefresh, InspectionsAndRefinementsAreNotOfTheSameTiles) {
     SyntheticRefresh synthetic(small, moving_texture);
     synthetic.moment_length = 0.1;

@@ -1,0 +1,122 @@
+// What a viewer holds, without its colours: pieces of the moments that it was sent, and what they show in the picture
+// of another moment. In: rendered framelets that are sent, where to look from. Out: for each cell of that picture how
+// good what the viewer shows there is.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/body_motion.h"
+#include "common/reprojection.h"
+#include "server/sampling/piece.h"
+
+namespace framelet {
+
+/// Moments that a viewer keeps, at most, as its `FrameletPool` does.
+inline constexpr std::size_t mirrored_moments = 12;
+/// Side of a cell, pixels.
+inline constexpr int cell_side = 4;
+
+/// A camera (perspective) and a scene time.
+struct MirrorView {
+    ViewRays rays{};
+    SceneTime scene_time = 0;
+};
+
+/// What a cell of the picture shows.
+struct Cell {
+    float inverse_depth = -1; ///< of the nearest surface that covers most of it, 1 / metres
+    float worn = 0; ///< least worn spacing on it, pixels; 0 where nothing shows
+    float detail = 0; ///< as of a piece, in this picture's pixels
+    std::uint32_t piece = 0; ///< of its moment
+    std::uint16_t covered = 0; ///< by anything: a bit for each pixel, row by row
+    std::uint8_t moment = 0; ///< slot
+    std::uint8_t share = 0; ///< of its pixels that what shows covers, of 16
+
+    bool is_shown() const { return share > 0; }
+    float covered_share() const { return static_cast<float>(std::popcount(covered)) / (cell_side * cell_side); }
+};
+
+class Mirror {
+public:
+    explicit Mirror(Viewport viewport = {});
+
+    Viewport viewport() const { return viewport_; }
+    int columns() const { return columns_; }
+    int rows() const { return rows_; }
+    /// Of what was looked at last, row by row.
+    std::span<Cell const> cells() const { return cells_; }
+    Cell const& cell(int column, int row) const { return cells_[index_of(column, row)]; }
+    /// Pixels of a cell that lie in the viewport.
+    int pixels_of(int column, int row) const;
+    Piece const& piece_of(Cell const& cell) const { return moments_[cell.moment].pieces[cell.piece]; }
+    /// Where the middle of that piece is in the picture of the cell, pixels; how much larger it is than it was
+    /// rendered; of when it is.
+    Vec2 place_of(Cell const& cell) const { return moments_[cell.moment].placed[cell.piece].at; }
+    float scale_of(Cell const& cell) const { return moments_[cell.moment].placed[cell.piece].scale; }
+    SceneTime time_of(Cell const& cell) const { return moments_[cell.moment].view.scene_time; }
+    /// True where a new framelet takes the place of what shows, be it better or not: it is of the same camera.
+    bool gives_way(Cell const& cell) const { return moments_[cell.moment].is_of_camera; }
+    /// True when the picture is of this moment.
+    bool looks_at(MirrorView const& view) const;
+
+    /// Finds what the viewer shows of `view` as bodies move by `motions`; forgets what has shown nothing for long.
+    void look(MirrorView const& view, BodyMotions const& motions);
+    /// The viewer has these pieces of the moment `view` as well: they are remembered, and seen at once.
+    void add(MirrorView const& view, BodyMotions const& motions, std::span<Piece const> pieces);
+
+    std::size_t piece_count() const;
+    std::size_t moment_count() const;
+    bool is_empty() const { return piece_count() == 0; }
+
+private:
+    struct Placed { ///< a piece in the picture that is looked at
+        Vec2 at{0};
+        float inverse_depth = -1; ///< < 0: not in the picture
+        float scale = 1;
+        bool shows = false;
+    };
+    struct Moment {
+        MirrorView view;
+        std::uint64_t number = 0; ///< in order of their coming; 0: free
+        std::vector<Piece> pieces;
+        std::vector<Placed> placed; ///< one each
+        std::size_t shown = 0; ///< cells
+        bool is_of_camera = false; ///< that is looked through
+    };
+    struct TurnedBody { ///< takes pixels of a moment to the picture that is looked at
+        std::uint64_t stamp = 0; ///< for which it holds
+        Mat3 far{1};
+        Vec3 parallax{0};
+        std::array<Vec3, 3> carried{}; ///< of a metre along each axis of the world
+        float lens = 1;
+    };
+
+    std::size_t index_of(int column, int row) const {
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
+    }
+    void forget_unshown();
+    void evict();
+    void replace(MirrorView const& view, std::span<Piece const> pieces);
+    Moment& slot_of(MirrorView const& view);
+    TurnedBody const& turn_to(Moment const& moment, BodyNumber body, BodyMotions const& motions);
+    void place(Moment& moment, std::size_t first, BodyMotions const& motions);
+    void splat(Moment& moment, std::size_t index);
+    void count_shown();
+
+    Viewport viewport_;
+    int columns_, rows_;
+    std::vector<Cell> cells_;
+    std::array<Moment, mirrored_moments + 1> moments_;
+    std::uint64_t last_number_ = 0;
+    MirrorView target_;
+
+    std::vector<std::uint8_t> replaced_; ///< by cell
+    std::vector<TurnedBody> turned_; ///< by body
+    std::uint64_t stamp_ = 0;
+};
+
+} // namespace framelet

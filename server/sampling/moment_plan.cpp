@@ -1,0 +1,217 @@
+#include "server/sampling/moment_plan.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/error.h"
+#include "common/sample_worth.h"
+
+namespace framelet {
+namespace {
+
+/// Of what nothing is known: as `unknown_place` has it.
+constexpr float unknown_detail = 0.0025f;
+/// However coarse samples are, their mean is about right.
+constexpr float most_error = 0.1f;
+/// Prices outside are of no use: of a sample, squared error summed over pixels.
+constexpr float least_price = 1e-6f, most_price = 1e2f;
+
+constexpr float spacing_of(int level) {
+    return level <= pixel_level ? static_cast<float>(1 << (pixel_level - level))
+                                : 1.0f / static_cast<float>(1 << (level - pixel_level));
+}
+
+} // namespace
+
+float spacing_error(float detail, float spacing) {
+    float const s = std::max(spacing, finest_shown_spacing);
+    constexpr float alias = 4.0f / 9.0f;
+    float const missed = s <= 1   ? s * s * s // the mean of 1 / s^2 samples, of what lies between them
+                         : s <= 2 ? 1 + (s - 1) * 2 * alias
+                                  : error_growth * s - 1;
+    return std::min(detail * missed, most_error);
+}
+
+void MomentPlan::find(Mirror const& mirror, PlaceField const& field, MomentBudget const& budget,
+                      std::vector<RatedPatch>& rated) {
+    FRAMELET_CHECK(mirror.viewport() == field.plane().viewport());
+    rated.clear();
+    find_gains(mirror, field, budget);
+    sum_nodes(field, budget);
+    float const least = std::max(least_price, budget.limits.least_price);
+    float low = least, high = most_price;
+    price_ = least;
+    if (solve(field, budget, least) > budget.samples) {
+        for (int step = 0; step < 18; ++step) {
+            float const middle = std::sqrt(low * high);
+            (solve(field, budget, middle) > budget.samples ? low : high) = middle;
+        }
+        price_ = high;
+        if (!(solve(field, budget, high) > 0)) { // rather a little more than none at all
+            price_ = low;
+            solve(field, budget, low);
+        }
+    }
+    collect(field, 0, 0, rated);
+}
+
+void MomentPlan::find_gains(Mirror const& mirror, PlaceField const& field, MomentBudget const& budget) {
+    double detail = 0;
+    std::size_t shown = 0;
+    for (Cell const& cell : mirror.cells()) {
+        detail += cell.is_shown() ? static_cast<double>(cell.detail) : 0;
+        shown += cell.is_shown() ? 1 : 0;
+    }
+    mean_detail_ = shown > 0 ? static_cast<float>(detail / static_cast<double>(shown)) : unknown_detail;
+    leaves_.assign(field.size(), Leaf{});
+    for (std::uint32_t const index : field.visible()) {
+        add_gains(mirror, field, index, budget);
+    }
+}
+
+/// Of one place.
+void MomentPlan::add_gains(Mirror const& mirror, PlaceField const& field, std::uint32_t index,
+                           MomentBudget const& budget) {
+    Place const& place = field[index];
+    Leaf& leaf = leaves_[index];
+    // What is on its way, or has been rendered of this moment, the viewer has whatever the mirror makes of it.
+    int had = place.taken.level;
+    if (place.rendered >= budget.moment_begun) {
+        had = std::max(had, place.level);
+    }
+    PixelRect const rect = field.rect_of(index);
+    int const last_column = std::min(rect.right / cell_side, mirror.columns());
+    int const last_row = std::min(rect.bottom / cell_side, mirror.rows());
+    float place_detail = 0;
+    int shown = 0;
+    for (int row = rect.top / cell_side; row < last_row; ++row) {
+        for (int column = rect.left / cell_side; column < last_column; ++column) {
+            Cell const& cell = mirror.cell(column, row);
+            place_detail += cell.is_shown() ? cell.detail : 0;
+            shown += cell.is_shown() ? 1 : 0;
+        }
+    }
+    float const hidden_detail = shown > 0 ? place_detail / static_cast<float>(shown) : mean_detail_;
+    for (int row = rect.top / cell_side; row < last_row; ++row) {
+        for (int column = rect.left / cell_side; column < last_column; ++column) {
+            Cell const& cell = mirror.cell(column, row);
+            auto const pixels = static_cast<float>(mirror.pixels_of(column, row));
+            float covered = cell.covered_share() * pixels;
+            float const detail = cell.is_shown() ? cell.detail : hidden_detail;
+            float worn = cell.is_shown() ? cell.worn : INFINITY;
+            if (had >= 0) {
+                covered = pixels;
+                worn = std::min(worn, spacing_of(had));
+            }
+            // What comes is shown although it is worse, or only where it is better.
+            float const least = cell.is_shown() && mirror.gives_way(cell) ? -most_error : 0.0f;
+            float const now = covered > 0 ? spacing_error(detail, worn) : 0;
+            for (int level = field.least_level(); level < sampling_levels; ++level) {
+                float const then = spacing_error(detail, spacing_of(level));
+                leaf.gain[static_cast<std::size_t>(level)] +=
+                    covered * std::max(now - then, least) + (pixels - covered) * std::max(hole_error - then, 0.0f);
+            }
+        }
+    }
+    for (int level = field.least_level(); level < sampling_levels; ++level) {
+        auto const l = static_cast<std::size_t>(level);
+        float const factor = budget.costs.empty() ? 1.0f : budget.costs[index][l];
+        leaf.cost[l] = samples_per_pixel(level) * field.pixels_of(index) * factor;
+    }
+}
+
+/// Gains of tiles that are larger than a place.
+void MomentPlan::sum_nodes(PlaceField const& field, MomentBudget const& budget) {
+    nodes_.resize(static_cast<std::size_t>(field.depth()));
+    for (int depth = 0; depth < field.depth(); ++depth) {
+        std::vector<Node>& nodes = nodes_[static_cast<std::size_t>(depth)];
+        nodes.assign(std::size_t{1} << (2 * depth), Node{});
+        int const level = field.level_of(depth);
+        if (level < std::max(field.least_level(), budget.limits.least_level) || level > budget.limits.most_level) {
+            continue;
+        }
+        int const shift = 2 * (field.depth() - depth);
+        for (std::uint32_t const index : field.visible()) {
+            Leaf const& leaf = leaves_[index];
+            Node& node = nodes[index >> shift];
+            node.gain += leaf.gain[static_cast<std::size_t>(level)];
+            node.cost += leaf.cost[static_cast<std::size_t>(level)];
+        }
+    }
+}
+
+/// Chooses what is best for the price; returns what it costs.
+double MomentPlan::solve(PlaceField const& field, MomentBudget const& budget, float price) {
+    int const first = std::max(field.level_of(field.depth()), budget.limits.least_level);
+    auto const deepest = static_cast<std::size_t>(field.depth());
+    for (std::vector<Node>& nodes : nodes_) {
+        for (Node& node : nodes) {
+            node.best = node.spent = 0;
+        }
+    }
+    double all = 0;
+    for (std::uint32_t const index : field.visible()) {
+        Leaf& leaf = leaves_[index];
+        leaf.level = -1;
+        float best = 0;
+        for (int level = first; level <= budget.limits.most_level; ++level) {
+            auto const l = static_cast<std::size_t>(level);
+            float const value = leaf.gain[l] - price * leaf.cost[l];
+            if (value > best) {
+                best = value;
+                leaf.level = level;
+            }
+        }
+        float const spent = leaf.level >= 0 ? leaf.cost[static_cast<std::size_t>(leaf.level)] : 0;
+        if (deepest > 0) {
+            nodes_[deepest - 1][index >> 2].best += best;
+            nodes_[deepest - 1][index >> 2].spent += spent;
+        }
+        all += static_cast<double>(spent);
+    }
+    for (std::size_t depth = deepest; depth-- > 0;) {
+        for (std::size_t i = 0; i < nodes_[depth].size(); ++i) {
+            Node& node = nodes_[depth][i];
+            float const value = node.gain - price * node.cost;
+            node.whole = node.cost > 0 && value > node.best;
+            if (node.whole) {
+                all += static_cast<double>(node.cost - node.spent);
+                node.best = value;
+                node.spent = node.cost;
+            }
+            if (depth > 0) {
+                nodes_[depth - 1][i >> 2].best += node.best;
+                nodes_[depth - 1][i >> 2].spent += node.spent;
+            }
+        }
+    }
+    return all;
+}
+
+void MomentPlan::collect(PlaceField const& field, int depth, std::uint32_t index,
+                         std::vector<RatedPatch>& rated) const {
+    Tile const tile{(1u << (2 * depth)) + index};
+    auto const rate = [&](int tile_depth, float gain, float cost) {
+        Patch const patch{tile, tile_depth};
+        rated.push_back({patch, framelet_samples * tile_count(patch), static_cast<double>(cost),
+                         static_cast<double>(gain) / static_cast<double>(cost)});
+    };
+    if (depth == field.depth()) {
+        Leaf const& leaf = leaves_[index];
+        if (leaf.level >= 0) {
+            auto const l = static_cast<std::size_t>(leaf.level);
+            rate(field.depth_of(leaf.level), leaf.gain[l], leaf.cost[l]);
+        }
+        return;
+    }
+    Node const& node = nodes_[static_cast<std::size_t>(depth)][index];
+    if (node.whole) {
+        rate(depth, node.gain, node.cost);
+    } else if (node.best > 0) {
+        for (std::uint32_t child = 0; child < 4; ++child) {
+            collect(field, depth + 1, 4 * index + child, rated);
+        }
+    }
+}
+
+} // namespace framelet

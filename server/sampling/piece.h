@@ -1,0 +1,40 @@
+// Pieces: small parts of rendered framelets, each of one surface on one body, by which the server remembers what a
+// viewer holds without its colours. In: a rendered framelet with its depths, and as it is shown. Out: pieces.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/framelet.h"
+#include "common/math.h"
+
+namespace framelet {
+
+struct Piece {
+    Vec2 centre{0}; ///< in the picture of its moment, pixels
+    Vec2 half_side{0}; ///< of the rectangle that it covers there, pixels
+    float inverse_depth = 0; ///< mean, 1 / metres; finite, >= 0
+    float spacing = 1; ///< of its samples, pixels
+    float luma = 0; ///< mean, display-encoded, [0, 1]
+    Vec2 slope{0}; ///< of the luma, for each pixel
+    /// Energy of the detail between samples a pixel apart: of samples `s` pixels apart it is about s times as much, as
+    /// it is of edges, which are most of a picture. Mean squared luma.
+    float detail = 0;
+    float fading = 0; ///< pixels of spacing a second: see `common/sample_worth.h`
+    float change = 0; ///< how fast its looks are known to change, mean squared luma a second
+    Vec3 velocity{0}; ///< of what deforms, metres a second in the world at its scene time
+    BodyNumber body = static_body;
+    bool reflects = false; ///< shows a reflection somewhere, which moves otherwise than the surface
+    std::uint8_t unshown = 0; ///< in so many moments' pictures, one after the other, it showed nowhere
+};
+
+/// Inverse depths of one surface differ by less than this share of the greater one.
+inline constexpr float surface_tolerance = 0.05f;
+
+/// Appends the pieces of a framelet: squares of 4 .. 16 pixels, each split in a near and a far part where it has
+/// both, or in what lies on different bodies. `fading` and `change` stay 0. All numbers are finite, whatever the
+/// depths are.
+void cut_pieces(Framelet const& rendered, DisplayFramelet const& shown, ImagePlane const& plane,
+                std::vector<Piece>& pieces);
+
+} // namespace framelet

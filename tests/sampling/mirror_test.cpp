@@ -1,0 +1,182 @@
+#include "server/sampling/mirror.h"
+
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "tests/sampling/rendered_planes.h"
+
+namespace framelet {
+namespace {
+
+constexpr Viewport viewport{128, 96};
+ImagePlane const plane{viewport};
+BodyMotions const no_motions;
+
+Camera camera_at(Vec3 position) {
+    Camera camera;
+    camera.position = position;
+    return camera;
+}
+MirrorView view_at(Vec3 position, SceneTime time = 0) {
+    return {make_view_rays(camera_at(position), viewport), time};
+}
+/// Metres for each pixel of what is a metre away.
+float pixel_size() {
+    return view_at(Vec3(0)).rays.direction_dx.x;
+}
+Seen wall(float, float) {
+    return {};
+}
+
+TEST(Mirror, AStillPictureShowsWhatItWasSent) {
+    for (int level = 0; level <= coarsest_levels + finest_levels; ++level) {
+        int const depth = plane.pixel_depth() - coarsest_levels + level;
+        Mirror mirror(viewport);
+        mirror.look(view_at(Vec3(0)), no_motions);
+        EXPECT_EQ(summary_of(mirror).holes, 1);
+        mirror.add(view_at(Vec3(0)), no_motions, render_pieces(plane, depth, wall));
+        for (int again = 0; again < 6; ++again) { // nothing of it is forgotten
+            Summary const summary = summary_of(mirror);
+            EXPECT_EQ(summary.holes, 0);
+            EXPECT_FLOAT_EQ(static_cast<float>(summary.worn),
+                            std::max(plane.sample_spacing(make_tile(depth, 0, 0)), 0.5f));
+            mirror.look(view_at(Vec3(0)), no_motions);
+        }
+    }
+}
+
+TEST(Mirror, ACameraThatGoesSidewaysUncoversItsEdge) {
+    Mirror mirror(viewport);
+    mirror.look(view_at(Vec3(0)), no_motions);
+    mirror.add(view_at(Vec3(0)), no_motions, render_pieces(plane, plane.pixel_depth(), wall));
+    mirror.look(view_at(Vec3(32 * 10 * pixel_size(), 0, 0)), no_motions); // 32 pixels at 10 metres
+    Summary const summary = summary_of(mirror);
+    EXPECT_NEAR(summary.holes, 32.0 / viewport.width, 0.02);
+    EXPECT_NEAR(summary.worn, 1, 1e-3);
+}
+
+TEST(Mirror, WhatComesNearerGetsCoarser) {
+    Mirror mirror(viewport);
+    mirror.look(view_at(Vec3(0)), no_motions);
+    mirror.add(view_at(Vec3(0)), no_motions, render_pieces(plane, plane.pixel_depth(), wall));
+    mirror.look(view_at(Vec3(0, 0, -5)), no_motions); // from 10 metres to 5
+    Summary const summary = summary_of(mirror);
+    EXPECT_EQ(summary.holes, 0);
+    EXPECT_NEAR(summary.worn, 2, 1e-3);
+    mirror.look(view_at(Vec3(0, 0, 10)), no_motions); // and back to 20
+    EXPECT_NEAR(summary_of(mirror).holes, 0.75, 0.03);
+    EXPECT_NEAR(summary_of(mirror).worn, 0.5, 1e-3);
+}
+
+TEST(Mirror, WhatIsUncoveredWasHeldOnceOrIsAHole) {
+    // A near square before a wall, and the camera goes by it.
+    auto const look_from = [](float shift) {
+        return [shift](float x, float y) {
+            float const at = x + 4 * shift; // pixels at 2.5 metres move four times as far as at 10
+            return at >= 60 && at < 92 && y >= 32 && y < 64 ? Seen{2.5f, 0.1f} : Seen{};
+        };
+    };
+    auto const moved = [](float pixels) { return view_at(Vec3(pixels * 10 * pixel_size(), 0, 0)); };
+    auto const uncovered = [&](Mirror const& mirror) {
+        int holes = 0;
+        for (int row = 8; row < 16; ++row) {
+            for (int column = 8; column < 23; ++column) {
+                holes += cell_side * cell_side - std::popcount(mirror.cell(column, row).covered);
+            }
+        }
+        return holes;
+    };
+    Mirror mirror(viewport);
+    mirror.look(moved(0), no_motions);
+    mirror.add(moved(0), no_motions, render_pieces(plane, plane.pixel_depth(), look_from(0)));
+    mirror.look(moved(4), no_motions); // the square goes 16 pixels, the wall behind it 4
+    EXPECT_NEAR(uncovered(mirror), 12 * 32, 100);
+    mirror.add(moved(4), no_motions, render_pieces(plane, plane.pixel_depth(), look_from(4)));
+    mirror.look(moved(0), no_motions);
+    EXPECT_EQ(uncovered(mirror), 0) << "each moment has seen what the other one has not";
+    mirror.look(moved(2), no_motions);
+    EXPECT_LT(uncovered(mirror), 40);
+}
+
+TEST(Mirror, TheLeastWornShows) {
+    Mirror mirror(viewport);
+    mirror.look(view_at(Vec3(0)), no_motions);
+    auto fine = render_pieces(plane, plane.pixel_depth(), wall);
+    for (Piece& piece : fine) {
+        piece.fading = 1;
+    }
+    mirror.add(view_at(Vec3(0), 0), no_motions, fine);
+    Vec3 const aside(1e-5f, 0, 0);
+    mirror.look(view_at(aside, 2), no_motions);
+    EXPECT_NEAR(summary_of(mirror).worn, 3, 1e-3) << "two seconds at a pixel a second";
+    mirror.add(view_at(aside, 2), no_motions, render_pieces(plane, plane.pixel_depth() - 2, wall));
+    EXPECT_NEAR(summary_of(mirror).worn, 3, 1e-3) << "fresh ones 4 pixels apart are no better";
+    mirror.add(view_at(aside, 2), no_motions, render_pieces(plane, plane.pixel_depth() - 1, wall));
+    EXPECT_NEAR(summary_of(mirror).worn, 2, 1e-3);
+}
+
+TEST(Mirror, OfOneCameraTheNewestIsHeld) {
+    Mirror mirror(viewport);
+    mirror.look(view_at(Vec3(0), 0), no_motions);
+    mirror.add(view_at(Vec3(0), 0), no_motions, render_pieces(plane, plane.pixel_depth(), wall));
+    mirror.look(view_at(Vec3(0), 1), no_motions);
+    mirror.add(view_at(Vec3(0), 1), no_motions, render_pieces(plane, plane.pixel_depth() - 1, wall));
+    mirror.look(view_at(Vec3(0), 2), no_motions);
+    EXPECT_NEAR(summary_of(mirror).worn, 2, 1e-3);
+    EXPECT_EQ(summary_of(mirror).holes, 0);
+    EXPECT_TRUE(mirror.gives_way(mirror.cell(3, 3)));
+}
+
+TEST(Mirror, ABodyCarriesItsPieces) {
+    BodyMotions motions;
+    BodyTrack track;
+    track.body = 1;
+    track.first_key = 0;
+    for (int key = 0; key <= body_keys_per_second; ++key) {
+        BodyPose pose;
+        pose.translation.x = static_cast<float>(key) / body_keys_per_second * 32 * 10 * pixel_size();
+        track.keys.push_back(pose);
+    }
+    motions.extend(track);
+    auto const half = [](float x, float) { return Seen{10, 0.5f, x < 64 ? BodyNumber{1} : static_body}; };
+    Mirror mirror(viewport);
+    mirror.look(view_at(Vec3(0)), motions);
+    mirror.add(view_at(Vec3(0)), motions, render_pieces(plane, plane.pixel_depth(), half));
+    mirror.look(view_at(Vec3(0), 1), motions); // 32 pixels to the right
+    EXPECT_NEAR(summary_of(mirror).holes, 32.0 / viewport.width, 0.02);
+    EXPECT_EQ(mirror.cell(2, 4).covered, 0);
+}
+
+TEST(Mirror, KeepsFewMomentsAndWhatIsBetteredNotForLong) {
+    Mirror mirror(viewport);
+    for (int i = 0; i < 100; ++i) {
+        float const x = 0.01f * static_cast<float>(i);
+        mirror.look(view_at(Vec3(x, 0, 0), i), no_motions);
+        mirror.add(view_at(Vec3(x, 0, 0), i), no_motions, render_pieces(plane, plane.pixel_depth(), wall));
+        EXPECT_LE(mirror.moment_count(), mirrored_moments);
+        EXPECT_EQ(summary_of(mirror).holes, 0);
+    }
+    EXPECT_LT(mirror.piece_count(), 5 * render_pieces(plane, plane.pixel_depth(), wall).size());
+}
+
+TEST(Mirror, HostileViewsAndDepthsDoNoHarm) {
+    constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+    Mirror mirror(viewport);
+    for (float const depth : {0.0f, -1.0f, INFINITY, nan, 1e-30f, 1e30f}) {
+        mirror.look(view_at(Vec3(0)), no_motions);
+        mirror.add(view_at(Vec3(0)), no_motions, render_pieces(plane, plane.pixel_depth(), [&](float, float) {
+                       return Seen{depth, 0.5f};
+                   }));
+        for (float const far : {-1e10f, -1e-6f, 1e-6f, 1.0f, 1e10f}) {
+            mirror.look(view_at(Vec3(far, far, far)), no_motions);
+            for (Cell const& cell : mirror.cells()) {
+                EXPECT_TRUE(std::isfinite(cell.inverse_depth) && std::isfinite(cell.worn) &&
+                            std::isfinite(cell.detail));
+            }
+        }
+    }
+}
+
+} // namespace
+} // namespace framelet

@@ -1,0 +1,137 @@
+#include "server/sampling/moment_plan.h"
+
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "tests/sampling/rendered_planes.h"
+
+namespace framelet {
+namespace {
+
+constexpr Viewport viewport{250, 130};
+ImagePlane const plane{viewport};
+BodyMotions const no_motions;
+
+MirrorView view_at(float x) {
+    Camera camera;
+    camera.position.x = x;
+    return {make_view_rays(camera, viewport), 0};
+}
+/// Left half flat, right half not.
+Seen half_busy(float x, float y) {
+    float const wave = 0.5f + 0.2f * std::sin(1.7f * x) * std::sin(1.3f * y);
+    return {10, x < 128 ? 0.5f : wave};
+}
+
+struct Planner {
+    Mirror mirror{viewport};
+    PlaceField field{plane};
+    MomentPlan plan;
+    std::vector<RatedPatch> rated;
+
+    double find(double samples) {
+        plan.find(mirror, field, {samples, {}, {}, 0}, rated);
+        double cost = 0;
+        for (RatedPatch const& entry : rated) {
+            cost += entry.cost;
+            EXPECT_TRUE(std::isfinite(entry.urgency) && entry.urgency > 0);
+        }
+        return cost;
+    }
+    std::vector<Tile> tiles() const {
+        std::vector<Tile> tiles;
+        for (RatedPatch const& entry : rated) {
+            append_tiles(plane, entry.patch, tiles);
+        }
+        return tiles;
+    }
+    void render(MirrorView const& view, Look const& look) {
+        std::vector<Piece> pieces;
+        for (Tile const tile : tiles()) {
+            RenderedTile const one = render_tile(plane, tile, look);
+            cut_pieces(one.rendered, one.shown, plane, pieces);
+        }
+        mirror.add(view, no_motions, pieces);
+    }
+};
+
+TEST(MomentPlan, UsesItsBudgetAndCoversWhatIsEmpty) {
+    for (double const share : {0.1, 0.2, 0.5, 1.0, 3.0}) {
+        Planner planner;
+        double const samples = share * viewport.width * viewport.height;
+        planner.mirror.look(view_at(0), no_motions);
+        double const cost = planner.find(samples);
+        EXPECT_LE(cost, samples) << share;
+        EXPECT_GT(cost, 0.2 * samples) << share; // all places alike: a level more of one is one more of all
+        std::set<std::uint32_t> pixels;
+        for (Tile const tile : planner.tiles()) {
+            PixelRect const rect = plane.tile_rect(tile);
+            for (int y = rect.top; y < std::min(rect.bottom, viewport.height); ++y) {
+                for (int x = rect.left; x < std::min(rect.right, viewport.width); ++x) {
+                    EXPECT_TRUE(pixels.insert(static_cast<std::uint32_t>(y * viewport.width + x)).second) << "twice";
+                }
+            }
+        }
+        EXPECT_EQ(pixels.size(), static_cast<std::size_t>(viewport.width * viewport.height));
+    }
+}
+
+TEST(MomentPlan, TheBusyHalfGetsTheFinerSamples) {
+    Planner planner;
+    planner.mirror.look(view_at(0), no_motions);
+    planner.mirror.add(view_at(0), no_motions, render_pieces(plane, plane.pixel_depth() - 1, half_busy));
+    planner.find(0.2 * viewport.width * viewport.height);
+    EXPECT_FALSE(planner.rated.empty());
+    for (Tile const tile : planner.tiles()) {
+        EXPECT_GE(plane.tile_rect(tile).left, 128);
+        EXPECT_GE(tile.depth(), plane.pixel_depth());
+    }
+}
+
+TEST(MomentPlan, NothingIsPlannedTwiceAndInTheEndNothing) {
+    Planner planner;
+    std::set<Tile> rendered;
+    int rounds = 0;
+    for (; rounds < 30; ++rounds) {
+        planner.mirror.look(view_at(0), no_motions);
+        planner.find(0.3 * viewport.width * viewport.height);
+        if (planner.rated.empty()) {
+            break;
+        }
+        for (Tile const tile : planner.tiles()) {
+            EXPECT_TRUE(rendered.insert(tile).second);
+        }
+        planner.render(view_at(0), half_busy);
+    }
+    EXPECT_GT(rounds, 3);
+    EXPECT_LT(rounds, 30);
+}
+
+TEST(MomentPlan, WhatComesIntoViewIsFirst) {
+    Planner planner;
+    planner.mirror.look(view_at(0), no_motions);
+    planner.mirror.add(view_at(0), no_motions, render_pieces(plane, plane.pixel_depth(), half_busy));
+    float const pixel = 10 * view_at(0).rays.direction_dx.x;
+    planner.mirror.look(view_at(20 * pixel), no_motions);
+    planner.find(viewport.width * viewport.height);
+    double const samples = 20.0 * viewport.height; // what the strip takes
+    select_patches(samples, samples, planner.rated);
+    ASSERT_FALSE(planner.rated.empty());
+    for (Tile const tile : planner.tiles()) {
+        EXPECT_GT(plane.tile_rect(tile).right, viewport.width - 20);
+    }
+}
+
+TEST(MomentPlan, WhatIsTakenIsNotTakenAgain) {
+    Planner planner;
+    planner.mirror.look(view_at(0), no_motions);
+    for (std::uint32_t const index : planner.field.visible()) {
+        planner.field[index].taken = {sampling_levels - 1, 0, 0};
+    }
+    planner.find(1e6);
+    EXPECT_TRUE(planner.rated.empty());
+}
+
+} // namespace
+} // namespace framelet
