@@ -21,6 +21,13 @@ if(FRAMELET_SANITIZE)
   endif()
 endif()
 target_link_libraries(framelet_options INTERFACE glm::glm Threads::Threads)
+
+# For files that do no more than read a command line, once: CLI11's templates keep the optimiser busy for several seconds a
+# file.
+function(framelet_reads_command_line)
+  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS $<$<CONFIG:Release>:-O1>)
+endfunction()
+
 find_program(CCACHE ccache)
 if(CCACHE)
   set_property(GLOBAL PROPERTY RULE_LAUNCH_COMPILE ${CCACHE})
