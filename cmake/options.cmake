@@ -30,5 +30,10 @@ endfunction()
 
 find_program(CCACHE ccache)
 if(CCACHE)
-  set_property(GLOBAL PROPERTY RULE_LAUNCH_COMPILE ${CCACHE})
+  # Precompiled headers are looked for in the cache only with these two told; no file uses __TIME__ or the like. What a file
+  # includes is taken from the compiler: to preprocess it first costs a tenth of the build.
+  set_property(GLOBAL PROPERTY RULE_LAUNCH_COMPILE "env CCACHE_DEPEND=1 CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE}")
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(framelet_options INTERFACE -fpch-preprocess) # for the same reason
+  endif()
 endif()
