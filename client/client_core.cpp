@@ -7,15 +7,9 @@
 #include <mutex>
 #include <utility>
 
-#include "client/confidence_colors.h"
-#include "client/framelet_outlines.h"
+#include "client/picture_maker.h"
 #include "client/server_connection.h"
-#include "client/smooth_view.h"
 #include "common/error.h"
-#include "common/framelet_cache.h"
-#include "common/reconstruction.h"
-#include "common/reprojector.h"
-#include "common/scene_smoother.h"
 #include "protocol/batch_codec.h"
 
 namespace framelet {
@@ -34,6 +28,9 @@ double ratio(double amount, std::uint64_t count) {
 
 /// A batch's number, view, scene time and length prefix on the wire, about.
 constexpr std::size_t batch_header_bytes = 96;
+
+/// What waits for a painter that is busy, in samples: some 200 MB. Beyond that batches wait with it.
+constexpr std::size_t most_waiting_samples = 64u << 20;
 
 } // namespace
 
@@ -60,31 +57,29 @@ struct ClientCore::Impl {
     Clock::time_point const start = Clock::now();
     BatchCodec codec; // the connection's thread only
     HeldPicture held; // the same
-    Batch received_batch; // the same: the last one, whose memory the next one gets, at most some 200 MB
 
-    mutable std::mutex mutex; // guards all that follows, but the connection
+    /// Guards what pictures are made of. Whoever has it may take `mutex` as well, not the other way round.
+    std::mutex picture_mutex;
+    std::optional<PictureMaker> maker;
+    std::vector<Batch> taken; ///< scratch
+
+    mutable std::mutex mutex; // guards all that follows, but the connection; never held for long
     std::condition_variable news_arrived;
     bool news = false;
+    std::vector<Batch> arrived; ///< and not in the maker yet, in order
+    std::size_t arrived_samples = 0;
+    std::vector<Batch> spare_batches; ///< for their memory
     std::optional<CameraUpdate> waiting_view;
     CameraUpdate view; ///< the newest, sent or not
     std::deque<SentCamera> sent_cameras;
+    std::deque<SentCamera> set_cameras; ///< and not shown yet
     std::optional<Clock::time_point> first_camera_time;
-    std::optional<FrameletCache> cache;
-    std::uint64_t cache_generation = 0;
-    std::uint64_t shown_generation = 0;
-    std::uint8_t const* shown_pixels = nullptr; ///< recognises the caller's picture
+    PictureSettings picture_settings;
+    bool has_picture = false; ///< something is held of the newest viewport
     std::uint64_t last_batch = 0;
-    Camera shown_camera; ///< of the newest batch
+    Camera shown_camera;
     SceneTime shown_time = 0;
-    bool reproject = true;
-    BodyMotions motions;
-    Reprojector reprojector;
-    LateClock late_clock{0};
-    CameraTrack batch_cameras; ///< only while the scene is smoothed
-    std::optional<SceneSmoother> smoother;
-    Camera pictured_camera; ///< what the picture shows
-    SceneTime pictured_time = 0; ///< the same
-    std::vector<PixelRect> arrived; ///< scratch: where batches have changed something
+    bool is_smooth = false;
     Status status;
     Clock::time_point status_time = start;
     std::optional<std::string> end_reason;
@@ -110,6 +105,7 @@ struct ClientCore::Impl {
         connection = std::make_unique<ServerConnection>(options, std::move(handlers));
         std::lock_guard const lock(mutex);
         shown_camera = connection->welcome().start_camera;
+        picture_settings.scene_moves = connection->welcome().animation_duration > 0;
         if (status_time == start) { // no Status has come yet
             status.clock = connection->welcome().clock;
         }
@@ -161,53 +157,100 @@ struct ClientCore::Impl {
 
     void receive_batch(EncodedBatch const& encoded) {
         Clock::time_point const received = Clock::now();
+        Batch batch;
         {
             std::lock_guard const lock(mutex);
             if (view.view.number == 0) {
                 ++statistics.stale_batches; // nobody has asked for a picture yet
                 return;
             }
+            if (!spare_batches.empty()) {
+                batch = std::move(spare_batches.back());
+                spare_batches.pop_back();
+            }
         }
-        codec.decode(encoded, &held, received_batch);
+        codec.decode(encoded, &held, batch);
         Clock::time_point const decoded = Clock::now();
-        Ack ack{received_batch.number, 0, 0};
+        Ack ack{batch.number, 0, 0};
         ack.received_us = static_cast<std::uint64_t>(
             std::chrono::duration_cast<std::chrono::microseconds>(received.time_since_epoch()).count());
         ack.decode_us = static_cast<std::uint32_t>(std::min(seconds_between(received, decoded) * 1e6, 4e9));
+        connection->send(ack);
+        bool is_full = false;
         {
             std::lock_guard const lock(mutex);
-            take_in(received_batch);
             statistics.bytes += encoded.payload.size() + encoded.tiles.size() * sizeof(Tile) + batch_header_bytes;
             statistics.decode_seconds += seconds_between(received, decoded);
-            note_round_trip(received_batch.view.number, received);
+            std::size_t const samples = batch.framelets.size() * framelet_samples;
+            bool const is_stale = batch.view.viewport != view.view.viewport;
+            ++statistics.batches;
+            statistics.framelets += batch.framelets.size();
+            statistics.samples += samples;
+            note_round_trip(batch.view.number, received);
+            last_batch = std::max(last_batch, batch.number);
+            statistics.stale_batches += is_stale ? 1 : 0;
+            if (!is_stale) {
+                arrived_samples += samples;
+                arrived.push_back(std::move(batch));
+            }
+            is_full = arrived_samples > most_waiting_samples;
         }
-        connection->send(ack);
+        if (is_full) {
+            std::lock_guard const lock(picture_mutex);
+            take_in();
+        }
     }
 
-    /// Under the lock.
-    void take_in(Batch const& batch) {
-        ++statistics.batches;
-        statistics.framelets += batch.framelets.size();
-        statistics.samples += batch.framelets.size() * framelet_samples;
-        last_batch = std::max(last_batch, batch.number);
-        if (!cache || batch.view.viewport != cache->plane().viewport()) {
-            ++statistics.stale_batches;
-            return;
+    /// Puts all that has arrived into what pictures are made of. Under the picture's lock, and not the other one.
+    void take_in() {
+        Viewport viewport;
+        PictureSettings settings;
+        {
+            std::lock_guard const lock(mutex);
+            taken.swap(arrived);
+            arrived_samples = 0;
+            viewport = view.view.viewport;
+            settings = picture_settings;
         }
-        shown_camera = batch.view.camera;
-        shown_time = batch.scene_time;
+        if (!maker || maker->viewport() != viewport) {
+            maker.emplace(viewport, settings);
+        }
+        maker->set(settings);
         Clock::time_point const before = Clock::now();
-        cache->insert(batch);
-        if (smoother) {
-            smoother->insert(batch);
-            batch_cameras.add(batch.scene_time, batch.view.camera);
+        std::uint64_t stale = 0;
+        for (Batch const& batch : taken) {
+            if (batch.view.viewport == viewport) {
+                maker->insert(batch);
+            } else {
+                ++stale;
+            }
         }
-        for (BodyTrack const& track : batch.tracks) {
-            motions.extend(track);
+        Clock::time_point const after = Clock::now();
+        double const coverage = taken.empty() ? -1 : maker->cache().coverage();
+        std::lock_guard const lock(mutex);
+        statistics.stale_batches += stale;
+        statistics.insert_seconds += seconds_between(before, after);
+        has_picture = !maker->is_empty();
+        note_held(coverage, after);
+        constexpr std::size_t most_spares = 4;
+        while (!taken.empty() && spare_batches.size() < most_spares) {
+            spare_batches.push_back(std::move(taken.back()));
+            taken.pop_back();
         }
-        statistics.insert_seconds += seconds_between(before, Clock::now());
-        if (statistics.full_picture_seconds < 0 && first_camera_time && cache->coverage() >= 1) {
-            statistics.full_picture_seconds = seconds_between(*first_camera_time, Clock::now());
+        taken.clear();
+    }
+
+    /// Under the lock. `coverage` < 0: nothing has come.
+    void note_held(double coverage, Clock::time_point now) {
+        if (coverage >= 0) {
+            statistics.coverage = coverage;
+            statistics.cached_framelets = maker->cache().framelet_count();
+        }
+        statistics.cached_bytes = maker->memory_bytes();
+        statistics.lag_seconds = maker->is_smooth() ? picture_settings.lag_seconds : 0;
+        is_smooth = maker->is_smooth();
+        if (statistics.full_picture_seconds < 0 && first_camera_time && coverage >= 1) {
+            statistics.full_picture_seconds = seconds_between(*first_camera_time, now);
         }
     }
 
@@ -216,58 +259,36 @@ struct ClientCore::Impl {
         ClockState out = status.clock;
         if (out.playing) {
             double const elapsed = seconds_between(status_time, Clock::now());
-            out.time = std::max(0.0, out.time + elapsed * static_cast<double>(out.speed));
+            out.time = std::clamp(out.time + elapsed * static_cast<double>(out.speed), 0.0, max_scene_time);
         }
         return out;
     }
 
-    bool scene_moves() const { return connection->welcome().animation_duration > 0; }
-
-    /// Where the scene is to be smoothed, from here on. Under the lock.
-    void restart_smoothing() {
-        smoother.reset();
-        batch_cameras = {};
-        late_clock = LateClock(late_clock.lag_seconds());
-        shown_pixels = nullptr; // all of it anew
-        if (late_clock.lag_seconds() > 0 && reproject && cache && scene_moves()) {
-            smoother.emplace(cache->plane());
-        }
+    PictureRequest picture_request() const {
+        std::lock_guard const lock(mutex);
+        ClockState const clock = clock_now();
+        return {view.view.camera,
+                view.view.number,
+                view.scene_camera,
+                clock.time,
+                static_cast<double>(clock.speed),
+                seconds_between(start, Clock::now())};
     }
 
-    /// What the picture is to be of: the newest camera and the present, or what is late by the lag. Where the server
-    /// moves the camera, what its newest batch shows, or what came before it. Under the lock.
-    std::pair<Camera, SceneTime> wanted_picture() {
-        bool const own_camera = view.scene_camera < 0;
-        if (smoother) {
-            SceneTime const time = late_clock.read(seconds_between(start, Clock::now()), clock_now().time);
-            if (own_camera || batch_cameras.empty()) {
-                return {own_camera ? view.view.camera : shown_camera, time};
-            }
-            SceneTime const known = std::min(time, shown_time);
-            return {batch_cameras.at(known), known};
+    /// How old what the last picture shows is; -1: nothing new. Under the lock.
+    double photon_seconds(Clock::time_point now) {
+        ClockState const clock = clock_now();
+        if (view.scene_camera >= 0) {
+            bool const moves = clock.playing && clock.speed != 0 && picture_settings.scene_moves;
+            return moves ? (clock.time - shown_time) / static_cast<double>(clock.speed) : -1;
         }
-        if (own_camera) {
-            return {view.view.camera, scene_moves() ? clock_now().time : 0};
+        std::uint64_t const number = maker->shown_camera_number();
+        double seconds = -1;
+        while (!set_cameras.empty() && set_cameras.front().number <= number) {
+            seconds = set_cameras.front().number == number ? seconds_between(set_cameras.front().time, now) : seconds;
+            set_cameras.pop_front();
         }
-        return {shown_camera, shown_time};
-    }
-
-    /// Under the lock. `changed` is what has changed in the cache, and becomes what may differ in the picture.
-    void draw(Picture& picture, std::vector<PixelRect>& changed) {
-        if (!reproject) {
-            reconstruct(*cache, changed, picture);
-            return;
-        }
-        auto const [camera, time] = wanted_picture();
-        pictured_camera = camera;
-        pictured_time = time;
-        arrived.swap(changed);
-        if (smoother) {
-            SceneTime const lag = late_clock.lag_seconds() * std::abs(static_cast<double>(status.clock.speed));
-            smoother->show(*cache, arrived, camera, time, lag, motions, picture, changed);
-        } else {
-            reprojector.show(*cache, arrived, camera, time, motions, picture, changed);
-        }
+        return seconds;
     }
 
     /// Under the lock.
@@ -297,7 +318,8 @@ Welcome const& ClientCore::welcome() const {
     return impl_->connection->welcome();
 }
 
-void ClientCore::set_view(Camera const& camera, Viewport viewport, int scene_camera) {
+void ClientCore::set_view(Camera const& wanted, Viewport viewport, int scene_camera) {
+    Camera const camera = within_bounds(wanted); // a hand may lead it out
     std::lock_guard const lock(impl_->mutex);
     CameraUpdate& view = impl_->view;
     if (view.view.number > 0 && view.view.camera == camera && view.view.viewport == viewport &&
@@ -305,13 +327,13 @@ void ClientCore::set_view(Camera const& camera, Viewport viewport, int scene_cam
         impl_->send_waiting_view();
         return;
     }
-    if (!impl_->cache || impl_->cache->plane().viewport() != viewport) {
-        impl_->cache.emplace(ImagePlane(viewport));
-        ++impl_->cache_generation;
-        impl_->restart_smoothing();
-    }
+    impl_->has_picture = impl_->has_picture && view.view.viewport == viewport;
     view = {{view.view.number + 1, camera, viewport}, scene_camera};
     impl_->statistics.converged = false;
+    impl_->set_cameras.push_back({view.view.number, Clock::now()});
+    if (impl_->set_cameras.size() > Impl::most_sent_cameras) {
+        impl_->set_cameras.pop_front();
+    }
     impl_->waiting_view = view;
     impl_->send_waiting_view();
 }
@@ -319,10 +341,7 @@ void ClientCore::set_view(Camera const& camera, Viewport viewport, int scene_cam
 void ClientCore::set_settings(ViewerSettings const& settings) {
     {
         std::lock_guard const lock(impl_->mutex);
-        if (impl_->reproject != settings.reproject) {
-            impl_->reproject = settings.reproject;
-            impl_->restart_smoothing();
-        }
+        impl_->picture_settings.reproject = settings.reproject;
     }
     impl_->connection->send(settings);
 }
@@ -330,10 +349,7 @@ void ClientCore::set_settings(ViewerSettings const& settings) {
 void ClientCore::set_smoothing(double lag_seconds) {
     FRAMELET_CHECK(lag_seconds >= 0 && lag_seconds <= max_lag_seconds);
     std::lock_guard const lock(impl_->mutex);
-    if (impl_->late_clock.lag_seconds() != lag_seconds) {
-        impl_->late_clock = LateClock(lag_seconds);
-        impl_->restart_smoothing();
-    }
+    impl_->picture_settings.lag_seconds = lag_seconds;
 }
 
 void ClientCore::request_clock(ClockRequest const& request) {
@@ -352,33 +368,27 @@ void ClientCore::request_clock(ClockRequest const& request) {
 }
 
 bool ClientCore::update_picture(Picture& picture, std::vector<PixelRect>& changed) {
-    std::lock_guard const lock(impl_->mutex);
     Impl& core = *impl_;
     changed.clear();
-    core.send_waiting_view();
-    if (!core.cache || core.cache->framelet_count() == 0) {
-        return false;
-    }
-    Viewport const viewport = core.cache->plane().viewport();
-    bool const whole = core.cache_generation != core.shown_generation || picture.rgba.data() != core.shown_pixels ||
-                       picture.width != viewport.width || picture.height != viewport.height;
-    core.cache->take_changed(changed);
-    if (whole) {
-        picture = Picture(viewport.width, viewport.height);
-        core.reprojector = Reprojector();
-        if (core.smoother) {
-            core.smoother->start_picture();
+    {
+        std::lock_guard const lock(core.mutex);
+        core.send_waiting_view();
+        if (core.view.view.number == 0) {
+            return false;
         }
-        changed.assign(1, {0, 0, viewport.width, viewport.height});
-        core.shown_generation = core.cache_generation;
-        core.shown_pixels = picture.rgba.data();
     }
+    std::lock_guard const picture_lock(core.picture_mutex);
+    core.take_in();
     Clock::time_point const before = Clock::now();
-    core.draw(picture, changed);
-    if (changed.empty()) {
+    bool const drawn = core.maker->show(core.picture_request(), picture, changed);
+    Clock::time_point const after = Clock::now();
+    std::lock_guard const lock(core.mutex);
+    core.shown_camera = core.maker->shown_camera();
+    core.shown_time = core.maker->shown_time();
+    core.statistics.photon_seconds = drawn ? core.photon_seconds(after) : -1;
+    if (!drawn) {
         return false;
     }
-    Clock::time_point const after = Clock::now();
     for (PixelRect const& rect : changed) {
         core.statistics.pixels += static_cast<std::uint64_t>(rect.width()) * static_cast<std::uint64_t>(rect.height());
     }
@@ -391,19 +401,10 @@ bool ClientCore::update_picture(Picture& picture, std::vector<PixelRect>& change
 }
 
 void ClientCore::draw_overlay(DrawnOver overlay, Picture& picture) const {
-    Impl const& core = *impl_;
-    std::lock_guard const lock(core.mutex);
-    if (overlay == DrawnOver::none || !core.cache || core.cache->framelet_count() == 0 ||
-        core.cache->plane().viewport() != Viewport{picture.width, picture.height}) {
-        return;
+    std::lock_guard const lock(impl_->picture_mutex);
+    if (impl_->maker) {
+        impl_->maker->draw_over(overlay, picture);
     }
-    if (overlay == DrawnOver::outlines || !core.reproject) {
-        draw_outlines(*core.cache, picture);
-        return;
-    }
-    std::vector<PixelConfidence> confidence;
-    find_confidence(*core.cache, core.pictured_camera, core.pictured_time, core.motions, confidence);
-    draw_confidence(confidence, picture);
 }
 
 bool ClientCore::wait_for_news(std::chrono::nanoseconds at_most) {
@@ -421,8 +422,8 @@ bool ClientCore::is_complete() const {
     std::lock_guard const lock(impl_->mutex);
     return impl_->status.converged && impl_->view.view.number > 0 &&
            impl_->status.camera_number == impl_->view.view.number && impl_->last_batch >= impl_->status.last_batch &&
-           impl_->cache && impl_->cache->framelet_count() > 0 &&
-           (!impl_->smoother || impl_->status.clock.playing || impl_->pictured_time == impl_->status.clock.time);
+           (impl_->has_picture || !impl_->arrived.empty()) &&
+           (!impl_->is_smooth || impl_->status.clock.playing || impl_->shown_time == impl_->status.clock.time);
 }
 
 Status ClientCore::status() const {
@@ -444,15 +445,6 @@ ClientStatistics ClientCore::statistics() const {
     std::lock_guard const lock(impl_->mutex);
     ClientStatistics out = impl_->statistics;
     out.seconds = seconds_between(impl_->start, Clock::now());
-    if (impl_->cache) {
-        out.coverage = impl_->cache->coverage();
-        out.cached_framelets = impl_->cache->framelet_count();
-        out.cached_bytes = impl_->cache->memory_bytes();
-    }
-    if (impl_->smoother) {
-        out.cached_bytes += impl_->smoother->memory_bytes();
-        out.lag_seconds = impl_->late_clock.lag_seconds();
-    }
     return out;
 }
 

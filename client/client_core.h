@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "client/picture_maker.h"
 #include "client/server_address.h"
 #include "common/image.h"
 #include "common/tile.h"
@@ -45,6 +46,9 @@ struct ClientStatistics {
     std::uint64_t cameras_sent = 0;
     double server_samples_per_second = 0;
     bool converged = false;
+    /// From when the camera of the last picture was set, or the moment that it shows was the present, until the picture
+    /// was ready; -1: it shows no new one.
+    double photon_seconds = -1;
     double lag_seconds = 0; ///< by which the scene is shown late, as asked for; 0: it is not
 
     double bytes_per_sample() const;
@@ -52,10 +56,8 @@ struct ClientStatistics {
     double reconstruct_ns_per_pixel() const;
 };
 
-/// What is drawn over the picture.
-enum class DrawnOver : std::uint8_t { none, outlines, confidence };
-
-/// All members may be called from any thread; `update_picture` from one at a time.
+/// All members may be called from any thread; `update_picture` and `draw_overlay` from one at a time. Painting holds
+/// nothing up: what comes meanwhile is decoded and answered, and shows in the next picture.
 class ClientCore {
 public:
     /// Connects (blocks) and opens the session. `on_news` is called from the connection's thread whenever there is
@@ -104,7 +106,7 @@ public:
     Status status() const;
     /// The scene clock as it should stand now.
     ClockState clock() const;
-    /// The camera of the newest batch: where a scene camera was last seen.
+    /// What the last picture was seen from.
     Camera shown_camera() const;
     ClientStatistics statistics() const;
 

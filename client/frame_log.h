@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "common/camera.h"
+
 namespace framelet {
 
 struct FrameEntry {
@@ -16,6 +18,10 @@ struct FrameEntry {
     bool complete = false; ///< as good as it gets
     std::uint64_t bytes = 0; ///< of batches, received since the start
     double cpu_seconds = 0; ///< of the client since its start, writing of pictures apart
+    std::uint64_t samples = 0; ///< received since the start
+    double photon_seconds = -1; ///< as `ClientStatistics` says
+    int scene_camera = -1; ///< that was looked through; -1: `camera`
+    Camera camera; ///< that was asked for
 };
 
 class FrameLog {

@@ -103,7 +103,7 @@ bool Viewer::update_shown_picture() {
     if (!changed && !toggled) {
         return false;
     }
-    bool const draws = drawn_over_ != DrawnOver::none;
+    bool const draws = drawn_over_ != DrawnOver::nothing;
     if (draws || toggled) { // what is drawn ages everywhere
         changed_.assign(1, {0, 0, picture_.width, picture_.height});
     }
@@ -192,9 +192,9 @@ void Viewer::apply(Command command) {
         statistics_.clear();
         break;
     case Command::next_overlay:
-        drawn_over_ = drawn_over_ == DrawnOver::none       ? DrawnOver::outlines
+        drawn_over_ = drawn_over_ == DrawnOver::nothing    ? DrawnOver::outlines
                       : drawn_over_ == DrawnOver::outlines ? DrawnOver::confidence
-                                                           : DrawnOver::none;
+                                                           : DrawnOver::nothing;
         overlay_toggled_ = true;
         break;
     case Command::toggle_reprojection:
@@ -220,7 +220,7 @@ void Viewer::ask_clock(std::uint8_t fields, ClockState const& state) {
 
 void Viewer::step_clock(double seconds) {
     ClockState clock = core_->clock();
-    clock.time = std::max(0.0, clock.time + seconds);
+    clock.time = std::clamp(clock.time + seconds, 0.0, max_scene_time);
     clock.playing = false;
     ask_clock(ClockRequest::time | ClockRequest::playing, clock);
 }

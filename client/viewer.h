@@ -61,7 +61,7 @@ private:
     std::vector<PixelRect> changed_;
     bool show_help_ = false;
     bool show_statistics_ = false;
-    DrawnOver drawn_over_ = DrawnOver::none;
+    DrawnOver drawn_over_ = DrawnOver::nothing;
     bool overlay_toggled_ = false; ///< since the picture was uploaded
     Picture overlaid_; ///< the picture and what is drawn over it, if anything
     TextRows statistics_;

@@ -35,7 +35,7 @@ struct Options {
     std::string output;
     std::string frames_file;
     bool json = false;
-    DrawnOver overlay = DrawnOver::none;
+    DrawnOver overlay = DrawnOver::nothing;
     bool until_converged = false;
     DisplayArguments display;
     bool play = false;
@@ -137,12 +137,14 @@ RunFigures show(ClientCore& core, Options const& options, std::optional<CameraPa
         bool const news = core.update_picture(picture, changed);
         if (log != nullptr) {
             double const writing = writer != nullptr ? writer->cpu_seconds() : 0;
-            log->add({run.frames, unix_seconds(), core.clock().time, news, core.is_complete(), core.statistics().bytes,
-                      cpu_seconds_of(CLOCK_PROCESS_CPUTIME_ID) - writing});
+            ClientStatistics const statistics = core.statistics();
+            log->add({run.frames, unix_seconds(), core.clock().time, news, core.is_complete(), statistics.bytes,
+                      cpu_seconds_of(CLOCK_PROCESS_CPUTIME_ID) - writing, statistics.samples, statistics.photon_seconds,
+                      path ? path->scene_camera : core.start_scene_camera(), camera});
         }
         ++run.frames;
         if (writer != nullptr) {
-            bool const draws = options.overlay != DrawnOver::none;
+            bool const draws = options.overlay != DrawnOver::nothing;
             if (draws) {
                 overlaid = picture;
                 core.draw_overlay(options.overlay, overlaid);
@@ -237,7 +239,8 @@ int main(int argc, char** argv) {
     add_display_options(app, options.display);
     CLI::Option* const play = app.add_flag("--play", options.play, "Let the scene's clock run");
     app.add_flag("--pause", options.pause, "Stop the scene's clock")->excludes(play);
-    app.add_option("--seek", options.seek, "Set the scene's clock to this second")->check(CLI::Range(0.0, 1e9));
+    app.add_option("--seek", options.seek, "Set the scene's clock to this second")
+        ->check(CLI::Range(0.0, max_scene_time));
 
     Viewport viewport;
     ConnectionOptions connection;

@@ -84,9 +84,14 @@ void BodyMotions::extend(BodyTrack const& track) {
     }
 }
 
-Motion BodyMotions::between(BodyNumber body, SceneTime from, SceneTime to) const {
+BodyTrack const* BodyMotions::find(BodyNumber body) const {
     auto const found = tracks_.find(body);
-    return found == tracks_.end() ? Motion{} : motion_between(found->second, from, to);
+    return found == tracks_.end() ? nullptr : &found->second;
+}
+
+Motion BodyMotions::between(BodyNumber body, SceneTime from, SceneTime to) const {
+    BodyTrack const* const track = find(body);
+    return track == nullptr ? Motion{} : motion_between(*track, from, to);
 }
 
 } // namespace framelet

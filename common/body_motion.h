@@ -42,6 +42,8 @@ public:
 
     /// None for bodies that have no track, `static_body` among them.
     Motion between(BodyNumber body, SceneTime from, SceneTime to) const;
+    /// Null where nothing is known of it.
+    BodyTrack const* find(BodyNumber body) const;
 
 private:
     std::unordered_map<BodyNumber, BodyTrack> tracks_;

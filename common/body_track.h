@@ -9,7 +9,8 @@
 
 namespace framelet {
 
-/// World from body: scale, then rotation, then translation. Bodies that shear are not rigid and have velocities instead.
+/// World from body: scale, then rotation, then translation. Bodies that shear are not rigid and have velocities
+/// instead.
 struct BodyPose {
     Vec3 translation{0};
     Quat rotation{1, 0, 0, 0};
@@ -31,5 +32,12 @@ struct BodyTrack {
 
     bool operator==(BodyTrack const&) const = default;
 };
+
+/// Under which number a track is of a camera of the scene, and not of a body.
+constexpr BodyNumber camera_body(int scene_camera) {
+    return static_cast<BodyNumber>(scene_camera + 1);
+}
+/// So that each has a number.
+inline constexpr int most_scene_cameras = 65534;
 
 } // namespace framelet

@@ -1,7 +1,9 @@
 #include "common/camera.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 namespace framelet {
@@ -44,14 +46,34 @@ Camera look_at(Vec3 position, Vec3 target, Vec3 up, float vertical_fov_radians) 
     return camera;
 }
 
+namespace {
+
+struct Range {
+    float least, most;
+    bool contains(float value) const { return value >= least && value <= most; } // false for NaN
+};
+
+constexpr Range coordinates{-max_camera_coordinate, max_camera_coordinate};
+
+Range extents(Projection projection) {
+    return projection == Projection::perspective ? Range{least_field_of_view, most_field_of_view}
+                                                 : Range{least_view_height, most_view_height};
+}
+
+} // namespace
+
 bool is_valid(Camera const& camera) {
     Vec3 const p = camera.position;
     float const norm = glm::dot(camera.orientation, camera.orientation);
-    bool const pose = std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z) && std::abs(norm - 1) < 1e-3f;
-    bool const lens = camera.projection == Projection::perspective
-                          ? camera.vertical_extent > 1e-4f && camera.vertical_extent < 3.13f
-                          : camera.vertical_extent > 0 && std::isfinite(camera.vertical_extent);
-    return pose && lens;
+    return coordinates.contains(p.x) && coordinates.contains(p.y) && coordinates.contains(p.z) &&
+           std::abs(norm - 1) < 1e-3f && extents(camera.projection).contains(camera.vertical_extent);
+}
+
+Camera within_bounds(Camera camera) {
+    Range const extent = extents(camera.projection);
+    camera.position = glm::clamp(camera.position, coordinates.least, coordinates.most);
+    camera.vertical_extent = std::clamp(camera.vertical_extent, extent.least, extent.most);
+    return camera;
 }
 
 } // namespace framelet

@@ -38,7 +38,7 @@ void find_confidence(FrameletCache const& cache, Camera const& camera, SceneTime
         paint_warped_block(patches, column, row, viewport, block);
         std::array<float, WarpedBlock::pixels> const in_place = block.inverse_depth;
         spare_plan.block(index, patches);
-        paint_warped_block(patches, column, row, viewport, behind);
+        paint_holes(patches, column, row, viewport, block, behind);
         int const left = column * side;
         int const top = row * side;
         show_in_holes(behind, viewport.width - left, viewport.height - top, block);

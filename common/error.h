@@ -18,6 +18,12 @@ struct ProtocolError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// A message of ours would break the protocol, for whatever a viewer or a scene has led to; ends the session that it is
+/// for.
+struct UnsendableMessage : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
 /// The connection could not be made, or ended.
 struct ConnectionError : std::runtime_error {
     using std::runtime_error::runtime_error;

@@ -4,6 +4,7 @@
 #include <array>
 #include <bitset>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "common/body_track.h"
@@ -56,7 +57,7 @@ inline constexpr std::size_t max_batch_framelets = 32768;
 inline constexpr std::uint8_t exact_quality = 0;
 inline constexpr std::uint8_t coarsest_quality = 127;
 
-/// The framelets of one server cycle: one camera, one scene time.
+/// Framelets of one camera and one scene time.
 struct Batch {
     std::uint64_t number = 0; ///< counts up by one within a session, from 1
     NumberedView view;
@@ -67,6 +68,8 @@ struct Batch {
     std::vector<FrameletShape> shapes{};
     /// How the bodies of the shapes move: what the viewer has not been told yet.
     std::vector<BodyTrack> tracks{};
+    /// How the camera of the scene goes through which the viewer looks, likewise: as `camera_body` of it.
+    std::optional<BodyTrack> camera_track{};
 
     bool operator==(Batch const&) const = default;
 };

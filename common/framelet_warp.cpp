@@ -121,6 +121,7 @@ void FrameletWarp::add(MergedLayer const& merged, std::vector<WarpPatch>& patche
     patch.group = group_of(merged.view, merged.first.depth());
     patch.batch = merged.newest_batch;
     patch.layer = merged.number;
+    patch.occupied = merged.occupied;
     patch.place = merged.first.code * 4 + merged.first_layer;
     rect_ = cache_.plane().tile_rect(merged.tile);
     spacing_ = static_cast<double>(rect_.width()) / merged.side;

@@ -129,6 +129,20 @@ inline WideFloats root(WideFloats value) {
 }
 #endif
 
+/// True where a bit is set in any of them.
+inline bool any_lane(WideInts flags) {
+#ifdef __AVX512F__
+    auto const all = reinterpret_cast<__m512i>(flags);
+    return _mm512_test_epi32_mask(all, all) != 0;
+#else
+    std::int32_t bits = 0;
+    for (int i = 0; i < wide_count; ++i) {
+        bits |= flags[i];
+    }
+    return bits != 0;
+#endif
+}
+
 inline HalfFloats smaller(HalfFloats a, HalfFloats b) {
     return a < b ? a : b;
 }

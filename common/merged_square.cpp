@@ -189,11 +189,29 @@ MergedLayer MergedSquare::merge(JoinedLayer const& joined) const {
     return out;
 }
 
+std::uint64_t MergedSquare::occupied_parts(std::array<std::uint64_t, max_layers> const& parts, Tile tile) const {
+    int const below = depth_ - tile.depth();
+    static_assert(most_levels == 3); // 8x8 framelets at most
+    std::uint32_t const cells = 8u >> below; // of a framelet, along a side
+    std::uint64_t out = 0;
+    for (std::uint64_t left = parts[0] | parts[1] | parts[2]; left != 0; left &= left - 1) {
+        Tile const child = child_tile(static_cast<std::size_t>(std::countr_zero(left)));
+        std::uint32_t const column = (child.column() - (tile.column() << below)) * cells;
+        std::uint32_t const row = (child.row() - (tile.row() << below)) * cells;
+        std::uint64_t const line = ((std::uint64_t{1} << cells) - 1) << column;
+        for (std::uint32_t i = row; i < row + cells; ++i) {
+            out |= line << 8 * i;
+        }
+    }
+    return out;
+}
+
 /// What of a layer depends on the tile that it is looked at in. (Samples beyond the tile are not its own, though they
 /// may have its number.)
 void MergedSquare::set_tile(JoinedLayer const& joined, Tile tile, MergedLayer& out) const {
     int const down = tile.depth() - square_.depth();
     out.tile = tile;
+    out.occupied = occupied_parts(joined.parts, tile);
     out.side = side_ >> down;
     out.stride = side_;
     int const column = static_cast<int>(tile.column() - (square_.column() << down)) * out.side;

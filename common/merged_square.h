@@ -33,6 +33,7 @@ struct MergedLayer {
     std::uint64_t signature = 0; ///< differs where what is held differs
     /// Bit p of word k: layer k of the framelet at place p.
     std::array<std::uint64_t, max_layers> parts{};
+    std::uint64_t occupied = 0; ///< as in `WarpPatch`
 };
 
 /// Framelets of one depth below a larger tile.
@@ -77,6 +78,7 @@ private:
     void keep(LayerJoining const& joining);
     Tile tile_around(std::array<std::uint64_t, max_layers> const& parts) const;
     void set_tile(JoinedLayer const& joined, Tile tile, MergedLayer& out) const;
+    std::uint64_t occupied_parts(std::array<std::uint64_t, max_layers> const& parts, Tile tile) const;
     std::size_t offset_of(std::size_t place) const;
     void write(Child const& child, PackedSample* to) const;
     template <int side>

@@ -151,6 +151,42 @@ bool is_inside(WarpPatch const& patch, float x, float y, int rows) {
 
 } // namespace
 
+bool may_show(WarpPatch const& patch, float x, float y, int count) {
+    constexpr float reach = 1 + 1e-2f; // of a sample, and more than rounding
+    auto const right = static_cast<float>(wide_columns - 1);
+    auto const below = static_cast<float>(count * wide_rows - 1);
+    float low_u = INFINITY, low_v = INFINITY, high_u = -INFINITY, high_v = -INFINITY;
+    for (float const cx : {x, x + right}) {
+        for (float const cy : {y, y + below}) {
+            auto const at = [&](std::size_t i) { return patch.at[i] + cx * patch.dx[i] + cy * patch.dy[i]; };
+            float const z = at(2);
+            if (!(z > 0)) {
+                return true; // what lies between the corners in the grid is not what lies between them here
+            }
+            low_u = std::min(low_u, at(0) / z);
+            high_u = std::max(high_u, at(0) / z);
+            low_v = std::min(low_v, at(1) / z);
+            high_v = std::max(high_v, at(1) / z);
+        }
+    }
+    auto const last = static_cast<float>(patch.side - 1);
+    if (!(high_u > -reach && high_v > -reach && low_u < last + reach && low_v < last + reach)) {
+        return false;
+    }
+    float const cells = 8 / static_cast<float>(patch.side); // for each sample
+    auto const cell = [&](float sample) {
+        return static_cast<int>(std::clamp((std::clamp(sample, 0.0f, last) + 0.5f) * cells, 0.0f, 7.0f));
+    };
+    int const columns = cell(high_u + reach) - cell(low_u - reach) + 1;
+    std::uint64_t const line = ((std::uint64_t{1} << columns) - 1) << cell(low_u - reach);
+    for (int row = cell(low_v - reach); row <= cell(high_v + reach); ++row) {
+        if ((patch.occupied >> 8 * row & line) != 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
 void sample_patch(WarpPatch const& patch, float x, float y, int count, CandidateColumn& out) {
     bool const inside = is_inside(patch, x, y, count * wide_rows);
     inside ? sample_column<true>(patch, x, y, count, out) : sample_column<false>(patch, x, y, count, out);

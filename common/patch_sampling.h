@@ -27,8 +27,11 @@ using CandidateColumn = std::array<Candidate, static_cast<std::size_t>(FrameletC
 static_assert(FrameletCache::block_side % wide_columns == 0 && FrameletCache::block_side % wide_rows == 0);
 
 /// At the first `count` of them, the first pixel of the first of which lies (x, y) from the centre of the box's first
-/// pixel. Pixels outside of the box get no weight: those beside it, and where lanes have two rows those of the row above
-/// its first or below its last.
+/// pixel. Pixels outside of the box get no weight: those beside it, and where lanes have two rows those of the row
+/// above its first or below its last.
 void sample_patch(WarpPatch const& patch, float x, float y, int count, CandidateColumn& out);
+
+/// False where all of them would get no weight, since none of the patch's samples is near: looks at `occupied`.
+bool may_show(WarpPatch const& patch, float x, float y, int count);
 
 } // namespace framelet

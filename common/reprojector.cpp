@@ -228,7 +228,7 @@ bool Reprojector::update_block(FrameletCache const& cache, Camera const& camera,
         state.needs_spares = true;
         if (!spares.empty()) {
             WarpedBlock behind;
-            paint_warped_block(spares, column, row, viewport, behind);
+            paint_holes(spares, column, row, viewport, block, behind);
             show_in_holes(behind, viewport.width - left, viewport.height - top, block);
         }
     }

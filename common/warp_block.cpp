@@ -57,15 +57,49 @@ void merge(Candidate const& candidate, std::int32_t group, float tolerance, std:
     store_lanes(replaces ? WideInts{} + group : groups, &layers.group[first]);
 }
 
+/// The least inverse depth that hides all of the patch in this block.
+float hiding_depth(WarpPatch const& patch, int left, int top) {
+    int const last_x = std::min(patch.box.right - left, side) - 1;
+    int const last_y = std::min(patch.box.bottom - top, side) - 1;
+    float nearest = 0;
+    for (int const x : {std::max(patch.box.left - left, 0), last_x}) {
+        for (int const y : {std::max(patch.box.top - top, 0), last_y}) { // it is affine
+            nearest = std::max(nearest, patch.inverse_depth +
+                                            static_cast<float>(left + x - patch.box.left) * patch.inverse_depth_dx +
+                                            static_cast<float>(top + y - patch.box.top) * patch.inverse_depth_dy);
+        }
+    }
+    constexpr float rounding = 1e-5f; // what the sums above may be off by
+    return (1 + rounding - same_surface) * nearest - patch.tolerance;
+}
+
+/// True where nothing of the patch can show in so many rows of lanes: they are covered firmly, by what is near enough,
+/// and by nothing that its samples would add up with.
+bool is_hidden(WarpPatch const& patch, float hiding, int x, int first_row, int count, Layers const& layers) {
+    WideInts shows{};
+    for (int i = 0; i < count; ++i) {
+        std::size_t const at = place_of(x, first_row + i * wide_rows);
+        shows |= (load_lanes<WideFloats>(&layers.weight[at]) < firm) |
+                 (load_lanes<WideFloats>(&layers.inverse_depth[at]) < hiding) |
+                 (load_lanes<WideInts>(&layers.group[at]) == patch.group);
+    }
+    return !any_lane(shows);
+}
+
 void paint_layer(WarpPatch const& patch, int left, int top, Layers& layers) {
     CandidateColumn column;
+    float const hiding = hiding_depth(patch, left, top);
     int const first_row = std::max(patch.box.top - top, 0) / wide_rows * wide_rows;
     int const last_row = std::min(patch.box.bottom - top, side);
     int const count = (last_row - first_row + wide_rows - 1) / wide_rows;
     int const last = std::min(patch.box.right - left, side);
     for (int x = std::max(patch.box.left - left, 0) / wide_columns * wide_columns; x < last; x += wide_columns) {
-        sample_patch(patch, static_cast<float>(left + x - patch.box.left),
-                     static_cast<float>(top + first_row - patch.box.top), count, column);
+        float const from_left = static_cast<float>(left + x - patch.box.left);
+        float const from_top = static_cast<float>(top + first_row - patch.box.top);
+        if (is_hidden(patch, hiding, x, first_row, count, layers) || !may_show(patch, from_left, from_top, count)) {
+            continue;
+        }
+        sample_patch(patch, from_left, from_top, count, column);
         for (int i = 0; i < count; ++i) {
             merge(column[static_cast<std::size_t>(i)], patch.group, patch.tolerance,
                   place_of(x, first_row + i * wide_rows), layers);
@@ -181,17 +215,14 @@ float nearest_in_holes(WarpedBlock const& block) {
     return count > mostly_covered ? 0.5f * (least + most) : INFINITY;
 }
 
-} // namespace
-
-void paint_warped_block(std::span<PatchView const> patches, int column, int row, Viewport viewport,
-                        WarpedBlock& block) {
+/// Over `layers`, in which weights and depths are what is there before.
+void paint(std::span<PatchView const> patches, int column, int row, Viewport viewport, Layers& layers,
+           WarpedBlock& block) {
     int const left = column * side;
     int const top = row * side;
-    Layers layers;
-    for (auto* const plane : {&layers.red, &layers.green, &layers.blue, &layers.weight}) {
+    for (auto* const plane : {&layers.red, &layers.green, &layers.blue}) {
         plane->fill(0);
     }
-    layers.inverse_depth.fill(hole_depth);
     layers.group.fill(-1);
     for (std::size_t i = 0; i < patches.size(); ++i) {
         if (i + 1 < patches.size()) {
@@ -208,6 +239,29 @@ void paint_warped_block(std::span<PatchView const> patches, int column, int row,
         }
     }
     finish(layers, viewport.width - left, viewport.height - top, block);
+}
+
+} // namespace
+
+void paint_warped_block(std::span<PatchView const> patches, int column, int row, Viewport viewport,
+                        WarpedBlock& block) {
+    Layers layers;
+    layers.weight.fill(0);
+    layers.inverse_depth.fill(hole_depth);
+    paint(patches, column, row, viewport, layers, block);
+}
+
+void paint_holes(std::span<PatchView const> patches, int column, int row, Viewport viewport, WarpedBlock const& front,
+                 WarpedBlock& block) {
+    Layers layers;
+    for (int y = 0; y < side; ++y) {
+        for (int x = 0; x < side; ++x) {
+            bool const is_hole = front.inverse_depth[static_cast<std::size_t>(y * side + x)] == hole_depth;
+            layers.weight[place_of(x, y)] = is_hole ? 0 : 1;
+            layers.inverse_depth[place_of(x, y)] = is_hole ? hole_depth : INFINITY;
+        }
+    }
+    paint(patches, column, row, viewport, layers, block);
 }
 
 void show_in_holes(WarpedBlock const& behind, int width, int height, WarpedBlock& block) {

@@ -34,6 +34,10 @@ struct WarpedBlock {
 /// that neighbours overlap; but where the sum of its tents is less than 1/4 it covers only what nothing else does.
 void paint_warped_block(std::span<PatchView const> patches, int column, int row, Viewport viewport, WarpedBlock& block);
 
+/// The same for what shows only in the holes of another block of the same place: what it paints elsewhere says nothing.
+void paint_holes(std::span<PatchView const> patches, int column, int row, Viewport viewport, WarpedBlock const& front,
+                 WarpedBlock& block);
+
 /// Shows another block's pixels where this one has holes; where something shows around these, only what is behind it.
 /// Only holes left of `width` and above `height` are counted.
 void show_in_holes(WarpedBlock const& behind, int width, int height, WarpedBlock& block);

@@ -31,6 +31,8 @@ struct WarpPatch {
     std::int32_t side = 0; ///< of the grid
     std::int32_t stride = 0; ///< from one of its rows to the next
     std::uint32_t layer = 0; ///< number of its samples in the grid
+    /// Of 8x8 equal parts of the grid, in rows, those in which there may be samples of it.
+    std::uint64_t occupied = ~std::uint64_t{0};
     std::int32_t group = 0; ///< its samples are interpolated with others' of the same
     std::uint32_t first_splat = 0, splats = 0; ///< of loose samples, in the chunk
     std::uint32_t place = 0; ///< by tile and layer: orders patches of one batch

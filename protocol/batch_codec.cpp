@@ -145,6 +145,7 @@ EncodedBatch BatchCodec::encode(Batch const& batch, HeldPicture* held) {
         encoded.shapes = encode_shapes(batch);
     }
     encoded.tracks = batch.tracks;
+    encoded.camera_track = batch.camera_track;
     return encoded;
 }
 
@@ -212,6 +213,7 @@ void BatchCodec::decode(EncodedBatch const& encoded, HeldPicture* held, Batch& b
     }
     decode_shapes(encoded, batch.shapes);
     batch.tracks = encoded.tracks;
+    batch.camera_track = encoded.camera_track;
 }
 
 void BatchCodec::decode_shapes(EncodedBatch const& encoded, std::vector<FrameletShape>& shapes) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <mutex>
+#include <new>
 #include <sstream>
 #include <type_traits>
 
@@ -50,7 +51,10 @@ Bytes frame_of(Message const& message) {
     Bytes bytes(prefix_bytes);
     append_message(message, bytes);
     std::size_t const size = bytes.size() - prefix_bytes;
-    FRAMELET_CHECK(size <= max_message_bytes);
+    if (size > max_message_bytes) {
+        throw UnsendableMessage("its " + std::to_string(size) + " bytes exceed the limit of " +
+                                std::to_string(max_message_bytes));
+    }
     for (std::size_t i = 0; i < prefix_bytes; ++i) {
         bytes[i] = static_cast<std::byte>(size >> (8 * i));
     }
@@ -97,14 +101,22 @@ public:
     }
 
     std::size_t send(Message const& message) override {
-        if (detached_) {
+        if (detached_ || giving_up_) {
             return 0;
         }
-        Bytes bytes = frame_of(message);
-        std::size_t const size = bytes.size();
-        outbox_.announce(size);
-        asio::post(executor_, [self = self(), bytes = std::move(bytes)]() mutable { self->enqueue(std::move(bytes)); });
-        return size;
+        try {
+            if (std::size_t const waiting = outbox_.unsent(); waiting > max_unsent_bytes) {
+                throw UnsendableMessage(std::to_string(waiting) +
+                                        " bytes wait for the other side to take them, the limit is " +
+                                        std::to_string(max_unsent_bytes));
+            }
+            return post(message);
+        } catch (UnsendableMessage const& error) {
+            give_up(std::string("this side has a message that cannot be sent: ") + error.what());
+        } catch (std::bad_alloc const&) {
+            give_up("this side has no memory left for what it has to send");
+        }
+        return 0;
     }
 
     std::size_t unsent_bytes() const override {
@@ -221,6 +233,9 @@ private:
         } catch (ProtocolError const& error) {
             refuse(error.what());
             return;
+        } catch (std::bad_alloc const&) {
+            refuse("this side has no memory left for a message");
+            return;
         }
         first_ = false;
         if (!finished_) {
@@ -260,12 +275,27 @@ private:
 
     // --- writing
 
-    void enqueue(Bytes bytes) {
+    std::size_t post(Message const& message) {
+        Bytes bytes = frame_of(message);
+        std::size_t const size = bytes.size();
+        bool const newest_counts = std::holds_alternative<Status>(message);
+        outbox_.announce(size);
+        asio::post(executor_, [self = self(), bytes = std::move(bytes), newest_counts]() mutable {
+            self->enqueue(std::move(bytes), newest_counts);
+        });
+        return size;
+    }
+
+    void enqueue(Bytes bytes, bool newest_counts = false) {
         if (finished_ || ending_ || unwritable_) {
             outbox_.refuse(bytes);
             return;
         }
-        outbox_.push(std::move(bytes));
+        if (newest_counts) {
+            outbox_.push_newest(std::move(bytes));
+        } else {
+            outbox_.push(std::move(bytes));
+        }
         write_next();
     }
 
@@ -317,14 +347,31 @@ private:
 
     // --- ending
 
-    /// The peer broke the protocol: tells both sides why, then ends.
+    /// The peer broke the protocol: tells both sides why, then ends. Nothing is being read.
     void refuse(std::string const& reason) {
+        send_failure(reason);
+        discard();
+        tell(reason);
+    }
+
+    /// This side cannot go on: the same, from any thread. What is being read goes on being read.
+    void give_up(std::string const& reason) {
+        giving_up_ = true;
+        asio::post(executor_, [self = self(), reason] {
+            if (self->finished_ || self->ending_) {
+                return;
+            }
+            self->outbox_.drop_waiting(); // the peer would not get to the reason within the time that is left
+            self->send_failure(reason);
+            self->tell(reason);
+        });
+    }
+
+    void send_failure(std::string const& reason) {
         Bytes failure = frame_of(Failure{reason});
         outbox_.announce(failure.size());
         enqueue(std::move(failure));
         begin_ending();
-        discard();
-        tell(reason);
     }
 
     /// The connection is gone.
@@ -394,6 +441,7 @@ private:
     std::mutex handlers_mutex_;
     std::shared_ptr<Handlers> handlers_;
     std::atomic<bool> detached_ = false;
+    std::atomic<bool> giving_up_ = false; ///< nothing more is sent, for a reason that both sides are about to be told
     Outbox outbox_;
 
     // Only for the io_context's thread.

@@ -10,6 +10,10 @@
 
 namespace framelet {
 
+/// What may wait for the other side to take it: two of the largest messages. A live peer that reads is never so far
+/// behind.
+inline constexpr std::size_t max_unsent_bytes = 2 * max_message_bytes;
+
 /// One connection. All members are called from the io_context's thread (there is one), except where said otherwise, and
 /// all callbacks come from it. No callback begins after `close` or `close_after_sending` returned or `on_close` was
 /// called, and what the callbacks hold is released then; only one that runs in the io_context's thread while another
@@ -32,7 +36,9 @@ public:
     virtual void start(Handlers handlers, std::size_t max_body) = 0;
     virtual void set_max_body(std::size_t max_body) = 0;
     /// Queues a message and returns its bytes, prefix included; does nothing, and returns 0, once the connection has
-    /// ended. Messages of one thread stay in order. From any thread.
+    /// ended. Messages of one thread stay in order, but that of Status messages that wait the newest alone is sent, in
+    /// the place of the first. A message that is out of range, or comes when more than `max_unsent_bytes` wait, is not
+    /// sent and ends the connection; the peer is sent a Failure that says why. From any thread.
     virtual std::size_t send(Message const& message) = 0;
     /// Bytes queued or handed to the socket and not yet taken by it. From any thread.
     virtual std::size_t unsent_bytes() const = 0;

@@ -13,6 +13,13 @@ namespace {
 constexpr std::uint8_t grey = 128;
 constexpr int values_per_pixel = 2;
 
+/// To whole tiles of the coarsest kind.
+Viewport rounded_up(ImagePlane const& plane) {
+    int const coarsest = plane.side() >> plane.min_depth();
+    auto const up = [coarsest](int pixels) { return (pixels + coarsest - 1) / coarsest * coarsest; };
+    return {up(plane.viewport().width), up(plane.viewport().height)};
+}
+
 /// Two rows of two samples for each value.
 void fetch_doubled(std::uint8_t const* first, std::size_t stride, SamplePlane& samples) {
     std::array<std::uint8_t, framelet_samples / 4> values;
@@ -123,15 +130,20 @@ void look_up_means(PointGrids const& points, HeldPicture::Place const& from, int
 
 } // namespace
 
+std::size_t HeldPicture::bytes(Viewport viewport) {
+    Viewport const held = rounded_up(ImagePlane(viewport));
+    constexpr double bytes_per_pixel = 20.3; // 16 of the points with their levels, the rest for searches
+    return static_cast<std::size_t>(bytes_per_pixel * held.width * held.height);
+}
+
 void HeldPicture::show(Viewport viewport) {
     FRAMELET_CHECK(holds(viewport));
     if (shows(viewport)) {
         return;
     }
     plane_ = ImagePlane(viewport);
-    int const coarsest = plane_.side() >> plane_.min_depth();
-    auto const rounded_up = [&](int pixels) { return (pixels + coarsest - 1) / coarsest * coarsest; };
-    points_.fill(values_per_pixel * rounded_up(viewport.width), values_per_pixel * rounded_up(viewport.height), grey);
+    Viewport const held = rounded_up(plane_);
+    points_.fill(values_per_pixel * held.width, values_per_pixel * held.height, grey);
     search_ = {};
 }
 

@@ -31,6 +31,9 @@ public:
         return std::int64_t{viewport.width} * viewport.height <= most_pixels;
     }
 
+    /// What one takes that is kept for searches; of a viewport that it `holds`.
+    static std::size_t bytes(Viewport viewport);
+
     /// Grey everywhere, unless it is that viewport's already. The viewport is one that it `holds`. Until then there is
     /// no picture, and no memory.
     void show(Viewport viewport);

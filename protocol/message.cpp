@@ -1,6 +1,5 @@
 #include "protocol/message.h"
 
-#include <cstdio>
 #include <cstring>
 
 #include "common/error.h"
@@ -64,8 +63,7 @@ Message value_of(wire::Message const& message) {
 
 void append_message(Message const& message, Bytes& out) {
     if (char const* const fault = std::visit([](auto const& value) { return problem(value); }, message)) {
-        std::fprintf(stderr, "a message that cannot be sent: %s\n", fault);
-        FRAMELET_CHECK(fault == nullptr);
+        throw UnsendableMessage(fault);
     }
     Builder builder(size_hint(message));
     std::visit(

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <variant>
@@ -64,7 +65,7 @@ struct ClockRequest {
     bool operator==(ClockRequest const&) const = default;
 };
 
-/// A batch has been decoded and inserted.
+/// A batch has been decoded.
 struct Ack {
     std::uint64_t batch = 0;
     std::uint64_t received_us = 0; ///< viewer's steady clock when the batch's last byte had arrived
@@ -113,6 +114,7 @@ struct EncodedBatch {
     SampleEncoding encoding = SampleEncoding::exact;
     Bytes shapes{}; ///< of all framelets; empty: the viewer has no use for them
     std::vector<BodyTrack> tracks{};
+    std::optional<BodyTrack> camera_track{};
     bool operator==(EncodedBatch const&) const = default;
 };
 

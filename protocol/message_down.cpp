@@ -85,7 +85,7 @@ char const* problem(Welcome const& value) {
         return "the scene's bounds are not a box";
     }
     if (!is_time(value.animation_duration)) {
-        return "the animation's duration is not a finite number >= 0";
+        return "the animation's duration is not within 0..1e9";
     }
     for (SceneCameraInfo const& info : value.cameras) {
         if (char const* const fault = problem(info.camera)) {
@@ -104,11 +104,13 @@ Offset<wire::Batch> write(Builder& builder, EncodedBatch const& value) {
     }
     auto const sections = builder.CreateVector(list);
     Offset<TrackList> const tracks = value.tracks.empty() ? Offset<TrackList>() : write(builder, value.tracks);
+    Offset<wire::BodyTrack> const camera_track =
+        value.camera_track ? write(builder, *value.camera_track) : Offset<wire::BodyTrack>();
     std::uint32_t* codes = nullptr;
     auto const tiles = builder.CreateUninitializedVector(value.tiles.size(), &codes);
     std::transform(value.tiles.begin(), value.tiles.end(), codes, [](Tile tile) { return tile.code; });
     auto const view = write(builder, value.view);
-    return wire::CreateBatch(builder, value.number, view, value.scene_time, tiles, sections, tracks);
+    return wire::CreateBatch(builder, value.number, view, value.scene_time, tiles, sections, tracks, camera_track);
 }
 
 EncodedBatch read(wire::Batch const& wire) {
@@ -148,6 +150,9 @@ EncodedBatch read(wire::Batch const& wire) {
     if (wire.tracks() != nullptr) {
         value.tracks = read(*wire.tracks());
     }
+    if (wire.camera_track() != nullptr) {
+        value.camera_track = read(*wire.camera_track());
+    }
     return value;
 }
 
@@ -159,7 +164,7 @@ char const* problem(EncodedBatch const& value) {
         return fault;
     }
     if (!is_time(value.scene_time)) {
-        return "a batch's scene time is not a finite number >= 0";
+        return "a batch's scene time is not within 0..1e9";
     }
     if (value.tiles.size() > max_batch_framelets) {
         return "a batch has more than 32768 framelets";
@@ -168,7 +173,13 @@ char const* problem(EncodedBatch const& value) {
     if (!std::all_of(value.tiles.begin(), value.tiles.end(), [&](Tile tile) { return plane.accepts(tile); })) {
         return "a batch has a tile that its viewport does not have";
     }
-    return has_duplicate(value.tiles) ? "a batch has the same tile twice" : problem(value.tracks);
+    if (has_duplicate(value.tiles)) {
+        return "a batch has the same tile twice";
+    }
+    if (char const* const fault = value.camera_track ? problem(*value.camera_track) : nullptr) {
+        return fault;
+    }
+    return problem(value.tracks);
 }
 
 Offset<wire::Status> write(Builder& builder, Status const& value) {
@@ -189,8 +200,10 @@ Status read(wire::Status const& wire) {
 }
 
 char const* problem(Status const& value) {
-    return is_time(value.samples_per_second) ? problem(value.clock)
-                                             : "the samples per second are not a finite number >= 0";
+    if (!std::isfinite(value.samples_per_second) || value.samples_per_second < 0) {
+        return "the samples per second are not a finite number >= 0";
+    }
+    return problem(value.clock);
 }
 
 Offset<wire::Failure> write(Builder& builder, Failure const& value) {

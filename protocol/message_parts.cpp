@@ -22,7 +22,7 @@ ClockState read(wire::Clock const& wire) {
 
 char const* problem(ClockState const& value) {
     if (!is_time(value.time)) {
-        return "the clock's time is not a finite number >= 0";
+        return "the clock's time is not within 0..1e9";
     }
     return in_range(value.speed, -max_clock_speed, max_clock_speed) ? nullptr
                                                                     : "the clock's speed is not within -16..16";
@@ -50,7 +50,7 @@ Camera read(wire::Camera const& wire) {
 }
 
 char const* problem(Camera const& value) {
-    return is_valid(value) ? nullptr : "a camera's pose or lens is not a usable one";
+    return is_valid(value) ? nullptr : "a camera's position, orientation or vertical extent is out of its range";
 }
 
 Offset<wire::View> write(Builder& builder, NumberedView const& value) {

@@ -23,6 +23,8 @@ bool is_usable(BodyPose const& pose) {
     return is_finite(pose.translation) && is_finite(pose.scale) && in_range(static_cast<double>(squared), 0.25, 4);
 }
 
+} // namespace
+
 char const* problem(BodyTrack const& track) {
     if (track.body == static_body) {
         return "a track is of the body that never moves";
@@ -35,6 +37,8 @@ char const* problem(BodyTrack const& track) {
     }
     return std::ranges::all_of(track.keys, is_usable) ? nullptr : "a track has a pose that is not a usable one";
 }
+
+namespace {
 
 using Floats = flatbuffers::Vector<float>;
 
@@ -81,15 +85,27 @@ void read(Floats const& wire, Member BodyPose::*member, std::vector<BodyPose>& k
 
 } // namespace
 
+Offset<wire::BodyTrack> write(Builder& builder, BodyTrack const& value) {
+    auto const translations = write(builder, value.keys, &BodyPose::translation);
+    auto const rotations = write(builder, value.keys, &BodyPose::rotation);
+    auto const scales = write(builder, value.keys, &BodyPose::scale);
+    return wire::CreateBodyTrack(builder, value.body, value.first_key, static_cast<std::uint16_t>(value.keys.size()),
+                                 translations, rotations, scales);
+}
+
+BodyTrack read(wire::BodyTrack const& wire) {
+    BodyTrack value{wire.body(), wire.first_key(), {}};
+    value.keys.resize(wire.keys());
+    read(*wire.translations(), &BodyPose::translation, value.keys);
+    read(*wire.rotations(), &BodyPose::rotation, value.keys);
+    read(*wire.scales(), &BodyPose::scale, value.keys);
+    return value;
+}
+
 Offset<TrackList> write(Builder& builder, std::vector<BodyTrack> const& value) {
     std::vector<Offset<wire::BodyTrack>> tracks;
     for (BodyTrack const& track : value) {
-        auto const translations = write(builder, track.keys, &BodyPose::translation);
-        auto const rotations = write(builder, track.keys, &BodyPose::rotation);
-        auto const scales = write(builder, track.keys, &BodyPose::scale);
-        tracks.push_back(wire::CreateBodyTrack(builder, track.body, track.first_key,
-                                               static_cast<std::uint16_t>(track.keys.size()), translations, rotations,
-                                               scales));
+        tracks.push_back(write(builder, track));
     }
     return builder.CreateVector(tracks);
 }
@@ -108,11 +124,7 @@ std::vector<BodyTrack> read(TrackList const& wire) {
     std::vector<BodyTrack> value;
     value.reserve(wire.size());
     for (wire::BodyTrack const* const track : wire) {
-        BodyTrack& out = value.emplace_back(BodyTrack{track->body(), track->first_key(), {}});
-        out.keys.resize(track->keys());
-        read(*track->translations(), &BodyPose::translation, out.keys);
-        read(*track->rotations(), &BodyPose::rotation, out.keys);
-        read(*track->scales(), &BodyPose::scale, out.keys);
+        value.push_back(read(*track));
     }
     return value;
 }

@@ -23,7 +23,7 @@ inline bool in_range(double value, double lowest, double highest) {
     return value >= lowest && value <= highest; // false for NaN
 }
 inline bool is_time(double seconds) {
-    return std::isfinite(seconds) && seconds >= 0;
+    return in_range(seconds, 0, max_scene_time);
 }
 
 // --- parts of messages
@@ -42,6 +42,9 @@ using TrackList = flatbuffers::Vector<Offset<wire::BodyTrack>>;
 Offset<TrackList> write(Builder& builder, std::vector<BodyTrack> const& value);
 std::vector<BodyTrack> read(TrackList const& wire);
 char const* problem(std::vector<BodyTrack> const& value);
+Offset<wire::BodyTrack> write(Builder& builder, BodyTrack const& value);
+BodyTrack read(wire::BodyTrack const& wire);
+char const* problem(BodyTrack const& value);
 /// Text is made one line and cut on writing, because it comes from files; on reading it is refused.
 Offset<flatbuffers::String> write_text(Builder& builder, std::string const& text, std::size_t max_bytes);
 std::string read_text(flatbuffers::String const* wire, std::size_t max_bytes);

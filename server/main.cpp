@@ -12,6 +12,7 @@
 #include "server/options.h"
 #include "server/progress_bar.h"
 #include "server/render/framelet_renderer.h"
+#include "server/stream/event_log.h"
 
 namespace framelet {
 namespace {
@@ -63,13 +64,23 @@ void serve(Options& options) {
 
     Camera const start =
         scene.cameras.empty() ? default_camera(scene_bounds(scene, pose)) : scene_camera(scene, pose, 0);
-    options.server.loop.exposure =
+    options.server.loop.stream.exposure =
         options.exposure_ev ? std::exp2(*options.exposure_ev) : auto_exposure(render_scene, start);
     spdlog::info("{}: {} nodes, {} clips, {} lights, {} cameras; exposure {:+.1f} stops", scene.name,
                  scene.nodes.size(), scene.clips.size(), scene.lights.size(), scene.cameras.size(),
-                 std::log2(options.server.loop.exposure));
+                 std::log2(options.server.loop.stream.exposure));
 
     options.server.loop.recorder = recorder ? &*recorder : nullptr;
+    std::optional<EventLog> event_log;
+    if (!options.record_events.empty()) {
+        StreamOptions const& stream = options.server.loop.stream;
+        event_log.emplace(
+            options.record_events,
+            ServedScene{std::filesystem::absolute(options.scene).string(),
+                        options.environment ? std::filesystem::absolute(*options.environment).string() : "", clips,
+                        stream.exposure, stream.bias, stream.batch_framelets});
+        options.server.loop.event_log = &*event_log;
+    }
     Server server(scene, clips, render_scene, options.server);
     std::cout << "listening on " << server.address() << std::endl;
     server.run(true);

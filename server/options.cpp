@@ -43,15 +43,20 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
         ->check(CLI::Range(-32.0f, 32.0f));
     app.add_option("--clip", options.clips, "Animation clip to play, by name; may be given several times");
     app.add_flag("--paused", options.server.paused, "Start with the scene clock standing");
-    app.add_option("--batch", options.server.loop.batch_framelets,
+    app.add_option("--batch", options.server.loop.stream.batch_framelets,
                    "Most framelets a batch; 0: what half a cycle has time for. A place's 16 stay together")
         ->check(CLI::Range(std::size_t(0), max_batch_framelets))
         ->capture_default_str();
-    app.add_option("--bias", options.server.loop.bias, "What to favour: -1 detail .. 1 freshness")
+    app.add_option("--bias", options.server.loop.stream.bias, "What to favour: -1 detail .. 1 freshness")
         ->check(CLI::Range(-1.0, 1.0))
         ->capture_default_str();
     app.add_option("--max-sessions", options.server.max_sessions, "Most viewers at a time")
         ->check(CLI::Range(1, 1024))
+        ->capture_default_str();
+    app.add_option("--session-memory", options.server.session_megabytes,
+                   "Most memory for the pictures of all viewers together, MB: 20 bytes a pixel each; a viewer whose "
+                   "picture does not fit is refused")
+        ->check(CLI::Range(1, 1 << 20))
         ->capture_default_str();
     app.add_option("--token-file", token_file, "File whose first line a viewer has to know");
     app.add_option("--tls-cert", options.server.tls_certificate, "Certificate chain (PEM): encrypt connections");
@@ -64,6 +69,9 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
     app.add_option("--record-rate", options.record_rate, "Sets of such pictures a second, for each viewer")
         ->check(CLI::Range(0.01, 1000.0))
         ->capture_default_str();
+    app.add_option("--record-events", options.record_events,
+                   "Write to this file what comes from each viewer, and when, and what was answered: framelet-bench "
+                   "replay makes the same of it");
     app.add_flag("--quiet", options.quiet, "Print warnings and errors only");
     try {
         app.parse(argc, argv);

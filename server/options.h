@@ -19,6 +19,7 @@ struct Options {
     bool quiet = false;
     std::filesystem::path record; ///< folder for what the server thought; empty: nothing is recorded
     double record_rate = 4; ///< sets of pictures a second and session
+    std::filesystem::path record_events; ///< file for what came to the streams; empty: none
     ServerOptions server;
 };
 

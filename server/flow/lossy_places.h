@@ -14,6 +14,9 @@ class LossyPlaces {
 public:
     LossyPlaces() = default;
 
+    /// What it takes once something was sent with loss.
+    static std::size_t bytes(ImagePlane const& plane) { return std::size_t{1} << (2 * plane.max_depth()); }
+
     /// The viewer gets this framelet, as its newest there. Another viewport forgets all.
     void sent(ImagePlane const& plane, Tile tile, std::uint8_t quality);
     bool empty() const { return count_ == 0; }

@@ -58,22 +58,28 @@ void ShapeFeed::fit(std::span<Framelet const> rendered, std::span<std::uint8_t c
                       [&](std::size_t i) { fit_layers(rendered[sent_[i]], plane, tolerance, shapes[i]); });
 }
 
-void ShapeFeed::track(Scene const& scene, std::span<Index const> clips, SceneBodies const& bodies, SceneTime time,
-                      std::vector<BodyTrack>& tracks) {
+void ShapeFeed::track(Scene const& scene, std::span<Index const> clips, SceneBodies const& bodies, int camera,
+                      SceneTime time, std::vector<BodyTrack>& tracks, std::optional<BodyTrack>& camera_track) {
     tracks.clear();
-    if (!bodies.any_moves()) {
+    camera_track.reset();
+    if (!bodies.any_moves() && camera < 0) {
         return;
     }
     auto const key = static_cast<std::int64_t>(std::floor(time * body_keys_per_second));
     auto const most_keys = static_cast<std::int64_t>(max_batch_keys / bodies.frames.size());
-    bool const goes_on = end_key_ > first_key_ && key >= first_key_ && key <= end_key_ + most_missed_keys &&
-                         key_behind(time) <= end_key_ + most_keys;
+    bool const goes_on = camera == camera_ && end_key_ > first_key_ && key >= first_key_ &&
+                         key <= end_key_ + most_missed_keys && key_behind(time) <= end_key_ + most_keys;
     if (!goes_on) {
         first_key_ = end_key_ = key;
+        camera_ = camera;
     }
     std::int64_t const end = key_behind(time);
     if (end - end_key_ >= (goes_on ? least_keys : 1)) {
-        tracks = body_tracks(scene, clips, bodies, end_key_, static_cast<std::size_t>(end - end_key_));
+        auto const count = static_cast<std::size_t>(end - end_key_);
+        tracks = body_tracks(scene, clips, bodies, end_key_, count);
+        if (camera >= 0) {
+            camera_track = scene_camera_track(scene, clips, camera, end_key_, count);
+        }
         end_key_ = end;
     }
 }

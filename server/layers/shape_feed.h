@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -26,9 +27,10 @@ public:
              ImagePlane const& plane, double now, std::vector<FrameletShape>& shapes);
 
     /// The keys of all bodies until `tracked_ahead_seconds` after `time` that have not been given out yet, however late
-    /// this batch comes; from `time` on where that has leapt by seconds or backwards.
-    void track(Scene const& scene, std::span<Index const> clips, SceneBodies const& bodies, SceneTime time,
-               std::vector<BodyTrack>& tracks);
+    /// this batch comes; from `time` on where that has leapt by seconds or backwards. The same of the scene's camera
+    /// `camera`, the one that the viewer looks through, where it is one that moves; -1: there is none.
+    void track(Scene const& scene, std::span<Index const> clips, SceneBodies const& bodies, int camera, SceneTime time,
+               std::vector<BodyTrack>& tracks, std::optional<BodyTrack>& camera_track);
 
 private:
     void follow(Vec3 eye, double now);
@@ -40,6 +42,7 @@ private:
     float median_depth_ = 0; ///< of what was rendered lately, metres; 0: nothing was
     std::int64_t first_key_ = 0;
     std::int64_t end_key_ = 0; ///< behind the last one given out
+    int camera_ = -1; ///< whose keys these were
     std::vector<std::size_t> sent_; ///< which of the framelets
 };
 

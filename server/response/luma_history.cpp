@@ -46,9 +46,10 @@ void LumaHistory::clear() {
     }
 }
 
-void fill_entry(LumaHistory::Entry& entry, DisplayFramelet const& framelet, double time) {
+void fill_entry(LumaHistory::Entry& entry, DisplayFramelet const& framelet, double time, double moment) {
     entry.tile = framelet.tile;
     entry.time = time;
+    entry.moment = moment;
     entry.content = 0;
     for (std::size_t i = 0; i < framelet_samples; ++i) {
         entry.luma[i] = static_cast<std::uint16_t>(framelet.red[i] + 2 * framelet.green[i] + framelet.blue[i]);

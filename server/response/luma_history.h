@@ -18,12 +18,15 @@ public:
     struct Entry {
         Tile tile{0}; ///< 0: empty
         double time = 0; ///< seconds, on the clock of whoever stores
+        double moment = 0; ///< when what it shows was the present, on the same clock
         std::uint64_t content = 0; ///< hash of the samples' colours: equal ones mean equal pictures
         std::array<std::uint16_t, framelet_samples> luma{}; ///< [0, luma_steps], in Morton order
     };
 
+    static constexpr std::size_t default_entries = 8192;
+
     /// `entries`: a power of 2; more than that many tiles are never remembered.
-    explicit LumaHistory(std::size_t entries = 8192);
+    explicit LumaHistory(std::size_t entries = default_entries);
 
     /// Null where the tile is not remembered.
     Entry const* find(Tile tile) const;
@@ -38,7 +41,7 @@ private:
     std::vector<Entry> entries_;
 };
 
-/// Makes it the framelet's. `time`: when it was rendered.
-void fill_entry(LumaHistory::Entry& entry, DisplayFramelet const& framelet, double time);
+/// Makes it the framelet's. `time`: when it was rendered; `moment`: when what it shows was the present.
+void fill_entry(LumaHistory::Entry& entry, DisplayFramelet const& framelet, double time, double moment);
 
 } // namespace framelet

@@ -141,4 +141,19 @@ std::vector<BodyTrack> body_tracks(Scene const& scene, std::span<Index const> cl
     return tracks;
 }
 
+BodyTrack scene_camera_track(Scene const& scene, std::span<Index const> clips, Index camera, std::int64_t first_key,
+                             std::size_t count) {
+    BodyTrack track{camera_body(camera), first_key, {}};
+    for (std::size_t key = 0; key < count; ++key) {
+        double const number = static_cast<double>(first_key) + static_cast<double>(key);
+        Camera const at = scene_camera(scene, evaluate_pose(scene, clips, number / body_keys_per_second), camera);
+        track.keys.push_back({at.position, at.orientation, Vec3(1)});
+    }
+    return track;
+}
+
+bool camera_moves(Scene const& scene, std::span<Index const> clips, Index camera) {
+    return moving_nodes(scene, clips)[static_cast<std::size_t>(scene.cameras[static_cast<std::size_t>(camera)].node)];
+}
+
 } // namespace framelet

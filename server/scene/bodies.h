@@ -38,4 +38,11 @@ BodyPose body_pose(SceneBodies const& bodies, ScenePose const& pose, BodyNumber 
 std::vector<BodyTrack> body_tracks(Scene const& scene, std::span<Index const> clips, SceneBodies const& bodies,
                                    std::int64_t first_key, std::size_t count);
 
+/// The same of a camera of the scene, as `camera_body` of it: from where it looks at the world.
+BodyTrack scene_camera_track(Scene const& scene, std::span<Index const> clips, Index camera, std::int64_t first_key,
+                             std::size_t count);
+
+/// True for a camera of the scene that goes with something that moves.
+bool camera_moves(Scene const& scene, std::span<Index const> clips, Index camera);
+
 } // namespace framelet

@@ -17,7 +17,7 @@ Camera scene_camera(Scene const& scene, ScenePose const& pose, Index index) {
     camera.orientation = glm::normalize(glm::quat_cast(Mat3(glm::cross(up, back), up, back)));
     camera.projection = from.projection;
     camera.vertical_extent = from.vertical_extent;
-    return camera;
+    return within_bounds(camera); // an animation may lead anywhere
 }
 
 Bounds scene_bounds(Scene const& scene, ScenePose const& pose) {
@@ -67,7 +67,7 @@ Camera default_camera(Bounds const& bounds) {
                              std::abs(glm::dot(offset, turned.up())) / tan_y - depth});
     }
     float const least = std::max(1e-3f, 1e-4f * glm::length(center)); // a box without size, or far from the origin
-    return look_at(center + direction * std::max(distance, least), center, Vec3(0, 1, 0), vertical_fov);
+    return within_bounds(look_at(center + direction * std::max(distance, least), center, Vec3(0, 1, 0), vertical_fov));
 }
 
 } // namespace framelet

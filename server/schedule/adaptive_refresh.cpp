@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include <tbb/parallel_for.h>
 
@@ -22,7 +23,7 @@ constexpr double most_unseen = 0.5;
 /// Mean squared error of the finest samples, as modelled, above which they are not enough of a still picture.
 constexpr float enough = 5e-5f;
 /// What moves is looked at over so many seconds.
-constexpr double least_earlier = 0.03, most_earlier = 0.15;
+constexpr double least_earlier = 0.03, most_earlier = 0.25;
 /// A scene time that jumps by more than this over what has passed has been set.
 constexpr double most_time_step = 0.5;
 
@@ -119,25 +120,29 @@ void AdaptiveRefresh::plan(RefreshInput const& input, RefreshPlan& plan) {
     plan.tiles.clear();
     plan.probes.clear();
     plan.probed.clear();
+    HeldMoment const moment = input.moment.value_or(HeldMoment{input.state, input.now});
+    NumberedView const& view = moment.state.view;
     plan.now = input.now;
-    plan.viewport = input.state.view.viewport;
-    plan.moment = {make_view_rays(input.state.view.camera, input.state.view.viewport),
-                   input.state.scene_time,
-                   is_reprojectable(input.state.view.camera) ? input.motions : nullptr,
+    plan.viewport = view.viewport;
+    plan.moment_begun = moment.begun;
+    double const since_earlier = moment.begun - earlier_.when;
+    plan.moment = {make_view_rays(view.camera, view.viewport),
+                   moment.state.scene_time,
+                   is_reprojectable(view.camera) ? input.motions : nullptr,
                    earlier_.rays,
                    earlier_.scene_time,
-                   input.now - earlier_.when < most_earlier ? static_cast<float>(input.now - earlier_.when) : 0.0f};
-    if (!(input.now - recent_.when < least_earlier)) {
+                   since_earlier < most_earlier ? static_cast<float>(since_earlier) : 0.0f};
+    if (!(moment.begun - recent_.when < least_earlier)) {
         earlier_ = recent_;
-        recent_ = {plan.moment.rays, plan.moment.scene_time, input.now};
+        recent_ = {plan.moment.rays, plan.moment.scene_time, moment.begun};
     }
-    still_ = is_still(input.state);
+    still_ = !input.moment && is_still(input.state);
     plan.is_new_cycle = !goes_on(input);
     if (plan.is_new_cycle) {
         advance(input);
         plan_cycle(input, plan);
     }
-    strayed_ = strayed_ || !same_picture(*seen_, input.state);
+    strayed_ = strayed_ || !same_picture(*seen_, moment.state);
     plan.still_since = strayed_ ? input.now : still_since_;
     plan.rays_per_sample = rays_per_sample_;
     take_batch(batch_limit(input, still_) / static_cast<std::size_t>(rays_per_sample_), plan);
@@ -159,7 +164,7 @@ void AdaptiveRefresh::plan_cycle(RefreshInput const& input, RefreshPlan& plan) {
     }
     plan_patches(input, samples);
     if (rated_.empty() && samples > 0) {
-        plan_completion(samples);
+        input.moment ? plan_refinement(samples) : plan_completion(samples);
     }
     if (cycle_.empty() && !scene_moves_) {
         plan_supersampling(samples);
@@ -240,6 +245,7 @@ void AdaptiveRefresh::plan_patches(RefreshInput const& input, double samples) {
                         input.bias,
                         input.limits,
                         costs_,
+                        input.moment ? input.moment->begun : std::numeric_limits<double>::infinity(),
                         still_};
     find_due_errors(field_, budget, due_errors_);
     price_ = solve_price(field_, advanced_, budget, due_errors_, price_, choices_);
@@ -259,6 +265,38 @@ void AdaptiveRefresh::plan_patches(RefreshInput const& input, double samples) {
         auto const end = cycle_.begin() + inspections;
         if (std::find(cycle_.begin(), end, entry.patch) == end) { // once is enough
             cycle_.push_back(entry.patch);
+        }
+    }
+}
+
+/// Of a moment that is not to be seen for long: a level finer where that shows most for its samples.
+void AdaptiveRefresh::plan_refinement(double samples) {
+    unresolved_.clear();
+    for (std::uint32_t const index : field_.visible()) {
+        Place const& place = field_[index];
+        if (place.level < 0 || place.level + 1 >= sampling_levels || place.taken.level >= 0) {
+            continue;
+        }
+        int const finer = place.level + 1;
+        float const gain = unresolved_error(place.model, place.level) - unresolved_error(place.model, finer);
+        if (gain > 0) {
+            unresolved_.push_back({gain / samples_per_pixel(finer), index});
+        }
+    }
+    std::ranges::sort(unresolved_, std::ranges::greater());
+    auto const inspections = static_cast<std::ptrdiff_t>(cycle_.size());
+    double planned = 0;
+    for (auto const& [gain, index] : unresolved_) {
+        Patch const patch{{(1u << (2 * field_.depth())) + index},
+                          std::max(field_.depth_of(field_[index].level + 1), field_.depth())};
+        auto const end = cycle_.begin() + inspections;
+        if (std::find(cycle_.begin(), end, patch) != end) { // once is enough
+            continue;
+        }
+        cycle_.push_back(patch);
+        planned += tile_count(patch) * framelet_samples;
+        if (planned >= samples) {
+            return;
         }
     }
 }
@@ -472,10 +510,10 @@ void AdaptiveRefresh::examine(RefreshPlan const& plan, std::span<DisplayFramelet
         auto const on_body = [](Framelet const& framelet) {
             return std::ranges::any_of(framelet.body, [](BodyNumber body) { return body != static_body; });
         };
-        double const same_since =
-            examine_patch(field_, patch, framelets.subspan(tile, count), rendered.subspan(tile, count), plan.now,
-                          plan.moment, history_, std::span(entries_).subspan(tile, count),
-                          std::span(findings_).subspan(place, place_count(patch)));
+        double const same_since = examine_patch(field_, patch, framelets.subspan(tile, count),
+                                                rendered.subspan(tile, count), {plan.now, plan.moment_begun},
+                                                plan.moment, history_, std::span(entries_).subspan(tile, count),
+                                                std::span(findings_).subspan(place, place_count(patch)));
         // The same picture may be of a body that has moved, and that the viewer has moved away.
         bool const moved =
             plan.moment.motions != nullptr && std::ranges::any_of(rendered.subspan(tile, count), on_body);

@@ -22,7 +22,8 @@ inline constexpr float most_cycle_seconds = 0.05f;
 float cycle_length(bool still, double plan_seconds);
 
 struct RefreshInput {
-    ViewState state;
+    ViewState state; ///< what is to be seen at present
+    std::optional<HeldMoment> moment; ///< what is rendered instead, while things move; nothing: the present
     double now = 0; ///< seconds, steady
     double samples_per_second = 0; ///< what there is time for, to render and to send
     /// What the renderer alone could do. Where that is more the link is what is scarce, and samples cost by the bytes
@@ -45,6 +46,7 @@ struct RefreshPlan {
     double now = 0; ///< when
     double still_since = 0; ///< when anything moved last
     Viewport viewport;
+    double moment_begun = 0; ///< when what is rendered was the present
     RenderedMoment moment; ///< whose motions must live until it is learnt
     bool is_new_cycle = false; ///< worked out anew, not what the last one left
     std::vector<Patch> patches;
@@ -105,6 +107,7 @@ private:
     void find_costs(RefreshInput const& input);
     void plan_patches(RefreshInput const& input, double samples);
     void plan_probes(double samples, RefreshPlan& plan);
+    void plan_refinement(double samples);
     void plan_completion(double samples);
     void plan_supersampling(double samples);
     void take_batch(std::size_t most_framelets, RefreshPlan& plan);

@@ -27,8 +27,12 @@ Gain gain_of(PlaceField const& field, Choices const& choices, std::span<float co
         }
         gain.spoils =
             gain.spoils || (place.level > level && place.drift == 0 && (budget.still || place.model.motion == 0));
-        float const fresh =
-            unresolved_error(place.model, level) + drift_error(place.model, level, drift_on_the_way(place, budget));
+        float const unresolved = unresolved_error(place.model, level);
+        float fresh = unresolved + drift_error(place.model, level, drift_on_the_way(place, budget));
+        if (place.rendered >= budget.moment_begun) { // of this moment there is only more detail to show
+            float const detail = level > place.level ? unresolved_error(place.model, place.level) - unresolved : 0;
+            fresh = due[i] - std::max(detail, 0.0f);
+        }
         gain.error += pixels * static_cast<double>(due[i] - std::max(choices[i].due_error, fresh));
     }
     return gain;

@@ -12,6 +12,52 @@ namespace {
 constexpr float most_drift = 64;
 constexpr float most_displacement = most_drift / drift_per_pixel;
 
+Vec2 centre_of(PixelRect const& rect) {
+    return 0.5f * Vec2(static_cast<float>(rect.left + rect.right), static_cast<float>(rect.top + rect.bottom));
+}
+
+/// Notes at every place how far what comes there has come: a far background does not move, but what is before it may
+/// move over it.
+void find_arrivals(PlaceField& field, ViewRays const& from, ViewRays const& to) {
+    for (std::uint32_t const index : field.visible()) {
+        field[index].arriving = 0;
+    }
+    Viewport const viewport = field.plane().viewport();
+    auto const side = static_cast<float>(field.place_side());
+    int const columns = (viewport.width - 1) / field.place_side();
+    int const rows = (viewport.height - 1) / field.place_side();
+    for (std::uint32_t const index : field.visible()) {
+        PixelRect const rect = field.rect_of(index);
+        float const inverse_depth = field[index].inverse_depth;
+        float const pixels = view_displacement(from, to, centre_of(rect), inverse_depth, most_displacement);
+        if (pixels < 1) {
+            continue;
+        }
+        Vec2 low(INFINITY), high(-INFINITY);
+        for (int const x : {rect.left, rect.right}) {
+            for (int const y : {rect.top, rect.bottom}) {
+                if (auto const there = moved_pixel(from, to, Vec2(x, y), inverse_depth)) {
+                    low = glm::min(low, *there);
+                    high = glm::max(high, *there);
+                }
+            }
+        }
+        auto const cell = [side](float pixel, int last) {
+            return static_cast<int>(std::clamp(std::floor(pixel / side), 0.0f, static_cast<float>(last)));
+        };
+        if (!(high.x > 0 && high.y > 0 && low.x < static_cast<float>(viewport.width) &&
+              low.y < static_cast<float>(viewport.height))) {
+            continue;
+        }
+        for (int row = cell(low.y, rows); row <= cell(high.y, rows); ++row) {
+            for (int column = cell(low.x, columns); column <= cell(high.x, columns); ++column) {
+                Place& place = field[morton_index(static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row))];
+                place.arriving = std::max(place.arriving, pixels);
+            }
+        }
+    }
+}
+
 } // namespace
 
 PlaceField::PlaceField(ImagePlane plane) : plane_(plane), depth_(field_depth(plane)) {
@@ -49,14 +95,16 @@ float shown_error(Place const& place, float more) {
 void drift_on(PlaceField& field, ViewRays const& from, ViewRays const& to, bool moving, float seconds) {
     bool const turning = from.origin != to.origin || from.direction != to.direction ||
                          from.direction_dx != to.direction_dx || from.origin_dx != to.origin_dx;
+    if (turning) {
+        find_arrivals(field, from, to);
+    }
     for (std::uint32_t const index : field.visible()) {
         Place& place = field[index];
         float pixels = 0;
         if (turning) {
-            PixelRect const rect = field.rect_of(index);
-            Vec2 const centre(0.5f * static_cast<float>(rect.left + rect.right),
-                              0.5f * static_cast<float>(rect.top + rect.bottom));
-            pixels = view_displacement(from, to, centre, place.inverse_depth, most_displacement);
+            Vec2 const centre = centre_of(field.rect_of(index));
+            pixels =
+                std::max(view_displacement(from, to, centre, place.inverse_depth, most_displacement), place.arriving);
         }
         float const expected = place.speed * seconds; // pixels that the learnt motion is about
         float own = moving || turning ? place.model.motion * seconds : 0;

@@ -42,6 +42,7 @@ struct Place {
     bool settled = true; ///< false from a change that was seen until two renderings are the same
     double inspected = never; ///< when all its pixels were last rendered
     float inverse_depth = 0; ///< mean, 1/metres
+    float arriving = 0; ///< the farthest way, pixels, by which the camera's last step brought something here
     float speed = 0; ///< of the camera's motion here, pixels a second, when `model.motion` was learnt
     std::array<Probe, probes_per_place> probes{};
     std::size_t probe_count = 0;
@@ -90,7 +91,8 @@ float shown_error(Place const& place, float more);
 inline constexpr float bare_error = 0.25f;
 
 /// Time goes on by `seconds` while the camera moves from one view to the other. `moving`: the scene's own things may
-/// move as well. A place drifts as it was found to, more where the camera has become faster, less where slower.
+/// move as well. A place drifts as it was found to, more where the camera has become faster, less where slower; as much
+/// as what it shows is carried away, or as what comes there instead.
 void drift_on(PlaceField& field, ViewRays const& from, ViewRays const& to, bool moving, float seconds);
 /// Nothing that is held is true any more (a cut, another exposure).
 void invalidate(PlaceField& field);

@@ -117,7 +117,7 @@ float drift_since(Place const& place, double now) {
 }
 
 double examine_patch(PlaceField const& field, Patch const& patch, std::span<DisplayFramelet const> framelets,
-                     std::span<Framelet const> rendered, double now, RenderedMoment const& moment,
+                     std::span<Framelet const> rendered, RenderedTimes times, RenderedMoment const& moment,
                      LumaHistory const& history, std::span<LumaHistory::Entry> entries,
                      std::span<PlaceFindings> places) {
     FRAMELET_CHECK(framelets.size() == rendered.size() && framelets.size() == entries.size() && !framelets.empty());
@@ -127,10 +127,10 @@ double examine_patch(PlaceField const& field, Patch const& patch, std::span<Disp
     std::array<float, framelet_samples> luma;
     std::array<float, framelet_samples> change;
     std::fill(places.begin(), places.end(), PlaceFindings{});
-    double same_since = now;
+    double same_since = times.now;
     for (std::size_t f = 0; f < framelets.size(); ++f) {
         LumaHistory::Entry& entry = entries[f];
-        fill_entry(entry, framelets[f], now);
+        fill_entry(entry, framelets[f], times.now, times.moment);
         for (std::size_t i = 0; i < luma.size(); ++i) {
             luma[i] = luma_at(entry, i);
         }
@@ -138,13 +138,14 @@ double examine_patch(PlaceField const& field, Patch const& patch, std::span<Disp
         std::optional<std::span<float const, framelet_samples>> difference;
         float seconds = 0;
         LumaHistory::Entry const* const before = history.find(entry.tile);
-        if (before != nullptr) {
+        // Of one moment the same samples are the same: that says nothing of what time changes.
+        if (before != nullptr && before->moment != entry.moment) {
             for (std::size_t i = 0; i < change.size(); ++i) {
                 change[i] = static_cast<float>(entry.luma[i] - before->luma[i]) / LumaHistory::luma_steps;
             }
             haar_forward(change);
             difference = std::span<float const, framelet_samples>(change);
-            seconds = static_cast<float>(now - before->time);
+            seconds = static_cast<float>(entry.moment - before->moment);
         }
         bool const same = before != nullptr && before->content == entry.content;
         same_since = std::min(same_since, same ? before->time : never);

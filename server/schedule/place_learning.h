@@ -21,11 +21,16 @@ struct PlaceFindings {
     float carried_speed = 0; ///< of what is seen there, pixels a second
 };
 
+/// When something was rendered, and when what it shows was the present; seconds, steady.
+struct RenderedTimes {
+    double now = 0, moment = 0;
+};
+
 /// Of one patch. `framelets`: of its tiles, all the visible ones; `rendered`: the same with depth. Fills `entries` (a
 /// framelet each) and `places` (a place of the patch each). Returns since when all of it is what `history` remembers;
 /// `never` where it is not.
 double examine_patch(PlaceField const& field, Patch const& patch, std::span<DisplayFramelet const> framelets,
-                     std::span<Framelet const> rendered, double now, RenderedMoment const& moment,
+                     std::span<Framelet const> rendered, RenderedTimes times, RenderedMoment const& moment,
                      LumaHistory const& history, std::span<LumaHistory::Entry> entries,
                      std::span<PlaceFindings> places);
 

@@ -3,6 +3,7 @@
 // there is. This conserves the budget: the integral of density over space and time.
 #pragma once
 
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -26,6 +27,9 @@ struct Budget {
     ResponseLimits limits{};
     /// What a sample costs of `samples_per_second`, by place and level; empty: one.
     std::span<LevelCosts const> costs{};
+    /// From when on what was rendered is of the moment that is rendered now: once more it would be the very same.
+    /// Infinite: each rendering is of a moment of its own.
+    double moment_begun = std::numeric_limits<double>::infinity();
     bool still = false; ///< nothing moves: what is rendered now stays true, whatever was learnt of the place's motion
 };
 

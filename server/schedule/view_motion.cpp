@@ -1,12 +1,13 @@
 #include "server/schedule/view_motion.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <glm/geometric.hpp>
 
 namespace framelet {
 
-float view_displacement(ViewRays const& from, ViewRays const& to, Vec2 pixel, float inverse_depth, float most_pixels) {
+std::optional<Vec2> moved_pixel(ViewRays const& from, ViewRays const& to, Vec2 pixel, float inverse_depth) {
     // The point by homogeneous coordinates, so that a depth of infinity is a direction.
     Vec3 const origin = from.origin + from.origin_dx * pixel.x + from.origin_dy * pixel.y;
     Vec3 const direction = from.direction + from.direction_dx * pixel.x + from.direction_dy * pixel.y;
@@ -22,15 +23,19 @@ float view_displacement(ViewRays const& from, ViewRays const& to, Vec2 pixel, fl
         corner = to.direction;
     }
     if (!perspective && glm::dot(relative, to.direction) < 0) {
-        return most_pixels;
+        return std::nullopt;
     }
     if (!(scale > 0)) {
-        return perspective ? most_pixels : 0;
+        return perspective ? std::nullopt : std::optional(pixel);
     }
     Vec3 const place = relative / scale - corner;
     Vec2 const there(glm::dot(place, dx) / glm::dot(dx, dx), glm::dot(place, dy) / glm::dot(dy, dy));
-    float const distance = glm::distance(pixel, there);
-    return distance < most_pixels ? distance : most_pixels; // NaN is far
+    return std::isfinite(there.x) && std::isfinite(there.y) ? std::optional(there) : std::nullopt;
+}
+
+float view_displacement(ViewRays const& from, ViewRays const& to, Vec2 pixel, float inverse_depth, float most_pixels) {
+    std::optional<Vec2> const there = moved_pixel(from, to, pixel, inverse_depth);
+    return there ? std::min(glm::distance(pixel, *there), most_pixels) : most_pixels;
 }
 
 } // namespace framelet

@@ -1,4 +1,4 @@
-// What is to be seen.
+// What is to be seen, and what is rendered of it.
 #pragma once
 
 #include "common/framelet.h"
@@ -12,6 +12,13 @@ struct ViewState {
     SceneTime scene_time = 0; ///< 0 where nothing moves
 
     bool operator==(ViewState const&) const = default;
+};
+
+/// What is rendered for a while instead of the present: a viewer that moves what it holds loses little by it, and has
+/// to join samples of few moments only.
+struct HeldMoment {
+    ViewState state;
+    double begun = 0; ///< when it was the present, seconds, steady
 };
 
 /// True when both show the same picture: the number of the camera apart.

@@ -12,7 +12,7 @@
 #include <optional>
 #include <thread>
 
-#include "server/session/cycle_record.h"
+#include "server/stream/cycle_record.h"
 
 namespace framelet {
 

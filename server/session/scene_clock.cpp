@@ -16,7 +16,7 @@ void SceneClock::apply(ClockRequest const& request, WallTime now) {
     at_mark_ = advanced(now);
     mark_ = now;
     if (request.set & ClockRequest::time) {
-        at_mark_.time = std::max(0.0, request.state.time);
+        at_mark_.time = std::clamp(request.state.time, 0.0, max_scene_time);
     }
     if (request.set & ClockRequest::playing) {
         at_mark_.playing = request.state.playing;
@@ -30,7 +30,7 @@ ClockState SceneClock::advanced(WallTime now) const {
     ClockState state = at_mark_;
     if (state.playing) {
         double const elapsed = std::chrono::duration<double>(now - mark_).count();
-        state.time = std::max(0.0, state.time + static_cast<double>(state.speed) * elapsed);
+        state.time = std::clamp(state.time + static_cast<double>(state.speed) * elapsed, 0.0, max_scene_time);
     }
     return state;
 }

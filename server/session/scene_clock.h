@@ -11,7 +11,7 @@ namespace framelet {
 
 using WallTime = std::chrono::steady_clock::time_point;
 
-/// Runs at `speed` scene seconds per wall second while it plays; never below 0. From any thread.
+/// Runs at `speed` scene seconds per wall second while it plays, from 0 to `max_scene_time`. From any thread.
 class SceneClock {
 public:
     SceneClock(bool playing, WallTime now);

@@ -15,6 +15,8 @@
 #include "protocol/stream_opening.h"
 #include "protocol/token.h"
 #include "server/scene/animation.h"
+#include "server/session/clock_requests.h"
+#include "server/session/session_memory.h"
 
 namespace framelet {
 
@@ -57,12 +59,14 @@ bool is_loopback(std::string const& bind) {
 struct Server::Impl {
     asio::io_context io{1};
     tcp::acceptor acceptor{io};
-    asio::steady_timer timer{io};
+    asio::steady_timer timer{io}, clock_timer{io};
     asio::signal_set signals{io};
     ServerOptions const options;
     std::shared_ptr<asio::ssl::context> tls;
     Welcome const welcome;
     SceneClock clock;
+    ClockRequests clock_requests; ///< for the io thread only, as the next
+    SessionMemory memory;
 
     struct Connection {
         std::shared_ptr<Session> session;
@@ -76,6 +80,7 @@ struct Server::Impl {
 
     Impl(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene, ServerOptions const& given)
         : options(given), welcome(make_welcome(scene, clips)), clock(!given.paused, steady_clock::now()),
+          memory(given.session_megabytes * 1'000'000),
           loop(scene, std::move(clips), render_scene, clock, given.loop,
                {[this] { return open_sessions(); }, [this] { asio::post(io, [this] { send_status(); }); }}) {
         if (!options.tls_certificate.empty()) {
@@ -145,6 +150,7 @@ struct Server::Impl {
         Session::Events events;
         events.admit = [this](Hello const& hello) { return admit(hello); };
         events.clock_request = [this](ClockRequest const& request) { set_clock(request); };
+        events.resize = [this, id](Viewport viewport, bool predicts) { return memory.reserve(id, viewport, predicts); };
         events.changed = [this] { loop.wake(); };
         events.ended = [this, id](std::string const& reason) { end_session(id, reason); };
         auto session = std::make_shared<Session>(id, std::move(stream), std::move(events));
@@ -175,9 +181,21 @@ struct Server::Impl {
     }
 
     void set_clock(ClockRequest const& request) {
-        clock.apply(request, steady_clock::now());
+        if (clock_requests.add(request)) {
+            clock_timer.expires_at(clock_requests.due());
+            clock_timer.async_wait([this](boost::system::error_code error) {
+                if (!error) {
+                    apply_clock_requests();
+                }
+            });
+        }
+    }
+
+    void apply_clock_requests() {
+        auto const now = steady_clock::now();
+        clock.apply(clock_requests.take(now), now);
         for (auto const& session : open_sessions()) {
-            session->invalidate();
+            session->note_clock_change();
         }
         loop.wake();
         send_status();
@@ -189,6 +207,7 @@ struct Server::Impl {
         asio::post(io, [this, id] {
             std::scoped_lock const lock(sessions_mutex);
             connections.erase(id);
+            memory.release(id);
         });
         loop.wake();
     }
@@ -219,8 +238,7 @@ struct Server::Impl {
             }
         }
         for (auto const& [session, reason] : silent) {
-            session->close(reason);
-            end_session(session->id(), reason);
+            session->end(reason);
         }
     }
 
@@ -239,6 +257,7 @@ struct Server::Impl {
         boost::system::error_code ignored;
         acceptor.close(ignored);
         timer.cancel();
+        clock_timer.cancel();
         signals.cancel(ignored);
         std::scoped_lock const lock(sessions_mutex);
         for (auto const& [id, connection] : connections) {

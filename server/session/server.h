@@ -20,6 +20,7 @@ struct ServerOptions {
     std::string tls_certificate; ///< PEM file; empty: no TLS
     std::string tls_key; ///< PEM file
     std::size_t max_sessions = 8;
+    std::size_t session_megabytes = 4096; ///< what the pictures of all viewers may take together
     bool paused = false; ///< the scene clock stands at 0 at first
     LoopOptions loop;
 };

@@ -33,41 +33,34 @@ void Session::close(std::string const& farewell) {
     stream_->close_after_sending();
 }
 
+void Session::end(std::string const& reason) {
+    {
+        std::scoped_lock const lock(mutex_);
+        if (std::exchange(ended_, true)) {
+            return;
+        }
+        open_ = false;
+    }
+    stream_->send(Failure{reason});
+    stream_->close_after_sending();
+    events_.ended(reason);
+}
+
 bool Session::is_open() const {
     std::scoped_lock const lock(mutex_);
     return open_;
 }
 
-SessionInput Session::newest_input() const {
+std::uint32_t Session::codings() const {
     std::scoped_lock const lock(mutex_);
-    return input_;
+    return codings_;
 }
 
-bool Session::has_room(std::uint64_t unsent) const {
+std::uint64_t Session::take_events(std::vector<StreamEvent>& events) {
+    events.clear();
     std::scoped_lock const lock(mutex_);
-    return open_ && last_batch_ + unsent - last_ack_ < max_batches_in_flight &&
-           link_.has_room(seconds_of(std::chrono::steady_clock::now()));
-}
-
-HeldPicture* Session::held_picture() {
-    return newest_input().takes_predictions() ? &held_ : nullptr;
-}
-
-std::uint64_t Session::begin_batch(double samples) {
-    std::scoped_lock const lock(mutex_);
-    FRAMELET_CHECK(last_batch_ - last_ack_ < max_batches_in_flight);
-    auto const now = std::chrono::steady_clock::now();
-    if (last_batch_ == last_ack_) {
-        last_progress_ = now;
-    }
-    ++last_batch_;
-    link_.begin(samples);
-    return last_batch_;
-}
-
-LinkState Session::link() const {
-    std::scoped_lock const lock(mutex_);
-    return link_.state();
+    events.swap(waiting_events_);
+    return version_;
 }
 
 void Session::send(Message const& message) {
@@ -77,19 +70,34 @@ void Session::send(Message const& message) {
 }
 
 void Session::send_batch(EncodedBatch batch) {
-    if (!is_open()) {
-        return;
-    }
     std::uint64_t const number = batch.number;
+    {
+        std::scoped_lock const lock(mutex_);
+        if (!open_) {
+            return;
+        }
+        if (last_batch_ == last_ack_) {
+            last_progress_ = std::chrono::steady_clock::now();
+        }
+        last_batch_ = number; // the answer may be here before it is sent as a whole
+    }
     double const now = seconds_of(std::chrono::steady_clock::now());
-    std::size_t const bytes = stream_->send(std::move(batch)); // the answer may be here before this returns
+    std::size_t const bytes = stream_->send(std::move(batch));
     std::scoped_lock const lock(mutex_);
-    link_.sent(number, now, static_cast<double>(bytes));
+    waiting_events_.push_back({now, BatchSent{number, bytes}});
 }
 
-void Session::invalidate() {
+void Session::note_clock_change() {
     std::scoped_lock const lock(mutex_);
-    ++input_.version;
+    add_newest(ClockChanged{});
+}
+
+/// Under the lock.
+template <class What>
+void Session::add_newest(What const& what) {
+    std::erase_if(waiting_events_, [](StreamEvent const& event) { return std::holds_alternative<What>(event.what); });
+    waiting_events_.push_back({seconds_of(std::chrono::steady_clock::now()), what});
+    ++version_;
 }
 
 bool Session::report(std::uint64_t version, bool converged) {
@@ -102,8 +110,8 @@ Status Session::status() const {
     std::scoped_lock const lock(mutex_);
     Status status;
     status.last_batch = last_batch_;
-    status.camera_number = input_.camera ? input_.camera->view.number : 0;
-    status.converged = input_.camera && converged_version_ == input_.version;
+    status.camera_number = camera_number_;
+    status.converged = camera_number_ > 0 && converged_version_ == version_;
     return status;
 }
 
@@ -113,42 +121,30 @@ bool Session::has_stopped_answering(std::chrono::steady_clock::time_point now) c
 }
 
 void Session::receive(Message message) {
-    if (!is_open()) {
-        receive_hello(message);
-    } else if (auto* const camera = std::get_if<CameraUpdate>(&message)) {
-        {
-            std::scoped_lock const lock(mutex_);
-            if (input_.camera && camera->view.number <= input_.camera->view.number) {
-                return; // late: a newer one is here already
-            }
-            input_.camera = std::move(*camera);
-            ++input_.version;
+    bool open = false;
+    {
+        std::scoped_lock const lock(mutex_);
+        if (ended_) {
+            return; // by another thread, while this message was on its way here
         }
-        events_.changed();
+        open = open_;
+    }
+    if (!open) {
+        receive_hello(message);
+    } else if (auto const* const camera = std::get_if<CameraUpdate>(&message)) {
+        receive_camera(*camera);
     } else if (auto const* const settings = std::get_if<ViewerSettings>(&message)) {
         {
             std::scoped_lock const lock(mutex_);
-            input_.settings = *settings;
-            ++input_.version;
+            add_newest(*settings);
         }
         events_.changed();
     } else if (auto const* const request = std::get_if<ClockRequest>(&message)) {
         events_.clock_request(*request);
     } else if (auto const* const ack = std::get_if<Ack>(&message)) {
-        {
-            std::scoped_lock const lock(mutex_);
-            if (ack->batch <= last_ack_ || ack->batch > last_batch_) {
-                return;
-            }
-            last_ack_ = ack->batch;
-            last_progress_ = std::chrono::steady_clock::now();
-            std::optional<double> received;
-            if (ack->received_us != 0) {
-                received = 1e-6 * static_cast<double>(ack->received_us);
-            }
-            link_.acknowledged(ack->batch, seconds_of(last_progress_), received);
+        if (receive_ack(*ack)) {
+            events_.changed();
         }
-        events_.changed();
     } else if (auto const* const failure = std::get_if<Failure>(&message)) {
         stream_->close();
         fail("the viewer gave up: " + failure->text);
@@ -156,6 +152,44 @@ void Session::receive(Message message) {
         close("unexpected message");
         events_.ended("the viewer sent a message that only a server may send");
     }
+}
+
+/// False where it answers nothing that waits for an answer.
+bool Session::receive_ack(Ack const& ack) {
+    std::scoped_lock const lock(mutex_);
+    if (ack.batch <= last_ack_ || ack.batch > last_batch_) {
+        return false;
+    }
+    last_ack_ = ack.batch;
+    last_progress_ = std::chrono::steady_clock::now();
+    waiting_events_.push_back({seconds_of(last_progress_), ack});
+    return true;
+}
+
+void Session::receive_camera(CameraUpdate const& camera) {
+    bool is_resized = false;
+    {
+        std::scoped_lock const lock(mutex_);
+        if (camera.view.number <= camera_number_) {
+            return; // late: a newer one is here already
+        }
+        is_resized = camera_number_ == 0 || camera.view.viewport != viewport_;
+    }
+    if (is_resized) {
+        bool const takes_predictions =
+            (codings() & coding::haar_colour) != 0 && (codings() & coding::predicted_colour) != 0;
+        if (auto const refusal = events_.resize(camera.view.viewport, takes_predictions)) {
+            end(*refusal);
+            return;
+        }
+    }
+    {
+        std::scoped_lock const lock(mutex_);
+        camera_number_ = camera.view.number;
+        viewport_ = camera.view.viewport;
+        add_newest(camera);
+    }
+    events_.changed();
 }
 
 void Session::receive_hello(Message const& message) {
@@ -172,7 +206,7 @@ void Session::receive_hello(Message const& message) {
     {
         std::scoped_lock const lock(mutex_);
         open_ = true;
-        input_.codings = hello->codings;
+        codings_ = hello->codings;
     }
     stream_->send(std::get<Welcome>(std::move(answer)));
     events_.changed();

@@ -1,15 +1,15 @@
 #include "server/session/session_loop.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
-#include <cmath>
 #include <utility>
 
 #include <tbb/global_control.h>
 #include <tbb/task_group.h>
 
+#include "server/session/contained.h"
 #include "server/session/laps.h"
+#include "server/stream/event_log.h"
 
 namespace framelet {
 namespace {
@@ -24,29 +24,40 @@ std::size_t thread_count() {
     return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
 }
 
+double seconds_of(WallTime time) {
+    return std::chrono::duration<double>(time.time_since_epoch()).count();
+}
+
 } // namespace
+
+struct SessionLoop::Viewer {
+    std::unique_ptr<ViewerStream> stream;
+    std::vector<StreamEvent> events; ///< scratch
+    std::uint64_t version = 0; ///< of what the viewer asks for
+};
 
 /// The batch that was rendered last is finished while the next one renders.
 struct SessionLoop::Pipeline {
-    std::array<BatchWork, 2> works;
-    BatchWork* rendered = nullptr; ///< and not finished; null: none
-    bool learnt = false; ///< that one is
-    BatchCodec codec;
+    struct Rendered {
+        std::shared_ptr<Session> session;
+        Viewer* viewer = nullptr;
+        std::uint64_t version = 0; ///< that it was planned for
+        bool learnt = false;
+        bool sends = false; ///< once it is learnt
+        bool complete = false; ///< likewise: with it the viewer's picture is
+        CycleRecord record;
+        double now = 0; ///< when it was planned
+    };
+    std::optional<Rendered> rendered; ///< and not finished
     tbb::task_group finishing;
 
-    BatchWork& free_work() { return works[rendered == works.data() ? 1 : 0]; }
-    bool is_of(ViewerState const& viewer) const { return rendered != nullptr && rendered->order.viewer == &viewer; }
-    bool is_unlearnt() const { return rendered != nullptr && !learnt; }
+    bool is_unlearnt() const { return rendered && !rendered->learnt; }
 };
 
 SessionLoop::SessionLoop(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene,
                          SceneClock const& clock, LoopOptions options, Events events)
-    : scene_(scene), clips_(std::move(clips)), animated_(animation_duration(scene, clips_) > 0),
-      render_scene_(render_scene), clock_(clock), options_(options), events_(std::move(events)),
-      pose_(evaluate_pose(scene, clips_, 0)), pipeline_(std::make_unique<Pipeline>()) {
-    render_scene_.set_clips(clips_);
-    render_scene_.set_pose(pose_);
-}
+    : scene_(scene, std::move(clips), render_scene), clock_(clock), options_(std::move(options)),
+      events_(std::move(events)), pipeline_(std::make_unique<Pipeline>()) {}
 
 SessionLoop::~SessionLoop() {
     pipeline_->finishing.wait();
@@ -62,12 +73,13 @@ void SessionLoop::run() {
             wake_ = false;
         }
         Sessions const sessions = events_.open_sessions();
-        bool const rendered = cycle(sessions, std::chrono::steady_clock::now());
+        bool const rendered = give_turns(sessions, std::chrono::steady_clock::now());
         if (rendered || finish_rendered()) {
             continue;
         }
         // Nothing to do until a viewer or the clock says so. While the clock runs every display frame is worth a look.
-        bool const playing = animated_ && clock_.state(std::chrono::steady_clock::now()).playing && !sessions.empty();
+        bool const playing =
+            scene_.is_animated() && clock_.state(std::chrono::steady_clock::now()).playing && !sessions.empty();
         std::unique_lock lock(mutex_);
         auto const woken = [this] { return wake_ || stop_; };
         if (playing || waits_for_room_) { // the link's time passes without a word from it
@@ -78,147 +90,148 @@ void SessionLoop::run() {
     }
 }
 
-bool SessionLoop::cycle(Sessions const& sessions, WallTime now) {
+/// One turn for each; true when something was rendered or learnt.
+bool SessionLoop::give_turns(Sessions const& sessions, WallTime now) {
     forget_ended(sessions);
-    if (sessions.empty()) {
-        return false;
-    }
-    SceneTime const time = animated_ ? clock_.state(now).time : 0;
-    pose_scene(time);
+    SceneTime const present = clock_.state(now).time;
     waits_for_room_ = false;
-    double const share = 1 / static_cast<double>(sessions.size());
-    bool rendered = false;
+    double const share = sessions.empty() ? 1 : 1 / static_cast<double>(sessions.size());
+    bool worked = false;
     for (auto const& session : sessions) {
-        rendered |= render_session(*session, viewers_[session->id()], time, share);
+        bool const served =
+            contain(*session, [&] { worked |= give_turn(session, viewer_of(*session), present, share); });
+        if (!served) {
+            drop_rendered(*session);
+        }
     }
-    return rendered;
+    return worked;
 }
 
-bool SessionLoop::render_session(Session& session, ViewerState& viewer, SceneTime time, double share) {
-    AdaptiveRefresh& refresh = viewer.refresh;
-    SessionInput const input = session.newest_input();
-    if (!input.camera) {
-        return false;
+SessionLoop::Viewer& SessionLoop::viewer_of(Session const& session) {
+    std::unique_ptr<Viewer>& viewer = viewers_[session.id()];
+    if (!viewer) {
+        std::uint32_t const codings = session.codings();
+        viewer = std::make_unique<Viewer>();
+        viewer->stream = options_.make_stream ? options_.make_stream(options_.stream, codings)
+                                              : std::make_unique<FrameletStream>(options_.stream, codings);
+        if (options_.event_log != nullptr) {
+            options_.event_log->add_viewer(session.id(), codings);
+        }
     }
-    ViewState const state{resolve_camera(*input.camera), options_.exposure * std::exp2(input.settings.exposure_ev),
-                          time};
-    if (refresh.is_complete(state)) {
-        if (pipeline_->is_of(viewer) && finish_rendered()) {
+    return *viewer;
+}
+
+bool SessionLoop::give_turn(std::shared_ptr<Session> const& session, Viewer& viewer, SceneTime present, double share) {
+    ViewerStream& stream = *viewer.stream;
+    viewer.version = session->take_events(viewer.events);
+    double const rate = rate_.samples_per_second > 0 ? rate_.samples_per_second : first_rate;
+    Turn const turn{seconds_of(std::chrono::steady_clock::now()), present, share * rate, plan_seconds_};
+    EventLog* const log = options_.event_log;
+    for (StreamEvent const& event : viewer.events) {
+        stream.take(event);
+        if (log != nullptr) {
+            log->add_event(session->id(), event);
+        }
+    }
+    Laps laps;
+    Step const step = stream.plan(turn, scene_);
+    if (log != nullptr) {
+        log->add_turn(session->id(), turn, step);
+    }
+    if (step != Step::render) {
+        waits_for_room_ = waits_for_room_ || step == Step::wait;
+        if (finish_rendered()) {
             return true;
         }
-        if (!viewer.lossy.empty()) {
-            return send_exactly(session, viewer, input, state);
-        }
-        if (session.report(input.version, true)) {
+        if (step == Step::nothing && stream.is_complete() && session->report(viewer.version, true)) {
             events_.convergence_changed();
         }
         return false;
     }
-    bool const unsent = pipeline_->is_unlearnt() && pipeline_->is_of(viewer);
-    if (!session.has_room(unsent ? 1 : 0)) {
-        waits_for_room_ = true;
-        return finish_rendered();
-    }
-    Laps laps;
-    BatchWork& work = pipeline_->free_work();
-    work.record = {};
-    plan(session, viewer, input, state, share, work.order);
-    if (work.order.plan.is_empty()) {
-        return finish_rendered(); // once that is learnt there may be something
-    }
-    work.record.stage_seconds.plan = laps.lap();
-    if (work.order.plan.is_new_cycle) {
+    CycleRecord record;
+    record.stage_seconds.plan = laps.lap();
+    TurnFigures const figures = stream.planned_figures();
+    if (figures.is_new_cycle) {
         constexpr double weight = 0.1;
-        plan_seconds_ += weight * (work.record.stage_seconds.plan - plan_seconds_);
+        plan_seconds_ += weight * (record.stage_seconds.plan - plan_seconds_);
     }
-    if (options_.recorder != nullptr) {
-        work.record.session = session.id();
-        work.record.scene_time = time;
-        work.record.samples_rendered = work.order.plan.ray_count();
-        work.record.probes = work.order.plan.probes.size();
-        describe(refresh, work.record);
+    if (options_.recorder != nullptr && stream.scheduler() != nullptr) {
+        record.session = session->id();
+        record.scene_time = stream.moment();
+        record.samples_rendered = figures.rays;
+        record.probes = figures.probes;
+        describe(*stream.scheduler(), record);
         laps.lap();
     }
+    scene_.pose(stream.moment());
     if (pipeline_->is_unlearnt()) {
         start_finishing();
     }
-    work.render(shared());
-    work.record.stage_seconds.render = laps.lap();
+    stream.render(scene_);
+    record.stage_seconds.render = laps.lap();
     wait_for_finishing();
-    work.record.stage_seconds.wait = laps.lap();
-    pipeline_->rendered = &work;
-    pipeline_->learnt = false;
+    record.stage_seconds.wait = laps.lap();
+    pipeline_->rendered = {session, &viewer, viewer.version, false, false, false, record, turn.now};
     if (thread_count() < many_threads) {
-        work.learn(shared());
-        pipeline_->learnt = true;
+        finish_one(true);
         start_finishing();
     }
     double const learning = laps.lap(); // by itself
-
-    if (!work.order.plan.tiles.empty()) {
-        // Planning left out: it takes as long for few samples, which would then seem to be dear.
-        double const samples = static_cast<double>(work.order.plan.ray_count());
-        rate_ = update_render_rate(rate_, samples,
-                                   work.record.stage_seconds.render + work.record.stage_seconds.wait + learning);
-        samples_per_second_ = rate_.samples_per_second;
-    }
+    note_rate(figures, record.stage_seconds.render + record.stage_seconds.wait + learning);
     return true;
 }
 
-void SessionLoop::plan(Session& session, ViewerState& viewer, SessionInput const& input, ViewState const& state,
-                       double share, BatchOrder& order) {
-    RefreshInput wanted;
-    wanted.state = state;
-    wanted.now = std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-    LinkState const link = session.link();
-    double const rendered = share * (rate_.samples_per_second > 0 ? rate_.samples_per_second : first_rate);
-    std::uint8_t const quality = input.takes_loss() ? viewer.choice.choose(link, rendered, wanted.now) : exact_quality;
-    bool const still = viewer.refresh.is_still(state);
-    wanted.samples_per_second = bounded_rate(link, rendered);
-    wanted.rendered_per_second = rendered;
-    wanted.cycle_seconds = cycle_length(still, plan_seconds_);
-    wanted.delivery_seconds = static_cast<float>(link.delivery_seconds);
-    wanted.bias = std::clamp(static_cast<float>(options_.bias) + input.settings.bias, -1.0f, 1.0f);
-    wanted.batch_framelets = options_.batch_framelets;
-    wanted.link_framelets = bounded_batch(link);
-    wanted.motions = input.takes_shapes() ? &viewer.motions : nullptr;
-    order.session = session.shared_from_this();
-    order.viewer = &viewer;
-    order.input = input;
-    order.state = state;
-    order.quality = quality;
-    order.still = still;
-    order.again = false;
-    viewer.refresh.plan(wanted, order.plan);
+/// Planning left out: it takes as long for few samples, which would then seem to be dear.
+void SessionLoop::note_rate(TurnFigures const& figures, double seconds) {
+    if (figures.rays > 0) {
+        rate_ = update_render_rate(rate_, static_cast<double>(figures.rays), seconds);
+        samples_per_second_ = rate_.samples_per_second;
+    }
 }
 
-/// The picture is complete, but for what the viewer was sent with loss: some of that once more. What has four rays a
-/// sample is not among it: it was sent exactly, since nothing moved.
-bool SessionLoop::send_exactly(Session& session, ViewerState& viewer, SessionInput const& input,
-                               ViewState const& state) {
-    if (!session.has_room(0)) {
-        waits_for_room_ = true;
-        return false;
+/// Learns what was rendered, or encodes and sends what was learnt.
+void SessionLoop::finish_one(bool learns) {
+    Pipeline::Rendered& done = *pipeline_->rendered;
+    ViewerStream& stream = *done.viewer->stream;
+    EventLog* const log = options_.event_log;
+    if (learns) {
+        Laps laps;
+        done.sends = stream.learn(scene_);
+        done.learnt = true;
+        done.complete = stream.is_complete();
+        TurnFigures const& figures = stream.learnt_figures();
+        done.record.framelets_sent = (figures.exact_samples + figures.lossy_samples) / framelet_samples;
+        done.record.framelets_unchanged = figures.framelets - done.record.framelets_sent;
+        done.record.stage_seconds.learn = laps.lap();
+        if (log != nullptr) {
+            log->add_learning(done.session->id());
+        }
+        return;
     }
-    constexpr std::size_t most_framelets = 1024;
-    finish_rendered();
-    BatchWork& work = pipeline_->free_work();
-    work.order = {session.shared_from_this(), &viewer, input, state, {}, exact_quality, true, true};
-    viewer.lossy.list(std::min(bounded_batch(session.link()), most_framelets), work.order.plan.tiles);
-    work.render(shared());
-    pipeline_->rendered = &work;
-    pipeline_->learnt = false;
-    return finish_rendered();
+    if (done.sends) {
+        EncodedBatch batch = stream.encode();
+        if (log != nullptr) {
+            log->add_batch(done.session->id(), batch);
+        }
+        done.session->send_batch(std::move(batch));
+    }
+    if (done.session->report(done.version, done.complete)) {
+        events_.convergence_changed();
+    }
 }
 
 void SessionLoop::start_finishing() {
-    auto const finish = [this, learnt = pipeline_->learnt] {
-        if (!learnt) {
-            pipeline_->rendered->learn(shared());
-        }
-        if (pipeline_->rendered->send(pipeline_->codec)) {
-            events_.convergence_changed();
-        }
+    // It counts as learnt from here on: whatever fails meanwhile, it is not begun a second time.
+    auto const finish = [this, learnt = std::exchange(pipeline_->rendered->learnt, true)] {
+        Session& session = *pipeline_->rendered->session;
+        contain(session, [&] {
+            if (!learnt && session.is_open()) {
+                finish_one(true);
+            }
+            if (session.is_open()) {
+                finish_one(false);
+            }
+        });
     };
     // With one thread it would not begin before the next batch is rendered, and be late by that.
     if (thread_count() > 1) {
@@ -230,16 +243,22 @@ void SessionLoop::start_finishing() {
 
 void SessionLoop::wait_for_finishing() {
     pipeline_->finishing.wait();
-    BatchWork* const done = std::exchange(pipeline_->rendered, nullptr);
-    if (done == nullptr) {
-        return;
+    auto const done = std::exchange(pipeline_->rendered, std::nullopt);
+    if (done && options_.recorder != nullptr && done->record.cycle > 0) {
+        contain(*done->session,
+                [&] { options_.recorder->add(done->record, *done->viewer->stream->scheduler(), done->now); });
     }
-    if (options_.recorder != nullptr && !done->order.again) {
-        options_.recorder->add(done->record, done->order.viewer->refresh, done->order.plan.now);
-    }
-    done->order.session.reset();
 }
 
+/// What failed is not tried again when it is to be finished.
+void SessionLoop::drop_rendered(Session const& session) {
+    if (pipeline_->rendered && pipeline_->rendered->session.get() == &session) {
+        pipeline_->finishing.wait();
+        pipeline_->rendered.reset();
+    }
+}
+
+/// Waits for all that was rendered to be sent; true where some of it had not been learnt.
 bool SessionLoop::finish_rendered() {
     bool const learns = pipeline_->is_unlearnt();
     if (learns) {
@@ -247,21 +266,6 @@ bool SessionLoop::finish_rendered() {
     }
     wait_for_finishing();
     return learns;
-}
-
-void SessionLoop::pose_scene(SceneTime time) {
-    if (time != pose_.time) {
-        pose_ = evaluate_pose(scene_, clips_, time);
-        render_scene_.set_pose(pose_);
-    }
-}
-
-NumberedView SessionLoop::resolve_camera(CameraUpdate const& camera) const {
-    NumberedView view = camera.view;
-    if (camera.scene_camera >= 0 && camera.scene_camera < static_cast<int>(scene_.cameras.size())) {
-        view.camera = framelet::scene_camera(scene_, pose_, camera.scene_camera);
-    }
-    return view;
 }
 
 void SessionLoop::forget_ended(Sessions const& sessions) {

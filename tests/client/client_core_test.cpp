@@ -1,5 +1,9 @@
 #include "client/client_core.h"
 
+#include <atomic>
+#include <thread>
+
+#include <glm/gtc/quaternion.hpp>
 #include <gtest/gtest.h>
 
 #include "common/color.h"
@@ -97,6 +101,45 @@ TEST(ClientCore, CoarseThenFineArrivesAndIsAcknowledged) {
     EXPECT_GT(statistics.bytes, 0u);
     EXPECT_GE(statistics.least_round_trip_seconds, 0);
     EXPECT_GE(statistics.full_picture_seconds, 0);
+}
+
+/// Painting takes its time, of which nothing that comes meanwhile has to wait for any.
+TEST(ClientCore, AnswersWhileItPaints) {
+    FakeServer server;
+    ClientCore core(options_for(server));
+    Viewport const viewport{4096, 4096};
+    ImagePlane const plane(viewport);
+    core.set_view({}, viewport);
+    server.send(constant_batch(plane, plane.pixel_depth() - 1, 50, 1));
+    ASSERT_TRUE(wait_for(core, [&] { return core.statistics().batches == 1; }));
+    std::atomic<std::uint64_t> begun = 0, ended = 0; // pictures
+    std::jthread const painter([&](std::stop_token const& stop) {
+        Picture picture;
+        std::vector<PixelRect> changed;
+        for (float turned = 0; !stop.stop_requested(); turned += 0.01f) {
+            Camera camera;
+            camera.orientation = glm::angleAxis(turned, Vec3(0, 1, 0)); // all of it is to be painted
+            core.set_view(camera, viewport);
+            ++begun;
+            core.update_picture(picture, changed);
+            ++ended;
+        }
+    });
+    // One batch that is answered within one picture shows it; that takes a picture that takes longer than the answer.
+    bool answered_within = false;
+    std::uint64_t batches = 1;
+    auto const end = std::chrono::steady_clock::now() + patience;
+    while (!answered_within && std::chrono::steady_clock::now() < end) {
+        std::uint64_t const picture = begun;
+        if (picture == ended) {
+            std::this_thread::yield();
+            continue;
+        }
+        server.send(constant_batch(plane, plane.min_depth(), 90, 1));
+        ASSERT_TRUE(server.wait_for_some<Ack>(++batches));
+        answered_within = begun == picture && ended + 1 == picture;
+    }
+    EXPECT_TRUE(answered_within);
 }
 
 TEST(ClientCore, CamerasCountUpAndEqualOnesAreNotRepeated) {

@@ -32,7 +32,6 @@ constexpr Part parts[] = {
     {"probes", &FrameletParts::probes},
     {"inspections", &FrameletParts::inspections},
     {"withholding", &FrameletParts::withholding},
-    {"pipelining", &FrameletParts::pipelining},
     {"reprojection", &FrameletParts::reprojection},
     {"link budget", &FrameletParts::link_budget, true, false},
     {"loss", &FrameletParts::loss, true, false},

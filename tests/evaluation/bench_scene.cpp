@@ -4,15 +4,6 @@
 #include "server/scene/scene_import.h"
 
 namespace framelet::bench {
-namespace {
-
-Camera camera_of(BenchScene const& scene, ScenePose const& pose) {
-    Camera const camera =
-        scene.scene_camera == none ? scene.default_camera : scene_camera(scene.scene, pose, scene.scene_camera);
-    return turned(camera, scene.turn, pose.time);
-}
-
-} // namespace
 
 std::unique_ptr<BenchScene> load_bench_scene(std::filesystem::path const& file, int camera) {
     auto loaded = std::make_unique<BenchScene>();
@@ -27,9 +18,8 @@ std::unique_ptr<BenchScene> load_bench_scene(std::filesystem::path const& file, 
     loaded->clips = default_clips(loaded->scene);
     loaded->duration = animation_duration(loaded->scene, loaded->clips);
     loaded->render_scene = std::make_unique<RenderScene>(loaded->scene, std::nullopt);
-    loaded->render_scene->set_clips(loaded->clips);
-    loaded->pose = evaluate_pose(loaded->scene, loaded->clips, 0);
-    loaded->render_scene->set_pose(loaded->pose);
+    loaded->posed = std::make_unique<PosedScene>(loaded->scene, loaded->clips, *loaded->render_scene);
+    loaded->pose = loaded->posed->pose_of(0);
     loaded->scene_camera = cameras > 0 ? camera : none;
     loaded->default_camera = default_camera(scene_bounds(loaded->scene, loaded->pose));
     loaded->camera = camera_at(*loaded, 0);
@@ -39,15 +29,18 @@ std::unique_ptr<BenchScene> load_bench_scene(std::filesystem::path const& file, 
 
 void pose_at(BenchScene& scene, SceneTime time) {
     if (time != scene.pose.time) {
-        scene.pose = evaluate_pose(scene.scene, scene.clips, time);
-        scene.render_scene->set_pose(scene.pose);
+        scene.pose = scene.posed->pose_of(time);
     }
-    scene.camera = camera_of(scene, scene.pose);
+    scene.posed->pose(time);
+    scene.camera = camera_at(scene, time);
 }
 
 Camera camera_at(BenchScene const& scene, SceneTime time) {
-    return scene.scene_camera == none ? turned(scene.default_camera, scene.turn, time)
-                                      : camera_of(scene, evaluate_pose(scene.scene, scene.clips, time));
+    return turned(own_camera_at(scene, time), scene.turn, time);
+}
+
+Camera own_camera_at(BenchScene const& scene, SceneTime time) {
+    return scene.scene_camera == none ? scene.default_camera : scene.posed->camera(scene.scene_camera, time);
 }
 
 } // namespace framelet::bench

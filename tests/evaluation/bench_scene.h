@@ -8,6 +8,7 @@
 
 #include "server/render/framelet_renderer.h"
 #include "server/scene/animation.h"
+#include "server/stream/posed_scene.h"
 #include "tests/evaluation/camera_turn.h"
 
 namespace framelet::bench {
@@ -18,13 +19,17 @@ struct BenchScene {
     Scene scene;
     std::vector<Index> clips;
     std::unique_ptr<RenderScene> render_scene; ///< reads `scene`
+    std::unique_ptr<PosedScene> posed; ///< poses `render_scene`: nobody else does
     Index scene_camera = none; ///< looked through; none: `default_camera`
     Camera default_camera;
     CameraTurn turn; ///< of whichever camera
     Camera camera; ///< at the time that the scene was posed for last
     float exposure = 1;
     double duration = 0; ///< seconds of animation; 0: nothing moves
-    ScenePose pose;
+    ScenePose pose; ///< that the scene was posed for last
+
+    /// The camera of the scene that is looked through as it goes; -1: the camera is the viewer's own.
+    int followed_camera() const { return turn.turns() ? -1 : static_cast<int>(scene_camera); }
 };
 
 /// Loads the scene and poses it at time 0. `camera`: which of the scene's cameras, from 0; a scene that has none is
@@ -36,5 +41,7 @@ void pose_at(BenchScene& scene, SceneTime time);
 
 /// Where the camera is at `time`; the scene stays as it is.
 Camera camera_at(BenchScene const& scene, SceneTime time);
+/// Where the scene itself has it, whatever its viewer does with it.
+Camera own_camera_at(BenchScene const& scene, SceneTime time);
 
 } // namespace framelet::bench

@@ -151,7 +151,7 @@ void calibrate_framelets(BenchScene& scene, ImagePlane const& plane, int rounds,
     costs.reconstruct_fine_sample = 1e9 * std::max(median(fine) - median(coarse), 0.1 * median(coarse)) / fine_samples;
     costs.place_pixel = cost(rounds, pixels, [&] {
         for (DisplayFramelet const& framelet : batch.framelets) {
-            place_framelet(framelet, plane, picture);
+            place_samples(framelet, picture);
         }
     });
 }

@@ -9,6 +9,7 @@
 #include "common/error.h"
 #include "tests/evaluation/charts/ratio_boxes.h"
 #include "tests/evaluation/charts/spectrum.h"
+#include "tests/evaluation/rival_choice.h"
 
 namespace framelet::bench {
 namespace {
@@ -66,12 +67,15 @@ double temporal_slope_of(Reference const& reference, std::size_t times) {
 
 } // namespace
 
-MethodRecord record_method(BenchScene& scene, Reference const& reference, std::string const& name,
-                           RunParameters const& parameters, double machine, CostTable const& costs) {
+namespace {
+
+MethodRecord record_run(BenchScene& scene, Reference const& reference, std::string const& name,
+                        RunParameters const& parameters, double machine, CostTable const& costs) {
     std::size_t const times = reference_count(parameters);
     FRAMELET_CHECK(reference.size() >= times);
     MethodRecord record;
     record.method = name;
+    record.rivals = parameters.rivals;
     record.measures.resize(times);
     record.ages.resize(times);
     auto const method = make_method(name, method_setup(parameters, machine, costs));
@@ -88,6 +92,21 @@ MethodRecord record_method(BenchScene& scene, Reference const& reference, std::s
         });
     measuring.wait();
     return record;
+}
+
+} // namespace
+
+MethodRecord record_method(BenchScene& scene, Reference const& reference, std::string const& name,
+                           RunParameters const& parameters, double machine, CostTable const& costs) {
+    std::vector<MethodRecord> records;
+    std::vector<double> errors;
+    for (RivalParts const& choice : rival_choices(name, parameters.rivals)) {
+        RunParameters chosen = parameters;
+        chosen.rivals = choice;
+        records.push_back(record_run(scene, reference, name, chosen, machine, costs));
+        errors.push_back(mean_mse(records.back()));
+    }
+    return std::move(records[best_choice(errors)]);
 }
 
 Comparison compare_methods(BenchScene& scene, Reference const& reference, std::vector<std::string> const& methods,
@@ -164,6 +183,12 @@ json to_json(Comparison const& comparison) {
                    {"mse", series(record, [](Measures const& m) { return m.mse; })},
                    {"ssim", series(record, [](Measures const& m) { return m.ssim; })},
                    {"flip", series(record, [](Measures const& m) { return m.flip; })}};
+        if (has_spacing(record.method)) {
+            entry["spacing"] = record.rivals.spacing;
+        }
+        if (has_margin(record.method)) {
+            entry["margin"] = record.rivals.margin;
+        }
         if (framed) {
             RatioSummary const ratio = summarise_ratios(error_ratios(record, *framed));
             entry["ratio_to_framed"] = {{"median", ratio.p50}, {"suitable_percentile", ratio.suitable}};
@@ -200,8 +225,15 @@ void print(Comparison const& comparison) {
         } else {
             std::printf("%8s %7s ", "-", "-");
         }
-        std::printf("%7.3f %9.4f %9.1f\n", record.run.cpu.server(), record.run.cpu.viewer(),
+        std::printf("%7.3f %9.4f %9.1f", record.run.cpu.server(), record.run.cpu.viewer(),
                     static_cast<double>(record.run.bytes) / p.seconds / 1e3);
+        if (has_spacing(record.method)) {
+            std::printf("  a sample every %d pixels", record.rivals.spacing);
+        }
+        if (record.rivals.margin > 0 && has_margin(record.method)) {
+            std::printf(", margin %g", record.rivals.margin);
+        }
+        std::printf("\n");
     }
 }
 

@@ -17,6 +17,7 @@ namespace framelet::bench {
 /// What one method showed and spent.
 struct MethodRecord {
     std::string method;
+    RivalParts rivals; ///< as it was run
     RunResult run;
     std::vector<Measures> measures; ///< one a reference time
     std::vector<double> ages; ///< seconds, likewise
@@ -34,7 +35,8 @@ struct Comparison {
 };
 
 /// One method on a machine of this speed; measures are taken in parallel to the run. `reference` must have a picture
-/// for each reference time.
+/// for each reference time. Where the parameters leave a choice to a rival, it is run with each, and the record is the
+/// one of the least mean MSE.
 MethodRecord record_method(BenchScene& scene, Reference const& reference, std::string const& method,
                            RunParameters const& parameters, double machine, CostTable const& costs);
 

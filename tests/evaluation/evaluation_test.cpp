@@ -41,7 +41,8 @@ TEST_F(Evaluation, FramedReachesTheRateThatTheMachineIsStatedBy) {
         parameters.seconds = 2;
         parameters.frames_per_second = rate;
         double const machine = machine_factor(*scene, parameters, costs);
-        auto const framed = make_method("framed", {parameters.viewport, costs, machine, rate, 0, 1});
+        parameters.rivals = plain_rivals; // what the machine is stated by
+        auto const framed = make_method("framed", method_setup(parameters, machine, costs));
         std::size_t times = 0;
         RunResult const result =
             run_method(*scene, *framed, parameters, machine, [&](std::size_t index, Picture const&, double age) {
@@ -85,7 +86,8 @@ TEST_F(Evaluation, AStillSceneIsShownWithoutError) {
     pose_at(*still, 0);
     Picture const first = render_picture(*still->render_scene, still->camera, parameters.viewport, still->exposure, 1);
     for (std::string const name : {"framed", "frameless", "afr"}) {
-        auto const method = make_method(name, {parameters.viewport, costs, machine, 30, 0, 1});
+        parameters.rivals = plain_rivals; // a sample a pixel and no more, as `first`
+        auto const method = make_method(name, method_setup(parameters, machine, costs));
         run_method(*still, *method, parameters, machine, [&](std::size_t index, Picture const& shown, double) {
             if (index == 0) {
                 EXPECT_LT(mean_squared_error(shown, first), 1e-6) << name;

@@ -47,7 +47,7 @@ json measure_server(BenchScene& scene, LimitsOptions const& options) {
     ServerOptions server_options;
     server_options.port = 0;
     server_options.paused = true;
-    server_options.loop.exposure = scene.exposure;
+    server_options.loop.stream.exposure = scene.exposure;
     Server server(scene.scene, scene.clips, *scene.render_scene, server_options);
     std::jthread const running([&server] { server.run(false); });
 

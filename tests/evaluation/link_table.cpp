@@ -87,7 +87,8 @@ private:
         RunParameters parameters = options_.run;
         parameters.link = link;
         parameters.frames_per_second *= speed;
-        return errors_of(show_method(scene_, method, parameters, machine_ / speed, options_.costs).pictures, truth_);
+        return errors_of(show_best(scene_, method, parameters, machine_ / speed, options_.costs, truth_).pictures,
+                         truth_);
     }
 
     static double median_ratio(std::vector<double> const& mine, std::vector<double> const& other) {

@@ -65,7 +65,7 @@ SpeedResult run_speed(BenchScene& scene, StudyOptions const& options) {
         for (std::size_t i = 0; i < round_trips.size(); ++i) {
             RunParameters parameters = options.run;
             parameters.link.delay_seconds = 0.5 * round_trips[i];
-            ShownPictures const shown = show_method(scene, method, parameters, machine, options.costs);
+            ShownPictures const shown = show_best(scene, method, parameters, machine, options.costs, truth);
             cells[i].mse = mean_of(errors_of(shown.pictures, truth));
             cells[i].lag =
                 static_cast<double>(picture_lag(shown.pictures, truth, most_lag)) / options.run.reference_rate;

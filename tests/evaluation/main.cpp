@@ -9,6 +9,7 @@
 #include <spdlog/spdlog.h>
 
 #include "common/error.h"
+#include "tests/evaluation/live/live_verbs.h"
 #include "tests/evaluation/sensitivity.h"
 #include "tests/evaluation/verb_answers.h"
 #include "tests/evaluation/verb_options.h"
@@ -101,6 +102,25 @@ int main(int argc, char** argv) {
     add_verb("response", "What response, tiling and selection cost for pictures of 256 to 4096 pixels",
              add_response_options,
              with_scene([&options](BenchScene& scene) { return answer_response(scene, options); }));
+    LiveVerbOptions live;
+    auto const add_live_verb = [&](char const* name, char const* question, auto add_options, auto run) -> CLI::App& {
+        CLI::App& verb = *app.add_subcommand(name, question);
+        verb.add_option("--json", options.json_file, "Write the figures to this file as well");
+        verb.add_option("--costs", options.costs_file, "Table of stage costs")->capture_default_str();
+        add_options(verb, live);
+        verb.callback([&answer, run] { answer = run; });
+        return verb;
+    };
+    add_live_verb("live", "The real programs as a person runs them, every method: pictures a second, errors, costs",
+                  add_live_options, [&live] { return answer_live(live, bundled_scenes()); });
+    add_live_verb("replay", "A recorded session through the same pipeline: whether the same bytes come out",
+                  add_replay_options, [&live] { return answer_replay(live); });
+    add_live_verb("serve", "Serves a method to `look`, for `live`", add_serve_options, [&] {
+        return answer_serve(live, options.costs_file);
+    }).group("");
+    add_live_verb("look", "Shows what `serve` serves, for `live`", add_look_options, [&] {
+        return answer_look(live, options.costs_file);
+    }).group("");
     add_estimator_verb("estimators", "Cost of error estimators against their agreement with the ideal density",
                        compare_estimators);
     add_estimator_verb("fit", "Fits the templates of the error estimators", fit_estimators);

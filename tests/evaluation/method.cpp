@@ -13,18 +13,25 @@ struct KnownMethod {
     std::string_view name;
     std::unique_ptr<Method> (*make)(MethodSetup const&);
     bool batches = false;
+    bool spacing = false;
+    bool margin = false;
 };
 
-constexpr std::array<KnownMethod, 9> known_methods{{
-    {"framed", make_framed},
-    {"framed+jpeg", make_framed_jpeg},
-    {"framed+h264", make_framed_h264},
-    {"framed+warp", make_framed_warp},
+constexpr std::array<KnownMethod, 14> known_methods{{
+    {"framed", make_framed, false, true},
+    {"framed+jpeg", make_framed_jpeg, false, true},
+    {"framed+h264", make_framed_h264, false, true},
+    {"framed+warp", make_framed_warp, false, true, true},
+    {"interruptible", make_interruptible},
     {"frameless", make_frameless},
     {"afr", make_afr},
     {"tsar", make_tsar, true},
+    {"tsar-e", make_tsar_e, true},
+    {"tsar-fill", make_tsar_fill, true},
+    {"tsar-surplus", make_tsar_surplus, true},
     {"framelet-unwarped", make_framelet_unwarped, true},
     {"framelet", make_framelet, true},
+    {"oracle", make_oracle, false, true},
 }};
 
 KnownMethod const& find_method(std::string_view name) {
@@ -54,6 +61,14 @@ std::vector<std::string> const& method_names() {
 
 bool has_batches(std::string_view name) {
     return find_method(name).batches;
+}
+
+bool has_spacing(std::string_view name) {
+    return find_method(name).spacing;
+}
+
+bool has_margin(std::string_view name) {
+    return find_method(name).margin;
 }
 
 std::unique_ptr<Method> make_method(std::string_view name, MethodSetup const& setup) {

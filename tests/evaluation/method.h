@@ -36,12 +36,22 @@ struct FrameletParts {
     bool price = true; ///< of a sample, follows the budget; else it is always cheap, and urgency alone decides
     bool probes = true;
     bool inspections = true;
-    bool pipelining = true; ///< what follows rendering overlaps the next; else a batch is learnt before the next plan
     bool link_budget = true; ///< rate and batches are bounded by what the link carries
     bool loss = true; ///< where the link asks for it
     bool withholding = true; ///< of what the viewer has already
     bool reprojection = true; ///< by the viewer
 };
+
+/// What the rivals do to be at their best. Each part can be left out.
+struct RivalParts {
+    bool accumulate = true; ///< while nothing moves, a picture becomes better and better
+    bool ahead = true; ///< frames are rendered for when they will be shown
+    /// Pixels from sample to sample while something moves, of the oracle the most: 1, 2 or 4; 0: whichever errs least.
+    int spacing = 0;
+    double margin = -1; ///< around the viewport, of its sides, where the viewer moves frames; < 0: whichever errs least
+};
+/// Whole frames anew in turn, one sample a pixel.
+inline constexpr RivalParts plain_rivals{false, false, 1, 0};
 
 /// What a method is told once.
 struct MethodSetup {
@@ -56,6 +66,7 @@ struct MethodSetup {
     std::size_t batch_framelets = 0; ///< most framelets of one batch; 0: what a cycle has time for
     FrameletParts parts{};
     double lag_seconds = 0; ///< > 0: viewers that can show the scene so late, and between what they hold
+    RivalParts rivals{}; ///< what is left to choose is 1 and no margin
 };
 
 /// What the viewer's answer tells of a message.
@@ -66,7 +77,7 @@ struct DeliveredMessage {
 
 /// What the server's half works on. The scene is posed for this moment.
 struct StepInput {
-    BenchScene const& scene;
+    BenchScene& scene; ///< for those who render ahead: they may pose it anew
     SceneTime time = 0;
     double now = 0; ///< seconds on the run's clock; goes on while the scene stands still
     NumberedView view; ///< the newest camera that the server knows
@@ -122,6 +133,10 @@ std::vector<std::string> const& method_names();
 
 /// Whether the method goes by `batch_framelets`. Throws InputError where there is no method of that name.
 bool has_batches(std::string_view name);
+
+/// Whether `RivalParts::spacing` and `RivalParts::margin` make a difference to it. Throw InputError likewise.
+bool has_spacing(std::string_view name);
+bool has_margin(std::string_view name);
 
 /// Throws InputError where there is no method of that name.
 std::unique_ptr<Method> make_method(std::string_view name, MethodSetup const& setup);

@@ -83,7 +83,8 @@ MethodSetup method_setup(RunParameters const& parameters, double machine, CostTa
             parameters.bias,
             parameters.batch_framelets,
             {},
-            parameters.lag_seconds};
+            parameters.lag_seconds,
+            parameters.rivals};
 }
 
 double lead_seconds(RunParameters const& parameters) {

@@ -30,6 +30,7 @@ struct RunParameters {
     std::size_t batch_framelets = 0; ///< as in MethodSetup
     double scene_stops = INFINITY; ///< from then on scene and camera stand still
     double lag_seconds = 0; ///< as in MethodSetup
+    RivalParts rivals{}; ///< as in MethodSetup
 };
 
 /// What such a run tells its method, on a machine of this speed.

@@ -1,11 +1,14 @@
 #include "tests/evaluation/shown_pictures.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 
 #include <tbb/parallel_for.h>
 
 #include "common/error.h"
 #include "tests/evaluation/measures/measures.h"
+#include "tests/evaluation/rival_choice.h"
 
 namespace framelet::bench {
 
@@ -13,10 +16,29 @@ ShownPictures show_method(BenchScene& scene, std::string const& name, RunParamet
                           CostTable const& costs) {
     auto const method = make_method(name, method_setup(parameters, machine, costs));
     ShownPictures result;
+    result.rivals = parameters.rivals;
     result.pictures.resize(reference_count(parameters));
     result.run = run_method(scene, *method, parameters, machine,
                             [&](std::size_t index, Picture const& shown, double) { result.pictures[index] = shown; });
     return result;
+}
+
+ShownPictures show_best(BenchScene& scene, std::string const& name, RunParameters const& parameters, double machine,
+                        CostTable const& costs, std::vector<Picture> const& truth) {
+    ShownPictures best;
+    double least = INFINITY;
+    for (RivalParts const& choice : rival_choices(name, parameters.rivals)) {
+        RunParameters chosen = parameters;
+        chosen.rivals = choice;
+        ShownPictures shown = show_method(scene, name, chosen, machine, costs);
+        std::vector<double> const errors = errors_of(shown.pictures, truth);
+        double const error = std::accumulate(errors.begin(), errors.end(), 0.0);
+        if (error < least) {
+            least = error;
+            best = std::move(shown);
+        }
+    }
+    return best;
 }
 
 std::vector<Picture> read_pictures(Reference const& reference, std::size_t count) {

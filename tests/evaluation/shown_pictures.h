@@ -11,11 +11,17 @@ namespace framelet::bench {
 
 struct ShownPictures {
     RunResult run;
+    RivalParts rivals; ///< as it was run
     std::vector<Picture> pictures; ///< one a reference time
 };
 
 ShownPictures show_method(BenchScene& scene, std::string const& method, RunParameters const& parameters, double machine,
                           CostTable const& costs);
+
+/// The same of the choice with the least mean error against `truth` (one a reference time), where the parameters leave
+/// one to a rival.
+ShownPictures show_best(BenchScene& scene, std::string const& method, RunParameters const& parameters, double machine,
+                        CostTable const& costs, std::vector<Picture> const& truth);
 
 /// The first `count` pictures, all in memory: width * height * 4 bytes each.
 std::vector<Picture> read_pictures(Reference const& reference, std::size_t count);

@@ -100,6 +100,7 @@ std::vector<Cell> run_scene(PublishedTable const& table, std::size_t scene_index
     for (PublishedRun const& run : table.runs) {
         runs_by_side[run.side].push_back(run);
     }
+    RivalParts const rivals = options.run.rivals;
     for (auto const& [side, runs] : runs_by_side) {
         options.run.viewport = {side, side};
         options.run.counting = Counting::total;
@@ -107,6 +108,8 @@ std::vector<Cell> run_scene(PublishedTable const& table, std::size_t scene_index
         double const machine = machine_factor(scene, options.run, options.costs);
         auto const record = [&](std::string const& method, int batch) {
             options.run.batch_framelets = static_cast<std::size_t>(batch);
+            // What all are divided by is what 004 divided by.
+            options.run.rivals = method == "framed" ? plain_rivals : rivals;
             return record_method(scene, reference, method, options.run, machine, options.costs);
         };
         MethodRecord const framed = record("framed", 0);

@@ -20,17 +20,6 @@ namespace {
 
 using nlohmann::json;
 
-std::vector<std::filesystem::path> bundled_scenes() {
-    std::vector<std::filesystem::path> files;
-    for (auto const& entry : std::filesystem::directory_iterator(source_folder / "scenes")) {
-        if (entry.path().extension() == ".glb") {
-            files.push_back(entry.path());
-        }
-    }
-    std::ranges::sort(files);
-    return files;
-}
-
 std::vector<std::filesystem::path> named_scenes(std::initializer_list<char const*> names) {
     std::vector<std::filesystem::path> files;
     for (std::string const name : names) {
@@ -43,6 +32,17 @@ std::vector<std::filesystem::path> named_scenes(std::initializer_list<char const
 std::vector<std::string> const streamed_methods{"framed+h264", "framed+warp", "framelet"};
 
 } // namespace
+
+std::vector<std::filesystem::path> bundled_scenes() {
+    std::vector<std::filesystem::path> files;
+    for (auto const& entry : std::filesystem::directory_iterator(source_folder / "scenes")) {
+        if (entry.path().extension() == ".glb") {
+            files.push_back(entry.path());
+        }
+    }
+    std::ranges::sort(files);
+    return files;
+}
 
 json answer_table(VerbOptions& options) {
     settle(options, {.seconds = 5, .rate = 10}); // the whole of every scene

@@ -2,12 +2,18 @@
 // printed. The verbs that only need a settled study are in verbs.h.
 #pragma once
 
+#include <filesystem>
+#include <vector>
+
 #include <nlohmann/json_fwd.hpp>
 
 #include "tests/evaluation/bench_scene.h"
 #include "tests/evaluation/verb_options.h"
 
 namespace framelet::bench {
+
+/// The project's own scene files, in the order of their names.
+std::vector<std::filesystem::path> bundled_scenes();
 
 nlohmann::json answer_table(VerbOptions& options);
 nlohmann::json answer_stability(VerbOptions& options);

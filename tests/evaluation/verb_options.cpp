@@ -2,10 +2,14 @@
 
 #include <CLI/CLI.hpp>
 
+#include "client/connection_arguments.h"
+#include "common/error.h"
 #include "tests/evaluation/method.h"
 
 namespace framelet::bench {
 namespace {
+
+std::vector<std::string> const rival_part_names{"accumulation", "ahead", "spacing", "margin"};
 
 void add_output_options(CLI::App& verb, VerbOptions& options) {
     verb.add_option("--json", options.json_file, "Write the figures to this file as well");
@@ -26,10 +30,20 @@ void add_time_options(CLI::App& verb, VerbOptions& options) {
     add_reference_options(verb, options);
 }
 
+Viewport read_size(std::string const& text) {
+    bool const is_side = text.find_first_not_of("0123456789") == std::string::npos;
+    try {
+        return parse_size(is_side ? text + "x" + text : text);
+    } catch (InputError const& error) {
+        throw CLI::ValidationError("--size", error.what());
+    }
+}
+
 void add_size_option(CLI::App& verb, VerbOptions& options) {
-    verb.add_option("--size", options.size,
-                    "Side of the picture, pixels (default: 512 or less, as the verb has time for)")
-        ->check(CLI::Range(16, 4096));
+    verb.add_option_function<std::string>(
+        "--size", [&options](std::string const& text) { options.size = read_size(text); },
+        "Size of the picture, WIDTHxHEIGHT or the side of a square, pixels (default: 512 or less, as the verb has time "
+        "for)");
 }
 
 void add_result_options(CLI::App& verb, VerbOptions& options) {
@@ -48,6 +62,13 @@ void add_machine_options(CLI::App& verb, VerbOptions& options) {
         ->check(CLI::Range(-1.0, 1.0))
         ->capture_default_str();
     verb.add_option("--seed", study.run.seed, "Of everything that is random")->capture_default_str();
+    verb.add_option("--rivals-without", options.rivals_without,
+                    "What the rivals do not do, of accumulation, ahead, spacing and margin")
+        ->delimiter(',')
+        ->check(CLI::IsMember(rival_part_names));
+    verb.add_option("--rivals-spacing", study.run.rivals.spacing,
+                    "Pixels from sample to sample of whole frames while something moves (default: the best)")
+        ->check(CLI::IsMember({1, 2, 4}));
     add_result_options(verb, options);
 }
 
@@ -86,8 +107,14 @@ void add_ahead_options(CLI::App& verb, VerbOptions& options, Study& study, std::
 
 void settle(VerbOptions& options, Scale const& scale) {
     auto& study = options.study;
-    int const size = options.size.value_or(scale.size);
-    study.run.viewport = {size, size};
+    for (std::string const& part : options.rivals_without) {
+        RivalParts& rivals = study.run.rivals;
+        rivals.accumulate &= part != "accumulation";
+        rivals.ahead &= part != "ahead";
+        rivals.spacing = part == "spacing" ? 1 : rivals.spacing;
+        rivals.margin = part == "margin" ? 0 : rivals.margin;
+    }
+    study.run.viewport = options.size.value_or(Viewport{scale.size, scale.size});
     study.run.seconds = options.seconds.value_or(scale.seconds);
     study.run.reference_rate = options.rate.value_or(scale.rate);
     study.run.link.bits_per_second = 1e6 * options.megabits;

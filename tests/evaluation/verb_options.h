@@ -44,12 +44,13 @@ struct VerbOptions {
     std::string json_file;
     std::filesystem::path costs_file = source_folder / "tests/evaluation/costs.json";
     bool quick = false;
-    std::optional<int> size;
+    std::optional<Viewport> size;
     std::optional<double> seconds, rate;
     double megabits = 0;
     double delay_ms = 0;
     double jitter_ms = 0;
     bool total = false;
+    std::vector<std::string> rivals_without; ///< which parts they lack
     StabilityOptions stability;
     AblationOptions ablation;
     std::vector<int> table_runs;

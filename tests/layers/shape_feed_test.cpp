@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "common/body_motion.h"
+#include "common/scene_clock.h"
 
 namespace framelet {
 namespace {
@@ -32,7 +33,8 @@ struct Drive {
     /// Keys that the batch of `time` took.
     std::size_t batch(SceneTime time) {
         std::vector<BodyTrack> tracks;
-        feed.track(scene, clips, bodies, time, tracks);
+        std::optional<BodyTrack> camera;
+        feed.track(scene, clips, bodies, -1, time, tracks, camera);
         std::size_t keys = 0;
         for (BodyTrack const& track : tracks) {
             keys += track.keys.size();
@@ -79,6 +81,12 @@ TEST(ShapeFeed, AfterALeapOfTheClockOnlyWhatIsNearIsGivenOut) {
     EXPECT_NEAR(static_cast<double>(drive.batch(50)), once, 3) << "forwards";
     EXPECT_NEAR(static_cast<double>(drive.batch(1)), once, 3) << "backwards";
     EXPECT_NEAR(drive.moved(1, 1.2), 0.6, 1e-4);
+}
+
+TEST(ShapeFeed, TheLastMomentHasKeys) {
+    Drive drive;
+    drive.batch(2);
+    EXPECT_NEAR(static_cast<double>(drive.batch(max_scene_time)), 0.3 * body_keys_per_second, 3);
 }
 
 TEST(ShapeFeed, ManyBodiesAfterAPauseFitABatch) {

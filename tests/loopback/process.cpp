@@ -110,19 +110,25 @@ std::string TemporaryFolder::write(std::string const& name, std::string const& t
 }
 
 ServerProcess::ServerProcess(std::string const& scene, std::vector<std::string> options)
-    : process_(FRAMELET_SERVER, server_arguments(scene, std::move(options))) {
+    : ServerProcess(of_program(FRAMELET_SERVER, server_arguments(scene, std::move(options)))) {}
+
+ServerProcess ServerProcess::of_program(std::string const& program, std::vector<std::string> const& arguments) {
+    return ServerProcess(std::make_unique<Process>(program, arguments));
+}
+
+ServerProcess::ServerProcess(std::unique_ptr<Process> process) : process_(std::move(process)) {
     auto const deadline = std::chrono::steady_clock::now() + std::chrono::seconds(120);
     std::string const mark = "listening on ";
     for (;;) {
-        std::string const text = process_.output();
+        std::string const text = process_->output();
         std::size_t const start = text.find(mark);
         std::size_t const end = start == std::string::npos ? start : text.find('\n', start);
         if (end != std::string::npos) {
             address_ = text.substr(start + mark.size(), end - start - mark.size());
             return;
         }
-        if (!process_.running() || std::chrono::steady_clock::now() > deadline) {
-            throw std::runtime_error("the server did not start: " + process_.errors());
+        if (!process_->running() || std::chrono::steady_clock::now() > deadline) {
+            throw std::runtime_error("the server did not start: " + process_->errors());
         }
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -49,16 +50,20 @@ private:
     std::filesystem::path path_;
 };
 
-/// framelet-server on a free port of 127.0.0.1, ready for connections.
+/// framelet-server on a free port of 127.0.0.1, or another program that says where it listens as that does, ready for
+/// connections.
 class ServerProcess {
 public:
     explicit ServerProcess(std::string const& scene, std::vector<std::string> options = {});
+    static ServerProcess of_program(std::string const& program, std::vector<std::string> const& arguments);
 
     std::string const& address() const { return address_; }
-    Process& process() { return process_; }
+    Process& process() { return *process_; }
 
 private:
-    Process process_;
+    explicit ServerProcess(std::unique_ptr<Process> process);
+
+    std::unique_ptr<Process> process_;
     std::string address_;
 };
 

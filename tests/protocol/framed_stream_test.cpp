@@ -38,7 +38,7 @@ TEST(FramedStream, ManyMessagesBothWays) {
     std::vector<Message> sent;
     RandomMessages random(1);
     for (std::size_t i = 0; i < count; ++i) {
-        sent.push_back(random.message());
+        sent.push_back(random.lasting_message());
     }
     std::thread sender([&] {
         for (Message const& message : sent) {
@@ -180,6 +180,63 @@ TEST_F(FramedStreamTest, HandlerMayRefuse) {
     write(framed(encode_message(Ack{})));
     EXPECT_EQ(reason->get_future().get(), "not now");
     EXPECT_EQ(failure_sent(), "not now");
+}
+
+TEST_F(FramedStreamTest, WhatCannotBeSentEndsTheConnection) {
+    end.start(thread_);
+    ClockRequest const late{ClockRequest::time, {8e16, true, 1}};
+    EXPECT_EQ(end.stream->send(late), 0u);
+    std::string const reason = "this side has a message that cannot be sent: the clock's time is not within 0..1e9";
+    EXPECT_EQ(end.wait_for_close(), reason);
+    EXPECT_EQ(failure_sent(), reason);
+    EXPECT_EQ(end.stream->send(Ack{}), 0u);
+    EXPECT_TRUE(end.is_released());
+    EXPECT_EQ(end.closes(), 1);
+}
+
+TEST_F(FramedStreamTest, TooLargeAMessageEndsTheConnection) {
+    end.start(thread_);
+    EXPECT_EQ(end.stream->send(large_batch(1, max_message_bytes)), 0u);
+    auto const reason = end.wait_for_close();
+    ASSERT_TRUE(reason);
+    EXPECT_NE(reason->find("exceed the limit of 67108864"), std::string::npos) << *reason;
+    EXPECT_EQ(failure_sent(), *reason);
+}
+
+TEST_F(FramedStreamTest, OfWaitingStatusTheNewestIsSent) {
+    end.start(thread_);
+    end.stream->send(large_batch(1, 20u << 20)); // more than the socket takes while nobody reads
+    std::size_t const before = end.stream->unsent_bytes();
+    for (std::uint64_t i = 1; i <= 1000; ++i) {
+        Status status;
+        status.last_batch = i;
+        end.stream->send(status);
+        if (i == 1) {
+            end.stream->send(Ack{7, 0, 0});
+        }
+    }
+    EXPECT_TRUE(End::eventually([&] { return end.stream->unsent_bytes() < before + 1000; }));
+    end.stream->close_after_sending();
+    std::vector<Message> const all = messages_of(read_to_end(raw));
+    ASSERT_EQ(all.size(), 3u);
+    EXPECT_EQ(std::get<Status>(all[1]).last_batch, 1000u) << "in the place of the first";
+    EXPECT_EQ(std::get<Ack>(all[2]).batch, 7u);
+}
+
+TEST_F(FramedStreamTest, TooMuchThatWaitsEndsTheConnection) {
+    end.start(thread_);
+    std::uint64_t sent = 0;
+    while (sent < 10 && end.stream->send(large_batch(sent + 1, 30u << 20)) != 0) {
+        ++sent;
+    }
+    EXPECT_EQ(sent, 5u) << "the last that begins within the limit of 128 MiB";
+    auto const reason = end.wait_for_close();
+    ASSERT_TRUE(reason);
+    EXPECT_NE(reason->find("bytes wait for the other side to take them"), std::string::npos) << *reason;
+    EXPECT_TRUE(End::eventually([&] { return end.stream->unsent_bytes() < 40u << 20; })) << "and is given up";
+    std::vector<Message> const all = messages_of(read_to_end(raw));
+    ASSERT_EQ(all.size(), 2u) << "what had begun, and the reason";
+    EXPECT_EQ(std::get<Failure>(all[1]).text, *reason);
 }
 
 TEST_F(FramedStreamTest, PeerCloses) {

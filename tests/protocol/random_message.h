@@ -154,6 +154,12 @@ public:
         }
     }
 
+    /// Any but Status, of which a stream sends only the newest.
+    Message lasting_message() {
+        Message const any = message();
+        return std::holds_alternative<Status>(any) ? lasting_message() : any;
+    }
+
 private:
     std::mt19937_64 generator_;
 };

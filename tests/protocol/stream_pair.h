@@ -149,6 +149,21 @@ inline Bytes read_to_end(Socket& socket) {
     return all;
 }
 
+/// What these bytes are, each with its length in front.
+inline std::vector<Message> messages_of(Bytes const& bytes) {
+    std::vector<Message> messages;
+    for (std::size_t at = 0; at + 4 <= bytes.size();) {
+        std::size_t size = 0;
+        for (std::size_t i = 0; i < 4; ++i) {
+            size |= std::to_integer<std::size_t>(bytes[at + i]) << (8 * i);
+        }
+        at += 4;
+        messages.push_back(decode_message(ByteView(bytes).subspan(at, size)));
+        at += size;
+    }
+    return messages;
+}
+
 /// A batch message of about this many bytes.
 inline EncodedBatch large_batch(std::uint64_t number, std::size_t bytes) {
     EncodedBatch batch;

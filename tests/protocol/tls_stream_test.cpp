@@ -108,7 +108,7 @@ TEST_F(TlsStream, ManyMessagesBothWays) {
         std::vector<Message> sent;
         RandomMessages random(2);
         for (int i = 0; i < 500; ++i) {
-            sent.push_back(random.message());
+            sent.push_back(random.lasting_message());
         }
         sent.push_back(large_batch(1, 20u << 20));
         client.stream->send(sent[0]); // waits for the handshake

@@ -94,7 +94,7 @@ TEST(LumaHistory, ParentsAndDescendantsStayTogether) {
 
 LumaHistory::Entry make_entry(DisplayFramelet const& framelet, double time) {
     LumaHistory::Entry entry;
-    fill_entry(entry, framelet, time);
+    fill_entry(entry, framelet, time, time);
     return entry;
 }
 

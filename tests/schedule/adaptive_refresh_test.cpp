@@ -130,6 +130,47 @@ TEST(AdaptiveRefresh, PipelinedConvergesToTheSame) {
 
 /// What stood while the clock ran is known to the viewer; it has to be seen once more when the clock stops, but that
 /// has to end.
+/// What is held for a while is rendered once and then more finely, but for patches of which a part was not rendered
+/// yet.
+TEST(AdaptiveRefresh, AMomentIsHardlyEverRenderedTwice) {
+    for (bool const pipelined : {true, false}) {
+        SyntheticRefresh synthetic(small, moving_texture);
+        synthetic.pipelined = pipelined;
+        synthetic.moment_length = 0.1;
+        synthetic.input.limits.inspection_share = 0;
+        std::map<Tile, double> rendered; // and of which moment last
+        std::size_t tiles = 0, repeated = 0;
+        synthetic.run(5, [&] {
+            std::set<Tile> batch;
+            for (Tile const tile : synthetic.tiles) {
+                EXPECT_TRUE(batch.insert(tile).second) << "twice in a batch";
+                double const moment = synthetic.input.moment->begun;
+                auto const [entry, is_new] = rendered.try_emplace(tile, moment);
+                repeated += is_new || entry->second < moment ? 0 : 1;
+                entry->second = moment;
+                ++tiles;
+            }
+        });
+        EXPECT_GT(tiles, 1000u);
+        EXPECT_LT(repeated, tiles / 20) << "of " << tiles;
+        synthetic.stop();
+        EXPECT_LT(synthetic.finish(30), 30);
+        EXPECT_TRUE(is_all_finest(synthetic.refresh));
+    }
+}
+
+TEST(AdaptiveRefresh, InspectionsAndRefinementsAreNotOfTheSameTiles) {
+    SyntheticRefresh synthetic(small, moving_texture);
+    synthetic.moment_length = 0.1;
+    synthetic.input.limits.inspection_share = 0.3;
+    synthetic.run(5, [&] {
+        std::set<Tile> batch;
+        for (Tile const tile : synthetic.tiles) {
+            EXPECT_TRUE(batch.insert(tile).second);
+        }
+    });
+}
+
 TEST(AdaptiveRefresh, CompletesAfterTheClockStops) {
     for (auto* const shading : {flat, texture}) {
         SyntheticRefresh synthetic(small, shading);

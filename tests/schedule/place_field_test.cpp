@@ -36,7 +36,8 @@ public:
         std::vector<LumaHistory::Entry> entries(tiles.size());
         PlaceField::Range const range = field.range_of(patch.node);
         std::vector<PlaceFindings> places(range.last - range.first);
-        double const same_since = examine_patch(field, patch, display, rendered, now, moment, history, entries, places);
+        double const same_since =
+            examine_patch(field, patch, display, rendered, {now, now}, moment, history, entries, places);
         for (LumaHistory::Entry const& entry : entries) {
             history.store(entry);
         }
@@ -208,6 +209,33 @@ TEST(PlaceField, DriftsAsItMovesAndIsBounded) {
     EXPECT_LE(shown_error(place, 0), unresolved_error(place.model, 3) + drift_bounds(place.model, 3).most * 1.0001f);
     invalidate(learner.field);
     EXPECT_GT(shown_error(place, 0), 0.9f * drift_bounds(place.model, 3).most);
+}
+
+/// A step ahead moves what is near over a background that stays where it is.
+TEST(PlaceField, WhatComesIsNoLessNewThanWhatGoes) {
+    Viewport const viewport{512, 512};
+    PlaceField field{ImagePlane(viewport)};
+    int const side = field.place_side();
+    ASSERT_LE(side, 64);
+    auto const at = [&](int x, int y) -> Place& {
+        return field[morton_index(static_cast<std::uint32_t>(x / side), static_cast<std::uint32_t>(y / side))];
+    };
+    for (std::uint32_t const index : field.visible()) {
+        field[index].inverse_depth = 0; // the sky
+    }
+    for (int y = 192; y < 320; y += side) {
+        for (int x = 192; x < 320; x += side) {
+            at(x, y).inverse_depth = 0.5f;
+        }
+    }
+    Camera const here;
+    Camera ahead = here;
+    ahead.position.z -= 1; // half of the way: the thing becomes twice as large
+    drift_on(field, make_view_rays(here, viewport), make_view_rays(ahead, viewport), false, 0.02f);
+    EXPECT_GT(at(200, 140).drift, 1) << "where the thing is now";
+    EXPECT_GT(at(140, 256).drift, 1);
+    EXPECT_LT(at(40, 256).drift, 1e-3f) << "where it is not";
+    EXPECT_LT(at(256, 480).drift, 1e-3f);
 }
 
 } // namespace

@@ -47,6 +47,11 @@ public:
     /// False when there was nothing to do: a cycle passes.
     bool step() {
         input.state.scene_time = running ? input.now : stopped_at;
+        if (moment_length <= 0 || !running) {
+            input.moment.reset();
+        } else if (!input.moment || input.now >= input.moment->begun + moment_length) {
+            input.moment = HeldMoment{input.state, input.now};
+        }
         RefreshPlan plan;
         refresh.plan(input, plan);
         tiles = plan.tiles;
@@ -104,6 +109,7 @@ public:
     bool pipelined = true; ///< a batch is learnt once the next one has been planned, as in the server
     bool running = true; ///< the scene clock
     double stopped_at = 0; ///< scene time while it is not
+    double moment_length = 0; ///< seconds; > 0: moments are held while the clock runs
     AdaptiveRefresh refresh;
 
     // Of the last step.
@@ -124,7 +130,8 @@ private:
         rendered_plan_ = {};
     }
     std::uint8_t shade(float x, float y) const {
-        return static_cast<std::uint8_t>(std::lround(255 * shading_(x, y, input.state.scene_time)));
+        SceneTime const time = input.moment ? input.moment->state.scene_time : input.state.scene_time;
+        return static_cast<std::uint8_t>(std::lround(255 * shading_(x, y, time)));
     }
     /// Of a cell of this side: in its middle, or the mean of its quarters.
     std::uint8_t shade_cell(float x, float y, float side, int rays) const {

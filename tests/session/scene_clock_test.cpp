@@ -28,6 +28,19 @@ TEST(SceneClock, StaysInRange) {
     EXPECT_EQ(clock.state(start + 60s).time, 0) << "backwards ends at 0";
     clock.apply({ClockRequest::time, {-3, false, 1}}, start + 60s);
     EXPECT_EQ(clock.state(start + 60s).time, 0);
+    clock.apply({ClockRequest::time | ClockRequest::speed, {8e16, false, 1}}, start + 60s);
+    EXPECT_EQ(clock.state(start + 60s).time, max_scene_time);
+}
+
+TEST(SceneClock, EndsAtTheLastMomentHoweverFastAndLong) {
+    WallTime const start{};
+    SceneClock clock(true, start);
+    clock.apply({ClockRequest::speed, {0, true, max_clock_speed}}, start);
+    constexpr std::chrono::hours year(365 * 24);
+    EXPECT_LT(clock.state(start + year).time, max_scene_time);
+    EXPECT_EQ(clock.state(start + 100 * year).time, max_scene_time);
+    clock.apply({ClockRequest::speed, {0, true, -1}}, start + 100 * year);
+    EXPECT_EQ(clock.state(start + 100 * year + 5s).time, max_scene_time - 5) << "and goes back from there";
 }
 
 } // namespace

@@ -10,48 +10,13 @@
 
 #include "common/error.h"
 #include "protocol/stream_opening.h"
+#include "running_server.h"
 
 namespace framelet {
 namespace {
 
 namespace asio = boost::asio;
 using namespace std::chrono_literals;
-
-/// One triangle in front of the origin, and a box-free background.
-Scene triangle_scene() {
-    Scene scene;
-    scene.name = "triangle";
-    scene.materials.emplace_back();
-    Primitive primitive;
-    primitive.positions = {{-1, -1, -5}, {1, -1, -5}, {0, 1, -5}};
-    primitive.normals = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
-    primitive.triangles = {{0, 1, 2}};
-    scene.meshes.push_back({"triangle", {primitive}, {}});
-    scene.nodes.emplace_back();
-    scene.nodes.back().mesh = 0;
-    return scene;
-}
-
-class RunningServer {
-public:
-    explicit RunningServer(ServerOptions options = {})
-        : scene_(triangle_scene()), render_scene_(scene_, std::nullopt),
-          server_(scene_, {}, render_scene_, on_free_port(options)), thread_([this] { server_.run(false); }) {}
-    ~RunningServer() { server_.stop(); }
-
-    std::uint16_t port() const { return server_.port(); }
-
-private:
-    static ServerOptions on_free_port(ServerOptions options) {
-        options.port = 0;
-        return options;
-    }
-
-    Scene const scene_;
-    RenderScene render_scene_;
-    Server server_;
-    std::jthread thread_;
-};
 
 /// Runs a conversation: `answer` is called with every message and says whether to go on.
 struct Conversation {
@@ -124,7 +89,8 @@ TEST_P(ServerOfThreads, CoarseFirstThenFinerThenConverged) {
 
 TEST_P(ServerOfThreads, WaitsForAcknowledgements) {
     ServerOptions options;
-    options.loop.batch_framelets = 16; // so that the picture takes more batches than may be in flight, however fast
+    options.loop.stream.batch_framelets =
+        16; // so that the picture takes more batches than may be in flight, however fast
     RunningServer const server(options);
     Conversation viewer(server.port());
     viewer.stream->send(Hello{});
@@ -136,18 +102,18 @@ TEST_P(ServerOfThreads, WaitsForAcknowledgements) {
         } else if (std::holds_alternative<EncodedBatch>(message)) {
             ++batches;
         } else if (std::holds_alternative<Status>(message)) {
-            beats += batches >= Session::max_batches_in_flight ? 1 : 0; // time for one too many
+            beats += batches >= FrameletStream::max_batches_in_flight ? 1 : 0; // time for one too many
         }
         return beats < 3;
     });
-    EXPECT_EQ(batches, Session::max_batches_in_flight) << "and not one more while nothing is acknowledged";
+    EXPECT_EQ(batches, FrameletStream::max_batches_in_flight) << "and not one more while nothing is acknowledged";
 }
 
 TEST(Server, NothingOlderComesFirstWhenThereIsRoomAgain) {
     // Latest wins without a queue to replace in: while there is no room nothing is rendered, so the first batch after
     // that is of the newest camera.
     ServerOptions options;
-    options.loop.batch_framelets = 16;
+    options.loop.stream.batch_framelets = 16;
     RunningServer const server(options);
     Conversation viewer(server.port());
     viewer.stream->send(Hello{});
@@ -158,13 +124,13 @@ TEST(Server, NothingOlderComesFirstWhenThereIsRoomAgain) {
         if (std::holds_alternative<Welcome>(message)) {
             viewer.stream->send(camera_update(1, {640, 480}));
         } else if (auto const* const batch = std::get_if<EncodedBatch>(&message)) {
-            if (++batches > Session::max_batches_in_flight) {
+            if (++batches > FrameletStream::max_batches_in_flight) {
                 next_camera = batch->view.number;
-            } else if (batches == Session::max_batches_in_flight) {
+            } else if (batches == FrameletStream::max_batches_in_flight) {
                 viewer.stream->send(camera_update(2, {640, 480}));
                 viewer.stream->send(camera_update(3, {640, 480}));
             }
-        } else if (std::holds_alternative<Status>(message) && batches == Session::max_batches_in_flight &&
+        } else if (std::holds_alternative<Status>(message) && batches == FrameletStream::max_batches_in_flight &&
                    ++beats == 2) { // the cameras have arrived
             viewer.stream->send(Ack{batches, 0, 0});
         }

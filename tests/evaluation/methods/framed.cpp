@@ -9,15 +9,19 @@ namespace {
 class Framed final : public Method {
 public:
     explicit Framed(MethodSetup const& setup)
-        : costs_(setup.costs), plane_(setup.viewport), frame_(setup),
+        : costs_(setup.costs), plane_(setup.viewport),
+          frame_(setup, 1e-9 * pixel_count(setup.viewport) * (setup.costs.decode_sample + setup.costs.place_pixel)),
           picture_(setup.viewport.width, setup.viewport.height) {}
 
     ServerStep produce(StepInput const& input) override {
         ServerStep step = frame_.render(input);
+        if (!frame_.is_due()) {
+            return step;
+        }
         batch_.number = ++number_;
-        batch_.view = input.view;
-        batch_.scene_time = input.time;
-        batch_.framelets = frame_.framelets();
+        batch_.view = frame_.view();
+        batch_.scene_time = frame_.time();
+        batch_.framelets = frame_.grid().framelets();
         step.message = encode_message(codec_.encode(batch_));
         step.seconds.encode += 1e-9 * static_cast<double>(step.samples) * costs_.encode_sample;
         return step;
@@ -25,19 +29,26 @@ public:
 
     ViewerStep consume(std::vector<std::byte> const& message) override {
         Batch const batch = codec_.decode(std::get<EncodedBatch>(decode_message(message)));
+        auto const spacing = static_cast<int>(plane_.sample_spacing(batch.framelets.front().tile));
+        auto const along = [spacing](int side) { return (side + spacing - 1) / spacing; };
+        samples_ = Picture(along(picture_.width), along(picture_.height));
         for (DisplayFramelet const& framelet : batch.framelets) {
-            place_framelet(framelet, plane_, picture_);
+            place_samples(framelet, samples_);
         }
+        upsample(samples_, spacing, picture_);
         time_ = batch.scene_time;
+        double const samples = static_cast<double>(batch.framelets.size() * framelet_samples);
         ViewerStep step;
-        step.seconds.decode =
-            1e-9 * static_cast<double>(batch.framelets.size() * framelet_samples) * costs_.decode_sample;
-        step.seconds.reconstruct = 1e-9 * static_cast<double>(frame_.pixels()) * costs_.place_pixel;
+        step.seconds.decode = 1e-9 * samples * costs_.decode_sample;
+        step.seconds.reconstruct =
+            1e-9 * pixel_count(plane_.viewport()) * (spacing > 1 ? costs_.reconstruct_pixel : costs_.place_pixel);
         return step;
     }
 
     Picture const& picture() const override { return picture_; }
     double mean_sample_time() const override { return time_; }
+    void sent(double now, double) override { frame_.sent(now); }
+    void answered(double, double arrived) override { frame_.answered(arrived); }
 
 private:
     CostTable const costs_;
@@ -46,7 +57,7 @@ private:
     BatchCodec codec_;
     Batch batch_;
     std::uint64_t number_ = 0;
-    Picture picture_;
+    Picture samples_, picture_;
     double time_ = 0;
 };
 

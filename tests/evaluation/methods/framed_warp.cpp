@@ -1,13 +1,15 @@
 // `framed+warp`: whole frames in turn, colour through x264, with each frame where its samples lie and what carries
 // them, from which the viewer moves the last frame to its own camera and scene time whenever it shows a picture. What
-// remote hybrid rendering and the runtimes of headsets do with a frame's depth plane, by the project's own shapes.
+// remote hybrid rendering and the runtimes of headsets do with a frame's depth plane, by the project's own shapes. A
+// margin around the viewport is rendered, sent and held besides, for what a turn brings into view.
 #include <algorithm>
+#include <map>
 
 #include "protocol/batch_codec.h"
 #include "server/layers/shape_feed.h"
-#include "tests/evaluation/codecs/h264_codec.h"
+#include "tests/evaluation/methods/margin_viewer.h"
 #include "tests/evaluation/methods/methods.h"
-#include "tests/evaluation/methods/warp_viewer.h"
+#include "tests/evaluation/methods/scaled_h264.h"
 #include "tests/evaluation/methods/whole_frame.h"
 
 namespace framelet::bench {
@@ -19,39 +21,48 @@ constexpr double least_colour_share = 0.1;
 class FramedWarp final : public Method {
 public:
     explicit FramedWarp(MethodSetup const& setup)
-        : setup_(setup), plane_(setup.viewport), frame_(setup),
-          encoder_(setup.viewport.width, setup.viewport.height, setup.frames_per_second),
-          decoded_(setup.viewport.width, setup.viewport.height), viewer_(setup.viewport, setup.costs) {
-        Batch blank;
-        blank.view.viewport = setup.viewport;
-        for (DisplayFramelet const& framelet : frame_.framelets()) {
-            blank.framelets.push_back({framelet.tile, {}, {}, {}});
+        : setup_(setup), frame_(setup, 1e-9 * pixel_count(setup.viewport) * setup.costs.h264_decode_pixel),
+          encoder_(setup.frames_per_second), viewer_(setup) {
+        for (int const spacing : frame_.spacings()) {
+            Batch blank;
+            blank.view.viewport = frame_.viewport();
+            FrameGrid const grid(frame_.viewport(), spacing);
+            for (DisplayFramelet const& framelet : grid.framelets()) {
+                blank.framelets.push_back({framelet.tile, {}, {}, {}});
+            }
+            blanks_[grid.framelets().front().tile.depth()] = {spacing, codec_.encode(blank)};
         }
-        blank_ = codec_.encode(blank);
     }
 
     ServerStep produce(StepInput const& input) override {
         moves_ = input.scene.duration > 0;
         ServerStep step = frame_.render(input);
+        if (!frame_.is_due() && !frame_.repeats(input, last_bytes_)) {
+            return step;
+        }
+        FrameGrid& grid = frame_.grid();
         Batch batch;
         batch.number = ++number_;
-        batch.view = input.view;
-        batch.scene_time = moves_ ? input.time : 0;
-        batch.framelets = frame_.framelets();
+        batch.view = frame_.view();
+        batch.scene_time = moves_ ? frame_.time() : 0;
+        batch.framelets = grid.framelets();
         std::vector<std::uint8_t> const all(batch.framelets.size(), 1);
-        shapes_.fit(frame_.rendered(), all, make_view_rays(input.view.camera, setup_.viewport), plane_, input.now,
-                    batch.shapes);
-        shapes_.track(input.scene.scene, input.scene.clips, input.scene.render_scene->bodies(), batch.scene_time,
-                      batch.tracks);
-        // The message is a batch's whose payload is the access unit and whose tiles go without saying.
+        shapes_.fit(grid.rendered(), all, make_view_rays(batch.view.camera, batch.view.viewport), grid.plane(),
+                    input.now, batch.shapes);
+        shapes_.track(input.scene.scene, input.scene.clips, input.scene.render_scene->bodies(), -1, batch.scene_time,
+                      batch.tracks, batch.camera_track);
+        // The message is a batch's whose payload is the access unit; of its tiles the first one says all.
         EncodedBatch message = codec_.encode(batch);
-        message.tiles.clear();
+        message.tiles.resize(1);
         message.payload.clear();
-        double const encoding = 1e-9 * (static_cast<double>(frame_.pixels()) * setup_.costs.h264_encode_pixel +
-                                        static_cast<double>(step.samples) * setup_.costs.shape_sample);
+        Picture const& picture = grid.picture();
+        double const encoding = 1e-9 * (pixel_count(picture) * setup_.costs.h264_encode_pixel +
+                                        static_cast<double>(grid.samples()) * setup_.costs.shape_sample);
         double const budget = frame_.budget(input, step, encoding);
         double const beside = static_cast<double>(encode_message(message).size());
-        message.payload = encoder_.encode(frame_.picture(), std::max(budget - beside, least_colour_share * budget));
+        message.payload =
+            encoder_.encode(grid.spacing(), picture, std::max(budget - beside, least_colour_share * budget));
+        last_bytes_ = message.payload.size();
         step.message = encode_message(message);
         step.seconds.encode += encoding;
         return step;
@@ -59,39 +70,46 @@ public:
 
     ViewerStep consume(std::vector<std::byte> const& message) override {
         auto encoded = std::get<EncodedBatch>(decode_message(message));
-        decoder_.decode(encoded.payload, decoded_);
-        encoded.payload = blank_.payload;
-        encoded.tiles = blank_.tiles;
+        auto const& [spacing, blank] = blanks_.at(encoded.tiles.front().depth());
+        decoder_.decode(spacing, encoded.payload, decoded_);
+        encoded.payload = blank.payload;
+        encoded.tiles = blank.tiles;
         Batch batch = codec_.decode(encoded);
         for (DisplayFramelet& framelet : batch.framelets) {
-            take_framelet(decoded_, plane_, framelet);
+            take_samples(decoded_, framelet);
         }
         time_ = batch.scene_time;
         ViewerStep step = viewer_.insert(batch);
-        step.seconds.decode += 1e-9 * static_cast<double>(frame_.pixels()) * setup_.costs.h264_decode_pixel;
+        step.seconds.decode += 1e-9 * pixel_count(decoded_) * setup_.costs.h264_decode_pixel;
         return step;
     }
 
-    ViewerStep present(NumberedView const& view, SceneTime time) override {
-        return viewer_.present(view.camera, moves_ ? time : 0);
-    }
+    ViewerStep present(NumberedView const& view, SceneTime time) override { return viewer_.present(view.camera, time); }
 
     Picture const& picture() const override { return viewer_.picture(); }
     double mean_sample_time() const override { return time_; }
+    void sent(double now, double) override { frame_.sent(now); }
+    void answered(double, double arrived) override { frame_.answered(arrived); }
 
 private:
     MethodSetup const setup_;
-    ImagePlane const plane_;
     bool moves_ = false; ///< the scene
     WholeFrame frame_;
     ShapeFeed shapes_;
-    H264Encoder encoder_;
-    H264Decoder decoder_;
+    ScaledH264Encoder encoder_;
+    ScaledH264Decoder decoder_;
+    std::size_t last_bytes_ = 0;
     BatchCodec codec_;
-    EncodedBatch blank_; ///< a frame's tiles, and a payload that stands for colours which come otherwise
+    /// By the depth of its tiles: spacing of a frame, and its tiles with a payload that stands for colours which come
+    /// otherwise.
+    struct Blank {
+        int spacing = 1;
+        EncodedBatch batch;
+    };
+    std::map<int, Blank> blanks_;
     std::uint64_t number_ = 0;
     Picture decoded_;
-    WarpViewer viewer_;
+    MarginViewer viewer_;
     double time_ = 0;
 };
 

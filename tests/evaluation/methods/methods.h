@@ -9,10 +9,15 @@ std::unique_ptr<Method> make_framed(MethodSetup const& setup);
 std::unique_ptr<Method> make_framed_jpeg(MethodSetup const& setup);
 std::unique_ptr<Method> make_framed_h264(MethodSetup const& setup);
 std::unique_ptr<Method> make_framed_warp(MethodSetup const& setup);
+std::unique_ptr<Method> make_interruptible(MethodSetup const& setup);
 std::unique_ptr<Method> make_frameless(MethodSetup const& setup);
 std::unique_ptr<Method> make_afr(MethodSetup const& setup);
 std::unique_ptr<Method> make_framelet(MethodSetup const& setup);
 std::unique_ptr<Method> make_framelet_unwarped(MethodSetup const& setup);
 std::unique_ptr<Method> make_tsar(MethodSetup const& setup);
+std::unique_ptr<Method> make_tsar_e(MethodSetup const& setup);
+std::unique_ptr<Method> make_tsar_fill(MethodSetup const& setup);
+std::unique_ptr<Method> make_tsar_surplus(MethodSetup const& setup);
+std::unique_ptr<Method> make_oracle(MethodSetup const& setup);
 
 } // namespace framelet::bench

@@ -47,7 +47,7 @@ TsarServer::TsarServer(MethodSetup const& setup, TsarParameters const& parameter
       response_{realisable(plane_, setup.frames_per_second, batch_framelets_), parameters.gain,
                 // One measure for both axes: the slowest rate counts as a sample per pixel. Were it the rate of
                 // `framed`, nothing in a picture that stands still would ask for more, and nothing would move.
-                slowest_refresh * setup.frames_per_second, 0, parameters.strategy},
+                slowest_refresh * setup.frames_per_second, -setup.bias, parameters.strategy},
       // Elements as small as the finest tile: 128x128 at 512x512 pixels, Table 7.1.
       density_(make_uniform_density(plane_.max_depth(), {1, setup.frames_per_second})),
       refreshed_(density_.size(), -1.0) {

@@ -1,40 +1,32 @@
-// The viewer's half of methods that send framelets: the project's own cache, reconstruction and reprojection. In:
-// batches. Out: the picture, moved to the camera and the scene time of the moment or not.
+// The viewer's half of methods that send framelets: the client's own picture maker, and what it costs. In: batches.
+// Out: the picture, moved to the camera and the scene time of the moment or not.
 #pragma once
 
-#include <optional>
 #include <vector>
 
-#include "common/framelet_cache.h"
-#include "common/image.h"
-#include "common/reprojector.h"
-#include "common/scene_smoother.h"
+#include "client/picture_maker.h"
 #include "tests/evaluation/method.h"
 
 namespace framelet::bench {
 
 class WarpViewer {
 public:
-    /// `lag_seconds` > 0: shows the scene so late, smoothly; the camera it is given is that of the moment.
-    WarpViewer(Viewport viewport, CostTable const& costs, double lag_seconds = 0);
+    WarpViewer(Viewport viewport, CostTable const& costs, PictureSettings const& settings = {});
 
     /// Returns what putting it into the cache costs; the picture stays as it is.
     ViewerStep insert(Batch const& batch);
-    /// Draws anew what has changed since the last time: all moved to where it is, or left where it was rendered. One
-    /// viewer is asked for one or the other.
-    ViewerStep present(Camera const& camera, SceneTime time);
-    ViewerStep present_unmoved();
+    /// Draws anew what differs from the last time. `scene_camera` >= 0: as that camera of the scene goes, and not as
+    /// `camera` says.
+    ViewerStep present(Camera const& camera, SceneTime time, int scene_camera = -1);
 
     Picture const& picture() const { return picture_; }
 
 private:
     CostTable const costs_;
-    FrameletCache cache_;
-    BodyMotions motions_;
-    Reprojector reprojector_;
-    double const lag_seconds_;
-    std::optional<SceneSmoother> smoother_;
-    std::vector<PixelRect> changed_, repainted_;
+    PictureSettings const settings_;
+    PictureMaker maker_;
+    std::vector<PixelRect> changed_;
+    double fine_samples_ = 0; ///< that have come since the last picture, finer than pixels
     Picture picture_;
 };
 

@@ -2,90 +2,119 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-
-#include <tbb/parallel_for.h>
-
-#include "common/color.h"
-#include "server/schedule/tiling.h"
 
 namespace framelet::bench {
+namespace {
 
-WholeFrame::WholeFrame(MethodSetup const& setup)
-    : costs_(setup.costs),
-      machine_(setup.machine), rate_{setup.bits_per_second > 0 ? setup.bits_per_second / 8 : INFINITY},
-      plane_(setup.viewport), tiles_(make_uniform_tiling(plane_, plane_.pixel_depth()).tiles), rendered_(tiles_.size()),
-      displayed_(tiles_.size()), picture_(setup.viewport.width, setup.viewport.height),
-      pixels_(picture_.rgba.size() / 4) {
-    for (std::size_t i = 0; i < tiles_.size(); ++i) {
-        displayed_[i].tile = tiles_[i];
+/// A mean of so many times as many samples is better by enough to be sent.
+constexpr double worth_sending = 4.0 / 3;
+/// What a link has had no use for until now may be spent at once, for so long a time at most.
+constexpr double longest_saved = 0.25;
+/// Bytes a pixel of a repeated picture that say that it had not come through as well as it might.
+constexpr double worth_repeating = 1.0 / 32;
+constexpr int most_repeats = 16;
+
+bool same_pose(ScenePose const& a, ScenePose const& b) {
+    return a.world_from_node == b.world_from_node && a.morph_weights == b.morph_weights;
+}
+
+} // namespace
+
+WholeFrame::WholeFrame(MethodSetup const& setup, double viewer_seconds)
+    : costs_(setup.costs), machine_(setup.machine), parts_(setup.rivals),
+      margin_x_(margin_pixels(parts_.margin, setup.viewport.width)),
+      margin_y_(margin_pixels(parts_.margin, setup.viewport.height)), rate_{setup.bits_per_second > 0
+                                                                                ? setup.bits_per_second / 8
+                                                                                : INFINITY},
+      forecast_(setup, viewer_seconds),
+      moving_(with_margin(setup.viewport, margin_x_, margin_y_), std::max(parts_.spacing, 1)) {
+    view_.viewport = moving_.plane().viewport();
+    if (parts_.accumulate && moving_.spacing() > 1) {
+        still_.emplace(view_.viewport, 1);
     }
 }
 
+std::vector<int> WholeFrame::spacings() const {
+    return still_ ? std::vector{moving_.spacing(), 1} : std::vector{moving_.spacing()};
+}
+
+bool WholeFrame::is_still(StepInput const& input, FrameMoment const& moment) const {
+    return view_.number > 0 && moment.camera == moment_.camera && input.scene.exposure == exposure_ &&
+           (moment.time == moment_.time || same_pose(input.scene.pose, pose_));
+}
+
+void WholeFrame::begin(StepInput const& input, FrameMoment const& moment) {
+    if (view_.number == 0 || !(moment.camera == moment_.camera)) {
+        Viewport const inner{view_.viewport.width - 2 * margin_x_, view_.viewport.height - 2 * margin_y_};
+        view_.camera = with_margin(moment.camera, inner, margin_y_);
+        ++view_.number;
+    }
+    exposure_ = input.scene.exposure;
+    pose_ = input.scene.pose;
+    passes_ = sent_passes_ = repeated_ = 0;
+    shown_ = &moving_;
+}
+
 ServerStep WholeFrame::render(StepInput const& input) {
+    FrameMoment const now{input.view.camera, input.time};
+    FrameMoment const moment = parts_.ahead ? forecast_.moment(input) : now;
+    pose_at(input.scene, moment.time);
+    bool const still = parts_.accumulate && is_still(input, moment);
+    due_ = false;
+    if (still && is_converged()) {
+        moment_.time = moment.time;
+        return {};
+    }
+    if (!still) {
+        begin(input, moment);
+    }
+    moment_ = moment;
+    RenderScene const& scene = *input.scene.render_scene;
+    std::uint64_t segments = 0;
+    if (!still || (passes_ == 0 && still_)) {
+        shown_ = still ? &*still_ : &moving_;
+        segments = shown_->render(scene, view_.camera, exposure_);
+    } else {
+        segments = shown_->add(scene, view_.camera, exposure_);
+    }
+    passes_ = shown_->spacing() == 1 ? shown_->frames() : 0;
+    due_ = passes_ <= 1 || is_converged() || passes_ >= worth_sending * sent_passes_;
+    if (due_) {
+        sent_passes_ = passes_;
+        forecast_.begin(input.now, !still);
+    }
     ServerStep step;
-    std::uint64_t const segments =
-        render_framelets(*input.scene.render_scene, input.view.camera, plane_, tiles_, 0, rendered_);
-    tbb::parallel_for(std::size_t(0), rendered_.size(),
-                      [&](std::size_t i) { displayed_[i] = to_display(rendered_[i], input.scene.exposure); });
-    step.samples = tiles_.size() * framelet_samples;
+    step.samples = shown_->samples();
+    double const samples = static_cast<double>(step.samples);
     step.seconds.render = 1e-9 * static_cast<double>(segments) * costs_.coherent_segment;
-    step.seconds.encode = 1e-9 * static_cast<double>(step.samples) * costs_.display_sample;
+    step.seconds.encode = 1e-9 * samples * (costs_.display_sample + (passes_ > 1 ? costs_.place_pixel : 0));
     return step;
+}
+
+void WholeFrame::sent(double now) {
+    forecast_.sent(now);
+    sent_at_ = now;
 }
 
 double WholeFrame::budget(StepInput const& input, ServerStep const& rendered, double encode_seconds) {
     for (DeliveredMessage const& message : input.delivered) {
         rate_ = update_delivery_rate(rate_, message.bytes, message.seconds);
     }
-    double const period = machine_ * (rendered.seconds.server() + encode_seconds);
+    double period = machine_ * (rendered.seconds.server() + encode_seconds);
+    if (sent_passes_ > 1) {
+        period += std::clamp(input.now - sent_at_, 0.0, longest_saved);
+    }
     return frame_budget(rate_, period, input.waiting_bytes);
 }
 
-Picture const& WholeFrame::picture() {
-    for (DisplayFramelet const& framelet : displayed_) {
-        place_framelet(framelet, plane_, picture_);
+bool WholeFrame::repeats(StepInput const& input, std::size_t last_bytes) {
+    bool const more = is_converged() && repeated_ < most_repeats && std::isfinite(rate_.bytes_per_second) &&
+                      input.waiting_bytes == 0 &&
+                      static_cast<double>(last_bytes) > worth_repeating * pixel_count(viewport());
+    if (more) {
+        repeat(input.now);
     }
-    return picture_;
-}
-
-std::vector<std::byte> WholeFrame::timed(SceneTime time, std::span<std::byte const> access_unit) {
-    std::vector<std::byte> message(sizeof(time) + access_unit.size());
-    std::memcpy(message.data(), &time, sizeof(time));
-    std::ranges::copy(access_unit, message.begin() + std::ptrdiff_t{sizeof(time)});
-    return message;
-}
-
-std::span<std::byte const> WholeFrame::untimed(std::span<std::byte const> message, SceneTime& time) {
-    std::memcpy(&time, message.data(), sizeof(time));
-    return message.subspan(sizeof(time));
-}
-
-void place_framelet(DisplayFramelet const& framelet, ImagePlane const& plane, Picture& picture) {
-    PixelRect const rect = plane.tile_rect(framelet.tile);
-    for (std::uint32_t i = 0; i < framelet_samples; ++i) {
-        int const x = rect.left + static_cast<int>(morton_x(i));
-        int const y = rect.top + static_cast<int>(morton_y(i));
-        if (x < picture.width && y < picture.height) {
-            std::uint8_t* const pixel = picture.row(y) + static_cast<std::ptrdiff_t>(x) * 4;
-            pixel[0] = framelet.red[i];
-            pixel[1] = framelet.green[i];
-            pixel[2] = framelet.blue[i];
-            pixel[3] = 255;
-        }
-    }
-}
-
-void take_framelet(Picture const& picture, ImagePlane const& plane, DisplayFramelet& framelet) {
-    PixelRect const rect = plane.tile_rect(framelet.tile);
-    for (std::uint32_t i = 0; i < framelet_samples; ++i) {
-        int const x = std::min(rect.left + static_cast<int>(morton_x(i)), picture.width - 1);
-        int const y = std::min(rect.top + static_cast<int>(morton_y(i)), picture.height - 1);
-        std::uint8_t const* const pixel = picture.row(y) + static_cast<std::ptrdiff_t>(x) * 4;
-        framelet.red[i] = pixel[0];
-        framelet.green[i] = pixel[1];
-        framelet.blue[i] = pixel[2];
-    }
+    return more;
 }
 
 } // namespace framelet::bench

@@ -1,4 +1,4 @@
-#include "server/session/cycle_record.h"
+#include "server/stream/cycle_record.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,0 +1,123 @@
+#include "client/picture_maker.h"
+
+#include <cmath>
+
+#include "client/confidence_colors.h"
+#include "client/framelet_outlines.h"
+#include "common/camera_track.h"
+#include "common/reconstruction.h"
+
+namespace framelet {
+
+PictureMaker::PictureMaker(Viewport viewport, PictureSettings const& settings)
+    : settings_(settings), cache_(ImagePlane(viewport)) {
+    start_smoothing();
+}
+
+void PictureMaker::set(PictureSettings const& settings) {
+    if (!(settings_ == settings)) {
+        settings_ = settings;
+        start_smoothing();
+    }
+}
+
+/// Where the scene is to be smoothed, from here on.
+void PictureMaker::start_smoothing() {
+    smoother_.reset();
+    late_clock_ = LateClock(settings_.lag_seconds);
+    shown_pixels_ = nullptr; // all of it anew
+    if (settings_.lag_seconds > 0 && settings_.reproject && settings_.scene_moves) {
+        smoother_.emplace(cache_.plane());
+    }
+}
+
+void PictureMaker::insert(Batch const& batch) {
+    if (shown_pixels_ == nullptr) {
+        shown_camera_ = batch.view.camera;
+        shown_time_ = batch.scene_time;
+    }
+    batch_view_ = batch.view;
+    batch_time_ = batch.scene_time;
+    cache_.insert(batch);
+    if (smoother_) {
+        smoother_->insert(batch);
+    }
+    for (BodyTrack const& track : batch.tracks) {
+        motions_.extend(track);
+    }
+    if (batch.camera_track) {
+        cameras_.extend(*batch.camera_track);
+    }
+}
+
+/// The camera of the request and the present, or what is late by the lag.
+std::pair<Camera, SceneTime> PictureMaker::wanted(PictureRequest const& request) {
+    SceneTime time = settings_.scene_moves ? request.present : 0;
+    if (smoother_) {
+        time = late_clock_.read(request.now, time);
+    }
+    if (request.scene_camera < 0) {
+        return {request.camera, time};
+    }
+    BodyTrack const* const track = cameras_.find(camera_body(request.scene_camera));
+    Camera const& newest = batch_view_.camera;
+    return {track == nullptr ? newest : camera_at(*track, time, newest), time};
+}
+
+bool PictureMaker::show(PictureRequest const& request, Picture& picture, std::vector<PixelRect>& changed) {
+    changed.clear();
+    if (is_empty()) {
+        return false;
+    }
+    Viewport const size = viewport();
+    bool const whole =
+        picture.rgba.data() != shown_pixels_ || picture.width != size.width || picture.height != size.height;
+    cache_.take_changed(changed);
+    if (whole) {
+        picture = Picture(size.width, size.height);
+        reprojector_ = Reprojector();
+        if (smoother_) {
+            smoother_->start_picture();
+        }
+        changed.assign(1, {0, 0, size.width, size.height});
+        shown_pixels_ = picture.rgba.data();
+    }
+    if (!settings_.reproject) {
+        shown_camera_ = batch_view_.camera;
+        shown_camera_number_ = batch_view_.number;
+        shown_time_ = batch_time_;
+        reconstruct(cache_, changed, picture);
+        return !changed.empty();
+    }
+    auto const [camera, time] = wanted(request);
+    shown_camera_ = camera;
+    shown_camera_number_ = request.camera_number;
+    shown_time_ = time;
+    arrived_.swap(changed);
+    if (smoother_) {
+        SceneTime const lag = settings_.lag_seconds * std::abs(request.clock_speed);
+        smoother_->show(cache_, arrived_, camera, time, lag, motions_, picture, changed);
+    } else {
+        reprojector_.show(cache_, arrived_, camera, time, motions_, picture, changed);
+    }
+    return !changed.empty();
+}
+
+void PictureMaker::draw_over(DrawnOver what, Picture& picture) const {
+    if (what == DrawnOver::nothing || is_empty() || viewport() != Viewport{picture.width, picture.height}) {
+        return;
+    }
+    if (what == DrawnOver::outlines || !settings_.reproject) {
+        draw_outlines(cache_, picture);
+        return;
+    }
+    std::vector<PixelConfidence> confidence;
+    find_confidence(cache_, shown_camera_, shown_time_, motions_, confidence);
+    draw_confidence(confidence, picture);
+}
+
+std::size_t PictureMaker::memory_bytes() const {
+    return cache_.memory_bytes() + (smoother_ ? smoother_->memory_bytes() : 0);
+}
+
+} // namespace framelet

@@ -1,0 +1,87 @@
+// The viewer's half of the pipeline after decoding: what the viewer holds, and the picture made of it, without sockets,
+// threads or clocks. In: batches, and for each picture a camera and what the scene's clock says. Out: the picture.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "client/late_clock.h"
+#include "common/framelet_cache.h"
+#include "common/image.h"
+#include "common/reprojector.h"
+#include "common/scene_smoother.h"
+
+namespace framelet {
+
+/// How pictures are made.
+struct PictureSettings {
+    bool reproject = true; ///< what is held is moved to where it is now; else it is shown where it was rendered
+    bool scene_moves = true;
+    double lag_seconds = 0; ///< > 0: the scene, not the camera, is shown so late, and between what is held
+    bool operator==(PictureSettings const&) const = default;
+};
+
+/// What a picture is to be of.
+struct PictureRequest {
+    Camera camera; ///< where `scene_camera` is -1
+    std::uint64_t camera_number = 0; ///< its
+    int scene_camera = -1; ///< >= 0: as that camera of the scene goes
+    SceneTime present = 0; ///< what the scene's clock says
+    double clock_speed = 1; ///< scene seconds a second
+    double now = 0; ///< seconds of the viewer's own clock
+};
+
+/// What drawing over the picture shows.
+enum class DrawnOver : std::uint8_t { nothing, outlines, confidence };
+
+class PictureMaker {
+public:
+    PictureMaker(Viewport viewport, PictureSettings const& settings);
+
+    Viewport viewport() const { return cache_.plane().viewport(); }
+    /// The next picture is made as a whole where they differ from what they were.
+    void set(PictureSettings const& settings);
+
+    /// The batch must be of this viewport.
+    void insert(Batch const& batch);
+    bool is_empty() const { return cache_.framelet_count() == 0; }
+    FrameletCache const& cache() const { return cache_; }
+
+    /// Brings `picture` up to date. True when it changed; `changed` gets the rectangles that may differ. A picture that
+    /// is not the one of the last call, or has another size, is written as a whole. Nothing happens while nothing is
+    /// held.
+    bool show(PictureRequest const& request, Picture& picture, std::vector<PixelRect>& changed);
+    /// Draws over a copy of the picture that was shown last.
+    void draw_over(DrawnOver what, Picture& picture) const;
+
+    /// What the last picture shows; before there is one, what the newest batch was seen from.
+    Camera const& shown_camera() const { return shown_camera_; }
+    SceneTime shown_time() const { return shown_time_; }
+    /// The number of that camera, where the viewer gave it.
+    std::uint64_t shown_camera_number() const { return shown_camera_number_; }
+    /// True when it was `reconstruct`'s as a whole: nothing in it was moved.
+    bool is_exact() const { return !settings_.reproject || (!smoother_ && reprojector_.is_exact()); }
+    bool is_smooth() const { return smoother_.has_value(); }
+    std::size_t memory_bytes() const;
+
+private:
+    void start_smoothing();
+    std::pair<Camera, SceneTime> wanted(PictureRequest const& request);
+
+    PictureSettings settings_;
+    FrameletCache cache_;
+    BodyMotions motions_;
+    BodyMotions cameras_; ///< tracks of the scene's, as `camera_body`
+    Reprojector reprojector_;
+    LateClock late_clock_{0};
+    std::optional<SceneSmoother> smoother_;
+    NumberedView batch_view_; ///< of the newest batch
+    SceneTime batch_time_ = 0; ///< likewise
+    Camera shown_camera_;
+    std::uint64_t shown_camera_number_ = 0;
+    SceneTime shown_time_ = 0;
+    std::uint8_t const* shown_pixels_ = nullptr; ///< recognises the caller's picture
+    std::vector<PixelRect> arrived_; ///< scratch: where batches have changed something
+};
+
+} // namespace framelet

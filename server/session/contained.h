@@ -1,0 +1,31 @@
+// A session's failure is its own. In: something that is done for one session. Out: whether it was done; where it threw,
+// that session has ended with a line that says why, and the others go on.
+#pragma once
+
+#include <exception>
+#include <new>
+#include <string>
+
+#include "server/session/session.h"
+
+namespace framelet {
+
+inline std::string failure_line(std::exception const& error) {
+    if (dynamic_cast<std::bad_alloc const*>(&error) != nullptr) {
+        return "the server has not enough memory left for this viewer's picture: ask for a smaller one";
+    }
+    return std::string("the server cannot go on with this viewer's picture: ") + error.what();
+}
+
+template <typename Work>
+bool contain(Session& session, Work const& work) {
+    try {
+        work();
+        return true;
+    } catch (std::exception const& error) {
+        session.end(failure_line(error));
+        return false;
+    }
+}
+
+} // namespace framelet

@@ -1,0 +1,35 @@
+// How much memory the viewers' pictures may take together. In: sizes of pictures, as viewers ask for them. Out: whether
+// there is room for them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "common/camera.h"
+
+namespace framelet {
+
+/// What the server keeps for one viewer, about: what it knows of its picture, and what the viewer holds. `predicts`:
+/// whether framelets are predicted. What waits for its socket is bounded by `max_unsent_bytes`, and not in here.
+std::size_t session_bytes(Viewport viewport, bool predicts);
+
+class SessionMemory {
+public:
+    /// Bytes, of all sessions.
+    explicit SessionMemory(std::size_t budget) : budget_(budget) {}
+
+    /// Sets aside what the session takes with a picture of this size, or says in one line why not. What it has from a
+    /// larger picture stays its own until it ends: memory is used again rather than given back.
+    std::optional<std::string> reserve(std::uint64_t session, Viewport viewport, bool predicts);
+    void release(std::uint64_t session);
+
+private:
+    std::size_t const budget_;
+    std::size_t reserved_ = 0;
+    std::map<std::uint64_t, std::size_t> sessions_;
+};
+
+} // namespace framelet

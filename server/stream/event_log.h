@@ -1,0 +1,84 @@
+// A session as a file: what came to its stream and when, which turns it was given, and what it answered. In: the calls
+// that a loop makes. Out: the same, to be made again (`replay.h`).
+//
+// The file: "framelet events 1\n", a line of JSON that says what was served, then records: a byte for the kind, the
+// session's number (8 bytes), the length of what follows (4), and that. Numbers are little-endian, times doubles; what
+// a viewer says and batches are message bodies as on the wire.
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "server/stream/viewer_stream.h"
+
+namespace framelet {
+
+/// What was served.
+struct ServedScene {
+    std::string scene; ///< file
+    std::string environment; ///< file; empty: the scene's own
+    std::vector<Index> clips;
+    float exposure = 1;
+    double bias = 0;
+    std::uint64_t batch_framelets = 0;
+};
+
+/// A viewer has come, and can read this.
+struct ViewerCame {
+    std::uint32_t codings = 0;
+};
+struct TurnGiven {
+    Turn turn;
+    Step step = Step::nothing; ///< what it answered
+};
+/// What was rendered was learnt.
+struct TurnLearnt {};
+/// What was learnt was encoded: the body of the message.
+struct BatchEncoded {
+    Bytes body;
+};
+
+struct LogRecord {
+    std::uint64_t session = 0;
+    std::variant<ViewerCame, StreamEvent, TurnGiven, TurnLearnt, BatchEncoded> what;
+};
+
+/// All members may be called from any thread.
+class EventLog {
+public:
+    /// Throws InputError where the file cannot be written.
+    EventLog(std::filesystem::path const& file, ServedScene const& served);
+
+    void add_viewer(std::uint64_t session, std::uint32_t codings);
+    void add_event(std::uint64_t session, StreamEvent const& event);
+    void add_turn(std::uint64_t session, Turn const& turn, Step step);
+    void add_learning(std::uint64_t session);
+    void add_batch(std::uint64_t session, EncodedBatch const& batch);
+
+private:
+    void write(std::uint64_t session, std::uint8_t kind, Bytes const& content);
+
+    std::mutex mutex_;
+    std::ofstream out_;
+};
+
+class EventLogReader {
+public:
+    /// Throws InputError where the file cannot be read or is none of these.
+    explicit EventLogReader(std::filesystem::path const& file);
+
+    ServedScene const& served() const { return served_; }
+    /// Nothing at the end, or where the last record is not whole. Throws InputError for what cannot be.
+    std::optional<LogRecord> next();
+
+private:
+    std::filesystem::path const file_;
+    std::ifstream in_;
+    ServedScene served_;
+};
+
+} // namespace framelet

@@ -1,0 +1,162 @@
+#include "server/stream/framelet_stream.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "common/error.h"
+
+namespace framelet {
+
+FrameletStream::FrameletStream(StreamOptions const& options, std::uint32_t codings)
+    : options_(options), codings_(codings) {}
+
+void FrameletStream::take(StreamEvent const& event) {
+    if (auto const* const camera = std::get_if<CameraUpdate>(&event.what)) {
+        if (!camera_ || camera->view.number > camera_->view.number) { // else a newer one is here already
+            camera_ = *camera;
+        }
+    } else if (auto const* const settings = std::get_if<ViewerSettings>(&event.what)) {
+        settings_ = *settings;
+    } else if (auto const* const ack = std::get_if<Ack>(&event.what)) {
+        acknowledged_ = std::max(acknowledged_, ack->batch);
+        std::optional<double> received;
+        if (ack->received_us != 0) {
+            received = 1e-6 * static_cast<double>(ack->received_us);
+        }
+        link_.acknowledged(ack->batch, event.seconds, received);
+    } else if (auto const* const sent = std::get_if<BatchSent>(&event.what)) {
+        link_.sent(sent->batch, event.seconds, static_cast<double>(sent->bytes));
+    } else {
+        moments_.begin_anew();
+    }
+}
+
+ViewState FrameletStream::present_state(SceneTime present, PosedScene& scene) const {
+    SceneTime const time = scene.is_animated() ? present : 0;
+    NumberedView view = camera_->view;
+    int const scene_camera = camera_->scene_camera;
+    if (scene_camera >= 0 && scene_camera < static_cast<int>(scene.scene().cameras.size())) {
+        view.camera = scene.camera(scene_camera, time);
+    }
+    return {view, options_.exposure * std::exp2(settings_.exposure_ev), time};
+}
+
+/// The scene's camera whose way the viewer has to know; -1: none.
+int FrameletStream::moving_camera(PosedScene const& scene) const {
+    return takes_shapes() && scene.camera_moves(camera_->scene_camera) ? camera_->scene_camera : -1;
+}
+
+bool FrameletStream::has_room(double now) const {
+    std::uint64_t const unlearnt = planned_ != nullptr ? 1 : 0;
+    return viewer_.batches + unlearnt - acknowledged_ < max_batches_in_flight && link_.has_room(now);
+}
+
+Step FrameletStream::plan(Turn const& turn, PosedScene& scene) {
+    if (!camera_) {
+        return Step::nothing;
+    }
+    ViewState const present = present_state(turn.present, scene);
+    if (viewer_.refresh.is_complete(present)) {
+        if (planned_ != nullptr) {
+            return Step::finish;
+        }
+        complete_ = viewer_.lossy.empty();
+        if (complete_) {
+            return Step::nothing;
+        }
+        if (!has_room(turn.now)) {
+            return Step::wait;
+        }
+        plan_exactly(present, scene);
+        return Step::render;
+    }
+    return has_room(turn.now) ? plan_batch(turn, present, scene) : Step::wait;
+}
+
+Step FrameletStream::plan_batch(Turn const& turn, ViewState const& present, PosedScene const& scene) {
+    LinkState const link = link_.state();
+    double const rendered = turn.samples_per_second;
+    RefreshInput wanted;
+    wanted.state = present;
+    wanted.moment = moments_.choose(present, turn.now, takes_shapes());
+    bool const still = !wanted.moment && viewer_.refresh.is_still(present);
+    wanted.now = turn.now;
+    wanted.samples_per_second = options_.follows_link ? bounded_rate(link, rendered) : rendered;
+    wanted.rendered_per_second = rendered;
+    wanted.cycle_seconds = cycle_length(still, turn.plan_seconds);
+    wanted.delivery_seconds = static_cast<float>(link.delivery_seconds);
+    wanted.bias = std::clamp(static_cast<float>(options_.bias) + settings_.bias, -1.0f, 1.0f);
+    wanted.batch_framelets = options_.batch_framelets;
+    wanted.link_framelets = options_.follows_link ? bounded_batch(link) : max_batch_framelets;
+    wanted.motions = takes_shapes() ? &viewer_.motions : nullptr;
+    wanted.limits = options_.limits;
+    BatchWork& work = free_work();
+    BatchOrder& order = work.order;
+    order.state = wanted.moment ? wanted.moment->state : present;
+    order.present = present;
+    order.scene_camera = moving_camera(scene);
+    order.quality = takes_loss() ? choice_.choose(link, rendered, turn.now) : std::uint8_t{exact_quality};
+    order.takes_shapes = takes_shapes();
+    order.withholds = options_.withholds;
+    order.still = still;
+    order.again = false;
+    viewer_.refresh.plan(wanted, order.plan);
+    if (order.plan.is_empty()) { // once what is rendered is learnt there may be something
+        return planned_ != nullptr ? Step::finish : Step::nothing;
+    }
+    work.figures = {};
+    work.figures.is_new_cycle = order.plan.is_new_cycle;
+    work.figures.places = viewer_.refresh.field().visible().size();
+    work.figures.framelets = order.plan.tiles.size();
+    work.figures.rays = order.plan.ray_count();
+    work.figures.probes = order.plan.probes.size();
+    set_planned(work);
+    return Step::render;
+}
+
+/// The picture is complete, but for what the viewer was sent with loss: some of that once more. What has four rays a
+/// sample is not among it: it was sent exactly, since nothing moved.
+void FrameletStream::plan_exactly(ViewState const& present, PosedScene const& scene) {
+    constexpr std::size_t most_framelets = 1024;
+    BatchWork& work = free_work();
+    work.order = {present, present, moving_camera(scene), {}, exact_quality, takes_shapes(), true, true, true};
+    viewer_.lossy.list(std::min(bounded_batch(link_.state()), most_framelets), work.order.plan.tiles);
+    work.figures = {};
+    work.figures.framelets = work.order.plan.tiles.size();
+    work.figures.rays = work.order.plan.ray_count();
+    set_planned(work);
+}
+
+/// Neither what is not learnt nor what may be encoded at the moment.
+BatchWork& FrameletStream::free_work() {
+    BatchWork const* const used = planned_ != nullptr ? planned_ : learnt_;
+    return works_[used == works_.data() ? 1 : 0];
+}
+
+void FrameletStream::set_planned(BatchWork& work) {
+    earlier_ = planned_;
+    planned_ = &work;
+}
+
+void FrameletStream::render(PosedScene const& scene) {
+    FRAMELET_CHECK(planned_ != nullptr);
+    planned_->render(scene);
+}
+
+bool FrameletStream::learn(PosedScene const& scene) {
+    learnt_ = earlier_ != nullptr ? std::exchange(earlier_, nullptr) : std::exchange(planned_, nullptr);
+    FRAMELET_CHECK(learnt_ != nullptr);
+    bool const sends = learnt_->learn(scene, viewer_);
+    if (sends) {
+        link_.begin(static_cast<double>(learnt_->batch().framelets.size() * framelet_samples));
+    }
+    complete_ = viewer_.lossy.empty() && viewer_.refresh.is_complete(learnt_->order.present);
+    return sends;
+}
+
+EncodedBatch FrameletStream::encode() {
+    return learnt_->encode(codec_, takes_predictions() ? &held_ : nullptr);
+}
+
+} // namespace framelet

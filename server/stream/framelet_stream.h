@@ -1,0 +1,83 @@
+// The project's own way of serving a viewer: what is to be seen -> a moment -> a plan of what is worth rendering ->
+// framelets, learnt from, coded as the link asks for. In and out as `ViewerStream` says.
+#pragma once
+
+#include <array>
+
+#include "server/flow/link_estimate.h"
+#include "server/flow/quality_choice.h"
+#include "server/stream/batch_work.h"
+#include "server/stream/moment_choice.h"
+#include "server/stream/viewer_stream.h"
+
+namespace framelet {
+
+struct StreamOptions {
+    float exposure = 1; ///< factor on radiance, before the viewer's own
+    std::size_t batch_framelets = 0; ///< most framelets of one batch; 0: what half a cycle has time for
+    double bias = 0; ///< -1 (spatial fidelity) .. 1 (temporal), before the viewer's own
+    // The evaluation leaves parts out, to see what each is worth.
+    ResponseLimits limits{};
+    bool follows_link = true; ///< rate and batches are bounded by what the link carries
+    bool withholds = true; ///< what the viewer has already is not sent again
+};
+
+class FrameletStream final : public ViewerStream {
+public:
+    /// Batches that may be on their way (learnt, not yet acknowledged). Enough to keep the renderer busy while the
+    /// viewer answers, few enough that what arrives is fresh.
+    static constexpr std::uint64_t max_batches_in_flight = 32;
+
+    /// `codings`: what the viewer can read, as its Hello says.
+    FrameletStream(StreamOptions const& options, std::uint32_t codings);
+
+    void take(StreamEvent const& event) override;
+    Step plan(Turn const& turn, PosedScene& scene) override;
+    SceneTime moment() const override { return planned_->order.state.scene_time; }
+    void render(PosedScene const& scene) override;
+    bool learn(PosedScene const& scene) override;
+    EncodedBatch encode() override;
+
+    bool is_complete() const override { return complete_; }
+    std::uint64_t last_batch() const override { return viewer_.batches; }
+    TurnFigures const& planned_figures() const override { return planned_->figures; }
+    TurnFigures const& learnt_figures() const override { return learnt_->figures; }
+
+    AdaptiveRefresh const* scheduler() const override { return &viewer_.refresh; }
+    LinkState link() const { return link_.state(); }
+    /// Of the batch that was learnt last.
+    Batch const& learnt_batch() const { return learnt_->batch(); }
+    RefreshPlan const& learnt_plan() const { return learnt_->order.plan; }
+
+private:
+    bool takes_loss() const { return (codings_ & coding::haar_colour) != 0; }
+    bool takes_predictions() const { return takes_loss() && (codings_ & coding::predicted_colour) != 0; }
+    bool takes_shapes() const { return settings_.reproject && (codings_ & coding::shapes_and_tracks) != 0; }
+    ViewState present_state(SceneTime present, PosedScene& scene) const;
+    int moving_camera(PosedScene const& scene) const;
+    bool has_room(double now) const;
+    Step plan_batch(Turn const& turn, ViewState const& present, PosedScene const& scene);
+    void plan_exactly(ViewState const& present, PosedScene const& scene);
+    BatchWork& free_work();
+    void set_planned(BatchWork& work);
+
+    StreamOptions const options_;
+    std::uint32_t const codings_;
+    std::optional<CameraUpdate> camera_;
+    ViewerSettings settings_;
+    std::uint64_t acknowledged_ = 0;
+    LinkEstimate link_;
+    QualityChoice choice_;
+    MomentChoice moments_;
+    ViewerKnowledge viewer_;
+
+    std::array<BatchWork, 2> works_;
+    BatchWork* planned_ = nullptr; ///< last, and not learnt
+    BatchWork* earlier_ = nullptr; ///< the one before, while it is not learnt
+    BatchWork* learnt_ = nullptr; ///< last
+    bool complete_ = false;
+    BatchCodec codec_;
+    HeldPicture held_; ///< by the viewer, once all that was encoded has come
+};
+
+} // namespace framelet

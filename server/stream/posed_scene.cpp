@@ -1,0 +1,42 @@
+#include "server/stream/posed_scene.h"
+
+#include <utility>
+
+#include "server/scene/bodies.h"
+
+namespace framelet {
+
+PosedScene::PosedScene(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene)
+    : scene_(scene), clips_(std::move(clips)), render_scene_(render_scene),
+      animated_(animation_duration(scene, clips_) > 0), pose_(evaluate_pose(scene, clips_, 0)) {
+    render_scene_.set_clips(clips_);
+    render_scene_.set_pose(pose_);
+    for (std::size_t i = 0; i < scene_.cameras.size(); ++i) {
+        moving_cameras_.push_back(framelet::camera_moves(scene_, clips_, static_cast<Index>(i)));
+    }
+}
+
+bool PosedScene::camera_moves(int index) const {
+    return index >= 0 && index < static_cast<int>(moving_cameras_.size()) &&
+           moving_cameras_[static_cast<std::size_t>(index)];
+}
+
+ScenePose const& PosedScene::pose_of(SceneTime time) {
+    if (pose_.time != time) {
+        pose_ = evaluate_pose(scene_, clips_, time);
+    }
+    return pose_;
+}
+
+void PosedScene::pose(SceneTime time) {
+    if (rendered_ != time) {
+        render_scene_.set_pose(pose_of(time));
+        rendered_ = time;
+    }
+}
+
+Camera PosedScene::camera(Index index, SceneTime time) {
+    return scene_camera(scene_, pose_of(time), index);
+}
+
+} // namespace framelet

@@ -1,0 +1,42 @@
+// The scene that all streams look at, at one moment at a time. In: scene times. Out: where its cameras are, what is
+// rendered. A resource: posing moves the renderer's scene.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "server/render/render_scene.h"
+#include "server/scene/animation.h"
+
+namespace framelet {
+
+class PosedScene {
+public:
+    /// Poses the scene for time 0. Scene and renderer must outlive it.
+    PosedScene(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene);
+
+    Scene const& scene() const { return scene_; }
+    std::span<Index const> clips() const { return clips_; }
+    RenderScene const& render_scene() const { return render_scene_; }
+    bool is_animated() const { return animated_; }
+
+    /// Moves everything that is rendered to where it is at `time`; nothing where it is there already.
+    void pose(SceneTime time);
+    /// Where everything is at `time`; valid until the next call. The renderer's scene stays as it is.
+    ScenePose const& pose_of(SceneTime time);
+    /// Where the scene's camera `index` is at `time`. The renderer's scene stays as it is.
+    Camera camera(Index index, SceneTime time);
+    /// True for a camera of the scene that goes with something that moves.
+    bool camera_moves(int index) const;
+
+private:
+    Scene const& scene_;
+    std::vector<Index> const clips_;
+    RenderScene& render_scene_;
+    bool const animated_;
+    std::vector<bool> moving_cameras_;
+    ScenePose pose_; ///< evaluated last
+    SceneTime rendered_ = 0;
+};
+
+} // namespace framelet

@@ -1,0 +1,30 @@
+// What happens to one viewer's stream, as a value: what the viewer says, what the socket did. In the order in which it
+// came it is all that a stream knows of the world, beside its turns.
+#pragma once
+
+#include <cstdint>
+#include <variant>
+
+#include "protocol/message.h"
+
+namespace framelet {
+
+/// The scene's clock was set: what is to be seen may be another moment.
+struct ClockChanged {
+    bool operator==(ClockChanged const&) const = default;
+};
+
+/// A batch was handed to the socket.
+struct BatchSent {
+    std::uint64_t batch = 0;
+    std::uint64_t bytes = 0; ///< on the wire
+    bool operator==(BatchSent const&) const = default;
+};
+
+struct StreamEvent {
+    double seconds = 0; ///< when, on the server's steady clock
+    std::variant<CameraUpdate, ViewerSettings, Ack, ClockChanged, BatchSent> what;
+    bool operator==(StreamEvent const&) const = default;
+};
+
+} // namespace framelet

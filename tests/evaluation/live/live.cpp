@@ -1,0 +1,350 @@
+#include "tests/evaluation/live/live.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <fstream>
+#include <optional>
+#include <sched.h>
+#include <thread>
+
+#include <nlohmann/json.hpp>
+#include <tbb/parallel_for.h>
+
+#include "client/camera_path.h"
+#include "common/cpu_clock.h"
+#include "common/error.h"
+#include "common/image_io.h"
+#include "common/picture_writer.h"
+#include "server/render/framelet_renderer.h"
+#include "tests/evaluation/codecs/link_emulator.h"
+#include "tests/evaluation/measures/measures.h"
+#include "tests/evaluation/rival_choice.h"
+#include "tests/loopback/process.h"
+
+namespace framelet::bench {
+namespace {
+
+using namespace std::chrono_literals;
+using nlohmann::json;
+
+constexpr auto patience = 120s; ///< for a client that still writes its last pictures
+/// Pictures from this long after the first one on are compared: until then the methods build up what they hold.
+constexpr double build_up_seconds = 1;
+
+struct LiveFrame {
+    std::uint64_t number = 0;
+    double seconds = 0; ///< Unix
+    SceneTime scene_time = 0; ///< that was to be shown
+    bool changed = false;
+    double bytes = 0, samples = 0, cpu_seconds = 0, photon_seconds = -1;
+    Camera camera; ///< that was to be shown, unless the scene's was
+    int scene_camera = -1;
+};
+
+LiveFrame parse_frame(json const& line) {
+    LiveFrame frame{line["frame"],
+                    line["unix_seconds"],
+                    line["scene_seconds"],
+                    line["changed"],
+                    line["bytes"],
+                    line["samples"],
+                    line["cpu_seconds"],
+                    line["photon_seconds"],
+                    {},
+                    0};
+    json const& position = line["position"];
+    json const& turn = line["orientation"];
+    frame.camera.position = {position[0], position[1], position[2]};
+    frame.camera.orientation = Quat(turn[0], turn[1], turn[2], turn[3]);
+    frame.camera.vertical_extent = line["vertical_extent"];
+    frame.scene_camera = line["scene_camera"];
+    return frame;
+}
+
+std::vector<LiveFrame> read_frames(std::filesystem::path const& file) {
+    std::vector<LiveFrame> frames;
+    std::ifstream stream(file);
+    for (std::string line; std::getline(stream, line) && !stream.eof();) {
+        frames.push_back(parse_frame(json::parse(line)));
+    }
+    return frames;
+}
+
+/// The real programs for the project's own methods, this program's for the others: it serves and shows any method.
+struct Programs {
+    std::string server, client;
+    std::vector<std::string> server_words, client_words; ///< that come first
+    std::vector<std::string> client_more;
+};
+
+std::vector<std::string> joined(std::vector<std::string> words, std::vector<std::string> const& more) {
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+}
+
+Programs programs_of(std::string const& method, RivalParts const& rivals, std::string const& scene) {
+    if (method == "framelet") {
+        return {FRAMELET_SERVER, FRAMELET_CLIENT, {scene, "--port", "0"}, {}, {}};
+    }
+    if (method == "framelet-unwarped") {
+        return {FRAMELET_SERVER, FRAMELET_CLIENT, {scene, "--port", "0"}, {}, {"--no-reprojection"}};
+    }
+    std::string const self = std::filesystem::read_symlink("/proc/self/exe").string();
+    std::vector<std::string> const parts{"--spacing", std::to_string(rivals.spacing), "--margin",
+                                         std::to_string(rivals.margin)};
+    return {self, self, joined({"serve", method, scene}, parts), {"look", method, scene}, parts};
+}
+
+void pin(pid_t pid, int core) {
+    cpu_set_t cores;
+    CPU_ZERO(&cores);
+    CPU_SET(static_cast<std::size_t>(core), &cores);
+    sched_setaffinity(pid, sizeof cores, &cores);
+}
+
+double cpu_of(pid_t pid) {
+    clockid_t clock{};
+    return clock_getcpuclockid(pid, &clock) == 0 ? cpu_seconds_of(clock) : 0;
+}
+
+/// What one run left behind, its pictures included.
+struct LiveRun {
+    test::TemporaryFolder folder;
+    std::vector<LiveFrame> frames;
+    double server_cpu = 0; ///< seconds while the client ran
+    double seconds = 0; ///< that it ran
+
+    std::filesystem::path picture_file(std::uint64_t frame) const {
+        char name[40];
+        std::snprintf(name, sizeof name, "%06llu.ppm", static_cast<unsigned long long>(frame));
+        return folder.path() / name;
+    }
+    Picture picture(std::size_t frame) const { return read_picture(picture_file(frames[frame].number)); }
+};
+
+void run_programs(BenchScene const& scene, std::string const& method, RivalParts const& rivals,
+                  LiveOptions const& options, LiveRun& run) {
+    Programs const programs = programs_of(method, rivals, scene.file.string());
+    char stops[40];
+    std::snprintf(stops, sizeof stops, "%.9g", std::log2(static_cast<double>(scene.exposure)));
+    std::vector<std::string> server_options{"--exposure", stops, "--threads",
+                                            std::to_string(options.pinned ? 1 : options.server_threads)};
+    auto server = test::ServerProcess::of_program(programs.server, joined(programs.server_words, server_options));
+    std::string const& address = server.address();
+    auto const port = static_cast<std::uint16_t>(std::stoi(address.substr(address.rfind(':') + 1)));
+    std::optional<LinkEmulator> link;
+    if (options.link.bits_per_second > 0 || options.link.delay_seconds > 0) {
+        link.emplace(port, options.link);
+    }
+    std::string const size = std::to_string(options.viewport.width) + "x" + std::to_string(options.viewport.height);
+    std::vector<std::string> client_options{"127.0.0.1:" + std::to_string(link ? link->port() : port),
+                                            "--size",
+                                            size,
+                                            "--duration",
+                                            std::to_string(options.seconds),
+                                            "--rate",
+                                            std::to_string(options.display_rate),
+                                            "--output",
+                                            (run.folder.path() / "%06d.ppm").string(),
+                                            "--frames",
+                                            (run.folder.path() / "frames.jsonl").string()};
+    if (!options.camera_file.empty()) {
+        client_options = joined(client_options, {"--camera", options.camera_file.string()});
+    } else if (scene.scene_camera != none) {
+        client_options =
+            joined(client_options,
+                   {"--camera", run.folder.write("camera.json", json{{"scene_camera", scene.scene_camera}}.dump())});
+    }
+    if (options.pinned) {
+        pin(server.process().pid(), 0);
+    }
+    double const before = cpu_of(server.process().pid());
+    auto const start = std::chrono::steady_clock::now();
+    test::Process client(programs.client, joined(joined(programs.client_words, client_options), programs.client_more));
+    if (options.pinned) {
+        pin(client.pid(), 1);
+    }
+    if (int const code = client.wait(patience); code != 0) {
+        throw ConnectionError(method + ": the viewer ended with " + std::to_string(code) + ": " + client.errors());
+    }
+    run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    run.server_cpu = cpu_of(server.process().pid()) - before;
+    run.frames = read_frames(run.folder.path() / "frames.jsonl");
+    if (run.frames.size() < 10) {
+        throw ConnectionError(method + ": the viewer showed " + std::to_string(run.frames.size()) + " pictures");
+    }
+}
+
+Picture reference_of(BenchScene& scene, LiveFrame const& frame, LiveOptions const& options) {
+    pose_at(scene, frame.scene_time);
+    Camera const camera =
+        frame.scene_camera >= 0 ? scene.posed->camera(frame.scene_camera, frame.scene_time) : frame.camera;
+    return render_picture(*scene.render_scene, camera, options.viewport, scene.exposure, options.samples_per_side);
+}
+
+/// Mean squared second difference of the error over three pictures in a row: what crawls, flickers and jumps.
+double unsteadiness(std::array<Picture, 3> const& shown, std::array<Picture, 3> const& reference) {
+    double sum = 0;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < shown[0].rgba.size(); ++i) {
+        if (i % 4 == 3) {
+            continue;
+        }
+        auto const error = [&](std::size_t k) {
+            return static_cast<double>(shown[k].rgba[i]) - static_cast<double>(reference[k].rgba[i]);
+        };
+        double const second = (error(0) - 2 * error(1) + error(2)) / 255;
+        sum += second * second;
+        ++count;
+    }
+    return sum / static_cast<double>(count);
+}
+
+void write_beside(Picture const& shown, Picture const& reference, std::filesystem::path const& file) {
+    Picture both(shown.width + reference.width, shown.height);
+    std::size_t const row = 4 * static_cast<std::size_t>(shown.width);
+    for (int y = 0; y < shown.height; ++y) {
+        auto const from = static_cast<std::size_t>(y) * row;
+        std::copy_n(shown.rgba.begin() + static_cast<std::ptrdiff_t>(from), row,
+                    both.rgba.begin() + static_cast<std::ptrdiff_t>(2 * from));
+        std::copy_n(reference.rgba.begin() + static_cast<std::ptrdiff_t>(from), row,
+                    both.rgba.begin() + static_cast<std::ptrdiff_t>(2 * from + row));
+    }
+    write_png(file.string(), both);
+}
+
+double percentile(std::vector<double> values, double share) {
+    if (values.empty()) {
+        return 0;
+    }
+    auto const at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+}
+
+/// Rates and costs of the run; pictures are not looked at.
+json run_figures(LiveRun const& run) {
+    std::vector<double> gaps, photons;
+    double changed = 0;
+    for (std::size_t i = 0; i < run.frames.size(); ++i) {
+        LiveFrame const& frame = run.frames[i];
+        changed += frame.changed ? 1 : 0;
+        if (i > 0) {
+            gaps.push_back(frame.seconds - run.frames[i - 1].seconds);
+        }
+        if (frame.photon_seconds >= 0) {
+            photons.push_back(frame.photon_seconds);
+        }
+    }
+    LiveFrame const& last = run.frames.back();
+    double const span = last.seconds - run.frames.front().seconds;
+    double const cores = std::max(1u, std::thread::hardware_concurrency());
+    double const viewer = (last.cpu_seconds - run.frames.front().cpu_seconds) / span;
+    double const server = run.server_cpu / run.seconds;
+    return {{"pictures_per_second", changed / span},
+            {"frames_per_second", static_cast<double>(run.frames.size()) / span},
+            {"gap_p99_ms", 1e3 * percentile(gaps, 0.99)},
+            {"server_busy", server / cores},
+            {"server_busy_of_rest", server / std::max(cores - viewer, 0.01)},
+            {"viewer_busy", viewer / cores},
+            {"samples_per_second", last.samples / span},
+            {"kB_per_second", last.bytes / span / 1e3},
+            {"photon_ms", photons.empty() ? json() : json(1e3 * percentile(photons, 0.5))},
+            {"photon_p99_ms", photons.empty() ? json() : json(1e3 * percentile(photons, 0.99))}};
+}
+
+/// Errors at some moments, spread over the run.
+json error_figures(BenchScene& scene, std::string const& method, LiveRun const& run, LiveOptions const& options) {
+    std::vector<std::size_t> late;
+    for (std::size_t i = 0; i + 2 < run.frames.size(); ++i) {
+        if (run.frames[i].seconds > run.frames.front().seconds + build_up_seconds) {
+            late.push_back(i);
+        }
+    }
+    json figures{{"mse", 0.0}, {"ssim", 0.0}, {"flip", 0.0}, {"steadiness", 0.0}, {"psnr_each", json::array()}};
+    auto const count = std::min(static_cast<std::size_t>(options.moments), late.size());
+    for (std::size_t k = 0; k < count; ++k) {
+        std::size_t const first = late[(2 * k + 1) * late.size() / (2 * count)];
+        std::array<Picture, 3> shown, reference;
+        for (std::size_t i = 0; i < 3; ++i) {
+            shown[i] = run.picture(first + i);
+            reference[i] = reference_of(scene, run.frames[first + i], options);
+        }
+        Measures const measures = measure(shown[1], reference[1]);
+        auto const add = [&](char const* name, double value) {
+            figures[name] = figures[name].get<double>() + value / static_cast<double>(count);
+        };
+        add("mse", measures.mse);
+        add("ssim", measures.ssim);
+        add("flip", measures.flip);
+        add("steadiness", unsteadiness(shown, reference));
+        figures["psnr_each"].push_back(measures.psnr);
+        if (!options.charts.empty()) {
+            write_beside(shown[1], reference[1],
+                         options.charts / (scene.name + "-" + method + "-" + std::to_string(k) + ".png"));
+        }
+    }
+    figures["psnr"] = psnr_from_mse(figures["mse"]);
+    return figures;
+}
+
+/// Of all choices that a rival has, each run by itself, the one that errs least.
+json best_run(BenchScene& scene, std::string const& method, LiveOptions const& options) {
+    std::vector<json> runs;
+    std::vector<double> errors;
+    for (RivalParts const& choice : rival_choices(method, {})) {
+        LiveRun run;
+        run_programs(scene, method, choice, options, run);
+        json figures = run_figures(run);
+        figures.update(error_figures(scene, method, run, options));
+        if (has_spacing(method)) {
+            figures["spacing"] = choice.spacing;
+            figures["margin"] = choice.margin;
+        }
+        errors.push_back(figures["mse"]);
+        runs.push_back(std::move(figures));
+    }
+    return runs[best_choice(errors)];
+}
+
+void print(std::string const& method, json const& f) {
+    std::string name = method;
+    if (f.contains("spacing")) {
+        name += " (" + std::to_string(f["spacing"].get<int>()) + (f["margin"] > 0 ? "+m)" : ")");
+    }
+    std::printf(
+        "%-18s %6.1f %6.0f %6.2f %6.2f %7.2f %7.0f %7s %6.2f %6.4f %6.4f %9.2e\n", name.c_str(),
+        f["pictures_per_second"].get<double>(), f["gap_p99_ms"].get<double>(), f["server_busy"].get<double>(),
+        f["viewer_busy"].get<double>(), f["samples_per_second"].get<double>() / 1e6, f["kB_per_second"].get<double>(),
+        f["photon_ms"].is_null() ? "-" : std::to_string(std::lround(f["photon_ms"].get<double>())).c_str(),
+        f["psnr"].get<double>(), f["ssim"].get<double>(), f["flip"].get<double>(), f["steadiness"].get<double>());
+    std::fflush(stdout);
+}
+
+} // namespace
+
+json measure_live(BenchScene& scene, LiveOptions const& options) {
+    if (!options.charts.empty()) {
+        std::filesystem::create_directories(options.charts);
+    }
+    std::printf("%s, %dx%d, %g s%s\n%-18s %6s %6s %6s %6s %7s %7s %7s %6s %6s %6s %9s\n", scene.name.c_str(),
+                options.viewport.width, options.viewport.height, options.seconds, options.pinned ? ", a core each" : "",
+                "method", "pict/s", "gap ms", "server", "viewer", "Msam/s", "kB/s", "photon", "PSNR", "SSIM", "FLIP",
+                "unsteady");
+    json methods;
+    for (std::string const& method : options.methods) {
+        methods[method] = best_run(scene, method, options);
+        print(method, methods[method]);
+    }
+    return {
+        {"scene", scene.name},
+        {"size", {options.viewport.width, options.viewport.height}},
+        {"seconds", options.seconds},
+        {"link", {{"bits_per_second", options.link.bits_per_second}, {"delay_seconds", options.link.delay_seconds}}},
+        {"methods", methods}};
+}
+
+} // namespace framelet::bench

@@ -1,0 +1,34 @@
+// What a person gets: server and viewer as real programs, a real socket, the clock running. Every method runs so, the
+// rivals too. In: a scene, a camera, a size, a link. Out: for each method how many pictures it showed, how far off they
+// were from what was to be shown at that moment, and what they cost.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "tests/evaluation/bench_scene.h"
+#include "tests/evaluation/codecs/simulated_link.h"
+
+namespace framelet::bench {
+
+struct LiveOptions {
+    std::vector<std::string> methods{"framelet", "framelet-unwarped", "framed", "framed+h264", "framed+warp"};
+    Viewport viewport{1280, 720};
+    double seconds = 4;
+    double display_rate = 60;
+    std::filesystem::path camera_file; ///< as framelet-client takes it; empty: the scene's own camera
+    LinkParameters link; ///< no limit and no delay: none is emulated
+    int server_threads = 0; ///< 0: one a core
+    bool pinned = false; ///< server and viewer on a core each
+    int moments = 4; ///< at which pictures are compared
+    int samples_per_side = 4; ///< of the reference: 1, 2, 4 or 8
+    std::filesystem::path charts; ///< folder for pictures beside their reference; empty: none
+};
+
+/// Prints and returns the figures of all methods. Throws InputError or ConnectionError where a program fails.
+nlohmann::json measure_live(BenchScene& scene, LiveOptions const& options);
+
+} // namespace framelet::bench

@@ -1,0 +1,138 @@
+#include "tests/evaluation/live/live_verbs.h"
+
+#include <cstdio>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "client/connection_arguments.h"
+#include "common/error.h"
+#include "server/scene/scene_import.h"
+#include "server/stream/replay.h"
+#include "tests/evaluation/method.h"
+
+namespace framelet::bench {
+
+using nlohmann::json;
+
+namespace {
+
+void add_rival_options(CLI::App& verb, RivalParts& rivals) {
+    rivals.spacing = 1;
+    rivals.margin = 0;
+    verb.add_option("--spacing", rivals.spacing, "Pixels from sample to sample of whole frames");
+    verb.add_option("--margin", rivals.margin, "Around the viewport, of its sides");
+}
+
+} // namespace
+
+void add_live_options(CLI::App& verb, LiveVerbOptions& options) {
+    verb.add_option("--scenes,--scene", options.scenes, "Scene files (default: all bundled ones)");
+    verb.add_option("--scene-camera", options.camera, "Which of their cameras, from 0")->capture_default_str();
+    verb.add_option("--camera", options.live.camera_file, "Camera file to fly by, as framelet-client takes it");
+    verb.add_option("--size", options.size, "Size of the picture, WIDTHxHEIGHT")->capture_default_str();
+    verb.add_option("--seconds", options.live.seconds, "How long each method runs")
+        ->check(CLI::Range(1.5, 3600.0))
+        ->capture_default_str();
+    verb.add_option("--methods", options.live.methods, "Which methods")
+        ->delimiter(',')
+        ->check(CLI::IsMember(method_names()))
+        ->capture_default_str();
+    verb.add_option("--bandwidth", options.megabits, "The link's rate, Mbit/s; 0: unlimited")
+        ->check(CLI::Range(0.0, 1e6))
+        ->capture_default_str();
+    verb.add_option("--delay", options.delay_ms, "The link's delay each way, ms")
+        ->check(CLI::Range(0.0, 10000.0))
+        ->capture_default_str();
+    verb.add_option("--threads", options.live.server_threads, "Threads of the server; 0: one a core")
+        ->check(CLI::Range(0, 1024))
+        ->capture_default_str();
+    verb.add_flag("--pinned", options.live.pinned, "Server and viewer on a core each");
+    verb.add_option("--moments", options.live.moments, "Moments at which pictures are compared")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    verb.add_option("--reference-samples", options.live.samples_per_side, "Along a side of a reference's pixel")
+        ->check(CLI::IsMember({1, 2, 4, 8}))
+        ->capture_default_str();
+    verb.add_option("--charts", options.live.charts, "Write what was shown beside its reference into this folder");
+}
+
+void add_serve_options(CLI::App& verb, LiveVerbOptions& options) {
+    verb.add_option("METHOD", options.serve.method)->required()->check(CLI::IsMember(method_names()));
+    verb.add_option("SCENE", options.serve.scene)->required();
+    verb.add_option("--exposure", options.serve.exposure_ev, "Stops");
+    verb.add_option("--threads", options.serve.threads, "0: one a core");
+    add_rival_options(verb, options.serve.rivals);
+}
+
+void add_look_options(CLI::App& verb, LiveVerbOptions& options) {
+    LookOptions& look = options.look;
+    verb.add_option("METHOD", look.method)->required()->check(CLI::IsMember(method_names()));
+    verb.add_option("SCENE", look.scene)->required();
+    verb.add_option("SERVER", options.server, "HOST:PORT")->required();
+    verb.add_option("--size", options.size, "Size of the picture, WIDTHxHEIGHT")->capture_default_str();
+    verb.add_option("--duration", look.duration, "Seconds");
+    verb.add_option("--rate", look.rate, "Display frames a second");
+    verb.add_option("--camera", look.camera_file, "Camera file");
+    add_rival_options(verb, look.rivals);
+    verb.add_option("--output", look.output, "Picture files")->required();
+    verb.add_option("--frames", look.frames_file, "A line of JSON for each frame")->required();
+}
+
+void add_replay_options(CLI::App& verb, LiveVerbOptions& options) {
+    verb.add_option("RECORDING", options.recording, "What framelet-server --record-events wrote")->required();
+}
+
+json answer_live(LiveVerbOptions& options, std::vector<std::filesystem::path> const& bundled) {
+    LiveOptions& live = options.live;
+    live.viewport = parse_size(options.size);
+    live.link.bits_per_second = 1e6 * options.megabits;
+    live.link.delay_seconds = 1e-3 * options.delay_ms;
+    json runs = json::array();
+    for (std::filesystem::path const& file : options.scenes.empty() ? bundled : options.scenes) {
+        runs.push_back(measure_live(*load_bench_scene(file, options.camera), live));
+    }
+    return runs;
+}
+
+json answer_serve(LiveVerbOptions& options, std::filesystem::path const& costs_file) {
+    options.serve.costs = read_cost_table(costs_file);
+    serve_method(options.serve);
+    return {};
+}
+
+json answer_look(LiveVerbOptions& options, std::filesystem::path const& costs_file) {
+    options.look.costs = read_cost_table(costs_file);
+    options.look.viewport = parse_size(options.size);
+    options.look.connection.server = parse_server_address(options.server);
+    look_at_method(options.look);
+    return {};
+}
+
+json answer_replay(LiveVerbOptions& options) {
+    EventLogReader log(options.recording);
+    ServedScene const& served = log.served();
+    Scene const scene = import_scene(served.scene);
+    std::optional<Environment> environment;
+    if (!served.environment.empty()) {
+        environment = Environment::load(served.environment);
+    }
+    RenderScene render_scene(scene, std::move(environment));
+    PosedScene posed(scene, served.clips, render_scene);
+    ReplayFigures const figures = replay(log, posed);
+    std::printf("%s: %.1f s, %llu turns, %llu batches, %llu bytes: ", served.scene.c_str(), figures.seconds,
+                static_cast<unsigned long long>(figures.turns), static_cast<unsigned long long>(figures.batches),
+                static_cast<unsigned long long>(figures.bytes));
+    if (!figures.is_identical()) {
+        std::printf("differs\n");
+        throw InputError(figures.other_steps > 0 ? "turn " + std::to_string(figures.turns) + " was answered otherwise"
+                                                 : std::to_string(figures.other_batches) +
+                                                       " batches have other bytes, the first is batch " +
+                                                       std::to_string(figures.first_other));
+    }
+    std::printf("byte-identical\n");
+    return {{"scene", served.scene},  {"turns", figures.turns},     {"batches", figures.batches},
+            {"bytes", figures.bytes}, {"seconds", figures.seconds}, {"identical", true}};
+}
+
+} // namespace framelet::bench

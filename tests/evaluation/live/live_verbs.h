@@ -1,0 +1,44 @@
+// The verbs of real programs: `live`, what its processes run (`serve`, `look`), and `replay`.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "tests/evaluation/live/live.h"
+#include "tests/evaluation/live/serve.h"
+
+namespace CLI {
+class App;
+}
+
+namespace framelet::bench {
+
+struct LiveVerbOptions {
+    std::vector<std::filesystem::path> scenes; ///< empty: the bundled ones
+    int camera = 0; ///< of the scenes'
+    std::string size = "1280x720";
+    double megabits = 0, delay_ms = 0;
+    LiveOptions live;
+    ServeOptions serve;
+    LookOptions look;
+    std::string server; ///< HOST:PORT, of `look`
+    std::filesystem::path recording;
+};
+
+// The options must outlive the parsing.
+
+void add_live_options(CLI::App& verb, LiveVerbOptions& options);
+void add_serve_options(CLI::App& verb, LiveVerbOptions& options);
+void add_look_options(CLI::App& verb, LiveVerbOptions& options);
+void add_replay_options(CLI::App& verb, LiveVerbOptions& options);
+
+nlohmann::json answer_live(LiveVerbOptions& options, std::vector<std::filesystem::path> const& bundled);
+nlohmann::json answer_serve(LiveVerbOptions& options, std::filesystem::path const& costs_file);
+nlohmann::json answer_look(LiveVerbOptions& options, std::filesystem::path const& costs_file);
+/// Throws InputError where the replayed bytes are others than the recorded ones.
+nlohmann::json answer_replay(LiveVerbOptions& options);
+
+} // namespace framelet::bench

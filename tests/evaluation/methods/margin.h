@@ -1,0 +1,22 @@
+// More than the viewport: a larger one around it, whose pixels are as large and lie at the same places.
+#pragma once
+
+#include "common/camera.h"
+#include "common/image.h"
+
+namespace framelet::bench {
+
+/// Pixels of a margin on each side, of so much of the picture's side: whole blocks, at least one unless it is 0.
+int margin_pixels(double margin, int side);
+Viewport with_margin(Viewport viewport, int margin_x, int margin_y);
+/// The camera that shows the same at the same size, and the margin around it. `viewport`: without it.
+Camera with_margin(Camera camera, Viewport viewport, int margin_y);
+
+inline double pixel_count(Viewport viewport) {
+    return static_cast<double>(viewport.width) * viewport.height;
+}
+inline double pixel_count(Picture const& picture) {
+    return pixel_count(Viewport{picture.width, picture.height});
+}
+
+} // namespace framelet::bench

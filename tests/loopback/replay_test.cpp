@@ -1,0 +1,78 @@
+// A session of the real programs, recorded, through the same pipeline once more: the same bytes come out.
+#include <csignal>
+
+#include <gtest/gtest.h>
+
+#include "common/error.h"
+#include "server/scene/scene_import.h"
+#include "server/stream/replay.h"
+#include "tests/loopback/process.h"
+
+namespace framelet::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto patience = 120s;
+
+struct RecordedSession {
+    TemporaryFolder folder;
+    std::filesystem::path const file = folder.path() / "events";
+
+    RecordedSession(std::string const& scene, std::vector<std::string> const& server_options,
+                    std::vector<std::string> const& client_options) {
+        std::vector<std::string> options{"--record-events", file.string()};
+        options.insert(options.end(), server_options.begin(), server_options.end());
+        ServerProcess server(scene, options);
+        std::vector<std::string> arguments{server.address(), "--size", "320x180", "--duration", "2"};
+        arguments.insert(arguments.end(), client_options.begin(), client_options.end());
+        Process client(FRAMELET_CLIENT, arguments);
+        EXPECT_EQ(client.wait(patience), 0) << client.errors();
+        server.process().signal(SIGTERM);
+        EXPECT_EQ(server.process().wait(patience), 0);
+    }
+
+    ReplayFigures replayed() const {
+        EventLogReader log(file);
+        Scene const scene = import_scene(log.served().scene);
+        RenderScene render_scene(scene, std::nullopt);
+        PosedScene posed(scene, log.served().clips, render_scene);
+        return replay(log, posed);
+    }
+};
+
+void expect_identical(ReplayFigures const& figures) {
+    EXPECT_GT(figures.batches, 20u);
+    EXPECT_EQ(figures.other_steps, 0u) << "after " << figures.turns << " turns";
+    EXPECT_EQ(figures.other_batches, 0u) << "of " << figures.batches << ", the first is " << figures.first_other;
+}
+
+TEST(Replay, AMovingSessionIsByteIdentical) {
+    RecordedSession const session(FRAMELET_SOURCE_DIR "/scenes/vehicle_chase.glb", {}, {});
+    expect_identical(session.replayed());
+}
+
+TEST(Replay, SoIsOneWhoseViewerFliesThroughAStillScene) {
+    TemporaryFolder const folder;
+    std::string const camera = folder.write("camera.json", R"({"keys": [
+        {"time": 0, "position": [9, 4, 12], "target": [0, 1, 0]},
+        {"time": 1, "position": [3, 2, 9], "target": [0, 1, 0]}]})");
+    RecordedSession const session(FRAMELET_SOURCE_DIR "/scenes/vehicle_fixed.glb", {"--paused"},
+                                  {"--camera", camera, "--no-reprojection"});
+    expect_identical(session.replayed());
+}
+
+/// With so many threads a batch is planned before the last one is learnt.
+TEST(Replay, SoIsOneThatLearnsWhileItRenders) {
+    RecordedSession const session(FRAMELET_SOURCE_DIR "/scenes/globe.glb", {"--threads", "8"}, {});
+    expect_identical(session.replayed());
+}
+
+TEST(Replay, WhatIsNoRecordingIsRefused) {
+    TemporaryFolder const folder;
+    EXPECT_THROW(EventLogReader(folder.path() / "nothing"), InputError);
+    EXPECT_THROW(EventLogReader(folder.write("other", "some text\n")), InputError);
+}
+
+} // namespace
+} // namespace framelet::test

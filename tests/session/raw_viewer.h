@@ -1,0 +1,87 @@
+// A viewer that sends whatever a test wants, in range or not, and reads when it is told to. For tests only; waiting is
+// bounded generously and never measured.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/read.hpp>
+#include <boost/asio/write.hpp>
+#include <sys/socket.h>
+
+#include "protocol/message.h"
+
+namespace framelet {
+
+class RawViewer {
+public:
+    explicit RawViewer(std::uint16_t port, std::uint32_t codings = coding::all) {
+        socket_.connect({boost::asio::ip::address_v4::loopback(), port});
+        timeval const most_wait{30, 0};
+        ::setsockopt(socket_.native_handle(), SOL_SOCKET, SO_RCVTIMEO, &most_wait, sizeof most_wait);
+        send(encode_message(Hello{protocol_version, {}, codings}));
+    }
+
+    /// Does nothing where the server has ended the connection.
+    void send(Bytes const& body) {
+        Bytes frame(4);
+        for (std::size_t i = 0; i < frame.size(); ++i) {
+            frame[i] = static_cast<std::byte>(body.size() >> (8 * i));
+        }
+        frame.insert(frame.end(), body.begin(), body.end());
+        boost::system::error_code ignored;
+        boost::asio::write(socket_, boost::asio::buffer(frame), ignored);
+    }
+    void send(Message const& message) { send(encode_message(message)); }
+
+    /// Nothing once the connection has ended, or where nothing comes.
+    std::optional<Message> receive() {
+        std::array<std::uint8_t, 4> prefix{};
+        if (!read(prefix.data(), prefix.size())) {
+            return std::nullopt;
+        }
+        std::size_t size = 0;
+        for (std::size_t i = 0; i < prefix.size(); ++i) {
+            size |= std::size_t{prefix[i]} << (8 * i);
+        }
+        Bytes body(size);
+        return read(body.data(), size) ? std::optional(decode_message(body)) : std::nullopt;
+    }
+
+    /// Acknowledges what comes until `done` says so of a message; false where the connection ends before.
+    bool watch(std::function<bool(Message const&)> const& done) {
+        while (auto const message = receive()) {
+            if (auto const* const batch = std::get_if<EncodedBatch>(&*message)) {
+                send(Ack{batch->number, 0, 0});
+            }
+            if (auto const* const failure = std::get_if<Failure>(&*message)) {
+                failure_ = failure->text;
+            }
+            if (done(*message)) {
+                return true;
+            }
+        }
+        return false;
+    }
+
+    /// What the server says when it ends the session; empty where the connection ends without a word.
+    std::string failure() {
+        watch([](Message const& message) { return std::holds_alternative<Failure>(message); });
+        return failure_;
+    }
+
+private:
+    /// By the system's own call: Asio's takes a timeout for a reason to wait on.
+    bool read(void* to, std::size_t size) {
+        return ::recv(socket_.native_handle(), to, size, MSG_WAITALL) == static_cast<ssize_t>(size);
+    }
+
+    boost::asio::io_context io_{1};
+    boost::asio::ip::tcp::socket socket_{io_};
+    std::string failure_;
+};
+
+} // namespace framelet

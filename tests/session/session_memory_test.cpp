@@ -1,0 +1,62 @@
+#include "server/session/session_memory.h"
+
+#include <gtest/gtest.h>
+
+#include "raw_viewer.h"
+#include "running_server.h"
+
+namespace framelet {
+namespace {
+
+constexpr Viewport large{4096, 2048}, small{640, 480};
+
+TEST(SessionMemory, GrowsWithWhatIsHeld) {
+    EXPECT_GT(session_bytes(large, true), 16u * 4096 * 2048);
+    EXPECT_LT(session_bytes(large, true), 24u * 4096 * 2048);
+    EXPECT_LT(session_bytes(small, true), session_bytes(large, true) / 8);
+    EXPECT_LT(session_bytes(large, false), session_bytes(large, true) / 8);
+    EXPECT_LT(session_bytes({max_viewport_side, max_viewport_side}, true), session_bytes(large, true))
+        << "too large to be predicted";
+}
+
+TEST(SessionMemory, RefusesWhatIsBeyondTheRest) {
+    std::size_t const each = session_bytes(large, true);
+    SessionMemory memory(2 * each + session_bytes(small, true));
+    EXPECT_FALSE(memory.reserve(1, large, true));
+    EXPECT_FALSE(memory.reserve(2, large, true));
+    EXPECT_FALSE(memory.reserve(1, large, true)) << "the same again is no more";
+    auto const refusal = memory.reserve(3, large, true);
+    ASSERT_TRUE(refusal);
+    EXPECT_NE(refusal->find("4096x2048"), std::string::npos) << *refusal;
+    EXPECT_NE(refusal->find("--session-memory"), std::string::npos) << *refusal;
+    EXPECT_FALSE(memory.reserve(3, small, true));
+    memory.release(1);
+    memory.release(1);
+    EXPECT_FALSE(memory.reserve(3, large, true));
+}
+
+TEST(SessionMemory, ASmallerPictureGivesNothingBack) {
+    SessionMemory memory(session_bytes(large, true));
+    EXPECT_FALSE(memory.reserve(1, large, true));
+    EXPECT_FALSE(memory.reserve(1, small, true));
+    EXPECT_TRUE(memory.reserve(2, small, true));
+}
+
+TEST(SessionMemory, ServerRefusesAPictureThatIsTooLargeForIt) {
+    ServerOptions options;
+    options.session_megabytes = session_bytes(large, true) / 1'000'000 + 1;
+    RunningServer const server(options);
+    RawViewer first(server.port()), second(server.port());
+    CameraUpdate const update{{1, Camera{}, large}, -1};
+    first.send(update);
+    ASSERT_TRUE(first.watch([](Message const& message) { return std::holds_alternative<EncodedBatch>(message); }));
+    second.send(update);
+    EXPECT_NE(second.failure().find("ask for a smaller one"), std::string::npos);
+    EXPECT_TRUE(first.watch([](Message const& message) {
+        auto const* const status = std::get_if<Status>(&message);
+        return status != nullptr && status->sessions == 1;
+    })) << "goes on";
+}
+
+} // namespace
+} // namespace framelet

@@ -1,0 +1,86 @@
+#include "server/stream/event_log.h"
+
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+#include "common/error.h"
+
+namespace framelet {
+namespace {
+
+struct TemporaryFile {
+    std::filesystem::path const path =
+        std::filesystem::temp_directory_path() /
+        (std::string("event_log_test_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+    ~TemporaryFile() { std::filesystem::remove(path); }
+};
+
+TEST(EventLog, GivesBackWhatWasAdded) {
+    TemporaryFile const file;
+    ServedScene const served{"a scene", "", {1, 2}, 0.1f, -0.5, 7};
+    CameraUpdate camera;
+    camera.view = {3, {}, {64, 48}};
+    EncodedBatch batch;
+    batch.number = 4;
+    batch.view = camera.view;
+    batch.payload = Bytes(5);
+    Turn const turn{1.5, 2.5, 3e6, 1e-4};
+    std::vector<StreamEvent> const events{{0.1, camera},
+                                          {0.2, ViewerSettings{1.5f, -0.25f, false}},
+                                          {0.3, Ack{9, 8, 7}},
+                                          {0.4, ClockChanged{}},
+                                          {0.5, BatchSent{6, 12345}}};
+    {
+        EventLog log(file.path, served);
+        log.add_viewer(11, coding::all);
+        for (StreamEvent const& event : events) {
+            log.add_event(11, event);
+        }
+        log.add_turn(11, turn, Step::render);
+        log.add_learning(11);
+        log.add_batch(11, batch);
+    }
+    EventLogReader reader(file.path);
+    EXPECT_EQ(reader.served().scene, served.scene);
+    EXPECT_EQ(reader.served().clips, served.clips);
+    EXPECT_EQ(reader.served().exposure, served.exposure);
+    EXPECT_EQ(reader.served().bias, served.bias);
+    EXPECT_EQ(reader.served().batch_framelets, served.batch_framelets);
+    auto const next = [&] {
+        auto const record = reader.next();
+        EXPECT_TRUE(record);
+        EXPECT_EQ(record->session, 11u);
+        return record->what;
+    };
+    EXPECT_EQ(std::get<ViewerCame>(next()).codings, coding::all);
+    for (StreamEvent const& event : events) {
+        EXPECT_EQ(std::get<StreamEvent>(next()), event);
+    }
+    auto const given = std::get<TurnGiven>(next());
+    EXPECT_EQ(given.turn, turn);
+    EXPECT_EQ(given.step, Step::render);
+    EXPECT_TRUE(std::holds_alternative<TurnLearnt>(next()));
+    EXPECT_EQ(std::get<BatchEncoded>(next()).body, encode_message(batch));
+    EXPECT_FALSE(reader.next());
+}
+
+TEST(EventLog, ARecordThatIsNotWholeIsTheEnd) {
+    TemporaryFile const file;
+    {
+        EventLog log(file.path, {});
+        log.add_viewer(1, coding::all);
+        log.add_turn(1, {}, Step::nothing);
+    }
+    std::filesystem::resize_file(file.path, std::filesystem::file_size(file.path) - 3);
+    EventLogReader reader(file.path);
+    EXPECT_TRUE(reader.next());
+    EXPECT_FALSE(reader.next());
+}
+
+TEST(EventLog, SaysWhereItCannotBeWritten) {
+    EXPECT_THROW(EventLog("/nowhere/at all", {}), InputError);
+}
+
+} // namespace
+} // namespace framelet

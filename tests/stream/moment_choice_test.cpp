@@ -1,0 +1,79 @@
+#include "server/stream/moment_choice.h"
+
+#include <set>
+
+#include <gtest/gtest.h>
+
+namespace framelet {
+namespace {
+
+ViewState state_at(SceneTime time, float x = 0) {
+    ViewState state;
+    state.view.viewport = {64, 48};
+    state.view.camera.position.x = x;
+    state.scene_time = time;
+    return state;
+}
+
+TEST(MomentChoice, WhatMovesIsSeenAtAFewMomentsASecond) {
+    MomentChoice moments;
+    std::set<SceneTime> seen;
+    for (int i = 0; i < 1000; ++i) {
+        double const now = 5.003 + 0.001 * i;
+        auto const moment = moments.choose(state_at(now), now, true);
+        ASSERT_TRUE(moment);
+        EXPECT_LE(now - moment->begun, moment_seconds + 1e-9);
+        EXPECT_EQ(moment->state.scene_time, moment->begun);
+        seen.insert(moment->begun);
+    }
+    EXPECT_EQ(seen.size(), 11u);
+}
+
+TEST(MomentChoice, ViewersOfOneSceneChangeTogether) {
+    MomentChoice one, other;
+    double const late = 7.04;
+    for (double now = 7.01; now < 8; now += 0.002) {
+        auto const moment = one.choose(state_at(now), now, true);
+        if (now > late) {
+            auto const same = other.choose(state_at(now), now, true);
+            if (now > 7.1) {
+                EXPECT_EQ(moment->state.scene_time, same->state.scene_time);
+            }
+        }
+    }
+}
+
+TEST(MomentChoice, AtRestThePresentIsRendered) {
+    MomentChoice moments;
+    ASSERT_TRUE(moments.choose(state_at(1, 2), 10, true));
+    EXPECT_TRUE(moments.choose(state_at(1, 2), 10 + 0.9 * rest_seconds, true));
+    EXPECT_FALSE(moments.choose(state_at(1, 2), 10 + 1.1 * rest_seconds, true));
+    // What begins to move is seen at once.
+    auto const moment = moments.choose(state_at(1, 3), 12.01, true);
+    ASSERT_TRUE(moment);
+    EXPECT_EQ(moment->state.view.camera.position.x, 3);
+}
+
+TEST(MomentChoice, AnotherSizeOrExposureBeginsAnew) {
+    MomentChoice moments;
+    double now = 3.001;
+    moments.choose(state_at(1), now, true);
+    ViewState other = state_at(1.001);
+    other.exposure = 2;
+    EXPECT_EQ(moments.choose(other, now += 0.001, true)->state.exposure, 2);
+    other.view.viewport = {32, 32};
+    EXPECT_EQ(moments.choose(other, now += 0.001, true)->state.view.viewport, other.view.viewport);
+    moments.begin_anew();
+    other.scene_time = 9;
+    EXPECT_EQ(moments.choose(other, now += 0.001, true)->state.scene_time, 9);
+}
+
+TEST(MomentChoice, AViewerThatMovesNothingSeesThePresent) {
+    MomentChoice moments;
+    for (double now = 1; now < 2; now += 0.01) {
+        EXPECT_FALSE(moments.choose(state_at(now), now, false));
+    }
+}
+
+} // namespace
+} // namespace framelet
