@@ -1,5 +1,5 @@
-// Length-prefixed messages over TCP, with or without TLS. Whoever knows sockets and bytes is behind this; how one is made of
-// a socket is in stream_opening.h, apart, since few need the sockets and their headers are long.
+// Length-prefixed messages over TCP, with or without TLS. Whoever knows sockets and bytes is behind this; how one is
+// made of a socket is in stream_opening.h, apart, since few need the sockets and their headers are long.
 #pragma once
 
 #include <functional>

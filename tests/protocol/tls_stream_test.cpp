@@ -202,8 +202,7 @@ TEST_F(TlsStream, UntrustedCertificateIsRefused) {
 }
 
 TEST_F(TlsStream, HostThatCannotBeChecked) {
-    expect_input_error([&] { tls_client_stream(std::move(sockets_.first), identity_.client(), ""); },
-                       "host name");
+    expect_input_error([&] { tls_client_stream(std::move(sockets_.first), identity_.client(), ""); }, "host name");
     expect_input_error(
         [&] { tls_client_stream(std::move(sockets_.second), identity_.client(), std::string(1000, 'x')); },
         "host name");
