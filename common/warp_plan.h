@@ -89,7 +89,7 @@ private:
     std::vector<Square> squares_; ///< all that can be held
     struct Joinings;
     std::unique_ptr<Joinings> joinings_; ///< scratch
-    std::vector<Chunk> chunks_; ///< of squares or spares
+    std::vector<Chunk> chunks_; ///< of squares
     std::vector<std::uint32_t> first_entry_; ///< by block; one more at the end
     std::vector<std::uint32_t> next_entry_;
     std::vector<std::uint32_t> entries_; ///< chunk * patches_per_chunk + patch
