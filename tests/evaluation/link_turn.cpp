@@ -12,8 +12,7 @@
 #include "common/picture_writer.h"
 #include "tests/evaluation/charts/charts.h"
 #include "tests/evaluation/charts/side_by_side.h"
-#include "tests/evaluation/measures/measures.h"
-#include "tests/evaluation/shown_pictures.h"
+#include "tests/evaluation/comparison.h"
 
 namespace framelet::bench {
 namespace {
@@ -44,18 +43,14 @@ struct SpeedResult {
     Picture reference_sample;
 };
 
-double mean_of(std::vector<double> const& values) {
-    double sum = 0;
-    for (double const value : values) {
-        sum += value;
-    }
-    return sum / static_cast<double>(values.size());
-}
-
 SpeedResult run_speed(BenchScene& scene, StudyOptions const& options) {
     std::size_t const times = reference_count(options.run);
     std::size_t const sample = pictured_time(times);
-    auto const truth = read_pictures(reference_of(scene, options), times);
+    Reference const reference = reference_of(scene, options);
+    std::vector<Picture> truth;
+    for (std::size_t i = 0; i < times; ++i) {
+        truth.push_back(reference.picture(i));
+    }
     double const machine = machine_factor(scene, options.run, options.costs);
     auto const most_lag = static_cast<std::size_t>(longest_lag * options.run.reference_rate);
     SpeedResult result;
@@ -65,14 +60,15 @@ SpeedResult run_speed(BenchScene& scene, StudyOptions const& options) {
         for (std::size_t i = 0; i < round_trips.size(); ++i) {
             RunParameters parameters = options.run;
             parameters.link.delay_seconds = 0.5 * round_trips[i];
-            ShownPictures const shown = show_best(scene, method, parameters, machine, options.costs, truth);
-            cells[i].mse = mean_of(errors_of(shown.pictures, truth));
-            cells[i].lag =
-                static_cast<double>(picture_lag(shown.pictures, truth, most_lag)) / options.run.reference_rate;
-            cells[i].bytes_per_second = static_cast<double>(shown.run.bytes) / options.run.seconds;
-            cells[i].server_cpu = shown.run.cpu.server() / options.run.seconds;
+            std::vector<Picture> shown;
+            MethodRecord const record =
+                record_method(scene, reference, method, parameters, machine, options.costs, &shown);
+            cells[i].mse = mean_mse(record);
+            cells[i].lag = static_cast<double>(picture_lag(shown, truth, most_lag)) / options.run.reference_rate;
+            cells[i].bytes_per_second = static_cast<double>(record.run.bytes) / options.run.seconds;
+            cells[i].server_cpu = record.run.cpu.server() / options.run.seconds;
             if (i == pictured) {
-                result.samples.push_back({method, shown.pictures[sample]});
+                result.samples.push_back({method, shown[sample]});
             }
         }
     }

@@ -75,30 +75,24 @@ void look_at(TsarServer const& server, double fastest, Cell& cell) {
     cell.most_rate = most;
 }
 
-Cell run_cell(BenchScene& scene, Reference const& reference, StudyOptions const& options, double machine,
-              RateTemplates const& templates) {
-    RunParameters const& run = options.run;
-    MethodSetup const setup{.viewport = run.viewport,
-                            .costs = options.costs,
-                            .machine = machine,
-                            .frames_per_second = run.frames_per_second,
-                            .bits_per_second = run.link.bits_per_second,
-                            .seed = run.seed};
+Cell run_cell(Subject const& subject, CostTable const& costs, RateTemplates const& templates) {
+    RunParameters const& run = subject.run;
     TsarParameters parameters;
     parameters.templates = templates;
-    Tsar method(setup, parameters);
+    Tsar method(method_setup(run, subject.machine, costs), parameters);
     Cell cell;
     cell.templates = templates;
     std::size_t const times = reference_count(run);
     double const count = static_cast<double>(times);
-    cell.run = run_method(scene, method, run, machine, [&](std::size_t index, Picture const& shown, double age) {
-        cell.mse += mean_squared_error(shown, reference.picture(index)) / count;
-        cell.age += age / count;
-        if (index == times / 2) {
-            cell.picture = shown;
-            look_at(method.server(), 4 * run.frames_per_second, cell);
-        }
-    });
+    cell.run = run_method(*subject.scene, method, run, subject.machine,
+                          [&](std::size_t index, Picture const& shown, double age) {
+                              cell.mse += mean_squared_error(shown, subject.reference.picture(index)) / count;
+                              cell.age += age / count;
+                              if (index == times / 2) {
+                                  cell.picture = shown;
+                                  look_at(method.server(), 4 * run.frames_per_second, cell);
+                              }
+                          });
     return cell;
 }
 
@@ -156,32 +150,28 @@ json to_json(Cell const& cell) {
 
 } // namespace
 
-json sensitivity(BenchScene& scene, StudyOptions const& options) {
-    RunParameters const& run = options.run;
-    Reference const reference(scene, {run.viewport, run.seconds, run.reference_rate, options.samples_per_side},
-                              options.reference_cache);
-    double const machine = machine_factor(scene, run, options.costs);
+json sensitivity(Subject const& subject, StudyOptions const& options) {
+    std::string const& scene = subject.scene->name;
     RateTemplates const middle = TsarParameters{}.templates;
     std::vector<Cell> grid;
     std::printf(
         "%s: mean squared error, samples a pixel, mean refreshes a second; slope in space from left to right, in "
         "time downwards\n",
-        scene.name.c_str());
+        scene.c_str());
     for (int y = 0; y < cells; ++y) {
         float const time = slope_step * static_cast<float>(cells / 2 - y);
         for (int x = 0; x < cells; ++x) {
             float const space = slope_step * static_cast<float>(cells / 2 - x);
-            grid.push_back(
-                run_cell(scene, reference, options, machine, {turned(middle.space, space), turned(middle.time, time)}));
+            grid.push_back(run_cell(subject, options.costs, {turned(middle.space, space), turned(middle.time, time)}));
             Cell const& cell = grid.back();
             std::printf("  %8.2e %4.2f %4.1f", cell.mse, cell.samples_per_pixel, cell.mean_rate);
         }
         std::printf("\n");
     }
     if (!options.charts.empty()) {
-        draw_sheets(grid, options.charts, scene.name);
+        draw_sheets(grid, options.charts, scene);
     }
-    json result{{"scene", scene.name}, {"cells", json::array()}};
+    json result{{"scene", scene}, {"cells", json::array()}};
     for (Cell const& cell : grid) {
         result["cells"].push_back(to_json(cell));
     }

@@ -85,7 +85,7 @@ double PsnrOverTime::most_fall() const {
 json measure_stillness(StillnessStudy const& study, StudyOptions const& options) {
     FRAMELET_CHECK(options.run.seconds >= 1);
     Viewport const viewport = options.run.viewport;
-    std::printf("%dx%d, %.0f whole frames a second; PSNR [dB] after everything has come to rest\n", viewport.width,
+    std::printf("%dx%d, %g samples a pixel and second; PSNR [dB] after everything has come to rest\n", viewport.width,
                 viewport.height, options.run.frames_per_second);
     std::printf("%-18s", "after [s]");
     for (double const after : listed_seconds) {
@@ -98,8 +98,8 @@ json measure_stillness(StillnessStudy const& study, StudyOptions const& options)
                   .y_title = "PSNR [dB]",
                   .points = false,
                   .curves = {}};
-    for (std::filesystem::path const& file : study.scenes) {
-        auto const scene = load_bench_scene(file);
+    for (std::filesystem::path const& file : options.scenes) {
+        auto const scene = load_bench_scene(file, options.camera);
         Still const still = watch(*scene, study, options);
         std::printf("%-18s", scene->name.c_str());
         json psnr = json::array();

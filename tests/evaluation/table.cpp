@@ -249,7 +249,7 @@ json run_table(PublishedTable const& table, std::filesystem::path const& folder,
     json result{{"counting", "total"},
                 {"seconds", options.run.seconds},
                 {"reference_rate", options.run.reference_rate},
-                {"frames_per_second", options.run.frames_per_second},
+                {"samples_per_pixel_and_second", options.run.frames_per_second},
                 {"seed", options.run.seed}};
     for (Cell const& cell : cells) {
         result["cells"].push_back(to_json(cell, table.scenes[cell.scene]));

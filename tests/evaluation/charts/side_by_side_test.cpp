@@ -63,7 +63,7 @@ TEST(SideBySide, PicturesStandInARowWithTheirErrorsBelow) {
 
 TEST(SideBySide, LabelsAreDrawnAboveEachPicture) {
     Picture const reference = flat(width, height, 100);
-    std::vector<Labelled> const shown{{"framed+jpeg, MSE 1e-3", reference}, {"", reference}, {" ", reference}};
+    std::vector<Labelled> const shown{{"framed+warp, MSE 1e-3", reference}, {"", reference}, {" ", reference}};
     Picture const sheet = side_by_side(reference, shown);
     auto const ink = [&](int column) {
         int dark = 0;
