@@ -10,7 +10,7 @@
 
 #include "common/picture_writer.h"
 #include "tests/evaluation/charts/charts.h"
-#include "tests/evaluation/charts/side_by_side.h"
+#include "tests/evaluation/charts/picture_sheet.h"
 #include "tests/evaluation/measures/measures.h"
 
 namespace framelet::bench {
@@ -118,7 +118,7 @@ void print_summary(json const& runs) {
 }
 
 /// `pictures` gets what is shown in the middle of each run.
-json measure_run(Subject const& subject, CostTable const& costs, std::vector<Labelled>& pictures) {
+json measure_run(Subject const& subject, CostTable const& costs, std::vector<Picture>& pictures) {
     double const rate = subject.run.link.bits_per_second;
     bool const limited = rate > 0;
     json result{{"scene", subject.scene->name}, {"bits_per_second", rate}};
@@ -128,8 +128,7 @@ json measure_run(Subject const& subject, CostTable const& costs, std::vector<Lab
             continue;
         }
         Outcome const found = run_without(part, subject, costs);
-        pictures.push_back(
-            {part.left_out == nullptr ? "framelet" : std::string("without ") + part.name, found.picture});
+        pictures.push_back(found.picture);
         if (part.left_out == nullptr) {
             whole = found;
             result["whole"] = {{"mse", found.mse},
@@ -169,12 +168,12 @@ json measure_ablation(AblationOptions const& options, StudyOptions const& study)
         Subject subject = prepare(file, study);
         for (LinkParameters const& link : {LinkParameters{}, options.link}) {
             subject.run.link = link;
-            std::vector<Labelled> pictures;
+            std::vector<Picture> pictures;
             runs.push_back(measure_run(subject, study.costs, pictures));
             if (!study.charts.empty()) {
                 std::string const end = link.bits_per_second > 0 ? "-parts-link.png" : "-parts.png";
                 write_png(study.charts / (subject.scene->name + end),
-                          side_by_side(subject.reference.picture(middle_of(subject.run)), pictures));
+                          beside_reference(subject.reference.picture(middle_of(subject.run)), pictures));
             }
         }
     }

@@ -10,7 +10,7 @@
 #include <tbb/task_group.h>
 
 #include "common/error.h"
-#include "tests/evaluation/charts/ratio_boxes.h"
+#include "tests/evaluation/measures/ratio_summary.h"
 #include "tests/evaluation/measures/steadiness.h"
 #include "tests/evaluation/rival_choice.h"
 
@@ -193,7 +193,7 @@ json to_json(Comparison const& comparison) {
         }
         if (framed) {
             RatioSummary const ratio = summarise_ratios(error_ratios(record, *framed));
-            entry["ratio_to_framed"] = {{"median", ratio.p50}, {"suitable_percentile", ratio.suitable}};
+            entry["ratio_to_framed"] = {{"median", ratio.median}, {"suitable_percentile", ratio.suitable}};
         }
         result["methods"].push_back(entry);
     }
@@ -221,7 +221,7 @@ void print(Comparison const& comparison) {
                     mean_of(record, [](Measures const& m) { return m.flip; }), 1e3 * age);
         if (framed) {
             RatioSummary const ratio = summarise_ratios(error_ratios(record, *framed));
-            std::printf("%8.3f %7.0f ", ratio.p50, ratio.suitable);
+            std::printf("%8.3f %7.0f ", ratio.median, ratio.suitable);
         } else {
             std::printf("%8s %7s ", "-", "-");
         }

@@ -11,7 +11,7 @@
 #include "common/error.h"
 #include "common/picture_writer.h"
 #include "tests/evaluation/charts/charts.h"
-#include "tests/evaluation/charts/side_by_side.h"
+#include "tests/evaluation/charts/picture_sheet.h"
 #include "tests/evaluation/comparison.h"
 
 namespace framelet::bench {
@@ -39,7 +39,7 @@ struct Cell {
 /// All methods at one speed; `cells[method][round trip]`.
 struct SpeedResult {
     std::vector<std::array<Cell, round_trips.size()>> cells;
-    std::vector<Labelled> samples;
+    std::vector<Picture> samples; ///< of one round trip, a method each
     Picture reference_sample;
 };
 
@@ -68,7 +68,7 @@ SpeedResult run_speed(BenchScene& scene, StudyOptions const& options) {
             cells[i].bytes_per_second = static_cast<double>(record.run.bytes) / options.run.seconds;
             cells[i].server_cpu = record.run.cpu.server() / options.run.seconds;
             if (i == pictured) {
-                result.samples.push_back({method, shown[sample]});
+                result.samples.push_back(shown[sample]);
             }
         }
     }
@@ -122,7 +122,7 @@ void draw_speed(SpeedResult const& result, BenchScene const& scene, StudyOptions
         chart.curves.push_back(std::move(curve));
     }
     draw(chart, options.charts / stem);
-    write_png(options.charts / (stem + "-side-by-side.png"), side_by_side(result.reference_sample, result.samples));
+    write_png(options.charts / (stem + "-side-by-side.png"), beside_reference(result.reference_sample, result.samples));
 }
 
 json to_json(SpeedResult const& result, StudyOptions const& options) {

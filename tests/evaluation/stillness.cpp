@@ -9,7 +9,7 @@
 #include "common/error.h"
 #include "common/picture_writer.h"
 #include "tests/evaluation/charts/charts.h"
-#include "tests/evaluation/charts/side_by_side.h"
+#include "tests/evaluation/charts/picture_sheet.h"
 #include "tests/evaluation/measures/measures.h"
 
 namespace framelet::bench {
@@ -59,11 +59,8 @@ Still watch(BenchScene& scene, StillnessStudy const& study, StudyOptions const& 
 
 /// What is shown in the end, beside the reference.
 void write_last(std::filesystem::path const& folder, std::string const& scene, Still const& still) {
-    std::array<char, 32> label{};
-    std::snprintf(label.data(), label.size(), "in the end, %.1f dB", still.quality.psnr.back());
     std::filesystem::create_directories(folder);
-    write_png(folder / (scene + "-still.png"),
-              side_by_side(still.reference, std::array{Labelled{label.data(), still.last}}));
+    write_png(folder / (scene + "-still.png"), beside_reference(still.reference, std::array{still.last}));
 }
 
 } // namespace

@@ -160,6 +160,7 @@ void add_report_options(CLI::App& verb, VerbOptions& options) {
     verb.add_option("--links", report.links, "Links, bits a displayed pixel and second")
         ->delimiter(',')
         ->check(CLI::Range(0.01, 1e4));
+    verb.add_option("--live-scenes", options.live_scenes, "Scenes of the real programs' runs")->delimiter(',');
     verb.add_flag("--no-links", options.without_links, "No runs over links");
     verb.add_flag("--no-live", options.without_live, "No runs of the real programs");
 }

@@ -51,6 +51,7 @@ struct VerbOptions {
     EstimatorStudy estimators;
     CorrespondenceStudy correspondence;
     ReportOptions report;
+    std::vector<std::string> live_scenes; ///< files or names, of the report
     bool without_live = false, without_links = false;
     WallOptions wall{.server_threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1)};
 };

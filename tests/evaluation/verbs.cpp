@@ -9,7 +9,7 @@
 #include "tests/evaluation/ablation.h"
 #include "tests/evaluation/calibrate.h"
 #include "tests/evaluation/charts/charts.h"
-#include "tests/evaluation/charts/side_by_side.h"
+#include "tests/evaluation/charts/picture_sheet.h"
 #include "tests/evaluation/codec/codec_study.h"
 #include "tests/evaluation/comparison.h"
 #include "tests/evaluation/limits.h"
@@ -27,13 +27,13 @@ using nlohmann::json;
 void draw_comparison(Comparison const& comparison, std::filesystem::path const& folder) {
     std::filesystem::create_directories(folder);
     ErrorOverTime chart{.title = comparison.scene + ": error over time", .series = {}};
-    std::vector<Labelled> shown;
+    std::vector<Picture> shown;
     for (MethodRecord const& record : comparison.records) {
         chart.series.push_back(error_series(record, comparison.parameters));
-        shown.push_back({record.method, record.sample});
+        shown.push_back(record.sample);
     }
     draw(chart, folder / (comparison.scene + "-error"));
-    write_png(folder / (comparison.scene + "-side-by-side.png"), side_by_side(comparison.reference_sample, shown));
+    write_png(folder / (comparison.scene + "-side-by-side.png"), beside_reference(comparison.reference_sample, shown));
 }
 
 json answer_compare(VerbOptions& options) {
@@ -190,11 +190,9 @@ void choose_report(VerbOptions& options) {
     for (char const* const name : {"stop", "globe", "vehicle_chase"}) {
         report.pictured_scenes.push_back(scene_file(name));
     }
+    fall_back(options.live_scenes, quick ? Words{"vehicle_chase"} : Words{"vehicle_chase", "globe", "stop", "foliage"});
     if (!options.without_live) {
-        for (char const* const name : {"vehicle_chase", "globe", "stop", "foliage"}) {
-            report.live_scenes.push_back(scene_file(name));
-        }
-        report.live_scenes.resize(quick ? 1 : report.live_scenes.size());
+        std::ranges::transform(options.live_scenes, std::back_inserter(report.live_scenes), scene_file);
     }
 }
 

@@ -13,7 +13,6 @@
 #include "common/error.h"
 #include "common/image_io.h"
 #include "tests/evaluation/charts/chart_style.h"
-#include "tests/evaluation/charts/ratio_boxes.h"
 
 namespace framelet::bench {
 namespace {
@@ -92,45 +91,9 @@ TEST_F(Drawn, BandsAndMarks) {
                  .curves = {{"framelet", {1, 10}, {1e-2, 1e-3}, {5e-3, 4e-4}, {2e-2, 3e-3}}},
                  .marks = {{20, "8 cores"}}};
     expect_has(drawn(chart), "8 cores");
-    expect_has(plot_of(chart).data, "$band0 << EOD\n1 0.005 0.02\n10 0.0004 0.003\nEOD\n");
+    expect_has(plot_of(chart).data, "$band0 << EOD\n1 0.005 0.02\n10 4e-04 0.003\nEOD\n");
     chart.curves[0].low.pop_back();
     EXPECT_THROW(plot_of(chart), InputError);
-}
-
-TEST_F(Drawn, RatioBoxes) {
-    RatioBoxes const chart{.title = "Suitability",
-                           .scenes = {{"scene A", {{"0", {0.1, 0.5, 2}, 16.0}, {"1", {1, infinity}, std::nullopt}}},
-                                      {"scene B", {{"a long label", {0, 0.2}, 100.0}}},
-                                      {"scene C", {{"0", {3}, 5.0}}}}};
-    std::string const text = drawn(chart);
-    for (char const* part : {"Suitability", "scene A", "scene B", "scene C", ">66<", ">16<", "a long label"}) {
-        expect_has(text, part);
-    }
-}
-
-TEST(Ratios, PercentilesAndSuitability) {
-    std::vector<double> ratios;
-    for (int i = 100; i >= 0; --i) {
-        ratios.push_back(i / 50.0);
-    }
-    RatioSummary const s = summarise_ratios(ratios);
-    EXPECT_NEAR(s.p5, 0.1, 1e-12);
-    EXPECT_NEAR(s.p25, 0.5, 1e-12);
-    EXPECT_NEAR(s.p50, 1, 1e-12);
-    EXPECT_NEAR(s.p75, 1.5, 1e-12);
-    EXPECT_NEAR(s.p95, 1.9, 1e-12);
-    EXPECT_NEAR(s.suitable, 100 * 51 / 101.0, 1e-9); // one counts as suitable
-
-    RatioSummary const two = summarise_ratios(std::vector<double>{1, 2});
-    EXPECT_DOUBLE_EQ(two.p25, 1.25);
-    EXPECT_DOUBLE_EQ(two.suitable, 50);
-    RatioSummary const endless = summarise_ratios(std::vector<double>{0, infinity, infinity});
-    EXPECT_EQ(endless.p50, infinity);
-    EXPECT_EQ(endless.p95, infinity);
-
-    EXPECT_THROW(summarise_ratios({}), InputError);
-    EXPECT_THROW(summarise_ratios(std::vector<double>{0.5, NAN}), InputError);
-    EXPECT_THROW(summarise_ratios(std::vector<double>{-1}), InputError);
 }
 
 TEST(Charts, BadInputIsRefused) {
@@ -141,8 +104,6 @@ TEST(Charts, BadInputIsRefused) {
     chart.curves = {{"a", {1, NAN}, {NAN, 1}}};
     EXPECT_THROW(plot_of(chart), InputError);
     EXPECT_THROW(plot_of(ErrorOverTime{}), InputError);
-    EXPECT_THROW(plot_of(RatioBoxes{}), InputError);
-    EXPECT_THROW(plot_of(RatioBoxes{.title = "t", .scenes = {{"empty", {}}}}), InputError);
 }
 
 TEST(ChartStyle, AMethodLooksTheSameInEveryChart) {
