@@ -159,45 +159,57 @@ json answer_limits(VerbOptions& options) {
     return measure_limits(*scene, {options.study.run.viewport, options.quick ? 3 : 9});
 }
 
-/// What the report looks at where it is not told.
-void choose_report(VerbOptions& options) {
+template <class List>
+void fall_back(List& chosen, List usual) {
+    chosen = chosen.empty() ? std::move(usual) : chosen;
+}
+
+/// Methods, machines and links of the report's runs on the virtual clock, where it is not told.
+void choose_runs(VerbOptions& options) {
     ReportOptions& report = options.report;
     StudyOptions& study = options.study;
-    bool const quick = options.quick;
-    auto const fall_back = [](auto& chosen, auto usual) { chosen = chosen.empty() ? usual : chosen; };
-    using Words = std::vector<std::string>;
-    using Numbers = std::vector<double>;
-    fall_back(study.methods, quick ? Words{"framed+h264", "framed+warp", "tsar", "framelet-unwarped", "framelet"}
-                                   : Words{"framed+h264", "framed+warp", "interruptible", "tsar", "afr",
-                                           "framelet-unwarped", "framelet", "oracle"});
-    fall_back(report.machines, quick ? Numbers{2, 10} : Numbers{0.5, 1, 2, 5, 10, 20, 60});
-    fall_back(report.links, quick ? Numbers{5, 20} : Numbers{0.5, 2, 5, 20, 80});
+    if (options.quick) {
+        fall_back(study.methods, {"framed+h264", "framed+warp", "tsar", "framelet-unwarped", "framelet"});
+        fall_back(report.machines, {2, 10});
+        fall_back(report.links, {5, 20});
+    }
+    fall_back(study.methods, {"framed+h264", "framed+warp", "interruptible", "tsar", "afr", "framelet-unwarped",
+                              "framelet", "oracle"});
+    fall_back(report.machines, {0.5, 1, 2, 5, 10, 20, 60});
+    fall_back(report.links, {0.5, 2, 5, 20, 80});
     if (options.without_links) {
         report.links.clear();
     }
     std::ranges::copy_if(study.methods, std::back_inserter(report.linked_methods), [](std::string const& method) {
         return method != "oracle" && method != "tsar" && method != "afr"; // they know no link
     });
-    report.quick = quick;
-    if (quick) {
+}
+
+/// What it runs of real programs, and what pictures it takes.
+void choose_programs(VerbOptions& options) {
+    ReportOptions& report = options.report;
+    report.live.methods = {"framelet", "framelet-unwarped", "framed+h264", "framed+warp"};
+    report.live.samples_per_side = 2;
+    report.quick = options.quick;
+    if (options.quick) {
         report.feature_viewport = {320, 180};
         report.live.viewport = {320, 180};
         report.live.seconds = 2;
         report.live.moments = 1;
+        fall_back(options.live_scenes, {"vehicle_chase"});
     }
-    report.live.samples_per_side = 2;
-    report.live.methods = {"framelet", "framelet-unwarped", "framed+h264", "framed+warp"};
-    for (char const* const name : {"stop", "globe", "vehicle_chase"}) {
-        report.pictured_scenes.push_back(scene_file(name));
-    }
-    fall_back(options.live_scenes, quick ? Words{"vehicle_chase"} : Words{"vehicle_chase", "globe", "stop", "foliage"});
+    fall_back(options.live_scenes, {"vehicle_chase", "globe", "stop", "foliage"});
     if (!options.without_live) {
         std::ranges::transform(options.live_scenes, std::back_inserter(report.live_scenes), scene_file);
+    }
+    for (char const* const name : {"stop", "globe", "vehicle_chase"}) {
+        report.pictured_scenes.push_back(scene_file(name));
     }
 }
 
 json answer_report(VerbOptions& options) {
-    choose_report(options);
+    choose_runs(options);
+    choose_programs(options);
     ReportFigures const figures = measure_report(options.report, options.study);
     write_report(figures, options.report, options.study, options.command);
     return {{"runs", figures.runs.size()}, {"commit", figures.commit}};

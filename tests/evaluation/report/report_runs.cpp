@@ -42,6 +42,10 @@ std::string text_of(double value) {
     return text;
 }
 
+std::string text_of(Viewport const& size) {
+    return std::to_string(size.width) + "x" + std::to_string(size.height);
+}
+
 /// A scene's runs: loaded with the first that is not there yet.
 class SceneRuns {
 public:
@@ -50,8 +54,7 @@ public:
 
     ReportRun run(std::string const& method, double machine, double link, double delay) {
         RunParameters const& p = study_.run;
-        std::string const name = scene() + "-" + method + "-" + text_of(p.viewport.width) + "x" +
-                                 text_of(p.viewport.height) + "-" + text_of(p.seconds) + "s-" +
+        std::string const name = scene() + "-" + method + "-" + text_of(p.viewport) + "-" + text_of(p.seconds) + "s-" +
                                  text_of(p.reference_rate) + "hz-m" + text_of(machine) + "-l" + text_of(link);
         json const figures = store_.get(name, [&] { return measure_run(method, machine, link, delay); });
         ReportRun result{scene(), method, machine, link, noise(), 0, 0, 0, 0, {}};
@@ -80,8 +83,7 @@ private:
     /// Of the reference: against one of a hundred times as many samples, which has next to none.
     double noise() {
         RunParameters const& p = study_.run;
-        std::string const name = scene() + "-noise-" + text_of(p.viewport.width) + "x" + text_of(p.viewport.height) +
-                                 "-" + text_of(p.seconds) + "s";
+        std::string const name = scene() + "-noise-" + text_of(p.viewport) + "-" + text_of(p.seconds) + "s";
         return store_.get(name, [&] {
             Subject& s = subject();
             std::size_t const middle = reference_count(s.run) / 2;
@@ -135,11 +137,12 @@ private:
 std::string take_screenshot(std::filesystem::path const& scene, ReportOptions const& options, StudyOptions const& study,
                             RunStore& store) {
     std::string const name = scene.stem().string();
-    auto const kept = store.folder() / (name + "-picture.png");
-    store.get(name + "-picture", [&] {
-        StudyOptions small = study;
-        small.sees_events = true;
-        small.run.viewport = options.quick ? study.run.viewport : screenshot;
+    StudyOptions small = study;
+    small.sees_events = true;
+    small.run.viewport = options.quick ? study.run.viewport : screenshot;
+    std::string const run = name + "-picture-" + text_of(small.run.viewport);
+    auto const kept = store.folder() / (run + ".png");
+    store.get(run, [&] {
         small.run.frames_per_second = options.link_machine;
         small.run.reference_rate = 10;
         Subject const subject = prepare(scene, small);
@@ -182,11 +185,12 @@ ReportFigures measure_report(ReportOptions const& options, StudyOptions const& s
         figures.pictures.push_back(take_screenshot(file, options, study, store));
     }
     for (auto const& file : options.live_scenes) {
-        figures.live.push_back(store.get(file.stem().string() + "-live", [&] {
-            return measure_live(*load_bench_scene(file, study.camera), options.live);
-        }));
+        figures.live.push_back(
+            store.get(file.stem().string() + "-live-" + text_of(options.live.viewport) + "-" +
+                          text_of(options.live.seconds) + "s",
+                      [&] { return measure_live(*load_bench_scene(file, study.camera), options.live); }));
     }
-    figures.features = store.get("features", [&] {
+    figures.features = store.get("features-" + text_of(options.feature_viewport), [&] {
         return measure_feature_costs(FRAMELET_SOURCE_DIR "/scenes/stop.glb", options.feature_viewport,
                                      options.quick ? 0.3 : 2);
     });
