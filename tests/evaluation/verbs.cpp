@@ -190,6 +190,7 @@ void choose_programs(VerbOptions& options) {
     ReportOptions& report = options.report;
     report.live.methods = {"framelet", "framelet-unwarped", "framed+h264", "framed+warp"};
     report.live.samples_per_side = 2;
+    report.live.moments = 2;
     report.quick = options.quick;
     if (options.quick) {
         report.feature_viewport = {320, 180};
