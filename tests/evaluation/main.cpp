@@ -3,6 +3,7 @@
 #include <functional>
 #include <iostream>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -62,6 +63,19 @@ void add_live_verbs(CLI::App& app, VerbOptions& options, LiveVerbOptions& live, 
     }).group("");
 }
 
+/// As it was typed, but for the folders of whoever did so.
+std::string command_of(std::vector<std::string> const& words) {
+    std::string command = "framelet-bench";
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        if (words[i] == "--folder" || words[i] == "--documents" || words[i] == "--reference-cache") {
+            ++i; // its value as well
+        } else {
+            command += " " + words[i];
+        }
+    }
+    return command;
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -85,10 +99,7 @@ int main(int argc, char** argv) {
         std::cerr << "framelet-bench: " << error.what() << " (--help lists the verbs and options)\n";
         return 2;
     }
-    options.command = "framelet-bench";
-    for (int i = 1; i < argc; ++i) {
-        options.command += std::string(" ") + argv[i];
-    }
+    options.command = command_of({argv + 1, argv + argc});
     spdlog::set_level(spdlog::level::warn);
     try {
         json const figures = answer();

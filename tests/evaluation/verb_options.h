@@ -32,7 +32,7 @@ struct Scale {
 };
 
 struct VerbOptions {
-    std::string command; ///< as it was typed
+    std::string command; ///< as it was typed, without the folders
     std::filesystem::path json_file;
     std::filesystem::path costs_file = source_folder / "tests/evaluation/costs.json";
     bool quick = false;

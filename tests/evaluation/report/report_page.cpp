@@ -361,7 +361,8 @@ std::string report_page(ReportFigures const& figures, ReportOptions const& optio
     }
     page +=
         printed("\n## What each kind of scene costs\n\nA sample of a session at %dx%d, one thread: the scene `stop`, "
-                "with one thing more in each row.\n\n",
+                "with one thing more in each row. While nothing moves the picture is refined, at last with four rays a "
+                "sample, and what it has is not sent again.\n\n",
                 options.feature_viewport.width, options.feature_viewport.height);
     return page + feature_table(figures.features);
 }
