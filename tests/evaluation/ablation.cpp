@@ -10,7 +10,7 @@
 
 #include "common/picture_writer.h"
 #include "tests/evaluation/charts/charts.h"
-#include "tests/evaluation/charts/side_by_side.h"
+#include "tests/evaluation/charts/picture_sheet.h"
 #include "tests/evaluation/measures/measures.h"
 
 namespace framelet::bench {
@@ -46,18 +46,18 @@ std::size_t middle_of(RunParameters const& parameters) {
     return reference_count(parameters) / 2;
 }
 
-Outcome run_without(Part const& part, BenchScene& scene, Reference const& reference, RunParameters const& parameters,
-                    double machine, CostTable const& costs) {
-    MethodSetup setup = method_setup(parameters, machine, costs);
+Outcome run_without(Part const& part, Subject const& subject, CostTable const& costs) {
+    RunParameters const& parameters = subject.run;
+    MethodSetup setup = method_setup(parameters, subject.machine, costs);
     if (part.left_out != nullptr) {
         setup.parts.*part.left_out = false;
     }
     auto const method = make_method("framelet", setup);
     Outcome result;
     auto const count = static_cast<double>(reference_count(parameters));
-    RunResult const run =
-        run_method(scene, *method, parameters, machine, [&](std::size_t index, Picture const& shown, double) {
-            result.mse += mean_squared_error(shown, reference.picture(index)) / count;
+    RunResult const run = run_method(
+        *subject.scene, *method, parameters, subject.machine, [&](std::size_t index, Picture const& shown, double) {
+            result.mse += mean_squared_error(shown, subject.reference.picture(index)) / count;
             if (index == middle_of(parameters)) {
                 result.picture = shown;
             }
@@ -118,18 +118,17 @@ void print_summary(json const& runs) {
 }
 
 /// `pictures` gets what is shown in the middle of each run.
-json measure_run(BenchScene& scene, Reference const& reference, RunParameters const& parameters, double machine,
-                 CostTable const& costs, std::vector<Labelled>& pictures) {
-    bool const limited = parameters.link.bits_per_second > 0;
-    json result{{"scene", scene.name}, {"bits_per_second", parameters.link.bits_per_second}};
+json measure_run(Subject const& subject, CostTable const& costs, std::vector<Picture>& pictures) {
+    double const rate = subject.run.link.bits_per_second;
+    bool const limited = rate > 0;
+    json result{{"scene", subject.scene->name}, {"bits_per_second", rate}};
     Outcome whole;
     for (Part const& part : parts) {
         if (limited ? !part.on_link : !part.off_link) {
             continue;
         }
-        Outcome const found = run_without(part, scene, reference, parameters, machine, costs);
-        pictures.push_back(
-            {part.left_out == nullptr ? "framelet" : std::string("without ") + part.name, found.picture});
+        Outcome const found = run_without(part, subject, costs);
+        pictures.push_back(found.picture);
         if (part.left_out == nullptr) {
             whole = found;
             result["whole"] = {{"mse", found.mse},
@@ -137,8 +136,9 @@ json measure_run(BenchScene& scene, Reference const& reference, RunParameters co
                                {"server_seconds", found.server},
                                {"response_seconds", found.response},
                                {"viewer_seconds", found.viewer}};
-            std::printf("%-17s %5s %-14s %9.2e %8.0f %7.3f %9.3f\n", scene.name.c_str(), limited ? "link" : "free",
-                        part.name, found.mse, 1e-3 * found.bytes, found.server, found.viewer);
+            std::printf("%-17s %5s %-14s %9.2e %8.0f %7.3f %9.3f\n", subject.scene->name.c_str(),
+                        limited ? "link" : "free", part.name, found.mse, 1e-3 * found.bytes, found.server,
+                        found.viewer);
             continue;
         }
         json const ratios{{"part", part.name},
@@ -164,19 +164,16 @@ json measure_ablation(AblationOptions const& options, StudyOptions const& study)
     if (!study.charts.empty()) {
         std::filesystem::create_directories(study.charts);
     }
-    for (std::filesystem::path const& file : options.scenes) {
-        auto const scene = load_bench_scene(file);
-        StudyOptions of_scene = study;
-        Reference const reference = reference_of(*scene, of_scene);
-        double const machine = machine_factor(*scene, of_scene.run, study.costs);
+    for (std::filesystem::path const& file : study.scenes) {
+        Subject subject = prepare(file, study);
         for (LinkParameters const& link : {LinkParameters{}, options.link}) {
-            of_scene.run.link = link;
-            std::vector<Labelled> pictures;
-            runs.push_back(measure_run(*scene, reference, of_scene.run, machine, study.costs, pictures));
+            subject.run.link = link;
+            std::vector<Picture> pictures;
+            runs.push_back(measure_run(subject, study.costs, pictures));
             if (!study.charts.empty()) {
                 std::string const end = link.bits_per_second > 0 ? "-parts-link.png" : "-parts.png";
-                write_png(study.charts / (scene->name + end),
-                          side_by_side(reference.picture(middle_of(of_scene.run)), pictures));
+                write_png(study.charts / (subject.scene->name + end),
+                          beside_reference(subject.reference.picture(middle_of(subject.run)), pictures));
             }
         }
     }
@@ -187,7 +184,7 @@ json measure_ablation(AblationOptions const& options, StudyOptions const& study)
     return {
         {"viewport", {study.run.viewport.width, study.run.viewport.height}},
         {"seconds", study.run.seconds},
-        {"frames_per_second", study.run.frames_per_second},
+        {"samples_per_pixel_and_second", study.run.frames_per_second},
         {"link", {{"bits_per_second", options.link.bits_per_second}, {"delay_seconds", options.link.delay_seconds}}},
         {"runs", runs}};
 }

@@ -2,9 +2,6 @@
 // as multiples of those of the whole.
 #pragma once
 
-#include <filesystem>
-#include <vector>
-
 #include <nlohmann/json_fwd.hpp>
 
 #include "tests/evaluation/study.h"
@@ -14,7 +11,6 @@ namespace framelet::bench {
 /// Each of the scenes, twice: without a limit and over a link of `link`. Prints a table and returns the same figures.
 /// Of `study`, methods and link are not looked at.
 struct AblationOptions {
-    std::vector<std::filesystem::path> scenes;
     LinkParameters link{.bits_per_second = 5e6, .delay_seconds = 0.02};
 };
 nlohmann::json measure_ablation(AblationOptions const& options, StudyOptions const& study);

@@ -13,7 +13,6 @@
 #include "server/flow/quality_choice.h"
 #include "server/layers/shape_feed.h"
 #include "tests/evaluation/codecs/h264_codec.h"
-#include "tests/evaluation/codecs/jpeg_codec.h"
 #include "tests/evaluation/methods/kd_leaves.h"
 #include "tests/evaluation/methods/tsar_server.h"
 #include "tests/evaluation/methods/tsar_viewer.h"
@@ -269,24 +268,18 @@ void calibrate_blending(BenchScene const& scene, ImagePlane const& plane, std::v
     costs.blend_pixel = std::max(rest, 0.1e9 * few_seconds) / few.pixels;
 }
 
-void calibrate_codecs(BenchScene& scene, Viewport viewport, int rounds, CostTable& costs) {
+void calibrate_h264(BenchScene& scene, Viewport viewport, int rounds, CostTable& costs) {
     auto const pictures = moving_pictures(scene, viewport, std::max(rounds, 8));
     double const pixels = static_cast<double>(viewport.width) * viewport.height;
-    JpegCodec jpeg;
     H264Encoder encoder(viewport.width, viewport.height, 30);
     H264Decoder decoder;
-    std::vector<double> jpeg_in, jpeg_out, h264_in, h264_out;
+    std::vector<double> h264_in, h264_out;
     Picture decoded;
     for (Picture const& picture : pictures) {
-        std::span<std::byte const> bytes;
-        jpeg_in.push_back(seconds_of([&] { bytes = jpeg.encode(picture, 85); }));
-        jpeg_out.push_back(seconds_of([&] { jpeg.decode(bytes, decoded); }));
         std::vector<std::byte> unit;
         h264_in.push_back(seconds_of([&] { unit = encoder.encode(picture, streamed_frame_bytes); }));
         h264_out.push_back(seconds_of([&] { decoder.decode(unit, decoded); }));
     }
-    costs.jpeg_encode_pixel = 1e9 * median(jpeg_in) / pixels;
-    costs.jpeg_decode_pixel = 1e9 * median(jpeg_out) / pixels;
     costs.h264_encode_pixel = 1e9 * median(h264_in) / pixels;
     costs.h264_decode_pixel = 1e9 * median(h264_out) / pixels;
 }
@@ -306,7 +299,7 @@ CostTable calibrate(BenchScene& scene, Viewport viewport, int rounds) {
     calibrate_afr(viewport, rounds, costs);
     calibrate_density_response(plane, rendered, rounds, costs);
     calibrate_blending(scene, plane, rendered, rounds, costs);
-    calibrate_codecs(scene, viewport, rounds, costs);
+    calibrate_h264(scene, viewport, rounds, costs);
     return costs;
 }
 

@@ -1,14 +1,17 @@
 #include "tests/evaluation/comparison.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
+#include <numeric>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 #include <tbb/task_group.h>
 
 #include "common/error.h"
-#include "tests/evaluation/charts/ratio_boxes.h"
-#include "tests/evaluation/charts/spectrum.h"
+#include "tests/evaluation/measures/ratio_summary.h"
+#include "tests/evaluation/measures/steadiness.h"
 #include "tests/evaluation/rival_choice.h"
 
 namespace framelet::bench {
@@ -37,40 +40,9 @@ double mean_of(MethodRecord const& record, Value&& value) {
     return record.measures.empty() ? 0 : sum / static_cast<double>(record.measures.size());
 }
 
-double mean_spatial_slope(Reference const& reference, std::size_t times) {
-    constexpr std::size_t most = 8;
-    std::size_t const count = std::min(most, times);
-    double sum = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        sum += power_spectrum_slope(reference.picture(i * times / count));
-    }
-    return count == 0 ? 0 : sum / static_cast<double>(count);
-}
-
-/// Of some rows of the pictures: as many as a quarter of a gigabyte holds of all of them.
-double temporal_slope_of(Reference const& reference, std::size_t times) {
-    constexpr std::size_t most_bytes = 256 << 20;
-    std::vector<Picture> strips;
-    for (std::size_t i = 0; i < times; ++i) {
-        Picture const whole = reference.picture(i);
-        std::size_t const row_bytes = whole.rgba.size() / static_cast<std::size_t>(whole.height);
-        auto const most_rows = static_cast<int>(std::max<std::size_t>(most_bytes / (times * row_bytes), 1));
-        int const rows = std::min(whole.height, most_rows);
-        Picture& strip = strips.emplace_back(whole.width, rows);
-        for (int y = 0; y < rows; ++y) {
-            std::copy_n(whole.row(static_cast<int>(static_cast<std::int64_t>(y) * whole.height / rows)), row_bytes,
-                        strip.row(y));
-        }
-    }
-    return temporal_spectrum_slope(strips);
-}
-
-} // namespace
-
-namespace {
-
 MethodRecord record_run(BenchScene& scene, Reference const& reference, std::string const& name,
-                        RunParameters const& parameters, double machine, CostTable const& costs) {
+                        RunParameters const& parameters, double machine, CostTable const& costs,
+                        std::vector<Picture>* pictures) {
     std::size_t const times = reference_count(parameters);
     FRAMELET_CHECK(reference.size() >= times);
     MethodRecord record;
@@ -78,6 +50,8 @@ MethodRecord record_run(BenchScene& scene, Reference const& reference, std::stri
     record.rivals = parameters.rivals;
     record.measures.resize(times);
     record.ages.resize(times);
+    record.unsteadiness.resize(times);
+    std::array<Picture, 3> last;
     auto const method = make_method(name, method_setup(parameters, machine, costs));
     tbb::task_group measuring;
     record.run =
@@ -86,8 +60,16 @@ MethodRecord record_run(BenchScene& scene, Reference const& reference, std::stri
             if (index == times / 2) {
                 record.sample = shown;
             }
-            measuring.run([&record, &reference, index, shown] {
-                record.measures[index] = measure(shown, reference.picture(index));
+            last = {std::move(last[1]), std::move(last[2]), shown};
+            if (pictures != nullptr) {
+                pictures->push_back(shown);
+            }
+            measuring.run([&record, &reference, index, last] {
+                record.measures[index] = measure(last[2], reference.picture(index));
+                if (index >= 2) {
+                    record.unsteadiness[index] = unsteadiness(
+                        last, {reference.picture(index - 2), reference.picture(index - 1), reference.picture(index)});
+                }
             });
         });
     measuring.wait();
@@ -97,16 +79,24 @@ MethodRecord record_run(BenchScene& scene, Reference const& reference, std::stri
 } // namespace
 
 MethodRecord record_method(BenchScene& scene, Reference const& reference, std::string const& name,
-                           RunParameters const& parameters, double machine, CostTable const& costs) {
+                           RunParameters const& parameters, double machine, CostTable const& costs,
+                           std::vector<Picture>* pictures) {
     std::vector<MethodRecord> records;
     std::vector<double> errors;
+    std::vector<std::vector<Picture>> shown;
     for (RivalParts const& choice : rival_choices(name, parameters.rivals)) {
         RunParameters chosen = parameters;
         chosen.rivals = choice;
-        records.push_back(record_run(scene, reference, name, chosen, machine, costs));
+        shown.emplace_back();
+        records.push_back(
+            record_run(scene, reference, name, chosen, machine, costs, pictures != nullptr ? &shown.back() : nullptr));
         errors.push_back(mean_mse(records.back()));
     }
-    return std::move(records[best_choice(errors)]);
+    std::size_t const best = best_choice(errors);
+    if (pictures != nullptr) {
+        *pictures = std::move(shown[best]);
+    }
+    return std::move(records[best]);
 }
 
 Comparison compare_methods(BenchScene& scene, Reference const& reference, std::vector<std::string> const& methods,
@@ -116,8 +106,6 @@ Comparison compare_methods(BenchScene& scene, Reference const& reference, std::v
     comparison.parameters = parameters;
     comparison.machine = machine_factor(scene, parameters, costs);
     std::size_t const times = reference_count(parameters);
-    comparison.spatial_slope = mean_spatial_slope(reference, times);
-    comparison.temporal_slope = temporal_slope_of(reference, times);
     comparison.reference_sample = reference.picture(times / 2);
     for (std::string const& name : methods) {
         comparison.records.push_back(record_method(scene, reference, name, parameters, comparison.machine, costs));
@@ -139,6 +127,21 @@ std::vector<double> error_ratios(MethodRecord const& method, MethodRecord const&
     return ratios;
 }
 
+ErrorSeries error_series(MethodRecord const& record, RunParameters const& parameters) {
+    ErrorSeries series{record.method, {}, {}, record.run.displayed};
+    for (std::size_t i = 0; i < record.measures.size(); ++i) {
+        series.seconds.push_back(reference_time(parameters, i));
+        series.mse.push_back(record.measures[i].mse);
+    }
+    return series;
+}
+
+double mean_unsteadiness(MethodRecord const& record) {
+    std::size_t const counted = record.unsteadiness.size() - std::min<std::size_t>(2, record.unsteadiness.size());
+    double const sum = std::accumulate(record.unsteadiness.begin(), record.unsteadiness.end(), 0.0);
+    return counted > 0 ? sum / static_cast<double>(counted) : 0;
+}
+
 double mean_mse(MethodRecord const& record) {
     return mean_of(record, [](Measures const& m) { return m.mse; });
 }
@@ -147,17 +150,14 @@ json to_json(Comparison const& comparison) {
     RunParameters const& p = comparison.parameters;
     json result{{"scene", comparison.scene},
                 {"viewport", {p.viewport.width, p.viewport.height}},
+                {"start", p.start},
                 {"seconds", p.seconds},
                 {"reference_rate", p.reference_rate},
-                {"frames_per_second", p.frames_per_second},
+                {"samples_per_pixel_and_second", p.frames_per_second},
                 {"counting", p.counting == Counting::total ? "total" : "server"},
                 {"seed", p.seed},
                 {"machine_factor", comparison.machine},
-                {"spectrum_slope", {{"spatial", comparison.spatial_slope}, {"temporal", comparison.temporal_slope}}},
-                {"link",
-                 {{"bits_per_second", p.link.bits_per_second},
-                  {"delay_seconds", p.link.delay_seconds},
-                  {"jitter_seconds", p.link.jitter_seconds}}}};
+                {"link", {{"bits_per_second", p.link.bits_per_second}, {"delay_seconds", p.link.delay_seconds}}}};
     MethodRecord const* const framed = find_framed(comparison);
     for (MethodRecord const& record : comparison.records) {
         json entry{{"method", record.method},
@@ -165,7 +165,8 @@ json to_json(Comparison const& comparison) {
                     {{"mse", mean_mse(record)},
                      {"psnr", mean_of(record, [](Measures const& m) { return m.psnr; })},
                      {"ssim", mean_of(record, [](Measures const& m) { return m.ssim; })},
-                     {"flip", mean_of(record, [](Measures const& m) { return m.flip; })}}},
+                     {"flip", mean_of(record, [](Measures const& m) { return m.flip; })},
+                     {"unsteadiness", mean_unsteadiness(record)}}},
                    {"cpu_seconds",
                     {{"render", record.run.cpu.render},
                      {"response", record.run.cpu.response},
@@ -180,6 +181,7 @@ json to_json(Comparison const& comparison) {
                    {"mean_delay_seconds", record.run.mean_delay},
                    {"displayed", record.run.displayed},
                    {"age", record.ages},
+                   {"unsteadiness", record.unsteadiness},
                    {"mse", series(record, [](Measures const& m) { return m.mse; })},
                    {"ssim", series(record, [](Measures const& m) { return m.ssim; })},
                    {"flip", series(record, [](Measures const& m) { return m.flip; })}};
@@ -191,7 +193,7 @@ json to_json(Comparison const& comparison) {
         }
         if (framed) {
             RatioSummary const ratio = summarise_ratios(error_ratios(record, *framed));
-            entry["ratio_to_framed"] = {{"median", ratio.p50}, {"suitable_percentile", ratio.suitable}};
+            entry["ratio_to_framed"] = {{"median", ratio.median}, {"suitable_percentile", ratio.suitable}};
         }
         result["methods"].push_back(entry);
     }
@@ -200,10 +202,8 @@ json to_json(Comparison const& comparison) {
 
 void print(Comparison const& comparison) {
     RunParameters const& p = comparison.parameters;
-    std::printf(
-        "%s, %dx%d, %g s, framed reaches %g frames/s, slope of the power spectrum %.2f in space, %.2f in time\n",
-        comparison.scene.c_str(), p.viewport.width, p.viewport.height, p.seconds, p.frames_per_second,
-        comparison.spatial_slope, comparison.temporal_slope);
+    std::printf("%s, %dx%d, %g s from %g s on, a machine of %g samples a pixel and second\n", comparison.scene.c_str(),
+                p.viewport.width, p.viewport.height, p.seconds, p.start, p.frames_per_second);
     if (p.link.bits_per_second > 0 || p.link.delay_seconds > 0) {
         std::printf("link %.3g Mbit/s, %.0f ms each way\n", p.link.bits_per_second / 1e6, 1e3 * p.link.delay_seconds);
     }
@@ -221,7 +221,7 @@ void print(Comparison const& comparison) {
                     mean_of(record, [](Measures const& m) { return m.flip; }), 1e3 * age);
         if (framed) {
             RatioSummary const ratio = summarise_ratios(error_ratios(record, *framed));
-            std::printf("%8.3f %7.0f ", ratio.p50, ratio.suitable);
+            std::printf("%8.3f %7.0f ", ratio.median, ratio.suitable);
         } else {
             std::printf("%8s %7s ", "-", "-");
         }

@@ -8,6 +8,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "tests/evaluation/charts/charts.h"
 #include "tests/evaluation/measures/measures.h"
 #include "tests/evaluation/reference.h"
 #include "tests/evaluation/run.h"
@@ -21,6 +22,7 @@ struct MethodRecord {
     RunResult run;
     std::vector<Measures> measures; ///< one a reference time
     std::vector<double> ages; ///< seconds, likewise
+    std::vector<double> unsteadiness; ///< likewise, over the time and the two before it; 0 for the first two
     Picture sample; ///< what it showed at the middle reference time
 };
 
@@ -28,17 +30,16 @@ struct Comparison {
     std::string scene;
     RunParameters parameters;
     double machine = 1;
-    double spatial_slope = 0; ///< of the power spectrum (004 fig. 1.3), mean over reference pictures
-    double temporal_slope = 0; ///< of the power spectrum along time, mean over pixels
     std::vector<MethodRecord> records;
     Picture reference_sample;
 };
 
 /// One method on a machine of this speed; measures are taken in parallel to the run. `reference` must have a picture
 /// for each reference time. Where the parameters leave a choice to a rival, it is run with each, and the record is the
-/// one of the least mean MSE.
+/// one of the least mean MSE. `pictures`: gets what was shown at each reference time, unless null.
 MethodRecord record_method(BenchScene& scene, Reference const& reference, std::string const& method,
-                           RunParameters const& parameters, double machine, CostTable const& costs);
+                           RunParameters const& parameters, double machine, CostTable const& costs,
+                           std::vector<Picture>* pictures = nullptr);
 
 /// Runs the methods one after the other, on the machine that the parameters state.
 Comparison compare_methods(BenchScene& scene, Reference const& reference, std::vector<std::string> const& methods,
@@ -49,7 +50,11 @@ std::vector<double> error_ratios(MethodRecord const& method, MethodRecord const&
 /// The record of `framed`, or null.
 MethodRecord const* find_framed(Comparison const& comparison);
 
+/// For a chart of error over time.
+ErrorSeries error_series(MethodRecord const& record, RunParameters const& parameters);
+
 double mean_mse(MethodRecord const& record);
+double mean_unsteadiness(MethodRecord const& record);
 
 nlohmann::json to_json(Comparison const& comparison);
 void print(Comparison const& comparison);

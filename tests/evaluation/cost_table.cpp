@@ -11,7 +11,7 @@
 namespace framelet::bench {
 namespace {
 
-constexpr std::array<std::pair<char const*, double CostTable::*>, 25> fields{{
+constexpr std::array<std::pair<char const*, double CostTable::*>, 23> fields{{
     {"coherent_segment", &CostTable::coherent_segment},
     {"incoherent_segment", &CostTable::incoherent_segment},
     {"display_sample", &CostTable::display_sample},
@@ -33,8 +33,6 @@ constexpr std::array<std::pair<char const*, double CostTable::*>, 25> fields{{
     {"tiling_element", &CostTable::tiling_element},
     {"blend_pixel", &CostTable::blend_pixel},
     {"blend_contribution", &CostTable::blend_contribution},
-    {"jpeg_encode_pixel", &CostTable::jpeg_encode_pixel},
-    {"jpeg_decode_pixel", &CostTable::jpeg_decode_pixel},
     {"h264_encode_pixel", &CostTable::h264_encode_pixel},
     {"h264_decode_pixel", &CostTable::h264_decode_pixel},
 }};

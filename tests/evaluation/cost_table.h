@@ -32,8 +32,6 @@ struct CostTable {
     double tiling_element = 0; ///< tiling from density, one element of the field
     double blend_pixel = 0; ///< age-weighted reconstruction: age, its smoothing, normalisation of a pixel
     double blend_contribution = 0; ///< of a framelet to a pixel, by four samples
-    double jpeg_encode_pixel = 0;
-    double jpeg_decode_pixel = 0;
     double h264_encode_pixel = 0;
     double h264_decode_pixel = 0;
 };

@@ -11,9 +11,8 @@
 #include "common/error.h"
 #include "common/picture_writer.h"
 #include "tests/evaluation/charts/charts.h"
-#include "tests/evaluation/charts/side_by_side.h"
-#include "tests/evaluation/measures/measures.h"
-#include "tests/evaluation/shown_pictures.h"
+#include "tests/evaluation/charts/picture_sheet.h"
+#include "tests/evaluation/comparison.h"
 
 namespace framelet::bench {
 namespace {
@@ -40,22 +39,18 @@ struct Cell {
 /// All methods at one speed; `cells[method][round trip]`.
 struct SpeedResult {
     std::vector<std::array<Cell, round_trips.size()>> cells;
-    std::vector<Labelled> samples;
+    std::vector<Picture> samples; ///< of one round trip, a method each
     Picture reference_sample;
 };
-
-double mean_of(std::vector<double> const& values) {
-    double sum = 0;
-    for (double const value : values) {
-        sum += value;
-    }
-    return sum / static_cast<double>(values.size());
-}
 
 SpeedResult run_speed(BenchScene& scene, StudyOptions const& options) {
     std::size_t const times = reference_count(options.run);
     std::size_t const sample = pictured_time(times);
-    auto const truth = read_pictures(reference_of(scene, options), times);
+    Reference const reference = reference_of(scene, options);
+    std::vector<Picture> truth;
+    for (std::size_t i = 0; i < times; ++i) {
+        truth.push_back(reference.picture(i));
+    }
     double const machine = machine_factor(scene, options.run, options.costs);
     auto const most_lag = static_cast<std::size_t>(longest_lag * options.run.reference_rate);
     SpeedResult result;
@@ -65,14 +60,15 @@ SpeedResult run_speed(BenchScene& scene, StudyOptions const& options) {
         for (std::size_t i = 0; i < round_trips.size(); ++i) {
             RunParameters parameters = options.run;
             parameters.link.delay_seconds = 0.5 * round_trips[i];
-            ShownPictures const shown = show_best(scene, method, parameters, machine, options.costs, truth);
-            cells[i].mse = mean_of(errors_of(shown.pictures, truth));
-            cells[i].lag =
-                static_cast<double>(picture_lag(shown.pictures, truth, most_lag)) / options.run.reference_rate;
-            cells[i].bytes_per_second = static_cast<double>(shown.run.bytes) / options.run.seconds;
-            cells[i].server_cpu = shown.run.cpu.server() / options.run.seconds;
+            std::vector<Picture> shown;
+            MethodRecord const record =
+                record_method(scene, reference, method, parameters, machine, options.costs, &shown);
+            cells[i].mse = mean_mse(record);
+            cells[i].lag = static_cast<double>(picture_lag(shown, truth, most_lag)) / options.run.reference_rate;
+            cells[i].bytes_per_second = static_cast<double>(record.run.bytes) / options.run.seconds;
+            cells[i].server_cpu = record.run.cpu.server() / options.run.seconds;
             if (i == pictured) {
-                result.samples.push_back({method, shown.pictures[sample]});
+                result.samples.push_back(shown[sample]);
             }
         }
     }
@@ -126,7 +122,7 @@ void draw_speed(SpeedResult const& result, BenchScene const& scene, StudyOptions
         chart.curves.push_back(std::move(curve));
     }
     draw(chart, options.charts / stem);
-    write_png(options.charts / (stem + "-side-by-side.png"), side_by_side(result.reference_sample, result.samples));
+    write_png(options.charts / (stem + "-side-by-side.png"), beside_reference(result.reference_sample, result.samples));
 }
 
 json to_json(SpeedResult const& result, StudyOptions const& options) {

@@ -17,9 +17,8 @@ struct KnownMethod {
     bool margin = false;
 };
 
-constexpr std::array<KnownMethod, 14> known_methods{{
+constexpr std::array<KnownMethod, 13> known_methods{{
     {"framed", make_framed, false, true},
-    {"framed+jpeg", make_framed_jpeg, false, true},
     {"framed+h264", make_framed_h264, false, true},
     {"framed+warp", make_framed_warp, false, true, true},
     {"interruptible", make_interruptible},

@@ -65,7 +65,6 @@ struct MethodSetup {
     double bias = 0; ///< -1 (spatial fidelity) .. 1 (temporal), for those who know one
     std::size_t batch_framelets = 0; ///< most framelets of one batch; 0: what a cycle has time for
     FrameletParts parts{};
-    double lag_seconds = 0; ///< > 0: viewers that can show the scene so late, and between what they hold
     RivalParts rivals{}; ///< what is left to choose is 1 and no margin
 };
 

@@ -105,13 +105,13 @@ Picture render_reference(BenchScene const& scene, Viewport viewport, int samples
 Reference::Reference(BenchScene& scene, ReferenceParameters const& p, std::filesystem::path const& cache)
     : folder_(cache /
               (scene.name + turn_name(scene.turn) +
-               printed("-%016llx-c%d-%dx%d-%dspp-%ghz", static_cast<unsigned long long>(hash_of_file(scene.file)),
-                       static_cast<int>(scene.scene_camera), p.viewport.width, p.viewport.height,
-                       p.samples_per_side * p.samples_per_side, p.rate))),
+               printed("-%016llx-c%d-%dx%d-%dspp-%ghz-from%g",
+                       static_cast<unsigned long long>(hash_of_file(scene.file)), static_cast<int>(scene.scene_camera),
+                       p.viewport.width, p.viewport.height, p.samples_per_side * p.samples_per_side, p.rate, p.start))),
       count_(static_cast<std::size_t>(std::lround(p.seconds * p.rate))) {
     std::filesystem::create_directories(folder_);
     auto const render = [&](std::size_t index) {
-        pose_at(scene, static_cast<double>(index) / p.rate);
+        pose_at(scene, p.start + static_cast<double>(index) / p.rate);
         return render_reference(scene, p.viewport, p.samples_per_side);
     };
     bool stale = false;

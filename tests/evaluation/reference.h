@@ -12,8 +12,9 @@ namespace framelet::bench {
 struct ReferenceParameters {
     Viewport viewport{256, 256};
     double seconds = 1;
-    double rate = 120; ///< pictures a second, from time 0
+    double rate = 120; ///< pictures a second
     int samples_per_side = 3; ///< of a pixel; samples are jittered in their strata
+    double start = 0; ///< scene time of the first one, seconds
 };
 
 class Reference {

@@ -109,7 +109,7 @@ TEST_F(Rivals, APictureThatStandsStillBecomesAsGoodAsTheReference) {
     pose_at(*scene, 0);
     Picture const truth = render_reference(*scene, parameters.viewport, 16);
     double const machine = machine_factor(*scene, parameters, costs);
-    for (std::string const name : {"framed", "framed+jpeg", "framed+h264", "framed+warp", "interruptible"}) {
+    for (std::string const name : {"framed", "framed+h264", "framed+warp", "interruptible"}) {
         for (RivalParts const& choice : rival_choices(name, {})) {
             parameters.rivals = choice;
             auto const method = make_method(name, method_setup(parameters, machine, costs));
@@ -130,7 +130,7 @@ TEST_F(Rivals, NothingIsSentOnceThePictureIsAsGoodAsItGets) {
     parameters.seconds = 1;
     parameters.scene_stops = 0;
     parameters.link.bits_per_second = 5e6;
-    for (std::string const name : {"framed", "framed+jpeg", "framed+h264", "framed+warp", "interruptible"}) {
+    for (std::string const name : {"framed", "framed+h264", "framed+warp", "interruptible"}) {
         for (RunResult::Delivery const& delivery : record(*scene, name, parameters).run.deliveries) {
             EXPECT_LT(delivery.sent, 0.5) << name;
         }
@@ -145,7 +145,7 @@ TEST_F(Rivals, FramesAreOfTheMiddleOfTheirTimeOnDisplay) {
     parameters.link = {.bits_per_second = 20e6, .delay_seconds = 0.05};
     for (bool const ahead : {false, true}) {
         parameters.rivals = {false, ahead, 1, 0};
-        MethodRecord const found = record(*scene, "framed+jpeg", parameters);
+        MethodRecord const found = record(*scene, "framed+h264", parameters);
         double mean = 0;
         for (std::size_t i = 30; i < found.ages.size(); ++i) {
             mean += found.ages[i] / static_cast<double>(found.ages.size() - 30);

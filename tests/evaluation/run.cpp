@@ -83,7 +83,6 @@ MethodSetup method_setup(RunParameters const& parameters, double machine, CostTa
             parameters.bias,
             parameters.batch_framelets,
             {},
-            parameters.lag_seconds,
             parameters.rivals};
 }
 
@@ -100,7 +99,7 @@ double reference_time(RunParameters const& parameters, std::size_t index) {
 }
 
 SceneTime scene_time(RunParameters const& parameters, double now) {
-    return std::clamp(now, 0.0, parameters.scene_stops);
+    return parameters.start + std::clamp(now, 0.0, parameters.scene_stops);
 }
 
 double machine_factor(BenchScene& scene, RunParameters const& parameters, CostTable const& costs) {
@@ -110,7 +109,7 @@ double machine_factor(BenchScene& scene, RunParameters const& parameters, CostTa
     std::vector<Framelet> rendered(tiles.size());
     double segments = 0;
     for (int i = 0; i < probes; ++i) {
-        pose_at(scene, parameters.seconds * i / probes);
+        pose_at(scene, parameters.start + parameters.seconds * i / probes);
         segments +=
             static_cast<double>(render_framelets(*scene.render_scene, scene.camera, plane, tiles, 0, rendered)) /
             probes;

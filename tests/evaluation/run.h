@@ -20,16 +20,16 @@ enum class Counting { server, total };
 
 struct RunParameters {
     Viewport viewport{256, 256};
+    double start = 0; ///< scene time at which the measured time begins, seconds
     double seconds = 1; ///< of scene time that are measured
     double reference_rate = 120; ///< measurements a second
-    double frames_per_second = 10; ///< what `framed` reaches at one sample a pixel: the machine's speed
+    double frames_per_second = 10; ///< the machine: samples a displayed pixel and second that it renders and encodes
     LinkParameters link;
     Counting counting = Counting::server;
     std::uint64_t seed = 1;
     double bias = 0; ///< -1 (spatial fidelity) .. 1 (temporal)
     std::size_t batch_framelets = 0; ///< as in MethodSetup
-    double scene_stops = INFINITY; ///< from then on scene and camera stand still
-    double lag_seconds = 0; ///< as in MethodSetup
+    double scene_stops = INFINITY; ///< seconds of the run, from which on scene and camera stand still
     RivalParts rivals{}; ///< as in MethodSetup
 };
 
@@ -41,7 +41,7 @@ double lead_seconds(RunParameters const& parameters);
 std::size_t reference_count(RunParameters const& parameters);
 double reference_time(RunParameters const& parameters, std::size_t index);
 
-/// What the scene's clock says at a time of the run's.
+/// What the scene's clock says at a time of the run's, in which the measured time begins at 0.
 SceneTime scene_time(RunParameters const& parameters, double now);
 
 /// How many times slower than the calibrated machine one is that renders and encodes whole frames of this scene, at one

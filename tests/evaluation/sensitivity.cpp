@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/picture_writer.h"
+#include "tests/evaluation/charts/picture_sheet.h"
 #include "tests/evaluation/measures/measures.h"
 #include "tests/evaluation/methods/tsar.h"
 
@@ -17,6 +18,7 @@ namespace {
 using nlohmann::json;
 
 constexpr int cells = 5; ///< along a side of the grid
+constexpr int middle = cells * cells / 2; ///< of the defaults
 constexpr float slope_step = 0.5f; ///< in log2 of energy an octave
 
 /// A steeper line through the same energy at the octave of a framelet's mean: finer octaves are tolerated less, as in
@@ -75,67 +77,36 @@ void look_at(TsarServer const& server, double fastest, Cell& cell) {
     cell.most_rate = most;
 }
 
-Cell run_cell(BenchScene& scene, Reference const& reference, StudyOptions const& options, double machine,
-              RateTemplates const& templates) {
-    RunParameters const& run = options.run;
-    MethodSetup const setup{.viewport = run.viewport,
-                            .costs = options.costs,
-                            .machine = machine,
-                            .frames_per_second = run.frames_per_second,
-                            .bits_per_second = run.link.bits_per_second,
-                            .seed = run.seed};
+Cell run_cell(Subject const& subject, CostTable const& costs, RateTemplates const& templates) {
+    RunParameters const& run = subject.run;
     TsarParameters parameters;
     parameters.templates = templates;
-    Tsar method(setup, parameters);
+    Tsar method(method_setup(run, subject.machine, costs), parameters);
     Cell cell;
     cell.templates = templates;
     std::size_t const times = reference_count(run);
     double const count = static_cast<double>(times);
-    cell.run = run_method(scene, method, run, machine, [&](std::size_t index, Picture const& shown, double age) {
-        cell.mse += mean_squared_error(shown, reference.picture(index)) / count;
-        cell.age += age / count;
-        if (index == times / 2) {
-            cell.picture = shown;
-            look_at(method.server(), 4 * run.frames_per_second, cell);
-        }
-    });
+    cell.run = run_method(*subject.scene, method, run, subject.machine,
+                          [&](std::size_t index, Picture const& shown, double age) {
+                              cell.mse += mean_squared_error(shown, subject.reference.picture(index)) / count;
+                              cell.age += age / count;
+                              if (index == times / 2) {
+                                  cell.picture = shown;
+                                  look_at(method.server(), 4 * run.frames_per_second, cell);
+                              }
+                          });
     return cell;
-}
-
-/// Pictures in rows of `cells`; a black frame around the one in the middle.
-Picture contact_sheet(std::vector<Picture const*> const& pictures) {
-    int const width = pictures.front()->width, height = pictures.front()->height;
-    int const gap = std::max(4, width / 64);
-    Picture sheet(cells * (width + gap) + gap, cells * (height + gap) + gap);
-    std::fill(sheet.rgba.begin(), sheet.rgba.end(), std::uint8_t(255));
-    for (int i = 0; i < cells * cells; ++i) {
-        int const left = gap + i % cells * (width + gap);
-        int const top = gap + i / cells * (height + gap);
-        if (i == cells * cells / 2) {
-            for (int y = top - gap / 2; y < top + height + gap / 2; ++y) {
-                std::uint8_t* const row = sheet.row(y) + static_cast<std::ptrdiff_t>(left - gap / 2) * 4;
-                for (int x = 0; x < width + gap / 2 * 2; ++x) {
-                    std::fill_n(row + x * 4, 3, std::uint8_t(0));
-                }
-            }
-        }
-        for (int y = 0; y < height; ++y) {
-            std::copy_n(pictures[static_cast<std::size_t>(i)]->row(y), width * 4,
-                        sheet.row(top + y) + static_cast<std::ptrdiff_t>(left) * 4);
-        }
-    }
-    return sheet;
 }
 
 void draw_sheets(std::vector<Cell> const& grid, std::filesystem::path const& folder, std::string const& scene) {
     std::filesystem::create_directories(folder);
-    std::vector<Picture const*> pictures, tilings;
+    std::vector<Picture> pictures, tilings;
     for (Cell const& cell : grid) {
-        pictures.push_back(&cell.picture);
-        tilings.push_back(&cell.tiling);
+        pictures.push_back(cell.picture);
+        tilings.push_back(cell.tiling);
     }
-    write_png(folder / (scene + "-sensitivity.png"), contact_sheet(pictures));
-    write_png(folder / (scene + "-sensitivity-tiling.png"), contact_sheet(tilings));
+    write_png(folder / (scene + "-sensitivity.png"), picture_sheet(pictures, cells, middle));
+    write_png(folder / (scene + "-sensitivity-tiling.png"), picture_sheet(tilings, cells, middle));
 }
 
 json to_json(EnergyTemplate const& line) {
@@ -156,32 +127,28 @@ json to_json(Cell const& cell) {
 
 } // namespace
 
-json sensitivity(BenchScene& scene, StudyOptions const& options) {
-    RunParameters const& run = options.run;
-    Reference const reference(scene, {run.viewport, run.seconds, run.reference_rate, options.samples_per_side},
-                              options.reference_cache);
-    double const machine = machine_factor(scene, run, options.costs);
-    RateTemplates const middle = TsarParameters{}.templates;
+json sensitivity(Subject const& subject, StudyOptions const& options) {
+    std::string const& scene = subject.scene->name;
+    RateTemplates const usual = TsarParameters{}.templates;
     std::vector<Cell> grid;
     std::printf(
         "%s: mean squared error, samples a pixel, mean refreshes a second; slope in space from left to right, in "
         "time downwards\n",
-        scene.name.c_str());
+        scene.c_str());
     for (int y = 0; y < cells; ++y) {
         float const time = slope_step * static_cast<float>(cells / 2 - y);
         for (int x = 0; x < cells; ++x) {
             float const space = slope_step * static_cast<float>(cells / 2 - x);
-            grid.push_back(
-                run_cell(scene, reference, options, machine, {turned(middle.space, space), turned(middle.time, time)}));
+            grid.push_back(run_cell(subject, options.costs, {turned(usual.space, space), turned(usual.time, time)}));
             Cell const& cell = grid.back();
             std::printf("  %8.2e %4.2f %4.1f", cell.mse, cell.samples_per_pixel, cell.mean_rate);
         }
         std::printf("\n");
     }
     if (!options.charts.empty()) {
-        draw_sheets(grid, options.charts, scene.name);
+        draw_sheets(grid, options.charts, scene);
     }
-    json result{{"scene", scene.name}, {"cells", json::array()}};
+    json result{{"scene", scene}, {"cells", json::array()}};
     for (Cell const& cell : grid) {
         result["cells"].push_back(to_json(cell));
     }

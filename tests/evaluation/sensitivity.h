@@ -1,7 +1,9 @@
 // The verb `sensitivity`: how `tsar` answers to other templates of its error estimate (004 section 7.3.2).
 #pragma once
 
-#include "tests/evaluation/verbs.h"
+#include <nlohmann/json_fwd.hpp>
+
+#include "tests/evaluation/study.h"
 
 namespace framelet::bench {
 
@@ -9,6 +11,6 @@ namespace framelet::bench {
 /// tolerated at fine scales and the stronger the response. Draws two sheets of 5x5 pictures (004 fig. 7.24 and 7.25):
 /// what is shown at half the run, and the tiling then, brighter where tiles are refreshed more often. From left to
 /// right less sensitive in space, from top to bottom in time.
-nlohmann::json sensitivity(BenchScene& scene, StudyOptions const& options);
+nlohmann::json sensitivity(Subject const& subject, StudyOptions const& options);
 
 } // namespace framelet::bench

@@ -11,6 +11,7 @@
 #include "tests/evaluation/charts/charts.h"
 #include "tests/evaluation/cycle_log.h"
 #include "tests/evaluation/measures/measures.h"
+#include "tests/evaluation/scene_events.h"
 #include "tests/evaluation/settling.h"
 
 namespace framelet::bench {
@@ -36,18 +37,18 @@ struct StabilityRun {
     Conservation conservation;
 };
 
-StabilityRun run_batch(BenchScene& scene, Reference const& reference, std::vector<double> const& events,
-                       RunParameters const& parameters, double machine, StabilityOptions const& options,
+StabilityRun run_batch(Subject const& subject, std::vector<double> const& events, StabilityOptions const& options,
                        CostTable const& costs) {
+    RunParameters const& parameters = subject.run;
     StabilityRun result;
     result.batch = parameters.batch_framelets;
-    auto const method = make_method("framelet", method_setup(parameters, machine, costs));
+    auto const method = make_method("framelet", method_setup(parameters, subject.machine, costs));
     CycleLog log;
     run_method(
-        scene, *method, parameters, machine,
+        *subject.scene, *method, parameters, subject.machine,
         [&](std::size_t index, Picture const& shown, double) {
             result.times.push_back(reference_time(parameters, index));
-            result.errors.push_back(mean_squared_error(shown, reference.picture(index)));
+            result.errors.push_back(mean_squared_error(shown, subject.reference.picture(index)));
         },
         [&](double start, ServerStep const& step) { log.add(start, *method->scheduler(), step.samples); });
     result.cycles = log.entries();
@@ -180,63 +181,29 @@ void draw_charts(std::string const& scene, std::vector<StabilityRun> const& runs
     draw(tilings, folder / ("stability-" + scene + "-tiling"));
 }
 
-SceneEntry const& find_scene(std::string const& name) {
-    auto const found = std::ranges::find(scene_table(), name, &SceneEntry::name);
-    if (found == scene_table().end()) {
-        throw InputError("the scene generator has no scene '" + name + "'");
-    }
-    return *found;
-}
-
 } // namespace
 
-std::vector<double> event_times(GltfDocument const& document, double duration) {
-    std::vector<double> events;
-    double last_motion = 0;
-    for (GltfTrack const& track : document.tracks) {
-        for (std::size_t key = 1; key < track.values.size(); ++key) {
-            if (track.values[key] == track.values[key - 1]) {
-                continue;
-            }
-            if (track.step) {
-                events.push_back(track.times[key]);
-            } else {
-                last_motion = std::max(last_motion, track.times[key]);
-            }
-        }
-    }
-    events.push_back(last_motion);
-    std::erase_if(events, [duration](double time) { return time <= 0 || time >= duration - 1e-6; });
-    std::ranges::sort(events);
-    auto const same = [](double a, double b) { return b - a < 1e-6; };
-    events.erase(std::unique(events.begin(), events.end(), same), events.end());
-    return events;
-}
-
-json measure_stability(std::filesystem::path const& folder, StabilityOptions const& options,
-                       StudyOptions const& study) {
+json measure_stability(StabilityOptions const& options, StudyOptions const& study) {
     json result{{"viewport", {study.run.viewport.width, study.run.viewport.height}},
                 {"reference_rate", study.run.reference_rate},
-                {"frames_per_second", study.run.frames_per_second},
+                {"samples_per_pixel_and_second", study.run.frames_per_second},
                 {"factor", options.factor},
                 {"scenes", json::array()}};
     print_head(options);
-    for (std::string const& name : options.scenes) {
-        SceneEntry const& entry = find_scene(name);
-        std::vector<double> const events = event_times(entry.make(), entry.duration);
+    for (std::filesystem::path const& file : study.scenes) {
+        std::string const name = file.stem().string();
+        std::vector<double> const events = events_of(name).times;
         if (events.empty()) {
             throw InputError("nothing jumps or stops in the scene '" + name + "'");
         }
-        auto const scene = load_bench_scene(folder / (name + ".glb"));
         StudyOptions of_scene = study;
-        of_scene.run.seconds = entry.duration;
-        Reference const reference = reference_of(*scene, of_scene);
-        double const machine = machine_factor(*scene, of_scene.run, study.costs);
+        of_scene.run.seconds = std::ranges::find(scene_table(), name, &SceneEntry::name)->duration;
+        Subject subject = prepare(file, of_scene);
         std::vector<StabilityRun> runs;
         json figures{{"scene", name}, {"events", events}, {"runs", json::array()}};
         for (std::size_t const batch : options.batches) {
-            of_scene.run.batch_framelets = batch;
-            runs.push_back(run_batch(*scene, reference, events, of_scene.run, machine, options, study.costs));
+            subject.run.batch_framelets = batch;
+            runs.push_back(run_batch(subject, events, options, study.costs));
             print(runs.back(), name);
             figures["runs"].push_back(to_json(runs.back()));
         }

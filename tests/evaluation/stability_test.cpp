@@ -7,8 +7,8 @@
 
 #include "common/error.h"
 #include "scenes/failure_scenes.h"
-#include "scenes/scene_table.h"
 #include "tests/evaluation/cycle_log.h"
+#include "tests/evaluation/scene_events.h"
 #include "tests/evaluation/settling.h"
 
 namespace framelet::bench {
@@ -69,13 +69,24 @@ TEST(CycleLog, HuntingAndConservationAreMeansOverTheirTime) {
     EXPECT_DOUBLE_EQ(measure_conservation(hasty, 0, 1).largest_share, 130.0 / 200);
 }
 
-TEST(EventTimes, AreThoseOfTheGenerator) {
-    EXPECT_EQ(event_times(make_stop_scene({.duration = 6, .moving = 3}), 6), std::vector<double>{3});
-    EXPECT_EQ(event_times(make_flicker_scene({.duration = 4, .lit = {true, true, false, false}}), 4),
-              std::vector<double>{2});
-    auto const table = scene_table();
-    auto const teleport = std::ranges::find(table, "teleport", &SceneEntry::name);
-    EXPECT_EQ(event_times(teleport->make(), teleport->duration), (std::vector<double>{1, 2, 3, 4, 5}));
+TEST(SceneEvents, AreThoseOfTheGenerator) {
+    SceneEvents const stop = events_of(make_stop_scene({.duration = 6, .moving = 3}), 6);
+    EXPECT_EQ(stop.times, std::vector<double>{3});
+    EXPECT_EQ(phase_at(stop, 1), Phase::moving);
+    EXPECT_EQ(phase_at(stop, 3.1), Phase::event);
+    EXPECT_EQ(phase_at(stop, 3 + event_seconds), Phase::settled);
+    SceneEvents const flicker = events_of(make_flicker_scene({.duration = 4, .lit = {true, true, false, false}}), 4);
+    EXPECT_EQ(flicker.times, std::vector<double>{2});
+    EXPECT_EQ(phase_at(flicker, 1), Phase::settled);
+    EXPECT_EQ(events_of("teleport").times, (std::vector<double>{1, 2, 3, 4, 5}));
+}
+
+TEST(SceneEvents, AShortRunSeesOne) {
+    EXPECT_EQ(window_start("stop", 2), 2) << "half of it before the stop";
+    EXPECT_EQ(window_start("teleport", 2), 0);
+    EXPECT_EQ(window_start("globe", 2), 2) << "no event: the middle";
+    EXPECT_EQ(window_start("vehicle_approach", 4), 1) << "no later than the scene has so many seconds left";
+    EXPECT_EQ(window_start("a scene of somebody's", 2), 0);
 }
 
 TEST(Stability, EveryEventIsToldOfAndTheBudgetIsKept) {
@@ -87,9 +98,9 @@ TEST(Stability, EveryEventIsToldOfAndTheBudgetIsKept) {
     study.reference_cache = cache;
     study.costs = read_cost_table(source / "tests/evaluation/costs.json");
     StabilityOptions options;
-    options.scenes = {"stop", "teleport"};
+    study.scenes = {source / "scenes/stop.glb", source / "scenes/teleport.glb"};
     options.batches = {8, 128};
-    auto const figures = measure_stability(source / "scenes", options, study);
+    auto const figures = measure_stability(options, study);
     ASSERT_EQ(figures["scenes"].size(), 2u);
     for (auto const& scene : figures["scenes"]) {
         ASSERT_EQ(scene["runs"].size(), 2u);
@@ -108,8 +119,8 @@ TEST(Stability, EveryEventIsToldOfAndTheBudgetIsKept) {
             EXPECT_LE(run["conservation"]["samples"].get<double>(), 1.05 * run["conservation"]["budget"].get<double>());
         }
     }
-    options.scenes = {"no such scene"};
-    EXPECT_THROW(measure_stability(source / "scenes", options, study), InputError);
+    study.scenes = {"no such scene.glb"};
+    EXPECT_THROW(measure_stability(options, study), InputError);
     std::filesystem::remove_all(cache);
 }
 

@@ -9,7 +9,7 @@
 #include "common/error.h"
 #include "common/picture_writer.h"
 #include "tests/evaluation/charts/charts.h"
-#include "tests/evaluation/charts/side_by_side.h"
+#include "tests/evaluation/charts/picture_sheet.h"
 #include "tests/evaluation/measures/measures.h"
 
 namespace framelet::bench {
@@ -59,11 +59,8 @@ Still watch(BenchScene& scene, StillnessStudy const& study, StudyOptions const& 
 
 /// What is shown in the end, beside the reference.
 void write_last(std::filesystem::path const& folder, std::string const& scene, Still const& still) {
-    std::array<char, 32> label{};
-    std::snprintf(label.data(), label.size(), "in the end, %.1f dB", still.quality.psnr.back());
     std::filesystem::create_directories(folder);
-    write_png(folder / (scene + "-still.png"),
-              side_by_side(still.reference, std::array{Labelled{label.data(), still.last}}));
+    write_png(folder / (scene + "-still.png"), beside_reference(still.reference, std::array{still.last}));
 }
 
 } // namespace
@@ -85,7 +82,7 @@ double PsnrOverTime::most_fall() const {
 json measure_stillness(StillnessStudy const& study, StudyOptions const& options) {
     FRAMELET_CHECK(options.run.seconds >= 1);
     Viewport const viewport = options.run.viewport;
-    std::printf("%dx%d, %.0f whole frames a second; PSNR [dB] after everything has come to rest\n", viewport.width,
+    std::printf("%dx%d, %g samples a pixel and second; PSNR [dB] after everything has come to rest\n", viewport.width,
                 viewport.height, options.run.frames_per_second);
     std::printf("%-18s", "after [s]");
     for (double const after : listed_seconds) {
@@ -98,8 +95,8 @@ json measure_stillness(StillnessStudy const& study, StudyOptions const& options)
                   .y_title = "PSNR [dB]",
                   .points = false,
                   .curves = {}};
-    for (std::filesystem::path const& file : study.scenes) {
-        auto const scene = load_bench_scene(file);
+    for (std::filesystem::path const& file : options.scenes) {
+        auto const scene = load_bench_scene(file, options.camera);
         Still const still = watch(*scene, study, options);
         std::printf("%-18s", scene->name.c_str());
         json psnr = json::array();

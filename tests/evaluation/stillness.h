@@ -2,7 +2,6 @@
 // stays there, and what is still sent. In: scene, machine, link. Out: figures of `framelet` on the virtual clock.
 #pragma once
 
-#include <filesystem>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
@@ -12,7 +11,6 @@
 namespace framelet::bench {
 
 struct StillnessStudy {
-    std::vector<std::filesystem::path> scenes;
     double stops = 0.5; ///< seconds of scene time that everything moves
     int reference_side = 16; ///< samples along a side of the reference's pixel
 };

@@ -24,8 +24,8 @@ TEST(PsnrOverTime, AFallIsFromTheBestBefore) {
 
 TEST(Stillness, ThePictureBecomesTheReferenceAndNothingMoreIsSent) {
     StillnessStudy study;
-    study.scenes = {source / "scenes/globe.glb", source / "scenes/stop.glb"};
     StudyOptions options;
+    options.scenes = {source / "scenes/globe.glb", source / "scenes/stop.glb"};
     options.run.viewport = {48, 32};
     options.run.frames_per_second = 30;
     options.run.reference_rate = 10;

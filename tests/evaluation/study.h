@@ -1,7 +1,8 @@
-// What the verbs that compare methods are told.
+// What every verb of the virtual clock is told, and a scene made ready for it.
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,9 @@
 namespace framelet::bench {
 
 struct StudyOptions {
+    std::vector<std::filesystem::path> scenes; ///< files
+    int camera = 0; ///< of each scene
+    bool sees_events = false; ///< each scene's run begins where `window_start` says, and not at `run.start`
     std::vector<std::string> methods;
     RunParameters run;
     int samples_per_side = 3; ///< of the reference
@@ -21,10 +25,17 @@ struct StudyOptions {
 };
 
 /// Renders what the cache lacks of the reference for such a run.
-inline Reference reference_of(BenchScene& scene, StudyOptions const& options) {
-    return {scene,
-            {options.run.viewport, options.run.seconds, options.run.reference_rate, options.samples_per_side},
-            options.reference_cache};
-}
+Reference reference_of(BenchScene& scene, StudyOptions const& options);
+
+/// A scene with all that its runs need.
+struct Subject {
+    std::unique_ptr<BenchScene> scene;
+    RunParameters run; ///< over the scene's window
+    Reference reference;
+    double machine; ///< times slower than the calibrated one
+};
+
+/// Loads the scene, renders its reference. Throws InputError.
+Subject prepare(std::filesystem::path const& file, StudyOptions const& options);
 
 } // namespace framelet::bench

@@ -11,8 +11,8 @@
 #include <nlohmann/json.hpp>
 
 #include "common/error.h"
-#include "tests/evaluation/charts/ratio_boxes.h"
 #include "tests/evaluation/comparison.h"
+#include "tests/evaluation/measures/ratio_summary.h"
 
 namespace framelet::bench {
 namespace {
@@ -72,7 +72,7 @@ json to_json(Cell const& cell, std::string const& scene) {
             {"side", cell.run.side},
             {"published_percentile", cell.published()},
             {"suitable_percentile", summary.suitable},
-            {"median_ratio", summary.p50},
+            {"median_ratio", summary.median},
             {"cpu_seconds", seconds_of(cell.cpu)},
             {"framed_cpu_seconds", seconds_of(cell.framed_cpu)},
             {"ratios", cell.ratios}};
@@ -87,7 +87,8 @@ void print(Cell const& cell, std::string const& scene) {
     RatioSummary const summary = summarise_ratios(cell.ratios);
     std::printf("%-11s %3d %5d %5d  %-17s %10.0f %7.0f %9.3f %9.2f + %6.3f %9.2f + %6.3f\n", cell.method.c_str(),
                 cell.run.number, cell.run.batch, cell.run.side, scene.c_str(), cell.published(), summary.suitable,
-                summary.p50, cell.cpu.server(), cell.cpu.viewer(), cell.framed_cpu.server(), cell.framed_cpu.viewer());
+                summary.median, cell.cpu.server(), cell.cpu.viewer(), cell.framed_cpu.server(),
+                cell.framed_cpu.viewer());
     std::fflush(stdout); // a table takes an hour: whoever reads a pipe wants to see it grow
 }
 
@@ -126,26 +127,6 @@ std::vector<Cell> run_scene(PublishedTable const& table, std::size_t scene_index
         }
     }
     return cells;
-}
-
-void draw_boxes(PublishedTable const& table, std::vector<Cell> const& cells, std::string const& method,
-                std::filesystem::path const& folder) {
-    RatioBoxes chart;
-    chart.title = method + ": error ratio to whole frames at equal total CPU, runs of Table 7.2";
-    chart.x_title = "framelets a batch / side of the picture";
-    for (std::size_t scene = 0; scene < table.scenes.size(); ++scene) {
-        RatioScene& panel = chart.scenes.emplace_back(RatioScene{table.scenes[scene], {}});
-        for (PublishedRun const& run : table.runs) {
-            auto const cell = std::ranges::find_if(cells, [&](Cell const& c) {
-                return c.method == method && c.scene == scene && c.run.number == run.number;
-            });
-            FRAMELET_CHECK(cell != cells.end());
-            panel.runs.push_back(
-                {std::to_string(run.batch) + " / " + std::to_string(run.side), cell->ratios, cell->published()});
-        }
-    }
-    std::filesystem::create_directories(folder);
-    draw(chart, folder / ("table-" + method));
 }
 
 /// As Table 7.2 is set: a row a run, in each scene ours beside the published.
@@ -249,16 +230,13 @@ json run_table(PublishedTable const& table, std::filesystem::path const& folder,
     json result{{"counting", "total"},
                 {"seconds", options.run.seconds},
                 {"reference_rate", options.run.reference_rate},
-                {"frames_per_second", options.run.frames_per_second},
+                {"samples_per_pixel_and_second", options.run.frames_per_second},
                 {"seed", options.run.seed}};
     for (Cell const& cell : cells) {
         result["cells"].push_back(to_json(cell, table.scenes[cell.scene]));
     }
     for (std::string const& method : options.methods) {
         print_table(table, cells, method);
-        if (!options.charts.empty()) {
-            draw_boxes(table, cells, method, options.charts);
-        }
     }
     return result;
 }

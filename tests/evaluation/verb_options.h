@@ -1,4 +1,5 @@
-// The command line of framelet-bench's verbs. In: words. Out: options as values, with what a verb falls back on.
+// The command line of framelet-bench. In: words. Out: options as values. All verbs but those of real programs take the
+// same ones; a verb says what it falls back on.
 #pragma once
 
 #include <algorithm>
@@ -8,17 +9,10 @@
 #include <thread>
 #include <vector>
 
-#include "tests/evaluation/ablation.h"
-#include "tests/evaluation/antialiasing.h"
-#include "tests/evaluation/codec/codec_study.h"
 #include "tests/evaluation/correspondence/correspondence.h"
-#include "tests/evaluation/correspondence/mirror_study.h"
 #include "tests/evaluation/estimators/estimator_verbs.h"
-#include "tests/evaluation/layer_study.h"
-#include "tests/evaluation/link_table.h"
-#include "tests/evaluation/smoothness.h"
+#include "tests/evaluation/report/report_runs.h"
 #include "tests/evaluation/stability.h"
-#include "tests/evaluation/stillness.h"
 #include "tests/evaluation/wall.h"
 
 namespace CLI {
@@ -30,66 +24,57 @@ namespace framelet::bench {
 /// Where scenes and tables come from unless told otherwise.
 inline std::filesystem::path const source_folder = FRAMELET_SOURCE_DIR;
 
-/// How much a study measures where it is not told.
+/// How much a verb measures where it is not told.
 struct Scale {
-    int size = 512; ///< side of the picture, pixels
+    Viewport viewport{640, 360};
     double seconds = 2;
-    double rate = 120; ///< measurements a second
+    double rate = 60; ///< measurements a second
 };
 
-/// Of all verbs; each has its part of them.
 struct VerbOptions {
-    std::filesystem::path scene = source_folder / "scenes/vehicle_chase.glb";
-    int camera = 0;
-    std::string json_file;
+    std::string command; ///< as it was typed, without the folders
+    std::filesystem::path json_file;
     std::filesystem::path costs_file = source_folder / "tests/evaluation/costs.json";
     bool quick = false;
+    std::vector<std::string> scenes; ///< files, or names of bundled ones
     std::optional<Viewport> size;
-    std::optional<double> seconds, rate;
+    std::optional<double> start, seconds, rate;
     double megabits = 0;
     double delay_ms = 0;
-    double jitter_ms = 0;
     bool total = false;
     std::vector<std::string> rivals_without; ///< which parts they lack
-    StabilityOptions stability;
-    AblationOptions ablation;
-    std::vector<int> table_runs;
-    std::vector<std::string> table_scenes;
     StudyOptions study;
+
+    // Of one verb each.
+    StabilityOptions stability;
+    std::vector<int> table_runs;
     EstimatorStudy estimators;
-    CodecStudy codec;
-    std::vector<int> codec_viewport; ///< width and height; empty: what the verb has time for
-    LayerStudy layers;
-    AntialiasingStudy antialiasing;
     CorrespondenceStudy correspondence;
-    MirrorStudy mirrors;
-    SmoothnessStudy smoothness;
-    StillnessStudy stillness;
-    LinkTableOptions link_table;
+    ReportOptions report;
+    std::vector<std::string> live_scenes; ///< files or names, of the report
+    bool without_live = false, without_links = false;
     WallOptions wall{.server_threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1)};
 };
 
-/// Puts what was told, or else what `scale` says, into `options.study`. Throws InputError where the table of costs
-/// cannot be read.
-void settle(VerbOptions& options, Scale const& scale);
+/// The project's own scene files, in the order of their names.
+std::vector<std::filesystem::path> bundled_scenes();
+
+/// The file itself, or else the bundled scene of that name.
+std::filesystem::path scene_file(std::string const& file_or_name);
+
+/// Puts what was told, or else what `scale` and `scenes` (names; none: all bundled ones) say, into `options.study`.
+/// Throws InputError where the table of costs cannot be read.
+void settle(VerbOptions& options, Scale const& scale, std::vector<std::string> const& scenes);
 
 // The options must outlive the parsing.
 
-void add_run_options(CLI::App& verb, VerbOptions& options);
+/// Those that verbs share.
 void add_study_options(CLI::App& verb, VerbOptions& options);
-void add_scene_options(CLI::App& verb, VerbOptions& options);
-void add_table_options(CLI::App& verb, VerbOptions& options);
-void add_link_table_options(CLI::App& verb, VerbOptions& options);
+
 void add_stability_options(CLI::App& verb, VerbOptions& options);
-void add_ablation_options(CLI::App& verb, VerbOptions& options);
-void add_wall_options(CLI::App& verb, VerbOptions& options);
-void add_antialiasing_options(CLI::App& verb, VerbOptions& options);
-void add_layer_options(CLI::App& verb, VerbOptions& options);
+void add_table_options(CLI::App& verb, VerbOptions& options);
 void add_correspondence_options(CLI::App& verb, VerbOptions& options);
-void add_mirror_options(CLI::App& verb, VerbOptions& options);
-void add_smoothness_options(CLI::App& verb, VerbOptions& options);
-void add_stillness_options(CLI::App& verb, VerbOptions& options);
-void add_codec_options(CLI::App& verb, VerbOptions& options);
-void add_response_options(CLI::App& verb, VerbOptions& options);
+void add_wall_options(CLI::App& verb, VerbOptions& options);
+void add_report_options(CLI::App& verb, VerbOptions& options);
 
 } // namespace framelet::bench

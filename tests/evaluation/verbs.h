@@ -1,23 +1,26 @@
-// The verbs that run on the virtual clock. Each prints what it found, draws charts where it is told to, returns
-// figures.
+// The verbs of framelet-bench but those of real programs: each is one question. A verb prints what it found, draws
+// charts where it is told to, and returns the figures.
 #pragma once
+
+#include <span>
+#include <string>
+#include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "tests/evaluation/study.h"
+#include "tests/evaluation/verb_options.h"
 
 namespace framelet::bench {
 
-/// One run: every method against the reference; error over time, and the pictures side by side.
-nlohmann::json compare(BenchScene& scene, StudyOptions const& options);
+struct Verb {
+    char const* name;
+    char const* question;
+    nlohmann::json (*answer)(VerbOptions& options); ///< of settled options
+    std::vector<std::string> scenes; ///< where none are told; empty: all bundled ones
+    Scale usual{}, quick{.viewport = {256, 144}, .seconds = 1};
+    void (*add_options)(CLI::App& verb, VerbOptions& options) = nullptr; ///< what is its own; null: nothing
+};
 
-/// Error against the server's work (machines of other speed), against bytes (links of other rate) and against delay.
-nlohmann::json pareto(BenchScene& scene, StudyOptions const& options);
-
-/// Error and delay against the link's rate and round trip, and through a stall.
-nlohmann::json link_study(BenchScene& scene, StudyOptions const& options);
-
-/// Renders what the other verbs compare with.
-nlohmann::json prepare_reference(BenchScene& scene, StudyOptions const& options);
+std::span<Verb const> verbs();
 
 } // namespace framelet::bench

@@ -258,11 +258,7 @@ json measure_wall(BenchScene& scene, StudyOptions const& study, WallOptions cons
     if (!study.charts.empty()) {
         ErrorOverTime chart{.title = scene.name + ": error over time, real processes and virtual clock", .series = {}};
         for (MethodRecord const* const record : {&measured, &predicted}) {
-            ErrorSeries& series = chart.series.emplace_back(ErrorSeries{record->method, {}, {}, record->run.displayed});
-            for (std::size_t i = 0; i < record->measures.size(); ++i) {
-                series.seconds.push_back(reference_time(run, i));
-                series.mse.push_back(record->measures[i].mse);
-            }
+            chart.series.push_back(error_series(*record, run));
         }
         std::filesystem::create_directories(study.charts);
         draw(chart, study.charts / (scene.name + "-wall"));

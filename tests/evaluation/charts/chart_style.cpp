@@ -19,11 +19,12 @@ struct MethodStyle {
 };
 
 constexpr std::array methods{
-    MethodStyle{"reference", "#999999", 1, 1, 1.5},  MethodStyle{"framed", "#333333", 1, 5, 2},
-    MethodStyle{"framed+jpeg", "#e69f00", 1, 9, 2},  MethodStyle{"framed+h264", "#0072b2", 1, 11, 2},
-    MethodStyle{"framed+warp", "#56b4e9", 1, 13, 2}, MethodStyle{"frameless", "#cc79a7", 1, 4, 2},
-    MethodStyle{"afr", "#009e73", 1, 8, 2},          MethodStyle{"tsar", "#882255", 1, 10, 2},
-    MethodStyle{"framelet", "#d55e00", 1, 7, 3},     MethodStyle{"oracle", "#999933", 2, 6, 2},
+    MethodStyle{"reference", "#999999", 1, 1, 1.5},   MethodStyle{"framed", "#333333", 1, 5, 2},
+    MethodStyle{"interruptible", "#e69f00", 1, 9, 2}, MethodStyle{"framed+h264", "#0072b2", 1, 11, 2},
+    MethodStyle{"framed+warp", "#56b4e9", 1, 13, 2},  MethodStyle{"frameless", "#cc79a7", 1, 4, 2},
+    MethodStyle{"afr", "#009e73", 1, 8, 2},           MethodStyle{"tsar", "#882255", 1, 10, 2},
+    MethodStyle{"framelet", "#d55e00", 1, 7, 3},      MethodStyle{"framelet-unwarped", "#ee9966", 2, 7, 2},
+    MethodStyle{"oracle", "#999933", 2, 6, 2},
 };
 
 constexpr std::array other_colors{"#332288", "#cc6677", "#117733", "#ddaa33",

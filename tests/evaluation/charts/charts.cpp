@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <iterator>
 #include <optional>
 #include <utility>
@@ -23,6 +24,10 @@ void check(std::string const& title, std::vector<Curve> const& curves) {
         throw InputError("chart '" + title + "' has no curve");
     }
     for (Curve const& curve : curves) {
+        bool const has_band = !curve.low.empty() || !curve.high.empty();
+        if (has_band && (curve.low.size() != curve.x.size() || curve.high.size() != curve.x.size())) {
+            throw InputError("chart '" + title + "': the band of curve '" + curve.name + "' has not as many points");
+        }
         if (curve.x.size() != curve.y.size()) {
             throw InputError("chart '" + title + "': curve '" + curve.name + "' has " + std::to_string(curve.x.size()) +
                              " x but " + std::to_string(curve.y.size()) + " y");
@@ -37,14 +42,25 @@ void check(std::string const& title, std::vector<Curve> const& curves) {
     }
 }
 
-Range range_of(std::vector<Curve> const& curves, std::vector<double> Curve::*axis) {
-    std::vector<double> values;
+/// Of the points that are drawn. `axis` may be a list that some curves do not have.
+void add_values(std::vector<Curve> const& curves, std::vector<double> Curve::*axis, std::vector<double>& values) {
     for (Curve const& curve : curves) {
-        for (std::size_t i = 0; i < curve.x.size(); ++i) {
+        for (std::size_t i = 0; i < (curve.*axis).size(); ++i) {
             if (drawable(curve, i)) {
                 values.push_back((curve.*axis)[i]);
             }
         }
+    }
+}
+
+Range range_of(std::vector<Curve> const& curves, std::initializer_list<std::vector<double> Curve::*> axes,
+               std::vector<Mark> const& marks = {}) {
+    std::vector<double> values;
+    for (auto const axis : axes) {
+        add_values(curves, axis, values);
+    }
+    for (Mark const& mark : marks) {
+        values.push_back(mark.x);
     }
     return log_range(values);
 }
@@ -84,6 +100,35 @@ std::vector<LineStyle> styles_of(std::vector<Curve> const& curves) {
     return line_styles(names);
 }
 
+/// The data block of the curve's band and the command that fills it, to go before the line's.
+std::string add_band(Plot& plot, std::size_t i, Curve const& curve, LineStyle const& style, OptionalRange const& x,
+                     OptionalRange const& y) {
+    if (curve.low.empty()) {
+        return "";
+    }
+    std::string const block = block_name("band", i);
+    plot.data += block + " << EOD\n";
+    for (std::size_t k = 0; k < curve.x.size(); ++k) {
+        if (drawable(curve, k)) {
+            plot.data += place(curve.x[k], x) + " " + place(curve.low[k], y) + " " + place(curve.high[k], y) + "\n";
+        }
+    }
+    plot.data += "EOD\n";
+    return block + " using 1:2:3 with filledcurves fc rgb '" + style.color +
+           "' fs transparent solid 0.12 noborder notitle";
+}
+
+std::string mark_commands(std::vector<Mark> const& marks) {
+    std::string commands;
+    for (Mark const& mark : marks) {
+        std::string const x = number(mark.x);
+        commands += "set arrow from " + x + ", graph 0 to " + x + ", graph 1 nohead dt 3 lc rgb '#999999' back\n";
+        commands += "set label " + quoted(mark.text) + " noenhanced at " + x +
+                    ", graph 0.98 right rotate by 90 offset -0.6,0 font ',9' textcolor rgb '#666666'\n";
+    }
+    return commands;
+}
+
 /// The data blocks $curve0... and the plot command without an end of line.
 std::string add_lines(Plot& plot, std::vector<Curve> const& curves, OptionalRange const& x, OptionalRange const& y,
                       char const* with) {
@@ -92,8 +137,9 @@ std::string add_lines(Plot& plot, std::vector<Curve> const& curves, OptionalRang
     for (std::size_t i = 0; i < curves.size(); ++i) {
         std::string const block = block_name("curve", i);
         plot.data += data_block(block, curves[i], x, y);
-        command += (i == 0 ? "" : ", \\\n  ") + block + " with " + with + " " + to_string(styles[i]) + " title " +
-                   quoted(curves[i].name);
+        std::string const band = add_band(plot, i, curves[i], styles[i], x, y);
+        command += (i == 0 ? "" : ", \\\n  ") + band + (band.empty() ? "" : ", \\\n  ") + block + " with " + with +
+                   " " + to_string(styles[i]) + " title " + quoted(curves[i].name);
     }
     return command;
 }
@@ -104,75 +150,6 @@ std::string log_axis_with_margin(std::string const& axis, Range const& range) {
     Range const wide = widened(range, mark_margin);
     return log_axis(axis, wide, wide.low, wide.high);
 }
-
-Curve curve_of(ParetoCurve const& from) {
-    Curve curve{from.method, {}, {}};
-    for (ParetoPoint const& point : from.points) {
-        curve.x.push_back(point.cost);
-        curve.y.push_back(point.error);
-    }
-    return curve;
-}
-
-/// Where labels of a Pareto chart stand, in pixels from a corner of the plotting area.
-struct LabelBox {
-    double left, bottom, width, height;
-
-    bool overlaps(LabelBox const& other) const {
-        return left < other.left + other.width && other.left < left + width && bottom < other.bottom + other.height &&
-               other.bottom < bottom + height;
-    }
-};
-
-/// Places labels one after the other beside their points: where one stands already, another corner of the point is
-/// tried, and where all are taken the label is left out. Points that coincide thus share one label, in the first one's
-/// colour.
-class LabelPlacer {
-public:
-    LabelPlacer(Range x, Range y, Plot const& plot)
-        : x_(x), y_(y), width_(plot_share * plot.width), height_(plot_share * plot.height) {}
-
-    std::string place(std::string const& text, double x, double y, std::string const& color) {
-        double const across = width_ * share(x, x_);
-        double const up = height_ * share(y, y_);
-        double const length = letter_width * static_cast<double>(text.size());
-        for (Placed const& other : placed_) {
-            if (other.text == text && std::abs(across - other.across) < length && std::abs(up - other.up) < near) {
-                return "";
-            }
-        }
-        for (auto const& [right, above] : {std::pair{true, true}, {true, false}, {false, true}, {false, false}}) {
-            LabelBox const box{right ? across + gap : across - gap - length,
-                               above ? up + gap : up - gap - letter_height, length, letter_height};
-            if (std::ranges::none_of(placed_, [&](Placed const& other) { return box.overlaps(other.box); })) {
-                placed_.push_back({text, across, up, box});
-                return "set label " + quoted(text) + " noenhanced at " + number(x) + ", " + number(y) +
-                       (right ? " left" : " right") + " offset " + (right ? "0.6," : "-0.6,") +
-                       (above ? "0.6" : "-0.6") + " front font ',8' textcolor rgb '" + color + "'\n";
-            }
-        }
-        return "";
-    }
-
-private:
-    static constexpr double plot_share = 0.8; // of the picture, about
-    static constexpr double letter_width = 6.5, letter_height = 12, gap = 5;
-    static constexpr double near = 2 * letter_height; ///< apart by less, one label can be read as that of both points
-
-    struct Placed {
-        std::string text;
-        double across, up; ///< the point
-        LabelBox box;
-    };
-
-    static double share(double value, Range const& range) {
-        return std::log(value / range.low) / std::log(range.high / range.low);
-    }
-
-    Range x_, y_;
-    double width_, height_;
-    std::vector<Placed> placed_;
-};
 
 constexpr double row_height = 0.03; // of one method's refreshes, as share of the chart's
 
@@ -202,12 +179,15 @@ std::string add_refreshes(Plot& plot, std::vector<ErrorSeries> const& series, st
 
 Plot plot_of(Curves const& chart) {
     check(chart.title, chart.curves);
-    OptionalRange const x = chart.log_x ? OptionalRange(range_of(chart.curves, &Curve::x)) : std::nullopt;
-    OptionalRange const y = chart.log_y ? OptionalRange(range_of(chart.curves, &Curve::y)) : std::nullopt;
+    OptionalRange const x =
+        chart.log_x ? OptionalRange(range_of(chart.curves, {&Curve::x}, chart.marks)) : std::nullopt;
+    OptionalRange const y =
+        chart.log_y ? OptionalRange(range_of(chart.curves, {&Curve::y, &Curve::low, &Curve::high})) : std::nullopt;
     Plot plot;
     plot.commands = common_look(chart.title) + axis_title("x", chart.x_title) + axis_title("y", chart.y_title);
     plot.commands += x ? log_axis_with_margin("x", *x) : "";
     plot.commands += y ? log_axis_with_margin("y", *y) : "";
+    plot.commands += mark_commands(chart.marks);
     plot.commands += add_lines(plot, chart.curves, x, y, chart.points ? "linespoints" : "lines") + "\n";
     return plot;
 }
@@ -225,7 +205,7 @@ Plot plot_of(ErrorOverTime const& chart) {
         rows += series.refreshes.empty() ? 0 : 1;
     }
     check(chart.title, curves);
-    Range const y = widened(range_of(curves, &Curve::y), mark_margin);
+    Range const y = widened(range_of(curves, {&Curve::y}), mark_margin);
     double const rows_share = row_height * static_cast<double>(rows);
     Range const with_rows{y.low / std::pow(y.high / y.low, rows_share / (1 - rows_share)), y.high};
 
@@ -242,30 +222,6 @@ Plot plot_of(ErrorOverTime const& chart) {
     }
     plot.commands += add_lines(plot, curves, std::nullopt, y, "lines");
     plot.commands += add_refreshes(plot, chart.series, styles_of(curves)) + "\n";
-    return plot;
-}
-
-Plot plot_of(ParetoCurves const& chart) {
-    std::vector<Curve> curves;
-    std::transform(chart.curves.begin(), chart.curves.end(), std::back_inserter(curves), curve_of);
-    check(chart.title, curves);
-    Range const x = range_of(curves, &Curve::x);
-    Range const y = range_of(curves, &Curve::y);
-    std::vector<LineStyle> const styles = styles_of(curves);
-    Plot plot;
-    plot.commands = common_look(chart.title) + axis_title("x", chart.x_title) + axis_title("y", chart.y_title);
-    plot.commands += log_axis_with_margin("x", x) + log_axis_with_margin("y", y);
-    LabelPlacer labels(widened(x, mark_margin), widened(y, mark_margin), plot);
-    for (std::size_t i = 0; i < curves.size(); ++i) {
-        for (std::size_t j = 0; j < curves[i].x.size(); ++j) {
-            std::string const& label = chart.curves[i].points[j].label;
-            if (!label.empty() && drawable(curves[i], j)) {
-                plot.commands += labels.place(label, on_log_axis(curves[i].x[j], x), on_log_axis(curves[i].y[j], y),
-                                              styles[i].color);
-            }
-        }
-    }
-    plot.commands += add_lines(plot, curves, x, y, "linespoints") + "\n";
     return plot;
 }
 

@@ -1,4 +1,4 @@
-// Charts of lines: error over time, error against cost, sweeps. Values in, gnuplot scripts or files out.
+// Charts of lines: error over time, error against cost. Values in, gnuplot scripts or files out.
 #pragma once
 
 #include <filesystem>
@@ -14,9 +14,16 @@ struct Curve {
     std::string name; ///< in the legend; fixes the colour (chart_style.h)
     std::vector<double> x;
     std::vector<double> y; ///< as many as `x`
+    std::vector<double> low{}, high{}; ///< of a band around the line, likewise; empty: there is none
 };
 
-/// General lines with a mark at each point: link sweeps, ablations, spectra. On a logarithmic axis values of zero and
+/// A vertical line with a word at its upper end.
+struct Mark {
+    double x = 0;
+    std::string text;
+};
+
+/// General lines with a mark at each point: sweeps, ablations. On a logarithmic axis values of zero and
 /// less stand at its lower end.
 struct Curves {
     std::string title;
@@ -26,6 +33,7 @@ struct Curves {
     bool log_y = false;
     bool points = true; ///< a mark at each point
     std::vector<Curve> curves;
+    std::vector<Mark> marks{};
 };
 
 struct ErrorSeries {
@@ -43,30 +51,10 @@ struct ErrorOverTime {
     std::vector<ErrorSeries> series;
 };
 
-struct ParetoPoint {
-    double cost = 0; ///< > 0
-    double error = 0; ///< zero stands at the lower end of the axis
-    std::string label; ///< beside the point; may be empty
-};
-
-struct ParetoCurve {
-    std::string method;
-    std::vector<ParetoPoint> points; ///< joined in this order
-};
-
-/// Error against cost, both logarithmic; left and below is better.
-struct ParetoCurves {
-    std::string title;
-    std::string x_title; ///< "server CPU [s]", "link [bytes/s]", "latency [ms]"
-    std::string y_title = "mean squared error";
-    std::vector<ParetoCurve> curves;
-};
-
 /// The drawing as text, the same for the same values. InputError where a curve has no point to draw or not as many x as
 /// y.
 Plot plot_of(Curves const& chart);
 Plot plot_of(ErrorOverTime const& chart);
-Plot plot_of(ParetoCurves const& chart);
 
 /// Draws to `stem`.svg and `stem`.png.
 template <class Chart>

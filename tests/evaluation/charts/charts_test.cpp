@@ -13,8 +13,6 @@
 #include "common/error.h"
 #include "common/image_io.h"
 #include "tests/evaluation/charts/chart_style.h"
-#include "tests/evaluation/charts/heat_table.h"
-#include "tests/evaluation/charts/ratio_boxes.h"
 
 namespace framelet::bench {
 namespace {
@@ -57,21 +55,6 @@ void expect_has(std::string const& text, std::string const& part) {
     EXPECT_NE(text.find(part), std::string::npos) << "no '" << part << "' in:\n" << text.substr(0, 3000);
 }
 
-TEST_F(Drawn, HeatTable) {
-    HeatTable chart{.title = "ratios",
-                    .x_title = "link",
-                    .columns = {"5 Mbit/s", "20 Mbit/s"},
-                    .rows = {"globe", "dim", "stop"},
-                    .values = {{0.25, 0.75}, {4, 12.3}, {0.5, infinity}},
-                    .goal = 0.5};
-    std::string const text = drawn(chart);
-    for (char const* const part : {"ratios", "20 Mbit/s", "stop", "0.25", "0.75", "4.00", "12"}) {
-        expect_has(text, part);
-    }
-    chart.values.pop_back();
-    EXPECT_THROW(plot_of(chart), InputError);
-}
-
 TEST_F(Drawn, ErrorOverTime) {
     ErrorOverTime const chart{.title = "Scene 'x' at {5} Mbit/s",
                               .series = {{"framed_a", {0, 1, 2, 3}, {1e-3, 2e-3, 1e-3, 0}, {0, 2}},
@@ -99,70 +82,18 @@ TEST_F(Drawn, Curves) {
     drawn(chart);
 }
 
-TEST_F(Drawn, ParetoCurves) {
-    ParetoCurves const chart{.title = "t",
-                             .x_title = "server CPU [s]",
-                             .curves = {{"framed", {{1, 1e-3, "q 30"}, {2, 1e-6, ""}}}, {"oracle", {{1, 1e-5, ""}}}}};
-    std::string const text = drawn(chart);
-    expect_has(text, "q 30");
-    expect_has(text, "server CPU [s]");
-}
-
-std::size_t count_of(std::string const& text, std::string const& part) {
-    std::size_t count = 0;
-    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) {
-        ++count;
-    }
-    return count;
-}
-
-TEST(ParetoLabels, NoneStandsOnAnother) {
-    ParetoCurves chart{.title = "t", .x_title = "x", .curves = {{"far", {{1, 1, "a"}, {100, 1e-4, "b"}}}}};
-    for (char const* const name : {"framed", "framed+jpeg", "framed+h264"}) {
-        chart.curves.push_back({name, {{10, 1e-2, "10 frames/s"}}});
-    }
-    chart.curves.push_back({"framelet", {{10, 1e-2, "other"}}});
-    std::string const commands = plot_of(chart).commands;
-    EXPECT_EQ(count_of(commands, "'10 frames/s'"), 1u) << "one label for all that stand there";
-    EXPECT_EQ(count_of(commands, "'other' noenhanced at 10, 0.01 left offset 0.6,-0.6"), 1u) << "below it";
-    EXPECT_EQ(count_of(commands, "'a'"), 1u);
-    EXPECT_EQ(count_of(commands, "'b'"), 1u);
-}
-
-TEST_F(Drawn, RatioBoxes) {
-    RatioBoxes const chart{.title = "Suitability",
-                           .scenes = {{"scene A", {{"0", {0.1, 0.5, 2}, 16.0}, {"1", {1, infinity}, std::nullopt}}},
-                                      {"scene B", {{"a long label", {0, 0.2}, 100.0}}},
-                                      {"scene C", {{"0", {3}, 5.0}}}}};
-    std::string const text = drawn(chart);
-    for (char const* part : {"Suitability", "scene A", "scene B", "scene C", ">66<", ">16<", "a long label"}) {
-        expect_has(text, part);
-    }
-}
-
-TEST(Ratios, PercentilesAndSuitability) {
-    std::vector<double> ratios;
-    for (int i = 100; i >= 0; --i) {
-        ratios.push_back(i / 50.0);
-    }
-    RatioSummary const s = summarise_ratios(ratios);
-    EXPECT_NEAR(s.p5, 0.1, 1e-12);
-    EXPECT_NEAR(s.p25, 0.5, 1e-12);
-    EXPECT_NEAR(s.p50, 1, 1e-12);
-    EXPECT_NEAR(s.p75, 1.5, 1e-12);
-    EXPECT_NEAR(s.p95, 1.9, 1e-12);
-    EXPECT_NEAR(s.suitable, 100 * 51 / 101.0, 1e-9); // one counts as suitable
-
-    RatioSummary const two = summarise_ratios(std::vector<double>{1, 2});
-    EXPECT_DOUBLE_EQ(two.p25, 1.25);
-    EXPECT_DOUBLE_EQ(two.suitable, 50);
-    RatioSummary const endless = summarise_ratios(std::vector<double>{0, infinity, infinity});
-    EXPECT_EQ(endless.p50, infinity);
-    EXPECT_EQ(endless.p95, infinity);
-
-    EXPECT_THROW(summarise_ratios({}), InputError);
-    EXPECT_THROW(summarise_ratios(std::vector<double>{0.5, NAN}), InputError);
-    EXPECT_THROW(summarise_ratios(std::vector<double>{-1}), InputError);
+TEST_F(Drawn, BandsAndMarks) {
+    Curves chart{.title = "t",
+                 .x_title = "samples",
+                 .y_title = "error",
+                 .log_x = true,
+                 .log_y = true,
+                 .curves = {{"framelet", {1, 10}, {1e-2, 1e-3}, {5e-3, 4e-4}, {2e-2, 3e-3}}},
+                 .marks = {{20, "8 cores"}}};
+    expect_has(drawn(chart), "8 cores");
+    expect_has(plot_of(chart).data, "$band0 << EOD\n1 0.005 0.02\n10 4e-04 0.003\nEOD\n");
+    chart.curves[0].low.pop_back();
+    EXPECT_THROW(plot_of(chart), InputError);
 }
 
 TEST(Charts, BadInputIsRefused) {
@@ -173,9 +104,6 @@ TEST(Charts, BadInputIsRefused) {
     chart.curves = {{"a", {1, NAN}, {NAN, 1}}};
     EXPECT_THROW(plot_of(chart), InputError);
     EXPECT_THROW(plot_of(ErrorOverTime{}), InputError);
-    EXPECT_THROW(plot_of(ParetoCurves{}), InputError);
-    EXPECT_THROW(plot_of(RatioBoxes{}), InputError);
-    EXPECT_THROW(plot_of(RatioBoxes{.title = "t", .scenes = {{"empty", {}}}}), InputError);
 }
 
 TEST(ChartStyle, AMethodLooksTheSameInEveryChart) {

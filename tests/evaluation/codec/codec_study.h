@@ -3,7 +3,6 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
@@ -15,15 +14,12 @@ namespace framelet::bench {
 struct CodecStudy {
     std::vector<std::filesystem::path> scenes;
     CorpusOptions corpus;
-    std::vector<std::string> codecs; ///< names, of `codec_names`; empty: all
-    int rounds = 25; ///< each moment's batches are coded so often; of each the fastest time counts: machines are shared
+    int rounds = 25; ///< each moment's batches are coded so often; the fastest round counts: machines are shared
     std::filesystem::path charts; ///< folder; empty: none are drawn
 };
 
-/// Exact framelets; with loss and prediction; with loss alone; JPEG strips.
-inline std::vector<std::string> const codec_names{"planes", "predicted", "haar", "jpeg"};
-
-/// On one thread.
+/// Exact framelets (`planes`), and with loss at several steps: predicted from what the viewer holds (`predicted`) and
+/// alone (`haar`). On one thread.
 nlohmann::json compare_codecs(CodecStudy const& study);
 
 } // namespace framelet::bench

@@ -7,7 +7,6 @@
 
 #include "tests/evaluation/charts/charts.h"
 #include "tests/evaluation/estimators/agreement.h"
-#include "tests/evaluation/estimators/template_fit.h"
 #include "tests/evaluation/stopwatch.h"
 
 namespace framelet::bench {
@@ -15,8 +14,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr auto default_scenes = {"vehicle_crossing", "windmill", "vehicle_fixed", "vehicle_chase", "vehicle_flyby",
-                                 "vehicle_approach", "globe",    "flicker",       "foliage",       "stop"};
 constexpr std::size_t quick_scenes = 2;
 
 std::vector<Place> observe(EstimatorStudy const& study) {
@@ -60,10 +57,6 @@ json to_json(Agreement const& agreement) {
             {"balanced_signs", agreement.signs.balanced}};
 }
 
-json to_json(EnergyTemplate const& line) {
-    return {{"offset", line.offset}, {"slope", line.slope}};
-}
-
 void print_row(char const* name, std::string const& cost, Agreement const& space, Agreement const& time) {
     std::printf("%-12s %8s", name, cost.c_str());
     for (Agreement const& axis : {space, time}) {
@@ -93,26 +86,18 @@ json parameters_of(EstimatorStudy const& study) {
 } // namespace
 
 void add_estimator_options(CLI::App& verb, EstimatorStudy& study) {
-    study.scenes.clear(); // both verbs have the same options
-    for (char const* const name : default_scenes) {
-        study.scenes.push_back(std::string(FRAMELET_SOURCE_DIR "/scenes/") + name + ".glb");
-    }
-    verb.add_option("--scenes", study.scenes, "Scene files")->delimiter(',');
     verb.add_option("--windows", study.observation.windows, "Times of each scene")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     verb.add_option("--places", study.observation.places, "Places at each time")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
-    verb.add_option("--seed", study.observation.seed, "Which times and places")->capture_default_str();
     verb.add_option("--share", study.observation.oracle.share, "Of a place's energy that its ideal density captures")
         ->check(CLI::Range(0.01, 0.9999))
         ->capture_default_str();
     verb.add_option("--floor", study.observation.oracle.floor, "Mean square of luma that need not be captured")
         ->check(CLI::Range(0.0, 1.0))
         ->capture_default_str();
-    verb.add_option("--charts", study.charts, "Draw a chart into this folder");
-    verb.add_flag("--quick", study.quick, "The first two scenes, three times of each");
 }
 
 json compare_estimators(EstimatorStudy const& study) {
@@ -122,10 +107,10 @@ json compare_estimators(EstimatorStudy const& study) {
     std::printf("                 ns a   space                              time\n");
     std::printf("estimator    framelet     rank at rate   signs balanced     rank at rate   signs balanced\n");
     json result = parameters_of(study);
-    ParetoCurves chart{.title = "Error estimators against the oracle",
-                       .x_title = "cost [ns a framelet]",
-                       .y_title = "1 - rank correlation",
-                       .curves = {}};
+    Curves chart{.title = "Error estimators against the oracle, space and time",
+                 .x_title = "cost [ns a framelet]",
+                 .y_title = "rank correlation",
+                 .curves = {}};
     Verdicts verdicts;
     for (ErrorEstimator const& estimator : error_estimators) {
         verdicts = judge(estimator, estimator.templates, places);
@@ -135,7 +120,7 @@ json compare_estimators(EstimatorStudy const& study) {
         std::snprintf(text, sizeof(text), "%.0f", cost);
         print_row(estimator.name, text, space, time);
         result["estimators"][estimator.name] = {{"ns", cost}, {"space", to_json(space)}, {"time", to_json(time)}};
-        chart.curves.push_back({estimator.name, {{cost, 1 - space.rank, "space"}, {cost, 1 - time.rank, "time"}}});
+        chart.curves.push_back({estimator.name, {cost, cost}, {space.rank, time.rank}});
     }
     Agreement const space = agreement_of_rate_alone(verdicts.space, RateOrder::ascending);
     Agreement const time = agreement_of_rate_alone(verdicts.time, RateOrder::descending);
@@ -145,26 +130,6 @@ json compare_estimators(EstimatorStudy const& study) {
     if (!study.charts.empty()) {
         std::filesystem::create_directories(study.charts);
         draw(chart, study.charts / "estimators");
-    }
-    return result;
-}
-
-json fit_estimators(EstimatorStudy const& study) {
-    std::vector<Place> const places = observe(study);
-    std::printf("%zu places, ideal density captures %g of the energy\n\n", places.size(),
-                study.observation.oracle.share);
-    std::printf("                 space                        time\n");
-    std::printf("estimator        offset   slope  balanced     offset   slope  balanced\n");
-    json result = parameters_of(study);
-    for (ErrorEstimator const& estimator : error_estimators) {
-        RateTemplates const found = fit_templates(estimator, places);
-        Verdicts const verdicts = judge(estimator, found, places);
-        double const space = sign_agreement(verdicts.space).balanced, time = sign_agreement(verdicts.time).balanced;
-        std::printf("%-12s  %9.2f %7.3f    %5.1f%%  %9.2f %7.3f    %5.1f%%\n", estimator.name, found.space.offset,
-                    found.space.slope, 100 * space, found.time.offset, found.time.slope, 100 * time);
-        result["estimators"][estimator.name] = {{"space", to_json(found.space)},
-                                                {"time", to_json(found.time)},
-                                                {"balanced_signs", {{"space", space}, {"time", time}}}};
     }
     return result;
 }

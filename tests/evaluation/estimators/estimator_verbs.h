@@ -1,8 +1,7 @@
-// framelet-bench estimators and fit: error estimators against the oracle of the ideal density.
+// framelet-bench estimators: error estimators against the oracle of the ideal density.
 #pragma once
 
 #include <filesystem>
-#include <string>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
@@ -16,7 +15,7 @@ class App;
 namespace framelet::bench {
 
 struct EstimatorStudy {
-    std::vector<std::string> scenes; ///< files
+    std::vector<std::filesystem::path> scenes;
     ObservationOptions observation;
     std::filesystem::path charts; ///< folder; empty: none are drawn
     bool quick = false; ///< the first two scenes, a few places of each
@@ -26,8 +25,5 @@ void add_estimator_options(CLI::App& verb, EstimatorStudy& study);
 
 /// Cost of each estimator and its agreement with the oracle, with the templates that it comes with.
 nlohmann::json compare_estimators(EstimatorStudy const& study);
-
-/// Fits every estimator's templates.
-nlohmann::json fit_estimators(EstimatorStudy const& study);
 
 } // namespace framelet::bench

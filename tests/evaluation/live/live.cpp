@@ -21,6 +21,7 @@
 #include "server/render/framelet_renderer.h"
 #include "tests/evaluation/codecs/link_emulator.h"
 #include "tests/evaluation/measures/measures.h"
+#include "tests/evaluation/measures/steadiness.h"
 #include "tests/evaluation/rival_choice.h"
 #include "tests/loopback/process.h"
 
@@ -183,24 +184,6 @@ Picture reference_of(BenchScene& scene, LiveFrame const& frame, LiveOptions cons
     Camera const camera =
         frame.scene_camera >= 0 ? scene.posed->camera(frame.scene_camera, frame.scene_time) : frame.camera;
     return render_picture(*scene.render_scene, camera, options.viewport, scene.exposure, options.samples_per_side);
-}
-
-/// Mean squared second difference of the error over three pictures in a row: what crawls, flickers and jumps.
-double unsteadiness(std::array<Picture, 3> const& shown, std::array<Picture, 3> const& reference) {
-    double sum = 0;
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < shown[0].rgba.size(); ++i) {
-        if (i % 4 == 3) {
-            continue;
-        }
-        auto const error = [&](std::size_t k) {
-            return static_cast<double>(shown[k].rgba[i]) - static_cast<double>(reference[k].rgba[i]);
-        };
-        double const second = (error(0) - 2 * error(1) + error(2)) / 255;
-        sum += second * second;
-        ++count;
-    }
-    return sum / static_cast<double>(count);
 }
 
 void write_beside(Picture const& shown, Picture const& reference, std::filesystem::path const& file) {

@@ -1,13 +1,18 @@
 #include "tests/evaluation/measures/measures.h"
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <sstream>
 
 #include <gtest/gtest.h>
 
+#include "common/error.h"
 #include "common/image_io.h"
+#include "tests/evaluation/measures/ratio_summary.h"
+#include "tests/evaluation/measures/steadiness.h"
 
 namespace framelet::bench {
 namespace {
@@ -102,6 +107,35 @@ TEST(Measures, StayInRangeAtTheEnds) {
         EXPECT_LE(m.flip, 1);
     }
     EXPECT_LE(measure(plain(20, 20, {0, 255, 0}), plain(20, 20, {0, 0, 255})).flip, 1);
+}
+
+TEST(Ratios, MedianAndSuitability) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    std::vector<double> ratios;
+    for (int i = 100; i >= 0; --i) {
+        ratios.push_back(i / 50.0);
+    }
+    RatioSummary const many = summarise_ratios(ratios);
+    EXPECT_NEAR(many.median, 1, 1e-12);
+    EXPECT_NEAR(many.suitable, 100 * 51 / 101.0, 1e-9); // one counts as suitable
+    RatioSummary const two = summarise_ratios(std::vector<double>{2, 1});
+    EXPECT_DOUBLE_EQ(two.median, 1.5);
+    EXPECT_DOUBLE_EQ(two.suitable, 50);
+    EXPECT_EQ(summarise_ratios(std::vector<double>{0, infinity, infinity}).median, infinity);
+    EXPECT_THROW(summarise_ratios({}), InputError);
+    EXPECT_THROW(summarise_ratios(std::vector<double>{0.5, NAN}), InputError);
+    EXPECT_THROW(summarise_ratios(std::vector<double>{-1}), InputError);
+}
+
+TEST(Steadiness, AnErrorThatGrowsEvenlyIsSteady) {
+    auto const flat = [](std::uint8_t level) {
+        Picture picture(4, 4);
+        std::fill(picture.rgba.begin(), picture.rgba.end(), level);
+        return picture;
+    };
+    std::array const truth{flat(10), flat(20), flat(30)};
+    EXPECT_EQ(unsteadiness({flat(20), flat(35), flat(50)}, truth), 0);
+    EXPECT_NEAR(unsteadiness({flat(10), flat(71), flat(30)}, truth), 4 * 0.04, 1e-9) << "51 is a fifth, there and back";
 }
 
 } // namespace

@@ -15,8 +15,7 @@ class Framelets final : public Method {
 public:
     Framelets(MethodSetup const& setup, bool reprojects)
         : setup_(setup), reprojects_(reprojects && setup.parts.reprojection), plane_(setup.viewport),
-          viewer_(setup.viewport, setup.costs, {reprojects_, true, setup.lag_seconds}),
-          cells_((setup.viewport.width + cell - 1) / cell),
+          viewer_(setup.viewport, setup.costs, {reprojects_, true}), cells_((setup.viewport.width + cell - 1) / cell),
           times_(static_cast<std::size_t>(cells_) *
                  static_cast<std::size_t>((setup.viewport.height + cell - 1) / cell)) {}
 

@@ -6,7 +6,6 @@
 namespace framelet::bench {
 
 std::unique_ptr<Method> make_framed(MethodSetup const& setup);
-std::unique_ptr<Method> make_framed_jpeg(MethodSetup const& setup);
 std::unique_ptr<Method> make_framed_h264(MethodSetup const& setup);
 std::unique_ptr<Method> make_framed_warp(MethodSetup const& setup);
 std::unique_ptr<Method> make_interruptible(MethodSetup const& setup);

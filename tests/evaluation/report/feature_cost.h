@@ -1,0 +1,18 @@
+// What each kind of scene costs the server: the same scene with one thing more each time. In: size of the picture. Out:
+// processor time, rays and bytes of a sample, by the server's own pipeline.
+#pragma once
+
+#include <filesystem>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "common/camera.h"
+
+namespace framelet::bench {
+
+/// Loads the scene file and takes everything out of it that moves, mirrors, is bent or has holes; then puts these in
+/// one after the other. One row each: `what`, `render_ns`, `other_ns` (choice, learning, tone curve, coding), `rays`
+/// and `bytes`, all of a sample of one thread that serves `seconds` of the scene. Throws InputError.
+nlohmann::json measure_feature_costs(std::filesystem::path const& scene_file, Viewport viewport, double seconds);
+
+} // namespace framelet::bench

@@ -1,0 +1,389 @@
+#include "tests/evaluation/report/report_page.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <fstream>
+#include <functional>
+#include <thread>
+
+#include "common/error.h"
+#include "tests/evaluation/measures/measures.h"
+#include "tests/evaluation/scene_events.h"
+
+namespace framelet::bench {
+namespace {
+
+using nlohmann::json;
+
+/// Shaded samples a second of one core where every sample has a shadow ray and a quarter mirror; the bundled scenes
+/// reach a third to a half of it.
+constexpr double core_rate = 5.3e6;
+constexpr double screen_pixels = 1920.0 * 1080;
+/// Errors below this are those of rounding to bytes.
+constexpr double least_mse = 1e-9;
+constexpr char const* phases[] = {"moving", "event", "settled"};
+
+[[gnu::format(printf, 1, 2)]] std::string printed(char const* format, ...) {
+    char text[512];
+    va_list arguments;
+    va_start(arguments, format);
+    std::vsnprintf(text, sizeof(text), format, arguments);
+    va_end(arguments);
+    return text;
+}
+
+bool is_own(std::string const& method) {
+    return method.starts_with("framelet");
+}
+
+/// Neither the project's nor a yardstick that knows the truth.
+bool is_rival(std::string const& method) {
+    return !is_own(method) && method != "oracle";
+}
+
+/// Names in the order in which they come first.
+template <class Get>
+auto distinct(std::vector<ReportRun> const& runs, Get&& get) {
+    std::vector<std::decay_t<decltype(get(runs.front()))>> found;
+    for (ReportRun const& run : runs) {
+        if (std::ranges::find(found, get(run)) == found.end()) {
+            found.push_back(get(run));
+        }
+    }
+    return found;
+}
+
+std::vector<ReportRun> part(std::vector<ReportRun> const& runs, std::function<bool(ReportRun const&)> const& belongs) {
+    std::vector<ReportRun> result;
+    std::ranges::copy_if(runs, std::back_inserter(result), belongs);
+    return result;
+}
+
+using Value = std::function<double(ReportRun const&)>;
+
+double relative_error(ReportRun const& run) {
+    return run.mse / std::max(run.noise, least_mse);
+}
+
+Spread spread_over(std::vector<ReportRun> const& runs, Value const& value) {
+    std::vector<double> values;
+    std::ranges::transform(runs, std::back_inserter(values), value);
+    return spread_of(std::move(values));
+}
+
+std::vector<Mark> core_marks() {
+    std::vector<Mark> marks;
+    for (int const cores : {2, 8, 32}) {
+        marks.push_back({cores * core_rate / screen_pixels, "1080p, " + std::to_string(cores) + " cores"});
+    }
+    return marks;
+}
+
+/// Over all scenes at each machine, without a link's limit.
+Curves machine_chart(ReportFigures const& figures, std::string const& what, Value const& value) {
+    Curves chart{.title = what + ": geometric mean over scenes, quartiles shaded",
+                 .x_title = "machine [samples a displayed pixel and second]",
+                 .y_title = what,
+                 .log_x = true,
+                 .log_y = true,
+                 .curves = {},
+                 .marks = core_marks()};
+    auto const free = part(figures.runs, [](ReportRun const& run) { return run.link == 0; });
+    for (std::string const& method : distinct(free, [](ReportRun const& run) { return run.method; })) {
+        Curve curve{method, {}, {}};
+        for (double const machine : distinct(free, [](ReportRun const& run) { return run.machine; })) {
+            Spread const spread = spread_over(
+                part(free, [&](ReportRun const& r) { return r.method == method && r.machine == machine; }), value);
+            curve.x.push_back(machine);
+            curve.y.push_back(spread.mean);
+            curve.low.push_back(spread.low);
+            curve.high.push_back(spread.high);
+        }
+        chart.curves.push_back(std::move(curve));
+    }
+    return chart;
+}
+
+ReportRun const* find_run(std::vector<ReportRun> const& runs, std::string const& scene, std::string const& method) {
+    auto const found =
+        std::ranges::find_if(runs, [&](ReportRun const& r) { return r.scene == scene && r.method == method; });
+    return found == runs.end() ? nullptr : &*found;
+}
+
+/// The project's error over that of the best rival, of a phase; and who that is.
+struct Ratio {
+    double value = NAN;
+    std::string rival;
+};
+
+Ratio ratio_of(std::vector<ReportRun> const& runs, std::string const& scene, std::string const& own,
+               std::string const& phase) {
+    ReportRun const* const mine = find_run(runs, scene, own);
+    Ratio result;
+    double least = INFINITY;
+    for (ReportRun const& run : runs) {
+        if (run.scene == scene && is_rival(run.method) && run.phases.contains(phase) && run.phases.at(phase) < least) {
+            least = run.phases.at(phase);
+            result.rival = run.method;
+        }
+    }
+    if (mine != nullptr && mine->phases.contains(phase) && std::isfinite(least)) {
+        result.value = std::max(mine->phases.at(phase), least_mse) / std::max(least, least_mse);
+    }
+    return result;
+}
+
+std::string cell(Ratio const& ratio) {
+    if (std::isnan(ratio.value)) {
+        return "-";
+    }
+    return printed(ratio.value > 1 ? "**%.2f** %s" : "%.2f %s", ratio.value, ratio.rival.c_str());
+}
+
+std::string ratio_table(std::vector<ReportRun> const& runs) {
+    std::string text = "| scene | moving | event | settled | without reprojection: moving | event | settled |\n"
+                       "|---|---|---|---|---|---|---|\n";
+    std::size_t lost = 0, all = 0;
+    std::vector<double> moving;
+    for (std::string const& scene : distinct(runs, [](ReportRun const& run) { return run.scene; })) {
+        text += "| `" + scene + "` |";
+        for (char const* const own : {"framelet", "framelet-unwarped"}) {
+            for (char const* const phase : phases) {
+                Ratio const ratio = ratio_of(runs, scene, own, phase);
+                text += printed(" %s |", cell(ratio).c_str());
+                bool const counts = own == std::string("framelet") && !std::isnan(ratio.value);
+                all += counts ? 1 : 0;
+                lost += counts && ratio.value > 1 ? 1 : 0;
+                if (counts && phase == std::string("moving")) {
+                    moving.push_back(ratio.value);
+                }
+            }
+        }
+        text += "\n";
+    }
+    text += printed("\nLost: %zu of %zu.", lost, all);
+    if (!moving.empty()) {
+        std::ranges::sort(moving);
+        text += printed(" Median while something moves: %.2f.", moving[moving.size() / 2]);
+    }
+    return text + "\n";
+}
+
+std::string live_table(std::vector<json> const& live) {
+    std::string text =
+        "| scene | method | pictures/s | gap p99, ms | server | viewer | Msamples/s | kB/s | photon, ms | "
+        "PSNR | SSIM | FLIP | unsteady |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+    for (json const& scene : live) {
+        double least = INFINITY;
+        for (json const& f : scene["methods"]) {
+            least = std::min(least, f["mse"].get<double>());
+        }
+        for (auto const& [method, f] : scene["methods"].items()) {
+            bool const is_best = f["mse"] == least;
+            text += "| `" + scene["scene"].get<std::string>() + "` | `" + method + "` |";
+            text +=
+                printed(" %.1f | %.0f | %.2f | %.2f | %.2f | %.0f | ", f["pictures_per_second"].get<double>(),
+                        f["gap_p99_ms"].get<double>(), f["server_busy"].get<double>(), f["viewer_busy"].get<double>(),
+                        f["samples_per_second"].get<double>() / 1e6, f["kB_per_second"].get<double>());
+            text += f["photon_ms"].is_number() ? printed("%.0f", f["photon_ms"].get<double>()) : "-";
+            text += printed(is_best ? " | **%.2f**" : " | %.2f", psnr_from_mse(f["mse"]));
+            text += printed(" | %.3f | %.3f | %.1e |\n", f["ssim"].get<double>(), f["flip"].get<double>(),
+                            f["steadiness"].get<double>());
+        }
+    }
+    return text;
+}
+
+std::string feature_table(json const& rows) {
+    std::string text = "| `stop` | render, ns | all else, ns | rays | bytes |\n|---|---|---|---|---|\n";
+    for (json const& row : rows) {
+        text += printed("| %s | %.0f | %.0f | %.2f | %.2f |\n", row["what"].get<std::string>().c_str(),
+                        row["render_ns"].get<double>(), row["other_ns"].get<double>(), row["rays"].get<double>(),
+                        row["bytes"].get<double>());
+    }
+    return text;
+}
+
+/// A row a method, a column a machine.
+std::string speed_table(ReportFigures const& figures) {
+    auto const free = part(figures.runs, [](ReportRun const& run) { return run.link == 0; });
+    auto const machines = distinct(free, [](ReportRun const& run) { return run.machine; });
+    std::string text = "| samples a pixel and second |", line = "|---|";
+    for (double const machine : machines) {
+        text += printed(" %g |", machine);
+        line += "---|";
+    }
+    text += "\n" + line + "\n";
+    for (Curve const& curve : speed_chart(figures).curves) {
+        text += "| `" + curve.name + "` |";
+        for (double const y : curve.y) {
+            text += printed(" %.1f |", y);
+        }
+        text += "\n";
+    }
+    return text;
+}
+
+std::string processor_name() {
+    std::ifstream stream("/proc/cpuinfo");
+    for (std::string line; std::getline(stream, line);) {
+        if (line.starts_with("model name")) {
+            return line.substr(line.find(':') + 2);
+        }
+    }
+    return "an unknown processor";
+}
+
+std::string names_of(std::set<std::string> const& commits) {
+    std::string text;
+    for (std::string const& commit : commits) {
+        text += (text.empty() ? "" : ", ") + commit;
+    }
+    return text;
+}
+
+double nearest(std::vector<double> const& values, double wanted) {
+    return *std::ranges::min_element(values, {}, [&](double value) { return std::abs(std::log(value / wanted)); });
+}
+
+template <class Chart>
+void draw_png(Chart const& chart, std::filesystem::path const& stem) {
+    draw(chart, stem);
+    std::filesystem::remove(stem.string() + ".svg"); // the page shows the other one
+}
+
+} // namespace
+
+Spread spread_of(std::vector<double> values) {
+    FRAMELET_CHECK(!values.empty());
+    std::ranges::sort(values);
+    double sum = 0;
+    for (double& value : values) {
+        value = std::log(std::max(value, least_mse));
+        sum += value;
+    }
+    auto const at = [&](double share) {
+        double const place = share * static_cast<double>(values.size() - 1);
+        auto const below = static_cast<std::size_t>(place);
+        double const above = values[std::min(below + 1, values.size() - 1)];
+        return std::exp(values[below] + (place - static_cast<double>(below)) * (above - values[below]));
+    };
+    return {at(0.25), std::exp(sum / static_cast<double>(values.size())), at(0.75)};
+}
+
+Curves speed_chart(ReportFigures const& figures) {
+    return machine_chart(figures, "error over the reference's own noise", relative_error);
+}
+
+Curves flip_chart(ReportFigures const& figures) {
+    return machine_chart(figures, "FLIP", [](ReportRun const& run) { return run.flip; });
+}
+
+Curves steadiness_chart(ReportFigures const& figures) {
+    return machine_chart(figures, "unsteadiness (second difference of the error)",
+                         [](ReportRun const& run) { return run.unsteadiness; });
+}
+
+Curves bits_chart(ReportFigures const& figures) {
+    Curves chart{.title = "error over the reference's own noise: geometric mean over scenes, quartiles shaded",
+                 .x_title = "sent [bits a displayed pixel and second]",
+                 .y_title = "error over the reference's own noise",
+                 .log_x = true,
+                 .log_y = true,
+                 .curves = {}};
+    auto const linked = part(figures.runs, [](ReportRun const& run) { return run.link > 0; });
+    for (std::string const& method : distinct(linked, [](ReportRun const& run) { return run.method; })) {
+        Curve curve{method, {}, {}};
+        for (double const link : distinct(linked, [](ReportRun const& run) { return run.link; })) {
+            auto const runs = part(linked, [&](ReportRun const& r) { return r.method == method && r.link == link; });
+            Spread const error = spread_over(runs, relative_error);
+            curve.x.push_back(spread_over(runs, [](ReportRun const& run) { return run.bits; }).mean);
+            curve.y.push_back(error.mean);
+            curve.low.push_back(error.low);
+            curve.high.push_back(error.high);
+        }
+        chart.curves.push_back(std::move(curve));
+    }
+    return chart;
+}
+
+std::string report_page(ReportFigures const& figures, ReportOptions const& options, StudyOptions const& study,
+                        std::string const& command) {
+    RunParameters const& run = study.run;
+    double const machine = nearest(options.machines, 2 * core_rate / screen_pixels);
+    auto const at = [&](double wanted_machine, double link) {
+        return part(figures.runs, [=](ReportRun const& r) { return r.machine == wanted_machine && r.link == link; });
+    };
+    std::string page = "# Results\n\n    " + command + "\n\n";
+    page += "Commit " + names_of(figures.commits) +
+            printed(", %u cores of %s.", std::thread::hardware_concurrency(), processor_name().c_str());
+    page +=
+        printed(" Virtual clock: %zu scenes at %dx%d, %g s that see each scene's events, %g measurements a second.\n",
+                study.scenes.size(), run.viewport.width, run.viewport.height, run.seconds, run.reference_rate);
+    page +=
+        "Methods, machine, link and measures are explained in [tests/evaluation](../tests/evaluation/README.md); each "
+        "rival has the spacing and margin\nwith which it errs least. ";
+    page += options.quick ? "This is the quick run: it shows that the report works, and nothing else.\n" : "\n";
+
+    page += "\n## Speed against accuracy\n\n![error against speed](pictures/speed.png)\n\n" + speed_table(figures);
+    page +=
+        printed("\nMean squared error over that of the reference itself (%d samples a pixel), geometric mean over "
+                "scenes. A core is taken to shade %.1f million samples a\nsecond, as it does with a shadow ray each "
+                "and mirrors here and there; the link has no limit.\n",
+                study.samples_per_side * study.samples_per_side, core_rate / 1e6);
+    page += "\n![FLIP](pictures/flip.png)\n![unsteadiness](pictures/steadiness.png)\n";
+    if (!options.links.empty()) {
+        page += printed("\nOver links of several rates, %g ms each way, a machine of %g samples a pixel and second:\n",
+                        1e3 * options.link_delay, options.link_machine);
+        page += "\n![error against bits](pictures/bits.png)\n";
+    }
+
+    page +=
+        printed("\n## Against the best rival, scene by scene\n\nMSE of `framelet` over that of whichever rival errs "
+                "least in that phase; above 1, in bold, is a loss. An event lasts %g s.\n\n### %g samples a pixel "
+                "and second (1080p on two cores), no limit of the link\n\n",
+                event_seconds, machine);
+    page += ratio_table(at(machine, 0));
+    if (!options.links.empty()) {
+        double const link = options.links[options.links.size() / 2];
+        page += printed("\n### %g samples a pixel and second, %g bits a pixel and second, %g ms each way\n\n",
+                        options.link_machine, link, 1e3 * options.link_delay);
+        page += ratio_table(at(options.link_machine, link));
+    }
+    if (!figures.live.empty()) {
+        page +=
+            printed("\n## The real programs\n\n`framelet-bench live` at %dx%d for %g s: server and viewer on the same "
+                    "cores, a real socket, the clock running. The best picture in bold.\n\n",
+                    options.live.viewport.width, options.live.viewport.height, options.live.seconds);
+        page += live_table(figures.live);
+    }
+    page +=
+        printed("\n## What each kind of scene costs\n\nA sample of a session at %dx%d, one thread: the scene `stop`, "
+                "with one thing more in each row. While nothing moves the picture is refined, at last with four rays a "
+                "sample, and what it has is not sent again.\n\n",
+                options.feature_viewport.width, options.feature_viewport.height);
+    return page + feature_table(figures.features);
+}
+
+void write_report(ReportFigures const& figures, ReportOptions const& options, StudyOptions const& study,
+                  std::string const& command) {
+    auto const pictures = options.documents / "pictures";
+    std::filesystem::create_directories(pictures);
+    draw_png(speed_chart(figures), pictures / "speed");
+    draw_png(flip_chart(figures), pictures / "flip");
+    draw_png(steadiness_chart(figures), pictures / "steadiness");
+    if (!options.links.empty()) {
+        draw_png(bits_chart(figures), pictures / "bits");
+    }
+    auto const file = options.documents / "RESULTS.md";
+    std::ofstream stream(file);
+    stream << report_page(figures, options, study, command);
+    if (!stream.flush()) {
+        throw InputError("cannot write '" + file.string() + "'");
+    }
+    std::printf("%s\n", file.c_str());
+}
+
+} // namespace framelet::bench

@@ -1,0 +1,201 @@
+#include "tests/evaluation/report/report_runs.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "common/picture_writer.h"
+#include "tests/evaluation/comparison.h"
+#include "tests/evaluation/report/feature_cost.h"
+#include "tests/evaluation/report/run_store.h"
+#include "tests/evaluation/scene_events.h"
+
+namespace framelet::bench {
+namespace {
+
+using nlohmann::json;
+
+constexpr Viewport screenshot{448, 252};
+
+/// What a command prints, without the end of the line; empty where it fails.
+std::string output_of(std::string const& command) {
+    std::unique_ptr<FILE, int (*)(FILE*)> const pipe(popen(command.c_str(), "r"), pclose);
+    std::array<char, 256> line{};
+    if (!pipe || std::fgets(line.data(), line.size(), pipe.get()) == nullptr) {
+        return "";
+    }
+    std::string text = line.data();
+    text.erase(text.find_last_not_of('\n') + 1);
+    return text;
+}
+
+std::string commit_of_source() {
+    std::string const commit = output_of("git -C '" FRAMELET_SOURCE_DIR "' describe --always --dirty 2>/dev/null");
+    return commit.empty() ? "unknown" : commit;
+}
+
+std::string text_of(double value) {
+    char text[32];
+    std::snprintf(text, sizeof(text), "%g", value);
+    return text;
+}
+
+std::string text_of(Viewport const& size) {
+    return std::to_string(size.width) + "x" + std::to_string(size.height);
+}
+
+/// A scene's runs: loaded with the first that is not there yet.
+class SceneRuns {
+public:
+    SceneRuns(std::filesystem::path file, StudyOptions const& study, RunStore& store)
+        : file_(std::move(file)), study_(study), store_(store) {}
+
+    ReportRun run(std::string const& method, double machine, double link, double delay) {
+        RunParameters const& p = study_.run;
+        std::string const name = scene() + "-" + method + "-" + text_of(p.viewport) + "-" + text_of(p.seconds) + "s-" +
+                                 text_of(p.reference_rate) + "hz-m" + text_of(machine) + "-l" + text_of(link);
+        json const figures = store_.get(name, [&] { return measure_run(method, machine, link, delay); });
+        ReportRun result{scene(), method, machine, link, noise(), 0, 0, 0, 0, {}};
+        result.mse = figures["mean"]["mse"];
+        result.flip = figures["mean"]["flip"];
+        result.unsteadiness = figures["mean"]["unsteadiness"];
+        result.bits = 8 * figures["bytes"].get<double>() / (pixels() * p.seconds);
+        result.phases = means_by_phase(figures["mse"]);
+        return result;
+    }
+
+private:
+    std::string scene() const { return file_.stem().string(); }
+    double pixels() const { return static_cast<double>(study_.run.viewport.width) * study_.run.viewport.height; }
+
+    Subject& subject() {
+        if (!subject_) {
+            StudyOptions whole = study_;
+            whole.sees_events = true;
+            whole.run.frames_per_second = 1;
+            subject_.emplace(prepare(file_, whole));
+        }
+        return *subject_;
+    }
+
+    /// Of the reference: against one of a hundred times as many samples, which has next to none.
+    double noise() {
+        RunParameters const& p = study_.run;
+        std::string const name = scene() + "-noise-" + text_of(p.viewport) + "-" + text_of(p.seconds) + "s";
+        return store_.get(name, [&] {
+            Subject& s = subject();
+            std::size_t const middle = reference_count(s.run) / 2;
+            pose_at(*s.scene, s.run.start + reference_time(s.run, middle));
+            Picture const clean = render_reference(*s.scene, s.run.viewport, 16);
+            return json(mean_squared_error(s.reference.picture(middle), clean));
+        });
+    }
+
+    json measure_run(std::string const& method, double machine, double link, double delay) {
+        Subject& s = subject();
+        RunParameters run = s.run;
+        run.frames_per_second = machine;
+        run.link.bits_per_second = link * pixels();
+        run.link.delay_seconds = delay;
+        Comparison comparison;
+        comparison.parameters = run;
+        comparison.records.push_back(
+            record_method(*s.scene, s.reference, method, run, s.machine / machine, study_.costs));
+        json figures = to_json(comparison)["methods"][0];
+        for (char const* const list : {"ssim", "flip", "age", "displayed"}) {
+            figures.erase(list);
+        }
+        return figures;
+    }
+
+    std::map<std::string, double> means_by_phase(std::vector<double> const& errors) const {
+        SceneEvents const events = events_of(scene());
+        double const start = window_start(scene(), study_.run.seconds);
+        std::map<std::string, std::pair<double, double>> sums;
+        for (std::size_t i = 0; i < errors.size(); ++i) {
+            Phase const phase = phase_at(events, start + reference_time(study_.run, i));
+            auto& [sum, count] = sums[phase == Phase::moving ? "moving" : phase == Phase::event ? "event" : "settled"];
+            sum += errors[i];
+            ++count;
+        }
+        std::map<std::string, double> means;
+        for (auto const& [phase, sum] : sums) {
+            means[phase] = sum.first / sum.second;
+        }
+        return means;
+    }
+
+    std::filesystem::path const file_;
+    StudyOptions const& study_;
+    RunStore& store_;
+    std::optional<Subject> subject_;
+};
+
+/// What `framelet` shows in the middle of its run; written where it is not there yet.
+std::string take_screenshot(std::filesystem::path const& scene, ReportOptions const& options, StudyOptions const& study,
+                            RunStore& store) {
+    std::string const name = scene.stem().string();
+    StudyOptions small = study;
+    small.sees_events = true;
+    small.run.viewport = options.quick ? study.run.viewport : screenshot;
+    std::string const run = name + "-picture-" + text_of(small.run.viewport);
+    auto const kept = store.folder() / (run + ".png");
+    store.get(run, [&] {
+        small.run.frames_per_second = options.link_machine;
+        small.run.reference_rate = 10;
+        Subject const subject = prepare(scene, small);
+        write_png(kept, record_method(*subject.scene, subject.reference, "framelet", subject.run, subject.machine,
+                                      study.costs)
+                            .sample);
+        return json(true);
+    });
+    std::filesystem::create_directories(options.documents / "pictures");
+    std::filesystem::copy_file(kept, options.documents / "pictures" / (name + ".png"),
+                               std::filesystem::copy_options::overwrite_existing);
+    return name;
+}
+
+} // namespace
+
+ReportFigures measure_report(ReportOptions const& options, StudyOptions const& study) {
+    ReportFigures figures;
+    figures.commit = commit_of_source();
+    std::size_t const runs_a_scene =
+        1 + options.machines.size() * study.methods.size() + options.links.size() * options.linked_methods.size();
+    // The noise is asked for with each run.
+    std::size_t const expected =
+        study.scenes.size() * (2 * runs_a_scene - 2) + options.pictured_scenes.size() + options.live_scenes.size() + 1;
+    RunStore store(options.folder, figures.commit, expected);
+    for (auto const& file : study.scenes) {
+        SceneRuns scene(file, study, store);
+        for (double const machine : options.machines) {
+            for (std::string const& method : study.methods) {
+                figures.runs.push_back(scene.run(method, machine, 0, 0));
+            }
+        }
+        for (double const link : options.links) {
+            for (std::string const& method : options.linked_methods) {
+                figures.runs.push_back(scene.run(method, options.link_machine, link, options.link_delay));
+            }
+        }
+    }
+    for (auto const& file : options.pictured_scenes) {
+        figures.pictures.push_back(take_screenshot(file, options, study, store));
+    }
+    for (auto const& file : options.live_scenes) {
+        figures.live.push_back(
+            store.get(file.stem().string() + "-live-" + text_of(options.live.viewport) + "-" +
+                          text_of(options.live.seconds) + "s",
+                      [&] { return measure_live(*load_bench_scene(file, study.camera), options.live); }));
+    }
+    figures.features = store.get("features-" + text_of(options.feature_viewport), [&] {
+        return measure_feature_costs(FRAMELET_SOURCE_DIR "/scenes/stop.glb", options.feature_viewport,
+                                     options.quick ? 0.3 : 2);
+    });
+    figures.commits = store.commits();
+    return figures;
+}
+
+} // namespace framelet::bench

@@ -1,0 +1,54 @@
+// All that the report measures. In: what it is told. Out: plain figures, as many as the page needs.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/evaluation/live/live.h"
+#include "tests/evaluation/study.h"
+
+namespace framelet::bench {
+
+struct ReportOptions {
+    std::filesystem::path folder = "report"; ///< keeps each run's figures
+    std::filesystem::path documents = FRAMELET_SOURCE_DIR "/docs"; ///< where RESULTS.md and pictures/ go
+    std::vector<double> machines; ///< samples a displayed pixel and second
+    std::vector<double> links; ///< bits a displayed pixel and second
+    double link_machine = 10; ///< of the runs over links
+    double link_delay = 0.02; ///< seconds each way
+    std::vector<std::string> linked_methods; ///< of those of the study, which go over links
+    std::vector<std::filesystem::path> live_scenes, pictured_scenes; ///< files
+    LiveOptions live;
+    Viewport feature_viewport{1280, 720};
+    bool quick = false; ///< said on the page
+};
+
+/// One method in one scene on one machine and link.
+struct ReportRun {
+    std::string scene, method;
+    double machine = 0; ///< samples a displayed pixel and second
+    double link = 0; ///< bits a displayed pixel and second; 0: no limit
+    double noise = 0; ///< mean squared error of the reference itself
+    double mse = 0, flip = 0, unsteadiness = 0; ///< means
+    double bits = 0; ///< sent, a displayed pixel and second
+    std::map<std::string, double> phases; ///< mean squared error while "moving", at an "event", when "settled"
+};
+
+struct ReportFigures {
+    std::vector<ReportRun> runs;
+    std::vector<nlohmann::json> live; ///< as measure_live returns them
+    nlohmann::json features; ///< as measure_feature_costs returns them
+    std::vector<std::string> pictures; ///< stems in the documents' pictures/
+    std::string commit; ///< of this program
+    std::set<std::string> commits; ///< of all figures
+};
+
+/// Runs what `options.folder` does not have. Of `study`, scenes, methods, size, seconds and rate count.
+ReportFigures measure_report(ReportOptions const& options, StudyOptions const& study);
+
+} // namespace framelet::bench
