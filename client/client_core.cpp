@@ -79,6 +79,7 @@ struct ClientCore::Impl {
     std::uint64_t last_batch = 0;
     Camera shown_camera;
     SceneTime shown_time = 0;
+    double making_seconds = 0; ///< that a picture took lately
     bool is_smooth = false;
     Status status;
     Clock::time_point status_time = start;
@@ -226,7 +227,7 @@ struct ClientCore::Impl {
             }
         }
         Clock::time_point const after = Clock::now();
-        double const coverage = taken.empty() ? -1 : maker->cache().coverage();
+        double const coverage = taken.empty() ? -1 : maker->coverage();
         std::lock_guard const lock(mutex);
         statistics.stale_batches += stale;
         statistics.insert_seconds += seconds_between(before, after);
@@ -244,7 +245,7 @@ struct ClientCore::Impl {
     void note_held(double coverage, Clock::time_point now) {
         if (coverage >= 0) {
             statistics.coverage = coverage;
-            statistics.cached_framelets = maker->cache().framelet_count();
+            statistics.cached_framelets = maker->pool().framelet_count();
         }
         statistics.cached_bytes = maker->memory_bytes();
         statistics.lag_seconds = maker->is_smooth() ? picture_settings.lag_seconds : 0;
@@ -264,15 +265,26 @@ struct ClientCore::Impl {
         return out;
     }
 
+    /// Of what will be the present when the picture is made; not where the scene is to be late anyway.
     PictureRequest picture_request() const {
         std::lock_guard const lock(mutex);
-        ClockState const clock = clock_now();
+        ClockState clock = clock_now();
+        if (clock.playing && !is_smooth) {
+            clock.time += making_seconds * static_cast<double>(clock.speed);
+            clock.time = std::clamp(clock.time, 0.0, max_scene_time);
+        }
         return {view.view.camera,
                 view.view.number,
                 view.scene_camera,
                 clock.time,
                 static_cast<double>(clock.speed),
                 seconds_between(start, Clock::now())};
+    }
+
+    /// Under the lock.
+    void note_making(double seconds) {
+        constexpr double weight = 0.2, most = 0.1;
+        making_seconds += weight * (std::min(seconds, most) - making_seconds);
     }
 
     /// How old what the last picture shows is; -1: nothing new. Under the lock.
@@ -393,6 +405,7 @@ bool ClientCore::update_picture(Picture& picture, std::vector<PixelRect>& change
         core.statistics.pixels += static_cast<std::uint64_t>(rect.width()) * static_cast<std::uint64_t>(rect.height());
     }
     core.statistics.reconstruct_seconds += seconds_between(before, after);
+    core.note_making(seconds_between(before, after));
     ++core.statistics.pictures;
     if (core.statistics.first_picture_seconds < 0 && core.first_camera_time) {
         core.statistics.first_picture_seconds = seconds_between(*core.first_camera_time, after);

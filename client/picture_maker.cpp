@@ -10,7 +10,7 @@
 namespace framelet {
 
 PictureMaker::PictureMaker(Viewport viewport, PictureSettings const& settings)
-    : settings_(settings), cache_(ImagePlane(viewport)) {
+    : settings_(settings), pool_(ImagePlane(viewport)) {
     start_smoothing();
 }
 
@@ -27,7 +27,7 @@ void PictureMaker::start_smoothing() {
     late_clock_ = LateClock(settings_.lag_seconds);
     shown_pixels_ = nullptr; // all of it anew
     if (settings_.lag_seconds > 0 && settings_.reproject && settings_.scene_moves) {
-        smoother_.emplace(cache_.plane());
+        smoother_.emplace(pool_.plane());
     }
 }
 
@@ -38,7 +38,10 @@ void PictureMaker::insert(Batch const& batch) {
     }
     batch_view_ = batch.view;
     batch_time_ = batch.scene_time;
-    cache_.insert(batch);
+    if (settings_.reproject && pool_.begins_moment(batch)) {
+        let_go();
+    }
+    pool_.insert(batch, settings_.reproject);
     if (smoother_) {
         smoother_->insert(batch);
     }
@@ -47,6 +50,16 @@ void PictureMaker::insert(Batch const& batch) {
     }
     if (batch.camera_track) {
         cameras_.extend(*batch.camera_track);
+    }
+}
+
+/// What of older moments shows nowhere makes room, and no longer costs time.
+void PictureMaker::let_go() {
+    for (std::size_t slot = 0; slot < pool_.slot_count(); ++slot) {
+        shown_tiles_.clear();
+        if (pool_.is_tried(slot) && !smoother_ && reprojector_.add_shown(slot, shown_tiles_)) {
+            pool_.keep(slot, shown_tiles_);
+        }
     }
 }
 
@@ -72,7 +85,7 @@ bool PictureMaker::show(PictureRequest const& request, Picture& picture, std::ve
     Viewport const size = viewport();
     bool const whole =
         picture.rgba.data() != shown_pixels_ || picture.width != size.width || picture.height != size.height;
-    cache_.take_changed(changed);
+    pool_.newest().take_changed(changed);
     if (whole) {
         picture = Picture(size.width, size.height);
         reprojector_ = Reprojector();
@@ -86,7 +99,7 @@ bool PictureMaker::show(PictureRequest const& request, Picture& picture, std::ve
         shown_camera_ = batch_view_.camera;
         shown_camera_number_ = batch_view_.number;
         shown_time_ = batch_time_;
-        reconstruct(cache_, changed, picture);
+        reconstruct(pool_.newest(), changed, picture);
         return !changed.empty();
     }
     auto const [camera, time] = wanted(request);
@@ -96,9 +109,11 @@ bool PictureMaker::show(PictureRequest const& request, Picture& picture, std::ve
     arrived_.swap(changed);
     if (smoother_) {
         SceneTime const lag = settings_.lag_seconds * std::abs(request.clock_speed);
-        smoother_->show(cache_, arrived_, camera, time, lag, motions_, picture, changed);
+        smoother_->show(pool_, arrived_, camera, time, lag, motions_, picture, changed);
+        pool_.note_shown(smoother_->shown_blocks());
     } else {
-        reprojector_.show(cache_, arrived_, camera, time, motions_, picture, changed);
+        reprojector_.show(pool_, arrived_, camera, time, motions_, picture, changed);
+        pool_.note_shown(reprojector_.shown_blocks());
     }
     return !changed.empty();
 }
@@ -108,16 +123,21 @@ void PictureMaker::draw_over(DrawnOver what, Picture& picture) const {
         return;
     }
     if (what == DrawnOver::outlines || !settings_.reproject) {
-        draw_outlines(cache_, picture);
+        draw_outlines(pool_.newest(), picture);
         return;
     }
     std::vector<PixelConfidence> confidence;
-    find_confidence(cache_, shown_camera_, shown_time_, motions_, confidence);
+    find_confidence(pool_, shown_camera_, shown_time_, motions_, confidence);
     draw_confidence(confidence, picture);
 }
 
+double PictureMaker::coverage() const {
+    bool const moves = settings_.reproject && shown_pixels_ != nullptr && !smoother_ && !reprojector_.is_exact();
+    return moves ? 1 - reprojector_.hole_share() : pool_.newest().coverage();
+}
+
 std::size_t PictureMaker::memory_bytes() const {
-    return cache_.memory_bytes() + (smoother_ ? smoother_->memory_bytes() : 0);
+    return pool_.memory_bytes() + (smoother_ ? smoother_->memory_bytes() : 0);
 }
 
 } // namespace framelet

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "client/late_clock.h"
-#include "common/framelet_cache.h"
 #include "common/image.h"
+#include "common/picture/framelet_pool.h"
 #include "common/reprojector.h"
 #include "common/scene_smoother.h"
 
@@ -38,14 +38,14 @@ class PictureMaker {
 public:
     PictureMaker(Viewport viewport, PictureSettings const& settings);
 
-    Viewport viewport() const { return cache_.plane().viewport(); }
+    Viewport viewport() const { return pool_.plane().viewport(); }
     /// The next picture is made as a whole where they differ from what they were.
     void set(PictureSettings const& settings);
 
     /// The batch must be of this viewport.
     void insert(Batch const& batch);
-    bool is_empty() const { return cache_.framelet_count() == 0; }
-    FrameletCache const& cache() const { return cache_; }
+    bool is_empty() const { return pool_.framelet_count() == 0; }
+    FrameletPool const& pool() const { return pool_; }
 
     /// Brings `picture` up to date. True when it changed; `changed` gets the rectangles that may differ. A picture that
     /// is not the one of the last call, or has another size, is written as a whole. Nothing happens while nothing is
@@ -61,15 +61,18 @@ public:
     std::uint64_t shown_camera_number() const { return shown_camera_number_; }
     /// True when it was `reconstruct`'s as a whole: nothing in it was moved.
     bool is_exact() const { return !settings_.reproject || (!smoother_ && reprojector_.is_exact()); }
+    /// Share of the picture that what is held shows; once moved, of the last picture. [0, 1].
+    double coverage() const;
     bool is_smooth() const { return smoother_.has_value(); }
     std::size_t memory_bytes() const;
 
 private:
     void start_smoothing();
+    void let_go();
     std::pair<Camera, SceneTime> wanted(PictureRequest const& request);
 
     PictureSettings settings_;
-    FrameletCache cache_;
+    FrameletPool pool_;
     BodyMotions motions_;
     BodyMotions cameras_; ///< tracks of the scene's, as `camera_body`
     Reprojector reprojector_;
@@ -81,6 +84,7 @@ private:
     std::uint64_t shown_camera_number_ = 0;
     SceneTime shown_time_ = 0;
     std::uint8_t const* shown_pixels_ = nullptr; ///< recognises the caller's picture
+    std::vector<Tile> shown_tiles_; ///< scratch
     std::vector<PixelRect> arrived_; ///< scratch: where batches have changed something
 };
 

@@ -1,11 +1,11 @@
 // How far each pixel of a moved picture is to be trusted: how old what it shows is, how coarse, or whether it is made
-// up. In: cache, display camera and time, motions of bodies. Out: a picture of that.
+// up. In: pool, display camera and time, motions of bodies. Out: a picture of that.
 #pragma once
 
 #include <vector>
 
 #include "common/body_motion.h"
-#include "common/framelet_cache.h"
+#include "common/picture/framelet_pool.h"
 
 namespace framelet {
 
@@ -15,12 +15,12 @@ struct PixelConfidence {
 
     float seconds = made_up; ///< of scene time since it was rendered, >= 0
     float spacing = 0; ///< of its samples, pixels of the picture that it was rendered for; 0 in a hole
-    bool is_spare = false; ///< no longer in place: it shows for lack of anything else
+    bool is_spare = false; ///< of an older moment than the newest: nothing better has come
 };
 
-/// Replaces `out` by every pixel of the cache's viewport, in rows, as `Reprojector::show` would show it if the camera
+/// Replaces `out` by every pixel of the viewport, in rows, as `Reprojector::show` would show it if the camera
 /// has not cut. Takes about as long as showing the whole picture anew; for looking at it, not for every picture.
-void find_confidence(FrameletCache const& cache, Camera const& camera, SceneTime scene_time, BodyMotions const& motions,
+void find_confidence(FrameletPool const& pool, Camera const& camera, SceneTime scene_time, BodyMotions const& motions,
                      std::vector<PixelConfidence>& out);
 
 } // namespace framelet

@@ -258,6 +258,49 @@ void FrameletCache::refresh(int depth, int column, int row, std::uint32_t view) 
     }
 }
 
+void FrameletCache::keep(std::span<Tile const> tiles) {
+    std::vector<std::uint8_t> kept(slot_tiles_.size());
+    for (Tile const tile : tiles) {
+        std::int32_t const slot =
+            node(tile.depth(), static_cast<int>(tile.column()), static_cast<int>(tile.row())).slot;
+        if (slot != no_slot) {
+            kept[static_cast<std::size_t>(slot)] = 1;
+        }
+    }
+    for (std::size_t slot = 0; slot < slot_tiles_.size(); ++slot) {
+        Tile const tile = slot_tiles_[slot];
+        if (tile == no_tile || kept[slot] != 0) {
+            continue;
+        }
+        mark(plane_.tile_rect(tile));
+        int const depth = tile.depth();
+        int const column = static_cast<int>(tile.column());
+        int const row = static_cast<int>(tile.row());
+        drop(node(depth, column, row), held(static_cast<std::int32_t>(slot)).view);
+        for (int d = depth; d >= plane_.min_depth(); --d) {
+            refresh(d, column >> (depth - d), row >> (depth - d), 0);
+        }
+    }
+}
+
+void FrameletCache::clear() {
+    for (std::size_t slot = 0; slot < slot_tiles_.size(); ++slot) {
+        if (!(slot_tiles_[slot] == no_tile)) {
+            Tile const tile = slot_tiles_[slot];
+            set_version(tile, 0);
+            mark(plane_.tile_rect(tile));
+            release(static_cast<std::int32_t>(slot));
+        }
+    }
+    for (Spare const& spare : spares_.all()) {
+        release(spare);
+    }
+    spares_.clear();
+    std::ranges::fill(nodes_, Node{});
+    views_.clear();
+    count_ = 0;
+}
+
 void FrameletCache::mark_block(int column, int row) {
     Level const& blocks = level(plane_.pixel_depth());
     std::size_t const index =
@@ -348,6 +391,13 @@ double FrameletCache::coverage() const {
     }
     Viewport const viewport = plane_.viewport();
     return area / (static_cast<double>(viewport.width) * static_cast<double>(viewport.height));
+}
+
+bool FrameletCache::is_covered_from(int depth) const {
+    Level const& l = level(depth);
+    auto const first = nodes_.begin() + static_cast<std::ptrdiff_t>(l.first);
+    return std::all_of(first, first + static_cast<std::ptrdiff_t>(l.columns) * l.rows,
+                       [](Node const& node) { return node.cover > 0; });
 }
 
 std::size_t FrameletCache::memory_bytes() const {

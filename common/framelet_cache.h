@@ -88,6 +88,11 @@ public:
     /// batch; nothing is allocated unless more framelets are held than ever before.
     std::size_t insert(Batch const& batch);
 
+    /// Nothing is held any more.
+    void clear();
+    /// Nothing but these is.
+    void keep(std::span<Tile const> tiles);
+
     /// The cameras and scene times of which framelets or spares are held, and free entries.
     std::span<HeldView const> views() const { return views_; }
 
@@ -99,6 +104,8 @@ public:
 
     /// Share of the viewport's area that some framelet covers, [0, 1].
     double coverage() const;
+    /// True when framelets of this depth or deeper cover all of it.
+    bool is_covered_from(int depth) const;
     std::size_t framelet_count() const { return count_; }
     std::size_t memory_bytes() const;
 

@@ -7,6 +7,8 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "common/sample_worth.h"
+
 namespace framelet {
 
 namespace {
@@ -17,6 +19,10 @@ constexpr double nearest = 1e-3;
 /// No splat is smaller (between pixels' centres it would vanish) or larger than this, pixels.
 constexpr double smallest_splat = 0.75;
 constexpr double largest_splat = 32;
+
+/// Samples that are farther apart than the coarsest framelet's, pixels, say too little of where their surface ends to
+/// hide anything; the plane of a few that is seen from its side now may not even be one.
+constexpr float most_hiding = 8.5f;
 
 /// Numbers as large as this, and what is not a number, do not get into a patch.
 constexpr double largest = 1e18;
@@ -74,10 +80,10 @@ bool is_usable(WarpPatch const& patch) {
 
 } // namespace
 
-FrameletWarp::FrameletWarp(FrameletCache const& cache, Camera const& display, SceneTime time,
+FrameletWarp::FrameletWarp(FrameletCache const& cache, std::size_t slot, Camera const& display, SceneTime time,
                            BodyMotions const& motions)
-    : cache_(cache), display_(display), display_rays_(make_view_rays(display, cache.plane().viewport())), time_(time),
-      motions_(motions) {}
+    : cache_(cache), slot_(slot), display_(display), display_rays_(make_view_rays(display, cache.plane().viewport())),
+      time_(time), motions_(motions) {}
 
 void FrameletWarp::add(CachedFramelet const& framelet, unsigned parts, std::vector<WarpPatch>& patches,
                        std::vector<Splat>& splats) {
@@ -85,7 +91,7 @@ void FrameletWarp::add(CachedFramelet const& framelet, unsigned parts, std::vect
     WarpPatch common;
     common.side = common.stride = shape.side;
     common.grid = shape.side == framelet_side ? framelet.samples.data() : shape.reduced.data();
-    common.group = group_of(framelet.view, framelet.tile.depth());
+    common.group = group_of(slot_, framelet.view, framelet.tile.depth());
     common.batch = framelet.moment.batch;
     rect_ = cache_.plane().tile_rect(framelet.tile);
     spacing_ = static_cast<double>(rect_.width()) / shape.side;
@@ -96,11 +102,13 @@ void FrameletWarp::add(CachedFramelet const& framelet, unsigned parts, std::vect
         WarpPatch patch = common;
         patch.layer = i;
         patch.place = framelet.tile.code * 4 + i;
-        add_layer(framelet.view, shape.layers[i], framelet.moment.batch, patch, patches);
+        add_layer(framelet.view, shape.layers[i], shape.fading, framelet.moment.batch, patch, patches);
     }
     if ((parts >> FrameletShape::loose & 1) != 0 && !shape.loose.empty()) {
         common.is_loose = true;
         common.layer = FrameletShape::loose;
+        auto const age = static_cast<float>(time_ - cache_.views()[framelet.view].scene_time);
+        common.worn = worn_spacing(static_cast<float>(spacing_), age, shape.fading);
         common.place = framelet.tile.code * 4 + FrameletShape::loose;
         common.first_splat = static_cast<std::uint32_t>(splats.size());
         add_splats(framelet, common, splats);
@@ -118,26 +126,52 @@ void FrameletWarp::add(MergedLayer const& merged, std::vector<WarpPatch>& patche
     patch.grid = merged.grid;
     patch.side = merged.side;
     patch.stride = merged.stride;
-    patch.group = group_of(merged.view, merged.first.depth());
+    patch.group = group_of(slot_, merged.view, merged.first.depth());
     patch.batch = merged.newest_batch;
     patch.layer = merged.number;
     patch.occupied = merged.occupied;
     patch.place = merged.first.code * 4 + merged.first_layer;
     rect_ = cache_.plane().tile_rect(merged.tile);
     spacing_ = static_cast<double>(rect_.width()) / merged.side;
-    add_layer(merged.view, merged.layer, merged.signature, patch, patches);
+    add_layer(merged.view, merged.layer, merged.fading, merged.signature, patch, patches);
 }
 
-void FrameletWarp::add_layer(std::uint32_t view, HeldLayer const& layer, std::uint64_t content, WarpPatch& patch,
-                             std::vector<WarpPatch>& patches) {
+void FrameletWarp::add_layer(std::uint32_t view, HeldLayer const& layer, FadingCode fading, std::uint64_t content,
+                             WarpPatch& patch, std::vector<WarpPatch>& patches) {
     if (layer.last_column < layer.first_column || !is_usable(layer.layer)) {
         return;
     }
     turn_to(view, layer.layer.body, layer.layer.velocity);
     if ((is_still_ ? place_still(layer, patch) : place(layer, patch)) && is_usable(patch)) {
+        rate(view, fading, layer.layer.error, patch);
         patch.signature = signature_of(patch, content, {});
         patches.push_back(patch);
     }
+}
+
+/// In steps of a quarter of an octave, so that what is about as good does not change places from picture to picture.
+void FrameletWarp::rate(std::uint32_t view, FadingCode fading, float error, WarpPatch& patch) const {
+    float const x = 0.5f * static_cast<float>(patch.box.width());
+    float const y = 0.5f * static_cast<float>(patch.box.height());
+    auto const at = [&](std::size_t i) { return patch.at[i] + x * patch.dx[i] + y * patch.dy[i]; };
+    float const z = at(2);
+    float const u = at(0) / z;
+    float const v = at(1) / z;
+    // Samples a pixel, by the derivatives there; where they are farthest apart counts.
+    float const ux = (patch.dx[0] - u * patch.dx[2]) / z, uy = (patch.dy[0] - u * patch.dy[2]) / z;
+    float const vx = (patch.dx[1] - v * patch.dx[2]) / z, vy = (patch.dy[1] - v * patch.dy[2]) / z;
+    float const squares = ux * ux + uy * uy + vx * vx + vy * vy;
+    float const area = ux * vy - uy * vx;
+    float const least = 0.5f * (squares - std::sqrt(std::max(squares * squares - 4 * area * area, 0.0f)));
+    float const spacing = 1 / std::sqrt(std::max(least, 1e-6f));
+    // By so many pixels its samples may be shown off their places: their inverse depths are not quite the plane's.
+    float const misplaced = is_still_ ? 0 : error * static_cast<float>(parallax_) * z;
+    auto const age = static_cast<float>(time_ - cache_.views()[view].scene_time);
+    float const worst = 1e3f;
+    float const steps =
+        4 * std::log2(std::min(worn_spacing(spacing, age, fading) + misplaced, worst)); // not what is no number
+    patch.worn = std::exp2(std::round(steps) / 4);
+    patch.hides = spacing < most_hiding;
 }
 
 double FrameletWarp::inverse_depth_within(double pixels, MergedLayer const& merged) {

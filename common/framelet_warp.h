@@ -19,7 +19,9 @@ class FrameletWarp {
 public:
     static constexpr unsigned all_parts = (2u << FrameletShape::loose) - 1;
 
-    FrameletWarp(FrameletCache const& cache, Camera const& display, SceneTime time, BodyMotions const& motions);
+    /// `slot`: of the cache in its pool.
+    FrameletWarp(FrameletCache const& cache, std::size_t slot, Camera const& display, SceneTime time,
+                 BodyMotions const& motions);
 
     /// Bit i of `parts`: layer i; bit `FrameletShape::loose`: what is loose.
     void add(CachedFramelet const& framelet, unsigned parts, std::vector<WarpPatch>& patches,
@@ -34,14 +36,16 @@ private:
     void turn_to(std::uint32_t view, BodyNumber body, Vec3 const& velocity);
     glm::dvec2 low(HeldLayer const& layer) const;
     glm::dvec2 high(HeldLayer const& layer) const;
-    void add_layer(std::uint32_t view, HeldLayer const& layer, std::uint64_t content, WarpPatch& patch,
-                   std::vector<WarpPatch>& patches);
+    void add_layer(std::uint32_t view, HeldLayer const& layer, FadingCode fading, std::uint64_t content,
+                   WarpPatch& patch, std::vector<WarpPatch>& patches);
+    void rate(std::uint32_t view, FadingCode fading, float error, WarpPatch& patch) const;
     bool place_still(HeldLayer const& held, WarpPatch& patch) const;
     bool place(HeldLayer const& held, WarpPatch& patch) const;
     void set_maps(PlaneTransform const& plane, WarpPatch& patch) const;
     void add_splats(CachedFramelet const& framelet, WarpPatch& patch, std::vector<Splat>& splats);
 
     FrameletCache const& cache_;
+    std::size_t slot_;
     Camera const& display_;
     ViewRays display_rays_;
     SceneTime time_;

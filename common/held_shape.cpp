@@ -185,6 +185,7 @@ void hold(DisplayFramelet const& framelet, FrameletShape const* shape, int sampl
     held.layer_count = shape == nullptr ? 1 : shape->layer_count;
     held.side = static_cast<std::uint8_t>(framelet_side / samples_per_pixel);
     held.moves = false;
+    held.fading = shape == nullptr ? FadingCode{0} : shape->fading;
     held.layers.fill({});
     held.loose.clear();
     if (shape != nullptr) {

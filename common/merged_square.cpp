@@ -179,6 +179,7 @@ MergedLayer MergedSquare::merge(JoinedLayer const& joined) const {
             }
             layer.error = std::max(layer.error, rows.error[place]);
             out.newest_batch = std::max(out.newest_batch, layers_->batch(place));
+            out.fading = std::max(out.fading, children_[place].framelet->shape.fading);
             out.signature = combine(out.signature, layers_->batch(place) * 256 + number);
         }
     }

@@ -30,6 +30,7 @@ struct MergedLayer {
     PackedSample const* grid = nullptr;
     std::uint32_t number = 0; ///< that its samples have in the grid, as it were a layer's
     std::uint64_t newest_batch = 0;
+    FadingCode fading = 0; ///< the soonest
     std::uint64_t signature = 0; ///< differs where what is held differs
     /// Bit p of word k: layer k of the framelet at place p.
     std::array<std::uint64_t, max_layers> parts{};
@@ -65,12 +66,12 @@ public:
     std::span<JoinedLayer const> fours() const { return fours_; }
     /// One of these, or a four.
     MergedLayer merge(JoinedLayer const& joined) const;
+    Tile child_tile(std::size_t place) const;
     /// Bit i: child i has loose samples.
     std::uint64_t loose_children() const { return loose_children_; }
 
 private:
     int levels() const { return depth_ - square_.depth(); } ///< of the children below the square
-    Tile child_tile(std::size_t place) const;
     std::uint64_t changes(SquareVersions const& versions) const;
     void load(FrameletCache const& cache, std::uint64_t changed);
     void make_room(ImagePlane const& plane);

@@ -88,6 +88,15 @@ std::uint64_t combine(std::uint64_t state, std::uint64_t value) {
     return state ^ state >> 32;
 }
 
+/// Of pixels of a block: a bit for each slot of which something shows.
+std::uint32_t slots_of(WarpedBlock const& block) {
+    std::uint32_t slots = 0;
+    for (std::int32_t const group : block.group) {
+        slots |= group < 0 ? 0 : 1u << slot_of_group(group);
+    }
+    return slots;
+}
+
 std::uint64_t signature_of(std::span<PatchView const> patches, bool in_place) {
     std::uint64_t state = in_place ? 2 : 1;
     for (PatchView const& view : patches) {
@@ -131,16 +140,25 @@ void write_plane(std::array<float, WarpedBlock::pixels> const& from, int left, i
 
 } // namespace
 
-void Reprojector::show_exact(FrameletCache const& cache, std::span<PixelRect const> changed, Picture& picture,
+/// All that is held stays where it is, and no older moment may have what the newest one lacks.
+bool Reprojector::is_in_place(FrameletPool const& pool, Camera const& camera, SceneTime scene_time) const {
+    FrameletCache const& newest = pool.newest();
+    return is_all_in_place(newest, camera, scene_time) &&
+           (pool.framelet_count() == newest.framelet_count() || newest.is_covered_from(newest.plane().pixel_depth()));
+}
+
+void Reprojector::show_exact(FrameletPool const& pool, std::span<PixelRect const> changed, Picture& picture,
                              std::vector<PixelRect>& repainted) {
-    if (has_shown_ && is_exact_) {
-        reconstruct(cache, changed, picture);
+    if (has_shown_ && is_exact_ && exact_slot_ == pool.newest_slot()) {
+        reconstruct(pool.newest(), changed, picture);
         repainted.assign(changed.begin(), changed.end());
     } else {
-        reconstruct_all(cache, picture);
+        reconstruct_all(pool.newest(), picture);
         repainted.assign(1, {0, 0, picture.width, picture.height});
     }
+    exact_slot_ = pool.newest_slot();
     is_exact_ = true;
+    painted_all_ = false;
     hole_share_ = 0;
 }
 
@@ -156,112 +174,139 @@ void Reprojector::start_moving(Viewport viewport, std::size_t blocks) {
     is_exact_ = false;
 }
 
-void Reprojector::show(FrameletCache const& cache, std::span<PixelRect const> changed, Camera const& camera,
+void Reprojector::show(FrameletPool const& pool, std::span<PixelRect const> changed, Camera const& camera,
                        SceneTime scene_time, BodyMotions const& motions, Picture& picture,
                        std::vector<PixelRect>& repainted) {
-    Viewport const viewport = cache.plane().viewport();
+    Viewport const viewport = pool.plane().viewport();
     FRAMELET_CHECK(picture.width == viewport.width && picture.height == viewport.height);
-    if (is_all_in_place(cache, camera, scene_time)) {
-        show_exact(cache, changed, picture, repainted);
+    if (is_in_place(pool, camera, scene_time)) {
+        show_exact(pool, changed, picture, repainted);
         has_shown_ = true;
         return;
     }
-    plan_.make(cache, camera, scene_time, motions);
-    spare_plan_.make_spares(cache, camera, scene_time, motions);
-    int const columns = plan_.columns();
-    start_moving(viewport, static_cast<std::size_t>(columns) * static_cast<std::size_t>(plan_.rows()));
+    while (plans_.size() < pool.slot_count()) {
+        plans_.emplace_back();
+    }
+    for (std::size_t i = 0; i < pool.slot_count(); ++i) {
+        plans_[i].make(pool.slot(i), i, pool.is_recent(i), camera, scene_time, motions);
+    }
+    columns_ = plans_[0].columns();
+    rows_ = plans_[0].rows();
+    start_moving(viewport, static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
     std::atomic<bool> any = false;
-    tbb::parallel_for(0, plan_.rows(), [&](int row) {
-        bool painted = false;
-        std::vector<PatchView> patches, spares;
-        for (int column = 0; column < columns; ++column) {
-            painted |= update_block(cache, camera, scene_time, motions, column, row, patches, spares, picture);
+    std::atomic<bool> all = true;
+    tbb::parallel_for(0, rows_, [&](int row) {
+        int painted = 0;
+        std::vector<PatchView> patches;
+        for (int column = 0; column < columns_; ++column) {
+            painted += update_block(pool, camera, scene_time, motions, column, row, patches, picture) ? 1 : 0;
         }
-        if (painted) {
+        if (painted > 0) {
             any.store(true, std::memory_order_relaxed);
         }
+        if (painted < columns_) {
+            all.store(false, std::memory_order_relaxed);
+        }
     });
+    painted_all_ = all;
     if (any) {
-        count_holes(picture);
+        count_blocks(picture, pool.slot_count());
     }
-    if (1 - hole_share_ < least_kept * cache.coverage()) {
-        blocks_.clear(); // no block is as the plan says
-        std::ranges::fill(painted_, std::uint8_t{0});
-        reconstruct_all(cache, picture);
-        repainted.assign(1, {0, 0, picture.width, picture.height});
-        has_shown_ = true;
-        return;
+    double coverage = 0;
+    for (std::size_t i = 0; i < pool.slot_count(); ++i) {
+        coverage = std::max(coverage, pool.slot(i).coverage());
     }
-    if (any) {
-        fill(picture);
+    if (1 - hole_share_ < least_kept * coverage) {
+        show_cut(pool, picture, repainted);
+    } else {
+        if (any) {
+            fill(picture);
+        }
+        take_flagged(painted_, columns_, viewport, repainted);
     }
-    take_flagged(painted_, columns, viewport, repainted);
     has_shown_ = true;
 }
 
-bool Reprojector::update_block(FrameletCache const& cache, Camera const& camera, SceneTime scene_time,
-                               BodyMotions const& motions, int column, int row, std::vector<PatchView>& patches,
-                               std::vector<PatchView>& spares, Picture& picture) {
-    auto const index =
-        static_cast<std::size_t>(row) * static_cast<std::size_t>(plan_.columns()) + static_cast<std::size_t>(column);
-    plan_.block(index, patches);
-    bool const in_place = std::ranges::all_of(patches, [](PatchView const& view) { return view.patch->is_still; }) &&
-                          is_block_in_place(cache, camera, scene_time, motions, column, row);
-    std::uint64_t const signature = signature_of(patches, in_place);
-    bool const is_as_before = signature == blocks_[index].signature;
-    BlockState state{signature, 0, 0, is_as_before && blocks_[index].needs_spares};
-    if (state.needs_spares) {
-        spare_plan_.block(index, spares);
-        state.spare_signature = signature_of(spares, false);
+/// The moment that had most of the picture, as it was.
+void Reprojector::show_cut(FrameletPool const& pool, Picture& picture, std::vector<PixelRect>& repainted) {
+    std::size_t most = 0;
+    for (std::size_t i = 1; i < pool.slot_count(); ++i) {
+        most = pool.slot(i).coverage() > pool.slot(most).coverage() ? i : most;
     }
-    if (is_as_before && state.spare_signature == blocks_[index].spare_signature) {
+    blocks_.clear(); // no block is as the plan says
+    std::ranges::fill(painted_, std::uint8_t{0});
+    reconstruct_all(pool.slot(most), picture);
+    repainted.assign(1, {0, 0, picture.width, picture.height});
+}
+
+bool Reprojector::update_block(FrameletPool const& pool, Camera const& camera, SceneTime scene_time,
+                               BodyMotions const& motions, int column, int row, std::vector<PatchView>& patches,
+                               Picture& picture) {
+    auto const index =
+        static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
+    FrameletCache const& newest = pool.newest();
+    patches.clear();
+    plans_[pool.newest_slot()].add_block(index, patches);
+    auto const newest_patches = static_cast<std::ptrdiff_t>(patches.size());
+    bool in_place = std::ranges::all_of(patches, [](PatchView const& view) { return view.patch->is_still; }) &&
+                    is_block_in_place(newest, camera, scene_time, motions, column, row);
+    if (!in_place || newest.covered_below(newest.plane().pixel_depth() - 1, column / 2, row / 2) == 0) {
+        for (std::size_t i = 0; i < pool.slot_count(); ++i) {
+            if (i != pool.newest_slot()) {
+                plans_[i].add_block(index, patches);
+            }
+        }
+        in_place = in_place && static_cast<std::ptrdiff_t>(patches.size()) == newest_patches;
+    }
+    order(patches);
+    std::uint64_t const signature = signature_of(patches, in_place);
+    if (signature == blocks_[index].signature) {
         return false;
     }
-    Viewport const viewport = cache.plane().viewport();
+    Viewport const viewport = pool.plane().viewport();
     int const left = column * side;
     int const top = row * side;
     WarpedBlock block;
     paint_warped_block(patches, column, row, viewport, block);
-    if (!in_place && block.holes > 0) {
-        spare_plan_.block(index, spares);
-        state.spare_signature = signature_of(spares, false);
-        state.needs_spares = true;
-        if (!spares.empty()) {
-            WarpedBlock behind;
-            paint_holes(spares, column, row, viewport, block, behind);
-            show_in_holes(behind, viewport.width - left, viewport.height - top, block);
-        }
-    }
     if (in_place) {
         block.holes = 0;
         for (float& inverse_depth : block.inverse_depth) {
             inverse_depth = std::max(inverse_depth, 0.0f);
         }
-        reconstruct_block(cache, column, row, picture);
+        reconstruct_block(newest, column, row, picture);
     } else {
         write_colors(block, left, top, picture);
     }
     write_plane(block.inverse_depth, left, top, viewport, inverse_depth_);
     block_means_[index] = far_mean(block);
-    state.holes = block.holes;
-    blocks_[index] = state;
+    blocks_[index] = {signature, block.holes, slots_of(block)};
     painted_[index] = 1;
     return true;
 }
 
-void Reprojector::count_holes(Picture const& picture) {
+bool Reprojector::add_shown(std::size_t slot, std::vector<Tile>& tiles) const {
+    if (painted_all_ && slot < plans_.size()) {
+        plans_[slot].add_shown(tiles);
+    }
+    return painted_all_;
+}
+
+void Reprojector::count_blocks(Picture const& picture, std::size_t slots) {
     std::int64_t holes = 0;
+    shown_blocks_.assign(slots, 0);
     for (BlockState const& block : blocks_) {
         holes += block.holes;
+        for (std::size_t i = 0; i < slots; ++i) {
+            shown_blocks_[i] += block.slots >> i & 1;
+        }
     }
     hole_share_ = static_cast<double>(holes) / (static_cast<double>(picture.width) * picture.height);
 }
 
 bool Reprojector::is_beside_hole(int column, int row) const {
-    for (int y = std::max(row - 1, 0); y < std::min(row + 2, plan_.rows()); ++y) {
-        for (int x = std::max(column - 1, 0); x < std::min(column + 2, plan_.columns()); ++x) {
-            if (blocks_[static_cast<std::size_t>(y) * static_cast<std::size_t>(plan_.columns()) +
-                        static_cast<std::size_t>(x)]
+    for (int y = std::max(row - 1, 0); y < std::min(row + 2, rows_); ++y) {
+        for (int x = std::max(column - 1, 0); x < std::min(column + 2, columns_); ++x) {
+            if (blocks_[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(x)]
                     .holes > 0) {
                 return true;
             }
@@ -275,11 +320,11 @@ void Reprojector::fill(Picture& picture) {
     if (hole_share_ == 0) {
         return;
     }
-    int const columns = plan_.columns();
-    means_.make(block_means_, columns, plan_.rows());
+    int const columns = columns_;
+    means_.make(block_means_, columns, rows_);
     cells_.resize(blocks_.size());
     auto const for_each_block = [&](auto const& work) {
-        tbb::parallel_for(0, plan_.rows(), [&](int row) {
+        tbb::parallel_for(0, rows_, [&](int row) {
             for (int column = 0; column < columns; ++column) {
                 work(column, row,
                      static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +

@@ -3,12 +3,14 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <span>
 #include <vector>
 
 #include "common/body_motion.h"
 #include "common/hole_fill.h"
 #include "common/image.h"
+#include "common/picture/framelet_pool.h"
 #include "common/warp_block.h"
 #include "common/warp_plan.h"
 
@@ -19,53 +21,61 @@ namespace framelet {
 class Reprojector {
 public:
     /// Writes to `picture`, which has the viewport's size and, from the second call on, holds what the last one wrote.
-    /// `changed` is what `FrameletCache::take_changed` gives: all that changed since the last call. `repainted` becomes
-    /// the rectangles that may differ from the last call's, ordered as `take_changed` orders them.
+    /// `changed` is what `take_changed` of the pool's newest cache gives: all that changed since the last call.
+    /// `repainted` becomes the rectangles that may differ from the last call's, ordered as `take_changed` orders them.
     ///
-    /// Where all that is held was taken with this camera and nothing in it has moved since, this is `reconstruct`, byte
-    /// by byte; so is every block for which that holds while others move. Samples of or for an orthographic camera stay
-    /// on their pixels. Where what is in place leaves holes the cache's spares show, and only there; where things lie
-    /// around a hole, only what is behind them. All stays on its pixels where the camera has cut: where nearly nothing
-    /// of what is held would show in the new view. Only blocks whose samples or their places differ from the last
-    /// call's are painted.
-    void show(FrameletCache const& cache, std::span<PixelRect const> changed, Camera const& camera,
-              SceneTime scene_time, BodyMotions const& motions, Picture& picture, std::vector<PixelRect>& repainted);
+    /// Of all that is held what is nearest shows, and of several samples of one surface those with the least
+    /// `worn_spacing`. Where the newest moment covers the picture with a sample a pixel or more, was taken with this
+    /// camera, and nothing in it has moved since, this is `reconstruct` of it, byte by byte; so is every block for
+    /// which that holds while others move. Samples of or for an orthographic camera stay on their pixels. All stays on
+    /// its pixels where the camera has cut: where nearly nothing of what is held would show in the new view. Only
+    /// blocks whose samples or their places differ from the last call's are painted.
+    void show(FrameletPool const& pool, std::span<PixelRect const> changed, Camera const& camera, SceneTime scene_time,
+              BodyMotions const& motions, Picture& picture, std::vector<PixelRect>& repainted);
 
     /// True when the last picture was `reconstruct`'s as a whole.
     bool is_exact() const { return is_exact_; }
     /// A plane of the picture's size, 1 / metres; `hole_depth` where the colour is only filled in. Not kept up while
     /// the picture is exact.
     std::span<float const> inverse_depth() const { return inverse_depth_; }
+    /// By slot of the pool: in how many blocks of the last picture something of it shows.
+    std::span<std::uint32_t const> shown_blocks() const { return shown_blocks_; }
+    /// The tiles of one slot of which something shows in the last picture, as far as that is known: false where parts
+    /// of it were painted before. Some come more than once.
+    bool add_shown(std::size_t slot, std::vector<Tile>& tiles) const;
     /// Pixels of the last picture that nothing shows, in [0, 1]; 0 where it is exact.
     double hole_share() const { return hole_share_; }
 
 private:
     struct BlockState {
         std::uint64_t signature = 0;
-        std::uint64_t spare_signature = 0; ///< where they are needed
         std::int32_t holes = 0;
-        bool needs_spares = false; ///< what is in place leaves holes
+        std::uint32_t slots = 0; ///< a bit for each slot of which something shows
     };
 
-    void show_exact(FrameletCache const& cache, std::span<PixelRect const> changed, Picture& picture,
+    bool is_in_place(FrameletPool const& pool, Camera const& camera, SceneTime scene_time) const;
+    void show_exact(FrameletPool const& pool, std::span<PixelRect const> changed, Picture& picture,
                     std::vector<PixelRect>& repainted);
     void start_moving(Viewport viewport, std::size_t blocks);
     /// True when it had to be painted.
-    bool update_block(FrameletCache const& cache, Camera const& camera, SceneTime scene_time,
-                      BodyMotions const& motions, int column, int row, std::vector<PatchView>& patches,
-                      std::vector<PatchView>& spares, Picture& picture);
-    void count_holes(Picture const& picture);
+    bool update_block(FrameletPool const& pool, Camera const& camera, SceneTime scene_time, BodyMotions const& motions,
+                      int column, int row, std::vector<PatchView>& patches, Picture& picture);
+    void show_cut(FrameletPool const& pool, Picture& picture, std::vector<PixelRect>& repainted);
+    void count_blocks(Picture const& picture, std::size_t slots);
     bool is_beside_hole(int column, int row) const;
     void fill(Picture& picture);
 
     bool has_shown_ = false;
     bool is_exact_ = false;
     double hole_share_ = 0;
-    WarpPlan plan_;
-    WarpPlan spare_plan_; ///< of what shows only in holes
+    bool painted_all_ = false;
+    std::size_t exact_slot_ = 0; ///< that an exact picture shows
+    std::deque<WarpPlan> plans_; ///< by slot
+    int columns_ = 0, rows_ = 0; ///< of blocks
     std::vector<BlockState> blocks_;
     std::vector<FarMean> block_means_;
     std::vector<std::uint8_t> painted_; ///< a flag for each block
+    std::vector<std::uint32_t> shown_blocks_;
     FarMeans means_;
     std::vector<FarCells> cells_; ///< of blocks with holes and those beside them
     std::vector<float> inverse_depth_;

@@ -12,7 +12,8 @@ namespace framelet {
 /// Finer than this nothing shows any better, pixels.
 inline constexpr float finest_shown_spacing = 0.5f;
 
-/// By how many pixels a second (of scene time) samples become worse, as if they lay so much farther apart. 0 for code 0.
+/// By how many pixels a second (of scene time) samples become worse, as if they lay so much farther apart. 0 for code
+/// 0.
 inline float fading_rate(FadingCode code) {
     return code == 0 ? 0.0f : std::exp2(static_cast<float>(code - 128) / 8);
 }

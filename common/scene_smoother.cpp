@@ -35,7 +35,7 @@ MixSource SceneSmoother::Side::source() const {
 }
 
 SceneSmoother::SceneSmoother(ImagePlane plane)
-    : viewport_(plane.viewport()), columns_(blocks_of(viewport_.width)), older_cache_(plane) {
+    : viewport_(plane.viewport()), columns_(blocks_of(viewport_.width)), older_pool_(plane) {
     std::size_t const blocks =
         static_cast<std::size_t>(columns_) * static_cast<std::size_t>(blocks_of(viewport_.height));
     older_.picture = newer_.picture = Picture(viewport_.width, viewport_.height);
@@ -60,7 +60,7 @@ void SceneSmoother::insert(Batch const& batch) {
     waiting_.back().tracks.clear();
     while (waiting_framelets_ > most_waiting(viewport_)) {
         waiting_framelets_ -= waiting_.front().framelets.size();
-        older_cache_.insert(waiting_.front());
+        older_pool_.insert(waiting_.front());
         waiting_.pop_front();
     }
 }
@@ -73,7 +73,7 @@ void SceneSmoother::take_due(SceneTime scene_time) {
             return false;
         }
         waiting_framelets_ -= batch.framelets.size();
-        older_cache_.insert(batch);
+        older_pool_.insert(batch);
         return true;
     });
 }
@@ -112,7 +112,7 @@ void SceneSmoother::mix_block(std::size_t index, Picture& picture) {
     painted_[index] = 1;
 }
 
-void SceneSmoother::show(FrameletCache const& newest, std::span<PixelRect const> changed, Camera const& camera,
+void SceneSmoother::show(FrameletPool const& newest, std::span<PixelRect const> changed, Camera const& camera,
                          SceneTime scene_time, SceneTime lag, BodyMotions const& motions, Picture& picture,
                          std::vector<PixelRect>& repainted) {
     FRAMELET_CHECK(newest.plane().viewport() == viewport_);
@@ -120,14 +120,15 @@ void SceneSmoother::show(FrameletCache const& newest, std::span<PixelRect const>
     take_due(scene_time);
     newer_.reprojector.show(newest, changed, camera, scene_time, motions, newer_.picture, newer_.repainted);
     mark(newer_.repainted, dirty_);
-    update_shown_times(newest, changed, newer_.times);
+    update_shown_times(newest.newest(), changed, newer_.times);
     if (waiting_.empty()) { // the two caches show the same
         std::ranges::fill(shares_, whole_share);
     } else {
-        older_cache_.take_changed(changed_);
-        older_.reprojector.show(older_cache_, changed_, camera, scene_time, motions, older_.picture, older_.repainted);
+        older_pool_.newest().take_changed(changed_);
+        older_.reprojector.show(older_pool_, changed_, camera, scene_time, motions, older_.picture, older_.repainted);
+        older_pool_.note_shown(older_.reprojector.shown_blocks());
         mark(older_.repainted, dirty_);
-        update_shown_times(older_cache_, changed_, older_.times);
+        update_shown_times(older_pool_.newest(), changed_, older_.times);
         mix_shares(older_.times, newer_.times, columns_, scene_time, lag, shares_);
     }
     tbb::parallel_for(std::size_t{0}, shares_.size(), [&](std::size_t index) { mix_block(index, picture); });
@@ -135,7 +136,7 @@ void SceneSmoother::show(FrameletCache const& newest, std::span<PixelRect const>
 }
 
 std::size_t SceneSmoother::memory_bytes() const {
-    return older_cache_.memory_bytes() + waiting_framelets_ * (sizeof(DisplayFramelet) + sizeof(FrameletShape)) +
+    return older_pool_.memory_bytes() + waiting_framelets_ * (sizeof(DisplayFramelet) + sizeof(FrameletShape)) +
            older_.picture.rgba.capacity() + newer_.picture.rgba.capacity();
 }
 

@@ -7,8 +7,8 @@
 #include <deque>
 #include <vector>
 
-#include "common/framelet_cache.h"
 #include "common/mix_shares.h"
+#include "common/picture/framelet_pool.h"
 #include "common/reprojector.h"
 
 namespace framelet {
@@ -28,12 +28,15 @@ public:
     /// long would else show as soon as it came. Where nothing that was inserted is of later than `scene_time`, the
     /// picture is byte by byte what `Reprojector` shows, for a copy more; elsewhere it takes about twice as long. A
     /// clock that is set back ends what is going on.
-    void show(FrameletCache const& newest, std::span<PixelRect const> changed, Camera const& camera,
+    void show(FrameletPool const& newest, std::span<PixelRect const> changed, Camera const& camera,
               SceneTime scene_time, SceneTime lag, BodyMotions const& motions, Picture& picture,
               std::vector<PixelRect>& repainted);
 
     /// The picture of the next `show` is written as a whole.
     void start_picture();
+
+    /// As `Reprojector::shown_blocks`, of the pool that `show` was given.
+    std::span<std::uint32_t const> shown_blocks() const { return newer_.reprojector.shown_blocks(); }
 
     /// Of all that a viewer would not hold without this.
     std::size_t memory_bytes() const;
@@ -55,7 +58,7 @@ private:
 
     Viewport const viewport_;
     int const columns_;
-    FrameletCache older_cache_;
+    FrameletPool older_pool_;
     std::deque<Batch> waiting_; ///< for their scene time to be shown, without tracks
     std::size_t waiting_framelets_ = 0;
     SceneTime shown_time_ = 0;

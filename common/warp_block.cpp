@@ -1,6 +1,8 @@
 #include "common/warp_block.h"
 
 #include <algorithm>
+#include <atomic>
+#include <bit>
 #include <cmath>
 
 #include "common/patch_sampling.h"
@@ -32,8 +34,9 @@ constexpr std::size_t place_of(int x, int y) {
 }
 
 /// Lets candidates compete with what pixels have. Of two that cover firmly or both do not, the clearly nearer
-/// one wins; else the one that was there, which is newer. Those of one group on one surface add up.
-void merge(Candidate const& candidate, std::int32_t group, float tolerance, std::size_t first, Layers& layers) {
+/// one wins; else the one that was there, which is the better one. Those of one group on one surface add up. True
+/// where one of the candidates shows.
+bool merge(Candidate const& candidate, std::int32_t group, float tolerance, std::size_t first, Layers& layers) {
     WideFloats const there = load_lanes<WideFloats>(&layers.inverse_depth[first]);
     WideFloats const weight = load_lanes<WideFloats>(&layers.weight[first]);
     WideInts const groups = load_lanes<WideInts>(&layers.group[first]);
@@ -55,40 +58,43 @@ void merge(Candidate const& candidate, std::int32_t group, float tolerance, std:
     store_lanes(keep * weight + take * candidate.weight, &layers.weight[first]);
     store_lanes(replaces ? depth : there, &layers.inverse_depth[first]);
     store_lanes(replaces ? WideInts{} + group : groups, &layers.group[first]);
+    return any_lane(wins | joins);
 }
 
-/// The least inverse depth that hides all of the patch in this block.
-float hiding_depth(WarpPatch const& patch, int left, int top) {
-    int const last_x = std::min(patch.box.right - left, side) - 1;
-    int const last_y = std::min(patch.box.bottom - top, side) - 1;
-    float nearest = 0;
-    for (int const x : {std::max(patch.box.left - left, 0), last_x}) {
-        for (int const y : {std::max(patch.box.top - top, 0), last_y}) { // it is affine
-            nearest = std::max(nearest, patch.inverse_depth +
-                                            static_cast<float>(left + x - patch.box.left) * patch.inverse_depth_dx +
-                                            static_cast<float>(top + y - patch.box.top) * patch.inverse_depth_dy);
-        }
-    }
-    constexpr float rounding = 1e-5f; // what the sums above may be off by
-    return (1 + rounding - same_surface) * nearest - patch.tolerance;
-}
-
-/// True where nothing of the patch can show in so many rows of lanes: they are covered firmly, by what is near enough,
-/// and by nothing that its samples would add up with.
-bool is_hidden(WarpPatch const& patch, float hiding, int x, int first_row, int count, Layers const& layers) {
+/// True where nothing of the patch can show in so many rows of lanes, the first of which lies (x, y) from the centre of
+/// its box's first pixel: they are covered firmly, by what is near enough, and by nothing that its samples would add up
+/// with.
+bool is_hidden(WarpPatch const& patch, float x, float y, int column, int first_row, int count, Layers const& layers) {
+    constexpr float rounding = 1e-5f; // what the sums here and those of `sample_patch` may differ by
+    WideFloats const from_left = x + __builtin_convertvector(wide_column, WideFloats);
+    WideFloats const from_top = y + __builtin_convertvector(wide_row, WideFloats);
+    WideFloats depth = (patch.inverse_depth + from_top * patch.inverse_depth_dy) + from_left * patch.inverse_depth_dx;
     WideInts shows{};
     for (int i = 0; i < count; ++i) {
-        std::size_t const at = place_of(x, first_row + i * wide_rows);
+        std::size_t const at = place_of(column, first_row + i * wide_rows);
+        WideFloats const hiding = (1 + rounding - same_surface) * depth - patch.tolerance;
         shows |= (load_lanes<WideFloats>(&layers.weight[at]) < firm) |
                  (load_lanes<WideFloats>(&layers.inverse_depth[at]) < hiding) |
                  (load_lanes<WideInts>(&layers.group[at]) == patch.group);
+        depth += static_cast<float>(wide_rows) * patch.inverse_depth_dy;
     }
     return !any_lane(shows);
 }
 
-void paint_layer(WarpPatch const& patch, int left, int top, Layers& layers) {
+/// They show where nothing firm does.
+void fade(std::span<Candidate> candidates) {
+    constexpr float share = 0.1f;
+    for (Candidate& candidate : candidates) {
+        for (WideFloats* const sum : {&candidate.red, &candidate.green, &candidate.blue, &candidate.weight}) {
+            *sum *= share;
+        }
+    }
+}
+
+/// True where something of it shows.
+bool paint_layer(WarpPatch const& patch, int left, int top, Layers& layers) {
+    bool shows = false;
     CandidateColumn column;
-    float const hiding = hiding_depth(patch, left, top);
     int const first_row = std::max(patch.box.top - top, 0) / wide_rows * wide_rows;
     int const last_row = std::min(patch.box.bottom - top, side);
     int const count = (last_row - first_row + wide_rows - 1) / wide_rows;
@@ -96,15 +102,20 @@ void paint_layer(WarpPatch const& patch, int left, int top, Layers& layers) {
     for (int x = std::max(patch.box.left - left, 0) / wide_columns * wide_columns; x < last; x += wide_columns) {
         float const from_left = static_cast<float>(left + x - patch.box.left);
         float const from_top = static_cast<float>(top + first_row - patch.box.top);
-        if (is_hidden(patch, hiding, x, first_row, count, layers) || !may_show(patch, from_left, from_top, count)) {
+        if (is_hidden(patch, from_left, from_top, x, first_row, count, layers) ||
+            !may_show(patch, from_left, from_top, count)) {
             continue;
         }
         sample_patch(patch, from_left, from_top, count, column);
+        if (!patch.hides) {
+            fade(std::span(column).first(static_cast<std::size_t>(count)));
+        }
         for (int i = 0; i < count; ++i) {
-            merge(column[static_cast<std::size_t>(i)], patch.group, patch.tolerance,
-                  place_of(x, first_row + i * wide_rows), layers);
+            shows |= merge(column[static_cast<std::size_t>(i)], patch.group, patch.tolerance,
+                           place_of(x, first_row + i * wide_rows), layers);
         }
     }
+    return shows;
 }
 
 /// Fetches from memory the rows of the grid that painting will read, about.
@@ -132,16 +143,26 @@ WideFloats tent(WideFloats distance, float scale) {
     return larger(1 - larger(distance, -distance) * scale, WideFloats{});
 }
 
+/// True where the pixel nearest to the splat's middle is covered firmly, by what is near enough and no part of what the
+/// splat adds up with: most of the splat is hidden then.
+bool is_hidden(Splat const& splat, std::int32_t group, float x, float y, Layers const& layers) {
+    auto const pixel = [](float at) { return static_cast<int>(std::clamp(at + 0.5f, 0.0f, side - 1.0f)); };
+    std::size_t const at = place_of(pixel(x), pixel(y));
+    return layers.weight[at] >= firm && layers.group[at] != group &&
+           layers.inverse_depth[at] >= (1 - same_surface) * splat.inverse_depth;
+}
+
 /// Loose samples: a tent each, as wide as its neighbours are far.
-void paint_splat(Splat const& splat, std::int32_t group, int left, int top, Layers& layers) {
+bool paint_splat(Splat const& splat, std::int32_t group, int left, int top, Layers& layers) {
     float const x = splat.x - static_cast<float>(left) - 0.5f;
     float const y = splat.y - static_cast<float>(top) - 0.5f;
     float const scale = 1 / splat.spacing;
     int const first_row = static_cast<int>(std::ceil(std::max(y - splat.spacing, 0.0f)));
     int const last_row = static_cast<int>(std::floor(std::min(y + splat.spacing, side - 1.0f)));
-    if (x + splat.spacing < 0 || x - splat.spacing > side - 1) {
-        return;
+    if (x + splat.spacing < 0 || x - splat.spacing > side - 1 || is_hidden(splat, group, x, y, layers)) {
+        return false;
     }
+    bool shows = false;
     WideFloats const zero{};
     Candidate some;
     for (int from = 0; from < side; from += wide_columns) {
@@ -156,9 +177,10 @@ void paint_splat(Splat const& splat, std::int32_t group, int left, int top, Laye
             some.green = some.weight * square(green_of(splat.sample));
             some.blue = some.weight * square(blue_of(splat.sample));
             some.inverse_depth = zero + splat.inverse_depth;
-            merge(some, group, 0, place_of(from, j), layers);
+            shows |= merge(some, group, 0, place_of(from, j), layers);
         }
     }
+    return shows;
 }
 
 /// To the rows of a block what lies together in `Layers`.
@@ -215,6 +237,21 @@ float nearest_in_holes(WarpedBlock const& block) {
     return count > mostly_covered ? 0.5f * (least + most) : INFINITY;
 }
 
+/// Less than this of a block is not worth keeping a patch for.
+constexpr int enough_pixels = 6;
+
+bool shows_enough(std::int32_t group, Layers const& layers) {
+    WideInts count{};
+    for (std::size_t i = 0; i < pixels; i += wide_count) {
+        count -= load_lanes<WideInts>(&layers.group[i]) == group;
+    }
+    int sum = 0;
+    for (int k = 0; k < wide_count; ++k) {
+        sum += count[k];
+    }
+    return sum >= enough_pixels;
+}
+
 /// Over `layers`, in which weights and depths are what is there before.
 void paint(std::span<PatchView const> patches, int column, int row, Viewport viewport, Layers& layers,
            WarpedBlock& block) {
@@ -224,18 +261,27 @@ void paint(std::span<PatchView const> patches, int column, int row, Viewport vie
         plane->fill(0);
     }
     layers.group.fill(-1);
+    std::uint64_t claims = 0; ///< bits of patches of which something showed once
     for (std::size_t i = 0; i < patches.size(); ++i) {
         if (i + 1 < patches.size()) {
             prefetch_grid(*patches[i + 1].patch, left, top);
         }
         PatchView const& view = patches[i];
         WarpPatch const& patch = *view.patch;
+        bool shows = false;
         if (patch.is_loose) {
             for (std::uint32_t k = 0; k < patch.splats; ++k) {
-                paint_splat(view.splats[patch.first_splat + k], patch.group, left, top, layers);
+                shows |= paint_splat(view.splats[patch.first_splat + k], patch.group, left, top, layers);
             }
         } else {
-            paint_layer(patch, left, top, layers);
+            shows = paint_layer(patch, left, top, layers);
+        }
+        claims |= shows && i < 64 ? std::uint64_t{1} << i : 0;
+    }
+    for (; claims != 0; claims &= claims - 1) {
+        PatchView const& view = patches[static_cast<std::size_t>(std::countr_zero(claims))];
+        if (shows_enough(view.patch->group, layers)) {
+            std::atomic_ref(*view.shows).store(1, std::memory_order_relaxed); // other blocks note the same
         }
     }
     finish(layers, viewport.width - left, viewport.height - top, block);

@@ -8,12 +8,15 @@
 
 namespace framelet {
 
-/// Of the same view, the same scene time and the same spacing.
-constexpr std::int32_t group_of(std::uint32_t view, int depth) {
-    return static_cast<std::int32_t>(view) * 16 + depth;
+/// Of the same view, the same scene time and the same spacing. `slot`: of the pool.
+constexpr std::int32_t group_of(std::size_t slot, std::uint32_t view, int depth) {
+    return static_cast<std::int32_t>(slot << 24 | view << 4) + depth;
+}
+constexpr std::size_t slot_of_group(std::int32_t group) {
+    return static_cast<std::uint32_t>(group) >> 24;
 }
 constexpr std::uint32_t view_of_group(std::int32_t group) {
-    return static_cast<std::uint32_t>(group) / 16;
+    return static_cast<std::uint32_t>(group) >> 4 & 0xfffffu;
 }
 constexpr int depth_of_group(std::int32_t group) {
     return group % 16;
@@ -25,6 +28,7 @@ struct WarpPatch {
     /// and what a pixel to the right and one down add. Sample (i, j) lies at u = i, v = j.
     std::array<float, 3> at{}, dx{}, dy{};
     float inverse_depth = 0, inverse_depth_dx = 0, inverse_depth_dy = 0; ///< the same of the display's, 1 / metres
+    float worn = 0; ///< what its samples are worth: `worn_spacing` in the middle of the box
     float tolerance = 0; ///< by which inverse depths may differ though they mean the same
     PixelRect box; ///< that holds all of it, clipped to the viewport
     PackedSample const* grid = nullptr;
@@ -38,6 +42,7 @@ struct WarpPatch {
     std::uint32_t place = 0; ///< by tile and layer: orders patches of one batch
     std::uint64_t batch = 0;
     std::uint64_t signature = 0; ///< differs where what is painted may differ
+    bool hides = true; ///< what is behind it; else it shows only where nothing does that hides
     bool is_loose = false; ///< not a layer, but splats
     bool is_still = false; ///< its samples lie on their own pixels
 };
@@ -54,6 +59,8 @@ struct Splat {
 struct PatchView {
     WarpPatch const* patch = nullptr;
     Splat const* splats = nullptr;
+    std::uint8_t* shows = nullptr; ///< set where enough of it shows in the picture
+    std::uint64_t rank = 0; ///< of its samples: the best ones, and of those the newest, have the least
 };
 
 } // namespace framelet

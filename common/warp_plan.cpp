@@ -10,11 +10,9 @@ namespace framelet {
 
 namespace {
 
-constexpr std::size_t spares_per_chunk = 256;
 constexpr std::size_t squares_per_chunk = 4;
 /// What is joined takes the place of two layers or more.
 constexpr std::uint32_t patches_per_chunk = squares_per_chunk * MergedSquare::most_children * (max_layers + 1);
-static_assert(patches_per_chunk >= spares_per_chunk * (max_layers + 1));
 constexpr int block_side = FrameletCache::block_side;
 
 /// How far off merging may show a sample.
@@ -47,45 +45,35 @@ std::size_t block_count(PixelRect const& box) {
     return static_cast<std::size_t>(blocks.width()) * static_cast<std::size_t>(blocks.height());
 }
 
+/// Numbers that are not below 0 compare as their bits do.
+std::uint64_t rank_of(WarpPatch const& patch) {
+    return std::uint64_t{std::bit_cast<std::uint32_t>(patch.worn)} << 32 | (~patch.batch & 0xffffffffu);
+}
+
 bool is_before(WarpPatch const& a, WarpPatch const& b) {
-    return a.batch != b.batch ? a.batch > b.batch : a.place < b.place;
+    std::uint64_t const rank = rank_of(a), other = rank_of(b);
+    return rank != other ? rank < other : a.place < b.place;
 }
 
 } // namespace
 
-void WarpPlan::make(FrameletCache const& cache, Camera const& display, SceneTime display_time,
-                    BodyMotions const& motions) {
+void WarpPlan::make(FrameletCache const& cache, std::size_t slot, bool loose, Camera const& display,
+                    SceneTime display_time, BodyMotions const& motions) {
     set_size(cache.plane().viewport());
     set_squares(cache.plane());
     chunks_.resize((squares_.size() + squares_per_chunk - 1) / squares_per_chunk);
     tbb::parallel_for(std::size_t{0}, chunks_.size(), [&](std::size_t i) {
         Chunk& chunk = chunks_[i];
         chunk.clear();
-        FrameletWarp warp(cache, display, display_time, motions);
+        FrameletWarp warp(cache, slot, display, display_time, motions);
         LayerJoining& joining = joinings_.local();
         std::size_t const first = i * squares_per_chunk;
         for (std::size_t k = first; k < std::min(first + squares_per_chunk, squares_.size()); ++k) {
             Square& square = squares_[k];
             square.merged.update(cache, square.tile, square.depth, joining);
-            add_square(square.merged, warp, chunk);
+            add_square(static_cast<std::uint32_t>(k), square.merged, loose, warp, chunk);
         }
-    });
-    make_bins();
-}
-
-void WarpPlan::make_spares(FrameletCache const& cache, Camera const& display, SceneTime display_time,
-                           BodyMotions const& motions) {
-    set_size(cache.plane().viewport());
-    std::span<Spare const> const spares = cache.spares();
-    chunks_.resize((spares.size() + spares_per_chunk - 1) / spares_per_chunk);
-    tbb::parallel_for(std::size_t{0}, chunks_.size(), [&](std::size_t i) {
-        Chunk& chunk = chunks_[i];
-        chunk.clear();
-        FrameletWarp warp(cache, display, display_time, motions);
-        std::size_t const first = i * spares_per_chunk;
-        for (Spare const& spare : spares.subspan(first, std::min(spares_per_chunk, spares.size() - first))) {
-            warp.add(cache.at(spare), FrameletWarp::all_parts, chunk.patches, chunk.splats);
-        }
+        chunk.shows.assign(chunk.patches.size(), 0);
     });
     make_bins();
 }
@@ -113,23 +101,24 @@ void WarpPlan::set_squares(ImagePlane const& plane) {
 }
 
 /// Nothing is added where it is out of the picture. False where what is joined is not near enough to its parts.
-bool WarpPlan::add_joined(MergedLayer const& merged, FrameletWarp& warp, Chunk& chunk) {
+bool WarpPlan::add_joined(std::uint32_t index, MergedLayer const& merged, FrameletWarp& warp, Chunk& chunk) {
     if (merged.difference > 0 && !(merged.difference <= warp.inverse_depth_within(merging_pixels, merged))) {
         return false;
     }
     warp.add(merged, chunk.patches);
+    chunk.note_parts({index, merged.parts[0] | merged.parts[1] | merged.parts[2]});
     return true;
 }
 
 /// Fours as far as they are near enough; what is left is `alone`.
-void WarpPlan::add_parts(MergedSquare const& square, MergedLayer const& merged, FrameletWarp& warp, Chunk& chunk,
-                         LayerBits& alone) {
+void WarpPlan::add_parts(std::uint32_t index, MergedSquare const& square, MergedLayer const& merged, FrameletWarp& warp,
+                         Chunk& chunk, LayerBits& alone) {
     LayerBits left = merged.parts;
     for (JoinedLayer const& four : square.fours()) {
         if ((four.parts[0] & ~left[0]) == 0 && four.parts != merged.parts) {
             MergedLayer part = square.merge(four);
             part.number = merged.number; // as its samples have
-            left[0] &= add_joined(part, warp, chunk) ? ~four.parts[0] : ~std::uint64_t{0};
+            left[0] &= add_joined(index, part, warp, chunk) ? ~four.parts[0] : ~std::uint64_t{0};
         }
     }
     for (std::size_t k = 0; k < max_layers; ++k) {
@@ -138,21 +127,24 @@ void WarpPlan::add_parts(MergedSquare const& square, MergedLayer const& merged, 
 }
 
 /// What is joined, then what is left of the framelets.
-void WarpPlan::add_square(MergedSquare const& square, FrameletWarp& warp, Chunk& chunk) {
+void WarpPlan::add_square(std::uint32_t index, MergedSquare const& square, bool loose, FrameletWarp& warp,
+                          Chunk& chunk) {
     LayerBits alone{};
     for (MergedLayer const& merged : square.merged()) {
-        if (!add_joined(merged, warp, chunk)) {
-            add_parts(square, merged, warp, chunk, alone);
+        if (!add_joined(index, merged, warp, chunk)) {
+            add_parts(index, square, merged, warp, chunk, alone);
         }
     }
     std::span<MergedSquare::Child const> const children = square.children();
-    for (std::uint64_t left = alone[0] | alone[1] | alone[2] | square.loose_children(); left != 0; left &= left - 1) {
+    for (std::uint64_t left = alone[0] | alone[1] | alone[2] | (loose ? square.loose_children() : 0); left != 0;
+         left &= left - 1) {
         auto const place = static_cast<std::size_t>(std::countr_zero(left));
-        unsigned parts = children[place].has_loose ? 1u << FrameletShape::loose : 0u;
+        unsigned parts = loose && children[place].has_loose ? 1u << FrameletShape::loose : 0u;
         for (std::size_t k = 0; k < max_layers; ++k) {
             parts |= static_cast<unsigned>(alone[k] >> place & 1) << k;
         }
         warp.add(*children[place].framelet, parts, chunk.patches, chunk.splats);
+        chunk.note_parts({index, std::uint64_t{1} << place});
     }
 }
 
@@ -215,10 +207,12 @@ WarpPatch const& WarpPlan::patch_at(std::uint32_t entry) const {
     return chunks_[entry / patches_per_chunk].patches[entry % patches_per_chunk];
 }
 
-void WarpPlan::block(std::size_t index, std::vector<PatchView>& patches) const {
-    patches.clear();
+void WarpPlan::add_block(std::size_t index, std::vector<PatchView>& patches) {
     for (std::uint32_t i = first_entry_[index]; i < first_entry_[index + 1]; ++i) {
-        patches.push_back({&patch_at(entries_[i]), chunks_[entries_[i] / patches_per_chunk].splats.data()});
+        Chunk& chunk = chunks_[entries_[i] / patches_per_chunk];
+        std::size_t const patch = entries_[i] % patches_per_chunk;
+        WarpPatch const& own = chunk.patches[patch];
+        patches.push_back({&own, chunk.splats.data(), &chunk.shows[patch], rank_of(own)});
     }
     // Those of the block that is most likely asked for next.
     std::size_t const next = std::min(index + 2, first_entry_.size() - 1);
@@ -228,8 +222,25 @@ void WarpPlan::block(std::size_t index, std::vector<PatchView>& patches) const {
             __builtin_prefetch(patch + at);
         }
     }
-    std::sort(patches.begin(), patches.end(),
-              [](PatchView const& a, PatchView const& b) { return is_before(*a.patch, *b.patch); });
+}
+
+void WarpPlan::add_shown(std::vector<Tile>& tiles) const {
+    for (Chunk const& chunk : chunks_) {
+        for (std::size_t i = 0; i < chunk.shows.size(); ++i) {
+            if (chunk.shows[i] != 0) {
+                Square const& square = squares_[chunk.parts[i].square];
+                for (std::uint64_t left = chunk.parts[i].places; left != 0; left &= left - 1) {
+                    tiles.push_back(square.merged.child_tile(static_cast<std::size_t>(std::countr_zero(left))));
+                }
+            }
+        }
+    }
+}
+
+void order(std::vector<PatchView>& patches) {
+    std::ranges::sort(patches, [](PatchView const& a, PatchView const& b) {
+        return a.rank != b.rank ? a.rank < b.rank : a.patch->place < b.patch->place;
+    });
 }
 
 } // namespace framelet

@@ -24,29 +24,38 @@ public:
 
     /// Replaces the plan; `cache` is always the same one. Runs in parallel; allocates only where more is held than ever
     /// before.
-    void make(FrameletCache const& cache, Camera const& display, SceneTime display_time, BodyMotions const& motions);
-
-    /// The same for the cache's spares.
-    void make_spares(FrameletCache const& cache, Camera const& display, SceneTime display_time,
-                     BodyMotions const& motions);
+    void make(FrameletCache const& cache, std::size_t slot, bool loose, Camera const& display, SceneTime display_time,
+              BodyMotions const& motions);
 
     int columns() const { return columns_; }
     int rows() const { return rows_; }
-    /// Fills `patches` with what may touch a block: newest batch first, then in an order that depends on tiles and
-    /// layers only.
-    void block(std::size_t index, std::vector<PatchView>& patches) const;
+    /// Adds what may touch a block to `patches`.
+    void add_block(std::size_t index, std::vector<PatchView>& patches);
+    /// Adds the tiles of what was noted to show since the plan was made; some come more than once.
+    void add_shown(std::vector<Tile>& tiles) const;
     /// The blocks' numbers of patches, all together.
     std::size_t entry_count() const { return entries_.size(); }
 
 private:
+    /// Of what framelets a patch is.
+    struct PatchParts {
+        std::uint32_t square = 0;
+        std::uint64_t places = 0; ///< bits, as `MergedLayer::parts`
+    };
+
     struct Chunk {
         std::vector<WarpPatch> patches;
         std::vector<Splat> splats;
+        std::vector<PatchParts> parts; ///< of patches
+        std::vector<std::uint8_t> shows; ///< of patches: whether something of it showed when blocks were painted
 
         void clear() {
             patches.clear();
             splats.clear();
+            parts.clear();
         }
+        /// That have been added since the last call are of these.
+        void note_parts(PatchParts const& some) { parts.resize(patches.size(), some); }
     };
 
     struct Square {
@@ -61,10 +70,11 @@ private:
     WarpPatch const& patch_at(std::uint32_t entry) const;
     void set_size(Viewport viewport);
     void set_squares(ImagePlane const& plane);
-    static void add_square(MergedSquare const& square, FrameletWarp& warp, Chunk& chunk);
-    static bool add_joined(MergedLayer const& merged, FrameletWarp& warp, Chunk& chunk);
-    static void add_parts(MergedSquare const& square, MergedLayer const& merged, FrameletWarp& warp, Chunk& chunk,
-                          LayerBits& alone);
+    static void add_square(std::uint32_t index, MergedSquare const& square, bool loose, FrameletWarp& warp,
+                           Chunk& chunk);
+    static bool add_joined(std::uint32_t index, MergedLayer const& merged, FrameletWarp& warp, Chunk& chunk);
+    static void add_parts(std::uint32_t index, MergedSquare const& square, MergedLayer const& merged,
+                          FrameletWarp& warp, Chunk& chunk, LayerBits& alone);
     bool count_entries(std::size_t most);
     void limit_entries(std::size_t most);
     void make_bins();
@@ -78,5 +88,9 @@ private:
     std::vector<std::uint32_t> next_entry_;
     std::vector<std::uint32_t> entries_; ///< chunk * patches_per_chunk + patch
 };
+
+/// Puts the patches of a block into the order in which they are painted: the best samples first, the newest of those,
+/// then by tiles and layers.
+void order(std::vector<PatchView>& patches);
 
 } // namespace framelet

@@ -60,7 +60,6 @@ void BatchWork::describe_shapes(PosedScene const& scene, ViewerKnowledge& viewer
     viewer.shapes.fit(rendered_, needed_, make_view_rays(order.state.view.camera, viewport), ImagePlane(viewport),
                       order.plan.moment_begun, batch_.shapes);
     if (!order.again) {
-        bind_to_picture(order.plan, needed_, viewer.refresh.staying(), batch_.shapes);
         std::span<FadingCode const> const fadings = viewer.refresh.fadings();
         std::size_t shape = 0;
         for (std::size_t i = 0; i < needed_.size(); ++i) {

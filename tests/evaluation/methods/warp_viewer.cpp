@@ -8,7 +8,7 @@ namespace framelet::bench {
 
 WarpViewer::WarpViewer(Viewport viewport, CostTable const& costs, PictureSettings const& settings)
     : costs_(costs), settings_(settings), maker_(viewport, settings), picture_(viewport.width, viewport.height) {
-    reconstruct_all(maker_.cache(), picture_); // bare
+    reconstruct_all(maker_.pool().newest(), picture_); // bare
 }
 
 ViewerStep WarpViewer::insert(Batch const& batch) {

@@ -1,0 +1,71 @@
+// What a viewer holds that moves its samples: the framelets of several moments, a cache for each camera that they were
+// rendered from. What is held stays until something better has come, wherever it lies in the picture by then. In:
+// batches in the order in which they were sent. Out: caches, from all of which a picture is made.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "common/framelet_cache.h"
+
+namespace framelet {
+
+/// A moment's framelets keep their slot as long as they are held. When the slots are used up the moment goes of which
+/// the last pictures showed least.
+class FrameletPool {
+public:
+    /// Where things move there are some ten moments a second; a picture shows more than a second of them.
+    static constexpr std::size_t most_moments = 8;
+
+    explicit FrameletPool(ImagePlane plane);
+
+    ImagePlane const& plane() const { return plane_; }
+
+    /// As `FrameletCache::insert`. `begins_moments`: where its camera is another than the last batch's, which samples
+    /// that are not to be moved make no use of: then the newest of a place are held, whatever their cameras.
+    std::size_t insert(Batch const& batch, bool begins_moments = true);
+
+    /// True where `insert` would begin a moment.
+    bool begins_moment(Batch const& batch) const;
+
+    /// The caches by slot.
+    std::size_t slot_count() const { return slots_.size(); }
+    FrameletCache const& slot(std::size_t index) const { return *slots_[index].cache; }
+    /// The slot of the moment that began last.
+    std::size_t newest_slot() const { return newest_; }
+    FrameletCache const& newest() const { return slot(newest_); }
+    FrameletCache& newest() { return *slots_[newest_].cache; }
+
+    /// Whether it is one of the last few.
+    bool is_recent(std::size_t slot) const;
+    /// Whether the slot's moment has been shown long enough to tell what of it is of no use.
+    bool is_tried(std::size_t slot) const;
+    /// Nothing else of the slot is held any more.
+    void keep(std::size_t slot, std::span<Tile const> tiles) { slots_[slot].cache->keep(tiles); }
+    /// Of slots: in how many blocks of the last picture something of it showed. For what goes next.
+    void note_shown(std::span<std::uint32_t const> blocks);
+
+    /// All moments together.
+    std::size_t framelet_count() const;
+    std::size_t memory_bytes() const;
+
+private:
+    struct Slot {
+        std::unique_ptr<FrameletCache> cache;
+        Camera camera; ///< of its framelets
+        std::uint64_t begun = 0; ///< counts moments
+        std::uint32_t shown = 0; ///< blocks of the last picture
+    };
+
+    std::size_t free_slot();
+    void begin_moment(Camera const& camera);
+
+    ImagePlane plane_;
+    std::vector<Slot> slots_;
+    std::size_t newest_ = 0;
+    std::uint64_t moments_ = 0;
+};
+
+} // namespace framelet
