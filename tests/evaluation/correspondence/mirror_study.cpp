@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/color.h"
-#include "common/framelet_cache.h"
+#include "common/picture/framelet_pool.h"
 #include "common/reprojector.h"
 #include "protocol/batch_codec.h"
 #include "server/layers/layer_fit.h"
@@ -39,7 +39,7 @@ Shot take_shot(BenchScene const& scene, Camera const& camera, Viewport viewport)
 }
 
 struct Held {
-    FrameletCache cache;
+    FrameletPool pool;
     BodyMotions motions;
 };
 
@@ -61,7 +61,7 @@ void hold(Shot const& shot, BenchScene const& scene, Viewport viewport, float sp
     }
     BatchCodec codec;
     Batch const arrived = codec.decode(codec.encode(batch));
-    held.cache.insert(arrived);
+    held.pool.insert(arrived);
     for (BodyTrack const& track : arrived.tracks) {
         held.motions.extend(track);
     }
@@ -116,20 +116,20 @@ void measure_from(BenchScene& scene, MirrorStudy const& study, SceneTime time, s
     float const speed = glm::distance(camera_after(scene, before.camera, before.median_depth, time, instant).position,
                                       before.camera.position) /
                         static_cast<float>(instant);
-    Held held{FrameletCache(ImagePlane(study.viewport)), {}};
+    Held held{FrameletPool(ImagePlane(study.viewport)), {}};
     hold(before, scene, study.viewport, speed, *std::ranges::max_element(study.ahead), held);
     Reprojector reprojector;
     std::vector<PixelRect> changed, repainted;
-    held.cache.take_changed(changed);
+    held.pool.newest().take_changed(changed);
     Picture left(study.viewport.width, study.viewport.height);
-    reprojector.show(held.cache, changed, before.camera, time, held.motions, left, repainted);
+    reprojector.show(held.pool, changed, before.camera, time, held.motions, left, repainted);
     Picture moved = left;
     for (std::size_t i = 0; i < study.ahead.size(); ++i) {
         SceneTime const later = time + study.ahead[i];
         Camera const camera = camera_after(scene, before.camera, before.median_depth, time, study.ahead[i]);
         pose_at(scene, later);
         Shot const after = take_shot(scene, camera, study.viewport);
-        reprojector.show(held.cache, {}, camera, later, held.motions, moved, repainted);
+        reprojector.show(held.pool, {}, camera, later, held.motions, moved, repainted);
         compare(after, scene.exposure, moved, left, found[i]);
     }
 }
