@@ -16,6 +16,7 @@
 #include "common/color.h"
 #include "common/cpu_clock.h"
 #include "common/framelet_cache.h"
+#include "common/picture/framelet_pool.h"
 #include "common/reconstruction.h"
 #include "common/reprojector.h"
 #include "protocol/batch_codec.h"
@@ -123,7 +124,7 @@ public:
     static constexpr int pictures = 4; ///< a round, and one before that brings its memory near again
 
     MovedPictures(BenchScene& scene, Viewport viewport, int levels)
-        : camera_(scene.camera), cache_(ImagePlane(viewport)), picture_(viewport.width, viewport.height) {
+        : camera_(scene.camera), pool_(ImagePlane(viewport)), picture_(viewport.width, viewport.height) {
         ImagePlane const plane(viewport);
         Tiling const tiling = make_uniform_tiling(plane, plane.pixel_depth() + levels);
         std::vector<Framelet> rendered(tiling.tiles.size());
@@ -138,7 +139,7 @@ public:
                 batch.framelets.push_back(to_display(rendered[i], scene.exposure));
                 fit_layers(rendered[i], plane, tolerance, batch.shapes.emplace_back());
             }
-            cache_.insert(batch);
+            pool_.insert(batch);
         }
     }
 
@@ -151,15 +152,15 @@ public:
             Batch& batch = batches_[shown_ % parts];
             if (arriving) {
                 batch.number += parts;
-                cache_.insert(batch);
+                pool_.insert(batch);
             }
-            cache_.take_changed(arrived_);
+            pool_.newest().take_changed(arrived_);
             auto const way = static_cast<float>(++shown_);
             Camera camera = camera_;
             camera.position += 1e-3f * way * depth_ * camera_.right();
             camera.orientation = glm::normalize(glm::angleAxis(2e-3f * way, Vec3(0, 1, 0)) * camera.orientation);
             double const took =
-                cpu_seconds_to([&] { reprojector_.show(cache_, arrived_, camera, 0, {}, picture_, changed_); });
+                cpu_seconds_to([&] { reprojector_.show(pool_, arrived_, camera, 0, {}, picture_, changed_); });
             seconds += i < 0 ? 0 : took;
         }
         return seconds;
@@ -169,7 +170,7 @@ private:
     static constexpr std::size_t parts = 5;
 
     Camera camera_;
-    FrameletCache cache_;
+    FrameletPool pool_;
     Reprojector reprojector_;
     Picture picture_;
     float depth_ = 0;
@@ -225,7 +226,7 @@ json measure_viewer(BenchScene& scene, LimitsOptions const& options) {
         }
         encoded[part] = codec.encode(batch);
     }
-    FrameletCache cache(plane);
+    FrameletPool pool(plane);
     Reprojector reprojector;
     Picture picture(options.viewport.width, options.viewport.height);
     std::vector<PixelRect> arrived, changed;
@@ -236,11 +237,11 @@ json measure_viewer(BenchScene& scene, LimitsOptions const& options) {
                             for (int i = 0; i < pictures; ++i) {
                                 Batch batch = codec.decode(encoded[++shown % parts]);
                                 batch.number = shown;
-                                cache.insert(batch);
-                                cache.take_changed(arrived);
+                                pool.insert(batch);
+                                pool.newest().take_changed(arrived);
                                 Camera camera = scene.camera;
                                 camera.position += 1e-3f * static_cast<float>(i + 1) * depth * scene.camera.right();
-                                reprojector.show(cache, arrived, camera, 0, {}, picture, changed);
+                                reprojector.show(pool, arrived, camera, 0, {}, picture, changed);
                             }
                         }));
     }
