@@ -25,7 +25,7 @@ constexpr float enough = 5e-5f;
 /// What moves is looked at over so many seconds.
 constexpr double least_earlier = 0.03, most_earlier = 0.25;
 /// The samples of so many seconds are planned together: what they cannot do at their price can wait.
-constexpr double planned_seconds = 0.1;
+constexpr double planned_seconds = 0.2;
 /// A scene time that jumps by more than this over what has passed has been set.
 constexpr double most_time_step = 0.5;
 
