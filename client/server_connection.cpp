@@ -9,7 +9,7 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include "common/error.h"
-#include "protocol/framed_stream.h"
+#include "protocol/stream_opening.h"
 
 namespace framelet {
 
@@ -100,8 +100,8 @@ struct ServerConnection::Impl {
     }
 
     void shake_hands() {
-        stream = options.tls ? FramedStream::tls_client(std::move(socket), tls, options.server.host)
-                             : FramedStream::plain(std::move(socket));
+        stream = options.tls ? tls_client_stream(std::move(socket), tls, options.server.host)
+                             : plain_stream(std::move(socket));
         FramedStream::Handlers events;
         events.on_message = [this](Message message) { receive(std::move(message)); };
         events.on_close = [this](std::string const& reason) {

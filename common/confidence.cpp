@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 
 #include <tbb/parallel_for.h>
 
@@ -30,7 +29,7 @@ void find_confidence(FrameletPool const& pool, Camera const& camera, SceneTime s
                      std::vector<PixelConfidence>& out) {
     Viewport const viewport = pool.plane().viewport();
     out.assign(static_cast<std::size_t>(viewport.width) * static_cast<std::size_t>(viewport.height), {});
-    std::deque<WarpPlan> plans(pool.slot_count());
+    std::vector<WarpPlan> plans(pool.slot_count());
     for (std::size_t i = 0; i < plans.size(); ++i) {
         plans[i].make(pool.slot(i), i, pool.is_recent(i), camera, scene_time, motions);
     }

@@ -18,15 +18,9 @@ std::size_t bytes_behind(HeldShape const& shape) {
     return shape.loose.capacity() * sizeof(HeldLoose);
 }
 
-bool deforms(HeldShape const& shape) {
-    return std::any_of(shape.layers.begin(), shape.layers.begin() + shape.layer_count,
-                       [](HeldLayer const& held) { return held.layer.velocity != Vec3(0); }) ||
-           std::ranges::any_of(shape.loose, [](HeldLoose const& loose) { return loose.sample.velocity != Vec3(0); });
-}
-
 } // namespace
 
-FrameletCache::FrameletCache(ImagePlane plane) : plane_(plane), spares_(0) {
+FrameletCache::FrameletCache(ImagePlane plane) : plane_(plane) {
     Viewport const viewport = plane.viewport();
     std::size_t nodes = 0;
     std::size_t squares = 0;
@@ -43,7 +37,6 @@ FrameletCache::FrameletCache(ImagePlane plane) : plane_(plane), spares_(0) {
     versions_.resize(squares);
     Level const& blocks = level(plane.pixel_depth());
     changed_blocks_.resize(static_cast<std::size_t>(blocks.columns) * static_cast<std::size_t>(blocks.rows));
-    spares_ = SparePool(spares_per_block * changed_blocks_.size());
 }
 
 std::uint64_t FrameletCache::covered_below(int depth, int column, int row) const {
@@ -71,12 +64,6 @@ std::size_t FrameletCache::insert(Batch const& batch) {
         FrameletShape const* const shape = batch.shapes.empty() ? nullptr : &batch.shapes[i];
         taken += insert_one(batch.framelets[i], shape, moment, view) ? 1 : 0;
     }
-    if (!spares_.all().empty() && is_of_one_camera()) {
-        for (Spare const& spare : spares_.all()) {
-            release(spare);
-        }
-        spares_.clear();
-    }
     return taken;
 }
 
@@ -84,7 +71,7 @@ std::size_t FrameletCache::insert(Batch const& batch) {
 std::uint32_t FrameletCache::view_of(Batch const& batch) {
     std::size_t index = views_.size();
     for (std::size_t i = views_.size(); i-- > 0;) {
-        if (views_[i].framelets + views_[i].spares == 0) {
+        if (views_[i].framelets == 0) {
             index = i;
         } else if (views_[i].number == batch.view.number && views_[i].scene_time == batch.scene_time) {
             return static_cast<std::uint32_t>(i);
@@ -106,10 +93,10 @@ bool FrameletCache::insert_one(DisplayFramelet const& framelet, FrameletShape co
     if (is_hidden(depth, column, row, moment.batch)) {
         return false;
     }
-    drop_older_below(depth, column, row, moment.batch, view);
+    drop_older_below(depth, column, row, moment.batch);
     Node& own = node(depth, column, row);
     if (own.slot != no_slot) {
-        drop(own, view);
+        drop(own);
     }
     own.slot = take_slot();
     ++count_;
@@ -124,9 +111,9 @@ bool FrameletCache::insert_one(DisplayFramelet const& framelet, FrameletShape co
     shape_bytes_ += bytes_behind(cached.shape);
     ++views_[view].framelets;
     views_[view].moving_framelets += cached.shape.moves ? 1 : 0;
-    refresh(depth, column, row, view);
+    refresh(depth, column, row);
     for (int d = depth - 1; d >= plane_.min_depth(); --d) {
-        refresh(d, column >> (depth - d), row >> (depth - d), view);
+        refresh(d, column >> (depth - d), row >> (depth - d));
     }
     mark(plane_.tile_rect(framelet.tile));
     mark_neighbours(framelet.tile, moment);
@@ -144,7 +131,7 @@ bool FrameletCache::is_hidden(int depth, int column, int row, std::uint64_t batc
     return covered_below(depth, column, row) >= batch;
 }
 
-void FrameletCache::drop_older_below(int depth, int column, int row, std::uint64_t batch, std::uint32_t view) {
+void FrameletCache::drop_older_below(int depth, int column, int row, std::uint64_t batch) {
     if (depth == plane_.max_depth()) {
         return;
     }
@@ -156,26 +143,21 @@ void FrameletCache::drop_older_below(int depth, int column, int row, std::uint64
                 continue;
             }
             if (child.slot != no_slot && held(child.slot).moment.batch < batch) {
-                drop(child, view);
+                drop(child);
             }
-            drop_older_below(depth + 1, x, y, batch, view);
-            refresh(depth + 1, x, y, view);
+            drop_older_below(depth + 1, x, y, batch);
+            refresh(depth + 1, x, y);
         }
     }
 }
 
-/// Makes room for a framelet of this view.
-void FrameletCache::drop(Node& owner, std::uint32_t view) {
+void FrameletCache::drop(Node& owner) {
     CachedFramelet const& gone = held(owner.slot);
     mark_neighbours(gone.tile, gone.moment); // those that interpolated with it
     set_version(gone.tile, 0);
     --views_[gone.view].framelets;
     views_[gone.view].moving_framelets -= gone.shape.moves ? 1 : 0;
-    if (views_[gone.view].camera == views_[view].camera || deforms(gone.shape)) {
-        release(owner.slot);
-    } else {
-        set_aside(owner.slot);
-    }
+    release(owner.slot);
     owner.slot = no_slot;
     --count_;
 }
@@ -190,37 +172,9 @@ void FrameletCache::set_version(Tile tile, std::uint64_t version) {
     square.newest = ++changes_;
 }
 
-void FrameletCache::set_aside(std::int32_t slot) {
-    CachedFramelet& framelet = held(slot);
-    slot_tiles_[static_cast<std::size_t>(slot)] = no_tile;
-    ++views_[framelet.view].spares;
-    if (auto const gone = spares_.add({framelet.moment.batch, framelet.tile, slot})) {
-        release(*gone);
-    }
-}
-
-void FrameletCache::release(Spare const& spare) {
-    --views_[held(spare.slot).view].spares;
-    release(spare.slot);
-}
-
 void FrameletCache::release(std::int32_t slot) {
     held(slot).tile = slot_tiles_[static_cast<std::size_t>(slot)] = no_tile;
     free_slots_.push_back(slot);
-}
-
-/// Of what is in place.
-bool FrameletCache::is_of_one_camera() const {
-    HeldView const* first = nullptr;
-    for (HeldView const& view : views_) {
-        if (view.framelets > 0) {
-            first = first == nullptr ? &view : first;
-            if (!(view.camera == first->camera)) {
-                return false;
-            }
-        }
-    }
-    return true;
 }
 
 std::int32_t FrameletCache::take_slot() {
@@ -240,11 +194,11 @@ std::int32_t FrameletCache::take_slot() {
 }
 
 /// Brings a node's sums up to date with its children and drops its framelet where they hide it.
-void FrameletCache::refresh(int depth, int column, int row, std::uint32_t view) {
+void FrameletCache::refresh(int depth, int column, int row) {
     Node& own = node(depth, column, row);
     std::uint64_t const below = covered_below(depth, column, row);
     if (own.slot != no_slot && below >= held(own.slot).moment.batch) {
-        drop(own, view);
+        drop(own);
     }
     own.cover = std::max(below, own.slot == no_slot ? 0 : held(own.slot).moment.batch);
     own.held = own.slot == no_slot ? 0 : 1;
@@ -276,9 +230,9 @@ void FrameletCache::keep(std::span<Tile const> tiles) {
         int const depth = tile.depth();
         int const column = static_cast<int>(tile.column());
         int const row = static_cast<int>(tile.row());
-        drop(node(depth, column, row), held(static_cast<std::int32_t>(slot)).view);
+        drop(node(depth, column, row));
         for (int d = depth; d >= plane_.min_depth(); --d) {
-            refresh(d, column >> (depth - d), row >> (depth - d), 0);
+            refresh(d, column >> (depth - d), row >> (depth - d));
         }
     }
 }
@@ -292,10 +246,6 @@ void FrameletCache::clear() {
             release(static_cast<std::int32_t>(slot));
         }
     }
-    for (Spare const& spare : spares_.all()) {
-        release(spare);
-    }
-    spares_.clear();
     std::ranges::fill(nodes_, Node{});
     views_.clear();
     count_ = 0;
@@ -403,7 +353,7 @@ bool FrameletCache::is_covered_from(int depth) const {
 std::size_t FrameletCache::memory_bytes() const {
     return chunks_.size() * sizeof(Chunk) + nodes_.capacity() * sizeof(Node) + slot_tiles_.capacity() * sizeof(Tile) +
            versions_.capacity() * sizeof(SquareVersions) + free_slots_.capacity() * sizeof(std::int32_t) +
-           views_.capacity() * sizeof(HeldView) + changed_blocks_.capacity() + shape_bytes_ + spares_.memory_bytes();
+           views_.capacity() * sizeof(HeldView) + changed_blocks_.capacity() + shape_bytes_;
 }
 
 } // namespace framelet

@@ -1,7 +1,6 @@
-// What a viewer holds: for every place of the image plane the newest framelet that arrived, as a quadtree of pooled
-// framelets, and as spares some of those that they replaced. In: batches in any order. Out: what is shown where, which
-// parts of the picture changed, and how much of it is covered. The set that shows in its places depends on the batches
-// inserted, not on the order in which they came.
+// For every place of the image plane the newest framelet that arrived, as a quadtree of pooled framelets. In: batches
+// in any order. Out: what is shown where, which parts of the picture changed, and how much of it is covered. The set
+// that shows in its places depends on the batches inserted, not on the order in which they came.
 #pragma once
 
 #include <array>
@@ -13,7 +12,6 @@
 
 #include "common/framelet.h"
 #include "common/held_shape.h"
-#include "common/spare_pool.h"
 
 namespace framelet {
 
@@ -34,9 +32,8 @@ struct HeldView {
     std::uint64_t number = 0; ///< the camera's
     Camera camera;
     SceneTime scene_time = 0;
-    std::uint32_t framelets = 0; ///< that show in their places
+    std::uint32_t framelets = 0; ///< that show in their places; 0: the entry is free
     std::uint32_t moving_framelets = 0; ///< those of them that show something other than `static_body` at rest
-    std::uint32_t spares = 0; ///< held besides; neither these nor framelets: the entry is free
 };
 
 /// A framelet as it is held: samples in rows, sample (i, j) at [16 * j + i]. In lines of the processor's cache, since
@@ -68,16 +65,11 @@ inline constexpr Tile no_tile{0};
 /// framelet's own image plane, since the newest camera is never far from the one that is displayed, and the only
 /// framelet of a place never leaves it.
 ///
-/// What has left its place for one of another camera may be all there is where it lies now. It becomes a spare: the
-/// newest of these are kept, `spares_per_block` for each 16x16 pixels of the viewport on the average, until all that is
-/// in place is of one camera. What deforms is not kept, since nobody knows how it goes on.
-///
-/// At most 2.1 KB are held for each 4x4 pixels and for each spare (129 MB at 1280x720), whatever the batches bring.
+/// At most 2.1 KB are held for each 4x4 pixels (121 MB at 1280x720), whatever the batches bring.
 /// What has changed is reported in blocks of 16x16 pixels, aligned to the picture's corner, and counted by tile.
 class FrameletCache {
 public:
     static constexpr int block_side = framelet_side;
-    static constexpr std::size_t spares_per_block = 1;
 
     explicit FrameletCache(ImagePlane plane);
 
@@ -93,7 +85,7 @@ public:
     /// Nothing but these is.
     void keep(std::span<Tile const> tiles);
 
-    /// The cameras and scene times of which framelets or spares are held, and free entries.
+    /// The cameras and scene times of which framelets are held, and free entries.
     std::span<HeldView const> views() const { return views_; }
 
     /// Replaces `changed` by the rectangles whose pixels may differ since the last call: disjoint, each one block high
@@ -133,9 +125,6 @@ public:
         Level const& l = level(depth);
         return versions_[l.first_square + square_row * l.square_columns + square_column];
     }
-    /// In no particular order.
-    std::span<Spare const> spares() const { return spares_.all(); }
-    CachedFramelet const& at(Spare const& spare) const { return held(spare.slot); }
     /// The lowest batch number that shows through where only the tiles below this one are looked at; 0 where they leave
     /// a part of it bare. The tile must be visible.
     std::uint64_t covered_below(int depth, int column, int row) const;
@@ -177,15 +166,12 @@ private:
                     std::uint32_t view);
     std::uint32_t view_of(Batch const& batch);
     bool is_hidden(int depth, int column, int row, std::uint64_t batch) const;
-    void drop_older_below(int depth, int column, int row, std::uint64_t batch, std::uint32_t view);
-    void drop(Node& node, std::uint32_t view);
+    void drop_older_below(int depth, int column, int row, std::uint64_t batch);
+    void drop(Node& node);
     void set_version(Tile tile, std::uint64_t version);
-    void set_aside(std::int32_t slot);
     void release(std::int32_t slot);
-    void release(Spare const& spare);
-    bool is_of_one_camera() const;
     std::int32_t take_slot();
-    void refresh(int depth, int column, int row, std::uint32_t view);
+    void refresh(int depth, int column, int row);
     void mark(PixelRect rect);
     void mark_neighbours(Tile tile, Moment const& moment);
     void mark_block(int column, int row);
@@ -199,7 +185,6 @@ private:
     std::vector<SquareVersions> versions_; ///< squares of each level in rows
     std::uint64_t changes_ = 0; ///< of these
     std::vector<std::int32_t> free_slots_;
-    SparePool spares_;
     std::vector<HeldView> views_;
     std::size_t shape_bytes_ = 0; ///< what the shapes hold besides
     std::vector<std::uint8_t> changed_blocks_; ///< a byte for each block, in rows

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <span>
 #include <vector>
 
@@ -70,7 +69,7 @@ private:
     double hole_share_ = 0;
     bool painted_all_ = false;
     std::size_t exact_slot_ = 0; ///< that an exact picture shows
-    std::deque<WarpPlan> plans_; ///< by slot
+    std::vector<WarpPlan> plans_; ///< by slot
     int columns_ = 0, rows_ = 0; ///< of blocks
     std::vector<BlockState> blocks_;
     std::vector<FarMean> block_means_;

@@ -183,6 +183,19 @@ bool paint_splat(Splat const& splat, std::int32_t group, int left, int top, Laye
     return shows;
 }
 
+/// True where something of it shows.
+bool paint_patch(PatchView const& view, int left, int top, Layers& layers) {
+    WarpPatch const& patch = *view.patch;
+    if (!patch.is_loose) {
+        return paint_layer(patch, left, top, layers);
+    }
+    bool shows = false;
+    for (std::uint32_t k = 0; k < patch.splats; ++k) {
+        shows |= paint_splat(view.splats[patch.first_splat + k], patch.group, left, top, layers);
+    }
+    return shows;
+}
+
 /// To the rows of a block what lies together in `Layers`.
 template <class Lanes, class T>
 void store_pixels(Lanes const& values, int x, int y, std::array<T, pixels>& plane) {
@@ -220,23 +233,6 @@ void finish(Layers const& layers, int width, int height, WarpedBlock& block) {
     }
 }
 
-/// Where so much of a block shows, its holes are places from which something has gone.
-constexpr int mostly_covered = static_cast<int>(WarpedBlock::pixels) / 4;
-
-/// The largest inverse depth that is likely in a block's holes. What comes out behind something is behind it: farther
-/// than the middle of what shows in the block. A block of which hardly anything shows has come into the picture.
-float nearest_in_holes(WarpedBlock const& block) {
-    float least = INFINITY, most = 0;
-    int count = 0;
-    for (float const inverse_depth : block.inverse_depth) {
-        bool const shows = inverse_depth != hole_depth;
-        least = shows ? std::min(least, inverse_depth) : least;
-        most = shows ? std::max(most, inverse_depth) : most;
-        count += shows ? 1 : 0;
-    }
-    return count > mostly_covered ? 0.5f * (least + most) : INFINITY;
-}
-
 /// Less than this of a block is not worth keeping a patch for.
 constexpr int enough_pixels = 6;
 
@@ -252,39 +248,11 @@ bool shows_enough(std::int32_t group, Layers const& layers) {
     return sum >= enough_pixels;
 }
 
-/// Over `layers`, in which weights and depths are what is there before.
-void paint(std::span<PatchView const> patches, int column, int row, Viewport viewport, Layers& layers,
-           WarpedBlock& block) {
-    int const left = column * side;
-    int const top = row * side;
-    for (auto* const plane : {&layers.red, &layers.green, &layers.blue}) {
-        plane->fill(0);
+/// Other blocks note the same.
+void note_shown(PatchView const& view) {
+    if (view.shows != nullptr) {
+        std::atomic_ref(*view.shows).store(1, std::memory_order_relaxed);
     }
-    layers.group.fill(-1);
-    std::uint64_t claims = 0; ///< bits of patches of which something showed once
-    for (std::size_t i = 0; i < patches.size(); ++i) {
-        if (i + 1 < patches.size()) {
-            prefetch_grid(*patches[i + 1].patch, left, top);
-        }
-        PatchView const& view = patches[i];
-        WarpPatch const& patch = *view.patch;
-        bool shows = false;
-        if (patch.is_loose) {
-            for (std::uint32_t k = 0; k < patch.splats; ++k) {
-                shows |= paint_splat(view.splats[patch.first_splat + k], patch.group, left, top, layers);
-            }
-        } else {
-            shows = paint_layer(patch, left, top, layers);
-        }
-        claims |= shows && i < 64 ? std::uint64_t{1} << i : 0;
-    }
-    for (; claims != 0; claims &= claims - 1) {
-        PatchView const& view = patches[static_cast<std::size_t>(std::countr_zero(claims))];
-        if (shows_enough(view.patch->group, layers)) {
-            std::atomic_ref(*view.shows).store(1, std::memory_order_relaxed); // other blocks note the same
-        }
-    }
-    finish(layers, viewport.width - left, viewport.height - top, block);
 }
 
 } // namespace
@@ -292,40 +260,35 @@ void paint(std::span<PatchView const> patches, int column, int row, Viewport vie
 void paint_warped_block(std::span<PatchView const> patches, int column, int row, Viewport viewport,
                         WarpedBlock& block) {
     Layers layers;
-    layers.weight.fill(0);
-    layers.inverse_depth.fill(hole_depth);
-    paint(patches, column, row, viewport, layers, block);
-}
-
-void paint_holes(std::span<PatchView const> patches, int column, int row, Viewport viewport, WarpedBlock const& front,
-                 WarpedBlock& block) {
-    Layers layers;
-    for (int y = 0; y < side; ++y) {
-        for (int x = 0; x < side; ++x) {
-            bool const is_hole = front.inverse_depth[static_cast<std::size_t>(y * side + x)] == hole_depth;
-            layers.weight[place_of(x, y)] = is_hole ? 0 : 1;
-            layers.inverse_depth[place_of(x, y)] = is_hole ? hole_depth : INFINITY;
-        }
+    for (auto* const plane : {&layers.red, &layers.green, &layers.blue, &layers.weight}) {
+        plane->fill(0);
     }
-    paint(patches, column, row, viewport, layers, block);
-}
-
-void show_in_holes(WarpedBlock const& behind, int width, int height, WarpedBlock& block) {
-    float const nearest = nearest_in_holes(block);
-    for (std::size_t i = 0; i < WarpedBlock::pixels; ++i) {
-        if (block.inverse_depth[i] != hole_depth || behind.inverse_depth[i] == hole_depth ||
-            behind.inverse_depth[i] > nearest) {
+    layers.inverse_depth.fill(hole_depth);
+    layers.group.fill(-1);
+    int const left = column * side;
+    int const top = row * side;
+    constexpr std::size_t most_claims = 64;
+    std::uint64_t claims = 0; // bits of patches of which something showed once
+    for (std::size_t i = 0; i < patches.size(); ++i) {
+        if (i + 1 < patches.size()) {
+            prefetch_grid(*patches[i + 1].patch, left, top);
+        }
+        if (!paint_patch(patches[i], left, top, layers)) {
             continue;
         }
-        block.inverse_depth[i] = behind.inverse_depth[i];
-        block.group[i] = behind.group[i];
-        for (std::size_t channel = 0; channel < 3; ++channel) {
-            block.squares[channel][i] = behind.squares[channel][i];
+        if (i < most_claims) {
+            claims |= std::uint64_t{1} << i;
+        } else {
+            note_shown(patches[i]);
         }
-        int const x = static_cast<int>(i) % side;
-        int const y = static_cast<int>(i) / side;
-        block.holes -= x < width && y < height ? 1 : 0;
     }
+    for (; claims != 0; claims &= claims - 1) {
+        PatchView const& view = patches[static_cast<std::size_t>(std::countr_zero(claims))];
+        if (shows_enough(view.patch->group, layers)) {
+            note_shown(view);
+        }
+    }
+    finish(layers, viewport.width - left, viewport.height - top, block);
 }
 
 } // namespace framelet

@@ -1,5 +1,6 @@
 // Paints one block of a moved picture from its patches: samples of one layer are interpolated with each other, never
-// with another layer's; what is nearer hides, what is newer wins. In: patches, newest first. Out: colour and inverse
+// with another layer's; what is nearer hides, of one surface the best
+// samples show. In: patches, the best first. Out: colour and inverse
 // depth of 16x16 pixels.
 #pragma once
 
@@ -33,13 +34,5 @@ struct WarpedBlock {
 /// framelets of the same view, time and spacing. A layer covers the cells of its samples enlarged by half a sample, so
 /// that neighbours overlap; but where the sum of its tents is less than 1/4 it covers only what nothing else does.
 void paint_warped_block(std::span<PatchView const> patches, int column, int row, Viewport viewport, WarpedBlock& block);
-
-/// The same for what shows only in the holes of another block of the same place: what it paints elsewhere says nothing.
-void paint_holes(std::span<PatchView const> patches, int column, int row, Viewport viewport, WarpedBlock const& front,
-                 WarpedBlock& block);
-
-/// Shows another block's pixels where this one has holes; where something shows around these, only what is behind it.
-/// Only holes left of `width` and above `height` are counted.
-void show_in_holes(WarpedBlock const& behind, int width, int height, WarpedBlock& block);
 
 } // namespace framelet

@@ -59,7 +59,7 @@ struct Splat {
 struct PatchView {
     WarpPatch const* patch = nullptr;
     Splat const* splats = nullptr;
-    std::uint8_t* shows = nullptr; ///< set where enough of it shows in the picture
+    std::uint8_t* shows = nullptr; ///< set where enough of it shows in the picture; null: nobody asks
     std::uint64_t rank = 0; ///< of its samples: the best ones, and of those the newest, have the least
 };
 

@@ -6,6 +6,9 @@
 
 #include <tbb/parallel_for.h>
 
+#include "common/layer_joining.h"
+#include "common/per_thread.h"
+
 namespace framelet {
 
 namespace {
@@ -57,6 +60,13 @@ bool is_before(WarpPatch const& a, WarpPatch const& b) {
 
 } // namespace
 
+struct WarpPlan::Joinings : PerThread<LayerJoining> {};
+
+WarpPlan::WarpPlan() : joinings_(std::make_unique<Joinings>()) {}
+WarpPlan::~WarpPlan() = default;
+WarpPlan::WarpPlan(WarpPlan&&) noexcept = default;
+WarpPlan& WarpPlan::operator=(WarpPlan&&) noexcept = default;
+
 void WarpPlan::make(FrameletCache const& cache, std::size_t slot, bool loose, Camera const& display,
                     SceneTime display_time, BodyMotions const& motions) {
     set_size(cache.plane().viewport());
@@ -66,7 +76,7 @@ void WarpPlan::make(FrameletCache const& cache, std::size_t slot, bool loose, Ca
         Chunk& chunk = chunks_[i];
         chunk.clear();
         FrameletWarp warp(cache, slot, display, display_time, motions);
-        LayerJoining& joining = joinings_.local();
+        LayerJoining& joining = joinings_->local();
         std::size_t const first = i * squares_per_chunk;
         for (std::size_t k = first; k < std::min(first + squares_per_chunk, squares_.size()); ++k) {
             Square& square = squares_[k];

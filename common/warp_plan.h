@@ -5,13 +5,13 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "common/body_motion.h"
 #include "common/framelet_cache.h"
 #include "common/framelet_warp.h"
 #include "common/merged_square.h"
-#include "common/per_thread.h"
 #include "common/warp_patch.h"
 
 namespace framelet {
@@ -21,6 +21,11 @@ public:
     /// As many patches are kept for a block, on the average. Where a camera goes so near that there would be more, the
     /// newest ones are.
     static constexpr std::size_t most_patches_per_block = 256;
+
+    WarpPlan();
+    ~WarpPlan();
+    WarpPlan(WarpPlan&&) noexcept;
+    WarpPlan& operator=(WarpPlan&&) noexcept;
 
     /// Replaces the plan; `cache` is always the same one. Runs in parallel; allocates only where more is held than ever
     /// before.
@@ -82,8 +87,9 @@ private:
     int columns_ = 0, rows_ = 0;
     ImagePlane plane_; ///< of the squares
     std::vector<Square> squares_; ///< all that can be held
-    PerThread<LayerJoining> joinings_; ///< scratch
-    std::vector<Chunk> chunks_; ///< of squares or spares
+    struct Joinings;
+    std::unique_ptr<Joinings> joinings_; ///< scratch
+    std::vector<Chunk> chunks_; ///< of squares
     std::vector<std::uint32_t> first_entry_; ///< by block; one more at the end
     std::vector<std::uint32_t> next_entry_;
     std::vector<std::uint32_t> entries_; ///< chunk * patches_per_chunk + patch

@@ -20,6 +20,7 @@
 
 #include "common/error.h"
 #include "protocol/outbox.h"
+#include "protocol/stream_opening.h"
 #include "protocol/stream_reason.h"
 #include "protocol/tls.h"
 
@@ -27,7 +28,7 @@ namespace framelet {
 namespace {
 
 namespace asio = boost::asio;
-using Socket = FramedStream::Socket;
+using Socket = StreamSocket;
 using SecureStream = asio::ssl::stream<Socket>;
 using Error = boost::system::error_code;
 
@@ -459,18 +460,18 @@ private:
 
 } // namespace
 
-std::shared_ptr<FramedStream> FramedStream::plain(Socket socket) {
+std::shared_ptr<FramedStream> plain_stream(StreamSocket socket) {
     return std::make_shared<Connection<Socket>>(std::move(socket), asio::ssl::stream_base::client);
 }
 
-std::shared_ptr<FramedStream> FramedStream::tls_server(Socket socket,
-                                                       std::shared_ptr<asio::ssl::context> const& context) {
+std::shared_ptr<FramedStream> tls_server_stream(StreamSocket socket,
+                                                std::shared_ptr<asio::ssl::context> const& context) {
     return std::make_shared<Connection<SecureStream>>(SecureStream(std::move(socket), *context),
                                                       asio::ssl::stream_base::server);
 }
 
-std::shared_ptr<FramedStream>
-FramedStream::tls_client(Socket socket, std::shared_ptr<asio::ssl::context> const& context, std::string const& host) {
+std::shared_ptr<FramedStream> tls_client_stream(StreamSocket socket, std::shared_ptr<asio::ssl::context> const& context,
+                                                std::string const& host) {
     SecureStream stream(std::move(socket), *context);
     require_host(stream.native_handle(), host);
     return std::make_shared<Connection<SecureStream>>(std::move(stream), asio::ssl::stream_base::client);

@@ -1,13 +1,10 @@
-// Length-prefixed messages over TCP, with or without TLS. Whoever knows sockets and bytes is here.
+// Length-prefixed messages over TCP, with or without TLS. Whoever knows sockets and bytes is behind this; how one is
+// made of a socket is in stream_opening.h, apart, since few need the sockets and their headers are long.
 #pragma once
 
 #include <functional>
 #include <memory>
 #include <string>
-
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/tcp.hpp>
-#include <boost/asio/ssl/context.hpp>
 
 #include "protocol/message.h"
 
@@ -23,8 +20,6 @@ inline constexpr std::size_t max_unsent_bytes = 2 * max_message_bytes;
 /// thread calls `close` may still finish.
 class FramedStream : public std::enable_shared_from_this<FramedStream> {
 public:
-    using Socket = boost::asio::ip::tcp::socket;
-
     struct Handlers {
         /// May throw ProtocolError, which ends the connection like a message that cannot be decoded.
         std::function<void(Message)> on_message;
@@ -33,15 +28,6 @@ public:
         /// A queued message has gone to the socket; `bytes` with its prefix.
         std::function<void(std::size_t bytes)> on_sent;
     };
-
-    /// Plain TCP. Sets TCP_NODELAY, and where there is TCP_NOTSENT_LOWAT keeps what waits in the system short.
-    static std::shared_ptr<FramedStream> plain(Socket socket);
-    /// TLS as the server or as the client; `host` is the name or the address that the
-    /// certificate is checked against (InputError where it is neither).
-    static std::shared_ptr<FramedStream> tls_server(Socket socket,
-                                                    std::shared_ptr<boost::asio::ssl::context> const& context);
-    static std::shared_ptr<FramedStream>
-    tls_client(Socket socket, std::shared_ptr<boost::asio::ssl::context> const& context, std::string const& host);
 
     virtual ~FramedStream() = default;
 
@@ -63,11 +49,5 @@ public:
     /// Address and port of the other side, as they were at the beginning. From any thread.
     virtual std::string peer() const = 0;
 };
-
-/// Contexts for TLS 1.2 and later. Throw InputError that names the file.
-std::shared_ptr<boost::asio::ssl::context> make_tls_server_context(std::string const& certificate_file,
-                                                                   std::string const& key_file);
-/// `authority_file` empty: the system's certificate authorities.
-std::shared_ptr<boost::asio::ssl::context> make_tls_client_context(std::string const& authority_file);
 
 } // namespace framelet

@@ -4,7 +4,7 @@
 #include <openssl/x509_vfy.h>
 
 #include "common/error.h"
-#include "protocol/framed_stream.h"
+#include "protocol/stream_opening.h"
 
 namespace framelet {
 namespace {

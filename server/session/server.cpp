@@ -12,6 +12,7 @@
 #include <spdlog/spdlog.h>
 
 #include "common/error.h"
+#include "protocol/stream_opening.h"
 #include "protocol/token.h"
 #include "server/scene/animation.h"
 #include "server/session/clock_requests.h"
@@ -144,7 +145,7 @@ struct Server::Impl {
             return; // closes the socket: too many that have not said hello
         }
         ::setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_USER_TIMEOUT, &user_timeout_ms, sizeof user_timeout_ms);
-        auto stream = tls ? FramedStream::tls_server(std::move(socket), tls) : FramedStream::plain(std::move(socket));
+        auto stream = tls ? tls_server_stream(std::move(socket), tls) : plain_stream(std::move(socket));
         std::uint64_t const id = next_id++;
         Session::Events events;
         events.admit = [this](Hello const& hello) { return admit(hello); };

@@ -18,7 +18,7 @@
 
 #include "client/server_address.h"
 #include "protocol/batch_codec.h"
-#include "protocol/framed_stream.h"
+#include "protocol/stream_opening.h"
 
 namespace framelet::test {
 
@@ -148,7 +148,7 @@ private:
     }
 
     void serve(Tcp::socket socket) {
-        auto stream = FramedStream::plain(std::move(socket));
+        auto stream = plain_stream(std::move(socket));
         streams_.push_back(stream);
         FramedStream::Handlers handlers;
         handlers.on_message = [this, weak = std::weak_ptr(stream)](Message message) {

@@ -10,9 +10,9 @@
 namespace framelet {
 namespace {
 
-std::vector<PixelConfidence> confidence(FrameletCache const& cache, Camera const& camera, SceneTime time) {
+std::vector<PixelConfidence> confidence(FrameletPool const& pool, Camera const& camera, SceneTime time) {
     std::vector<PixelConfidence> out;
-    find_confidence(cache, camera, time, {}, out);
+    find_confidence(pool, camera, time, {}, out);
     EXPECT_EQ(out.size(), static_cast<std::size_t>(viewport.width) * viewport.height);
     return out;
 }
@@ -23,8 +23,8 @@ bool is_made_up(PixelConfidence const& pixel) {
 
 TEST(Confidence, SaysHowOldAndHowCoarse) {
     for (int const levels : {-2, -1, 0, 1, 2}) {
-        FrameletCache const cache = filled(room(), front(), levels, 3);
-        for (PixelConfidence const& pixel : confidence(cache, front(), 3.5)) {
+        FrameletPool const pool = filled(room(), front(), levels, 3);
+        for (PixelConfidence const& pixel : confidence(pool, front(), 3.5)) {
             ASSERT_FLOAT_EQ(pixel.seconds, 0.5f);
             ASSERT_FLOAT_EQ(pixel.spacing, std::exp2(static_cast<float>(-levels)));
             ASSERT_FALSE(pixel.is_spare);
@@ -34,10 +34,10 @@ TEST(Confidence, SaysHowOldAndHowCoarse) {
 
 TEST(Confidence, OfTwoTheOneThatShows) {
     ImagePlane const plane(viewport);
-    FrameletCache cache = filled(room(), front(), 0, 1);
+    FrameletPool pool = filled(room(), front(), 0, 1);
     Tile const tile = make_tile(plane.pixel_depth(), 4, 5);
-    cache.insert(room().batch(plane, 2, front(), 2, {tile}));
-    std::vector<PixelConfidence> const found = confidence(cache, front(), 2.25);
+    pool.insert(room().batch(plane, 2, front(), 2, {tile}));
+    std::vector<PixelConfidence> const found = confidence(pool, front(), 2.25);
     PixelRect const rect = plane.tile_rect(tile);
     for (int y = 0; y < viewport.height; ++y) {
         for (int x = 0; x < viewport.width; ++x) {
@@ -51,9 +51,9 @@ TEST(Confidence, OfTwoTheOneThatShows) {
 TEST(Confidence, HolesAreMadeUp) {
     Camera moved = front();
     moved.position.x += 0.4f;
-    FrameletCache const cache = filled(room(), front(), 0);
-    Shown const shown = show(cache, moved, 0);
-    std::vector<PixelConfidence> const found = confidence(cache, moved, 0);
+    FrameletPool const pool = filled(room(), front(), 0);
+    Shown const shown = show(pool, moved, 0);
+    std::vector<PixelConfidence> const found = confidence(pool, moved, 0);
     EXPECT_TRUE(std::ranges::any_of(found, is_made_up));
     for (std::size_t i = 0; i < found.size(); ++i) {
         ASSERT_EQ(is_made_up(found[i]), shown.inverse_depth[i] == hole_depth) << i;
@@ -66,10 +66,10 @@ TEST(Confidence, TellsSpares) {
     turned.orientation = glm::normalize(turned.orientation * glm::angleAxis(0.15f, Vec3(0, 1, 0)));
     std::vector<Tile> left = visible_tiles(plane, plane.pixel_depth());
     std::erase_if(left, [&](Tile tile) { return plane.tile_rect(tile).left >= viewport.width / 2; });
-    FrameletCache cache = filled(room(), front(), 0);
-    cache.insert(room().batch(plane, 2, turned, 0, left));
-    Shown const shown = show(cache, turned, 0);
-    std::vector<PixelConfidence> const found = confidence(cache, turned, 0);
+    FrameletPool pool = filled(room(), front(), 0);
+    pool.insert(room().batch(plane, 2, turned, 0, left));
+    Shown const shown = show(pool, turned, 0);
+    std::vector<PixelConfidence> const found = confidence(pool, turned, 0);
     EXPECT_GT(std::ranges::count_if(found, &PixelConfidence::is_spare), viewport.height * 8);
     for (std::size_t i = 0; i < found.size(); ++i) {
         ASSERT_EQ(is_made_up(found[i]), shown.inverse_depth[i] == hole_depth) << i;
@@ -78,8 +78,8 @@ TEST(Confidence, TellsSpares) {
 }
 
 TEST(Confidence, OfNothingIsNone) {
-    FrameletCache const cache{ImagePlane(viewport)};
-    EXPECT_TRUE(std::ranges::all_of(confidence(cache, front(), 0), is_made_up));
+    FrameletPool const pool{ImagePlane(viewport)};
+    EXPECT_TRUE(std::ranges::all_of(confidence(pool, front(), 0), is_made_up));
 }
 
 } // namespace

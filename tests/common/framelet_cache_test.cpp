@@ -13,23 +13,11 @@ namespace {
 /// As FrameletCache states it, for each 4x4 pixels.
 constexpr std::size_t most_bytes_per_framelet = 2100;
 
-std::size_t most_spares(ImagePlane const& plane) {
-    return FrameletCache::spares_per_block * visible_tiles(plane, plane.pixel_depth()).size();
-}
-
 /// As from a camera of its own for each number.
 Batch seen_from(std::uint64_t camera, Batch batch) {
     batch.view.number = camera;
     batch.view.camera.position.x = static_cast<float>(camera);
     return batch;
-}
-
-std::set<std::pair<std::uint64_t, Tile>> spare_names(FrameletCache const& cache) {
-    std::set<std::pair<std::uint64_t, Tile>> out;
-    for (Spare const& spare : cache.spares()) {
-        out.emplace(spare.batch, spare.tile);
-    }
-    return out;
 }
 
 /// What shows at every finest cell, by the definition: the highest batch, of equals the finest.
@@ -188,7 +176,7 @@ TEST(FrameletCache, ViewsAreKnownAsLongAsTheirFrameletsAreHeld) {
         insert(number, static_cast<std::uint32_t>(number % 2), static_body);
         EXPECT_EQ(view_at(static_cast<int>(number % 2)).number, number);
         EXPECT_EQ(view_at(static_cast<int>(number % 2)).framelets, 1u);
-        EXPECT_LE(cache.views().size(), 3 + most_spares(plane));
+        EXPECT_LE(cache.views().size(), 3);
     }
 }
 
@@ -236,7 +224,6 @@ TEST(FrameletCache, NeverDropsTheOnlyContentOfAPlace) {
             }
         }
         ASSERT_TRUE(std::ranges::includes(now, covered));
-        ASSERT_LE(cache.spares().size(), most_spares(plane));
         covered = std::move(now);
     }
     EXPECT_GT(covered.size(), 300U);
@@ -258,66 +245,49 @@ TEST(FrameletCache, MemoryIsBounded) {
             cache.insert(seen_from(number, batch));
         }
         EXPECT_EQ(cache.framelet_count(), tiles.size());
-        EXPECT_LE(cache.memory_bytes(), most_bytes_per_framelet * (tiles.size() + most_spares(plane)));
+        EXPECT_LE(cache.memory_bytes(), most_bytes_per_framelet * tiles.size());
     }
 }
 
-TEST(FrameletCache, WhatLeavesForAnotherCameraIsASpareUntilAllIsOfOneCamera) {
+TEST(FrameletCache, KeepsOnlyWhatItIsTold) {
     ImagePlane const plane({64, 64});
     FrameletCache cache(plane);
     Tile const place = make_tile(plane.pixel_depth(), 1, 2);
     Tile const other = make_tile(plane.pixel_depth(), 3, 0);
-    auto const insert = [&](std::uint64_t number, std::uint64_t camera, Tile tile) {
-        cache.insert(seen_from(camera, make_batch(plane, number, {constant_framelet(plane, tile, 9)})));
-    };
-    insert(1, 1, place);
-    insert(2, 1, place);
-    insert(3, 1, other);
-    EXPECT_TRUE(cache.spares().empty()); // the camera has not moved
-    insert(4, 2, place);
-    EXPECT_EQ(spare_names(cache), (std::set<std::pair<std::uint64_t, Tile>>{{2, place}}));
-    insert(5, 3, place.child(1)); // what it lies over shows still
-    insert(6, 3, place.parent()); // of one camera with the child
-    EXPECT_EQ(spare_names(cache), (std::set<std::pair<std::uint64_t, Tile>>{{2, place}, {4, place}}));
-    std::set<Tile> in_place;
-    for (std::size_t slot = 0; slot < cache.slot_count(); ++slot) {
-        if (cache.at_slot(slot) != nullptr) {
-            in_place.insert(cache.at_slot(slot)->tile);
-        }
-    }
-    EXPECT_EQ(in_place, (std::set<Tile>{place.parent(), other}));
-    insert(7, 3, other);
-    EXPECT_TRUE(cache.spares().empty());
+    cache.insert(make_batch(plane, 1, {constant_framelet(plane, place.parent(), 9)}));
+    cache.insert(make_batch(plane, 2, {constant_framelet(plane, place, 9), constant_framelet(plane, other, 9)}));
+    std::vector<PixelRect> changed;
+    cache.take_changed(changed);
+    std::array const kept{place, place, make_tile(plane.pixel_depth(), 0, 0)};
+    cache.keep(kept);
+    EXPECT_EQ(cache.framelet_count(), 1U);
+    EXPECT_NE(cache.find(plane.pixel_depth(), 1, 2), nullptr);
+    EXPECT_EQ(cache.find(plane.pixel_depth(), 3, 0), nullptr);
+    EXPECT_EQ(cache.coverage(), 1.0 / 16);
+    EXPECT_TRUE(cache.has_changes());
+    cache.clear();
+    EXPECT_EQ(cache.framelet_count(), 0U);
+    EXPECT_EQ(cache.coverage(), 0);
+    EXPECT_EQ(cache.find(plane.pixel_depth(), 1, 2), nullptr);
+    cache.insert(make_batch(plane, 3, {constant_framelet(plane, other, 9)}));
+    EXPECT_EQ(cache.framelet_count(), 1U);
+    EXPECT_EQ(cache.coverage(), 1.0 / 16);
 }
 
-TEST(FrameletCache, SparesAreTheNewestThatFit) {
-    ImagePlane const plane({64, 64});
+TEST(FrameletCache, IsCoveredFromADepthByWhatIsAsFine) {
+    ImagePlane const plane({48, 32});
     FrameletCache cache(plane);
-    Tile const place = make_tile(plane.pixel_depth(), 1, 2);
-    cache.insert(make_batch(plane, 1, {constant_framelet(plane, make_tile(plane.pixel_depth(), 3, 3), 9)}));
-    std::uint64_t const last = 100;
-    for (std::uint64_t number = 2; number <= last; ++number) {
-        cache.insert(seen_from(number, make_batch(plane, number, {constant_framelet(plane, place, 9)})));
+    std::uint64_t number = 0;
+    for (Tile const tile : visible_tiles(plane, plane.pixel_depth() - 1)) {
+        cache.insert(make_batch(plane, ++number, {constant_framelet(plane, tile, 9)}));
     }
-    auto const names = spare_names(cache);
-    ASSERT_EQ(names.size(), most_spares(plane));
-    EXPECT_EQ(names.begin()->first, last - most_spares(plane));
-    EXPECT_EQ(names.rbegin()->first, last - 1);
-}
-
-TEST(FrameletCache, WhatDeformsIsNoSpare) {
-    ImagePlane const plane({64, 64});
-    FrameletCache cache(plane);
-    Tile const place = make_tile(plane.pixel_depth(), 1, 2);
-    Batch batch = make_batch(plane, 1, {constant_framelet(plane, place, 9)});
-    batch.framelets.push_back(constant_framelet(plane, make_tile(plane.pixel_depth(), 3, 3), 9));
-    FrameletShape shape;
-    shape.layer_count = 1;
-    shape.layers[0].velocity.x = 1;
-    batch.shapes = {shape, shape};
-    cache.insert(seen_from(1, batch));
-    cache.insert(seen_from(2, make_batch(plane, 2, {constant_framelet(plane, place, 9)})));
-    EXPECT_TRUE(cache.spares().empty());
+    EXPECT_TRUE(cache.is_covered_from(plane.pixel_depth() - 1));
+    EXPECT_FALSE(cache.is_covered_from(plane.pixel_depth()));
+    for (Tile const tile : visible_tiles(plane, plane.pixel_depth() + 1)) {
+        EXPECT_FALSE(cache.is_covered_from(plane.pixel_depth()));
+        cache.insert(make_batch(plane, ++number, {constant_framelet(plane, tile, 9)}));
+    }
+    EXPECT_TRUE(cache.is_covered_from(plane.pixel_depth()));
 }
 
 TEST(FrameletCache, SteadyStateAllocatesNothing) {

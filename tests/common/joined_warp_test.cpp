@@ -16,7 +16,7 @@ namespace {
 /// Each framelet alone, in the order of the plan.
 void alone(FrameletCache const& cache, Camera const& display, SceneTime time, BodyMotions const& motions,
            std::vector<WarpPatch>& patches, std::vector<Splat>& splats) {
-    FrameletWarp warp(cache, display, time, motions);
+    FrameletWarp warp(cache, 0, display, time, motions);
     for (std::size_t slot = 0; slot < cache.slot_count(); ++slot) {
         if (CachedFramelet const* const framelet = cache.at_slot(slot)) {
             warp.add(*framelet, FrameletWarp::all_parts, patches, splats);
@@ -66,7 +66,7 @@ TEST(JoinedWarp, WhatIsJoinedShowsAsEachFrameletAlone) {
                 cache.insert(batch);
             }
             WarpPlan plan;
-            plan.make(cache, display, 0.3, scene.motions);
+            plan.make(cache, 0, true, display, 0.3, scene.motions);
             std::vector<WarpPatch> each;
             std::vector<Splat> splats;
             alone(cache, display, 0.3, scene.motions, each, splats);
@@ -75,7 +75,9 @@ TEST(JoinedWarp, WhatIsJoinedShowsAsEachFrameletAlone) {
             for (int row = 0; row < plan.rows(); ++row) {
                 for (int column = 0; column < plan.columns(); ++column) {
                     std::vector<PatchView> joined, views;
-                    plan.block(static_cast<std::size_t>(row * plan.columns() + column), joined);
+                    joined.clear();
+                    plan.add_block(static_cast<std::size_t>(row * plan.columns() + column), joined);
+                    order(joined);
                     PixelRect const block{16 * column, 16 * row, 16 * column + 16, 16 * row + 16};
                     for (WarpPatch const& patch : each) {
                         if (patch.box.left < block.right && patch.box.right > block.left &&

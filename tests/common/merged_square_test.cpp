@@ -102,7 +102,8 @@ TEST(MergedSquare, OnePlaneIsFound) {
     scene.quads.push_back({{-8, -8, -3}, {16, 0, 4}, {0, 16, 0}, waves(12, 6)});
     LayerJoining joining;
     for (int levels = -1; levels <= finest_levels; ++levels) {
-        FrameletCache const cache = filled(scene, front(), levels);
+        FrameletPool const pool = filled(scene, front(), levels);
+        FrameletCache const& cache = pool.newest();
         int const depth = plane.pixel_depth() + levels;
         MergedSquare square;
         square.update(cache, make_tile(depth - MergedSquare::most_levels, 0, 0), depth, joining);
@@ -128,7 +129,8 @@ TEST(MergedSquare, SamplesHaveTheNumberOfTheirLayer) {
     LayerJoining joining;
     int joined = 0, alone = 0, loose = 0, fours = 0;
     for (int levels = 0; levels <= finest_levels; ++levels) {
-        FrameletCache const cache = filled(scene, front(), levels);
+        FrameletPool const pool = filled(scene, front(), levels);
+        FrameletCache const& cache = pool.newest();
         int const depth = plane.pixel_depth() + levels;
         std::vector<Tile> const squares = visible_tiles(plane, depth - MergedSquare::most_levels);
         for (Tile const tile : squares) {

@@ -30,22 +30,22 @@ struct Shown {
     double hole_share = 0;
 };
 
-inline Shown show(FrameletCache const& cache, Camera const& camera, SceneTime time, BodyMotions const& motions = {}) {
+inline Shown show(FrameletPool const& pool, Camera const& camera, SceneTime time, BodyMotions const& motions = {}) {
     Shown out;
     Reprojector reprojector;
     std::vector<PixelRect> repainted;
-    reprojector.show(cache, {}, camera, time, motions, out.picture, repainted);
+    reprojector.show(pool, {}, camera, time, motions, out.picture, repainted);
     out.inverse_depth.assign(reprojector.inverse_depth().begin(), reprojector.inverse_depth().end());
     out.hole_share = reprojector.hole_share();
     return out;
 }
 
-inline FrameletCache filled(AnalyticScene const& scene, Camera const& camera, int levels, SceneTime time = 0,
-                            bool all_loose = false) {
+inline FrameletPool filled(AnalyticScene const& scene, Camera const& camera, int levels, SceneTime time = 0,
+                           bool all_loose = false) {
     ImagePlane const plane(viewport);
-    FrameletCache cache(plane);
-    cache.insert(scene.batch(plane, 1, camera, time, visible_tiles(plane, plane.pixel_depth() + levels), all_loose));
-    return cache;
+    FrameletPool pool(plane);
+    pool.insert(scene.batch(plane, 1, camera, time, visible_tiles(plane, plane.pixel_depth() + levels), all_loose));
+    return pool;
 }
 
 inline std::size_t at(int x, int y) {

@@ -25,7 +25,7 @@ double metres_per_pixel() {
 }
 
 /// A picture seen by `camera`, as framelets of one sample a pixel at one depth.
-FrameletCache hold_picture(Picture const& picture, Camera const& camera) {
+FrameletPool hold_picture(Picture const& picture, Camera const& camera) {
     ImagePlane const plane(viewport);
     auto const shade = [&](float x, float y) {
         std::uint8_t const* const pixel = picture.row(static_cast<int>(y)) + 4 * static_cast<int>(x);
@@ -41,9 +41,9 @@ FrameletCache hold_picture(Picture const& picture, Camera const& camera) {
     shape.layer_count = 1;
     shape.layers[0].at = inverse_depth;
     batch.shapes.assign(batch.framelets.size(), shape);
-    FrameletCache cache(plane);
-    cache.insert(batch);
-    return cache;
+    FrameletPool pool(plane);
+    pool.insert(batch);
+    return pool;
 }
 
 Picture impulse() {
@@ -71,8 +71,8 @@ TEST(RepeatedResampling, OfPicturesBlursMoreEveryTime) {
     for (double const v : {0.5, 0.25, 0.1}) {
         Picture picture = impulse();
         for (int n = 1; n <= 8; ++n) {
-            FrameletCache const cache = hold_picture(picture, front());
-            picture = show(cache, sideways(v * metres_per_pixel()), 0).picture;
+            FrameletPool const pool = hold_picture(picture, front());
+            picture = show(pool, sideways(v * metres_per_pixel()), 0).picture;
             EXPECT_NEAR(spread(picture), n * v * (1 - v), 0.03 * n * v * (1 - v) + 0.01) << v << " " << n;
         }
     }
@@ -80,13 +80,13 @@ TEST(RepeatedResampling, OfPicturesBlursMoreEveryTime) {
 
 /// What is held is always resampled from the original: n steps blur as one does, by that step's fraction.
 TEST(RepeatedResampling, OfWhatIsHeldBlursOnce) {
-    FrameletCache const cache = hold_picture(impulse(), front());
+    FrameletPool const pool = hold_picture(impulse(), front());
     for (double const v : {0.5, 0.25, 0.1}) {
         Reprojector reprojector;
         Picture picture(viewport.width, viewport.height);
         std::vector<PixelRect> repainted;
         for (int n = 1; n <= 40; ++n) {
-            reprojector.show(cache, {}, sideways(n * v * metres_per_pixel()), 0, {}, picture, repainted);
+            reprojector.show(pool, {}, sideways(n * v * metres_per_pixel()), 0, {}, picture, repainted);
             double const fraction = n * v - std::floor(n * v);
             EXPECT_NEAR(spread(picture), fraction * (1 - fraction), 0.01) << v << " " << n;
         }

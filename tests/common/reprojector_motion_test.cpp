@@ -118,16 +118,16 @@ TEST(ReprojectorMotion, OnePlaneHasNoCracksWhateverTheTiles) {
     scene.quads.push_back({{-60, -60, -40}, {120, 0, 0}, {0, 120, 20}, plain(200, 150, 100)});
     ImagePlane const plane(viewport);
     std::mt19937 random(9);
-    FrameletCache cache(plane);
+    FrameletPool pool(plane);
     std::uint64_t number = 0;
     for (Tile const tile : visible_tiles(plane, plane.min_depth())) {
-        cache.insert(scene.batch(plane, ++number, front(), 0, {tile}));
+        pool.insert(scene.batch(plane, ++number, front(), 0, {tile}));
     }
     for (int i = 0; i < 300; ++i) {
-        cache.insert(scene.batch(plane, ++number, front(), 0, {random_tile(plane, random)}));
+        pool.insert(scene.batch(plane, ++number, front(), 0, {random_tile(plane, random)}));
     }
     Camera const nearer = look_at(Vec3(1, 1, 2), Vec3(0.5f, 1.2f, 0), Vec3(0.1f, 1, 0), 0.5f);
-    Shown const shown = show(cache, nearer, 0);
+    Shown const shown = show(pool, nearer, 0);
     int seen = 0;
     for (int y = 0; y < viewport.height; ++y) {
         for (int x = 0; x < viewport.width; ++x) {
@@ -216,9 +216,9 @@ TEST(ReprojectorMotion, NewerWinsOnOneSurfaceNearerWinsElse) {
     new_scene.quads.push_back({{-20, -20, -4}, {40, 0, 0}, {0, 40, 0}, plain(90, 90, 90)});
     old_scene.quads.push_back({{-1, 0, 1}, {2, 0, 0}, {0, 2, 0}, plain(200, 200, 200)});
     ImagePlane const plane(viewport);
-    FrameletCache cache(plane);
+    FrameletPool pool(plane);
     std::vector<Tile> const all = visible_tiles(plane, plane.pixel_depth());
-    cache.insert(old_scene.batch(plane, 1, front(), 0, all));
+    pool.insert(old_scene.batch(plane, 1, front(), 0, all));
     std::vector<Tile> left; // of places beside those that show the board
     for (Tile const tile : all) {
         if (tile.column() < 5) {
@@ -227,10 +227,10 @@ TEST(ReprojectorMotion, NewerWinsOnOneSurfaceNearerWinsElse) {
     }
     Camera aside = front();
     aside.position.x -= 0.5f;
-    cache.insert(new_scene.batch(plane, 2, aside, 0, left));
+    pool.insert(new_scene.batch(plane, 2, aside, 0, left));
     Camera display = front();
     display.position.x -= 0.1f;
-    Shown const shown = show(cache, display, 0);
+    Shown const shown = show(pool, display, 0);
     EXPECT_EQ(shown.picture.row(90)[4 * 20], 90);
     EXPECT_EQ(shown.picture.row(90)[4 * 300], 50);
     EXPECT_EQ(shown.picture.row(90)[4 * 163], 200);
@@ -250,12 +250,12 @@ TEST(ReprojectorMotion, StrangeCamerasAndShapesGiveNumbers) {
                 layer.velocity = Vec3(normal(random), 0, normal(random)) * std::pow(10.0f, 4 * normal(random));
             }
         }
-        FrameletCache cache(plane);
-        cache.insert(batch);
+        FrameletPool pool(plane);
+        pool.insert(batch);
         Camera camera =
             look_at(3.0f * Vec3(normal(random), normal(random), normal(random)),
                     Vec3(normal(random), normal(random), normal(random)), Vec3(0, 1, 0), round % 4 == 0 ? 3.0f : 0.8f);
-        Shown const shown = show(cache, camera, round * 1e3);
+        Shown const shown = show(pool, camera, round * 1e3);
         for (std::size_t i = 0; i < shown.inverse_depth.size(); ++i) {
             ASSERT_TRUE(std::isfinite(shown.inverse_depth[i]));
             ASSERT_EQ(shown.picture.rgba[4 * i + 3], 255);

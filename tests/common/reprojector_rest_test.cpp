@@ -17,7 +17,7 @@ namespace {
 TEST(ReprojectorRest, StillPictureIsReconstruct) {
     ImagePlane const plane(viewport);
     std::mt19937 random(4);
-    FrameletCache cache(plane);
+    FrameletPool pool(plane);
     AnalyticScene const scene = room();
     Reprojector reprojector;
     Picture picture(viewport.width, viewport.height), expected = picture;
@@ -30,14 +30,14 @@ TEST(ReprojectorRest, StillPictureIsReconstruct) {
                 tiles.push_back(tile);
             }
         }
-        cache.insert(scene.batch(plane, number, front(), 0.1 * static_cast<double>(number), tiles));
-        cache.take_changed(changed);
-        reprojector.show(cache, changed, front(), 7, {}, picture, repainted);
-        reconstruct_all(cache, expected);
+        pool.insert(scene.batch(plane, number, front(), 0.1 * static_cast<double>(number), tiles));
+        pool.newest().take_changed(changed);
+        reprojector.show(pool, changed, front(), 7, {}, picture, repainted);
+        reconstruct_all(pool.newest(), expected);
         ASSERT_TRUE(reprojector.is_exact());
         ASSERT_EQ(picture, expected);
     }
-    reprojector.show(cache, {}, front(), 8, {}, picture, repainted);
+    reprojector.show(pool, {}, front(), 8, {}, picture, repainted);
     EXPECT_TRUE(repainted.empty());
 }
 
@@ -50,18 +50,18 @@ TEST(ReprojectorRest, BodiesThatHaveComeToRestAreExact) {
     }
     scene.motions.extend(track);
     scene.quads[2].body = 5;
-    FrameletCache const cache = filled(scene, front(), 2, 0.55);
+    FrameletPool const pool = filled(scene, front(), 2, 0.55);
     Picture exact(viewport.width, viewport.height);
-    reconstruct_all(cache, exact);
-    EXPECT_EQ(show(cache, front(), 0.9, scene.motions).picture, exact);
-    EXPECT_NE(show(cache, front(), 0.2, scene.motions).picture, exact);
+    reconstruct_all(pool.newest(), exact);
+    EXPECT_EQ(show(pool, front(), 0.9, scene.motions).picture, exact);
+    EXPECT_NE(show(pool, front(), 0.2, scene.motions).picture, exact);
 }
 
 TEST(ReprojectorRest, AfterACutWhatIsHeldStaysWhereItIs) {
     AnalyticScene const scene = room();
-    FrameletCache const cache = filled(scene, front(), 0);
+    FrameletPool const pool = filled(scene, front(), 0);
     Picture unmoved(viewport.width, viewport.height);
-    reconstruct_all(cache, unmoved);
+    reconstruct_all(pool.newest(), unmoved);
     Camera away = front();
     away.orientation = glm::angleAxis(3.0f, Vec3(0, 1, 0)) * away.orientation;
     Camera aside = front();
@@ -70,9 +70,9 @@ TEST(ReprojectorRest, AfterACutWhatIsHeldStaysWhereItIs) {
     Picture picture(viewport.width, viewport.height);
     std::vector<PixelRect> repainted;
     for (Camera const& camera : {aside, away, away, aside, front(), away}) {
-        reprojector.show(cache, {}, camera, 0, {}, picture, repainted);
+        reprojector.show(pool, {}, camera, 0, {}, picture, repainted);
         if (camera == aside) {
-            EXPECT_EQ(picture, show(cache, aside, 0).picture);
+            EXPECT_EQ(picture, show(pool, aside, 0).picture);
         } else {
             EXPECT_EQ(picture, unmoved);
             EXPECT_EQ(reprojector.hole_share(), camera == away ? 1 : 0);
@@ -87,7 +87,7 @@ TEST(ReprojectorRest, IncrementalEqualsWholeAndThreadsMakeNoDifference) {
     scene.motions.extend({5, 0, {BodyPose{}, BodyPose{Vec3(0.3f, 0, 0)}, BodyPose{Vec3(0.5f, 0.1f, 0)}}});
     scene.quads[2].body = 5;
     std::mt19937 random(12);
-    FrameletCache cache(plane);
+    FrameletPool pool(plane);
     Reprojector kept;
     Picture picture(viewport.width, viewport.height);
     std::vector<PixelRect> changed, repainted;
@@ -102,17 +102,17 @@ TEST(ReprojectorRest, IncrementalEqualsWholeAndThreadsMakeNoDifference) {
             }
         }
         double const time = static_cast<double>(number / 4) / body_keys_per_second;
-        cache.insert(scene.batch(plane, number, camera, time, tiles));
+        pool.insert(scene.batch(plane, number, camera, time, tiles));
         if (number % 5 == 0) {
             camera.position += Vec3(0.05f, 0.02f, -0.1f);
         }
-        cache.take_changed(changed);
+        pool.newest().take_changed(changed);
         Picture const before = picture;
-        kept.show(cache, changed, camera, time, scene.motions, picture, repainted);
+        kept.show(pool, changed, camera, time, scene.motions, picture, repainted);
         Shown whole;
         {
             tbb::global_control const threads(tbb::global_control::max_allowed_parallelism, number % 2 == 0 ? 1 : 2);
-            whole = show(cache, camera, time, scene.motions);
+            whole = show(pool, camera, time, scene.motions);
         }
         ASSERT_EQ(picture, whole.picture) << number;
         if (!kept.is_exact()) {
@@ -134,7 +134,7 @@ TEST(ReprojectorRest, IncrementalEqualsWholeAndThreadsMakeNoDifference) {
                 ASSERT_TRUE(std::equal(&picture.rgba[4 * i], &picture.rgba[4 * i] + 4, &before.rgba[4 * i]));
             }
         }
-        kept.show(cache, {}, camera, time, scene.motions, picture, repainted);
+        kept.show(pool, {}, camera, time, scene.motions, picture, repainted);
         ASSERT_TRUE(repainted.empty());
         ASSERT_EQ(picture, whole.picture);
     }
@@ -163,9 +163,9 @@ TEST(ReprojectorRest, NoShapeLeavesWhatIsNotANumber) {
                 (random() % 2 == 0 ? loose.inverse_depth : loose.velocity.z) = any();
             }
         }
-        FrameletCache cache(plane);
-        cache.insert(batch);
-        Shown const shown = show(cache, round % 3 == 0 ? front() : aside, 0.1);
+        FrameletPool pool(plane);
+        pool.insert(batch);
+        Shown const shown = show(pool, round % 3 == 0 ? front() : aside, 0.1);
         for (std::size_t i = 0; i < shown.inverse_depth.size(); ++i) {
             ASSERT_TRUE(std::isfinite(shown.inverse_depth[i]));
         }
@@ -177,12 +177,12 @@ TEST(ReprojectorRest, OrthographicStays) {
     Camera orthographic = front();
     orthographic.projection = Projection::orthographic;
     orthographic.vertical_extent = 5;
-    FrameletCache const cache = filled(scene, orthographic, 0);
+    FrameletPool const pool = filled(scene, orthographic, 0);
     Camera aside = orthographic;
     aside.position.x += 1;
     Picture expected(viewport.width, viewport.height);
-    reconstruct_all(cache, expected);
-    EXPECT_EQ(show(cache, aside, 0).picture, expected);
+    reconstruct_all(pool.newest(), expected);
+    EXPECT_EQ(show(pool, aside, 0).picture, expected);
 }
 
 } // namespace

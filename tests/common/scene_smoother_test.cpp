@@ -14,25 +14,25 @@ namespace {
 /// A smoother and what a viewer has besides; what it shows must not depend on what it showed before.
 struct Viewer {
     ImagePlane plane{viewport};
-    FrameletCache cache{plane};
+    FrameletPool pool{plane};
     SceneSmoother smoother{plane};
     BodyMotions motions;
     Picture picture{viewport.width, viewport.height};
     std::vector<PixelRect> repainted;
 
     void insert(Batch const& batch) {
-        cache.insert(batch);
+        pool.insert(batch);
         smoother.insert(batch);
     }
     Picture const& show(SceneTime time, SceneTime lag = 1, Camera const& camera = front()) {
         std::vector<PixelRect> changed;
-        cache.take_changed(changed);
-        smoother.show(cache, changed, camera, time, lag, motions, picture, repainted);
+        pool.newest().take_changed(changed);
+        smoother.show(pool, changed, camera, time, lag, motions, picture, repainted);
         return picture;
     }
     /// What `Reprojector` alone shows.
     Picture unsmoothed(SceneTime time, Camera const& camera = front()) {
-        return framelet::show(cache, camera, time, motions).picture;
+        return framelet::show(pool, camera, time, motions).picture;
     }
 };
 
@@ -104,7 +104,7 @@ TEST(SceneSmoother, BodiesShowOnceAndNotTwice) {
     viewer.insert(scene.batch(viewer.plane, 1, front(), 0.2, tiles));
     viewer.insert(scene.batch(viewer.plane, 2, front(), 0.4, tiles));
     Picture const& got = viewer.show(0.3);
-    FrameletCache exact(viewer.plane);
+    FrameletPool exact(viewer.plane);
     exact.insert(scene.batch(viewer.plane, 1, front(), 0.3, tiles));
     Picture const wanted = show(exact, front(), 0.3, scene.motions).picture;
     Picture const early = show(filled(scene, front(), 0, 0.2), front(), 0.2, scene.motions).picture;
@@ -180,7 +180,7 @@ TEST(SceneSmoother, WhatWaitsIsBounded) {
     Viewer viewer;
     std::vector<std::size_t> bytes;
     for (std::uint64_t number = 1; number <= 10; ++number) {
-        viewer.smoother.insert(grey(viewer.plane, number, 1e6, 10, 2)); // as many framelets as a cache can hold
+        viewer.smoother.insert(grey(viewer.plane, number, 1e6, 10, 2)); // as many framelets as a pool can hold
         bytes.push_back(viewer.smoother.memory_bytes());
     }
     EXPECT_EQ(bytes.back(), bytes[2]);

@@ -36,14 +36,16 @@ TEST(WarpPlan, HoldsBoundedlyManyPatchesAndTheNewestOnes) {
         cache.insert(batch);
     }
     WarpPlan plan;
-    plan.make(cache, front(), 1, {});
+    plan.make(cache, 0, true, front(), 1, {});
     auto const blocks = static_cast<std::size_t>(plan.columns() * plan.rows());
     ASSERT_GT(tiles.size(), 2 * WarpPlan::most_patches_per_block);
     EXPECT_LE(plan.entry_count(), WarpPlan::most_patches_per_block * blocks);
     EXPECT_GT(plan.entry_count(), WarpPlan::most_patches_per_block * blocks / 2);
     std::vector<PatchView> patches;
     for (std::size_t i = 0; i < blocks; ++i) {
-        plan.block(i, patches);
+        patches.clear();
+        plan.add_block(i, patches);
+        order(patches);
         ASSERT_FALSE(patches.empty());
         ASSERT_EQ(patches[0].patch->batch, number);
     }
@@ -57,7 +59,7 @@ TEST(WarpPlan, FrameletsOfOnePlaneAreOnePatchForManyBlocks) {
         FrameletCache cache(plane);
         cache.insert(wall().batch(plane, 1, front(), 0, visible_tiles(plane, plane.pixel_depth() + levels)));
         WarpPlan plan;
-        plan.make(cache, aside, 0, {});
+        plan.make(cache, 0, true, aside, 0, {});
         EXPECT_GT(plan.entry_count(), 0u);
         // A patch of a block alone reaches three blocks upright and two across.
         EXPECT_LT(plan.entry_count(), static_cast<std::size_t>(4 * plan.columns() * plan.rows())) << levels;

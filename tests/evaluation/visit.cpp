@@ -5,6 +5,7 @@
 #include <boost/asio/ip/tcp.hpp>
 
 #include "common/error.h"
+#include "protocol/stream_opening.h"
 
 namespace framelet::bench {
 
@@ -15,7 +16,7 @@ void visit(std::uint16_t port, std::uint32_t codings,
     asio::io_context io{1};
     asio::ip::tcp::socket socket(io);
     socket.connect({asio::ip::address_v4::loopback(), port});
-    auto const stream = FramedStream::plain(std::move(socket));
+    auto const stream = plain_stream(std::move(socket));
     bool done = false;
     std::string lost;
     stream->start({[&](Message const& message) {

@@ -7,7 +7,7 @@
 #include <sys/socket.h>
 
 #include "common/error.h"
-#include "protocol/framed_stream.h"
+#include "protocol/stream_opening.h"
 
 extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size) {
     using namespace framelet;
@@ -22,7 +22,7 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
     boost::asio::write(peer, boost::asio::buffer(data + 1, size - 1)); // the system's buffer holds it
     peer.shutdown(tcp::socket::shutdown_send);
 
-    auto const stream = FramedStream::plain(tcp::socket(io, tcp::v4(), ends[0]));
+    auto const stream = plain_stream(tcp::socket(io, tcp::v4(), ends[0]));
     bool closed = false;
     FramedStream::Handlers handlers;
     handlers.on_message = [&, listens = data[0] % 2 != 0](Message const& message) {

@@ -98,7 +98,7 @@ void expect_refused(EncodedBatch const& encoded, std::string const& word) {
 
 #ifdef __SANITIZE_THREAD__
 // The packaged TBB is not instrumented: the thread sanitizer does not see how it hands work over and takes every
-// hand-over for a race. What runs here must be seen on one thread, then.
+// hand-over for a race. What runs here, and the other files' cases in this program, must be seen on one thread, then.
 tbb::global_control const one_thread_only(tbb::global_control::max_allowed_parallelism, 1);
 #endif
 

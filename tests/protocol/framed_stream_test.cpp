@@ -24,14 +24,14 @@ protected:
     IoThread thread_;
     std::pair<Socket, Socket> sockets_ = thread_.connect();
     Socket& raw = sockets_.first; ///< the other side, bare
-    End end{FramedStream::plain(std::move(sockets_.second))};
+    End end{plain_stream(std::move(sockets_.second))};
 };
 
 TEST(FramedStream, ManyMessagesBothWays) {
     IoThread thread;
     auto [one, two] = thread.connect();
-    End left(FramedStream::plain(std::move(one)));
-    End right(FramedStream::plain(std::move(two)));
+    End left(plain_stream(std::move(one)));
+    End right(plain_stream(std::move(two)));
     left.start(thread);
     right.start(thread);
     constexpr std::size_t count = 2000;
@@ -63,8 +63,8 @@ TEST(FramedStream, ManyMessagesBothWays) {
 TEST(FramedStream, MessagesOfSeveralThreadsStayInTheirOrder) {
     IoThread thread;
     auto [one, two] = thread.connect();
-    End left(FramedStream::plain(std::move(one)));
-    End right(FramedStream::plain(std::move(two)));
+    End left(plain_stream(std::move(one)));
+    End right(plain_stream(std::move(two)));
     right.start(thread);
     std::vector<std::thread> senders;
     for (std::uint64_t sender = 0; sender < 3; ++sender) {
@@ -89,8 +89,8 @@ TEST(FramedStream, MessagesOfSeveralThreadsStayInTheirOrder) {
 TEST(FramedStream, LargeMessagesAndTheirCount) {
     IoThread thread;
     auto [one, two] = thread.connect();
-    End left(FramedStream::plain(std::move(one)));
-    End right(FramedStream::plain(std::move(two)));
+    End left(plain_stream(std::move(one)));
+    End right(plain_stream(std::move(two)));
     left.start(thread);
     right.start(thread);
     std::size_t bytes = 0;
@@ -256,7 +256,7 @@ TEST_F(FramedStreamTest, PeerVanishesInTheMiddle) {
     Bytes const whole = framed(encode_message(Ack{1, 2, 3}));
     for (std::size_t const size : {std::size_t{1}, std::size_t{4}, whole.size() - 1}) {
         auto [one, two] = thread_.connect();
-        End other(FramedStream::plain(std::move(two)));
+        End other(plain_stream(std::move(two)));
         other.start(thread_);
         boost::asio::write(one, boost::asio::buffer(whole, size));
         one.close();
@@ -299,8 +299,8 @@ TEST_F(FramedStreamTest, CloseDuringSend) {
 TEST_F(FramedStreamTest, CloseFromOtherThreadsWhileMessagesArrive) {
     for (int round = 0; round < 30; ++round) {
         auto [one, two] = thread_.connect();
-        End left(FramedStream::plain(std::move(one)));
-        End right(FramedStream::plain(std::move(two)));
+        End left(plain_stream(std::move(one)));
+        End right(plain_stream(std::move(two)));
         left.start(thread_);
         right.start(thread_);
         std::vector<std::thread> threads;
@@ -379,8 +379,8 @@ TEST_F(FramedStreamTest, CloseAfterSendingDoesNotWaitForever) {
 TEST_F(FramedStreamTest, LastWordArrivesAlthoughThePeerTalks) {
     for (int round = 0; round < 20; ++round) {
         auto [one, two] = thread_.connect();
-        End server(FramedStream::plain(std::move(one)));
-        End client(FramedStream::plain(std::move(two)));
+        End server(plain_stream(std::move(one)));
+        End client(plain_stream(std::move(two)));
         server.start(thread_);
         client.start(thread_);
         client.stream->send(Ack{});
@@ -407,7 +407,7 @@ TEST(FramedStream, IoContextMayEndFirst) {
     auto thread = std::make_unique<IoThread>();
     auto [one, two] = thread->connect();
     auto const kept = std::make_shared<int>(1);
-    auto stream = FramedStream::plain(std::move(one));
+    auto stream = plain_stream(std::move(one));
     boost::asio::post(thread->io, [stream, kept] { stream->start({[kept](Message const&) {}, {}, {}}, 1000); });
     stream->send(large_batch(1, 8u << 20));
     two.close();

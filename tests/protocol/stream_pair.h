@@ -13,11 +13,11 @@
 #include <boost/asio/read.hpp>
 #include <boost/asio/write.hpp>
 
-#include "protocol/framed_stream.h"
+#include "protocol/stream_opening.h"
 
 namespace framelet {
 
-using Socket = FramedStream::Socket;
+using Socket = StreamSocket;
 
 class IoThread {
 public:

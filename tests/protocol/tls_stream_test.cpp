@@ -7,7 +7,7 @@
 #include <openssl/x509v3.h>
 
 #include "common/error.h"
-#include "protocol/framed_stream.h"
+#include "protocol/stream_opening.h"
 #include "random_message.h"
 #include "stream_pair.h"
 
@@ -103,8 +103,8 @@ protected:
 TEST_F(TlsStream, ManyMessagesBothWays) {
     for (char const* host : {"localhost", "127.0.0.1"}) {
         auto [one, two] = thread_.connect();
-        End server(FramedStream::tls_server(std::move(one), identity_.server()));
-        End client(FramedStream::tls_client(std::move(two), identity_.client(), host));
+        End server(tls_server_stream(std::move(one), identity_.server()));
+        End client(tls_client_stream(std::move(two), identity_.client(), host));
         std::vector<Message> sent;
         RandomMessages random(2);
         for (int i = 0; i < 500; ++i) {
@@ -140,8 +140,8 @@ TEST_F(TlsStream, ManyMessagesBothWays) {
 TEST_F(TlsStream, LastWordArrives) {
     for (int round = 0; round < 20; ++round) {
         auto [one, two] = thread_.connect();
-        End server(FramedStream::tls_server(std::move(one), identity_.server()));
-        End client(FramedStream::tls_client(std::move(two), identity_.client(), "localhost"));
+        End server(tls_server_stream(std::move(one), identity_.server()));
+        End client(tls_client_stream(std::move(two), identity_.client(), "localhost"));
         server.start(thread_);
         client.start(thread_);
         client.stream->send(Hello{});
@@ -160,8 +160,8 @@ TEST_F(TlsStream, LastWordArrives) {
 }
 
 TEST_F(TlsStream, GarbageInsideIsRefused) {
-    End server(FramedStream::tls_server(std::move(sockets_.first), identity_.server()));
-    End client(FramedStream::tls_client(std::move(sockets_.second), identity_.client(), "localhost"));
+    End server(tls_server_stream(std::move(sockets_.first), identity_.server()));
+    End client(tls_client_stream(std::move(sockets_.second), identity_.client(), "localhost"));
     server.start(thread_, 100);
     client.start(thread_);
     client.stream->send(large_batch(1, 1000000));
@@ -175,8 +175,8 @@ TEST_F(TlsStream, GarbageInsideIsRefused) {
 TEST_F(TlsStream, WrongHostIsRefused) {
     for (char const* host : {"example.org", "127.0.0.2"}) {
         auto [one, two] = thread_.connect();
-        End server(FramedStream::tls_server(std::move(one), identity_.server()));
-        End client(FramedStream::tls_client(std::move(two), identity_.client(), host));
+        End server(tls_server_stream(std::move(one), identity_.server()));
+        End client(tls_client_stream(std::move(two), identity_.client(), host));
         server.start(thread_);
         client.start(thread_);
         client.stream->send(Hello{1, "must not leave"});
@@ -192,8 +192,8 @@ TEST_F(TlsStream, UntrustedCertificateIsRefused) {
     Identity const other("other");
     for (auto const& context : {other.client(), make_tls_client_context("")}) {
         auto [one, two] = thread_.connect();
-        End server(FramedStream::tls_server(std::move(one), identity_.server()));
-        End client(FramedStream::tls_client(std::move(two), context, "localhost"));
+        End server(tls_server_stream(std::move(one), identity_.server()));
+        End client(tls_client_stream(std::move(two), context, "localhost"));
         server.start(thread_);
         client.start(thread_);
         expect_names(client.wait_for_close(), "certificate verify failed (self-signed certificate)");
@@ -202,16 +202,15 @@ TEST_F(TlsStream, UntrustedCertificateIsRefused) {
 }
 
 TEST_F(TlsStream, HostThatCannotBeChecked) {
-    expect_input_error([&] { FramedStream::tls_client(std::move(sockets_.first), identity_.client(), ""); },
-                       "host name");
+    expect_input_error([&] { tls_client_stream(std::move(sockets_.first), identity_.client(), ""); }, "host name");
     expect_input_error(
-        [&] { FramedStream::tls_client(std::move(sockets_.second), identity_.client(), std::string(1000, 'x')); },
+        [&] { tls_client_stream(std::move(sockets_.second), identity_.client(), std::string(1000, 'x')); },
         "host name");
 }
 
 TEST_F(TlsStream, ClientAtAPlainServer) {
-    End server(FramedStream::plain(std::move(sockets_.first)));
-    End client(FramedStream::tls_client(std::move(sockets_.second), identity_.client(), "localhost"));
+    End server(plain_stream(std::move(sockets_.first)));
+    End client(tls_client_stream(std::move(sockets_.second), identity_.client(), "localhost"));
     server.start(thread_, max_upstream_message_bytes);
     client.start(thread_);
     expect_names(client.wait_for_close(), "the other side may not use TLS");
@@ -219,8 +218,8 @@ TEST_F(TlsStream, ClientAtAPlainServer) {
 }
 
 TEST_F(TlsStream, PlainClientAtATlsServer) {
-    End server(FramedStream::tls_server(std::move(sockets_.first), identity_.server()));
-    End client(FramedStream::plain(std::move(sockets_.second)));
+    End server(tls_server_stream(std::move(sockets_.first), identity_.server()));
+    End client(plain_stream(std::move(sockets_.second)));
     server.start(thread_);
     client.start(thread_);
     client.stream->send(Hello{});
@@ -229,21 +228,21 @@ TEST_F(TlsStream, PlainClientAtATlsServer) {
 }
 
 TEST_F(TlsStream, PeerVanishesInTheHandshake) {
-    End server(FramedStream::tls_server(std::move(sockets_.first), identity_.server()));
+    End server(tls_server_stream(std::move(sockets_.first), identity_.server()));
     server.start(thread_);
     sockets_.second.close();
     expect_names(server.wait_for_close(), "TLS handshake failed: the other side closed the connection");
 }
 
 TEST_F(TlsStream, SilentPeerIsLeft) {
-    End server(FramedStream::tls_server(std::move(sockets_.first), identity_.server()));
+    End server(tls_server_stream(std::move(sockets_.first), identity_.server()));
     server.start(thread_);
     EXPECT_EQ(server.wait_for_close(), "TLS handshake timed out");
 }
 
 TEST_F(TlsStream, CloseInTheHandshake) {
-    End server(FramedStream::tls_server(std::move(sockets_.first), identity_.server()));
-    End client(FramedStream::tls_client(std::move(sockets_.second), identity_.client(), "localhost"));
+    End server(tls_server_stream(std::move(sockets_.first), identity_.server()));
+    End client(tls_client_stream(std::move(sockets_.second), identity_.client(), "localhost"));
     server.start(thread_);
     client.start(thread_);
     client.stream->close();
@@ -255,8 +254,8 @@ TEST_F(TlsStream, CloseInTheHandshake) {
 TEST_F(TlsStream, CloseWhileMuchIsQueued) {
     for (int round = 0; round < 10; ++round) {
         auto [one, two] = thread_.connect();
-        End server(FramedStream::tls_server(std::move(one), identity_.server()));
-        End client(FramedStream::tls_client(std::move(two), identity_.client(), "localhost"));
+        End server(tls_server_stream(std::move(one), identity_.server()));
+        End client(tls_client_stream(std::move(two), identity_.client(), "localhost"));
         server.start(thread_);
         client.start(thread_);
         client.stream->send(Hello{});

@@ -11,7 +11,7 @@
 #include "common/framelet_cache.h"
 #include "common/reconstruction.h"
 #include "protocol/batch_codec.h"
-#include "protocol/framed_stream.h"
+#include "protocol/stream_opening.h"
 #include "server/scene/scene_import.h"
 #include "server/session/server.h"
 #include "tests/evaluation/codecs/link_emulator.h"
@@ -43,7 +43,7 @@ Shown watch(std::uint16_t port, std::uint32_t codings) {
     asio::io_context io{1};
     asio::ip::tcp::socket socket(io);
     socket.connect({asio::ip::make_address("127.0.0.1"), port});
-    auto const stream = FramedStream::plain(std::move(socket));
+    auto const stream = plain_stream(std::move(socket));
     BatchCodec codec;
     HeldPicture held;
     FrameletCache cache{ImagePlane(viewport)};

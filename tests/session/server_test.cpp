@@ -9,7 +9,7 @@
 #include <tbb/global_control.h>
 
 #include "common/error.h"
-#include "protocol/framed_stream.h"
+#include "protocol/stream_opening.h"
 #include "running_server.h"
 
 namespace framelet {
@@ -27,7 +27,7 @@ struct Conversation {
     explicit Conversation(std::uint16_t port) {
         asio::ip::tcp::socket socket(io);
         socket.connect({asio::ip::make_address("127.0.0.1"), port});
-        stream = FramedStream::plain(std::move(socket));
+        stream = plain_stream(std::move(socket));
     }
 
     void run(std::function<bool(Message const&)> const& answer) {
