@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <tuple>
 
 #include <glm/matrix.hpp>
 
@@ -27,10 +28,6 @@ constexpr std::uint8_t replaced_piece = 255; ///< instead of how long it has sho
 bool same_camera(ViewRays const& a, ViewRays const& b) {
     return a.origin == b.origin && a.direction == b.direction && a.direction_dx == b.direction_dx &&
            a.direction_dy == b.direction_dy;
-}
-
-bool same_view(MirrorView const& a, MirrorView const& b) {
-    return a.scene_time == b.scene_time && same_camera(a.rays, b.rays);
 }
 
 /// Bits [first, last) of four, clipped.
@@ -58,7 +55,7 @@ int Mirror::pixels_of(int column, int row) const {
 }
 
 bool Mirror::looks_at(MirrorView const& view) const {
-    return same_view(target_, view);
+    return target_.scene_time == view.scene_time && same_camera(target_.rays, view.rays);
 }
 
 std::size_t Mirror::piece_count() const {
@@ -75,87 +72,69 @@ std::size_t Mirror::moment_count() const {
 }
 
 void Mirror::look(MirrorView const& view, BodyMotions const& motions) {
-    forget_unshown();
-    evict();
     target_ = view;
+    auto const newest = std::ranges::max_element(moments_, {}, &Moment::number);
+    if (newest->number > 0 && !same_camera(newest->rays, view.rays)) {
+        free_slot(); // what comes of this moment takes it: what was held there will not be seen
+    }
     std::ranges::fill(cells_, Cell{});
     for (Moment& moment : moments_) {
-        moment.placed.clear();
+        std::erase_if(moment.pieces, [&](Piece const& piece) {
+            return piece.unshown == replaced_piece ||
+                   (piece.unshown >= most_unshown && moment.number + newest_kept <= last_number_);
+        });
         place(moment, 0, motions);
     }
     count_shown();
 }
 
-void Mirror::add(MirrorView const& view, BodyMotions const& motions, std::span<Piece const> pieces) {
+void Mirror::add(ViewRays const& rays, BodyMotions const& motions, std::span<Piece const> pieces) {
     if (pieces.empty()) {
         return;
     }
-    replace(view, pieces);
-    Moment& moment = slot_of(view);
+    Moment& moment = slot_of(rays);
+    replace(moment, pieces);
     std::size_t const first = moment.pieces.size();
     moment.pieces.insert(moment.pieces.end(), pieces.begin(), pieces.end());
     place(moment, first, motions);
 }
 
-/// The moment's, or a free one.
-Mirror::Moment& Mirror::slot_of(MirrorView const& view) {
-    auto const has_view = [&](Moment const& moment) { return moment.number > 0 && same_view(moment.view, view); };
-    if (auto const known = std::ranges::find_if(moments_, has_view); known != moments_.end()) {
-        return *known;
+/// Of the newest moment; or where that is of another camera a free one.
+Mirror::Moment& Mirror::slot_of(ViewRays const& rays) {
+    auto const newest = std::ranges::max_element(moments_, {}, &Moment::number);
+    if (newest->number > 0 && same_camera(newest->rays, rays)) {
+        return *newest;
     }
-    auto free = std::ranges::find(moments_, std::uint64_t{0}, &Moment::number);
-    if (free == moments_.end()) { // moments come between two looks only while nothing moves
-        free = std::ranges::min_element(moments_, {}, &Moment::number);
+    Moment& free = free_slot();
+    free.rays = rays;
+    free.number = ++last_number_;
+    return free;
+}
+
+/// When all are used, that of the moment that shows least.
+Mirror::Moment& Mirror::free_slot() {
+    auto const key = [&](Moment const& moment) {
+        bool const used = moment.number > 0;
+        return std::tuple(used, used && moment.number + newest_kept > last_number_, moment.shown, moment.number);
+    };
+    auto const goes_first = [&](Moment const& a, Moment const& b) { return key(a) < key(b); };
+    Moment& free = *std::ranges::min_element(moments_, goes_first);
+    if (free.number > 0) {
         for (Cell& cell : cells_) {
-            cell = &moments_[cell.moment] == &*free ? Cell{} : cell;
+            cell = cell.is_shown() && &moments_[cell.moment] == &free ? Cell{} : cell;
         }
+        free.number = 0;
+        free.pieces.clear();
+        free.placed.clear();
+        free.shown = 0;
     }
-    free->view = view;
-    free->number = ++last_number_;
-    free->pieces.clear();
-    free->placed.clear();
-    free->shown = 0;
-    return *free;
-}
-
-/// Pieces that show nowhere, and moments of which nothing is left.
-void Mirror::forget_unshown() {
-    for (Moment& moment : moments_) {
-        if (moment.number + newest_kept <= last_number_) {
-            std::erase_if(moment.pieces, [](Piece const& piece) { return piece.unshown >= most_unshown; });
-        } else {
-            std::erase_if(moment.pieces, [](Piece const& piece) { return piece.unshown == replaced_piece; });
-        }
-        moment.number = moment.pieces.empty() ? 0 : moment.number;
-    }
-}
-
-/// The moments that show least, until there is room for one more.
-void Mirror::evict() {
-    while (moment_count() >= mirrored_moments) {
-        Moment* least = nullptr;
-        for (Moment& moment : moments_) {
-            if (moment.number > 0 && moment.number + newest_kept <= last_number_ &&
-                (least == nullptr || moment.shown < least->shown ||
-                 (moment.shown == least->shown && moment.number < least->number))) {
-                least = &moment;
-            }
-        }
-        if (least == nullptr) {
-            return;
-        }
-        least->number = 0;
-        least->pieces.clear();
-    }
+    return free;
 }
 
 /// What a viewer holds of one camera is the newest at each place, of whatever time: the older goes.
-void Mirror::replace(MirrorView const& view, std::span<Piece const> pieces) {
-    auto const is_replaced = [&](Moment const& moment) {
-        return moment.number > 0 && same_camera(moment.view.rays, view.rays) &&
-               moment.view.scene_time != view.scene_time;
-    };
-    if (std::ranges::none_of(moments_, is_replaced)) {
+void Mirror::replace(Moment& moment, std::span<Piece const> pieces) {
+    auto const is_older = [&](Piece const& piece) { return piece.scene_time != pieces.front().scene_time; };
+    if (std::ranges::none_of(moment.pieces, is_older)) {
         return;
     }
     auto const clamped = [](float pixel, int count) {
@@ -171,19 +150,14 @@ void Mirror::replace(MirrorView const& view, std::span<Piece const> pieces) {
             }
         }
     }
-    for (Moment& moment : moments_) {
-        if (!is_replaced(moment)) {
-            continue;
-        }
-        for (Piece& piece : moment.pieces) {
-            if (replaced_[index_of(clamped(piece.centre.x, columns_), clamped(piece.centre.y, rows_))] != 0) {
-                piece.unshown = replaced_piece;
-            }
-        }
+    for (Piece& piece : moment.pieces) {
+        std::size_t const cell = index_of(clamped(piece.centre.x, columns_), clamped(piece.centre.y, rows_));
+        piece.unshown = is_older(piece) && replaced_[cell] != 0 ? replaced_piece : piece.unshown;
     }
 }
 
-Mirror::TurnedBody const& Mirror::turn_to(Moment const& moment, BodyNumber body, BodyMotions const& motions) {
+Mirror::TurnedBody const& Mirror::turn_to(Moment const& moment, Piece const& piece, BodyMotions const& motions) {
+    BodyNumber const body = piece.body;
     if (turned_.size() <= body) {
         turned_.resize(std::size_t{body} + 1);
     }
@@ -192,15 +166,14 @@ Mirror::TurnedBody const& Mirror::turn_to(Moment const& moment, BodyNumber body,
         return turned;
     }
     turned.stamp = stamp_;
-    Motion const motion =
-        body == static_body ? Motion{} : motions.between(body, moment.view.scene_time, target_.scene_time);
-    ViewTransform const transform = make_view_transform(moment.view.rays, target_.rays, motion);
+    Motion const motion = body == static_body ? Motion{} : motions.between(body, piece.scene_time, target_.scene_time);
+    ViewTransform const transform = make_view_transform(moment.rays, target_.rays, motion);
     turned.far = Mat3(transform.far);
     turned.parallax = Vec3(transform.parallax);
     for (std::size_t axis = 0; axis < turned.carried.size(); ++axis) {
         glm::dvec3 metre(0);
         metre[static_cast<int>(axis)] = 1;
-        ViewTransform const carried = make_view_transform(moment.view.rays, target_.rays, motion, metre);
+        ViewTransform const carried = make_view_transform(moment.rays, target_.rays, motion, metre);
         turned.carried[axis] = Vec3(carried.parallax - transform.parallax);
     }
     turned.lens = static_cast<float>(std::sqrt(std::abs(glm::determinant(transform.far))));
@@ -210,16 +183,18 @@ Mirror::TurnedBody const& Mirror::turn_to(Moment const& moment, BodyNumber body,
 /// Of a moment, from piece `first` on.
 void Mirror::place(Moment& moment, std::size_t first, BodyMotions const& motions) {
     ++stamp_;
-    moment.is_of_camera = same_camera(moment.view.rays, target_.rays);
-    auto const age = static_cast<float>(target_.scene_time - moment.view.scene_time);
+    moment.is_of_camera = same_camera(moment.rays, target_.rays);
     moment.placed.resize(moment.pieces.size());
     for (std::size_t i = first; i < moment.pieces.size(); ++i) {
         Piece const& piece = moment.pieces[i];
+        if (i > first && piece.scene_time != moment.pieces[i - 1].scene_time) {
+            ++stamp_; // bodies were elsewhere
+        }
         moment.placed[i] = {};
-        TurnedBody const& turned = turn_to(moment, piece.body, motions);
+        TurnedBody const& turned = turn_to(moment, piece, motions);
         Vec3 parallax = turned.parallax;
         if (piece.velocity != Vec3(0)) {
-            Vec3 const drift = age * piece.velocity;
+            Vec3 const drift = static_cast<float>(target_.scene_time - piece.scene_time) * piece.velocity;
             parallax += drift.x * turned.carried[0] + drift.y * turned.carried[1] + drift.z * turned.carried[2];
         }
         Vec3 const at = turned.far * Vec3(piece.centre, 1) + piece.inverse_depth * parallax;
@@ -253,7 +228,7 @@ void Mirror::splat(Moment& moment, std::size_t index) {
     int const top = static_cast<int>(std::ceil(std::max(low.y, 0.0f)));
     int const right = static_cast<int>(std::min(high.x, width));
     int const bottom = static_cast<int>(std::min(high.y, height));
-    auto const age = static_cast<float>(target_.scene_time - moment.view.scene_time);
+    auto const age = static_cast<float>(target_.scene_time - piece.scene_time);
     float const worn = std::max(scale * piece.spacing, finest_shown_spacing) + piece.fading * std::abs(age);
     float const w = placed.inverse_depth;
     auto const slot = static_cast<std::uint8_t>(&moment - moments_.data());

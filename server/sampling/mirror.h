@@ -1,6 +1,6 @@
-// What a viewer holds, without its colours: pieces of the moments that it was sent, and what they show in the picture
-// of another moment. In: rendered framelets that are sent, where to look from. Out: for each cell of that picture how
-// good what the viewer shows there is.
+// What a viewer holds (its `FrameletPool`), without its colours: pieces of the moments that it was sent, and what they
+// show in the picture of another moment. In: rendered framelets that are sent, where to look from. Out: for each cell
+// of that picture how good what the viewer shows there is.
 #pragma once
 
 #include <array>
@@ -10,13 +10,12 @@
 #include <vector>
 
 #include "common/body_motion.h"
+#include "common/picture/framelet_pool.h"
 #include "common/reprojection.h"
 #include "server/sampling/piece.h"
 
 namespace framelet {
 
-/// Moments that a viewer keeps, at most, as its `FrameletPool` does.
-inline constexpr std::size_t mirrored_moments = 12;
 /// Side of a cell, pixels.
 inline constexpr int cell_side = 4;
 
@@ -57,7 +56,7 @@ public:
     /// rendered; of when it is.
     Vec2 place_of(Cell const& cell) const { return moments_[cell.moment].placed[cell.piece].at; }
     float scale_of(Cell const& cell) const { return moments_[cell.moment].placed[cell.piece].scale; }
-    SceneTime time_of(Cell const& cell) const { return moments_[cell.moment].view.scene_time; }
+    SceneTime time_of(Cell const& cell) const { return piece_of(cell).scene_time; }
     /// True where a new framelet takes the place of what shows, be it better or not: it is of the same camera.
     bool gives_way(Cell const& cell) const { return moments_[cell.moment].is_of_camera; }
     /// True when the picture is of this moment.
@@ -65,8 +64,8 @@ public:
 
     /// Finds what the viewer shows of `view` as bodies move by `motions`; forgets what has shown nothing for long.
     void look(MirrorView const& view, BodyMotions const& motions);
-    /// The viewer has these pieces of the moment `view` as well: they are remembered, and seen at once.
-    void add(MirrorView const& view, BodyMotions const& motions, std::span<Piece const> pieces);
+    /// The viewer gets these pieces, of one camera and one time, as well: they are remembered, and seen at once.
+    void add(ViewRays const& rays, BodyMotions const& motions, std::span<Piece const> pieces);
 
     std::size_t piece_count() const;
     std::size_t moment_count() const;
@@ -80,7 +79,7 @@ private:
         bool shows = false;
     };
     struct Moment {
-        MirrorView view;
+        ViewRays rays;
         std::uint64_t number = 0; ///< in order of their coming; 0: free
         std::vector<Piece> pieces;
         std::vector<Placed> placed; ///< one each
@@ -100,9 +99,10 @@ private:
     }
     void forget_unshown();
     void evict();
-    void replace(MirrorView const& view, std::span<Piece const> pieces);
-    Moment& slot_of(MirrorView const& view);
-    TurnedBody const& turn_to(Moment const& moment, BodyNumber body, BodyMotions const& motions);
+    void replace(Moment& moment, std::span<Piece const> pieces);
+    Moment& slot_of(ViewRays const& rays);
+    Moment& free_slot();
+    TurnedBody const& turn_to(Moment const& moment, Piece const& piece, BodyMotions const& motions);
     void place(Moment& moment, std::size_t first, BodyMotions const& motions);
     void splat(Moment& moment, std::size_t index);
     void count_shown();
@@ -110,7 +110,7 @@ private:
     Viewport viewport_;
     int columns_, rows_;
     std::vector<Cell> cells_;
-    std::array<Moment, mirrored_moments + 1> moments_;
+    std::array<Moment, FrameletPool::most_moments> moments_;
     std::uint64_t last_number_ = 0;
     MirrorView target_;
 

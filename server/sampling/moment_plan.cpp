@@ -14,7 +14,7 @@ constexpr float unknown_detail = 0.0025f;
 /// However coarse samples are, their mean is about right.
 constexpr float most_error = 0.1f;
 /// Prices outside are of no use: of a sample, squared error summed over pixels.
-constexpr float least_price = 1e-6f, most_price = 1e2f;
+constexpr float least_price = 2e-5f, most_price = 1e2f;
 
 constexpr float spacing_of(int level) {
     return level <= pixel_level ? static_cast<float>(1 << (pixel_level - level))

@@ -76,7 +76,7 @@ Piece piece_of(Sum const& sum, Vec2 corner, float spacing, float detail) {
 
 } // namespace
 
-void cut_pieces(Framelet const& rendered, DisplayFramelet const& shown, ImagePlane const& plane,
+void cut_pieces(Framelet const& rendered, DisplayFramelet const& shown, ImagePlane const& plane, SceneTime scene_time,
                 std::vector<Piece>& pieces) {
     std::array<float, framelet_samples> luma;
     std::array<float, framelet_samples> inverse;
@@ -138,6 +138,7 @@ void cut_pieces(Framelet const& rendered, DisplayFramelet const& shown, ImagePla
         for (Sum const& sum : sums) {
             if (sum.count > 0) {
                 pieces.push_back(piece_of(sum, corner, spacing, detail));
+                pieces.back().scene_time = scene_time;
             }
         }
     }

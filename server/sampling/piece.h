@@ -22,6 +22,7 @@ struct Piece {
     float detail = 0;
     float fading = 0; ///< pixels of spacing a second: see `common/sample_worth.h`
     float change = 0; ///< how fast its looks are known to change, mean squared luma a second
+    SceneTime scene_time = 0; ///< when it was rendered
     Vec3 velocity{0}; ///< of what deforms, metres a second in the world at its scene time
     BodyNumber body = static_body;
     bool reflects = false; ///< shows a reflection somewhere, which moves otherwise than the surface
@@ -31,10 +32,10 @@ struct Piece {
 /// Inverse depths of one surface differ by less than this share of the greater one.
 inline constexpr float surface_tolerance = 0.05f;
 
-/// Appends the pieces of a framelet: squares of 4 .. 16 pixels, each split in a near and a far part where it has
-/// both, or in what lies on different bodies. `fading` and `change` stay 0. All numbers are finite, whatever the
-/// depths are.
-void cut_pieces(Framelet const& rendered, DisplayFramelet const& shown, ImagePlane const& plane,
+/// Appends the pieces of a framelet of a scene time: squares of 4 .. 16 pixels, each split in a near and a far part
+/// where it has both, or in what lies on different bodies. `fading` and `change` stay 0. All numbers are finite,
+/// whatever the depths are.
+void cut_pieces(Framelet const& rendered, DisplayFramelet const& shown, ImagePlane const& plane, SceneTime scene_time,
                 std::vector<Piece>& pieces);
 
 } // namespace framelet

@@ -25,7 +25,7 @@ constexpr float enough = 5e-5f;
 /// What moves is looked at over so many seconds.
 constexpr double least_earlier = 0.03, most_earlier = 0.25;
 /// The samples of so many seconds are planned together: what they cannot do at their price can wait.
-constexpr double planned_seconds = 0.1;
+constexpr double planned_seconds = 0.2;
 /// A scene time that jumps by more than this over what has passed has been set.
 constexpr double most_time_step = 0.5;
 
@@ -119,8 +119,8 @@ bool AdaptiveRefresh::goes_on(RefreshInput const& input, bool mirrored) const {
     double const seconds = input.now - planned_;
     return next_ < cycle_.size() && seconds < static_cast<double>(input.cycle_seconds) &&
            (rays_per_sample_ == single_ray || same_picture(*seen_, input.state)) &&
-           (!mirrored || looked_ == input.moment->begun) &&
-           seen_->view.viewport == input.state.view.viewport && !is_cut(*seen_, input.state, seconds);
+           (!mirrored || looked_ == input.moment->begun) && seen_->view.viewport == input.state.view.viewport &&
+           !is_cut(*seen_, input.state, seconds);
 }
 
 void AdaptiveRefresh::plan(RefreshInput const& input, RefreshPlan& plan) {
@@ -500,11 +500,11 @@ void AdaptiveRefresh::mirror_learnt(RefreshPlan const& plan, std::span<DisplayFr
     for (std::size_t i = 0; i < framelets.size(); ++i) {
         if (send_[i] != 0) {
             std::size_t const first = pieces_.size();
-            cut_pieces(rendered[i], framelets[i], field_.plane(), pieces_);
+            cut_pieces(rendered[i], framelets[i], field_.plane(), view.scene_time, pieces_);
             fadings_[i] = looks_.learn(mirror_, std::span(pieces_).subspan(first), view.scene_time, comparable);
         }
     }
-    mirror_.add(view, *plan.moment.motions, pieces_);
+    mirror_.add(view.rays, *plan.moment.motions, pieces_);
 }
 
 /// Nothing is learnt of the picture: compared with single rays it would seem to have changed.

@@ -7,6 +7,7 @@
 
 #include "common/color.h"
 #include "common/framelet_cache.h"
+#include "common/picture/framelet_pool.h"
 #include "common/reconstruction.h"
 #include "common/reprojector.h"
 #include "protocol/batch_codec.h"
@@ -170,16 +171,16 @@ void calibrate_reprojection(BenchScene const& scene, ImagePlane const& plane, in
     ViewRays const rays = make_view_rays(scene.camera, viewport);
     costs.shape_sample = cost(rounds, static_cast<double>(rendered.size() * framelet_samples),
                               [&] { feed.fit(rendered, all, rays, plane, 0, batch.shapes); });
-    FrameletCache cache(plane);
-    cache.insert(batch);
+    FrameletPool pool(plane);
+    pool.insert(batch);
     Picture picture(viewport.width, viewport.height);
     std::vector<PixelRect> changed, repainted;
-    cache.take_changed(changed);
+    pool.newest().take_changed(changed);
     Reprojector reprojector;
     Camera camera = scene.camera;
     costs.reproject_pixel = cost(rounds, static_cast<double>(viewport.width) * viewport.height, [&] {
         camera.position += 0.01f * camera.right();
-        reprojector.show(cache, changed, camera, 0, {}, picture, repainted);
+        reprojector.show(pool, changed, camera, 0, {}, picture, repainted);
         changed.clear();
     });
 }

@@ -35,7 +35,7 @@ TEST(Mirror, AStillPictureShowsWhatItWasSent) {
         Mirror mirror(viewport);
         mirror.look(view_at(Vec3(0)), no_motions);
         EXPECT_EQ(summary_of(mirror).holes, 1);
-        mirror.add(view_at(Vec3(0)), no_motions, render_pieces(plane, depth, wall));
+        mirror.add(view_at(Vec3(0)).rays, no_motions, render_pieces(plane, depth, wall));
         for (int again = 0; again < 6; ++again) { // nothing of it is forgotten
             Summary const summary = summary_of(mirror);
             EXPECT_EQ(summary.holes, 0);
@@ -49,7 +49,7 @@ TEST(Mirror, AStillPictureShowsWhatItWasSent) {
 TEST(Mirror, ACameraThatGoesSidewaysUncoversItsEdge) {
     Mirror mirror(viewport);
     mirror.look(view_at(Vec3(0)), no_motions);
-    mirror.add(view_at(Vec3(0)), no_motions, render_pieces(plane, plane.pixel_depth(), wall));
+    mirror.add(view_at(Vec3(0)).rays, no_motions, render_pieces(plane, plane.pixel_depth(), wall));
     mirror.look(view_at(Vec3(32 * 10 * pixel_size(), 0, 0)), no_motions); // 32 pixels at 10 metres
     Summary const summary = summary_of(mirror);
     EXPECT_NEAR(summary.holes, 32.0 / viewport.width, 0.02);
@@ -59,7 +59,7 @@ TEST(Mirror, ACameraThatGoesSidewaysUncoversItsEdge) {
 TEST(Mirror, WhatComesNearerGetsCoarser) {
     Mirror mirror(viewport);
     mirror.look(view_at(Vec3(0)), no_motions);
-    mirror.add(view_at(Vec3(0)), no_motions, render_pieces(plane, plane.pixel_depth(), wall));
+    mirror.add(view_at(Vec3(0)).rays, no_motions, render_pieces(plane, plane.pixel_depth(), wall));
     mirror.look(view_at(Vec3(0, 0, -5)), no_motions); // from 10 metres to 5
     Summary const summary = summary_of(mirror);
     EXPECT_EQ(summary.holes, 0);
@@ -89,10 +89,10 @@ TEST(Mirror, WhatIsUncoveredWasHeldOnceOrIsAHole) {
     };
     Mirror mirror(viewport);
     mirror.look(moved(0), no_motions);
-    mirror.add(moved(0), no_motions, render_pieces(plane, plane.pixel_depth(), look_from(0)));
+    mirror.add(moved(0).rays, no_motions, render_pieces(plane, plane.pixel_depth(), look_from(0)));
     mirror.look(moved(4), no_motions); // the square goes 16 pixels, the wall behind it 4
     EXPECT_NEAR(uncovered(mirror), 12 * 32, 100);
-    mirror.add(moved(4), no_motions, render_pieces(plane, plane.pixel_depth(), look_from(4)));
+    mirror.add(moved(4).rays, no_motions, render_pieces(plane, plane.pixel_depth(), look_from(4)));
     mirror.look(moved(0), no_motions);
     EXPECT_EQ(uncovered(mirror), 0) << "each moment has seen what the other one has not";
     mirror.look(moved(2), no_motions);
@@ -106,22 +106,22 @@ TEST(Mirror, TheLeastWornShows) {
     for (Piece& piece : fine) {
         piece.fading = 1;
     }
-    mirror.add(view_at(Vec3(0), 0), no_motions, fine);
+    mirror.add(view_at(Vec3(0), 0).rays, no_motions, fine);
     Vec3 const aside(1e-5f, 0, 0);
     mirror.look(view_at(aside, 2), no_motions);
     EXPECT_NEAR(summary_of(mirror).worn, 3, 1e-3) << "two seconds at a pixel a second";
-    mirror.add(view_at(aside, 2), no_motions, render_pieces(plane, plane.pixel_depth() - 2, wall));
+    mirror.add(view_at(aside, 2).rays, no_motions, render_pieces(plane, plane.pixel_depth() - 2, wall, 2));
     EXPECT_NEAR(summary_of(mirror).worn, 3, 1e-3) << "fresh ones 4 pixels apart are no better";
-    mirror.add(view_at(aside, 2), no_motions, render_pieces(plane, plane.pixel_depth() - 1, wall));
+    mirror.add(view_at(aside, 2).rays, no_motions, render_pieces(plane, plane.pixel_depth() - 1, wall, 2));
     EXPECT_NEAR(summary_of(mirror).worn, 2, 1e-3);
 }
 
 TEST(Mirror, OfOneCameraTheNewestIsHeld) {
     Mirror mirror(viewport);
     mirror.look(view_at(Vec3(0), 0), no_motions);
-    mirror.add(view_at(Vec3(0), 0), no_motions, render_pieces(plane, plane.pixel_depth(), wall));
+    mirror.add(view_at(Vec3(0), 0).rays, no_motions, render_pieces(plane, plane.pixel_depth(), wall));
     mirror.look(view_at(Vec3(0), 1), no_motions);
-    mirror.add(view_at(Vec3(0), 1), no_motions, render_pieces(plane, plane.pixel_depth() - 1, wall));
+    mirror.add(view_at(Vec3(0), 1).rays, no_motions, render_pieces(plane, plane.pixel_depth() - 1, wall, 1));
     mirror.look(view_at(Vec3(0), 2), no_motions);
     EXPECT_NEAR(summary_of(mirror).worn, 2, 1e-3);
     EXPECT_EQ(summary_of(mirror).holes, 0);
@@ -142,7 +142,7 @@ TEST(Mirror, ABodyCarriesItsPieces) {
     auto const half = [](float x, float) { return Seen{10, 0.5f, x < 64 ? BodyNumber{1} : static_body}; };
     Mirror mirror(viewport);
     mirror.look(view_at(Vec3(0)), motions);
-    mirror.add(view_at(Vec3(0)), motions, render_pieces(plane, plane.pixel_depth(), half));
+    mirror.add(view_at(Vec3(0)).rays, motions, render_pieces(plane, plane.pixel_depth(), half));
     mirror.look(view_at(Vec3(0), 1), motions); // 32 pixels to the right
     EXPECT_NEAR(summary_of(mirror).holes, 32.0 / viewport.width, 0.02);
     EXPECT_EQ(mirror.cell(2, 4).covered, 0);
@@ -153,11 +153,11 @@ TEST(Mirror, KeepsFewMomentsAndWhatIsBetteredNotForLong) {
     for (int i = 0; i < 100; ++i) {
         float const x = 0.01f * static_cast<float>(i);
         mirror.look(view_at(Vec3(x, 0, 0), i), no_motions);
-        mirror.add(view_at(Vec3(x, 0, 0), i), no_motions, render_pieces(plane, plane.pixel_depth(), wall));
-        EXPECT_LE(mirror.moment_count(), mirrored_moments);
+        mirror.add(view_at(Vec3(x, 0, 0), i).rays, no_motions, render_pieces(plane, plane.pixel_depth(), wall, i));
+        EXPECT_LE(mirror.moment_count(), FrameletPool::most_moments);
         EXPECT_EQ(summary_of(mirror).holes, 0);
     }
-    EXPECT_LT(mirror.piece_count(), 5 * render_pieces(plane, plane.pixel_depth(), wall).size());
+    EXPECT_LT(mirror.piece_count(), 6 * render_pieces(plane, plane.pixel_depth(), wall).size());
 }
 
 TEST(Mirror, HostileViewsAndDepthsDoNoHarm) {
@@ -165,7 +165,7 @@ TEST(Mirror, HostileViewsAndDepthsDoNoHarm) {
     Mirror mirror(viewport);
     for (float const depth : {0.0f, -1.0f, INFINITY, nan, 1e-30f, 1e30f}) {
         mirror.look(view_at(Vec3(0)), no_motions);
-        mirror.add(view_at(Vec3(0)), no_motions, render_pieces(plane, plane.pixel_depth(), [&](float, float) {
+        mirror.add(view_at(Vec3(0)).rays, no_motions, render_pieces(plane, plane.pixel_depth(), [&](float, float) {
                        return Seen{depth, 0.5f};
                    }));
         for (float const far : {-1e10f, -1e-6f, 1e-6f, 1.0f, 1e10f}) {

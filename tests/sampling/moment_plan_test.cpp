@@ -50,9 +50,9 @@ struct Planner {
         std::vector<Piece> pieces;
         for (Tile const tile : tiles()) {
             RenderedTile const one = render_tile(plane, tile, look);
-            cut_pieces(one.rendered, one.shown, plane, pieces);
+            cut_pieces(one.rendered, one.shown, plane, 0, pieces);
         }
-        mirror.add(view, no_motions, pieces);
+        mirror.add(view.rays, no_motions, pieces);
     }
 };
 
@@ -80,7 +80,7 @@ TEST(MomentPlan, UsesItsBudgetAndCoversWhatIsEmpty) {
 TEST(MomentPlan, TheBusyHalfGetsTheFinerSamples) {
     Planner planner;
     planner.mirror.look(view_at(0), no_motions);
-    planner.mirror.add(view_at(0), no_motions, render_pieces(plane, plane.pixel_depth() - 1, half_busy));
+    planner.mirror.add(view_at(0).rays, no_motions, render_pieces(plane, plane.pixel_depth() - 1, half_busy));
     planner.find(0.2 * viewport.width * viewport.height);
     EXPECT_FALSE(planner.rated.empty());
     for (Tile const tile : planner.tiles()) {
@@ -111,7 +111,7 @@ TEST(MomentPlan, NothingIsPlannedTwiceAndInTheEndNothing) {
 TEST(MomentPlan, WhatComesIntoViewIsFirst) {
     Planner planner;
     planner.mirror.look(view_at(0), no_motions);
-    planner.mirror.add(view_at(0), no_motions, render_pieces(plane, plane.pixel_depth(), half_busy));
+    planner.mirror.add(view_at(0).rays, no_motions, render_pieces(plane, plane.pixel_depth(), half_busy));
     float const pixel = 10 * view_at(0).rays.direction_dx.x;
     planner.mirror.look(view_at(20 * pixel), no_motions);
     planner.find(viewport.width * viewport.height);

@@ -45,7 +45,7 @@ inline RenderedTile render_tile(ImagePlane const& plane, Tile tile, Look const& 
 }
 
 /// All visible tiles of a depth.
-inline std::vector<Piece> render_pieces(ImagePlane const& plane, int depth, Look const& look) {
+inline std::vector<Piece> render_pieces(ImagePlane const& plane, int depth, Look const& look, SceneTime time = 0) {
     std::vector<Piece> pieces;
     std::uint32_t const side = 1u << depth;
     for (std::uint32_t row = 0; row < side; ++row) {
@@ -53,7 +53,7 @@ inline std::vector<Piece> render_pieces(ImagePlane const& plane, int depth, Look
             Tile const tile = make_tile(depth, column, row);
             if (plane.is_visible(tile)) {
                 RenderedTile const one = render_tile(plane, tile, look);
-                cut_pieces(one.rendered, one.shown, plane, pieces);
+                cut_pieces(one.rendered, one.shown, plane, time, pieces);
             }
         }
     }

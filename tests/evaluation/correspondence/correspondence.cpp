@@ -176,7 +176,7 @@ struct Found {
     double holes = 0; ///< also among those
 };
 
-void compare(Surfaces const& before, Surfaces const& after, ExactMotion const& back, WarpPlan const (&plans)[2],
+void compare(Surfaces const& before, Surfaces const& after, ExactMotion const& back, WarpPlan (&plans)[2],
              Found& found) {
     constexpr int side = WarpedBlock::side;
     Viewport const viewport = after.viewport;
@@ -187,7 +187,8 @@ void compare(Surfaces const& before, Surfaces const& after, ExactMotion const& b
         int const row = static_cast<int>(b) / plans[0].columns();
         WarpedBlock blocks[2];
         for (int shift = 0; shift < 2; ++shift) {
-            plans[shift].block(b, patches);
+            patches.clear();
+            plans[shift].add_block(b, patches);
             paint_warped_block(patches, column, row, viewport, blocks[shift]);
         }
         for (int i = 0; i < side * side; ++i) {
@@ -259,7 +260,7 @@ void measure_from(BenchScene& scene, CorrespondenceStudy const& study, SceneTime
         Surfaces const after = render_surfaces(scene, moved, study.viewport);
         WarpPlan plans[2];
         for (int shift = 0; shift < 2; ++shift) {
-            plans[shift].make(caches[shift], moved, later, motions);
+            plans[shift].make(caches[shift], 0, true, moved, later, motions);
         }
         ExactMotion const back(bodies, {scene.pose, moved}, {pose, camera}, study.viewport);
         compare(before, after, back, plans, found[i]);
