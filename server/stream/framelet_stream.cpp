@@ -103,7 +103,10 @@ Step FrameletStream::plan_batch(Turn const& turn, ViewState const& present, Pose
     order.again = false;
     viewer_.refresh.plan(wanted, order.plan);
     if (order.plan.is_empty()) { // once what is rendered is learnt there may be something
-        return planned_ != nullptr ? Step::finish : Step::nothing;
+        if (planned_ != nullptr) {
+            return Step::finish;
+        }
+        return wanted.moment ? Step::wait : Step::nothing; // at rest there will be more to do
     }
     work.figures = {};
     work.figures.is_new_cycle = order.plan.is_new_cycle;

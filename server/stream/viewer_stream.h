@@ -29,7 +29,7 @@ struct Turn {
 /// What is to be done in a turn.
 enum class Step : std::uint8_t {
     nothing, ///< until something changes
-    wait, ///< the link is full, or the viewer owes answers: time alone may change that
+    wait, ///< the link is full, the viewer owes answers, or it has all of a moment: time alone may change that
     finish, ///< what was rendered is to be learnt first
     render, ///< the scene posed for `moment()`, then `learn` and `encode`
 };
