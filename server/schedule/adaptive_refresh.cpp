@@ -26,6 +26,8 @@ constexpr float enough = 5e-5f;
 constexpr double least_earlier = 0.03, most_earlier = 0.25;
 /// The samples of so many seconds are planned together: what they cannot do at their price can wait.
 constexpr double planned_seconds = 0.2;
+/// A camera that has not moved for so many seconds stands.
+constexpr double camera_rest = 0.3;
 /// A scene time that jumps by more than this over what has passed has been set.
 constexpr double most_time_step = 0.5;
 
@@ -146,7 +148,11 @@ void AdaptiveRefresh::plan(RefreshInput const& input, RefreshPlan& plan) {
         earlier_ = recent_;
         recent_ = {plan.moment.rays, plan.moment.scene_time, moment.begun};
     }
-    plan.is_mirrored = input.moment && plan.moment.motions != nullptr;
+    // Where the camera stands what a place shows is what was rendered there last: nothing is gained by the mirror.
+    if (!seen_ || !(seen_->view.camera == input.state.view.camera)) {
+        camera_moved_ = input.now;
+    }
+    plan.is_mirrored = input.moment && plan.moment.motions != nullptr && input.now - camera_moved_ < camera_rest;
     still_ = !input.moment && is_still(input.state);
     plan.is_new_cycle = !goes_on(input, plan.is_mirrored);
     if (plan.is_new_cycle) {

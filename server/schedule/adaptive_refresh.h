@@ -133,6 +133,7 @@ private:
 
     std::optional<ViewState> seen_;
     double advanced_ = 0; ///< the time that the field stands for
+    double camera_moved_ = never; ///< when it did last
     double still_since_ = 0; ///< when what is to be seen changed last
     bool strayed_ = false; ///< something was rendered for another state than `seen_` since
     bool scene_moves_ = false;

@@ -47,6 +47,9 @@ public:
     /// False when there was nothing to do: a cycle passes.
     bool step() {
         input.state.scene_time = running ? input.now : stopped_at;
+        if (running && camera_speed > 0) {
+            input.state.view.camera.position.x = camera_speed * static_cast<float>(input.now);
+        }
         if (moment_length <= 0 || !running) {
             input.moment.reset();
         } else if (!input.moment || input.now >= input.moment->begun + moment_length) {
@@ -109,6 +112,7 @@ public:
     bool pipelined = true; ///< a batch is learnt once the next one has been planned, as in the server
     bool running = true; ///< the scene clock
     double stopped_at = 0; ///< scene time while it is not
+    float camera_speed = 0; ///< metres a second, while the clock runs; what is to be seen is the same everywhere
     double moment_length = 0; ///< seconds; > 0: moments are held while the clock runs
     AdaptiveRefresh refresh;
 
