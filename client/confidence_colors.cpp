@@ -11,7 +11,7 @@ namespace framelet {
 namespace {
 
 constexpr float youngest = 0.01f, oldest = 10; ///< seconds
-constexpr OverlayColor made_up{255, 0, 255}, spare{40, 200, 80};
+constexpr OverlayColor made_up{255, 0, 255};
 constexpr float coarsest = 8; ///< pixels; as coarse as it gets
 constexpr float darkest = 0.4f;
 constexpr float wash = 0.6f; ///< share of the colour
@@ -21,7 +21,7 @@ OverlayColor color_of(PixelConfidence const& pixel) {
         return made_up;
     }
     float const age = std::log2(std::max(pixel.seconds, youngest) / youngest) / std::log2(oldest / youngest);
-    OverlayColor color = pixel.is_spare ? spare : age_color(age);
+    OverlayColor color = age_color(age);
     float const coarse = std::clamp(std::log2(std::max(pixel.spacing, 1.0f)) / std::log2(coarsest), 0.0f, 1.0f);
     for (float& value : color) {
         value *= 1 + coarse * (darkest - 1);

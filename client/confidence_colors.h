@@ -10,8 +10,8 @@
 namespace framelet {
 
 /// `confidence` has one for each pixel, in rows. Fresh pixels are yellow, older ones orange, red and dark blue, on a
-/// logarithmic scale from a hundredth of a second to ten; what is made up is magenta, what shows for lack of anything
-/// else is green. The coarser the samples the darker.
+/// logarithmic scale from a hundredth of a second to ten; what is made up is magenta. The coarser the samples
+/// the darker.
 void draw_confidence(std::span<PixelConfidence const> confidence, Picture& picture);
 
 } // namespace framelet

@@ -19,8 +19,7 @@ PixelConfidence confidence_of(FrameletPool const& pool, SceneTime now, std::int3
     std::size_t const slot = slot_of_group(group);
     HeldView const& view = pool.slot(slot).views()[view_of_group(group)];
     double const spacing = std::exp2(pool.plane().pixel_depth() - depth_of_group(group));
-    return {static_cast<float>(std::abs(now - view.scene_time)), static_cast<float>(spacing),
-            slot != pool.newest_slot()};
+    return {static_cast<float>(std::abs(now - view.scene_time)), static_cast<float>(spacing)};
 }
 
 } // namespace

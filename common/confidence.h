@@ -15,7 +15,6 @@ struct PixelConfidence {
 
     float seconds = made_up; ///< of scene time since it was rendered, >= 0
     float spacing = 0; ///< of its samples, pixels of the picture that it was rendered for; 0 in a hole
-    bool is_spare = false; ///< of an older moment than the newest: nothing better has come
 };
 
 /// Replaces `out` by every pixel of the viewport, in rows, as `Reprojector::show` would show it if the camera
