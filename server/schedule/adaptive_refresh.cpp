@@ -9,7 +9,6 @@
 
 #include "common/error.h"
 #include "common/reprojection.h"
-#include "server/schedule/picture_bound.h"
 
 namespace framelet {
 namespace {
@@ -22,8 +21,6 @@ constexpr double probe_period = 0.25;
 constexpr double most_unseen = 0.5;
 /// Mean squared error of the finest samples, as modelled, above which they are not enough of a still picture.
 constexpr float enough = 5e-5f;
-/// What moves is looked at over so many seconds.
-constexpr double least_earlier = 0.03, most_earlier = 0.25;
 /// The samples of so many seconds are planned together: what they cannot do at their price can wait.
 constexpr double planned_seconds = 0.2;
 /// A camera that has not moved for so many seconds stands.
@@ -137,17 +134,8 @@ void AdaptiveRefresh::plan(RefreshInput const& input, RefreshPlan& plan) {
     plan.now = input.now;
     plan.viewport = view.viewport;
     plan.moment_begun = moment.begun;
-    double const since_earlier = moment.begun - earlier_.when;
-    plan.moment = {make_view_rays(view.camera, view.viewport),
-                   moment.state.scene_time,
-                   is_reprojectable(view.camera) ? input.motions : nullptr,
-                   earlier_.rays,
-                   earlier_.scene_time,
-                   since_earlier < most_earlier ? static_cast<float>(since_earlier) : 0.0f};
-    if (!(moment.begun - recent_.when < least_earlier)) {
-        earlier_ = recent_;
-        recent_ = {plan.moment.rays, plan.moment.scene_time, moment.begun};
-    }
+    plan.moment = {make_view_rays(view.camera, view.viewport), moment.state.scene_time,
+                   is_reprojectable(view.camera) ? input.motions : nullptr};
     // Where the camera stands what a place shows is what was rendered there last: nothing is gained by the mirror.
     if (!seen_ || !(seen_->view.camera == input.state.view.camera)) {
         camera_moved_ = input.now;
@@ -449,7 +437,6 @@ std::vector<std::uint8_t> const& AdaptiveRefresh::learn(RefreshPlan const& plan,
     FRAMELET_CHECK(probe_luma.size() == plan.probes.size());
     if (plan.viewport != field_.plane().viewport()) {
         send_.assign(framelets.size(), 0);
-        stays_.assign(framelets.size(), 0);
         fadings_.assign(framelets.size(), 0);
         return send_;
     }
@@ -457,7 +444,6 @@ std::vector<std::uint8_t> const& AdaptiveRefresh::learn(RefreshPlan const& plan,
         note_supersampled(plan);
         release(plan);
         send_.assign(framelets.size(), 1);
-        stays_.assign(framelets.size(), 0);
         mirror_learnt(plan, framelets, rendered);
         return send_;
     }
@@ -468,7 +454,6 @@ std::vector<std::uint8_t> const& AdaptiveRefresh::learn(RefreshPlan const& plan,
         probe += place.probe_count;
     }
     examine(plan, framelets, rendered);
-    stays_.assign(framelets.size(), 0);
     std::size_t first_tile = 0;
     std::size_t first_place = 0;
     for (std::size_t i = 0; i < plan.patches.size(); ++i) {
@@ -476,8 +461,6 @@ std::vector<std::uint8_t> const& AdaptiveRefresh::learn(RefreshPlan const& plan,
         bool const needed = learn_patch(field_, plan.patches[i], places, same_since_[i], plan.still_since, plan.now);
         auto const to = send_.begin() + static_cast<std::ptrdiff_t>(first_tile);
         std::fill(to, to + static_cast<std::ptrdiff_t>(plan.tile_counts[i]), needed ? 1 : 0);
-        std::fill_n(stays_.begin() + static_cast<std::ptrdiff_t>(first_tile), plan.tile_counts[i],
-                    stays_in_picture(plan.patches[i], places) ? 1 : 0);
         first_tile += plan.tile_counts[i];
         first_place += places.size();
     }
@@ -487,7 +470,6 @@ std::vector<std::uint8_t> const& AdaptiveRefresh::learn(RefreshPlan const& plan,
     }
     if (plan.is_mirrored) { // it does not hold the same where it is needed, or this would not have been planned
         std::ranges::fill(send_, std::uint8_t{1});
-        std::ranges::fill(stays_, std::uint8_t{0});
     }
     mirror_learnt(plan, framelets, rendered);
     return send_;
@@ -524,19 +506,6 @@ void AdaptiveRefresh::note_supersampled(RefreshPlan const& plan) {
             place.rendered = place.checked = place.supersampled = plan.now;
         }
     }
-}
-
-/// Of what is seen in a patch whose places have been learnt.
-bool AdaptiveRefresh::stays_in_picture(Patch const& patch, std::span<PlaceFindings const> places) const {
-    std::uint32_t index = field_.range_of(patch.node).first;
-    CarriedChange all;
-    for (PlaceFindings const& found : places) {
-        CarriedChange const change = carried_change(field_[index].model, found.seen, found.carried_speed);
-        all.seen += change.seen * field_.pixels_of(index);
-        all.expected += change.expected * field_.pixels_of(index);
-        ++index;
-    }
-    return stays(all);
 }
 
 /// What was taken by this plan, and not by a later one again, is no longer.
@@ -587,19 +556,6 @@ void AdaptiveRefresh::examine(RefreshPlan const& plan, std::span<DisplayFramelet
             plan.moment.motions != nullptr && std::ranges::any_of(rendered.subspan(tile, count), on_body);
         same_since_[i] = moved ? never : same_since;
     });
-}
-
-void bind_to_picture(RefreshPlan const& plan, std::span<std::uint8_t const> send, std::span<std::uint8_t const> staying,
-                     std::span<FrameletShape> shapes) {
-    FRAMELET_CHECK(send.size() == plan.tiles.size() && staying.size() == plan.tiles.size());
-    ImagePlane const plane(plan.viewport);
-    std::size_t shape = 0;
-    for (std::size_t i = 0; i < send.size(); ++i) {
-        if (send[i] != 0 && staying[i] != 0) {
-            bind_to_picture(plan.tiles[i], plane, plan.moment, shapes[shape]);
-        }
-        shape += send[i] != 0 ? 1 : 0;
-    }
 }
 
 } // namespace framelet

@@ -85,10 +85,6 @@ public:
     std::vector<std::uint8_t> const& learn(RefreshPlan const& plan, std::span<DisplayFramelet const> framelets,
                                            std::span<Framelet const> rendered, std::span<float const> probe_luma);
 
-    /// For each framelet of the last plan that was learnt, whether what it shows stays where it is in the picture
-    /// though its surfaces go by.
-    std::span<std::uint8_t const> staying() const { return stays_; }
-
     /// For each of these framelets, how soon what it shows fades.
     std::span<FadingCode const> fadings() const { return fadings_; }
 
@@ -126,7 +122,6 @@ private:
     bool is_finest(std::uint32_t index) const;
     bool is_finished(std::uint32_t index) const;
     void note_supersampled(RefreshPlan const& plan);
-    bool stays_in_picture(Patch const& patch, std::span<PlaceFindings const> places) const;
     std::size_t place_count(Patch const& patch) const;
     void examine(RefreshPlan const& plan, std::span<DisplayFramelet const> framelets,
                  std::span<Framelet const> rendered);
@@ -137,12 +132,6 @@ private:
     double still_since_ = 0; ///< when what is to be seen changed last
     bool strayed_ = false; ///< something was rendered for another state than `seen_` since
     bool scene_moves_ = false;
-    struct Earlier {
-        ViewRays rays{};
-        SceneTime scene_time = 0;
-        double when = never;
-    };
-    Earlier earlier_, recent_; ///< what plans were for
     bool still_ = false; ///< what is to be seen is what the last plan was for
     PlaceField field_;
     LumaHistory history_;
@@ -159,7 +148,6 @@ private:
     std::vector<Patch> cycle_; ///< patches of the cycle
     int rays_per_sample_ = single_ray; ///< of the cycle
     std::size_t next_ = 0; ///< of these
-    std::vector<std::uint8_t> stays_;
     std::vector<std::uint8_t> send_;
     std::vector<FadingCode> fadings_;
     Mirror mirror_;
@@ -183,10 +171,5 @@ private:
     std::vector<double> same_since_; ///< of the patches
     std::vector<std::pair<std::size_t, std::size_t>> firsts_; ///< first tile and first place of each patch
 };
-
-/// Shapes of those framelets of a plan for which `send` is not 0, in order: those that are `staying` stay in the
-/// picture.
-void bind_to_picture(RefreshPlan const& plan, std::span<std::uint8_t const> send, std::span<std::uint8_t const> staying,
-                     std::span<FrameletShape> shapes);
 
 } // namespace framelet

@@ -14,9 +14,6 @@ struct RenderedMoment {
     ViewRays rays{}; ///< perspective
     SceneTime scene_time = 0;
     BodyMotions const* motions = nullptr; ///< as the viewer knows them; null: it moves nothing
-    ViewRays rays_before{}; ///< a little earlier
-    SceneTime scene_time_before = 0;
-    float seconds = 0; ///< since then; 0: nothing is known of before
 };
 
 /// The fastest at which two bodies that meet among samples [first, first + count) pass each other, pixels for each

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "common/error.h"
-#include "server/schedule/picture_bound.h"
 
 namespace framelet {
 namespace {
@@ -159,14 +158,12 @@ double examine_patch(PlaceField const& field, Patch const& patch, std::span<Disp
             place.inverse_depth += mean_inverse_depth(rendered[f], first, count);
             place.meeting_speed =
                 std::max(place.meeting_speed, meeting_speed(rendered[f], field.plane(), moment, first, count));
-            place.carried_speed += carried_speed(rendered[f], field.plane(), moment, first, count);
             first += count;
         }
     }
     for (PlaceFindings& place : places) {
         place.seen = mean_of(place.seen, static_cast<int>(framelets.size()));
         place.inverse_depth /= static_cast<float>(framelets.size());
-        place.carried_speed /= static_cast<float>(framelets.size());
     }
     return same_since;
 }

@@ -18,7 +18,6 @@ struct PlaceFindings {
     std::size_t probe_count = 0;
     float inverse_depth = 0; ///< mean, 1/metres
     float meeting_speed = 0; ///< of bodies, pixels a second
-    float carried_speed = 0; ///< of what is seen there, pixels a second
 };
 
 /// When something was rendered, and when what it shows was the present; seconds, steady.
