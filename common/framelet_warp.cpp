@@ -108,7 +108,7 @@ void FrameletWarp::add(CachedFramelet const& framelet, unsigned parts, std::vect
         common.is_loose = true;
         common.layer = FrameletShape::loose;
         auto const age = static_cast<float>(time_ - cache_.views()[framelet.view].scene_time);
-        common.worn = worn_spacing(static_cast<float>(spacing_), age, shape.fading);
+        common.worn = worn_spacing(static_cast<float>(spacing_), age, fading_rate(shape.fading));
         common.place = framelet.tile.code * 4 + FrameletShape::loose;
         common.first_splat = static_cast<std::uint32_t>(splats.size());
         add_splats(framelet, common, splats);
@@ -168,8 +168,8 @@ void FrameletWarp::rate(std::uint32_t view, FadingCode fading, float error, Warp
     float const misplaced = is_still_ ? 0 : error * static_cast<float>(parallax_) * z;
     auto const age = static_cast<float>(time_ - cache_.views()[view].scene_time);
     float const worst = 1e3f;
-    float const steps =
-        4 * std::log2(std::min(worn_spacing(spacing, age, fading) + misplaced, worst)); // not what is no number
+    float const steps = 4 * std::log2(std::min(worn_spacing(spacing, age, fading_rate(fading)) + misplaced,
+                                               worst)); // not what is no number
     patch.worn = std::exp2(std::round(steps) / 4);
     patch.hides = spacing < most_hiding;
 }

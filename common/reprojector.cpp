@@ -83,6 +83,15 @@ bool is_block_in_place(FrameletCache const& cache, Camera const& camera, SceneTi
     return is_covered;
 }
 
+/// The moment that has most of its picture.
+FrameletCache const& fullest_of(FrameletPool const& pool) {
+    std::size_t most = 0;
+    for (std::size_t i = 1; i < pool.slot_count(); ++i) {
+        most = pool.slot(i).coverage() > pool.slot(most).coverage() ? i : most;
+    }
+    return pool.slot(most);
+}
+
 std::uint64_t combine(std::uint64_t state, std::uint64_t value) {
     state = (state ^ value) * 0x9e3779b97f4a7c15u;
     return state ^ state >> 32;
@@ -212,12 +221,10 @@ void Reprojector::show(FrameletPool const& pool, std::span<PixelRect const> chan
     if (any) {
         count_blocks(picture, pool.slot_count());
     }
-    double coverage = 0;
-    for (std::size_t i = 0; i < pool.slot_count(); ++i) {
-        coverage = std::max(coverage, pool.slot(i).coverage());
-    }
-    if (1 - hole_share_ < least_kept * coverage) {
-        show_cut(pool, picture, repainted);
+    double const kept = 1 - hole_share_;
+    FrameletCache const* const fullest = kept < least_kept ? &fullest_of(pool) : nullptr; // coverage takes a while
+    if (fullest != nullptr && kept < least_kept * fullest->coverage()) {
+        show_cut(*fullest, picture, repainted);
     } else {
         if (any) {
             fill(picture);
@@ -227,15 +234,11 @@ void Reprojector::show(FrameletPool const& pool, std::span<PixelRect const> chan
     has_shown_ = true;
 }
 
-/// The moment that had most of the picture, as it was.
-void Reprojector::show_cut(FrameletPool const& pool, Picture& picture, std::vector<PixelRect>& repainted) {
-    std::size_t most = 0;
-    for (std::size_t i = 1; i < pool.slot_count(); ++i) {
-        most = pool.slot(i).coverage() > pool.slot(most).coverage() ? i : most;
-    }
+/// As it was.
+void Reprojector::show_cut(FrameletCache const& moment, Picture& picture, std::vector<PixelRect>& repainted) {
     blocks_.clear(); // no block is as the plan says
     std::ranges::fill(painted_, std::uint8_t{0});
-    reconstruct_all(pool.slot(most), picture);
+    reconstruct_all(moment, picture);
     repainted.assign(1, {0, 0, picture.width, picture.height});
 }
 

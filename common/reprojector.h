@@ -59,7 +59,7 @@ private:
     /// True when it had to be painted.
     bool update_block(FrameletPool const& pool, Camera const& camera, SceneTime scene_time, BodyMotions const& motions,
                       int column, int row, std::vector<PatchView>& patches, Picture& picture);
-    void show_cut(FrameletPool const& pool, Picture& picture, std::vector<PixelRect>& repainted);
+    void show_cut(FrameletCache const& moment, Picture& picture, std::vector<PixelRect>& repainted);
     void count_blocks(Picture const& picture, std::size_t slots);
     bool is_beside_hole(int column, int row) const;
     void fill(Picture& picture);

@@ -27,9 +27,9 @@ inline FadingCode fading_code(float rate) {
 }
 
 /// The spacing, pixels, of fresh samples that would be as bad: what detail is missed grows about as the spacing does.
-/// `spacing`: once moved, pixels; `age`: seconds of scene time, of either sign.
-inline float worn_spacing(float spacing, float age, FadingCode fading) {
-    return std::max(spacing, finest_shown_spacing) + fading_rate(fading) * std::abs(age);
+/// `spacing`: once moved, pixels; `age`: seconds of scene time, of either sign; `rate`: as `fading_rate` has it.
+inline float worn_spacing(float spacing, float age, float rate) {
+    return std::max(spacing, finest_shown_spacing) + rate * std::abs(age);
 }
 
 } // namespace framelet

@@ -53,7 +53,9 @@ std::size_t FrameletPool::free_slot() {
         slots_.push_back({std::make_unique<FrameletCache>(plane_), {}});
         return slots_.size() - 1;
     }
-    auto const is_untried = [this](Slot const& slot) { return slot.begun + untried_moments > moments_; };
+    auto const is_untried = [this](Slot const& slot) {
+        return !is_tried(static_cast<std::size_t>(&slot - slots_.data()));
+    };
     auto const goes_first = [&](Slot const& a, Slot const& b) {
         return std::tuple(is_untried(a), a.shown, a.begun) < std::tuple(is_untried(b), b.shown, b.begun);
     };

@@ -229,7 +229,7 @@ void Mirror::splat(Moment& moment, std::size_t index) {
     int const right = static_cast<int>(std::min(high.x, width));
     int const bottom = static_cast<int>(std::min(high.y, height));
     auto const age = static_cast<float>(target_.scene_time - piece.scene_time);
-    float const worn = std::max(scale * piece.spacing, finest_shown_spacing) + piece.fading * std::abs(age);
+    float const worn = worn_spacing(scale * piece.spacing, age, piece.fading);
     float const w = placed.inverse_depth;
     auto const slot = static_cast<std::uint8_t>(&moment - moments_.data());
     for (int row = top / cell_side; row * cell_side < bottom; ++row) {
