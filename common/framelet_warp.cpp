@@ -20,10 +20,6 @@ constexpr double nearest = 1e-3;
 constexpr double smallest_splat = 0.75;
 constexpr double largest_splat = 32;
 
-/// Samples that are farther apart than the coarsest framelet's, pixels, say too little of where their surface ends to
-/// hide anything; the plane of a few that is seen from its side now may not even be one.
-constexpr float most_hiding = 8.5f;
-
 /// Numbers as large as this, and what is not a number, do not get into a patch.
 constexpr double largest = 1e18;
 
@@ -149,7 +145,6 @@ void FrameletWarp::add_layer(std::uint32_t view, HeldLayer const& layer, FadingC
     }
 }
 
-/// In steps of a quarter of an octave, so that what is about as good does not change places from picture to picture.
 void FrameletWarp::rate(std::uint32_t view, FadingCode fading, float error, WarpPatch& patch) const {
     float const x = 0.5f * static_cast<float>(patch.box.width());
     float const y = 0.5f * static_cast<float>(patch.box.height());
@@ -165,13 +160,16 @@ void FrameletWarp::rate(std::uint32_t view, FadingCode fading, float error, Warp
     float const least = 0.5f * (squares - std::sqrt(std::max(squares * squares - 4 * area * area, 0.0f)));
     float const spacing = 1 / std::sqrt(std::max(least, 1e-6f));
     // By so many pixels its samples may be shown off their places: their inverse depths are not quite the plane's.
-    float const misplaced = is_still_ ? 0 : error * static_cast<float>(parallax_) * z;
+    glm::dvec2 const middle = 0.5 * glm::dvec2(patch.box.left + patch.box.right, patch.box.top + patch.box.bottom);
+    float const misplaced = is_still_ ? 0 : error * z * parallax_at(middle);
     auto const age = static_cast<float>(time_ - cache_.views()[view].scene_time);
-    float const worst = 1e3f;
-    float const steps = 4 * std::log2(std::min(worn_spacing(spacing, age, fading_rate(fading)) + misplaced,
-                                               worst)); // not what is no number
-    patch.worn = std::exp2(std::round(steps) / 4);
+    patch.worn = worn_step(worn_spacing(spacing, age, fading_rate(fading)) + misplaced);
     patch.hides = spacing < most_hiding;
+}
+
+float FrameletWarp::parallax_at(glm::dvec2 pixel) const {
+    glm::dvec3 const& parallax = transform_.parallax;
+    return static_cast<float>(glm::length(glm::dvec2(parallax) - pixel * parallax.z));
 }
 
 double FrameletWarp::inverse_depth_within(double pixels, MergedLayer const& merged) {

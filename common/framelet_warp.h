@@ -39,6 +39,8 @@ private:
     void add_layer(std::uint32_t view, HeldLayer const& layer, FadingCode fading, std::uint64_t content,
                    WarpPatch& patch, std::vector<WarpPatch>& patches);
     void rate(std::uint32_t view, FadingCode fading, float error, WarpPatch& patch) const;
+    /// Pixels for each 1 / metre, of what is shown at a pixel at depth 1.
+    float parallax_at(glm::dvec2 pixel) const;
     bool place_still(HeldLayer const& held, WarpPatch& patch) const;
     bool place(HeldLayer const& held, WarpPatch& patch) const;
     void set_maps(PlaneTransform const& plane, WarpPatch& patch) const;

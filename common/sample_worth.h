@@ -12,6 +12,10 @@ namespace framelet {
 /// Finer than this nothing shows any better, pixels.
 inline constexpr float finest_shown_spacing = 0.5f;
 
+/// Samples that are farther apart than the coarsest framelet's, pixels, say too little of where their surface ends to
+/// hide anything; the plane of a few that is seen from its side now may not even be one.
+inline constexpr float most_hiding = 8.5f;
+
 /// By how many pixels a second (of scene time) samples become worse, as if they lay so much farther apart. 0 for code
 /// 0.
 inline float fading_rate(FadingCode code) {
@@ -30,6 +34,13 @@ inline FadingCode fading_code(float rate) {
 /// `spacing`: once moved, pixels; `age`: seconds of scene time, of either sign; `rate`: as `fading_rate` has it.
 inline float worn_spacing(float spacing, float age, float rate) {
     return std::max(spacing, finest_shown_spacing) + rate * std::abs(age);
+}
+
+/// In steps of a quarter of an octave, so that what is about as good does not change places from picture to picture.
+/// What is not a number is as bad as can be.
+inline float worn_step(float worn) {
+    constexpr float worst = 1e3f;
+    return std::exp2(std::round(4 * std::log2(worn < worst ? worn : worst)) / 4);
 }
 
 } // namespace framelet

@@ -7,16 +7,6 @@
 
 namespace framelet {
 
-namespace {
-
-/// What came so lately has hardly been shown.
-constexpr std::uint64_t untried_moments = 3;
-
-/// Of what lies on no plane only these show: what more of them would cost to paint shows hardly.
-constexpr std::uint64_t recent_moments = 3;
-
-} // namespace
-
 FrameletPool::FrameletPool(ImagePlane plane) : plane_(plane) {
     slots_.push_back({std::make_unique<FrameletCache>(plane), {}});
 }

@@ -15,14 +15,18 @@ namespace {
 /// Nearer than this (depth in the picture over depth where it was rendered) nothing is drawn.
 constexpr float nearest = 1e-3f;
 constexpr float most_pixels = 1e6f, most_scale = 1e6f;
-/// A moved piece covers somewhat more, or the gaps that turning and tilting leave between neighbours were holes.
-constexpr float widening = 1.1f, margin = 0.5f;
+/// A moved piece covers somewhat more, or the gaps that turning and tilting leave between neighbours were holes, pixels.
+constexpr float margin = 0.5f;
+/// A plane whose area shrinks by more than this is seen edge-on.
+constexpr float thinnest = 1e-4f;
+/// Inverse depths that differ by less than this share belong to one surface, besides by what pieces may be off.
+constexpr float same_surface = 0.02f;
 constexpr int cell_pixels = cell_side * cell_side;
 /// A piece that covers less of a cell than this is not what it shows, where there is another.
 constexpr int least_share = cell_pixels / 2;
 /// A viewer lets go of what did not show lately, and of none of its newest moments.
-constexpr std::uint8_t most_unshown = 2;
-constexpr std::uint64_t newest_kept = 3;
+constexpr std::uint8_t most_unshown = 1;
+constexpr std::uint64_t newest_kept = FrameletPool::untried_moments;
 constexpr std::uint8_t replaced_piece = 255; ///< instead of how long it has shown nowhere: it is held no longer
 
 bool same_camera(ViewRays const& a, ViewRays const& b) {
@@ -74,7 +78,8 @@ std::size_t Mirror::moment_count() const {
 void Mirror::look(MirrorView const& view, BodyMotions const& motions) {
     target_ = view;
     auto const newest = std::ranges::max_element(moments_, {}, &Moment::number);
-    if (newest->number > 0 && !same_camera(newest->rays, view.rays)) {
+    awaits_moment_ = newest->number > 0 && !same_camera(newest->rays, view.rays);
+    if (awaits_moment_) {
         free_slot(); // what comes of this moment takes it: what was held there will not be seen
     }
     std::ranges::fill(cells_, Cell{});
@@ -108,6 +113,7 @@ Mirror::Moment& Mirror::slot_of(ViewRays const& rays) {
     Moment& free = free_slot();
     free.rays = rays;
     free.number = ++last_number_;
+    awaits_moment_ = false;
     return free;
 }
 
@@ -176,8 +182,14 @@ Mirror::TurnedBody const& Mirror::turn_to(Moment const& moment, Piece const& pie
         ViewTransform const carried = make_view_transform(moment.rays, target_.rays, motion, metre);
         turned.carried[axis] = Vec3(carried.parallax - transform.parallax);
     }
+    turned.is_still = moment.is_of_camera && motion == Motion{};
     turned.lens = static_cast<float>(std::sqrt(std::abs(glm::determinant(transform.far))));
     return turned;
+}
+
+/// What is loose shows of the newest moments only, of which one may be still to come.
+bool Mirror::shows_loose(Moment const& moment) const {
+    return moment.number + FrameletPool::recent_moments > last_number_ + (awaits_moment_ ? 1 : 0);
 }
 
 /// Of a moment, from piece `first` on.
@@ -185,78 +197,121 @@ void Mirror::place(Moment& moment, std::size_t first, BodyMotions const& motions
     ++stamp_;
     moment.is_of_camera = same_camera(moment.rays, target_.rays);
     moment.placed.resize(moment.pieces.size());
+    bool const loose = shows_loose(moment);
     for (std::size_t i = first; i < moment.pieces.size(); ++i) {
         Piece const& piece = moment.pieces[i];
         if (i > first && piece.scene_time != moment.pieces[i - 1].scene_time) {
             ++stamp_; // bodies were elsewhere
         }
         moment.placed[i] = {};
-        TurnedBody const& turned = turn_to(moment, piece, motions);
-        Vec3 parallax = turned.parallax;
-        if (piece.velocity != Vec3(0)) {
-            Vec3 const drift = static_cast<float>(target_.scene_time - piece.scene_time) * piece.velocity;
-            parallax += drift.x * turned.carried[0] + drift.y * turned.carried[1] + drift.z * turned.carried[2];
+        if ((!piece.is_loose || loose) && place(piece, turn_to(moment, piece, motions), moment.placed[i])) {
+            splat(moment, i);
         }
-        Vec3 const at = turned.far * Vec3(piece.centre, 1) + piece.inverse_depth * parallax;
-        if (!(at.z > nearest)) {
-            continue;
-        }
-        float const inverse_z = 1 / at.z;
-        float const scale = std::min(turned.lens * inverse_z, most_scale);
-        moment.placed[i] = {inverse_z * Vec2(at), inverse_z * piece.inverse_depth, std::max(scale, 1 / most_scale),
-                            false};
-        splat(moment, i);
     }
 }
 
-void Mirror::splat(Moment& moment, std::size_t index) {
-    Piece const& piece = moment.pieces[index];
-    Placed& placed = moment.placed[index];
-    float const scale = placed.scale;
-    Vec2 const half = glm::min(widening * scale * piece.half_side + margin, Vec2(most_pixels));
-    Vec2 const low = placed.at - half - 0.5f;
-    Vec2 const high = placed.at + half + 0.5f;
+/// False where it does not get into the picture.
+bool Mirror::place(Piece const& piece, TurnedBody const& turned, Placed& placed) const {
+    auto const age = static_cast<float>(target_.scene_time - piece.scene_time);
+    Vec3 parallax = turned.parallax;
+    if (piece.velocity != Vec3(0)) {
+        Vec3 const drift = age * piece.velocity;
+        parallax += drift.x * turned.carried[0] + drift.y * turned.carried[1] + drift.z * turned.carried[2];
+    }
+    Vec3 const at = turned.far * Vec3(piece.centre, 1) + piece.inverse_depth * parallax;
+    if (!(at.z > nearest)) {
+        return false;
+    }
+    float const share = 1 / at.z;
+    placed.at = share * Vec2(at);
+    // How far it goes for each pixel to the right and down in the picture of its moment.
+    Vec3 const dx = turned.far[0] + piece.depth_slope.x * parallax;
+    Vec3 const dy = turned.far[1] + piece.depth_slope.y * parallax;
+    Vec2 const right = share * (Vec2(dx) - dx.z * placed.at);
+    Vec2 const down = share * (Vec2(dy) - dy.z * placed.at);
+    float const area = right.x * down.y - right.y * down.x;
+    placed.scale = std::clamp(turned.lens * share, 1 / most_scale, most_scale);
+    placed.half_side = glm::min(piece.half_side.x * glm::abs(right) + piece.half_side.y * glm::abs(down) + margin,
+                                Vec2(most_pixels));
+    Vec2 const low = placed.at - placed.half_side;
+    Vec2 const high = placed.at + placed.half_side;
     auto const width = static_cast<float>(columns_ * cell_side); // the last cells are whole, too
     auto const height = static_cast<float>(rows_ * cell_side);
-    if (!(low.x <= width - 1 && low.y <= height - 1 && high.x >= 1 && high.y >= 1 && low.x > -most_pixels &&
-          low.y > -most_pixels && high.x < most_pixels && high.y < most_pixels)) {
-        placed.inverse_depth = -1;
-        return;
+    if (!(area > thinnest * placed.scale * placed.scale && low.x < width && low.y < height && high.x > 0 &&
+          high.y > 0 && low.x > -most_pixels && low.y > -most_pixels && high.x < most_pixels && high.y < most_pixels)) {
+        return false;
     }
+    placed.inverse_depth = share * piece.inverse_depth;
+    Vec2 const slope = share * (piece.depth_slope - placed.inverse_depth * Vec2(dx.z, dy.z)); // along its own axes
+    placed.depth_slope = Vec2(down.y * slope.x - right.y * slope.y, right.x * slope.y - down.x * slope.x) / area;
+    placed.tolerance = share * piece.error;
+    float spacing = piece.spacing;
+    float misplaced = 0;
+    if (!piece.is_loose) { // as the viewer rates them
+        float const squares = glm::dot(right, right) + glm::dot(down, down);
+        spacing *= std::sqrt(0.5f * (squares + std::sqrt(std::max(squares * squares - 4 * area * area, 0.0f))));
+        placed.hides = spacing < most_hiding;
+        misplaced = turned.is_still && piece.velocity == Vec3(0)
+                        ? 0
+                        : placed.tolerance * glm::length(Vec2(parallax) - parallax.z * placed.at);
+    }
+    placed.worn = worn_step(worn_spacing(spacing, age, piece.fading) + misplaced);
+    return true;
+}
+
+void Mirror::splat(Moment const& moment, std::size_t index) {
+    Placed const& placed = moment.placed[index];
     // Pixels whose centres it covers.
-    int const left = static_cast<int>(std::ceil(std::max(low.x, 0.0f)));
-    int const top = static_cast<int>(std::ceil(std::max(low.y, 0.0f)));
-    int const right = static_cast<int>(std::min(high.x, width));
-    int const bottom = static_cast<int>(std::min(high.y, height));
-    auto const age = static_cast<float>(target_.scene_time - piece.scene_time);
-    float const worn = worn_spacing(scale * piece.spacing, age, piece.fading);
-    float const w = placed.inverse_depth;
-    auto const slot = static_cast<std::uint8_t>(&moment - moments_.data());
+    Vec2 const low = glm::max(placed.at - placed.half_side - 0.5f, Vec2(0));
+    Vec2 const high = glm::min(placed.at + placed.half_side + 0.5f, Vec2(columns_, rows_) * float{cell_side});
+    int const left = static_cast<int>(std::ceil(low.x));
+    int const top = static_cast<int>(std::ceil(low.y));
+    int const right = static_cast<int>(high.x);
+    int const bottom = static_cast<int>(high.y);
     for (int row = top / cell_side; row * cell_side < bottom; ++row) {
         unsigned const down = spread_rows(bits_between(top - row * cell_side, bottom - row * cell_side));
         for (int column = left / cell_side; column * cell_side < right; ++column) {
-            unsigned const mask = down * bits_between(left - column * cell_side, right - column * cell_side);
-            Cell& cell = cells_[index_of(column, row)];
-            cell.covered = static_cast<std::uint16_t>(cell.covered | mask);
-            int const share = std::popcount(mask);
-            bool shows = false;
-            if (share < least_share || cell.share < least_share) {
-                shows = share > cell.share;
-            } else if (w > cell.inverse_depth) {
-                shows = w * (1 - surface_tolerance) > cell.inverse_depth || worn < cell.worn;
-            } else {
-                shows = w >= cell.inverse_depth * (1 - surface_tolerance) && worn < cell.worn;
-            }
-            if (shows) {
-                cell.inverse_depth = w;
-                cell.worn = worn;
-                cell.detail = piece.detail / scale;
-                cell.piece = static_cast<std::uint32_t>(index);
-                cell.moment = slot;
-                cell.share = static_cast<std::uint8_t>(share);
-            }
+            show(moment, index, down * bits_between(left - column * cell_side, right - column * cell_side), column,
+                 row);
         }
     }
+}
+
+/// In the pixels `mask` of a cell.
+void Mirror::show(Moment const& moment, std::size_t index, unsigned mask, int column, int row) {
+    Placed const& placed = moment.placed[index];
+    Cell& cell = cells_[index_of(column, row)];
+    cell.covered = static_cast<std::uint16_t>(cell.covered | mask);
+    Vec2 const middle((static_cast<float>(column) + 0.5f) * cell_side, (static_cast<float>(row) + 0.5f) * cell_side);
+    Vec2 const from = glm::clamp(middle - placed.at, -placed.half_side, placed.half_side);
+    float const w = std::max(placed.inverse_depth + glm::dot(placed.depth_slope, from), 0.0f);
+    int const share = std::popcount(mask);
+    if (is_better(moment, placed, w, share, cell)) {
+        cell.inverse_depth = w;
+        cell.worn = placed.worn;
+        cell.detail = moment.pieces[index].detail / placed.scale;
+        cell.piece = static_cast<std::uint32_t>(index);
+        cell.moment = static_cast<std::uint8_t>(&moment - moments_.data());
+        cell.share = static_cast<std::uint8_t>(share);
+        cell.hides = placed.hides;
+    }
+}
+
+/// Than what a cell shows.
+bool Mirror::is_better(Moment const& moment, Placed const& placed, float inverse_depth, int share,
+                       Cell const& cell) const {
+    if (share < least_share || cell.share < least_share) {
+        return share > cell.share;
+    }
+    if (placed.hides != cell.hides) {
+        return placed.hides;
+    }
+    float const difference = inverse_depth - cell.inverse_depth;
+    float const limit = same_surface * std::max(inverse_depth, cell.inverse_depth) + placed.tolerance;
+    if (std::abs(difference) > limit) {
+        return difference > 0;
+    }
+    return placed.worn != cell.worn ? placed.worn < cell.worn : moment.number > moments_[cell.moment].number;
 }
 
 /// What shows, and what does not though nothing hides it.

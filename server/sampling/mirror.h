@@ -27,13 +27,14 @@ struct MirrorView {
 
 /// What a cell of the picture shows.
 struct Cell {
-    float inverse_depth = -1; ///< of the nearest surface that covers most of it, 1 / metres
+    float inverse_depth = -1; ///< of the nearest surface that covers most of it, in its middle, 1 / metres
     float worn = 0; ///< least worn spacing on it, pixels; 0 where nothing shows
     float detail = 0; ///< as of a piece, in this picture's pixels
     std::uint32_t piece = 0; ///< of its moment
     std::uint16_t covered = 0; ///< by anything: a bit for each pixel, row by row
     std::uint8_t moment = 0; ///< slot
     std::uint8_t share = 0; ///< of its pixels that what shows covers, of 16
+    bool hides = false; ///< what shows hides what is behind it
 
     bool is_shown() const { return share > 0; }
     float covered_share() const { return static_cast<float>(std::popcount(covered)) / (cell_side * cell_side); }
@@ -74,8 +75,13 @@ public:
 private:
     struct Placed { ///< a piece in the picture that is looked at
         Vec2 at{0};
+        Vec2 half_side{0}; ///< of the box that it covers, pixels
         float inverse_depth = -1; ///< < 0: not in the picture
+        Vec2 depth_slope{0}; ///< of the inverse depth, for each pixel
+        float tolerance = 0; ///< by which its inverse depths may differ
         float scale = 1;
+        float worn = 0; ///< spacing, pixels
+        bool hides = true; ///< what is behind it
         bool shows = false;
     };
     struct Moment {
@@ -90,6 +96,7 @@ private:
         std::uint64_t stamp = 0; ///< for which it holds
         Mat3 far{1};
         Vec3 parallax{0};
+        bool is_still = false; ///< they stay where they are
         std::array<Vec3, 3> carried{}; ///< of a metre along each axis of the world
         float lens = 1;
     };
@@ -104,7 +111,11 @@ private:
     Moment& free_slot();
     TurnedBody const& turn_to(Moment const& moment, Piece const& piece, BodyMotions const& motions);
     void place(Moment& moment, std::size_t first, BodyMotions const& motions);
-    void splat(Moment& moment, std::size_t index);
+    bool place(Piece const& piece, TurnedBody const& turned, Placed& placed) const;
+    void splat(Moment const& moment, std::size_t index);
+    void show(Moment const& moment, std::size_t index, unsigned mask, int column, int row);
+    bool is_better(Moment const& moment, Placed const& placed, float inverse_depth, int share, Cell const& cell) const;
+    bool shows_loose(Moment const& moment) const;
     void count_shown();
 
     Viewport viewport_;
@@ -113,6 +124,7 @@ private:
     std::array<Moment, FrameletPool::most_moments> moments_;
     std::uint64_t last_number_ = 0;
     MirrorView target_;
+    bool awaits_moment_ = false; ///< nothing has come yet of the camera that is looked through
 
     std::vector<std::uint8_t> replaced_; ///< by cell
     std::vector<TurnedBody> turned_; ///< by body

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <span>
+#include <utility>
 
 #include "common/color.h"
 #include "common/morton.h"
@@ -18,9 +20,8 @@ constexpr float least_detail = 1e-6f;
 /// A piece has few samples to tell its detail by: so much of the whole framelet's is taken into it.
 constexpr float common_share = 0.25f;
 
-constexpr float inverse_of(float depth) {
-    float const inverse = 1 / depth;
-    return inverse >= 0 ? std::min(inverse, most_inverse_depth) : 0; // of what is not a number: none
+constexpr float bounded(float inverse_depth) {
+    return inverse_depth >= 0 ? std::min(inverse_depth, most_inverse_depth) : 0; // of what is not a number: none
 }
 
 /// Of parts that a tile of this side is cut into, pixels.
@@ -28,26 +29,47 @@ constexpr int part_side(int tile_side) {
     return std::clamp(tile_side / 8, 8, 16) < tile_side ? std::clamp(tile_side / 8, 8, 16) : tile_side;
 }
 
-/// What is summed over samples on one surface.
+/// What is summed over samples of one layer.
 struct Sum {
-    float count = 0, w = 0, luma = 0, x = 0, y = 0, xx = 0, yy = 0, luma_x = 0, luma_y = 0;
+    float count = 0, luma = 0, x = 0, y = 0, xx = 0, yy = 0, luma_x = 0, luma_y = 0;
     Vec2 low{INFINITY}, high{-INFINITY};
-    Vec3 velocity{0};
     bool reflects = false;
-    BodyNumber body = static_body;
+
+    void add(std::uint32_t i, float value, bool reflected) {
+        auto const column = static_cast<float>(morton_x(i));
+        auto const row = static_cast<float>(morton_y(i));
+        count += 1;
+        luma += value;
+        x += column;
+        y += row;
+        xx += column * column;
+        yy += row * row;
+        luma_x += value * column;
+        luma_y += value * row;
+        low = glm::min(low, Vec2(column, row));
+        high = glm::max(high, Vec2(column, row));
+        reflects = reflects || reflected;
+    }
 };
 
-/// The body that carries the most of some samples, if any carries most (Boyer and Moore).
-BodyNumber majority(std::span<BodyNumber const> bodies) {
-    BodyNumber body = bodies.front();
-    int lead = 0;
-    for (BodyNumber const other : bodies) {
-        body = lead == 0 ? other : body;
-        lead += other == body ? 1 : -1;
-    }
-    return body;
-}
+/// The same of samples that lie on no layer.
+struct LooseSum : Sum {
+    float inverse_depth = 0, least = INFINITY, most = 0;
+    Vec3 velocity{0};
+    BodyNumber body = static_body; ///< of the last one
 
+    void add(std::uint32_t i, float value, bool reflected, LooseSample const& sample) {
+        float const w = bounded(sample.inverse_depth);
+        Sum::add(i, value, reflected);
+        inverse_depth += w;
+        least = std::min(least, w);
+        most = std::max(most, w);
+        velocity += sample.velocity;
+        body = sample.body;
+    }
+};
+
+/// Of the samples; where they are and what carries them is left.
 Piece piece_of(Sum const& sum, Vec2 corner, float spacing, float detail) {
     Piece piece;
     float const share = 1 / sum.count;
@@ -59,7 +81,6 @@ Piece piece_of(Sum const& sum, Vec2 corner, float spacing, float detail) {
     Vec2 const centre = whole ? 0.5f * (sum.low + sum.high) : middle;
     piece.centre = corner + (centre + 0.5f) * spacing;
     piece.half_side = (0.5f * spacing * filled) * side;
-    piece.inverse_depth = share * sum.w;
     piece.spacing = spacing;
     piece.luma = share * sum.luma;
     auto const slope = [&](float product, float square, float at) {
@@ -68,78 +89,95 @@ Piece piece_of(Sum const& sum, Vec2 corner, float spacing, float detail) {
     };
     piece.slope = {slope(sum.luma_x, sum.xx, middle.x), slope(sum.luma_y, sum.yy, middle.y)};
     piece.detail = std::max(detail / spacing, least_detail);
-    piece.velocity = share * sum.velocity;
-    piece.body = sum.body;
     piece.reflects = sum.reflects;
     return piece;
 }
 
-} // namespace
+void put_on(Layer const& layer, Vec2 corner, Piece& piece) {
+    Vec2 const from = piece.centre - corner;
+    piece.inverse_depth = bounded(layer.at + from.x * layer.dx + from.y * layer.dy);
+    piece.depth_slope = {layer.dx, layer.dy};
+    piece.error = layer.error;
+    piece.velocity = layer.velocity;
+    piece.body = layer.body;
+}
 
-void cut_pieces(Framelet const& rendered, DisplayFramelet const& shown, ImagePlane const& plane, SceneTime scene_time,
-                std::vector<Piece>& pieces) {
-    std::array<float, framelet_samples> luma;
-    std::array<float, framelet_samples> inverse;
-    std::array<float, framelet_samples / 4> details; // of each block of 2x2 samples
-    float common = 0;
-    for (std::size_t i = 0; i < luma.size(); ++i) {
-        luma[i] = display_luma(shown.red[i], shown.green[i], shown.blue[i]);
-        inverse[i] = inverse_of(rendered.depth[i]);
-    }
+void put_on(LooseSum const& sum, Piece& piece) {
+    piece.inverse_depth = sum.inverse_depth / sum.count;
+    piece.velocity = sum.velocity / sum.count;
+    piece.body = sum.body;
+    piece.is_loose = true;
+}
+
+/// Variance of each block of 2x2 samples.
+std::array<float, framelet_samples / 4> details_of(std::span<float const, framelet_samples> luma) {
+    std::array<float, framelet_samples / 4> details;
     for (std::size_t block = 0; block < details.size(); ++block) {
-        auto const four = std::span(luma).subspan(4 * block, 4);
+        auto const four = luma.subspan(4 * block, 4);
         float const mean = 0.25f * (four[0] + four[1] + four[2] + four[3]);
         float sum = 0;
         for (float const value : four) {
             sum += (value - mean) * (value - mean);
         }
         details[block] = 0.25f * sum;
-        common += details[block];
     }
-    common /= static_cast<float>(details.size());
-    PixelRect const rect = plane.tile_rect(rendered.tile);
+    return details;
+}
+
+} // namespace
+
+void cut_pieces(Framelet const& rendered, DisplayFramelet const& shown, FrameletShape const& shape,
+                ImagePlane const& plane, SceneTime scene_time, std::vector<Piece>& pieces) {
+    std::array<float, framelet_samples> luma;
+    for (std::size_t i = 0; i < luma.size(); ++i) {
+        luma[i] = display_luma(shown.red[i], shown.green[i], shown.blue[i]);
+    }
+    auto const details = details_of(luma);
+    float const common = std::reduce(details.begin(), details.end()) / static_cast<float>(details.size());
+    PixelRect const rect = plane.tile_rect(shown.tile);
     Vec2 const corner(rect.left, rect.top);
-    float const spacing = plane.sample_spacing(rendered.tile);
-    auto const parts = static_cast<std::size_t>(rect.width() / part_side(rect.width()));
-    std::size_t const count = framelet_samples / (parts * parts);
-    for (std::size_t first = 0; first < framelet_samples; first += count) {
-        auto const depths = std::span(inverse).subspan(first, count);
-        auto const [least, most] = std::ranges::minmax(depths);
-        bool const deep = most - least > surface_tolerance * most;
-        float const between = 0.5f * (least + most);
-        BodyNumber const body =
-            rendered.body.empty() ? static_body : majority(std::span(rendered.body).subspan(first, count));
-        float local = 0;
-        for (std::size_t block = first / 4; block < (first + count) / 4; ++block) {
-            local += details[block];
+    float const spacing = plane.sample_spacing(shown.tile);
+    auto const parts = static_cast<std::uint32_t>(rect.width() / part_side(rect.width()));
+    std::uint32_t const count = framelet_samples / (parts * parts);
+    auto loose = shape.loose_samples.begin();
+    for (std::uint32_t first = 0; first < framelet_samples; first += count) {
+        float const local =
+            std::reduce(details.begin() + first / 4, details.begin() + (first + count) / 4) / static_cast<float>(count / 4);
+        float const detail = (1 - common_share) * local + common_share * common;
+        std::array<Sum, max_layers> sums;
+        LooseSum all;
+        auto const first_loose = loose;
+        for (std::uint32_t i = first; i < first + count; ++i) {
+            if (shape.layer_of[i] == FrameletShape::loose) {
+                all.add(i, luma[i], rendered.reflects[i], *loose++);
+            } else {
+                sums[shape.layer_of[i]].add(i, luma[i], rendered.reflects[i]);
+            }
         }
-        float const detail = (1 - common_share) * local / static_cast<float>(count / 4) + common_share * common;
-        std::array<Sum, 2> sums;
-        for (std::size_t i = first; i < first + count; ++i) {
-            BodyNumber const carrier = rendered.body.empty() ? static_body : rendered.body[i];
-            Sum& sum = sums[(deep ? inverse[i] > between : carrier == body) ? 0 : 1];
-            auto const x = static_cast<float>(morton_x(static_cast<std::uint32_t>(i)));
-            auto const y = static_cast<float>(morton_y(static_cast<std::uint32_t>(i)));
-            sum.count += 1;
-            sum.w += inverse[i];
-            sum.luma += luma[i];
-            sum.x += x;
-            sum.y += y;
-            sum.xx += x * x;
-            sum.yy += y * y;
-            sum.luma_x += luma[i] * x;
-            sum.luma_y += luma[i] * y;
-            sum.low = glm::min(sum.low, Vec2(x, y));
-            sum.high = glm::max(sum.high, Vec2(x, y));
-            sum.velocity += rendered.velocity.empty() ? Vec3(0) : rendered.velocity[i];
-            sum.reflects = sum.reflects || rendered.reflects[i];
-            sum.body = carrier;
-        }
-        for (Sum const& sum : sums) {
+        auto const append = [&](Sum const& sum, auto const& put) {
             if (sum.count > 0) {
                 pieces.push_back(piece_of(sum, corner, spacing, detail));
                 pieces.back().scene_time = scene_time;
+                put(pieces.back());
             }
+        };
+        for (std::size_t k = 0; k < shape.layer_count; ++k) {
+            append(sums[k], [&](Piece& piece) { put_on(shape.layers[k], corner, piece); });
+        }
+        std::array<LooseSum, 2> halves;
+        if (all.most - all.least > surface_tolerance * all.most) {
+            auto sample = first_loose;
+            for (std::uint32_t i = first; i < first + count; ++i) {
+                if (shape.layer_of[i] == FrameletShape::loose) {
+                    bool const near = bounded(sample->inverse_depth) > 0.5f * (all.least + all.most);
+                    halves[near ? 0 : 1].add(i, luma[i], rendered.reflects[i], *sample++);
+                }
+            }
+        } else {
+            halves[0] = all;
+        }
+        for (LooseSum const& half : halves) {
+            append(half, [&](Piece& piece) { put_on(half, piece); });
         }
     }
 }

@@ -1,11 +1,12 @@
-// Pieces: small parts of rendered framelets, each of one surface on one body, by which the server remembers what a
-// viewer holds without its colours. In: a rendered framelet with its depths, and as it is shown. Out: pieces.
+// Pieces: small parts of framelets, each of one layer, by which the server remembers what a viewer holds without its
+// colours. In: a framelet as it is shown, and the shape by which the viewer moves it. Out: pieces.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "common/framelet.h"
+#include "common/framelet_shape.h"
 #include "common/math.h"
 
 namespace framelet {
@@ -13,7 +14,9 @@ namespace framelet {
 struct Piece {
     Vec2 centre{0}; ///< in the picture of its moment, pixels
     Vec2 half_side{0}; ///< of the rectangle that it covers there, pixels
-    float inverse_depth = 0; ///< mean, 1 / metres; finite, >= 0
+    float inverse_depth = 0; ///< at the centre, 1 / metres; finite, >= 0
+    Vec2 depth_slope{0}; ///< of the inverse depth, for each pixel
+    float error = 0; ///< by which inverse depths of its samples may differ, 1 / metres
     float spacing = 1; ///< of its samples, pixels
     float luma = 0; ///< mean, display-encoded, [0, 1]
     Vec2 slope{0}; ///< of the luma, for each pixel
@@ -25,6 +28,7 @@ struct Piece {
     SceneTime scene_time = 0; ///< when it was rendered
     Vec3 velocity{0}; ///< of what deforms, metres a second in the world at its scene time
     BodyNumber body = static_body;
+    bool is_loose = false; ///< its samples lie on no layer
     bool reflects = false; ///< shows a reflection somewhere, which moves otherwise than the surface
     std::uint8_t unshown = 0; ///< in so many moments' pictures, one after the other, it showed nowhere
 };
@@ -32,10 +36,10 @@ struct Piece {
 /// Inverse depths of one surface differ by less than this share of the greater one.
 inline constexpr float surface_tolerance = 0.05f;
 
-/// Appends the pieces of a framelet of a scene time: squares of 4 .. 16 pixels, each split in a near and a far part
-/// where it has both, or in what lies on different bodies. `fading` and `change` stay 0. All numbers are finite,
-/// whatever the depths are.
-void cut_pieces(Framelet const& rendered, DisplayFramelet const& shown, ImagePlane const& plane, SceneTime scene_time,
-                std::vector<Piece>& pieces);
+/// Appends the pieces of a framelet of a scene time: for each layer, squares of 4 .. 16 pixels or what of them lies on
+/// it; what is loose in a square is split in a near and a far part. `fading` and `change` stay 0. All numbers are
+/// finite where those of the shape are.
+void cut_pieces(Framelet const& rendered, DisplayFramelet const& shown, FrameletShape const& shape,
+                ImagePlane const& plane, SceneTime scene_time, std::vector<Piece>& pieces);
 
 } // namespace framelet

@@ -437,15 +437,13 @@ std::vector<std::uint8_t> const& AdaptiveRefresh::learn(RefreshPlan const& plan,
     FRAMELET_CHECK(probe_luma.size() == plan.probes.size());
     if (plan.viewport != field_.plane().viewport()) {
         send_.assign(framelets.size(), 0);
-        fadings_.assign(framelets.size(), 0);
         return send_;
     }
     if (plan.rays_per_sample != single_ray) {
         note_supersampled(plan);
         release(plan);
         send_.assign(framelets.size(), 1);
-        mirror_learnt(plan, framelets, rendered);
-        return send_;
+            return send_;
     }
     std::size_t probe = 0;
     for (std::uint32_t const index : plan.probed) {
@@ -471,25 +469,26 @@ std::vector<std::uint8_t> const& AdaptiveRefresh::learn(RefreshPlan const& plan,
     if (plan.is_mirrored) { // it does not hold the same where it is needed, or this would not have been planned
         std::ranges::fill(send_, std::uint8_t{1});
     }
-    mirror_learnt(plan, framelets, rendered);
     return send_;
 }
 
-/// The viewer gets what is sent of this.
-void AdaptiveRefresh::mirror_learnt(RefreshPlan const& plan, std::span<DisplayFramelet const> framelets,
-                                    std::span<Framelet const> rendered) {
-    fadings_.assign(framelets.size(), 0);
-    if (plan.moment.motions == nullptr) {
+void AdaptiveRefresh::note_sent(RefreshPlan const& plan, std::span<DisplayFramelet const> framelets,
+                                std::span<Framelet const> rendered, std::span<std::uint8_t const> sent,
+                                std::span<FrameletShape> shapes) {
+    FRAMELET_CHECK(framelets.size() == sent.size() && rendered.size() == sent.size());
+    if (plan.moment.motions == nullptr || plan.viewport != field_.plane().viewport()) {
         return;
     }
     MirrorView const view{plan.moment.rays, plan.moment.scene_time};
     bool const comparable = plan.is_mirrored && mirror_.looks_at(view);
     pieces_.clear();
+    auto shape = shapes.begin();
     for (std::size_t i = 0; i < framelets.size(); ++i) {
-        if (send_[i] != 0) {
+        if (sent[i] != 0) {
             std::size_t const first = pieces_.size();
-            cut_pieces(rendered[i], framelets[i], field_.plane(), view.scene_time, pieces_);
-            fadings_[i] = looks_.learn(mirror_, std::span(pieces_).subspan(first), view.scene_time, comparable);
+            cut_pieces(rendered[i], framelets[i], *shape, field_.plane(), view.scene_time, pieces_);
+            shape->fading = looks_.learn(mirror_, std::span(pieces_).subspan(first), view.scene_time, comparable);
+            ++shape;
         }
     }
     mirror_.add(view.rays, *plan.moment.motions, pieces_);

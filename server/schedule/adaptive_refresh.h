@@ -85,8 +85,11 @@ public:
     std::vector<std::uint8_t> const& learn(RefreshPlan const& plan, std::span<DisplayFramelet const> framelets,
                                            std::span<Framelet const> rendered, std::span<float const> probe_luma);
 
-    /// For each of these framelets, how soon what it shows fades.
-    std::span<FadingCode const> fadings() const { return fadings_; }
+    /// The viewer gets those framelets of a plan for which `sent` (of the plan's tiles) is not 0, with these shapes, in
+    /// order; sets how soon what they show fades. After `learn` of the same plan.
+    void note_sent(RefreshPlan const& plan, std::span<DisplayFramelet const> framelets,
+                   std::span<Framelet const> rendered, std::span<std::uint8_t const> sent,
+                   std::span<FrameletShape> shapes);
 
     // To look at it.
     Mirror const& mirror() const { return mirror_; }
@@ -110,8 +113,6 @@ private:
     void find_costs(RefreshInput const& input);
     void plan_patches(RefreshInput const& input, double samples);
     void plan_moment(RefreshInput const& input, RenderedMoment const& moment, double samples);
-    void mirror_learnt(RefreshPlan const& plan, std::span<DisplayFramelet const> framelets,
-                       std::span<Framelet const> rendered);
     void plan_probes(double samples, RefreshPlan& plan);
     void plan_refinement(double samples);
     void plan_completion(double samples);
@@ -149,7 +150,6 @@ private:
     int rays_per_sample_ = single_ray; ///< of the cycle
     std::size_t next_ = 0; ///< of these
     std::vector<std::uint8_t> send_;
-    std::vector<FadingCode> fadings_;
     Mirror mirror_;
     Looks looks_;
     MomentPlan moment_plan_;

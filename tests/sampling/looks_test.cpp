@@ -37,7 +37,7 @@ struct GoingBy {
                     return Seen{10, luma(x + 3 * static_cast<float>(moment), y, seconds * moment)};
                 });
                 std::vector<Piece> pieces;
-                cut_pieces(one.rendered, one.shown, plane, seconds * moment, pieces);
+                cut_pieces(one, plane, seconds * moment, pieces);
                 codes[row][column] =
                     looks.learn(mirror, pieces, seconds * moment, mirror.looks_at(view()) && moment > 0);
                 all.insert(all.end(), pieces.begin(), pieces.end());

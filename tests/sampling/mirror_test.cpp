@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "common/sample_worth.h"
 #include "tests/sampling/rendered_planes.h"
 
 namespace framelet {
@@ -109,9 +110,9 @@ TEST(Mirror, TheLeastWornShows) {
     mirror.add(view_at(Vec3(0), 0).rays, no_motions, fine);
     Vec3 const aside(1e-5f, 0, 0);
     mirror.look(view_at(aside, 2), no_motions);
-    EXPECT_NEAR(summary_of(mirror).worn, 3, 1e-3) << "two seconds at a pixel a second";
+    EXPECT_NEAR(summary_of(mirror).worn, worn_step(3), 1e-3) << "two seconds at a pixel a second";
     mirror.add(view_at(aside, 2).rays, no_motions, render_pieces(plane, plane.pixel_depth() - 2, wall, 2));
-    EXPECT_NEAR(summary_of(mirror).worn, 3, 1e-3) << "fresh ones 4 pixels apart are no better";
+    EXPECT_NEAR(summary_of(mirror).worn, worn_step(3), 1e-3) << "fresh ones 4 pixels apart are no better";
     mirror.add(view_at(aside, 2).rays, no_motions, render_pieces(plane, plane.pixel_depth() - 1, wall, 2));
     EXPECT_NEAR(summary_of(mirror).worn, 2, 1e-3);
 }

@@ -50,7 +50,7 @@ struct Planner {
         std::vector<Piece> pieces;
         for (Tile const tile : tiles()) {
             RenderedTile const one = render_tile(plane, tile, look);
-            cut_pieces(one.rendered, one.shown, plane, 0, pieces);
+            cut_pieces(one, plane, 0, pieces);
         }
         mirror.add(view.rays, no_motions, pieces);
     }

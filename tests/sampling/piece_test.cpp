@@ -14,7 +14,7 @@ ImagePlane const plane{Viewport{128, 128}};
 std::vector<Piece> cut(Tile tile, Look const& look) {
     RenderedTile const one = render_tile(plane, tile, look);
     std::vector<Piece> pieces;
-    cut_pieces(one.rendered, one.shown, plane, 0, pieces);
+    cut_pieces(one, plane, 0, pieces);
     return pieces;
 }
 

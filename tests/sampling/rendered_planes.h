@@ -7,6 +7,7 @@
 
 #include "common/framelet.h"
 #include "common/morton.h"
+#include "server/layers/layer_fit.h"
 #include "server/sampling/mirror.h"
 
 namespace framelet {
@@ -22,6 +23,7 @@ using Look = std::function<Seen(float x, float y)>;
 struct RenderedTile {
     Framelet rendered;
     DisplayFramelet shown;
+    FrameletShape shape;
 };
 
 inline RenderedTile render_tile(ImagePlane const& plane, Tile tile, Look const& look) {
@@ -41,7 +43,13 @@ inline RenderedTile render_tile(ImagePlane const& plane, Tile tile, Look const& 
         out.shown.red[i] = out.shown.green[i] = out.shown.blue[i] =
             static_cast<std::uint8_t>(std::lround(255 * seen.luma));
     }
+    fit_layers(out.rendered, plane, {1e-5f}, out.shape);
     return out;
+}
+
+inline void cut_pieces(RenderedTile const& tile, ImagePlane const& plane, SceneTime time,
+                       std::vector<Piece>& pieces) {
+    cut_pieces(tile.rendered, tile.shown, tile.shape, plane, time, pieces);
 }
 
 /// All visible tiles of a depth.
@@ -53,7 +61,7 @@ inline std::vector<Piece> render_pieces(ImagePlane const& plane, int depth, Look
             Tile const tile = make_tile(depth, column, row);
             if (plane.is_visible(tile)) {
                 RenderedTile const one = render_tile(plane, tile, look);
-                cut_pieces(one.rendered, one.shown, plane, time, pieces);
+                cut_pieces(one, plane, time, pieces);
             }
         }
     }
