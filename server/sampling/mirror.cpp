@@ -241,20 +241,23 @@ bool Mirror::place(Piece const& piece, TurnedBody const& turned, Placed& placed)
           high.y > 0 && low.x > -most_pixels && low.y > -most_pixels && high.x < most_pixels && high.y < most_pixels)) {
         return false;
     }
-    placed.inverse_depth = share * piece.inverse_depth;
-    Vec2 const slope = share * (piece.depth_slope - placed.inverse_depth * Vec2(dx.z, dy.z)); // along its own axes
-    placed.depth_slope = Vec2(down.y * slope.x - right.y * slope.y, right.x * slope.y - down.x * slope.x) / area;
-    placed.tolerance = share * piece.error;
+    float const tolerance = share * piece.error;
     float spacing = piece.spacing;
     float misplaced = 0;
     if (!piece.is_loose) { // as the viewer rates them
         float const squares = glm::dot(right, right) + glm::dot(down, down);
         spacing *= std::sqrt(0.5f * (squares + std::sqrt(std::max(squares * squares - 4 * area * area, 0.0f))));
-        placed.hides = spacing < most_hiding;
+        if (!(spacing < most_hiding)) { // it shows where nothing else does
+            return false;
+        }
         misplaced = turned.is_still && piece.velocity == Vec3(0)
                         ? 0
-                        : placed.tolerance * glm::length(Vec2(parallax) - parallax.z * placed.at);
+                        : tolerance * glm::length(Vec2(parallax) - parallax.z * placed.at);
     }
+    placed.inverse_depth = share * piece.inverse_depth;
+    Vec2 const slope = share * (piece.depth_slope - placed.inverse_depth * Vec2(dx.z, dy.z)); // along its own axes
+    placed.depth_slope = Vec2(down.y * slope.x - right.y * slope.y, right.x * slope.y - down.x * slope.x) / area;
+    placed.tolerance = tolerance;
     placed.worn = worn_step(worn_spacing(spacing, age, piece.fading) + misplaced);
     return true;
 }
@@ -293,7 +296,6 @@ void Mirror::show(Moment const& moment, std::size_t index, unsigned mask, int co
         cell.piece = static_cast<std::uint32_t>(index);
         cell.moment = static_cast<std::uint8_t>(&moment - moments_.data());
         cell.share = static_cast<std::uint8_t>(share);
-        cell.hides = placed.hides;
     }
 }
 
@@ -302,9 +304,6 @@ bool Mirror::is_better(Moment const& moment, Placed const& placed, float inverse
                        Cell const& cell) const {
     if (share < least_share || cell.share < least_share) {
         return share > cell.share;
-    }
-    if (placed.hides != cell.hides) {
-        return placed.hides;
     }
     float const difference = inverse_depth - cell.inverse_depth;
     float const limit = same_surface * std::max(inverse_depth, cell.inverse_depth) + placed.tolerance;

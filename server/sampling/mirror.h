@@ -34,7 +34,6 @@ struct Cell {
     std::uint16_t covered = 0; ///< by anything: a bit for each pixel, row by row
     std::uint8_t moment = 0; ///< slot
     std::uint8_t share = 0; ///< of its pixels that what shows covers, of 16
-    bool hides = false; ///< what shows hides what is behind it
 
     bool is_shown() const { return share > 0; }
     float covered_share() const { return static_cast<float>(std::popcount(covered)) / (cell_side * cell_side); }
@@ -81,7 +80,6 @@ private:
         float tolerance = 0; ///< by which its inverse depths may differ
         float scale = 1;
         float worn = 0; ///< spacing, pixels
-        bool hides = true; ///< what is behind it
         bool shows = false;
     };
     struct Moment {
