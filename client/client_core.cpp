@@ -69,6 +69,7 @@ struct ClientCore::Impl {
     std::vector<Batch> arrived; ///< and not in the maker yet, in order
     std::size_t arrived_samples = 0;
     std::vector<Batch> spare_batches; ///< for their memory
+    std::vector<SentTile> let_go; ///< scratch
     std::optional<CameraUpdate> waiting_view;
     CameraUpdate view; ///< the newest, sent or not
     std::deque<SentCamera> sent_cameras;
@@ -226,6 +227,7 @@ struct ClientCore::Impl {
                 ++stale;
             }
         }
+        tell_let_go();
         Clock::time_point const after = Clock::now();
         double const coverage = taken.empty() ? -1 : maker->coverage();
         std::lock_guard const lock(mutex);
@@ -239,6 +241,17 @@ struct ClientCore::Impl {
             taken.pop_back();
         }
         taken.clear();
+    }
+
+    /// Under the picture's lock.
+    void tell_let_go() {
+        maker->take_let_go(let_go);
+        std::ranges::sort(let_go);
+        for (std::size_t first = 0; first < let_go.size(); first += max_let_go) {
+            std::size_t const end = std::min(first + max_let_go, let_go.size());
+            connection->send(LetGo{{let_go.begin() + static_cast<std::ptrdiff_t>(first),
+                                    let_go.begin() + static_cast<std::ptrdiff_t>(end)}});
+        }
     }
 
     /// Under the lock. `coverage` < 0: nothing has come.

@@ -46,6 +46,8 @@ public:
     void insert(Batch const& batch);
     bool is_empty() const { return pool_.framelet_count() == 0; }
     FrameletPool const& pool() const { return pool_; }
+    /// As of the pool: what the server should know.
+    void take_let_go(std::vector<SentTile>& framelets) { pool_.take_let_go(framelets); }
 
     /// Brings `picture` up to date. True when it changed; `changed` gets the rectangles that may differ. A picture that
     /// is not the one of the last call, or has another size, is written as a whole. Nothing happens while nothing is

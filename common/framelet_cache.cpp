@@ -212,7 +212,7 @@ void FrameletCache::refresh(int depth, int column, int row) {
     }
 }
 
-void FrameletCache::keep(std::span<Tile const> tiles) {
+void FrameletCache::keep(std::span<Tile const> tiles, std::vector<SentTile>& gone) {
     std::vector<std::uint8_t> kept(slot_tiles_.size());
     for (Tile const tile : tiles) {
         std::int32_t const slot =
@@ -226,6 +226,7 @@ void FrameletCache::keep(std::span<Tile const> tiles) {
         if (tile == no_tile || kept[slot] != 0) {
             continue;
         }
+        gone.push_back({held(static_cast<std::int32_t>(slot)).moment.batch, tile});
         mark(plane_.tile_rect(tile));
         int const depth = tile.depth();
         int const column = static_cast<int>(tile.column());
@@ -233,6 +234,14 @@ void FrameletCache::keep(std::span<Tile const> tiles) {
         drop(node(depth, column, row));
         for (int d = depth; d >= plane_.min_depth(); --d) {
             refresh(d, column >> (depth - d), row >> (depth - d));
+        }
+    }
+}
+
+void FrameletCache::add_held(std::vector<SentTile>& framelets) const {
+    for (std::size_t slot = 0; slot < slot_tiles_.size(); ++slot) {
+        if (!(slot_tiles_[slot] == no_tile)) {
+            framelets.push_back({held(static_cast<std::int32_t>(slot)).moment.batch, slot_tiles_[slot]});
         }
     }
 }

@@ -82,8 +82,10 @@ public:
 
     /// Nothing is held any more.
     void clear();
-    /// Nothing but these is.
-    void keep(std::span<Tile const> tiles);
+    /// Nothing but these is; appends what was.
+    void keep(std::span<Tile const> tiles, std::vector<SentTile>& gone);
+    /// Appends all that is held.
+    void add_held(std::vector<SentTile>& framelets) const;
 
     /// The cameras and scene times of which framelets are held, and free entries.
     std::span<HeldView const> views() const { return views_; }

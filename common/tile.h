@@ -34,6 +34,14 @@ struct Tile {
     constexpr std::uint32_t index() const { return code - (1u << (2 * depth())); }
 };
 
+/// Names one framelet of a session: no batch has two of a tile.
+struct SentTile {
+    std::uint64_t batch = 0;
+    Tile tile;
+
+    auto operator<=>(SentTile const&) const = default;
+};
+
 /// True when the code's leading 1 stands where a quadtree puts it (an even bit).
 constexpr bool is_tile_code(std::uint32_t code) {
     return code != 0 && std::bit_width(code) % 2 == 1;

@@ -18,7 +18,7 @@ namespace framelet {
 using Bytes = std::vector<std::byte>;
 using ByteView = std::span<std::byte const>;
 
-inline constexpr std::uint16_t protocol_version = 2;
+inline constexpr std::uint16_t protocol_version = 3;
 
 // --- upstream
 // ---------------------------------------------------------------------------------------------------------
@@ -72,6 +72,14 @@ struct Ack {
     std::uint32_t decode_us = 0;
     bool operator==(Ack const&) const = default;
 };
+
+/// The viewer no longer holds these framelets, though nothing newer has come in their places.
+struct LetGo {
+    std::vector<SentTile> framelets; ///< those of a batch together; at most `max_let_go`
+    bool operator==(LetGo const&) const = default;
+};
+/// More are several messages.
+inline constexpr std::size_t max_let_go = 4096;
 
 // --- downstream
 // -------------------------------------------------------------------------------------------------------
@@ -136,7 +144,7 @@ struct Failure {
 };
 
 using Message =
-    std::variant<Hello, CameraUpdate, ViewerSettings, ClockRequest, Ack, Welcome, EncodedBatch, Status, Failure>;
+    std::variant<Hello, CameraUpdate, ViewerSettings, ClockRequest, Ack, LetGo, Welcome, EncodedBatch, Status, Failure>;
 
 /// Largest message body that either side accepts, bytes: what one cycle's worst batch needs, with room.
 inline constexpr std::size_t max_message_bytes = 64u << 20;

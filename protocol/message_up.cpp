@@ -1,3 +1,6 @@
+#include <algorithm>
+
+#include "common/error.h"
 #include "protocol/message_wire.h"
 #include "protocol/text.h"
 
@@ -69,6 +72,48 @@ Ack read(wire::Ack const& wire) {
 
 char const* problem(Ack const&) {
     return nullptr;
+}
+
+Offset<wire::LetGo> write(Builder& builder, LetGo const& value) {
+    std::vector<std::uint64_t> batches;
+    std::vector<std::uint16_t> counts;
+    std::vector<std::uint32_t> tiles;
+    for (SentTile const& sent : value.framelets) {
+        if (batches.empty() || batches.back() != sent.batch) {
+            batches.push_back(sent.batch);
+            counts.push_back(0);
+        }
+        ++counts.back();
+        tiles.push_back(sent.tile.code);
+    }
+    return wire::CreateLetGoDirect(builder, &batches, &counts, &tiles);
+}
+
+LetGo read(wire::LetGo const& wire) {
+    LetGo value;
+    std::size_t next = 0;
+    for (flatbuffers::uoffset_t i = 0; i < std::min(wire.batches()->size(), wire.counts()->size()); ++i) {
+        std::size_t const end = next + wire.counts()->Get(i);
+        if (end > wire.tiles()->size()) {
+            break;
+        }
+        for (; next < end; ++next) {
+            Tile const tile{wire.tiles()->Get(static_cast<flatbuffers::uoffset_t>(next))};
+            value.framelets.push_back({wire.batches()->Get(i), tile});
+        }
+    }
+    if (wire.batches()->size() != wire.counts()->size() || next != wire.tiles()->size()) {
+        throw ProtocolError("what the viewer lets go of does not add up");
+    }
+    return value;
+}
+
+char const* problem(LetGo const& value) {
+    if (value.framelets.size() > max_let_go) {
+        return "the viewer lets go of more than 4096 framelets at once";
+    }
+    auto const is_valid = [](SentTile const& sent) { return is_tile_code(sent.tile.code); };
+    return std::ranges::all_of(value.framelets, is_valid) ? nullptr : "a tile code is invalid";
 }
 
 } // namespace framelet

@@ -65,6 +65,9 @@ char const* problem(ClockRequest const& value);
 Offset<wire::Ack> write(Builder& builder, Ack const& value);
 Ack read(wire::Ack const& wire);
 char const* problem(Ack const& value);
+Offset<wire::LetGo> write(Builder& builder, LetGo const& value);
+LetGo read(wire::LetGo const& wire);
+char const* problem(LetGo const& value);
 
 // --- downstream, and either direction
 Offset<wire::Welcome> write(Builder& builder, Welcome const& value);

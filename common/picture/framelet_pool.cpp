@@ -55,10 +55,16 @@ std::size_t FrameletPool::free_slot() {
 void FrameletPool::begin_moment(Camera const& camera) {
     newest_ = free_slot();
     Slot& slot = slots_[newest_];
+    slot.cache->add_held(let_go_);
     slot.cache->clear();
     slot.begun = ++moments_;
     slot.shown = 0;
     slot.camera = camera;
+}
+
+void FrameletPool::take_let_go(std::vector<SentTile>& framelets) {
+    framelets.clear();
+    framelets.swap(let_go_);
 }
 
 void FrameletPool::note_shown(std::span<std::uint32_t const> blocks) {

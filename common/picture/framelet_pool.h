@@ -47,7 +47,10 @@ public:
     /// Whether the slot's moment has been shown long enough to tell what of it is of no use.
     bool is_tried(std::size_t slot) const;
     /// Nothing else of the slot is held any more.
-    void keep(std::size_t slot, std::span<Tile const> tiles) { slots_[slot].cache->keep(tiles); }
+    void keep(std::size_t slot, std::span<Tile const> tiles) { slots_[slot].cache->keep(tiles, let_go_); }
+    /// Replaces `framelets` by those that have been let go of since the last call, other than for newer ones in their
+    /// places of the same moment.
+    void take_let_go(std::vector<SentTile>& framelets);
     /// Of slots: in how many blocks of the last picture something of it showed. For what goes next.
     void note_shown(std::span<std::uint32_t const> blocks);
 
@@ -70,6 +73,7 @@ private:
     std::vector<Slot> slots_;
     std::size_t newest_ = 0;
     std::uint64_t moments_ = 0;
+    std::vector<SentTile> let_go_;
 };
 
 } // namespace framelet

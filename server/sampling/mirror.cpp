@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <tuple>
 
 #include <glm/matrix.hpp>
 
@@ -24,14 +23,16 @@ constexpr float same_surface = 0.02f;
 constexpr int cell_pixels = cell_side * cell_side;
 /// A piece that covers less of a cell than this is not what it shows, where there is another.
 constexpr int least_share = cell_pixels / 2;
-/// A viewer lets go of what did not show lately, and of none of its newest moments.
-constexpr std::uint8_t most_unshown = 1;
-constexpr std::uint64_t newest_kept = FrameletPool::untried_moments;
-constexpr std::uint8_t replaced_piece = 255; ///< instead of how long it has shown nowhere: it is held no longer
+/// More than a viewer can hold is not worth remembering as gone.
+constexpr std::size_t most_forgotten = std::size_t{1} << 18;
 
 bool same_camera(ViewRays const& a, ViewRays const& b) {
     return a.origin == b.origin && a.direction == b.direction && a.direction_dx == b.direction_dx &&
            a.direction_dy == b.direction_dy;
+}
+
+std::uint64_t key_of(SentTile const& sent) {
+    return sent.batch << 32 ^ sent.tile.code;
 }
 
 /// Bits [first, last) of four, clipped.
@@ -79,18 +80,31 @@ void Mirror::look(MirrorView const& view, BodyMotions const& motions) {
     target_ = view;
     auto const newest = std::ranges::max_element(moments_, {}, &Moment::number);
     awaits_moment_ = newest->number > 0 && !same_camera(newest->rays, view.rays);
-    if (awaits_moment_) {
-        free_slot(); // what comes of this moment takes it: what was held there will not be seen
-    }
     std::ranges::fill(cells_, Cell{});
+    erase_forgotten();
     for (Moment& moment : moments_) {
-        std::erase_if(moment.pieces, [&](Piece const& piece) {
-            return piece.unshown == replaced_piece ||
-                   (piece.unshown >= most_unshown && moment.number + newest_kept <= last_number_);
-        });
         place(moment, 0, motions);
     }
-    count_shown();
+}
+
+void Mirror::forget(std::span<SentTile const> framelets) {
+    for (SentTile const& sent : framelets) {
+        if (forgotten_.size() < most_forgotten) {
+            forgotten_.insert(key_of(sent));
+        }
+    }
+}
+
+void Mirror::erase_forgotten() {
+    for (Moment& moment : moments_) {
+        std::erase_if(moment.pieces, [&](Piece const& piece) {
+            return piece.is_replaced || forgotten_.contains(key_of(piece.of));
+        });
+        if (moment.pieces.empty()) {
+            moment.number = 0;
+        }
+    }
+    forgotten_.clear();
 }
 
 void Mirror::add(ViewRays const& rays, BodyMotions const& motions, std::span<Piece const> pieces) {
@@ -117,14 +131,9 @@ Mirror::Moment& Mirror::slot_of(ViewRays const& rays) {
     return free;
 }
 
-/// When all are used, that of the moment that shows least.
+/// When all are used, the oldest moment's.
 Mirror::Moment& Mirror::free_slot() {
-    auto const key = [&](Moment const& moment) {
-        bool const used = moment.number > 0;
-        return std::tuple(used, used && moment.number + newest_kept > last_number_, moment.shown, moment.number);
-    };
-    auto const goes_first = [&](Moment const& a, Moment const& b) { return key(a) < key(b); };
-    Moment& free = *std::ranges::min_element(moments_, goes_first);
+    Moment& free = *std::ranges::min_element(moments_, {}, &Moment::number);
     if (free.number > 0) {
         for (Cell& cell : cells_) {
             cell = cell.is_shown() && &moments_[cell.moment] == &free ? Cell{} : cell;
@@ -132,7 +141,6 @@ Mirror::Moment& Mirror::free_slot() {
         free.number = 0;
         free.pieces.clear();
         free.placed.clear();
-        free.shown = 0;
     }
     return free;
 }
@@ -158,7 +166,7 @@ void Mirror::replace(Moment& moment, std::span<Piece const> pieces) {
     }
     for (Piece& piece : moment.pieces) {
         std::size_t const cell = index_of(clamped(piece.centre.x, columns_), clamped(piece.centre.y, rows_));
-        piece.unshown = is_older(piece) && replaced_[cell] != 0 ? replaced_piece : piece.unshown;
+        piece.is_replaced = piece.is_replaced || (is_older(piece) && replaced_[cell] != 0);
     }
 }
 
@@ -311,26 +319,6 @@ bool Mirror::is_better(Moment const& moment, Placed const& placed, float inverse
         return difference > 0;
     }
     return placed.worn != cell.worn ? placed.worn < cell.worn : moment.number > moments_[cell.moment].number;
-}
-
-/// What shows, and what does not though nothing hides it.
-void Mirror::count_shown() {
-    for (Moment& moment : moments_) {
-        moment.shown = 0;
-    }
-    for (Cell const& cell : cells_) {
-        if (cell.is_shown()) {
-            ++moments_[cell.moment].shown;
-            moments_[cell.moment].placed[cell.piece].shows = true;
-        }
-    }
-    for (Moment& moment : moments_) {
-        for (std::size_t i = 0; i < moment.pieces.size(); ++i) {
-            Piece& piece = moment.pieces[i];
-            piece.unshown =
-                moment.placed[i].shows ? std::uint8_t{0} : static_cast<std::uint8_t>(std::min(piece.unshown + 1, 254));
-        }
-    }
 }
 
 } // namespace framelet

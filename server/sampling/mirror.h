@@ -7,6 +7,7 @@
 #include <bit>
 #include <cstdint>
 #include <span>
+#include <unordered_set>
 #include <vector>
 
 #include "common/body_motion.h"
@@ -62,10 +63,13 @@ public:
     /// True when the picture is of this moment.
     bool looks_at(MirrorView const& view) const;
 
-    /// Finds what the viewer shows of `view` as bodies move by `motions`; forgets what has shown nothing for long.
+    /// Finds what the viewer shows of `view` as bodies move by `motions`.
     void look(MirrorView const& view, BodyMotions const& motions);
     /// The viewer gets these pieces, of one camera and one time, as well: they are remembered, and seen at once.
     void add(ViewRays const& rays, BodyMotions const& motions, std::span<Piece const> pieces);
+
+    /// The viewer has let go of these; from the next look on.
+    void forget(std::span<SentTile const> framelets);
 
     std::size_t piece_count() const;
     std::size_t moment_count() const;
@@ -80,14 +84,12 @@ private:
         float tolerance = 0; ///< by which its inverse depths may differ
         float scale = 1;
         float worn = 0; ///< spacing, pixels
-        bool shows = false;
     };
     struct Moment {
         ViewRays rays;
         std::uint64_t number = 0; ///< in order of their coming; 0: free
         std::vector<Piece> pieces;
         std::vector<Placed> placed; ///< one each
-        std::size_t shown = 0; ///< cells
         bool is_of_camera = false; ///< that is looked through
     };
     struct TurnedBody { ///< takes pixels of a moment to the picture that is looked at
@@ -102,8 +104,7 @@ private:
     std::size_t index_of(int column, int row) const {
         return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
     }
-    void forget_unshown();
-    void evict();
+    void erase_forgotten();
     void replace(Moment& moment, std::span<Piece const> pieces);
     Moment& slot_of(ViewRays const& rays);
     Moment& free_slot();
@@ -114,12 +115,13 @@ private:
     void show(Moment const& moment, std::size_t index, unsigned mask, int column, int row);
     bool is_better(Moment const& moment, Placed const& placed, float inverse_depth, int share, Cell const& cell) const;
     bool shows_loose(Moment const& moment) const;
-    void count_shown();
 
     Viewport viewport_;
     int columns_, rows_;
     std::vector<Cell> cells_;
-    std::array<Moment, FrameletPool::most_moments> moments_;
+    /// Twice as many as a viewer has: it says late what it lets go of.
+    std::array<Moment, 2 * FrameletPool::most_moments> moments_;
+    std::unordered_set<std::uint64_t> forgotten_; ///< keys of framelets
     std::uint64_t last_number_ = 0;
     MirrorView target_;
     bool awaits_moment_ = false; ///< nothing has come yet of the camera that is looked through

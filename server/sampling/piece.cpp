@@ -127,7 +127,8 @@ std::array<float, framelet_samples / 4> details_of(std::span<float const, framel
 } // namespace
 
 void cut_pieces(Framelet const& rendered, DisplayFramelet const& shown, FrameletShape const& shape,
-                ImagePlane const& plane, SceneTime scene_time, std::vector<Piece>& pieces) {
+                ImagePlane const& plane, SceneTime scene_time, std::uint64_t batch,
+                std::vector<Piece>& pieces) {
     std::array<float, framelet_samples> luma;
     for (std::size_t i = 0; i < luma.size(); ++i) {
         luma[i] = display_luma(shown.red[i], shown.green[i], shown.blue[i]);
@@ -158,6 +159,7 @@ void cut_pieces(Framelet const& rendered, DisplayFramelet const& shown, Framelet
             if (sum.count > 0) {
                 pieces.push_back(piece_of(sum, corner, spacing, detail));
                 pieces.back().scene_time = scene_time;
+                pieces.back().of = {batch, shown.tile};
                 put(pieces.back());
             }
         };

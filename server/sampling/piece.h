@@ -29,17 +29,19 @@ struct Piece {
     Vec3 velocity{0}; ///< of what deforms, metres a second in the world at its scene time
     BodyNumber body = static_body;
     bool is_loose = false; ///< its samples lie on no layer
+    bool is_replaced = false; ///< a newer framelet lies in its place: it is held no longer
     bool reflects = false; ///< shows a reflection somewhere, which moves otherwise than the surface
-    std::uint8_t unshown = 0; ///< in so many moments' pictures, one after the other, it showed nowhere
+    SentTile of; ///< the framelet that it is part of
 };
 
 /// Inverse depths of one surface differ by less than this share of the greater one.
 inline constexpr float surface_tolerance = 0.05f;
 
-/// Appends the pieces of a framelet of a scene time: for each layer, squares of 4 .. 16 pixels or what of them lies on
+/// Appends the pieces of a framelet of a scene time and a batch: for each layer, squares of 4 .. 16 pixels or what of them lies on
 /// it; what is loose in a square is split in a near and a far part. `fading` and `change` stay 0. All numbers are
 /// finite where those of the shape are.
 void cut_pieces(Framelet const& rendered, DisplayFramelet const& shown, FrameletShape const& shape,
-                ImagePlane const& plane, SceneTime scene_time, std::vector<Piece>& pieces);
+                ImagePlane const& plane, SceneTime scene_time, std::uint64_t batch,
+                std::vector<Piece>& pieces);
 
 } // namespace framelet

@@ -472,7 +472,8 @@ std::vector<std::uint8_t> const& AdaptiveRefresh::learn(RefreshPlan const& plan,
     return send_;
 }
 
-void AdaptiveRefresh::note_sent(RefreshPlan const& plan, std::span<DisplayFramelet const> framelets,
+void AdaptiveRefresh::note_sent(RefreshPlan const& plan, std::uint64_t batch,
+                                std::span<DisplayFramelet const> framelets,
                                 std::span<Framelet const> rendered, std::span<std::uint8_t const> sent,
                                 std::span<FrameletShape> shapes) {
     FRAMELET_CHECK(framelets.size() == sent.size() && rendered.size() == sent.size());
@@ -486,7 +487,7 @@ void AdaptiveRefresh::note_sent(RefreshPlan const& plan, std::span<DisplayFramel
     for (std::size_t i = 0; i < framelets.size(); ++i) {
         if (sent[i] != 0) {
             std::size_t const first = pieces_.size();
-            cut_pieces(rendered[i], framelets[i], *shape, field_.plane(), view.scene_time, pieces_);
+            cut_pieces(rendered[i], framelets[i], *shape, field_.plane(), view.scene_time, batch, pieces_);
             shape->fading = looks_.learn(mirror_, std::span(pieces_).subspan(first), view.scene_time, comparable);
             ++shape;
         }

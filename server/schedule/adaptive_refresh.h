@@ -85,11 +85,13 @@ public:
     std::vector<std::uint8_t> const& learn(RefreshPlan const& plan, std::span<DisplayFramelet const> framelets,
                                            std::span<Framelet const> rendered, std::span<float const> probe_luma);
 
-    /// The viewer gets those framelets of a plan for which `sent` (of the plan's tiles) is not 0, with these shapes, in
-    /// order; sets how soon what they show fades. After `learn` of the same plan.
-    void note_sent(RefreshPlan const& plan, std::span<DisplayFramelet const> framelets,
+    /// The viewer gets those framelets of a plan for which `sent` (of the plan's tiles) is not 0, in a batch of
+    /// this number, with these shapes, in order; sets how soon what they show fades. After `learn` of the same plan.
+    void note_sent(RefreshPlan const& plan, std::uint64_t batch, std::span<DisplayFramelet const> framelets,
                    std::span<Framelet const> rendered, std::span<std::uint8_t const> sent,
                    std::span<FrameletShape> shapes);
+    /// The viewer no longer holds these.
+    void forget(std::span<SentTile const> framelets) { mirror_.forget(framelets); }
 
     // To look at it.
     Mirror const& mirror() const { return mirror_; }

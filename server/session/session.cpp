@@ -60,6 +60,7 @@ std::uint64_t Session::take_events(std::vector<StreamEvent>& events) {
     events.clear();
     std::scoped_lock const lock(mutex_);
     events.swap(waiting_events_);
+    waiting_let_go_ = 0;
     return version_;
 }
 
@@ -145,6 +146,8 @@ void Session::receive(Message message) {
         if (receive_ack(*ack)) {
             events_.changed();
         }
+    } else if (auto* const gone = std::get_if<LetGo>(&message)) {
+        receive_let_go(std::move(*gone));
     } else if (auto const* const failure = std::get_if<Failure>(&message)) {
         stream_->close();
         fail("the viewer gave up: " + failure->text);
@@ -164,6 +167,16 @@ bool Session::receive_ack(Ack const& ack) {
     last_progress_ = std::chrono::steady_clock::now();
     waiting_events_.push_back({seconds_of(last_progress_), ack});
     return true;
+}
+
+/// What waits is bounded: a viewer that lets go of more than it can hold is not heard.
+void Session::receive_let_go(LetGo gone) {
+    constexpr std::size_t most_waiting = std::size_t{1} << 18;
+    std::scoped_lock const lock(mutex_);
+    waiting_let_go_ += gone.framelets.size() + 1;
+    if (waiting_let_go_ <= most_waiting) {
+        waiting_events_.push_back({seconds_of(std::chrono::steady_clock::now()), std::move(gone)});
+    }
 }
 
 void Session::receive_camera(CameraUpdate const& camera) {

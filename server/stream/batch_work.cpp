@@ -60,7 +60,7 @@ void BatchWork::describe_shapes(PosedScene const& scene, ViewerKnowledge& viewer
     viewer.shapes.fit(rendered_, needed_, make_view_rays(order.state.view.camera, viewport), ImagePlane(viewport),
                       order.plan.moment_begun, batch_.shapes);
     if (!order.again) {
-        viewer.refresh.note_sent(order.plan, display_, rendered_, needed_, batch_.shapes);
+        viewer.refresh.note_sent(order.plan, batch_.number, display_, rendered_, needed_, batch_.shapes);
     }
     viewer.shapes.track(scene.scene(), scene.clips(), scene.render_scene().bodies(), order.scene_camera,
                         order.state.scene_time, batch_.tracks, batch_.camera_track);

@@ -14,7 +14,7 @@ static_assert(std::endian::native == std::endian::little, "numbers are copied as
 
 constexpr char const* first_line = "framelet events 1";
 
-enum Kind : std::uint8_t { viewer = 1, camera, settings, ack, clock_changed, batch_sent, turn, learning, batch };
+enum Kind : std::uint8_t { viewer = 1, camera, settings, ack, clock_changed, batch_sent, turn, learning, batch, let_go };
 
 template <class T>
 void put(Bytes& out, T const& value) {
@@ -99,6 +99,8 @@ void EventLog::add_event(std::uint64_t session, StreamEvent const& event) {
         write(session, settings, event_content(event.seconds, *wanted));
     } else if (auto const* const answer = std::get_if<Ack>(&event.what)) {
         write(session, ack, event_content(event.seconds, *answer));
+    } else if (auto const* const gone = std::get_if<LetGo>(&event.what)) {
+        write(session, let_go, event_content(event.seconds, *gone));
     } else if (auto const* const sent = std::get_if<BatchSent>(&event.what)) {
         put(content, event.seconds);
         put(content, sent->batch);
@@ -180,6 +182,8 @@ std::optional<LogRecord> EventLogReader::next() {
         return event([&] { return content.message<ViewerSettings>(); });
     case ack:
         return event([&] { return content.message<Ack>(); });
+    case let_go:
+        return event([&] { return content.message<LetGo>(); });
     case clock_changed:
         return event([&] { return ClockChanged{}; });
     case batch_sent:

@@ -25,6 +25,8 @@ void FrameletStream::take(StreamEvent const& event) {
             received = 1e-6 * static_cast<double>(ack->received_us);
         }
         link_.acknowledged(ack->batch, event.seconds, received);
+    } else if (auto const* const gone = std::get_if<LetGo>(&event.what)) {
+        viewer_.refresh.forget(gone->framelets);
     } else if (auto const* const sent = std::get_if<BatchSent>(&event.what)) {
         link_.sent(sent->batch, event.seconds, static_cast<double>(sent->bytes));
     } else {

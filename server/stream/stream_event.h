@@ -23,7 +23,7 @@ struct BatchSent {
 
 struct StreamEvent {
     double seconds = 0; ///< when, on the server's steady clock
-    std::variant<CameraUpdate, ViewerSettings, Ack, ClockChanged, BatchSent> what;
+    std::variant<CameraUpdate, ViewerSettings, Ack, LetGo, ClockChanged, BatchSent> what;
     bool operator==(StreamEvent const&) const = default;
 };
 

@@ -131,8 +131,20 @@ public:
         return batch;
     }
 
+    LetGo let_go() {
+        LetGo message;
+        for (std::uint64_t batch = integer(0, 4); batch > 0; --batch) {
+            for (std::uint64_t count = integer(1, 30); count > 0; --count) {
+                auto const depth = static_cast<int>(integer(0, 15));
+                auto const index = static_cast<std::uint32_t>(any32() & ((1u << 2 * depth) - 1));
+                message.framelets.push_back({batch, Tile{(1u << 2 * depth) + index}});
+            }
+        }
+        return message;
+    }
+
     Message message() {
-        switch (integer(0, 8)) {
+        switch (integer(0, 9)) {
         case 0:
             return Hello{static_cast<std::uint16_t>(any64()), text(4096), any32()};
         case 1:
@@ -144,10 +156,12 @@ public:
         case 4:
             return Ack{any64(), any64(), any32()};
         case 5:
-            return welcome();
+            return let_go();
         case 6:
-            return batch();
+            return welcome();
         case 7:
+            return batch();
+        case 8:
             return Status{clock(), any64(), any64(), coin(), number(0, 1e12), any32()};
         default:
             return Failure{text(4096)};

@@ -47,9 +47,9 @@ inline RenderedTile render_tile(ImagePlane const& plane, Tile tile, Look const& 
     return out;
 }
 
-inline void cut_pieces(RenderedTile const& tile, ImagePlane const& plane, SceneTime time,
-                       std::vector<Piece>& pieces) {
-    cut_pieces(tile.rendered, tile.shown, tile.shape, plane, time, pieces);
+inline void cut_pieces(RenderedTile const& tile, ImagePlane const& plane, SceneTime time, std::vector<Piece>& pieces,
+                       std::uint64_t batch = 1) {
+    cut_pieces(tile.rendered, tile.shown, tile.shape, plane, time, batch, pieces);
 }
 
 /// All visible tiles of a depth.

@@ -49,12 +49,16 @@ public:
         stream_->take({now, BatchSent{stream_->last_batch(), static_cast<std::uint64_t>(bytes)}});
     }
     void answered(double now, double arrived) override {
+        if (!let_go_.empty()) {
+            stream_->take({now, LetGo{std::exchange(let_go_, {})}});
+        }
         stream_->take({now, Ack{++answered_, static_cast<std::uint64_t>(1e6 * (arrived + clock_offset)), 0}});
     }
 
     ViewerStep consume(std::vector<std::byte> const& message) override {
         Batch const batch = codec_.decode(std::get<EncodedBatch>(decode_message(message)), &received_);
         ViewerStep step = viewer_.insert(batch);
+        viewer_.take_let_go(let_go_);
         double const decoding = batch.quality.empty() ? setup_.costs.decode_sample : setup_.costs.decode_lossy_sample;
         step.seconds.decode += 1e-9 * static_cast<double>(batch.framelets.size() * framelet_samples) * decoding;
         for (DisplayFramelet const& framelet : batch.framelets) {
@@ -163,6 +167,7 @@ private:
     std::uint64_t answered_ = 0; ///< batches
     BatchCodec codec_;
     HeldPicture received_;
+    std::vector<SentTile> let_go_; ///< that the server does not know of yet
     WarpViewer viewer_;
     int const cells_; ///< in a row
     std::vector<double> times_; ///< scene time shown in each cell

@@ -23,6 +23,11 @@ ViewerStep WarpViewer::insert(Batch const& batch) {
     return step;
 }
 
+void WarpViewer::take_let_go(std::vector<SentTile>& framelets) {
+    maker_.take_let_go(let_go_);
+    framelets.insert(framelets.end(), let_go_.begin(), let_go_.end());
+}
+
 ViewerStep WarpViewer::present(Camera const& camera, SceneTime time, int scene_camera) {
     maker_.show({camera, 0, scene_camera, time, 1, time}, picture_, changed_);
     double pixels = 0;

@@ -19,6 +19,9 @@ public:
     /// `camera` says.
     ViewerStep present(Camera const& camera, SceneTime time, int scene_camera = -1);
 
+    /// Appends what the viewer holds no longer.
+    void take_let_go(std::vector<SentTile>& framelets);
+
     Picture const& picture() const { return picture_; }
 
 private:
@@ -26,6 +29,7 @@ private:
     PictureSettings const settings_;
     PictureMaker maker_;
     std::vector<PixelRect> changed_;
+    std::vector<SentTile> let_go_; ///< scratch
     double fine_samples_ = 0; ///< that have come since the last picture, finer than pixels
     Picture picture_;
 };
