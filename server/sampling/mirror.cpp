@@ -145,9 +145,9 @@ Mirror::Moment& Mirror::free_slot() {
     return free;
 }
 
-/// What a viewer holds of one camera is the newest at each place, of whatever time: the older goes.
+/// What a viewer holds of one moment is the newest at each place: the older goes.
 void Mirror::replace(Moment& moment, std::span<Piece const> pieces) {
-    auto const is_older = [&](Piece const& piece) { return piece.scene_time != pieces.front().scene_time; };
+    auto const is_older = [&](Piece const& piece) { return piece.of.batch < pieces.front().of.batch; };
     if (std::ranges::none_of(moment.pieces, is_older)) {
         return;
     }
