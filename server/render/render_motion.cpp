@@ -1,4 +1,4 @@
-// Bodies and velocities of the instances.
+// Bodies and velocities of the instances and the lights.
 #include <cmath>
 
 #include "server/render/prepared_scene.h"
@@ -39,18 +39,18 @@ void RenderScene::set_clips(std::span<Index const> clips) {
 }
 
 void RenderScene::update_velocities() {
-    if (!bodies_.any_flows()) {
+    if (!prepared_->moves) {
         return;
     }
     double const seconds = to_other_moment(scene_, clips_, pose_.time);
     ScenePose const other = evaluate_pose(scene_, clips_, pose_.time + seconds);
     float const per_second = static_cast<float>(1 / seconds);
     for (Placement const& placement : placements_) {
-        if (!bodies_.flows[placement.node]) {
+        Instance& instance = prepared_->instances[placement.instance];
+        if (!instance.moves()) {
             continue;
         }
-        Instance& instance = prepared_->instances[placement.instance];
-        bool const deforms = reshaped(placement, other);
+        bool const deforms = instance.flows && reshaped(placement, other);
         for (Geometry& geometry : prepared_->meshes[placement.mesh]) {
             geometry.velocities = {};
         }
@@ -64,6 +64,10 @@ void RenderScene::update_velocities() {
             instance.linear_rate = (Mat3(then) - Mat3(now)) * per_second;
             instance.translation_rate = Vec3(then[3] - now[3]) * per_second;
         }
+    }
+    for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
+        RenderLight& light = prepared_->lights[i];
+        light.velocity = (make_light(scene_.lights[i], other).position - light.position) * per_second;
     }
 }
 
