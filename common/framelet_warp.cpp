@@ -27,6 +27,11 @@ constexpr float most_hiding = 8.5f;
 /// Numbers as large as this, and what is not a number, do not get into a patch.
 constexpr double largest = 1e18;
 
+/// A shadow shows before all that it comes over, however good that is, for so long (scene time): it was seen to go
+/// there. Then it must be better, as everything: it may have gone elsewhere.
+constexpr float drifting_seconds = 0.2f;
+constexpr float ahead_of_all = 1.0f / 64;
+
 /// Order-dependent hash of what a patch is made of.
 class Signature {
 public:
@@ -76,6 +81,11 @@ bool is_usable(WarpPatch const& patch) {
         usable &= std::abs(value) < static_cast<float>(largest);
     }
     return usable;
+}
+
+/// A shadow that goes over a surface, or what deforms.
+bool drifts(Layer const& layer) {
+    return layer.body == static_body && layer.velocity != Vec3(0);
 }
 
 } // namespace
@@ -143,14 +153,14 @@ void FrameletWarp::add_layer(std::uint32_t view, HeldLayer const& layer, FadingC
     }
     turn_to(view, layer.layer.body, layer.layer.velocity);
     if ((is_still_ ? place_still(layer, patch) : place(layer, patch)) && is_usable(patch)) {
-        rate(view, fading, layer.layer.error, patch);
+        rate(view, fading, layer.layer, patch);
         patch.signature = signature_of(patch, content, {});
         patches.push_back(patch);
     }
 }
 
 /// In steps of a quarter of an octave, so that what is about as good does not change places from picture to picture.
-void FrameletWarp::rate(std::uint32_t view, FadingCode fading, float error, WarpPatch& patch) const {
+void FrameletWarp::rate(std::uint32_t view, FadingCode fading, Layer const& layer, WarpPatch& patch) const {
     float const x = 0.5f * static_cast<float>(patch.box.width());
     float const y = 0.5f * static_cast<float>(patch.box.height());
     auto const at = [&](std::size_t i) { return patch.at[i] + x * patch.dx[i] + y * patch.dy[i]; };
@@ -165,12 +175,16 @@ void FrameletWarp::rate(std::uint32_t view, FadingCode fading, float error, Warp
     float const least = 0.5f * (squares - std::sqrt(std::max(squares * squares - 4 * area * area, 0.0f)));
     float const spacing = 1 / std::sqrt(std::max(least, 1e-6f));
     // By so many pixels its samples may be shown off their places: their inverse depths are not quite the plane's.
-    float const misplaced = is_still_ ? 0 : error * static_cast<float>(parallax_) * z;
+    float const misplaced = is_still_ ? 0 : layer.error * static_cast<float>(parallax_) * z;
     auto const age = static_cast<float>(time_ - cache_.views()[view].scene_time);
     float const worst = 1e3f;
     float const steps = 4 * std::log2(std::min(worn_spacing(spacing, age, fading_rate(fading)) + misplaced,
                                                worst)); // not what is no number
     patch.worn = std::exp2(std::round(steps) / 4);
+    if (drifts(layer)) {
+        patch.group = drifting_group(patch.group);
+        patch.worn *= std::abs(age) < drifting_seconds ? ahead_of_all : 1.0f;
+    }
     patch.hides = spacing < most_hiding;
 }
 

@@ -38,7 +38,7 @@ private:
     glm::dvec2 high(HeldLayer const& layer) const;
     void add_layer(std::uint32_t view, HeldLayer const& layer, FadingCode fading, std::uint64_t content,
                    WarpPatch& patch, std::vector<WarpPatch>& patches);
-    void rate(std::uint32_t view, FadingCode fading, float error, WarpPatch& patch) const;
+    void rate(std::uint32_t view, FadingCode fading, Layer const& layer, WarpPatch& patch) const;
     bool place_still(HeldLayer const& held, WarpPatch& patch) const;
     bool place(HeldLayer const& held, WarpPatch& patch) const;
     void set_maps(PlaneTransform const& plane, WarpPatch& patch) const;

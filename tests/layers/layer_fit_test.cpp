@@ -212,6 +212,29 @@ TEST(LayerFit, WhatDeformsSharesALayerWhereItMovesAlike) {
     EXPECT_EQ(fit(framelet).loose_samples.size(), std::size_t{framelet_samples});
 }
 
+TEST(LayerFit, AMovingShadowIsALayerOfItsOwnOnThePlaneOfWhatIsLit) {
+    Vec3 const passing(5.5f, 0, -2.25f);
+    Framelet framelet = make_framelet(slope);
+    FrameletShape const lit = fit(framelet);
+    ASSERT_EQ(lit.layer_count, 1);
+    framelet.velocity.assign(framelet_samples, Vec3(0));
+    for (std::uint32_t i = 0; i < framelet_samples; ++i) {
+        framelet.velocity[i] = morton_x(i) < 8 ? passing : Vec3(0);
+    }
+    FrameletShape const shape = fit(framelet);
+    ASSERT_EQ(shape.layer_count, 2);
+    EXPECT_TRUE(shape.loose_samples.empty());
+    for (std::uint32_t i = 0; i < framelet_samples; ++i) {
+        EXPECT_EQ(shape.layers[shape.layer_of[i]].velocity, framelet.velocity[i]) << i;
+    }
+    for (std::size_t l = 0; l < 2; ++l) {
+        EXPECT_NEAR(shape.layers[l].at, lit.layers[0].at, 1e-5f);
+        EXPECT_NEAR(shape.layers[l].dx, lit.layers[0].dx, 1e-6f);
+        EXPECT_NEAR(shape.layers[l].dy, lit.layers[0].dy, 1e-6f);
+        EXPECT_EQ(shape.layers[l].body, static_body);
+    }
+}
+
 TEST(LayerFit, NoiseAboveTheToleranceIsLooseAndBelowItIsNot) {
     std::mt19937 random(1);
     std::uniform_real_distribution<float> uniform(-1, 1);
