@@ -33,6 +33,7 @@ constexpr RTCSceneFlags query_filters = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
 struct MovingHits {
     std::span<Instance const> instances;
     HitPacket& nearest;
+    HitPacket& farthest;
     LaneMask met = 0;
 };
 
@@ -106,7 +107,17 @@ void reject_behind(RTCFilterFunctionNArguments const* args) {
     }
 }
 
-/// Nothing that moves stops a ray, nor does what lets light through; the nearest that moves is kept.
+/// `i`: of the callback.
+void keep_hit(RTCFilterFunctionNArguments const* args, unsigned i, int lane, HitPacket& hits) {
+    hits.t[lane] = RTCRayN_tfar(args->ray, args->N, i);
+    hits.u[lane] = RTCHitN_u(args->hit, args->N, i);
+    hits.v[lane] = RTCHitN_v(args->hit, args->N, i);
+    hits.triangle[lane] = RTCHitN_primID(args->hit, args->N, i);
+    hits.geometry[lane] = RTCHitN_geomID(args->hit, args->N, i);
+    hits.instance[lane] = RTCHitN_instID(args->hit, args->N, i, 0);
+}
+
+/// Nothing that moves stops a ray, nor does what lets light through; the first and the last that move are kept.
 void note_moving(RTCFilterFunctionNArguments const* args) {
     bool const see_through = static_cast<Geometry const*>(args->geometryUserPtr)->material->see_through();
     MovingHits& moving = *reinterpret_cast<QueryContext*>(args->context)->moving;
@@ -114,20 +125,20 @@ void note_moving(RTCFilterFunctionNArguments const* args) {
         if (args->valid[i] != -1) {
             continue;
         }
-        unsigned const instance = RTCHitN_instID(args->hit, args->N, i, 0);
-        bool const moves = moving.instances[instance].moves();
+        bool const moves = moving.instances[RTCHitN_instID(args->hit, args->N, i, 0)].moves();
         args->valid[i] = see_through || moves ? 0 : -1;
+        if (see_through || !moves) {
+            continue;
+        }
         int const lane = static_cast<int>(RTCRayN_id(args->ray, args->N, i));
         float const t = RTCRayN_tfar(args->ray, args->N, i);
         bool const met = (moving.met >> lane & 1) != 0;
-        if (moves && !see_through && !(met && moving.nearest.t[lane] <= t)) {
-            moving.met |= 1u << lane;
-            moving.nearest.t[lane] = t;
-            moving.nearest.u[lane] = RTCHitN_u(args->hit, args->N, i);
-            moving.nearest.v[lane] = RTCHitN_v(args->hit, args->N, i);
-            moving.nearest.triangle[lane] = RTCHitN_primID(args->hit, args->N, i);
-            moving.nearest.geometry[lane] = RTCHitN_geomID(args->hit, args->N, i);
-            moving.nearest.instance[lane] = instance;
+        moving.met |= 1u << lane;
+        if (!met || t < moving.nearest.t[lane]) {
+            keep_hit(args, i, lane, moving.nearest);
+        }
+        if (!met || t > moving.farthest.t[lane]) {
+            keep_hit(args, i, lane, moving.farthest);
         }
     }
 }
@@ -448,9 +459,9 @@ LaneMask EmbreeScene::intersect(RayPacket const& rays, LaneMask active, Behind b
 }
 
 LaneMask EmbreeScene::intersect_moving(RayPacket const& rays, LaneMask active, std::span<Instance const> instances,
-                                       HitPacket& hits) const {
+                                       HitPacket& nearest, HitPacket& farthest) const {
     Levels const levels{handles_->still.scene, handles_->moving.count > 0 ? handles_->moving.scene : nullptr};
-    MovingHits moving{instances, hits};
+    MovingHits moving{instances, nearest, farthest};
     HitPacket standing;
     LaneMask stopped = 0;
     if (handles_->sixteen_wide) {

@@ -54,6 +54,24 @@ void aim(PreparedScene const& scene, TracedPacket const& traced, LostLights& out
     });
 }
 
+Vec3 rounded(Vec3 const& velocity) {
+    return step * glm::round(velocity / step);
+}
+
+/// Of what is behind one another in the light the outline of the farther one is taken to show. Where that is of the
+/// same body the mean of both: a wheel's outline goes with its hub and not with its rim, and half way between where a
+/// ray enters it and where it leaves it nothing turns but along the ray.
+Vec3 velocity_of_shadow(PreparedScene const& scene, TracedPacket const& traced, LostLights const& lost,
+                        HitPacket const& nearest, HitPacket const& farthest, int i) {
+    auto const thrown_by = [&](HitPacket const& hits) {
+        return shadow_velocity(scene.lights[traced.lost_light[i]], traced.facet.get(i), lost.rays.direction.get(i),
+                               lost.distance[i], hits.t[i], velocity_at(scene.instances[hits.instance[i]], hits, i));
+    };
+    Vec3 const velocity = thrown_by(farthest);
+    bool const one_body = scene.instances[nearest.instance[i]].body == scene.instances[farthest.instance[i]].body;
+    return one_body ? 0.5f * (velocity + thrown_by(nearest)) : velocity;
+}
+
 } // namespace
 
 Vec3 shadow_velocity(RenderLight const& light, Vec3 const& facet, Vec3 const& to_light, float distance_to_light,
@@ -69,7 +87,7 @@ Vec3 shadow_velocity(RenderLight const& light, Vec3 const& facet, Vec3 const& to
     }
     Vec3 const along = across - to_light * (glm::dot(across, facet) / steepness);
     float const squared = glm::dot(along, along);
-    return squared > slowest * slowest && squared < fastest * fastest ? step * glm::round(along / step) : Vec3(0);
+    return squared > slowest * slowest && squared < fastest * fastest ? along : Vec3(0);
 }
 
 std::uint32_t add_shadow_motion(PreparedScene const& scene, TracedPacket const& traced, int first, Framelet& out) {
@@ -79,12 +97,10 @@ std::uint32_t add_shadow_motion(PreparedScene const& scene, TracedPacket const& 
         return 0;
     }
     aim(scene, traced, lost);
-    HitPacket hits{};
-    LaneMask const moving = scene.bvh.intersect_moving(lost.rays, lost.lanes, scene.instances, hits);
+    HitPacket nearest, farthest;
+    LaneMask const moving = scene.bvh.intersect_moving(lost.rays, lost.lanes, scene.instances, nearest, farthest);
     for_each_lane(moving, [&](int i) {
-        Vec3 const occluder = velocity_at(scene.instances[hits.instance[i]], hits, i);
-        Vec3 const velocity = shadow_velocity(scene.lights[traced.lost_light[i]], traced.facet.get(i),
-                                              lost.rays.direction.get(i), lost.distance[i], hits.t[i], occluder);
+        Vec3 const velocity = rounded(velocity_of_shadow(scene, traced, lost, nearest, farthest, i));
         if (velocity == Vec3(0)) {
             return;
         }

@@ -166,6 +166,33 @@ TEST(ShadowMotion, WhatStandsAndIsInTheWayTooKeepsTheShadowThere) {
     }
 }
 
+/// A wheel seen from its side by the sun: its shadow goes with its axle, whatever its rim does.
+TEST(ShadowMotion, AWheelsShadowGoesWithItsHub) {
+    Scene scene = floor_scene();
+    Index const wheel = add(scene, sphere(Vec3(0), 4, 0));
+    scene.clips.resize(1);
+    scene.clips[0].duration = 2;
+    scene.clips[0].channels = {
+        {wheel, AnimatedProperty::translation, Interpolation::linear, 3, {0, 2}, {-6.5f, 0, 16, -4.5f, 0, 16}},
+        {wheel,
+         AnimatedProperty::rotation,
+         Interpolation::linear,
+         4,
+         {0, 2},
+         {0, 0, 0, 1, 0, std::sin(1.0f), 0, std::cos(1.0f)}}};
+    add_light(scene, lamp(LightType::directional, 3), Vec3(0), {1, 0, -2});
+    Framelet const framelet = render(scene).framelet;
+    ASSERT_EQ(framelet.velocity.size(), std::size_t{framelet_samples});
+    int dark = 0;
+    for (std::uint32_t i = 0; i < framelet_samples; ++i) {
+        if (framelet.red[i] == 0) {
+            ++dark;
+            EXPECT_LT(glm::length(framelet.velocity[i] - Vec3(1, 0, 0)), 0.1f) << i;
+        }
+    }
+    EXPECT_GT(dark, 50);
+}
+
 TEST(ShadowMotion, OnlyTheStrongestLightCounts) {
     Scene scene = sunny_scene({3, 1, -0.5f});
     add_light(scene, lamp(LightType::directional, 1), Vec3(0), {-1, 0, -2}); // its shadow is elsewhere
