@@ -37,6 +37,7 @@ struct Instance {
     bool flows = false; ///< its samples have velocities, of the vertices or of the transform
     Mat3 linear_rate{0}; ///< of `linear`, per second; of bodies as well
     Vec3 translation_rate{0};
+    bool spins = false; ///< turns so fast that none of its points goes straight on for long
 
     /// Whether it may be elsewhere soon: carried by a body, or deforming.
     bool moves() const { return body != static_body || flows; }

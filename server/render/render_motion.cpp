@@ -1,6 +1,9 @@
 // Bodies and velocities of the instances and the lights.
 #include <cmath>
 
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
 #include "server/render/prepared_scene.h"
 #include "server/render/render_scene.h"
 
@@ -21,6 +24,16 @@ double to_other_moment(Scene const& scene, std::span<Index const> clips, SceneTi
         }
     }
     return interval;
+}
+
+/// Radians a second above which something spins: a fifth of a second later it shows another side.
+constexpr float fast_spin = 4;
+
+/// How fast something turns whose transform changes so, radians a second.
+float spin_of(Instance const& instance) {
+    Mat3 const change = instance.linear_rate * glm::transpose(instance.normal_matrix); // by the inverse of `linear`
+    Vec3 const twice(change[1][2] - change[2][1], change[2][0] - change[0][2], change[0][1] - change[1][0]);
+    return 0.5f * glm::length(twice);
 }
 
 } // namespace
@@ -56,6 +69,7 @@ void RenderScene::update_velocities() {
         }
         instance.linear_rate = Mat3(0);
         instance.translation_rate = Vec3(0);
+        instance.spins = false;
         if (deforms) {
             set_vertex_velocities(placement, other, per_second);
         } else if (moved(placement, other)) {
@@ -63,6 +77,7 @@ void RenderScene::update_velocities() {
             Mat4 const& then = other.world_from_node[placement.node];
             instance.linear_rate = (Mat3(then) - Mat3(now)) * per_second;
             instance.translation_rate = Vec3(then[3] - now[3]) * per_second;
+            instance.spins = spin_of(instance) > fast_spin;
         }
     }
     for (std::size_t i = 0; i < scene_.lights.size(); ++i) {

@@ -58,6 +58,11 @@ Vec3 rounded(Vec3 const& velocity) {
     return step * glm::round(velocity / step);
 }
 
+/// The shadow of what spins goes with the middle of it.
+Vec3 velocity_of_occluder(Instance const& instance, HitPacket const& hits, int lane) {
+    return instance.spins ? instance.translation_rate : velocity_at(instance, hits, lane);
+}
+
 /// Of what is behind one another in the light the outline of the farther one is taken to show. Where that is of the
 /// same body the mean of both: a wheel's outline goes with its hub and not with its rim, and half way between where a
 /// ray enters it and where it leaves it nothing turns but along the ray.
@@ -65,7 +70,8 @@ Vec3 velocity_of_shadow(PreparedScene const& scene, TracedPacket const& traced, 
                         HitPacket const& nearest, HitPacket const& farthest, int i) {
     auto const thrown_by = [&](HitPacket const& hits) {
         return shadow_velocity(scene.lights[traced.lost_light[i]], traced.facet.get(i), lost.rays.direction.get(i),
-                               lost.distance[i], hits.t[i], velocity_at(scene.instances[hits.instance[i]], hits, i));
+                               lost.distance[i], hits.t[i],
+                               velocity_of_occluder(scene.instances[hits.instance[i]], hits, i));
     };
     Vec3 const velocity = thrown_by(farthest);
     bool const one_body = scene.instances[nearest.instance[i]].body == scene.instances[farthest.instance[i]].body;

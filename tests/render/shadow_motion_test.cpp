@@ -166,31 +166,41 @@ TEST(ShadowMotion, WhatStandsAndIsInTheWayTooKeepsTheShadowThere) {
     }
 }
 
-/// A wheel seen from its side by the sun: its shadow goes with its axle, whatever its rim does.
-TEST(ShadowMotion, AWheelsShadowGoesWithItsHub) {
+/// Of a ball that turns about `axis` as it goes, by so many radians a second.
+Framelet shadow_of_ball(Vec3 const& axis, float turning) {
     Scene scene = floor_scene();
-    Index const wheel = add(scene, sphere(Vec3(0), 4, 0));
+    Index const ball = add(scene, sphere(Vec3(0), 4, 0));
     scene.clips.resize(1);
     scene.clips[0].duration = 2;
+    float const half = 0.05f * turning; // in a tenth of a second around the moment
+    Vec3 const turned = std::sin(half) * axis;
     scene.clips[0].channels = {
-        {wheel, AnimatedProperty::translation, Interpolation::linear, 3, {0, 2}, {-6.5f, 0, 16, -4.5f, 0, 16}},
-        {wheel,
+        {ball, AnimatedProperty::translation, Interpolation::linear, 3, {0, 2}, {-6.5f, 0, 16, -4.5f, 0, 16}},
+        {ball,
          AnimatedProperty::rotation,
          Interpolation::linear,
          4,
-         {0, 2},
-         {0, 0, 0, 1, 0, std::sin(1.0f), 0, std::cos(1.0f)}}};
+         {0.2f, 0.3f},
+         {0, 0, 0, 1, turned.x, turned.y, turned.z, std::cos(half)}}};
     add_light(scene, lamp(LightType::directional, 3), Vec3(0), {1, 0, -2});
-    Framelet const framelet = render(scene).framelet;
-    ASSERT_EQ(framelet.velocity.size(), std::size_t{framelet_samples});
-    int dark = 0;
-    for (std::uint32_t i = 0; i < framelet_samples; ++i) {
-        if (framelet.red[i] == 0) {
-            ++dark;
-            EXPECT_LT(glm::length(framelet.velocity[i] - Vec3(1, 0, 0)), 0.1f) << i;
+    return render(scene).framelet;
+}
+
+TEST(ShadowMotion, WhatRollsThrowsAShadowThatGoesWithItsMiddle) {
+    Vec3 const to_light = glm::normalize(Vec3(-1, 0, 2));
+    for (bool const spins : {false, true}) {
+        // Slowly: its points go along the light or against it. Fast: about any axis.
+        Framelet const framelet = spins ? shadow_of_ball(to_light, 8) : shadow_of_ball({0, 1, 0}, 1);
+        ASSERT_EQ(framelet.velocity.size(), std::size_t{framelet_samples});
+        int dark = 0;
+        for (std::uint32_t i = 0; i < framelet_samples; ++i) {
+            if (framelet.red[i] == 0) {
+                ++dark;
+                EXPECT_LT(glm::length(framelet.velocity[i] - Vec3(1, 0, 0)), 0.1f) << spins << i;
+            }
         }
+        EXPECT_GT(dark, 50);
     }
-    EXPECT_GT(dark, 50);
 }
 
 TEST(ShadowMotion, OnlyTheStrongestLightCounts) {
