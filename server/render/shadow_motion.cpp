@@ -64,8 +64,8 @@ Vec3 velocity_of_occluder(Instance const& instance, HitPacket const& hits, int l
 }
 
 /// Of what is behind one another in the light the outline of the farther one is taken to show. Where that is of the
-/// same body the mean of both: a wheel's outline goes with its hub and not with its rim, and half way between where a
-/// ray enters it and where it leaves it nothing turns but along the ray.
+/// same body the mean of both: the outline of a ball that rolls goes with its middle, and half way between where a ray
+/// enters it and where it leaves it nothing turns but along the ray.
 Vec3 velocity_of_shadow(PreparedScene const& scene, TracedPacket const& traced, LostLights const& lost,
                         HitPacket const& nearest, HitPacket const& farthest, int i) {
     auto const thrown_by = [&](HitPacket const& hits) {
