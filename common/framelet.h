@@ -27,7 +27,8 @@ struct Framelet {
     std::array<float, framelet_samples> depth;
     /// What carries each sample. Empty: the static body carries them all.
     std::vector<BodyNumber> body;
-    /// Of samples on what deforms: metres a second in the world at the scene time; 0 of all others. Empty: all are 0.
+    /// Of samples on what deforms, and of shadows that pass over the static body: metres a second in the world at the
+    /// scene time; 0 of all others. Empty: all are 0.
     std::vector<Vec3> velocity;
     /// Bit i: sample i shows a mirror reflection, which moves otherwise than the surface that it is seen in.
     std::bitset<framelet_samples> reflects;

@@ -28,7 +28,8 @@ struct Layer {
     float at = 0, dx = 0, dy = 0;
     float error = 0; ///< largest difference from the inverse depth of a sample that lies on it
     BodyNumber body = static_body;
-    /// What deforms moves so besides (metres a second in the world, at the framelet's scene time); else 0.
+    /// What deforms, and a shadow that passes over the plane, moves so besides (metres a second in the world, at the
+    /// framelet's scene time); else 0.
     Vec3 velocity{0};
 
     bool operator==(Layer const&) const = default;

@@ -23,6 +23,11 @@ constexpr double largest_splat = 32;
 /// Numbers as large as this, and what is not a number, do not get into a patch.
 constexpr double largest = 1e18;
 
+/// A shadow shows before all that it comes over, however good that is, for so long (scene time): it was seen to go
+/// there. Then it must be better, as everything: it may have gone elsewhere.
+constexpr float drifting_seconds = 0.2f;
+constexpr float ahead_of_all = 1.0f / 64;
+
 /// Order-dependent hash of what a patch is made of.
 class Signature {
 public:
@@ -72,6 +77,11 @@ bool is_usable(WarpPatch const& patch) {
         usable &= std::abs(value) < static_cast<float>(largest);
     }
     return usable;
+}
+
+/// A shadow that goes over a surface, or what deforms.
+bool drifts(Layer const& layer) {
+    return layer.body == static_body && layer.velocity != Vec3(0);
 }
 
 } // namespace
@@ -139,13 +149,13 @@ void FrameletWarp::add_layer(std::uint32_t view, HeldLayer const& layer, FadingC
     }
     turn_to(view, layer.layer.body, layer.layer.velocity);
     if ((is_still_ ? place_still(layer, patch) : place(layer, patch)) && is_usable(patch)) {
-        rate(view, fading, layer.layer.error, patch);
+        rate(view, fading, layer.layer, patch);
         patch.signature = signature_of(patch, content, {});
         patches.push_back(patch);
     }
 }
 
-void FrameletWarp::rate(std::uint32_t view, FadingCode fading, float error, WarpPatch& patch) const {
+void FrameletWarp::rate(std::uint32_t view, FadingCode fading, Layer const& layer, WarpPatch& patch) const {
     float const x = 0.5f * static_cast<float>(patch.box.width());
     float const y = 0.5f * static_cast<float>(patch.box.height());
     auto const at = [&](std::size_t i) { return patch.at[i] + x * patch.dx[i] + y * patch.dy[i]; };
@@ -161,9 +171,13 @@ void FrameletWarp::rate(std::uint32_t view, FadingCode fading, float error, Warp
     float const spacing = 1 / std::sqrt(std::max(least, 1e-6f));
     // By so many pixels its samples may be shown off their places: their inverse depths are not quite the plane's.
     glm::dvec2 const middle = 0.5 * glm::dvec2(patch.box.left + patch.box.right, patch.box.top + patch.box.bottom);
-    float const misplaced = is_still_ ? 0 : error * z * parallax_at(middle);
+    float const misplaced = is_still_ ? 0 : layer.error * z * parallax_at(middle);
     auto const age = static_cast<float>(time_ - cache_.views()[view].scene_time);
     patch.worn = worn_step(worn_spacing(spacing, age, fading_rate(fading)) + misplaced);
+    if (drifts(layer)) {
+        patch.group = drifting_group(patch.group);
+        patch.worn *= std::abs(age) < drifting_seconds ? ahead_of_all : 1.0f;
+    }
     patch.hides = spacing < most_hiding;
 }
 

@@ -38,7 +38,7 @@ private:
     glm::dvec2 high(HeldLayer const& layer) const;
     void add_layer(std::uint32_t view, HeldLayer const& layer, FadingCode fading, std::uint64_t content,
                    WarpPatch& patch, std::vector<WarpPatch>& patches);
-    void rate(std::uint32_t view, FadingCode fading, float error, WarpPatch& patch) const;
+    void rate(std::uint32_t view, FadingCode fading, Layer const& layer, WarpPatch& patch) const;
     /// Pixels for each 1 / metre, of what is shown at a pixel at depth 1.
     float parallax_at(glm::dvec2 pixel) const;
     bool place_still(HeldLayer const& held, WarpPatch& patch) const;

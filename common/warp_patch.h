@@ -12,8 +12,12 @@ namespace framelet {
 constexpr std::int32_t group_of(std::size_t slot, std::uint32_t view, int depth) {
     return static_cast<std::int32_t>(slot << 24 | view << 4) + depth;
 }
+/// What drifts over the surface that it lies on (a shadow) adds up with its like only, not with what it comes over.
+constexpr std::int32_t drifting_group(std::int32_t group) {
+    return group | 1 << 30;
+}
 constexpr std::size_t slot_of_group(std::int32_t group) {
-    return static_cast<std::uint32_t>(group) >> 24;
+    return static_cast<std::uint32_t>(group) >> 24 & 0x3fu;
 }
 constexpr std::uint32_t view_of_group(std::int32_t group) {
     return static_cast<std::uint32_t>(group) >> 4 & 0xfffffu;

@@ -75,7 +75,8 @@ private:
     void add_layer(GridPlane const& plane, float half_width, Group const& group);
     float error_of(Layer const& layer, float half_width) const;
     void take_isolated();
-    bool moves_with(Vec3 velocity, int sample) const;
+    bool moves_with(Vec3 velocity, int sample, float tolerances = 1) const;
+    Vec3 median_velocity();
     std::uint8_t nearest_layer(int at) const;
     void collect();
 
@@ -149,18 +150,32 @@ void Fitter::set_candidates(std::size_t group) {
 }
 
 /// Whether a sample (in Morton order) moves nearly so.
-bool Fitter::moves_with(Vec3 velocity, int sample) const {
+bool Fitter::moves_with(Vec3 velocity, int sample, float tolerances) const {
     float const off = glm::length(velocity_of(framelet_, sample) - velocity) * values_[block_order(sample)];
-    return off <= velocity_tolerance_;
+    return off <= tolerances * velocity_tolerance_;
 }
 
-/// Keeps the members that move nearly as they do on average.
-void Fitter::agree_on_velocity() {
-    Vec3 sum(0);
-    for (int i = 0; i < framelet_samples; ++i) {
-        sum += velocity_of(framelet_, i) * found_.members[block_order(i)];
+/// Of what was found, each component by itself: those few that move quite otherwise do not bend it.
+Vec3 Fitter::median_velocity() {
+    Vec3 median(0);
+    for (int axis = 0; axis < 3; ++axis) {
+        std::array<float, framelet_samples> values;
+        auto end = values.begin();
+        for (int i = 0; i < framelet_samples; ++i) {
+            if (found_.members[block_order(i)] != 0) {
+                *end++ = velocity_of(framelet_, i)[axis];
+            }
+        }
+        auto const middle = values.begin() + (end - values.begin()) / 2;
+        std::nth_element(values.begin(), middle, end);
+        median[axis] = *middle;
     }
-    velocity_ = sum / static_cast<float>(std::max(found_.count, 1));
+    return median;
+}
+
+/// Keeps the members that move nearly as most do. At least one was found.
+void Fitter::agree_on_velocity() {
+    velocity_ = median_velocity();
     found_.count = 0;
     for (int i = 0; i < framelet_samples; ++i) {
         float& member = found_.members[block_order(i)];
@@ -247,7 +262,7 @@ void Fitter::take_isolated() {
         int const at = block_order(i);
         std::uint8_t& layer_of = layer_of_[static_cast<std::size_t>(at)];
         std::uint8_t const l = layer_of == FrameletShape::loose ? nearest_layer(at) : FrameletShape::loose;
-        if (l == FrameletShape::loose || !moves_with(shape_.layers[l].velocity, i)) {
+        if (l == FrameletShape::loose || !moves_with(shape_.layers[l].velocity, i, isolated_tolerances)) {
             continue;
         }
         layer_of = l;

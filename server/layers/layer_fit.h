@@ -28,7 +28,7 @@ struct LayerTolerance {
 inline constexpr std::size_t most_loose_samples = 16;
 inline constexpr float wide_tolerances = 2;
 /// A sample that no plane was found for lies on the nearest layer of its body that it is so many tolerances off at
-/// most.
+/// most, in its place and in its velocity.
 inline constexpr float isolated_tolerances = 4;
 
 /// `tolerated_pixels`, while the camera moves so far that what is at `median_depth` (metres, > 0) moves by 20 pixels,

@@ -29,10 +29,19 @@ constexpr RTCSceneFlags query_filters = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUME
 constexpr RTCSceneFlags query_filters = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
 #endif
 
+/// What a query finds of instances that move.
+struct MovingHits {
+    std::span<Instance const> instances;
+    HitPacket& nearest;
+    HitPacket& farthest;
+    LaneMask met = 0;
+};
+
 /// Handed through Embree to the filters; the context must stand first.
 struct QueryContext {
     Context embree;
     LaneVec3* transmittance = nullptr;
+    MovingHits* moving = nullptr;
 };
 
 /// Scenes this small have one top level, whatever moves in them.
@@ -98,6 +107,42 @@ void reject_behind(RTCFilterFunctionNArguments const* args) {
     }
 }
 
+/// `i`: of the callback.
+void keep_hit(RTCFilterFunctionNArguments const* args, unsigned i, int lane, HitPacket& hits) {
+    hits.t[lane] = RTCRayN_tfar(args->ray, args->N, i);
+    hits.u[lane] = RTCHitN_u(args->hit, args->N, i);
+    hits.v[lane] = RTCHitN_v(args->hit, args->N, i);
+    hits.triangle[lane] = RTCHitN_primID(args->hit, args->N, i);
+    hits.geometry[lane] = RTCHitN_geomID(args->hit, args->N, i);
+    hits.instance[lane] = RTCHitN_instID(args->hit, args->N, i, 0);
+}
+
+/// Nothing that moves stops a ray, nor does what lets light through; the first and the last that move are kept.
+void note_moving(RTCFilterFunctionNArguments const* args) {
+    bool const see_through = static_cast<Geometry const*>(args->geometryUserPtr)->material->see_through();
+    MovingHits& moving = *reinterpret_cast<QueryContext*>(args->context)->moving;
+    for (unsigned i = 0; i < args->N; ++i) {
+        if (args->valid[i] != -1) {
+            continue;
+        }
+        bool const moves = moving.instances[RTCHitN_instID(args->hit, args->N, i, 0)].moves();
+        args->valid[i] = see_through || moves ? 0 : -1;
+        if (see_through || !moves) {
+            continue;
+        }
+        int const lane = static_cast<int>(RTCRayN_id(args->ray, args->N, i));
+        float const t = RTCRayN_tfar(args->ray, args->N, i);
+        bool const met = (moving.met >> lane & 1) != 0;
+        moving.met |= 1u << lane;
+        if (!met || t < moving.nearest.t[lane]) {
+            keep_hit(args, i, lane, moving.nearest);
+        }
+        if (!met || t > moving.farthest.t[lane]) {
+            keep_hit(args, i, lane, moving.farthest);
+        }
+    }
+}
+
 void attenuate_shadow(RTCFilterFunctionNArguments const* args) {
     Candidate const candidate{args};
     Geometry const& geometry = candidate.geometry();
@@ -146,9 +191,10 @@ bool valid_lanes(RayPacket const& rays, LaneMask active, int first, int* valid) 
     return true;
 }
 
+/// Without a `filter` of the query's own, rays are taken to be coherent.
 template <int count>
 LaneMask intersect_lanes(Levels const& levels, RayPacket const& rays, LaneMask active, int first,
-                         EmbreeScene::Behind behind, HitPacket& hits) {
+                         RTCFilterFunctionN filter, MovingHits* moving, HitPacket& hits) {
     alignas(64) int valid[count];
     if (!valid_lanes<count>(rays, active, first, valid)) {
         return 0;
@@ -161,15 +207,15 @@ LaneMask intersect_lanes(Levels const& levels, RayPacket const& rays, LaneMask a
         query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
         query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
     }
-    bool const passes = behind == EmbreeScene::Behind::passes;
     QueryContext context;
+    context.moving = moving;
 #if RTC_VERSION_MAJOR >= 4
     rtcInitRayQueryContext(&context.embree);
     RTCIntersectArguments args;
     rtcInitIntersectArguments(&args);
     args.context = &context.embree;
-    args.flags = passes ? RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER : RTC_RAY_QUERY_FLAG_COHERENT;
-    args.filter = passes ? reject_behind : nullptr;
+    args.flags = filter ? RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER : RTC_RAY_QUERY_FLAG_COHERENT;
+    args.filter = filter;
     levels.for_each([&](RTCScene scene) {
         if constexpr (count == 16) {
             rtcIntersect16(valid, scene, &query, &args);
@@ -179,8 +225,8 @@ LaneMask intersect_lanes(Levels const& levels, RayPacket const& rays, LaneMask a
     });
 #else
     rtcInitIntersectContext(&context.embree);
-    context.embree.flags = passes ? RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT : RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    context.embree.filter = passes ? reject_behind : nullptr;
+    context.embree.flags = filter ? RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT : RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    context.embree.filter = filter;
     levels.for_each([&](RTCScene scene) { // the second one only finds what is nearer
         if constexpr (count == 16) {
             rtcIntersect16(valid, scene, &context.embree, &query);
@@ -404,11 +450,27 @@ void EmbreeScene::commit() {
 
 LaneMask EmbreeScene::intersect(RayPacket const& rays, LaneMask active, Behind behind, HitPacket& hits) const {
     Levels const levels{handles_->still.scene, handles_->moving.count > 0 ? handles_->moving.scene : nullptr};
+    RTCFilterFunctionN const filter = behind == Behind::passes ? reject_behind : nullptr;
     if (handles_->sixteen_wide) {
-        return intersect_lanes<16>(levels, rays, active, 0, behind, hits);
+        return intersect_lanes<16>(levels, rays, active, 0, filter, nullptr, hits);
     }
-    return intersect_lanes<8>(levels, rays, active, 0, behind, hits) |
-           intersect_lanes<8>(levels, rays, active, 8, behind, hits);
+    return intersect_lanes<8>(levels, rays, active, 0, filter, nullptr, hits) |
+           intersect_lanes<8>(levels, rays, active, 8, filter, nullptr, hits);
+}
+
+LaneMask EmbreeScene::intersect_moving(RayPacket const& rays, LaneMask active, std::span<Instance const> instances,
+                                       HitPacket& nearest, HitPacket& farthest) const {
+    Levels const levels{handles_->still.scene, handles_->moving.count > 0 ? handles_->moving.scene : nullptr};
+    MovingHits moving{instances, nearest, farthest};
+    HitPacket standing;
+    LaneMask stopped = 0;
+    if (handles_->sixteen_wide) {
+        stopped = intersect_lanes<16>(levels, rays, active, 0, note_moving, &moving, standing);
+    } else {
+        stopped = intersect_lanes<8>(levels, rays, active, 0, note_moving, &moving, standing) |
+                  intersect_lanes<8>(levels, rays, active, 8, note_moving, &moving, standing);
+    }
+    return moving.met & ~stopped;
 }
 
 LaneMask EmbreeScene::occluded(RayPacket const& rays, LaneMask active, LaneVec3& transmittance) const {

@@ -38,6 +38,10 @@ public:
     /// Returns the lanes whose segment meets something opaque; multiplies `transmittance` of the others by what
     /// see-through surfaces let pass.
     LaneMask occluded(RayPacket const& rays, LaneMask active, LaneVec3& transmittance) const;
+    /// First and last opaque hit of each active lane among instances that move (`instances`: by number). Left out are
+    /// lanes whose segment meets something opaque that does not. Costs a call for every surface on the way.
+    LaneMask intersect_moving(RayPacket const& rays, LaneMask active, std::span<Instance const> instances,
+                              HitPacket& nearest, HitPacket& farthest) const;
 
 private:
     struct Handles;

@@ -8,6 +8,7 @@
 #include "common/error.h"
 #include "server/render/flush_denormals.h"
 #include "server/render/sample_motion.h"
+#include "server/render/shadow_motion.h"
 #include "server/render/tracing.h"
 
 namespace framelet {
@@ -90,6 +91,7 @@ std::uint32_t render_framelet(RenderScene const& scene, ViewRays const& view, Im
         }
         if (scene.prepared().moves) {
             add_motion(scene.prepared(), traced, first, out);
+            segments += add_shadow_motion(scene.prepared(), traced, first, out);
         }
     }
     return segments;

@@ -34,9 +34,13 @@ struct Instance {
     Mat3 normal_matrix{1}; ///< inverse transpose of `linear`
     float handedness = 1; ///< -1 where the transform mirrors: the winding then reads clockwise in the world
     BodyNumber body = static_body;
-    bool flows = false; ///< its samples have velocities, of the vertices or of the transform:
-    Mat3 linear_rate{0}; ///< of `linear`, per second
+    bool flows = false; ///< its samples have velocities, of the vertices or of the transform
+    Mat3 linear_rate{0}; ///< of `linear`, per second; of bodies as well
     Vec3 translation_rate{0};
+    bool spins = false; ///< turns so fast that none of its points goes straight on for long
+
+    /// Whether it may be elsewhere soon: carried by a body, or deforming.
+    bool moves() const { return body != static_body || flows; }
 };
 
 } // namespace framelet

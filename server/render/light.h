@@ -12,6 +12,7 @@ struct RenderLight {
     Vec3 position{0};
     Vec3 towards{0, 1, 0}; ///< unit; against the direction in which it shines
     float inverse_range = 0; ///< 0: unlimited
+    Vec3 velocity{0}; ///< of `position`, metres a second
     float cone_scale = 0, cone_offset = 1; ///< spot: (cosine * scale + offset), clamped and squared, weighs the cone
 };
 

@@ -1,5 +1,8 @@
-// Bodies and velocities of the instances.
+// Bodies and velocities of the instances and the lights.
 #include <cmath>
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include "server/render/prepared_scene.h"
 #include "server/render/render_scene.h"
@@ -23,6 +26,16 @@ double to_other_moment(Scene const& scene, std::span<Index const> clips, SceneTi
     return interval;
 }
 
+/// Radians a second above which something spins: a fifth of a second later it shows another side.
+constexpr float fast_spin = 4;
+
+/// How fast something turns whose transform changes so, radians a second.
+float spin_of(Instance const& instance) {
+    Mat3 const change = instance.linear_rate * glm::transpose(instance.normal_matrix); // by the inverse of `linear`
+    Vec3 const twice(change[1][2] - change[2][1], change[2][0] - change[0][2], change[0][1] - change[1][0]);
+    return 0.5f * glm::length(twice);
+}
+
 } // namespace
 
 void RenderScene::set_clips(std::span<Index const> clips) {
@@ -39,23 +52,24 @@ void RenderScene::set_clips(std::span<Index const> clips) {
 }
 
 void RenderScene::update_velocities() {
-    if (!bodies_.any_flows()) {
+    if (!prepared_->moves) {
         return;
     }
     double const seconds = to_other_moment(scene_, clips_, pose_.time);
     ScenePose const other = evaluate_pose(scene_, clips_, pose_.time + seconds);
     float const per_second = static_cast<float>(1 / seconds);
     for (Placement const& placement : placements_) {
-        if (!bodies_.flows[placement.node]) {
+        Instance& instance = prepared_->instances[placement.instance];
+        if (!instance.moves()) {
             continue;
         }
-        Instance& instance = prepared_->instances[placement.instance];
-        bool const deforms = reshaped(placement, other);
+        bool const deforms = instance.flows && reshaped(placement, other);
         for (Geometry& geometry : prepared_->meshes[placement.mesh]) {
             geometry.velocities = {};
         }
         instance.linear_rate = Mat3(0);
         instance.translation_rate = Vec3(0);
+        instance.spins = false;
         if (deforms) {
             set_vertex_velocities(placement, other, per_second);
         } else if (moved(placement, other)) {
@@ -63,7 +77,12 @@ void RenderScene::update_velocities() {
             Mat4 const& then = other.world_from_node[placement.node];
             instance.linear_rate = (Mat3(then) - Mat3(now)) * per_second;
             instance.translation_rate = Vec3(then[3] - now[3]) * per_second;
+            instance.spins = spin_of(instance) > fast_spin;
         }
+    }
+    for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
+        RenderLight& light = prepared_->lights[i];
+        light.velocity = (make_light(scene_.lights[i], other).position - light.position) * per_second;
     }
 }
 

@@ -3,9 +3,7 @@
 #include "server/render/hit_frame.h"
 
 namespace framelet {
-namespace {
 
-/// World metres a second of a point that no body carries.
 Vec3 velocity_at(Instance const& instance, HitPacket const& hits, int lane) {
     Geometry const& geometry = instance.geometries[hits.geometry[lane]];
     TrianglePoint const point = point_of(geometry, hits.triangle[lane], hits.u[lane], hits.v[lane]);
@@ -15,8 +13,6 @@ Vec3 velocity_at(Instance const& instance, HitPacket const& hits, int lane) {
     Vec3 const position = point.interpolate(std::span<Vec3 const>(geometry.positions));
     return instance.linear_rate * position + instance.translation_rate;
 }
-
-} // namespace
 
 void add_motion(PreparedScene const& scene, TracedPacket const& traced, int first, Framelet& out) {
     for (int i = 0; i < lanes; ++i) {

@@ -7,6 +7,9 @@
 
 namespace framelet {
 
+/// How fast the point moves that a lane has met of this instance: world metres a second.
+Vec3 velocity_at(Instance const& instance, HitPacket const& hits, int lane);
+
 /// Adds the motion of the packet's lanes, samples `first` .. `first` + 15 of the framelet.
 void add_motion(PreparedScene const& scene, TracedPacket const& traced, int first, Framelet& out);
 

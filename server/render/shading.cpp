@@ -91,15 +91,40 @@ std::uint32_t add_reflections(PreparedScene const& scene, SurfacePacket const& s
     return reflected.segments;
 }
 
+/// The light of which each lane would get most if nothing were in its way.
+struct StrongestLight {
+    LaneFloats luminance;
+    LaneIndices lost; ///< its number where it is blocked, else `no_light`
+
+    void reset() {
+        luminance.fill(0);
+        for (std::uint32_t& number : lost.lane) {
+            number = no_light;
+        }
+    }
+    void add(std::uint32_t number, RenderLight const& light, ArrivingLight const& arriving, LaneMask reached,
+             LaneMask blocked) {
+        float const strength = glm::dot(light.intensity, Vec3(0.2126f, 0.7152f, 0.0722f));
+        for_each_lane(reached, [&](int i) {
+            float const arrives = strength * arriving.irradiance[i];
+            if (arrives > luminance[i]) {
+                luminance[i] = arrives;
+                lost[i] = (blocked >> i & 1) != 0 ? number : no_light;
+            }
+        });
+    }
+};
+
 std::uint32_t add_lights(PreparedScene const& scene, SurfacePacket const& s, LobePacket const& lobes, LaneMask lit,
-                         LaneVec3& radiance) {
+                         StrongestLight& strongest, LaneVec3& radiance) {
     std::uint32_t segments = 0;
     ArrivingLight arriving;
     RayPacket shadow;
     shadow.origin = s.leaving;
     shadow.near.fill(0);
     LaneVec3 irradiance, transmittance;
-    for (RenderLight const& light : scene.lights) {
+    for (std::uint32_t number = 0; number < scene.lights.size(); ++number) {
+        RenderLight const& light = scene.lights[number];
         LaneMask const reached = arriving_light(light, s.position, s.normal, lit, arriving);
         if (reached == 0) {
             continue;
@@ -111,6 +136,9 @@ std::uint32_t add_lights(PreparedScene const& scene, SurfacePacket const& s, Lob
         transmittance.fill(Vec3(1));
         segments += static_cast<std::uint32_t>(std::popcount(reached));
         LaneMask const blocked = scene.bvh.occluded(shadow, reached, transmittance);
+        if (scene.moves) {
+            strongest.add(number, light, arriving, reached, blocked);
+        }
         LaneMask const bright = reached & ~blocked;
         if (bright == 0) {
             continue;
@@ -150,6 +178,10 @@ void shade(PreparedScene const& scene, SurfacePacket const& s, LaneMask active, 
     out.radiance = s.emissive;
     out.segments = 0;
     out.reflects = 0;
+    StrongestLight strongest;
+    if (scene.moves) {
+        strongest.reset();
+    }
     LaneMask const lit = active & ~s.unlit;
     if (lit != 0) {
         AmbientPacket ambient;
@@ -158,7 +190,10 @@ void shade(PreparedScene const& scene, SurfacePacket const& s, LaneMask active, 
         if (ambient.traced_lanes != 0) {
             out.segments += add_reflections(scene, s, ambient, bounces, out.radiance);
         }
-        out.segments += add_lights(scene, s, lobes, lit, out.radiance);
+        out.segments += add_lights(scene, s, lobes, lit, strongest, out.radiance);
+    }
+    if (scene.moves) {
+        out.lost_light = strongest.lost;
     }
     for_each_lane(active & s.unlit, [&](int i) { out.radiance.set(i, s.base_color.get(i)); });
     if (scene.see_through) {

@@ -41,29 +41,36 @@ void add_background(PreparedScene const& scene, RayPacket const& rays, LaneMask 
     });
 }
 
-void keep_surface(HitPacket const& hits, int i, TracedPacket& out) {
+void keep_surface(HitPacket const& hits, SurfacePacket const& surfaces, ShadedPacket const& shaded, int i,
+                  TracedPacket& out) {
     out.surface.t[i] = hits.t[i];
     out.surface.u[i] = hits.u[i];
     out.surface.v[i] = hits.v[i];
     out.surface.triangle[i] = hits.triangle[i];
     out.surface.geometry[i] = hits.geometry[i];
     out.surface.instance[i] = hits.instance[i];
+    out.lost_light[i] = shaded.lost_light[i];
+    if (shaded.lost_light[i] != no_light) {
+        out.leaving.set(i, surfaces.leaving.get(i));
+        out.facet.set(i, surfaces.geometric_normal.get(i));
+    }
 }
 
 /// Composites opaque surfaces: what they send is all that is seen.
-void add_opaque(ShadedPacket const& shaded, HitPacket const& hits, LaneMask present, bool moves, TracedPacket& out) {
+void add_opaque(ShadedPacket const& shaded, SurfacePacket const& surfaces, HitPacket const& hits, LaneMask present,
+                bool moves, TracedPacket& out) {
     for_each_lane(present, [&](int i) {
         out.radiance.set(i, shaded.radiance.get(i));
         out.depth[i] = hits.t[i];
     });
     if (moves) {
-        for_each_lane(present, [&](int i) { keep_surface(hits, i, out); });
+        for_each_lane(present, [&](int i) { keep_surface(hits, surfaces, shaded, i, out); });
     }
 }
 
 /// Composites surfaces that may be see-through; returns the lanes in which something behind them is still seen.
-LaneMask add_layer(ShadedPacket const& shaded, HitPacket const& hits, LaneMask present, bool moves, Compositing& state,
-                   TracedPacket& out) {
+LaneMask add_layer(ShadedPacket const& shaded, SurfacePacket const& surfaces, HitPacket const& hits, LaneMask present,
+                   bool moves, Compositing& state, TracedPacket& out) {
     LaneMask passed = 0;
     for_each_lane(present, [&](int i) {
         Vec3 const through = state.throughput.get(i);
@@ -75,7 +82,7 @@ LaneMask add_layer(ShadedPacket const& shaded, HitPacket const& hits, LaneMask p
             state.weight[i] = weight;
             out.depth[i] = hits.t[i];
             if (moves) {
-                keep_surface(hits, i, out);
+                keep_surface(hits, surfaces, shaded, i, out);
             }
         }
         passed |= static_cast<LaneMask>(mean(behind) > least_throughput ? 1u : 0u) << i;
@@ -115,9 +122,9 @@ void trace(PreparedScene const& scene, RayPacket& rays, LaneMask active, Footpri
             out.segments += shaded.segments;
             out.reflects |= shaded.reflects;
             if (scene.see_through) {
-                passed |= add_layer(shaded, hits, present, scene.moves, state, out);
+                passed |= add_layer(shaded, surfaces, hits, present, scene.moves, state, out);
             } else {
-                add_opaque(shaded, hits, present, scene.moves, out);
+                add_opaque(shaded, surfaces, hits, present, scene.moves, out);
             }
         }
         LaneMask const culled = hit & ~present;

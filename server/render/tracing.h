@@ -12,6 +12,10 @@ struct TracedPacket {
     LaneVec3 radiance; ///< finite, >= 0
     LaneFloats depth; ///< ray parameter of the surface that contributes most; +infinity where that is the background
     HitPacket surface; ///< that surface, where something in the scene moves; instance `no_instance`: the background
+    /// Of that surface likewise: the light that it has lost to a shadow (as in `ShadedPacket`), and in lanes that have
+    /// lost one where rays leave it and the unit normal of its triangle.
+    LaneIndices lost_light;
+    LaneVec3 leaving, facet;
     LaneMask reflects = 0; ///< lanes that show a traced mirror reflection
     std::uint32_t segments = 0; ///< rays traced for it, shadow and mirror rays included
 };
