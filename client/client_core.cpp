@@ -278,6 +278,12 @@ struct ClientCore::Impl {
         return out;
     }
 
+    /// The server says so of what was asked last, and all of it has come. Under the lock.
+    bool is_settled() const {
+        return status.converged && view.view.number > 0 && status.camera_number == view.view.number &&
+               last_batch >= status.last_batch;
+    }
+
     /// Of what will be the present when the picture is made; not where the scene is to be late anyway.
     PictureRequest picture_request() const {
         std::lock_guard const lock(mutex);
@@ -291,7 +297,8 @@ struct ClientCore::Impl {
                 view.scene_camera,
                 clock.time,
                 static_cast<double>(clock.speed),
-                seconds_between(start, Clock::now())};
+                seconds_between(start, Clock::now()),
+                is_settled()};
     }
 
     /// Under the lock.
@@ -446,8 +453,7 @@ std::optional<std::string> ClientCore::end_reason() const {
 
 bool ClientCore::is_complete() const {
     std::lock_guard const lock(impl_->mutex);
-    return impl_->status.converged && impl_->view.view.number > 0 &&
-           impl_->status.camera_number == impl_->view.view.number && impl_->last_batch >= impl_->status.last_batch &&
+    return impl_->is_settled() &&
            (impl_->has_picture || !impl_->arrived.empty()) &&
            (!impl_->is_smooth || impl_->status.clock.playing || impl_->shown_time == impl_->status.clock.time);
 }

@@ -63,6 +63,13 @@ void PictureMaker::let_go() {
     }
 }
 
+void PictureMaker::settle() {
+    pool_.settle();
+    if (smoother_) {
+        smoother_->settle();
+    }
+}
+
 /// The camera of the request and the present, or what is late by the lag.
 std::pair<Camera, SceneTime> PictureMaker::wanted(PictureRequest const& request) {
     SceneTime time = settings_.scene_moves ? request.present : 0;
@@ -81,6 +88,9 @@ bool PictureMaker::show(PictureRequest const& request, Picture& picture, std::ve
     changed.clear();
     if (is_empty()) {
         return false;
+    }
+    if (request.is_settled || !settings_.reproject) {
+        settle();
     }
     Viewport const size = viewport();
     bool const whole =

@@ -29,6 +29,7 @@ struct PictureRequest {
     SceneTime present = 0; ///< what the scene's clock says
     double clock_speed = 1; ///< scene seconds a second
     double now = 0; ///< seconds of the viewer's own clock
+    bool is_settled = false; ///< all that belongs to a complete picture of this has been inserted
 };
 
 /// What drawing over the picture shows.
@@ -71,6 +72,7 @@ public:
 private:
     void start_smoothing();
     void let_go();
+    void settle();
     std::pair<Camera, SceneTime> wanted(PictureRequest const& request);
 
     PictureSettings settings_;

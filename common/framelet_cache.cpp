@@ -54,44 +54,91 @@ std::uint64_t FrameletCache::covered_below(int depth, int column, int row) const
 }
 
 std::size_t FrameletCache::insert(Batch const& batch) {
+    return insert(batch, {});
+}
+
+std::size_t FrameletCache::insert(Batch const& batch, std::span<std::uint8_t const> chosen) {
     FRAMELET_CHECK(batch.view.viewport == plane_.viewport());
     FRAMELET_CHECK(batch.number > 0); // 0 stands for bare
     FRAMELET_CHECK(batch.shapes.empty() || batch.shapes.size() == batch.framelets.size());
+    FRAMELET_CHECK(chosen.empty() || chosen.size() == batch.framelets.size());
     Moment const moment{batch.number, batch.view.number, batch.scene_time};
-    std::uint32_t const view = view_of(batch);
+    std::uint32_t const view = view_of(batch.view.number, batch.view.camera, batch.scene_time);
     std::size_t taken = 0;
     for (std::size_t i = 0; i < batch.framelets.size(); ++i) {
+        if (!chosen.empty() && chosen[i] == 0) {
+            continue;
+        }
         FrameletShape const* const shape = batch.shapes.empty() ? nullptr : &batch.shapes[i];
         taken += insert_one(batch.framelets[i], shape, moment, view) ? 1 : 0;
     }
     return taken;
 }
 
-/// The entry for the batch's camera and scene time.
-std::uint32_t FrameletCache::view_of(Batch const& batch) {
+void FrameletCache::take(FrameletCache const& other, std::vector<SentTile>& left) {
+    for (std::size_t slot = 0; slot < other.slot_count(); ++slot) {
+        if (CachedFramelet const* const framelet = other.at_slot(slot)) {
+            HeldView const& from = other.views_[framelet->view];
+            if (!take_one(*framelet, view_of(from.number, from.camera, from.scene_time))) {
+                left.push_back({framelet->moment.batch, framelet->tile});
+            }
+        }
+    }
+}
+
+/// The entry for a camera and a scene time.
+std::uint32_t FrameletCache::view_of(std::uint64_t number, Camera const& camera, SceneTime scene_time) {
     std::size_t index = views_.size();
     for (std::size_t i = views_.size(); i-- > 0;) {
         if (views_[i].framelets == 0) {
             index = i;
-        } else if (views_[i].number == batch.view.number && views_[i].scene_time == batch.scene_time) {
+        } else if (views_[i].number == number && views_[i].scene_time == scene_time) {
             return static_cast<std::uint32_t>(i);
         }
     }
     if (index == views_.size()) {
         views_.emplace_back();
     }
-    views_[index] = {batch.view.number, batch.view.camera, batch.scene_time};
+    views_[index] = {number, camera, scene_time};
     return static_cast<std::uint32_t>(index);
 }
 
 bool FrameletCache::insert_one(DisplayFramelet const& framelet, FrameletShape const* shape, Moment const& moment,
                                std::uint32_t view) {
     FRAMELET_CHECK(plane_.accepts(framelet.tile));
-    int const depth = framelet.tile.depth();
-    int const column = static_cast<int>(framelet.tile.column());
-    int const row = static_cast<int>(framelet.tile.row());
-    if (is_hidden(depth, column, row, moment.batch)) {
+    CachedFramelet* const cached = make_place(framelet.tile, moment, view);
+    if (cached == nullptr) {
         return false;
+    }
+    shape_bytes_ -= bytes_behind(cached->shape);
+    hold(framelet, shape, 1 << std::max(framelet.tile.depth() - plane_.pixel_depth(), 0), cached->samples,
+         cached->shape);
+    shape_bytes_ += bytes_behind(cached->shape);
+    note_placed(*cached);
+    return true;
+}
+
+/// Of another cache.
+bool FrameletCache::take_one(CachedFramelet const& framelet, std::uint32_t view) {
+    CachedFramelet* const cached = make_place(framelet.tile, framelet.moment, view);
+    if (cached == nullptr) {
+        return false;
+    }
+    shape_bytes_ -= bytes_behind(cached->shape);
+    cached->samples = framelet.samples;
+    cached->shape = framelet.shape;
+    shape_bytes_ += bytes_behind(cached->shape);
+    note_placed(*cached);
+    return true;
+}
+
+/// For a framelet whose samples and shape are still to come; null where nothing of it would show.
+CachedFramelet* FrameletCache::make_place(Tile tile, Moment const& moment, std::uint32_t view) {
+    int const depth = tile.depth();
+    int const column = static_cast<int>(tile.column());
+    int const row = static_cast<int>(tile.row());
+    if (is_hidden(depth, column, row, moment.batch)) {
+        return nullptr;
     }
     drop_older_below(depth, column, row, moment.batch);
     Node& own = node(depth, column, row);
@@ -101,23 +148,27 @@ bool FrameletCache::insert_one(DisplayFramelet const& framelet, FrameletShape co
     own.slot = take_slot();
     ++count_;
     CachedFramelet& cached = held(own.slot);
-    cached.tile = framelet.tile;
-    slot_tiles_[static_cast<std::size_t>(own.slot)] = framelet.tile;
-    set_version(framelet.tile, changes_ + 1);
+    cached.tile = tile;
+    slot_tiles_[static_cast<std::size_t>(own.slot)] = tile;
+    set_version(tile, changes_ + 1);
     cached.moment = moment;
     cached.view = view;
-    shape_bytes_ -= bytes_behind(cached.shape);
-    hold(framelet, shape, 1 << std::max(depth - plane_.pixel_depth(), 0), cached.samples, cached.shape);
-    shape_bytes_ += bytes_behind(cached.shape);
-    ++views_[view].framelets;
-    views_[view].moving_framelets += cached.shape.moves ? 1 : 0;
+    return &cached;
+}
+
+/// After its samples and shape have come.
+void FrameletCache::note_placed(CachedFramelet const& cached) {
+    int const depth = cached.tile.depth();
+    int const column = static_cast<int>(cached.tile.column());
+    int const row = static_cast<int>(cached.tile.row());
+    ++views_[cached.view].framelets;
+    views_[cached.view].moving_framelets += cached.shape.moves ? 1 : 0;
     refresh(depth, column, row);
     for (int d = depth - 1; d >= plane_.min_depth(); --d) {
         refresh(d, column >> (depth - d), row >> (depth - d));
     }
-    mark(plane_.tile_rect(framelet.tile));
-    mark_neighbours(framelet.tile, moment);
-    return true;
+    mark(plane_.tile_rect(cached.tile));
+    mark_neighbours(cached.tile, cached.moment);
 }
 
 /// Nothing of a framelet would show: something at least as new lies over it or the newer ones below it leave no gap.

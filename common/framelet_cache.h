@@ -79,6 +79,10 @@ public:
     /// batch's viewport must be the cache's and every tile one that the plane accepts. Work is proportional to the
     /// batch; nothing is allocated unless more framelets are held than ever before.
     std::size_t insert(Batch const& batch);
+    /// Only those of its framelets for which `chosen` is not 0.
+    std::size_t insert(Batch const& batch, std::span<std::uint8_t const> chosen);
+    /// As if what another cache of this plane holds had been inserted. Appends what of it is not taken.
+    void take(FrameletCache const& other, std::vector<SentTile>& left);
 
     /// Nothing is held any more.
     void clear();
@@ -166,7 +170,10 @@ private:
 
     bool insert_one(DisplayFramelet const& framelet, FrameletShape const* shape, Moment const& moment,
                     std::uint32_t view);
-    std::uint32_t view_of(Batch const& batch);
+    bool take_one(CachedFramelet const& framelet, std::uint32_t view);
+    CachedFramelet* make_place(Tile tile, Moment const& moment, std::uint32_t view);
+    void note_placed(CachedFramelet const& cached);
+    std::uint32_t view_of(std::uint64_t number, Camera const& camera, SceneTime scene_time);
     bool is_hidden(int depth, int column, int row, std::uint64_t batch) const;
     void drop_older_below(int depth, int column, int row, std::uint64_t batch);
     void drop(Node& node);

@@ -3,6 +3,7 @@
 // one homography, and its depth costs a few bytes for all of its samples.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -44,6 +45,11 @@ struct LooseSample {
     bool operator==(LooseSample const&) const = default;
 };
 
+/// Whether what is carried so may be elsewhere at another time.
+inline bool moves(BodyNumber body, Vec3 const& velocity) {
+    return body != static_body || velocity != Vec3(0);
+}
+
 struct FrameletShape {
     static constexpr std::uint8_t loose = max_layers;
 
@@ -54,6 +60,13 @@ struct FrameletShape {
     std::array<std::uint8_t, framelet_samples> layer_of{};
     /// Those that are `loose`, in Morton order.
     std::vector<LooseSample> loose_samples;
+
+    /// Whether something in it may be elsewhere at another time.
+    bool moves() const {
+        auto const one_moves = [](auto const& one) { return framelet::moves(one.body, one.velocity); };
+        return std::any_of(layers.begin(), layers.begin() + layer_count, one_moves) ||
+               std::any_of(loose_samples.begin(), loose_samples.end(), one_moves);
+    }
 
     bool operator==(FrameletShape const&) const = default;
 };

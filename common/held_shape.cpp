@@ -173,31 +173,23 @@ void hold_boxes(PackedSample const* grid, HeldShape& held) {
     }
 }
 
-bool moves(BodyNumber body, Vec3 const& velocity) {
-    return body != static_body || velocity != Vec3(0);
-}
-
 } // namespace
 
 void hold(DisplayFramelet const& framelet, FrameletShape const* shape, int samples_per_pixel, Samples& samples,
           HeldShape& held) {
+    FRAMELET_CHECK(shape == nullptr || shape->layer_count <= max_layers);
     pack_rows(framelet, shape, samples);
     held.layer_count = shape == nullptr ? 1 : shape->layer_count;
     held.side = static_cast<std::uint8_t>(framelet_side / samples_per_pixel);
-    held.moves = false;
+    held.moves = shape != nullptr && shape->moves();
     held.fading = shape == nullptr ? FadingCode{0} : shape->fading;
     held.layers.fill({});
     held.loose.clear();
     if (shape != nullptr) {
-        FRAMELET_CHECK(shape->layer_count <= max_layers);
         for (std::size_t i = 0; i < shape->layer_count; ++i) {
             held.layers[i].layer = shape->layers[i];
-            held.moves |= moves(shape->layers[i].body, shape->layers[i].velocity);
         }
         hold_loose(*shape, held.loose);
-        held.moves |= std::any_of(held.loose.begin(), held.loose.end(), [](HeldLoose const& loose) {
-            return moves(loose.sample.body, loose.sample.velocity);
-        });
     }
     held.reduced.fill(0);
     bool const mixed = held.layer_count != 1 || !held.loose.empty();

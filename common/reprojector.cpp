@@ -149,10 +149,10 @@ void write_plane(std::array<float, WarpedBlock::pixels> const& from, int left, i
 
 } // namespace
 
-/// All that is held stays where it is, and no older moment may have what the newest one lacks.
+/// All that is held stays where it is, and no other moment may have what the base of the newest camera lacks.
 bool Reprojector::is_in_place(FrameletPool const& pool, Camera const& camera, SceneTime scene_time) const {
     FrameletCache const& newest = pool.newest();
-    return is_all_in_place(newest, camera, scene_time) &&
+    return !pool.has_moving() && is_all_in_place(newest, camera, scene_time) &&
            (pool.framelet_count() == newest.framelet_count() || newest.is_covered_from(newest.plane().pixel_depth()));
 }
 
@@ -250,17 +250,16 @@ bool Reprojector::update_block(FrameletPool const& pool, Camera const& camera, S
     FrameletCache const& newest = pool.newest();
     patches.clear();
     plans_[pool.newest_slot()].add_block(index, patches);
-    auto const newest_patches = static_cast<std::ptrdiff_t>(patches.size());
+    std::size_t const newest_patches = patches.size();
     bool in_place = std::ranges::all_of(patches, [](PatchView const& view) { return view.patch->is_still; }) &&
                     is_block_in_place(newest, camera, scene_time, motions, column, row);
-    if (!in_place || newest.covered_below(newest.plane().pixel_depth() - 1, column / 2, row / 2) == 0) {
-        for (std::size_t i = 0; i < pool.slot_count(); ++i) {
-            if (i != pool.newest_slot()) {
-                plans_[i].add_block(index, patches);
-            }
+    bool const all = !in_place || newest.covered_below(newest.plane().pixel_depth() - 1, column / 2, row / 2) == 0;
+    for (std::size_t i = 0; i < pool.slot_count(); ++i) {
+        if (pool.belongs_to_base(i) || (all && i != pool.newest_slot())) {
+            plans_[i].add_block(index, patches);
         }
-        in_place = in_place && static_cast<std::ptrdiff_t>(patches.size()) == newest_patches;
     }
+    in_place = in_place && patches.size() == newest_patches;
     order(patches);
     std::uint64_t const signature = signature_of(patches, in_place);
     if (signature == blocks_[index].signature) {

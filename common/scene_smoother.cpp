@@ -76,6 +76,24 @@ void SceneSmoother::take_due(SceneTime scene_time) {
         older_pool_.insert(batch);
         return true;
     });
+    older_pool_.take_let_go(let_go_);
+}
+
+void SceneSmoother::settle() {
+    if (waiting_.empty()) {
+        older_pool_.settle();
+    }
+}
+
+/// `changed`: of the base.
+void SceneSmoother::update_times(FrameletPool const& pool, std::span<PixelRect const> changed, Side& side) const {
+    update_shown_times(pool.newest(), changed, side.base_times);
+    side.times = side.base_times;
+    for (std::size_t i = 0; i < pool.slot_count(); ++i) {
+        if (pool.belongs_to_base(i)) {
+            add_later_times(pool.slot(i), side.times);
+        }
+    }
 }
 
 void SceneSmoother::mark(std::vector<PixelRect> const& rects, std::vector<std::uint8_t>& flags) const {
@@ -120,7 +138,7 @@ void SceneSmoother::show(FrameletPool const& newest, std::span<PixelRect const> 
     take_due(scene_time);
     newer_.reprojector.show(newest, changed, camera, scene_time, motions, newer_.picture, newer_.repainted);
     mark(newer_.repainted, dirty_);
-    update_shown_times(newest.newest(), changed, newer_.times);
+    update_times(newest, changed, newer_);
     if (waiting_.empty()) { // the two caches show the same
         std::ranges::fill(shares_, whole_share);
     } else {
@@ -128,7 +146,7 @@ void SceneSmoother::show(FrameletPool const& newest, std::span<PixelRect const> 
         older_.reprojector.show(older_pool_, changed_, camera, scene_time, motions, older_.picture, older_.repainted);
         older_pool_.note_shown(older_.reprojector.shown_blocks());
         mark(older_.repainted, dirty_);
-        update_shown_times(older_pool_.newest(), changed_, older_.times);
+        update_times(older_pool_, changed_, older_);
         mix_shares(older_.times, newer_.times, columns_, scene_time, lag, shares_);
     }
     tbb::parallel_for(std::size_t{0}, shares_.size(), [&](std::size_t index) { mix_block(index, picture); });

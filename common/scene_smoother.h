@@ -22,6 +22,8 @@ public:
 
     /// Takes what the cache that `show` is given has taken, or is about to take.
     void insert(Batch const& batch);
+    /// As `FrameletPool::settle`, once all that came is shown.
+    void settle();
 
     /// As `Reprojector::show`; `newest` holds all that was inserted, and perhaps more. `lag`, >= 0, is how many seconds
     /// `scene_time` is behind the scene's clock: a change takes no longer, since what changes for the first time in
@@ -45,13 +47,15 @@ private:
     struct Side {
         Reprojector reprojector;
         Picture picture;
-        ShownTimes times;
+        ShownTimes base_times; ///< of the base of the newest camera
+        ShownTimes times; ///< of all that it sees
         std::vector<PixelRect> repainted;
 
         MixSource source() const;
     };
 
     void take_due(SceneTime scene_time);
+    void update_times(FrameletPool const& pool, std::span<PixelRect const> changed, Side& side) const;
     void mark(std::vector<PixelRect> const& rects, std::vector<std::uint8_t>& flags) const;
     void mix_block(std::size_t index, Picture& picture);
     PixelRect block_rect(std::size_t index) const;
@@ -64,6 +68,7 @@ private:
     SceneTime shown_time_ = 0;
     Side older_, newer_;
     std::vector<PixelRect> changed_; ///< scratch: of the older cache
+    std::vector<SentTile> let_go_; ///< scratch: nobody is to know
     // Of blocks of 16x16 pixels, in rows.
     std::vector<MixShare> shares_, shown_shares_;
     std::vector<std::uint8_t> dirty_; ///< one of the two pictures has changed

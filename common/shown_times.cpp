@@ -1,5 +1,6 @@
 #include "common/shown_times.h"
 
+#include <algorithm>
 #include <cstddef>
 
 namespace framelet {
@@ -44,6 +45,26 @@ std::optional<SceneTime> time_of_block(FrameletCache const& cache, int column, i
 }
 
 } // namespace
+
+void add_later_times(FrameletCache const& cache, ShownTimes& times) {
+    Viewport const viewport = cache.plane().viewport();
+    int const columns = (viewport.width + side - 1) / side;
+    for (std::size_t slot = 0; slot < cache.slot_count(); ++slot) {
+        CachedFramelet const* const framelet = cache.at_slot(slot);
+        if (framelet == nullptr) {
+            continue;
+        }
+        PixelRect const rect = cache.plane().tile_rect(framelet->tile);
+        for (int row = rect.top / side; row * side < std::min(rect.bottom, viewport.height); ++row) {
+            for (int column = rect.left / side; column * side < std::min(rect.right, viewport.width); ++column) {
+                std::optional<SceneTime>& time =
+                    times[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+                          static_cast<std::size_t>(column)];
+                time = std::max(time.value_or(framelet->moment.scene_time), framelet->moment.scene_time);
+            }
+        }
+    }
+}
 
 void update_shown_times(FrameletCache const& cache, std::span<PixelRect const> changed, ShownTimes& times) {
     Viewport const viewport = cache.plane().viewport();

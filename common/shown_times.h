@@ -17,4 +17,7 @@ using ShownTimes = std::vector<std::optional<SceneTime>>;
 /// cache's, it is made anew as a whole.
 void update_shown_times(FrameletCache const& cache, std::span<PixelRect const> changed, ShownTimes& times);
 
+/// Blocks in which a framelet of the cache lies that is later than their time get its time.
+void add_later_times(FrameletCache const& cache, ShownTimes& times);
+
 } // namespace framelet

@@ -7,59 +7,132 @@
 
 namespace framelet {
 
+namespace {
+
+bool moves(Batch const& batch) {
+    return std::ranges::any_of(batch.shapes, &FrameletShape::moves);
+}
+
+} // namespace
+
 FrameletPool::FrameletPool(ImagePlane plane) : plane_(plane) {
     slots_.push_back({std::make_unique<FrameletCache>(plane), {}});
 }
 
 /// Samples that cannot be moved share a cache with those of any camera.
-bool FrameletPool::begins_moment(Batch const& batch) const {
-    Slot const& slot = slots_[newest_];
+bool FrameletPool::begins_base(Batch const& batch) const {
+    Slot const& slot = slots_[base_];
     return moments_ == 0 || (!(slot.camera == batch.view.camera) && is_reprojectable(batch.view.camera) &&
                              is_reprojectable(slot.camera));
 }
 
+bool FrameletPool::begins_moment(Batch const& batch) const {
+    return begins_base(batch) || (moving_slot(batch.scene_time) == slots_.size() &&
+                                  is_reprojectable(batch.view.camera) && moves(batch));
+}
+
+bool FrameletPool::has_moving() const {
+    for (std::size_t i = 0; i < slots_.size(); ++i) {
+        if (belongs_to_base(i) && slots_[i].cache->framelet_count() > 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
 bool FrameletPool::is_recent(std::size_t slot) const {
-    return slots_[slot].begun + recent_moments > moments_;
+    return slot == base_ || slots_[slot].begun + recent_moments > moments_;
 }
 
 bool FrameletPool::is_tried(std::size_t slot) const {
-    return slots_[slot].begun + untried_moments <= moments_;
+    return slot != base_ && slots_[slot].begun + untried_moments <= moments_;
 }
 
 std::size_t FrameletPool::insert(Batch const& batch, bool begins_moments) {
-    if (moments_ == 0 || (begins_moments && begins_moment(batch))) {
-        begin_moment(batch.view.camera);
+    if (moments_ == 0 || (begins_moments && begins_base(batch))) {
+        base_ = begin_slot(batch);
     }
-    slots_[newest_].camera = batch.view.camera;
-    return slots_[newest_].cache->insert(batch);
+    Slot& base = slots_[base_];
+    base.camera = batch.view.camera;
+    bool const splits = begins_moments && base.scene_time != batch.scene_time && is_reprojectable(base.camera);
+    return splits && moves(batch) ? insert_moving(batch) : base.cache->insert(batch);
 }
 
-/// A new one, or that of which least shows, the oldest of those.
+/// What moves into the slot of its time, the rest into the base.
+std::size_t FrameletPool::insert_moving(Batch const& batch) {
+    stands_.clear();
+    moves_.clear();
+    for (FrameletShape const& shape : batch.shapes) {
+        bool const moves = shape.moves();
+        moves_.push_back(moves ? 1 : 0);
+        stands_.push_back(moves ? 0 : 1);
+    }
+    std::size_t slot = moving_slot(batch.scene_time);
+    if (slot == slots_.size()) {
+        slot = begin_slot(batch);
+    }
+    return slots_[base_].cache->insert(batch, stands_) + slots_[slot].cache->insert(batch, moves_);
+}
+
+/// Where what moves before the newest camera is held; `slot_count()` where it has no slot yet.
+std::size_t FrameletPool::moving_slot(SceneTime scene_time) const {
+    for (std::size_t i = 0; i < slots_.size(); ++i) {
+        if ((i == base_ || belongs_to_base(i)) && slots_[i].scene_time == scene_time) {
+            return i;
+        }
+    }
+    return slots_.size();
+}
+
+void FrameletPool::settle() {
+    Slot& base = slots_[base_];
+    std::uint64_t newest = base.begun;
+    for (std::size_t i = 0; i < slots_.size(); ++i) {
+        if (!belongs_to_base(i)) {
+            continue;
+        }
+        Slot& slot = slots_[i];
+        base.cache->take(*slot.cache, let_go_);
+        if (slot.begun > newest) {
+            newest = slot.begun;
+            base.scene_time = slot.scene_time;
+        }
+        slot.cache->clear();
+        slot.begun = 0;
+    }
+}
+
+/// One that is free, a new one, or that of which least shows, the oldest of those.
 std::size_t FrameletPool::free_slot() {
-    if (moments_ == 0) {
-        return 0;
+    auto const free = std::ranges::find(slots_, 0u, &Slot::begun);
+    if (free != slots_.end()) {
+        return static_cast<std::size_t>(free - slots_.begin());
     }
     if (slots_.size() < most_moments) {
         slots_.push_back({std::make_unique<FrameletCache>(plane_), {}});
         return slots_.size() - 1;
     }
-    auto const is_untried = [this](Slot const& slot) {
-        return !is_tried(static_cast<std::size_t>(&slot - slots_.data()));
+    auto const rank = [this](Slot const& slot) {
+        auto const index = static_cast<std::size_t>(&slot - slots_.data());
+        return std::tuple(index == base_, !is_tried(index), slot.shown, slot.begun);
     };
-    auto const goes_first = [&](Slot const& a, Slot const& b) {
-        return std::tuple(is_untried(a), a.shown, a.begun) < std::tuple(is_untried(b), b.shown, b.begun);
-    };
+    auto const goes_first = [&](Slot const& a, Slot const& b) { return rank(a) < rank(b); };
     return static_cast<std::size_t>(std::ranges::min_element(slots_, goes_first) - slots_.begin());
 }
 
-void FrameletPool::begin_moment(Camera const& camera) {
-    newest_ = free_slot();
-    Slot& slot = slots_[newest_];
+std::size_t FrameletPool::begin_slot(Batch const& batch) {
+    if (begins_base(batch)) {
+        slots_[base_].begun = moments_; // what the last camera saw is as recent as what moved before it
+    }
+    std::size_t const index = free_slot();
+    Slot& slot = slots_[index];
     slot.cache->add_held(let_go_);
     slot.cache->clear();
+    slot.camera = batch.view.camera;
+    slot.scene_time = batch.scene_time;
     slot.begun = ++moments_;
     slot.shown = 0;
-    slot.camera = camera;
+    return index;
 }
 
 void FrameletPool::take_let_go(std::vector<SentTile>& framelets) {

@@ -1,6 +1,7 @@
-// What a viewer holds that moves its samples: the framelets of several moments, a cache for each camera that they were
-// rendered from. What is held stays until something better has come, wherever it lies in the picture by then. In:
-// batches in the order in which they were sent. Out: caches, from all of which a picture is made.
+// What a viewer holds that moves its samples: the framelets of several moments. Each camera has a cache, its base, for
+// what stands; what moves before a camera that stands has a cache for each scene time. What is held stays until
+// something better has come, wherever it lies in the picture by then. In: batches in the order in which they were sent.
+// Out: caches, from all of which a picture is made.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +14,8 @@
 namespace framelet {
 
 /// A moment's framelets keep their slot as long as they are held. When the slots are used up the moment goes of which
-/// the last pictures showed least.
+/// the last pictures showed least, but never the newest camera's base: what something covers for a while is needed when
+/// that has gone by.
 class FrameletPool {
 public:
     /// Where things move there are some ten moments a second; a picture shows more than a second of them.
@@ -27,24 +29,34 @@ public:
 
     ImagePlane const& plane() const { return plane_; }
 
-    /// As `FrameletCache::insert`. `begins_moments`: where its camera is another than the last batch's, which samples
-    /// that are not to be moved make no use of: then the newest of a place are held, whatever their cameras.
+    /// As `FrameletCache::insert`. `begins_moments`: where its camera is another than the last batch's, and where
+    /// something moves before the same one, which samples that are not to be moved make no use of: then the newest of a
+    /// place are held, whatever their cameras and times.
     std::size_t insert(Batch const& batch, bool begins_moments = true);
 
     /// True where `insert` would begin a moment.
     bool begins_moment(Batch const& batch) const;
 
+    /// All of the newest camera is of one moment by now: the newest of each place are held in its base, as if all its
+    /// batches had been inserted there.
+    void settle();
+
     /// The caches by slot.
     std::size_t slot_count() const { return slots_.size(); }
     FrameletCache const& slot(std::size_t index) const { return *slots_[index].cache; }
-    /// The slot of the moment that began last.
-    std::size_t newest_slot() const { return newest_; }
-    FrameletCache const& newest() const { return slot(newest_); }
-    FrameletCache& newest() { return *slots_[newest_].cache; }
+    /// The base of the newest camera.
+    std::size_t newest_slot() const { return base_; }
+    FrameletCache const& newest() const { return slot(base_); }
+    FrameletCache& newest() { return *slots_[base_].cache; }
 
-    /// Whether it is one of the last few.
+    /// Whether it has what the newest camera saw moving since its base began.
+    bool belongs_to_base(std::size_t slot) const { return slots_[slot].begun > slots_[base_].begun; }
+    /// Whether anything is held in such slots.
+    bool has_moving() const;
+    /// Whether it is one of the last few, or the newest camera's base.
     bool is_recent(std::size_t slot) const;
-    /// Whether the slot's moment has been shown long enough to tell what of it is of no use.
+    /// Whether the slot's moment has been shown long enough to tell what of it is of no use. Never true of the base of
+    /// the newest camera.
     bool is_tried(std::size_t slot) const;
     /// Nothing else of the slot is held any more.
     void keep(std::size_t slot, std::span<Tile const> tiles) { slots_[slot].cache->keep(tiles, let_go_); }
@@ -62,18 +74,23 @@ private:
     struct Slot {
         std::unique_ptr<FrameletCache> cache;
         Camera camera; ///< of its framelets
-        std::uint64_t begun = 0; ///< counts moments
+        SceneTime scene_time = 0; ///< of those of its framelets in which something moves
+        std::uint64_t begun = 0; ///< counts moments; 0: free
         std::uint32_t shown = 0; ///< blocks of the last picture
     };
 
+    bool begins_base(Batch const& batch) const;
+    std::size_t moving_slot(SceneTime scene_time) const;
     std::size_t free_slot();
-    void begin_moment(Camera const& camera);
+    std::size_t begin_slot(Batch const& batch);
+    std::size_t insert_moving(Batch const& batch);
 
     ImagePlane plane_;
     std::vector<Slot> slots_;
-    std::size_t newest_ = 0;
+    std::size_t base_ = 0;
     std::uint64_t moments_ = 0;
     std::vector<SentTile> let_go_;
+    std::vector<std::uint8_t> stands_, moves_; ///< scratch: flags of a batch's framelets
 };
 
 } // namespace framelet

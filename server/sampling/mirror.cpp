@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #include <glm/matrix.hpp>
 
@@ -78,8 +79,11 @@ std::size_t Mirror::moment_count() const {
 
 void Mirror::look(MirrorView const& view, BodyMotions const& motions) {
     target_ = view;
-    auto const newest = std::ranges::max_element(moments_, {}, &Moment::number);
-    awaits_moment_ = newest->number > 0 && !same_camera(newest->rays, view.rays);
+    if (std::exchange(settles_, false)) {
+        settle_now();
+    }
+    Moment const& base = moments_[base_];
+    awaits_moment_ = base.number > 0 && (!same_camera(base.rays, view.rays) || last_number_ > base.number);
     std::ranges::fill(cells_, Cell{});
     erase_forgotten();
     for (Moment& moment : moments_) {
@@ -100,7 +104,7 @@ void Mirror::erase_forgotten() {
         std::erase_if(moment.pieces, [&](Piece const& piece) {
             return piece.is_replaced || forgotten_.contains(key_of(piece.of));
         });
-        if (moment.pieces.empty()) {
+        if (moment.pieces.empty() && &moment != &moments_[base_]) {
             moment.number = 0;
         }
     }
@@ -111,29 +115,80 @@ void Mirror::add(ViewRays const& rays, BodyMotions const& motions, std::span<Pie
     if (pieces.empty()) {
         return;
     }
-    Moment& moment = slot_of(rays);
+    SceneTime const scene_time = pieces.front().scene_time;
+    if (moments_[base_].number == 0 || !same_camera(moments_[base_].rays, rays)) {
+        begin_base(rays, scene_time);
+    }
+    standing_.clear();
+    moving_.clear();
+    for (Piece const& piece : pieces) {
+        bool const stands = !piece.moves || moments_[base_].scene_time == scene_time;
+        (stands ? standing_ : moving_).push_back(piece);
+    }
+    add_to(moments_[base_], motions, standing_);
+    if (!moving_.empty()) {
+        add_to(slot_of_moving(scene_time), motions, moving_);
+    }
+}
+
+void Mirror::add_to(Moment& moment, BodyMotions const& motions, std::span<Piece const> pieces) {
     replace(moment, pieces);
     std::size_t const first = moment.pieces.size();
     moment.pieces.insert(moment.pieces.end(), pieces.begin(), pieces.end());
     place(moment, first, motions);
 }
 
-/// Of the newest moment; or where that is of another camera a free one.
-Mirror::Moment& Mirror::slot_of(ViewRays const& rays) {
-    auto const newest = std::ranges::max_element(moments_, {}, &Moment::number);
-    if (newest->number > 0 && same_camera(newest->rays, rays)) {
-        return *newest;
+void Mirror::begin_base(ViewRays const& rays, SceneTime scene_time) {
+    if (moments_[base_].number > 0) {
+        moments_[base_].number = last_number_; // what the last camera saw is as recent as what moved before it
     }
-    Moment& free = free_slot();
-    free.rays = rays;
-    free.number = ++last_number_;
-    awaits_moment_ = false;
-    return free;
+    base_ = static_cast<std::size_t>(&begin_slot(rays, scene_time) - moments_.data());
 }
 
-/// When all are used, the oldest moment's.
+/// Of the newest camera, after its base began.
+Mirror::Moment& Mirror::slot_of_moving(SceneTime scene_time) {
+    auto const found = std::ranges::find_if(moments_, [&](Moment const& moment) {
+        return belongs_to_base(moment) && moment.scene_time == scene_time;
+    });
+    return found != moments_.end() ? *found : begin_slot(moments_[base_].rays, scene_time);
+}
+
+Mirror::Moment& Mirror::begin_slot(ViewRays const& rays, SceneTime scene_time) {
+    Moment& slot = free_slot();
+    slot.rays = rays;
+    slot.scene_time = scene_time;
+    slot.number = ++last_number_;
+    awaits_moment_ = false;
+    return slot;
+}
+
+/// All of the newest camera into its base. What shows is not known until the next look.
+void Mirror::settle_now() {
+    Moment& base = moments_[base_];
+    std::uint64_t newest = base.number;
+    for (Moment& moment : moments_) {
+        if (!belongs_to_base(moment)) {
+            continue;
+        }
+        base.pieces.insert(base.pieces.end(), moment.pieces.begin(), moment.pieces.end());
+        if (moment.number > newest) {
+            newest = moment.number;
+            base.scene_time = moment.scene_time;
+        }
+        moment.pieces.clear();
+        moment.placed.clear();
+        moment.number = 0;
+    }
+    base.number = newest;
+    replace(base, base.pieces);
+}
+
+/// When all are used, the oldest moment's, but not the base.
 Mirror::Moment& Mirror::free_slot() {
-    Moment& free = *std::ranges::min_element(moments_, {}, &Moment::number);
+    auto const rank = [this](Moment const& moment) {
+        return std::pair(moment.number > 0 && &moment == &moments_[base_], moment.number);
+    };
+    Moment& free = *std::ranges::min_element(moments_, {}, rank);
     if (free.number > 0) {
         for (Cell& cell : cells_) {
             cell = cell.is_shown() && &moments_[cell.moment] == &free ? Cell{} : cell;
@@ -145,28 +200,28 @@ Mirror::Moment& Mirror::free_slot() {
     return free;
 }
 
-/// What a viewer holds of one moment is the newest at each place: the older goes.
+/// What a viewer holds of one moment is the newest at each place: what is older than these goes.
 void Mirror::replace(Moment& moment, std::span<Piece const> pieces) {
-    auto const is_older = [&](Piece const& piece) { return piece.of.batch < pieces.front().of.batch; };
-    if (std::ranges::none_of(moment.pieces, is_older)) {
+    if (moment.pieces.empty() || pieces.empty()) {
         return;
     }
     auto const clamped = [](float pixel, int count) {
         return std::clamp(static_cast<int>(std::floor(pixel)) / cell_side, 0, count - 1);
     };
-    replaced_.assign(cells_.size(), 0);
+    newest_batch_.assign(cells_.size(), 0);
     for (Piece const& piece : pieces) {
         Vec2 const low = piece.centre - piece.half_side + 0.1f;
         Vec2 const high = piece.centre + piece.half_side - 0.1f;
         for (int row = clamped(low.y, rows_); row <= clamped(high.y, rows_); ++row) {
             for (int column = clamped(low.x, columns_); column <= clamped(high.x, columns_); ++column) {
-                replaced_[index_of(column, row)] = 1;
+                std::uint64_t& newest = newest_batch_[index_of(column, row)];
+                newest = std::max(newest, piece.of.batch);
             }
         }
     }
     for (Piece& piece : moment.pieces) {
         std::size_t const cell = index_of(clamped(piece.centre.x, columns_), clamped(piece.centre.y, rows_));
-        piece.is_replaced = piece.is_replaced || (is_older(piece) && replaced_[cell] != 0);
+        piece.is_replaced = piece.is_replaced || piece.of.batch < newest_batch_[cell];
     }
 }
 
@@ -195,9 +250,9 @@ Mirror::TurnedBody const& Mirror::turn_to(Moment const& moment, Piece const& pie
     return turned;
 }
 
-/// What is loose shows of the newest moments only, of which one may be still to come.
+/// What is loose shows of the base and of the newest moments only, of which one may be still to come.
 bool Mirror::shows_loose(Moment const& moment) const {
-    return moment.number + FrameletPool::recent_moments > last_number_ + (awaits_moment_ ? 1 : 0);
+    return &moment == &moments_[base_] || moment.number + FrameletPool::recent_moments > last_number_ + (awaits_moment_ ? 1 : 0);
 }
 
 /// Of a moment, from piece `first` on.

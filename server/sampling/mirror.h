@@ -58,8 +58,9 @@ public:
     Vec2 place_of(Cell const& cell) const { return moments_[cell.moment].placed[cell.piece].at; }
     float scale_of(Cell const& cell) const { return moments_[cell.moment].placed[cell.piece].scale; }
     SceneTime time_of(Cell const& cell) const { return piece_of(cell).scene_time; }
-    /// True where a new framelet takes the place of what shows, be it better or not: it is of the same camera.
-    bool gives_way(Cell const& cell) const { return moments_[cell.moment].is_of_camera; }
+    /// True where a new framelet takes the place of what shows, be it better or not: it is of the base of the camera
+    /// that is looked through.
+    bool gives_way(Cell const& cell) const { return cell.moment == base_ && moments_[base_].is_of_camera; }
     /// True when the picture is of this moment.
     bool looks_at(MirrorView const& view) const;
 
@@ -67,6 +68,8 @@ public:
     void look(MirrorView const& view, BodyMotions const& motions);
     /// The viewer gets these pieces, of one camera and one time, as well: they are remembered, and seen at once.
     void add(ViewRays const& rays, BodyMotions const& motions, std::span<Piece const> pieces);
+    /// The viewer settles (`FrameletPool::settle`); from the next look on.
+    void settle() { settles_ = true; }
 
     /// The viewer has let go of these; from the next look on.
     void forget(std::span<SentTile const> framelets);
@@ -87,6 +90,7 @@ private:
     };
     struct Moment {
         ViewRays rays;
+        SceneTime scene_time = 0; ///< of pieces that move
         std::uint64_t number = 0; ///< in order of their coming; 0: free
         std::vector<Piece> pieces;
         std::vector<Placed> placed; ///< one each
@@ -106,7 +110,12 @@ private:
     }
     void erase_forgotten();
     void replace(Moment& moment, std::span<Piece const> pieces);
-    Moment& slot_of(ViewRays const& rays);
+    void add_to(Moment& moment, BodyMotions const& motions, std::span<Piece const> pieces);
+    bool belongs_to_base(Moment const& moment) const { return moment.number > moments_[base_].number; }
+    void settle_now();
+    void begin_base(ViewRays const& rays, SceneTime scene_time);
+    Moment& slot_of_moving(SceneTime scene_time);
+    Moment& begin_slot(ViewRays const& rays, SceneTime scene_time);
     Moment& free_slot();
     TurnedBody const& turn_to(Moment const& moment, Piece const& piece, BodyMotions const& motions);
     void place(Moment& moment, std::size_t first, BodyMotions const& motions);
@@ -123,10 +132,13 @@ private:
     std::array<Moment, 2 * FrameletPool::most_moments> moments_;
     std::unordered_set<std::uint64_t> forgotten_; ///< keys of framelets
     std::uint64_t last_number_ = 0;
+    std::size_t base_ = 0; ///< slot of what stands before the newest camera
+    bool settles_ = false;
     MirrorView target_;
-    bool awaits_moment_ = false; ///< nothing has come yet of the camera that is looked through
+    bool awaits_moment_ = false; ///< nothing has come yet of the moment that is looked at
 
-    std::vector<std::uint8_t> replaced_; ///< by cell
+    std::vector<std::uint64_t> newest_batch_; ///< by cell
+    std::vector<Piece> standing_, moving_; ///< scratch
     std::vector<TurnedBody> turned_; ///< by body
     std::uint64_t stamp_ = 0;
 };

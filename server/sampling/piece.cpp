@@ -140,6 +140,7 @@ void cut_pieces(Framelet const& rendered, DisplayFramelet const& shown, Framelet
     float const spacing = plane.sample_spacing(shown.tile);
     auto const parts = static_cast<std::uint32_t>(rect.width() / part_side(rect.width()));
     std::uint32_t const count = framelet_samples / (parts * parts);
+    bool const moves = shape.moves();
     auto loose = shape.loose_samples.begin();
     for (std::uint32_t first = 0; first < framelet_samples; first += count) {
         float const local =
@@ -160,6 +161,7 @@ void cut_pieces(Framelet const& rendered, DisplayFramelet const& shown, Framelet
                 pieces.push_back(piece_of(sum, corner, spacing, detail));
                 pieces.back().scene_time = scene_time;
                 pieces.back().of = {batch, shown.tile};
+                pieces.back().moves = moves;
                 put(pieces.back());
             }
         };

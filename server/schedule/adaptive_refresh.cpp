@@ -23,8 +23,6 @@ constexpr double most_unseen = 0.5;
 constexpr float enough = 5e-5f;
 /// The samples of so many seconds are planned together: what they cannot do at their price can wait.
 constexpr double planned_seconds = 0.2;
-/// A camera that has not moved for so many seconds stands.
-constexpr double camera_rest = 0.3;
 /// A scene time that jumps by more than this over what has passed has been set.
 constexpr double most_time_step = 0.5;
 
@@ -136,11 +134,7 @@ void AdaptiveRefresh::plan(RefreshInput const& input, RefreshPlan& plan) {
     plan.moment_begun = moment.begun;
     plan.moment = {make_view_rays(view.camera, view.viewport), moment.state.scene_time,
                    is_reprojectable(view.camera) ? input.motions : nullptr};
-    // Where the camera stands what a place shows is what was rendered there last: nothing is gained by the mirror.
-    if (!seen_ || !(seen_->view.camera == input.state.view.camera)) {
-        camera_moved_ = input.now;
-    }
-    plan.is_mirrored = input.moment && plan.moment.motions != nullptr && input.now - camera_moved_ < camera_rest;
+    plan.is_mirrored = input.moment && plan.moment.motions != nullptr;
     still_ = !input.moment && is_still(input.state);
     plan.is_new_cycle = !goes_on(input, plan.is_mirrored);
     if (plan.is_new_cycle) {
@@ -544,8 +538,9 @@ void AdaptiveRefresh::examine(RefreshPlan const& plan, std::span<DisplayFramelet
         Patch const& patch = plan.patches[i];
         auto const [tile, place] = firsts_[i];
         std::size_t const count = plan.tile_counts[i];
-        auto const on_body = [](Framelet const& framelet) {
-            return std::ranges::any_of(framelet.body, [](BodyNumber body) { return body != static_body; });
+        auto const shows_motion = [](Framelet const& framelet) {
+            return std::ranges::any_of(framelet.body, [](BodyNumber body) { return body != static_body; }) ||
+                   std::ranges::any_of(framelet.velocity, [](Vec3 const& velocity) { return velocity != Vec3(0); });
         };
         double const same_since = examine_patch(field_, patch, framelets.subspan(tile, count),
                                                 rendered.subspan(tile, count), {plan.now, plan.moment_begun},
@@ -553,7 +548,7 @@ void AdaptiveRefresh::examine(RefreshPlan const& plan, std::span<DisplayFramelet
                                                 std::span(findings_).subspan(place, place_count(patch)));
         // The same picture may be of a body that has moved, and that the viewer has moved away.
         bool const moved =
-            plan.moment.motions != nullptr && std::ranges::any_of(rendered.subspan(tile, count), on_body);
+            plan.moment.motions != nullptr && std::ranges::any_of(rendered.subspan(tile, count), shows_motion);
         same_since_[i] = moved ? never : same_since;
     });
 }

@@ -92,6 +92,8 @@ public:
                    std::span<FrameletShape> shapes);
     /// The viewer no longer holds these.
     void forget(std::span<SentTile const> framelets) { mirror_.forget(framelets); }
+    /// The viewer is told that it holds all of the picture.
+    void settle() { mirror_.settle(); }
 
     // To look at it.
     Mirror const& mirror() const { return mirror_; }
@@ -131,7 +133,6 @@ private:
 
     std::optional<ViewState> seen_;
     double advanced_ = 0; ///< the time that the field stands for
-    double camera_moved_ = never; ///< when it did last
     double still_since_ = 0; ///< when what is to be seen changed last
     bool strayed_ = false; ///< something was rendered for another state than `seen_` since
     bool scene_moves_ = false;

@@ -65,6 +65,7 @@ Step FrameletStream::plan(Turn const& turn, PosedScene& scene) {
         }
         complete_ = viewer_.lossy.empty();
         if (complete_) {
+            viewer_.refresh.settle();
             return Step::nothing;
         }
         if (!has_room(turn.now)) {

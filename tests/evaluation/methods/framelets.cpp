@@ -68,7 +68,8 @@ public:
     }
 
     ViewerStep present(NumberedView const& view, SceneTime time) override {
-        return viewer_.present(view.camera, time, followed_camera_);
+        bool const is_settled = stream_ && stream_->is_complete() && view.number == view_number_;
+        return viewer_.present(view.camera, time, followed_camera_, is_settled);
     }
 
     Picture const& picture() const override { return viewer_.picture(); }

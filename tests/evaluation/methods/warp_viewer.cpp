@@ -28,8 +28,8 @@ void WarpViewer::take_let_go(std::vector<SentTile>& framelets) {
     framelets.insert(framelets.end(), let_go_.begin(), let_go_.end());
 }
 
-ViewerStep WarpViewer::present(Camera const& camera, SceneTime time, int scene_camera) {
-    maker_.show({camera, 0, scene_camera, time, 1, time}, picture_, changed_);
+ViewerStep WarpViewer::present(Camera const& camera, SceneTime time, int scene_camera, bool is_settled) {
+    maker_.show({camera, 0, scene_camera, time, 1, time, is_settled}, picture_, changed_);
     double pixels = 0;
     for (PixelRect const& rect : changed_) {
         pixels += static_cast<double>(rect.width()) * rect.height();

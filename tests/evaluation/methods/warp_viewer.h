@@ -16,8 +16,8 @@ public:
     /// Returns what putting it into the cache costs; the picture stays as it is.
     ViewerStep insert(Batch const& batch);
     /// Draws anew what differs from the last time. `scene_camera` >= 0: as that camera of the scene goes, and not as
-    /// `camera` says.
-    ViewerStep present(Camera const& camera, SceneTime time, int scene_camera = -1);
+    /// `camera` says. `is_settled`: as of a PictureRequest.
+    ViewerStep present(Camera const& camera, SceneTime time, int scene_camera = -1, bool is_settled = false);
 
     /// Appends what the viewer holds no longer.
     void take_let_go(std::vector<SentTile>& framelets);
