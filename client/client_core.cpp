@@ -453,8 +453,7 @@ std::optional<std::string> ClientCore::end_reason() const {
 
 bool ClientCore::is_complete() const {
     std::lock_guard const lock(impl_->mutex);
-    return impl_->is_settled() &&
-           (impl_->has_picture || !impl_->arrived.empty()) &&
+    return impl_->is_settled() && (impl_->has_picture || !impl_->arrived.empty()) &&
            (!impl_->is_smooth || impl_->status.clock.playing || impl_->shown_time == impl_->status.clock.time);
 }
 

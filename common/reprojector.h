@@ -26,9 +26,10 @@ public:
     /// Of all that is held what is nearest shows, and of several samples of one surface those with the least
     /// `worn_spacing`. Where the base of the newest camera covers the picture with a sample a pixel or more, was
     /// taken with this camera, nothing in it has moved since, and nothing else that its camera saw moving is held, this
-    /// is `reconstruct` of it, byte by byte; so is every block for which that holds while others move. Samples of or for an orthographic camera stay on their pixels. All stays on
-    /// its pixels where the camera has cut: where nearly nothing of what is held would show in the new view. Only
-    /// blocks whose samples or their places differ from the last call's are painted.
+    /// is `reconstruct` of it, byte by byte; so is every block for which that holds while others move. Samples of or
+    /// for an orthographic camera stay on their pixels. All stays on its pixels where the camera has cut: where nearly
+    /// nothing of what is held would show in the new view. Only blocks whose samples or their places differ from the
+    /// last call's are painted.
     void show(FrameletPool const& pool, std::span<PixelRect const> changed, Camera const& camera, SceneTime scene_time,
               BodyMotions const& motions, Picture& picture, std::vector<PixelRect>& repainted);
 

@@ -27,8 +27,8 @@ bool FrameletPool::begins_base(Batch const& batch) const {
 }
 
 bool FrameletPool::begins_moment(Batch const& batch) const {
-    return begins_base(batch) || (moving_slot(batch.scene_time) == slots_.size() &&
-                                  is_reprojectable(batch.view.camera) && moves(batch));
+    return begins_base(batch) ||
+           (moving_slot(batch.scene_time) == slots_.size() && is_reprojectable(batch.view.camera) && moves(batch));
 }
 
 bool FrameletPool::has_moving() const {

@@ -15,7 +15,8 @@ namespace {
 /// Nearer than this (depth in the picture over depth where it was rendered) nothing is drawn.
 constexpr float nearest = 1e-3f;
 constexpr float most_pixels = 1e6f, most_scale = 1e6f;
-/// A moved piece covers somewhat more, or the gaps that turning and tilting leave between neighbours were holes, pixels.
+/// A moved piece covers somewhat more, or the gaps that turning and tilting leave between neighbours were holes,
+/// pixels.
 constexpr float margin = 0.5f;
 /// A plane whose area shrinks by more than this is seen edge-on.
 constexpr float thinnest = 1e-4f;
@@ -101,9 +102,8 @@ void Mirror::forget(std::span<SentTile const> framelets) {
 
 void Mirror::erase_forgotten() {
     for (Moment& moment : moments_) {
-        std::erase_if(moment.pieces, [&](Piece const& piece) {
-            return piece.is_replaced || forgotten_.contains(key_of(piece.of));
-        });
+        std::erase_if(moment.pieces,
+                      [&](Piece const& piece) { return piece.is_replaced || forgotten_.contains(key_of(piece.of)); });
         if (moment.pieces.empty() && &moment != &moments_[base_]) {
             moment.number = 0;
         }
@@ -147,9 +147,8 @@ void Mirror::begin_base(ViewRays const& rays, SceneTime scene_time) {
 
 /// Of the newest camera, after its base began.
 Mirror::Moment& Mirror::slot_of_moving(SceneTime scene_time) {
-    auto const found = std::ranges::find_if(moments_, [&](Moment const& moment) {
-        return belongs_to_base(moment) && moment.scene_time == scene_time;
-    });
+    auto const found = std::ranges::find_if(
+        moments_, [&](Moment const& moment) { return belongs_to_base(moment) && moment.scene_time == scene_time; });
     return found != moments_.end() ? *found : begin_slot(moments_[base_].rays, scene_time);
 }
 
@@ -252,7 +251,8 @@ Mirror::TurnedBody const& Mirror::turn_to(Moment const& moment, Piece const& pie
 
 /// What is loose shows of the base and of the newest moments only, of which one may be still to come.
 bool Mirror::shows_loose(Moment const& moment) const {
-    return &moment == &moments_[base_] || moment.number + FrameletPool::recent_moments > last_number_ + (awaits_moment_ ? 1 : 0);
+    return &moment == &moments_[base_] ||
+           moment.number + FrameletPool::recent_moments > last_number_ + (awaits_moment_ ? 1 : 0);
 }
 
 /// Of a moment, from piece `first` on.
@@ -294,8 +294,8 @@ bool Mirror::place(Piece const& piece, TurnedBody const& turned, Placed& placed)
     Vec2 const down = share * (Vec2(dy) - dy.z * placed.at);
     float const area = right.x * down.y - right.y * down.x;
     placed.scale = std::clamp(turned.lens * share, 1 / most_scale, most_scale);
-    placed.half_side = glm::min(piece.half_side.x * glm::abs(right) + piece.half_side.y * glm::abs(down) + margin,
-                                Vec2(most_pixels));
+    placed.half_side =
+        glm::min(piece.half_side.x * glm::abs(right) + piece.half_side.y * glm::abs(down) + margin, Vec2(most_pixels));
     Vec2 const low = placed.at - placed.half_side;
     Vec2 const high = placed.at + placed.half_side;
     auto const width = static_cast<float>(columns_ * cell_side); // the last cells are whole, too
