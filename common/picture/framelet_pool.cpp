@@ -70,8 +70,24 @@ std::size_t FrameletPool::insert_moving(Batch const& batch) {
     std::size_t slot = moving_slot(batch.scene_time);
     if (slot == slots_.size()) {
         slot = begin_slot(batch);
+        if (moments_ == slots_[base_].begun + most_moments) {
+            let_go_of_moving();
+        }
     }
     return slots_[base_].cache->insert(batch, stands_) + slots_[slot].cache->insert(batch, moves_);
+}
+
+/// Of the base, since it is as old by now as what moved in other slots gets; what deforms goes astray with time.
+void FrameletPool::let_go_of_moving() {
+    FrameletCache& base = *slots_[base_].cache;
+    std::vector<Tile> kept;
+    for (std::size_t i = 0; i < base.slot_count(); ++i) {
+        CachedFramelet const* const framelet = base.at_slot(i);
+        if (framelet != nullptr && !framelet->shape.moves) {
+            kept.push_back(framelet->tile);
+        }
+    }
+    base.keep(kept, let_go_);
 }
 
 /// Where what moves before the newest camera is held; `slot_count()` where it has no slot yet.
@@ -100,6 +116,7 @@ void FrameletPool::settle() {
         slot.cache->clear();
         slot.begun = 0;
     }
+    base.begun = newest;
 }
 
 /// One that is free, a new one, or that of which least shows, the oldest of those.

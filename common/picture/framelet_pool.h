@@ -84,6 +84,7 @@ private:
     std::size_t free_slot();
     std::size_t begin_slot(Batch const& batch);
     std::size_t insert_moving(Batch const& batch);
+    void let_go_of_moving();
 
     ImagePlane plane_;
     std::vector<Slot> slots_;

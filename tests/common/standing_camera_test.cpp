@@ -97,6 +97,21 @@ TEST(StandingCamera, WhatABodyCoversForAWhileIsHeld) {
     EXPECT_EQ(show(pool, front(), 3.9, scene.motions).hole_share, 0) << "the board has gone by";
 }
 
+TEST(StandingCamera, WhatMovedWhenTheBaseBeganGoesAsOtherMomentsDo) {
+    AnalyticScene const scene = moving_room();
+    FrameletPool pool(plane);
+    pool.insert(rendered(scene, 1, 0, all_tiles));
+    std::vector<Tile> const moving = board_tiles(scene, 0);
+    std::vector<SentTile> gone;
+    for (std::uint64_t i = 1; i <= FrameletPool::most_moments; ++i) {
+        EXPECT_TRUE(gone.empty());
+        pool.insert(rendered(scene, 1 + i, 0.01 * static_cast<double>(i), {moving.front()}));
+        pool.take_let_go(gone);
+    }
+    EXPECT_EQ(std::ranges::count(gone, 1U, &SentTile::batch), static_cast<std::ptrdiff_t>(moving.size()));
+    EXPECT_EQ(held_of(pool, 1), all_tiles.size() - moving.size());
+}
+
 TEST(StandingCamera, BlocksThatNothingElseTouchesAreExact) {
     AnalyticScene const scene = moving_room();
     FrameletPool pool(plane);
