@@ -91,7 +91,9 @@ std::uint32_t render_framelet(RenderScene const& scene, ViewRays const& view, Im
         }
         if (scene.prepared().moves) {
             add_motion(scene.prepared(), traced, first, out);
-            segments += add_shadow_motion(scene.prepared(), traced, first, out);
+            if (scene.prepared().throws_moving_shadows) {
+                segments += add_shadow_motion(scene.prepared(), traced, first, out);
+            }
         }
     }
     return segments;

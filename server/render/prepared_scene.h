@@ -19,6 +19,7 @@ struct PreparedScene {
     Environment environment = Environment::uniform(Vec3(0));
     SplitSumTable split_sum;
     bool moves = false; ///< something moves: tracing keeps which surface gives a sample its depth
+    bool throws_moving_shadows = false; ///< something moves so fast that its shadow does not stay
     bool see_through = false; ///< some material lets rays pass: without, no ray is ever continued behind a surface
 };
 

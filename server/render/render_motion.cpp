@@ -26,6 +26,8 @@ double to_other_moment(Scene const& scene, std::span<Index const> clips, SceneTi
     return interval;
 }
 
+/// Metres a second from which on shadows are worth following: slower ones stay where they are for a tenth of a second.
+constexpr float fast_shadow = 0.5f;
 /// Radians a second above which something spins: a fifth of a second later it shows another side.
 constexpr float fast_spin = 4;
 
@@ -55,6 +57,7 @@ void RenderScene::update_velocities() {
     if (!prepared_->moves) {
         return;
     }
+    prepared_->throws_moving_shadows = false;
     double const seconds = to_other_moment(scene_, clips_, pose_.time);
     ScenePose const other = evaluate_pose(scene_, clips_, pose_.time + seconds);
     float const per_second = static_cast<float>(1 / seconds);
@@ -79,6 +82,7 @@ void RenderScene::update_velocities() {
             instance.translation_rate = Vec3(then[3] - now[3]) * per_second;
             instance.spins = spin_of(instance) > fast_spin;
         }
+        prepared_->throws_moving_shadows |= deforms || glm::length(instance.translation_rate) > fast_shadow;
     }
     for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
         RenderLight& light = prepared_->lights[i];

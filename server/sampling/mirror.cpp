@@ -7,6 +7,7 @@
 
 #include <glm/matrix.hpp>
 
+#include "common/error.h"
 #include "common/sample_worth.h"
 
 namespace framelet {
@@ -18,6 +19,8 @@ constexpr float most_pixels = 1e6f, most_scale = 1e6f;
 /// A moved piece covers somewhat more, or the gaps that turning and tilting leave between neighbours were holes,
 /// pixels.
 constexpr float margin = 0.5f;
+/// What is nearer by less than this share of its inverse depth is not worth looking for: crowns are full of it.
+constexpr float nearer_share = 0.25f;
 /// A plane whose area shrinks by more than this is seen edge-on.
 constexpr float thinnest = 1e-4f;
 /// Inverse depths that differ by less than this share belong to one surface, besides by what pieces may be off.
@@ -90,6 +93,50 @@ void Mirror::look(MirrorView const& view, BodyMotions const& motions) {
     for (Moment& moment : moments_) {
         place(moment, 0, motions);
     }
+}
+
+bool Mirror::check(PlaceGrid const& grid, std::span<float const> inverse_depth) {
+    int const columns = grid.columns(viewport_);
+    int const rows = grid.rows(viewport_);
+    FRAMELET_CHECK(inverse_depth.size() == static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+    Vec2 const half(0.5f * static_cast<float>(grid.spacing));
+    bool any = false;
+    auto seen = inverse_depth.begin();
+    for (int row = 0; row < rows; ++row) {
+        for (int column = 0; column < columns; ++column, ++seen) {
+            Vec2 const place = grid.place(column, row);
+            if (!shows_as_near(static_cast<int>(place.x) / cell_side, static_cast<int>(place.y) / cell_side, *seen)) {
+                mark_wrong(place - half, place + half);
+                any = true;
+            }
+        }
+    }
+    return any;
+}
+
+/// Cells in a box, pixels.
+void Mirror::mark_wrong(Vec2 low, Vec2 high) {
+    auto const cell_of = [](float pixel, int count) {
+        return std::clamp(static_cast<int>(std::round(pixel / float{cell_side})), 0, count);
+    };
+    for (int row = cell_of(low.y, rows_); row < cell_of(high.y, rows_); ++row) {
+        for (int column = cell_of(low.x, columns_); column < cell_of(high.x, columns_); ++column) {
+            cells_[index_of(column, row)].is_wrong = true;
+        }
+    }
+}
+
+/// It or a cell beside it.
+bool Mirror::shows_as_near(int column, int row, float inverse_depth) const {
+    float const least = inverse_depth * (1 - nearer_share);
+    for (int y = std::max(row - 1, 0); y <= std::min(row + 1, rows_ - 1); ++y) {
+        for (int x = std::max(column - 1, 0); x <= std::min(column + 1, columns_ - 1); ++x) {
+            if (cells_[index_of(x, y)].inverse_depth >= least) {
+                return true;
+            }
+        }
+    }
+    return false;
 }
 
 void Mirror::forget(std::span<SentTile const> framelets) {
@@ -348,6 +395,7 @@ void Mirror::show(Moment const& moment, std::size_t index, unsigned mask, int co
     Placed const& placed = moment.placed[index];
     Cell& cell = cells_[index_of(column, row)];
     cell.covered = static_cast<std::uint16_t>(cell.covered | mask);
+    cell.is_wrong = cell.is_wrong && !moment.is_of_camera;
     Vec2 const middle((static_cast<float>(column) + 0.5f) * cell_side, (static_cast<float>(row) + 0.5f) * cell_side);
     Vec2 const from = glm::clamp(middle - placed.at, -placed.half_side, placed.half_side);
     float const w = std::max(placed.inverse_depth + glm::dot(placed.depth_slope, from), 0.0f);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/body_motion.h"
+#include "common/place_grid.h"
 #include "common/picture/framelet_pool.h"
 #include "common/reprojection.h"
 #include "server/sampling/piece.h"
@@ -35,6 +36,7 @@ struct Cell {
     std::uint16_t covered = 0; ///< by anything: a bit for each pixel, row by row
     std::uint8_t moment = 0; ///< slot
     std::uint8_t share = 0; ///< of its pixels that what shows covers, of 16
+    bool is_wrong = false; ///< something nearer is there, which the viewer does not hold
 
     bool is_shown() const { return share > 0; }
     float covered_share() const { return static_cast<float>(std::popcount(covered)) / (cell_side * cell_side); }
@@ -71,6 +73,10 @@ public:
     /// The viewer settles (`FrameletPool::settle`); from the next look on.
     void settle() { settles_ = true; }
 
+    /// Compares what shows with what is really to be seen of the moment: inverse depths of the places of a grid, row by
+    /// row, < 0 where that is not known. Where neither the cell of a place nor those beside it show anything about as
+    /// near, the cells around the place are wrong until something of the moment comes there. True where some are.
+    bool check(PlaceGrid const& grid, std::span<float const> inverse_depth);
     /// The viewer has let go of these; from the next look on.
     void forget(std::span<SentTile const> framelets);
 
@@ -124,6 +130,8 @@ private:
     void show(Moment const& moment, std::size_t index, unsigned mask, int column, int row);
     bool is_better(Moment const& moment, Placed const& placed, float inverse_depth, int share, Cell const& cell) const;
     bool shows_loose(Moment const& moment) const;
+    void mark_wrong(Vec2 low, Vec2 high);
+    bool shows_as_near(int column, int row, float inverse_depth) const;
 
     Viewport viewport_;
     int columns_, rows_;

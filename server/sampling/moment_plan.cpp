@@ -96,7 +96,7 @@ void MomentPlan::add_gains(Mirror const& mirror, PlaceField const& field, std::u
         for (int column = rect.left / cell_side; column < last_column; ++column) {
             Cell const& cell = mirror.cell(column, row);
             auto const pixels = static_cast<float>(mirror.pixels_of(column, row));
-            float covered = cell.covered_share() * pixels;
+            float covered = cell.is_wrong ? 0 : cell.covered_share() * pixels;
             float const detail = cell.is_shown() ? cell.detail : hidden_detail;
             float worn = cell.is_shown() ? cell.worn : INFINITY;
             if (had >= 0) {

@@ -31,6 +31,17 @@ bool is_cut(ViewState const& a, ViewState const& b, double seconds) {
            a.view.camera.projection != b.view.camera.projection;
 }
 
+/// Of places at which visibility is checked, pixels: as many as may be for so many samples of a plan.
+int visibility_spacing(Viewport viewport, double samples) {
+    constexpr double share = 0.08;
+    constexpr int most = 16;
+    int spacing = cell_side;
+    while (spacing < most && viewport.width / spacing * (viewport.height / spacing) > share * samples) {
+        spacing *= 2;
+    }
+    return spacing;
+}
+
 /// `still`: nothing moves, so that a large batch costs no freshness.
 std::size_t batch_limit(RefreshInput const& input, bool still) {
     if (input.batch_framelets > 0) {
@@ -116,7 +127,7 @@ bool AdaptiveRefresh::goes_on(RefreshInput const& input, bool mirrored) const {
     double const seconds = input.now - planned_;
     return next_ < cycle_.size() && seconds < static_cast<double>(input.cycle_seconds) &&
            (rays_per_sample_ == single_ray || same_picture(*seen_, input.state)) &&
-           (!mirrored || looked_ == input.moment->begun) && seen_->view.viewport == input.state.view.viewport &&
+           (!mirrored || (looked_ == input.moment->begun && !is_checked_)) && seen_->view.viewport == input.state.view.viewport &&
            !is_cut(*seen_, input.state, seconds);
 }
 
@@ -127,6 +138,7 @@ void AdaptiveRefresh::plan(RefreshInput const& input, RefreshPlan& plan) {
     plan.tiles.clear();
     plan.probes.clear();
     plan.probed.clear();
+    plan.visibility.reset();
     HeldMoment const moment = input.moment.value_or(HeldMoment{input.state, input.now});
     NumberedView const& view = moment.state.view;
     plan.now = input.now;
@@ -157,7 +169,7 @@ void AdaptiveRefresh::plan_cycle(RefreshInput const& input, RefreshPlan& plan) {
     cycle_budget_ = input.samples_per_second * cycle_seconds_;
     double samples = cycle_budget_;
     if (plan.is_mirrored) {
-        plan_moment(input, plan.moment, samples);
+        plan_moment(input, samples, plan);
         return;
     }
     if (scene_moves_) {
@@ -273,11 +285,14 @@ void AdaptiveRefresh::plan_patches(RefreshInput const& input, double samples) {
 }
 
 /// Where what the viewer holds shows the moment worst.
-void AdaptiveRefresh::plan_moment(RefreshInput const& input, RenderedMoment const& moment, double samples) {
+void AdaptiveRefresh::plan_moment(RefreshInput const& input, double samples, RefreshPlan& plan) {
     if (looked_ != input.moment->begun) {
-        mirror_.look({moment.rays, moment.scene_time}, *moment.motions);
+        mirror_.look({plan.moment.rays, plan.moment.scene_time}, *plan.moment.motions);
         looked_ = input.moment->begun;
+        plan.visibility = cell_grid(cell_side, visibility_spacing(plan.viewport, planned_seconds * input.samples_per_second),
+                                    ++looks_taken_);
     }
+    is_checked_ = false;
     find_costs(input);
     MomentBudget const budget{std::max(input.samples_per_second * planned_seconds, samples), input.limits, costs_,
                               input.moment->begun};
@@ -487,6 +502,12 @@ void AdaptiveRefresh::note_sent(RefreshPlan const& plan, std::uint64_t batch,
         }
     }
     mirror_.add(view.rays, *plan.moment.motions, pieces_);
+}
+
+void AdaptiveRefresh::note_visibility(RefreshPlan const& plan, std::span<float const> inverse_depth) {
+    if (plan.viewport == mirror_.viewport() && mirror_.looks_at({plan.moment.rays, plan.moment.scene_time})) {
+        is_checked_ = mirror_.check(*plan.visibility, inverse_depth);
+    }
 }
 
 /// Nothing is learnt of the picture: compared with single rays it would seem to have changed.

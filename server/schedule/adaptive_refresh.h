@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/place_grid.h"
 #include "common/rays_per_sample.h"
 #include "server/sampling/looks.h"
 #include "server/sampling/moment_plan.h"
@@ -56,10 +57,12 @@ struct RefreshPlan {
     std::vector<std::size_t> tile_counts; ///< of each patch
     std::vector<Tile> tiles; ///< of the patches, in order
     int rays_per_sample = single_ray; ///< of the tiles
+    /// Where what the moment shows is to be compared with what the viewer would.
+    std::optional<PlaceGrid> visibility;
     std::vector<Probe> probes; ///< of the probed places, in order
     std::vector<std::uint32_t> probed; ///< places
 
-    bool is_empty() const { return tiles.empty() && probes.empty(); }
+    bool is_empty() const { return tiles.empty() && probes.empty() && !visibility; }
     /// Through the samples of the tiles.
     std::size_t ray_count() const {
         return tiles.size() * framelet_samples * static_cast<std::size_t>(rays_per_sample);
@@ -90,6 +93,9 @@ public:
     void note_sent(RefreshPlan const& plan, std::uint64_t batch, std::span<DisplayFramelet const> framelets,
                    std::span<Framelet const> rendered, std::span<std::uint8_t const> sent,
                    std::span<FrameletShape> shapes);
+    /// What is really to be seen of the moment of a plan that asks for it: inverse depths of the places of its grid, 1 /
+    /// metres, row by row; < 0: not known.
+    void note_visibility(RefreshPlan const& plan, std::span<float const> inverse_depth);
     /// The viewer no longer holds these.
     void forget(std::span<SentTile const> framelets) { mirror_.forget(framelets); }
     /// The viewer is told that it holds all of the picture.
@@ -116,7 +122,7 @@ private:
     double plan_inspections(RefreshInput const& input);
     void find_costs(RefreshInput const& input);
     void plan_patches(RefreshInput const& input, double samples);
-    void plan_moment(RefreshInput const& input, RenderedMoment const& moment, double samples);
+    void plan_moment(RefreshInput const& input, double samples, RefreshPlan& plan);
     void plan_probes(double samples, RefreshPlan& plan);
     void plan_refinement(double samples);
     void plan_completion(double samples);
@@ -156,6 +162,8 @@ private:
     Mirror mirror_;
     Looks looks_;
     MomentPlan moment_plan_;
+    std::uint32_t looks_taken_ = 0;
+    bool is_checked_ = false; ///< more is known of the moment than when the cycle was planned
     double looked_ = never; ///< when the moment began at which the mirror looks
 
     // Scratch.

@@ -6,6 +6,7 @@
 #include <tbb/parallel_for.h>
 
 #include "server/render/display_renderer.h"
+#include "server/render/visibility.h"
 
 namespace framelet {
 
@@ -24,12 +25,18 @@ void BatchWork::render(PosedScene const& scene) {
                                           order.plan.rays_per_sample, fresh_.local(), rendered_[i], display_[i]),
                            std::memory_order_relaxed);
     });
+    if (order.plan.visibility) {
+        segments += render_visibility(scene.render_scene(), rays, view.viewport, *order.plan.visibility, visibility_);
+    }
     figures.segments = segments;
     figures.probe_segments =
         probes_.render(scene.render_scene(), view.camera, view.viewport, order.state.exposure, order.plan.probes);
 }
 
 bool BatchWork::learn(PosedScene const& scene, ViewerKnowledge& viewer) {
+    if (order.plan.visibility) {
+        viewer.refresh.note_visibility(order.plan, visibility_);
+    }
     if (order.again) {
         needed_.assign(display_.size(), 1);
     } else {

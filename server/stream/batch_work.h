@@ -64,6 +64,7 @@ private:
     std::span<Framelet> rendered_; ///< without radiance, which would crowd the caches for nothing
     std::span<DisplayFramelet> display_;
     ProbeRenderer probes_;
+    std::vector<float> visibility_; ///< inverse depths, where the plan asks for them
     std::vector<std::uint8_t> needed_; ///< whether the viewer gets it, of each
     Batch batch_;
 };
