@@ -167,7 +167,7 @@ void Reprojector::show_exact(FrameletPool const& pool, std::span<PixelRect const
     }
     exact_slot_ = pool.newest_slot();
     is_exact_ = true;
-    painted_all_ = false;
+    noted_slots_ = 0;
     hole_share_ = 0;
 }
 
@@ -196,28 +196,25 @@ void Reprojector::show(FrameletPool const& pool, std::span<PixelRect const> chan
     while (plans_.size() < pool.slot_count()) {
         plans_.emplace_back();
     }
+    noted_slots_ = 0;
     for (std::size_t i = 0; i < pool.slot_count(); ++i) {
         plans_[i].make(pool.slot(i), i, pool.is_recent(i), camera, scene_time, motions);
+        noted_slots_ |= pool.is_tried(i) ? 1u << i : 0u;
     }
     columns_ = plans_[0].columns();
     rows_ = plans_[0].rows();
     start_moving(viewport, static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
     std::atomic<bool> any = false;
-    std::atomic<bool> all = true;
     tbb::parallel_for(0, rows_, [&](int row) {
-        int painted = 0;
+        bool painted = false;
         std::vector<PatchView> patches;
         for (int column = 0; column < columns_; ++column) {
-            painted += update_block(pool, camera, scene_time, motions, column, row, patches, picture) ? 1 : 0;
+            painted |= update_block(pool, camera, scene_time, motions, column, row, patches, picture);
         }
-        if (painted > 0) {
+        if (painted) {
             any.store(true, std::memory_order_relaxed);
         }
-        if (painted < columns_) {
-            all.store(false, std::memory_order_relaxed);
-        }
     });
-    painted_all_ = all;
     if (any) {
         count_blocks(picture, pool.slot_count());
     }
@@ -262,7 +259,8 @@ bool Reprojector::update_block(FrameletPool const& pool, Camera const& camera, S
     in_place = in_place && patches.size() == newest_patches;
     order(patches);
     std::uint64_t const signature = signature_of(patches, in_place);
-    if (signature == blocks_[index].signature) {
+    bool const is_same = signature == blocks_[index].signature;
+    if (is_same && (blocks_[index].slots & noted_slots_) == 0) {
         return false;
     }
     Viewport const viewport = pool.plane().viewport();
@@ -270,6 +268,9 @@ bool Reprojector::update_block(FrameletPool const& pool, Camera const& camera, S
     int const top = row * side;
     WarpedBlock block;
     paint_warped_block(patches, column, row, viewport, block);
+    if (is_same) { // it was to note what shows
+        return false;
+    }
     if (in_place) {
         block.holes = 0;
         for (float& inverse_depth : block.inverse_depth) {
@@ -287,10 +288,11 @@ bool Reprojector::update_block(FrameletPool const& pool, Camera const& camera, S
 }
 
 bool Reprojector::add_shown(std::size_t slot, std::vector<Tile>& tiles) const {
-    if (painted_all_ && slot < plans_.size()) {
-        plans_[slot].add_shown(tiles);
+    if ((noted_slots_ >> slot & 1) == 0) {
+        return false;
     }
-    return painted_all_;
+    plans_[slot].add_shown(tiles);
+    return true;
 }
 
 void Reprojector::count_blocks(Picture const& picture, std::size_t slots) {

@@ -40,8 +40,8 @@ public:
     std::span<float const> inverse_depth() const { return inverse_depth_; }
     /// By slot of the pool: in how many blocks of the last picture something of it shows.
     std::span<std::uint32_t const> shown_blocks() const { return shown_blocks_; }
-    /// The tiles of one slot of which something shows in the last picture, as far as that is known: false where parts
-    /// of it were painted before. Some come more than once.
+    /// The tiles of one slot of which something shows in the last picture, if that is known: false where the slot had
+    /// not been tried by then or the picture was exact. Some come more than once.
     bool add_shown(std::size_t slot, std::vector<Tile>& tiles) const;
     /// Pixels of the last picture that nothing shows, in [0, 1]; 0 where it is exact.
     double hole_share() const { return hole_share_; }
@@ -68,7 +68,7 @@ private:
     bool has_shown_ = false;
     bool is_exact_ = false;
     double hole_share_ = 0;
-    bool painted_all_ = false;
+    std::uint32_t noted_slots_ = 0; ///< a bit for each of which the plan knows what shows in the last picture
     std::size_t exact_slot_ = 0; ///< that an exact picture shows
     std::vector<WarpPlan> plans_; ///< by slot
     int columns_ = 0, rows_ = 0; ///< of blocks
