@@ -15,7 +15,8 @@ namespace {
 /// Nearer than this (depth in the picture over depth where it was rendered) nothing is drawn.
 constexpr float nearest = 1e-3f;
 constexpr float most_pixels = 1e6f, most_scale = 1e6f;
-/// A moved piece covers somewhat more, or the gaps that turning and tilting leave between neighbours were holes, pixels.
+/// A moved piece covers somewhat more, or the gaps that turning and tilting leave between neighbours were holes,
+/// pixels.
 constexpr float margin = 0.5f;
 /// What is nearer by less than this share of its inverse depth is not worth looking for: crowns are full of it.
 constexpr float nearer_share = 0.25f;
@@ -144,8 +145,15 @@ void Mirror::forget(std::span<SentTile const> framelets) {
 
 void Mirror::erase_forgotten() {
     for (Moment& moment : moments_) {
+        bool const loose = shows_loose(moment);
+        std::uint64_t last = 0; // pieces of a framelet follow each other
+        bool is_gone = false;
         std::erase_if(moment.pieces, [&](Piece const& piece) {
-            return piece.is_replaced || forgotten_.contains(key_of(piece.of));
+            if (std::uint64_t const key = key_of(piece.of); key != last) {
+                last = key;
+                is_gone = forgotten_.contains(key);
+            }
+            return is_gone || piece.is_replaced || (piece.is_loose && !loose);
         });
         if (moment.pieces.empty()) {
             moment.number = 0;
@@ -286,8 +294,8 @@ bool Mirror::place(Piece const& piece, TurnedBody const& turned, Placed& placed)
     Vec2 const down = share * (Vec2(dy) - dy.z * placed.at);
     float const area = right.x * down.y - right.y * down.x;
     placed.scale = std::clamp(turned.lens * share, 1 / most_scale, most_scale);
-    placed.half_side = glm::min(piece.half_side.x * glm::abs(right) + piece.half_side.y * glm::abs(down) + margin,
-                                Vec2(most_pixels));
+    placed.half_side =
+        glm::min(piece.half_side.x * glm::abs(right) + piece.half_side.y * glm::abs(down) + margin, Vec2(most_pixels));
     Vec2 const low = placed.at - placed.half_side;
     Vec2 const high = placed.at + placed.half_side;
     auto const width = static_cast<float>(columns_ * cell_side); // the last cells are whole, too

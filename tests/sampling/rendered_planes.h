@@ -53,7 +53,8 @@ inline void cut_pieces(RenderedTile const& tile, ImagePlane const& plane, SceneT
 }
 
 /// All visible tiles of a depth.
-inline std::vector<Piece> render_pieces(ImagePlane const& plane, int depth, Look const& look, SceneTime time = 0) {
+inline std::vector<Piece> render_pieces(ImagePlane const& plane, int depth, Look const& look, SceneTime time = 0,
+                                        std::uint64_t batch = 1) {
     std::vector<Piece> pieces;
     std::uint32_t const side = 1u << depth;
     for (std::uint32_t row = 0; row < side; ++row) {
@@ -61,7 +62,7 @@ inline std::vector<Piece> render_pieces(ImagePlane const& plane, int depth, Look
             Tile const tile = make_tile(depth, column, row);
             if (plane.is_visible(tile)) {
                 RenderedTile const one = render_tile(plane, tile, look);
-                cut_pieces(one, plane, time, pieces);
+                cut_pieces(one, plane, time, pieces, batch);
             }
         }
     }
