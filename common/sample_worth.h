@@ -3,7 +3,9 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 #include "common/framelet_shape.h"
 
@@ -36,11 +38,13 @@ inline float worn_spacing(float spacing, float age, float rate) {
     return std::max(spacing, finest_shown_spacing) + rate * std::abs(age);
 }
 
-/// In steps of a quarter of an octave, so that what is about as good does not change places from picture to picture.
+/// In steps of 1/4 within each octave, so that what is about as good does not change places from picture to picture.
 /// What is not a number is as bad as can be.
 inline float worn_step(float worn) {
     constexpr float worst = 1e3f;
-    return std::exp2(std::round(4 * std::log2(worn < worst ? worn : worst)) / 4);
+    constexpr std::uint32_t step = 1u << 21; // of the mantissa's 23 bits
+    auto const bits = std::bit_cast<std::uint32_t>(worn < worst ? worn : worst);
+    return std::bit_cast<float>((bits + step / 2) & ~(step - 1));
 }
 
 } // namespace framelet

@@ -59,7 +59,8 @@ std::uint64_t render_visibility(RenderScene const& scene, ViewRays const& view, 
             auto const column_of = [&](int i) { return std::min(left + i % packet_side, columns - 1); };
             auto const row_of = [&](int i) { return std::min(top + i / packet_side, rows - 1); };
             LaneFloats found;
-            look(scene.prepared(), view, [&](int i) { return grid.place(column_of(i), row_of(i)); }, found);
+            look(
+                scene.prepared(), view, [&](int i) { return grid.place(column_of(i), row_of(i)); }, found);
             for (int i = 0; i < lanes; ++i) {
                 inverse_depth[static_cast<std::size_t>(row_of(i)) * static_cast<std::size_t>(columns) +
                               static_cast<std::size_t>(column_of(i))] = found[i];

@@ -149,8 +149,16 @@ void Mirror::forget(std::span<SentTile const> framelets) {
 
 void Mirror::erase_forgotten() {
     for (Moment& moment : moments_) {
-        std::erase_if(moment.pieces,
-                      [&](Piece const& piece) { return piece.is_replaced || forgotten_.contains(key_of(piece.of)); });
+        bool const loose = shows_loose(moment);
+        std::uint64_t last = 0; // pieces of a framelet follow each other
+        bool is_gone = false;
+        std::erase_if(moment.pieces, [&](Piece const& piece) {
+            if (std::uint64_t const key = key_of(piece.of); key != last) {
+                last = key;
+                is_gone = forgotten_.contains(key);
+            }
+            return is_gone || piece.is_replaced || (piece.is_loose && !loose);
+        });
         if (moment.pieces.empty() && &moment != &moments_[base_]) {
             moment.number = 0;
         }

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "common/body_motion.h"
-#include "common/place_grid.h"
 #include "common/picture/framelet_pool.h"
+#include "common/place_grid.h"
 #include "common/reprojection.h"
 #include "server/sampling/piece.h"
 

@@ -21,15 +21,28 @@ constexpr float spacing_of(int level) {
                                 : 1.0f / static_cast<float>(1 << (level - pixel_level));
 }
 
+/// What samples so far apart, pixels, miss and make up, of the detail.
+constexpr float missed_share(float spacing) {
+    float const s = std::max(spacing, finest_shown_spacing);
+    constexpr float alias = 4.0f / 9.0f;
+    return s <= 1   ? s * s * s // the mean of 1 / s^2 samples, of what lies between them
+           : s <= 2 ? 1 + (s - 1) * 2 * alias
+                    : error_growth * s - 1;
+}
+
+/// The same of levels.
+constexpr std::array<float, sampling_levels> missed_shares = [] {
+    std::array<float, sampling_levels> shares{};
+    for (int level = 0; level < sampling_levels; ++level) {
+        shares[static_cast<std::size_t>(level)] = missed_share(spacing_of(level));
+    }
+    return shares;
+}();
+
 } // namespace
 
 float spacing_error(float detail, float spacing) {
-    float const s = std::max(spacing, finest_shown_spacing);
-    constexpr float alias = 4.0f / 9.0f;
-    float const missed = s <= 1   ? s * s * s // the mean of 1 / s^2 samples, of what lies between them
-                         : s <= 2 ? 1 + (s - 1) * 2 * alias
-                                  : error_growth * s - 1;
-    return std::min(detail * missed, most_error);
+    return std::min(detail * missed_share(spacing), most_error);
 }
 
 void MomentPlan::find(Mirror const& mirror, PlaceField const& field, MomentBudget const& budget,
@@ -106,9 +119,9 @@ void MomentPlan::add_gains(Mirror const& mirror, PlaceField const& field, std::u
             // What comes is shown although it is worse, or only where it is better.
             float const least = cell.is_shown() && mirror.gives_way(cell) ? -most_error : 0.0f;
             float const now = covered > 0 ? spacing_error(detail, worn) : 0;
-            for (int level = field.least_level(); level < sampling_levels; ++level) {
-                float const then = spacing_error(detail, spacing_of(level));
-                leaf.gain[static_cast<std::size_t>(level)] +=
+            for (std::size_t level = 0; level < leaf.gain.size(); ++level) {
+                float const then = std::min(detail * missed_shares[level], most_error);
+                leaf.gain[level] +=
                     covered * std::max(now - then, least) + (pixels - covered) * std::max(hole_error - then, 0.0f);
             }
         }

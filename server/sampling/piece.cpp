@@ -127,8 +127,7 @@ std::array<float, framelet_samples / 4> details_of(std::span<float const, framel
 } // namespace
 
 void cut_pieces(Framelet const& rendered, DisplayFramelet const& shown, FrameletShape const& shape,
-                ImagePlane const& plane, SceneTime scene_time, std::uint64_t batch,
-                std::vector<Piece>& pieces) {
+                ImagePlane const& plane, SceneTime scene_time, std::uint64_t batch, std::vector<Piece>& pieces) {
     std::array<float, framelet_samples> luma;
     for (std::size_t i = 0; i < luma.size(); ++i) {
         luma[i] = display_luma(shown.red[i], shown.green[i], shown.blue[i]);
@@ -143,8 +142,8 @@ void cut_pieces(Framelet const& rendered, DisplayFramelet const& shown, Framelet
     bool const moves = shape.moves();
     auto loose = shape.loose_samples.begin();
     for (std::uint32_t first = 0; first < framelet_samples; first += count) {
-        float const local =
-            std::reduce(details.begin() + first / 4, details.begin() + (first + count) / 4) / static_cast<float>(count / 4);
+        float const local = std::reduce(details.begin() + first / 4, details.begin() + (first + count) / 4) /
+                            static_cast<float>(count / 4);
         float const detail = (1 - common_share) * local + common_share * common;
         std::array<Sum, max_layers> sums;
         LooseSum all;

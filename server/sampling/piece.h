@@ -38,11 +38,10 @@ struct Piece {
 /// Inverse depths of one surface differ by less than this share of the greater one.
 inline constexpr float surface_tolerance = 0.05f;
 
-/// Appends the pieces of a framelet of a scene time and a batch: for each layer, squares of 4 .. 16 pixels or what of them lies on
-/// it; what is loose in a square is split in a near and a far part. `fading` and `change` stay 0. All numbers are
-/// finite where those of the shape are.
+/// Appends the pieces of a framelet of a scene time and a batch: for each layer, squares of 4 .. 16 pixels or what of
+/// them lies on it; what is loose in a square is split in a near and a far part. `fading` and `change` stay 0. All
+/// numbers are finite where those of the shape are.
 void cut_pieces(Framelet const& rendered, DisplayFramelet const& shown, FrameletShape const& shape,
-                ImagePlane const& plane, SceneTime scene_time, std::uint64_t batch,
-                std::vector<Piece>& pieces);
+                ImagePlane const& plane, SceneTime scene_time, std::uint64_t batch, std::vector<Piece>& pieces);
 
 } // namespace framelet

@@ -127,8 +127,8 @@ bool AdaptiveRefresh::goes_on(RefreshInput const& input, bool mirrored) const {
     double const seconds = input.now - planned_;
     return next_ < cycle_.size() && seconds < static_cast<double>(input.cycle_seconds) &&
            (rays_per_sample_ == single_ray || same_picture(*seen_, input.state)) &&
-           (!mirrored || (looked_ == input.moment->begun && !is_checked_)) && seen_->view.viewport == input.state.view.viewport &&
-           !is_cut(*seen_, input.state, seconds);
+           (!mirrored || (looked_ == input.moment->begun && !is_checked_)) &&
+           seen_->view.viewport == input.state.view.viewport && !is_cut(*seen_, input.state, seconds);
 }
 
 void AdaptiveRefresh::plan(RefreshInput const& input, RefreshPlan& plan) {
@@ -289,8 +289,8 @@ void AdaptiveRefresh::plan_moment(RefreshInput const& input, double samples, Ref
     if (looked_ != input.moment->begun) {
         mirror_.look({plan.moment.rays, plan.moment.scene_time}, *plan.moment.motions);
         looked_ = input.moment->begun;
-        plan.visibility = cell_grid(cell_side, visibility_spacing(plan.viewport, planned_seconds * input.samples_per_second),
-                                    ++looks_taken_);
+        plan.visibility = cell_grid(
+            cell_side, visibility_spacing(plan.viewport, planned_seconds * input.samples_per_second), ++looks_taken_);
     }
     is_checked_ = false;
     find_costs(input);
@@ -452,7 +452,7 @@ std::vector<std::uint8_t> const& AdaptiveRefresh::learn(RefreshPlan const& plan,
         note_supersampled(plan);
         release(plan);
         send_.assign(framelets.size(), 1);
-            return send_;
+        return send_;
     }
     std::size_t probe = 0;
     for (std::uint32_t const index : plan.probed) {
@@ -482,9 +482,8 @@ std::vector<std::uint8_t> const& AdaptiveRefresh::learn(RefreshPlan const& plan,
 }
 
 void AdaptiveRefresh::note_sent(RefreshPlan const& plan, std::uint64_t batch,
-                                std::span<DisplayFramelet const> framelets,
-                                std::span<Framelet const> rendered, std::span<std::uint8_t const> sent,
-                                std::span<FrameletShape> shapes) {
+                                std::span<DisplayFramelet const> framelets, std::span<Framelet const> rendered,
+                                std::span<std::uint8_t const> sent, std::span<FrameletShape> shapes) {
     FRAMELET_CHECK(framelets.size() == sent.size() && rendered.size() == sent.size());
     if (plan.moment.motions == nullptr || plan.viewport != field_.plane().viewport()) {
         return;

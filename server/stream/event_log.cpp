@@ -14,7 +14,18 @@ static_assert(std::endian::native == std::endian::little, "numbers are copied as
 
 constexpr char const* first_line = "framelet events 1";
 
-enum Kind : std::uint8_t { viewer = 1, camera, settings, ack, clock_changed, batch_sent, turn, learning, batch, let_go };
+enum Kind : std::uint8_t {
+    viewer = 1,
+    camera,
+    settings,
+    ack,
+    clock_changed,
+    batch_sent,
+    turn,
+    learning,
+    batch,
+    let_go
+};
 
 template <class T>
 void put(Bytes& out, T const& value) {

@@ -165,8 +165,8 @@ int main(int argc, char** argv) {
     SceneCameraInfo const camera{"camera", {}};
     for (Message const& message :
          {Message(Hello{protocol_version, "secret"}), Message(CameraUpdate{}), Message(ViewerSettings{1, 0}),
-          Message(ClockRequest{}), Message(Ack{3, 4, 5}), Message(LetGo{{{3, Tile{5}}}}), Message(Welcome{1, "s", "n", {}, {}, {camera}, 2, {}}),
-          Message(Status{}), Message(Failure{"text"})}) {
+          Message(ClockRequest{}), Message(Ack{3, 4, 5}), Message(LetGo{{{3, Tile{5}}}}),
+          Message(Welcome{1, "s", "n", {}, {}, {camera}, 2, {}}), Message(Status{}), Message(Failure{"text"})}) {
         write_message(folder, message, std::to_string(number++));
     }
     return 0;

@@ -319,8 +319,22 @@ TEST(MessageRange, Tracks) {
     }
 }
 
+TEST(MessageRange, WhatIsLetGoAddsUp) {
+    auto const let_go = [](std::vector<std::uint64_t> const& batches, std::vector<std::uint16_t> const& counts,
+                           std::vector<std::uint32_t> const& tiles) {
+        Builder builder;
+        return finish(builder, wire::CreateLetGoDirect(builder, &batches, &counts, &tiles));
+    };
+    EXPECT_NO_THROW(decode_message(let_go({1, 2}, {1, 2}, {1, 5, 6})));
+    expect_refused(let_go({1, 2}, {1, 1}, {1, 5, 6}), "add up");
+    expect_refused(let_go({1, 2}, {1, 3}, {1, 5, 6}), "add up");
+    expect_refused(let_go({1}, {1, 2}, {1, 5, 6}), "add up");
+    expect_refused(let_go({1}, {2}, {1, 8}), "tile code");
+    expect_refused(let_go({1}, {4097}, std::vector<std::uint32_t>(4097, 1)), "4096");
+}
+
 TEST(MessageRange, UnknownType) {
-    for (int const type : {10, 200, 255}) {
+    for (int const type : {11, 200, 255}) {
         Builder builder;
         expect_refused(finish(builder, write(builder, Ack{}), static_cast<wire::Body>(type)), "unknown type");
     }

@@ -1,6 +1,7 @@
 #include "server/sampling/mirror.h"
 
 #include <limits>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -222,8 +223,58 @@ TEST(Mirror, KeepsFewMoments) {
         EXPECT_LE(mirror.moment_count(), 2 * FrameletPool::most_moments);
         EXPECT_EQ(summary_of(mirror).holes, 0);
     }
-    EXPECT_LE(mirror.piece_count(),
-              2 * FrameletPool::most_moments * render_pieces(plane, plane.pixel_depth(), wall).size());
+}
+
+TEST(Mirror, ForgetsWhatTheViewerLetGo) {
+    Mirror mirror(viewport);
+    mirror.look(view_at(Vec3(0)), no_motions);
+    Tile const tile = make_tile(plane.pixel_depth(), 2, 3);
+    mirror.add(view_at(Vec3(0)).rays, no_motions, render_pieces(plane, plane.pixel_depth(), wall)); // batch 1
+    std::vector<SentTile> const gone{{1, tile}, {2, make_tile(plane.pixel_depth(), 0, 0)}};
+    mirror.forget(gone);
+    mirror.look(view_at(Vec3(0)), no_motions);
+    PixelRect const rect = plane.tile_rect(tile);
+    EXPECT_NEAR(summary_of(mirror).holes * viewport.width * viewport.height, rect.width() * rect.height(), 80)
+        << "a margin of half a pixel";
+    EXPECT_FALSE(mirror.cell((rect.left + 8) / cell_side, (rect.top + 8) / cell_side).is_shown());
+}
+
+TEST(Mirror, SomethingNearerThanWhatShowsIsWrongUntilItComes) {
+    Mirror mirror(viewport);
+    mirror.look(view_at(Vec3(0)), no_motions);
+    mirror.add(view_at(Vec3(0)).rays, no_motions, render_pieces(plane, plane.pixel_depth(), wall)); // at 10 metres
+    PlaceGrid const grid = cell_grid(cell_side, 8, 1);
+    std::size_t const columns = static_cast<std::size_t>(grid.columns(viewport));
+    std::vector<float> seen(columns * static_cast<std::size_t>(grid.rows(viewport)), 0.1f);
+    mirror.look(view_at(Vec3(1e-4f, 0, 0)), no_motions);
+    EXPECT_FALSE(mirror.check(grid, seen));
+    seen[5 * columns + 6] = -1; // not known
+    seen[5 * columns + 7] = 0.05f; // farther
+    seen[4 * columns + 4] = 0.11f; // hardly nearer
+    EXPECT_FALSE(mirror.check(grid, seen));
+    seen[3 * columns + 2] = 0.5f;
+    EXPECT_TRUE(mirror.check(grid, seen));
+    auto const wrong = [&] {
+        return std::ranges::count_if(mirror.cells(), [](Cell const& cell) { return cell.is_wrong; });
+    };
+    EXPECT_EQ(wrong(), 4) << "a square of the grid";
+    mirror.add(view_at(Vec3(1e-4f, 0, 0)).rays, no_motions, render_pieces(plane, plane.pixel_depth(), wall));
+    EXPECT_EQ(wrong(), 0) << "that is what it looks like now";
+}
+
+TEST(PlaceGrid, EveryCellHasItsTurn) {
+    for (int const spacing : {4, 8, 16}) {
+        std::set<std::pair<float, float>> firsts;
+        auto const turns = static_cast<std::uint32_t>(spacing / 4 * (spacing / 4));
+        for (std::uint32_t turn = 0; turn < turns; ++turn) {
+            PlaceGrid const grid = cell_grid(4, spacing, turn);
+            firsts.insert({grid.first.x, grid.first.y});
+            EXPECT_LT(grid.first.x, static_cast<float>(spacing));
+            EXPECT_GE(grid.columns({5, 5}) * grid.rows({5, 5}), grid.first.x < 5 && grid.first.y < 5 ? 1 : 0);
+        }
+        EXPECT_EQ(firsts.size(), turns);
+        EXPECT_EQ(cell_grid(4, spacing, turns).first, cell_grid(4, spacing, 0).first);
+    }
 }
 
 TEST(Mirror, HostileViewsAndDepthsDoNoHarm) {
