@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/color.h"
+#include "server/layers/layer_fit.h"
 #include "server/schedule/adaptive_refresh.h"
 
 namespace framelet {
@@ -125,12 +126,15 @@ public:
 
 private:
     void learn() {
+        shapes_.clear();
         auto const& send = refresh.learn(rendered_plan_, display_, rendered_, luma_);
         for (std::size_t i = 0; i < display_.size(); ++i) {
             if (send[i] != 0) {
                 sent.push_back(display_[i]);
+                fit_layers(rendered_[i], ImagePlane(rendered_plan_.viewport), {1e-5f}, shapes_.emplace_back());
             }
         }
+        refresh.note_sent(rendered_plan_, ++batch_, display_, rendered_, send, shapes_);
         rendered_plan_ = {};
     }
     std::uint8_t shade(float x, float y) const {
@@ -176,6 +180,8 @@ private:
 
     Shading shading_;
     RefreshPlan rendered_plan_; ///< what was rendered and is not learnt yet
+    std::vector<FrameletShape> shapes_; ///< of what is sent
+    std::uint64_t batch_ = 0;
     std::vector<DisplayFramelet> display_;
     std::vector<Framelet> rendered_;
     std::vector<float> luma_;
