@@ -19,7 +19,7 @@ constexpr float trusted_seconds = 0.2f;
 constexpr float share_of_around = 0.25f, share_of_usual = 0.05f;
 /// The least that is expected of anything, mean squared luma a second.
 constexpr float least_change = 1e-5f;
-/// What is seen in a mirror.
+/// What is seen in a mirror by a camera that moves.
 constexpr float restless_change = 0.02f;
 /// Squared difference by which pieces of the same looks may differ: of the detail that lies between their samples, and
 /// of what they show besides their slope, a share of the detail as large as they are; display steps.
@@ -118,7 +118,7 @@ FadingCode Looks::learn(Mirror const& mirror, std::span<Piece> pieces, SceneTime
         }
         float expected = std::max(
             {piece.change, share_of_around * around(piece.centre, scene_time), share_of_usual * usual_, least_change});
-        if (piece.reflects) {
+        if (piece.reflects && !mirror.camera_stands()) {
             expected = std::max(expected, restless_change);
         }
         float const area = 4 * piece.half_side.x * piece.half_side.y;

@@ -83,6 +83,7 @@ std::size_t Mirror::moment_count() const {
 
 void Mirror::look(MirrorView const& view, BodyMotions const& motions) {
     target_ = view;
+    camera_stands_ = moments_[base_].number > 0 && same_camera(moments_[base_].rays, view.rays);
     if (std::exchange(settles_, false)) {
         settle_now();
     }

@@ -63,6 +63,8 @@ public:
     /// True where a new framelet takes the place of what shows, be it better or not: it is of the base of the camera
     /// that is looked through.
     bool gives_way(Cell const& cell) const { return cell.moment == base_ && moments_[base_].is_of_camera; }
+    /// True when the picture is from where the newest that had come by then was rendered: the camera stands.
+    bool camera_stands() const { return camera_stands_; }
     /// True when the picture is of this moment.
     bool looks_at(MirrorView const& view) const;
 
@@ -143,6 +145,7 @@ private:
     std::size_t base_ = 0; ///< slot of what stands before the newest camera
     bool settles_ = false;
     MirrorView target_;
+    bool camera_stands_ = false;
     bool awaits_moment_ = false; ///< nothing has come yet of the moment that is looked at
 
     std::vector<std::uint64_t> newest_batch_; ///< by cell
