@@ -15,6 +15,8 @@ namespace {
 
 /// A probe's rays go together with none of their neighbours.
 constexpr double probe_cost = 2;
+/// A ray that is not shaded, of a sample.
+constexpr double visibility_cost = 0.25;
 /// A place is probed again after so many seconds, sooner beside something that moves.
 constexpr double probe_period = 0.25;
 /// What should have been refreshed by then, and has not, is probed after so many.
@@ -291,6 +293,7 @@ void AdaptiveRefresh::plan_moment(RefreshInput const& input, double samples, Ref
         looked_ = input.moment->begun;
         plan.visibility = cell_grid(
             cell_side, visibility_spacing(plan.viewport, planned_seconds * input.samples_per_second), ++looks_taken_);
+        samples -= visibility_cost * plan.visibility->columns(plan.viewport) * plan.visibility->rows(plan.viewport);
     }
     is_checked_ = false;
     find_costs(input);
