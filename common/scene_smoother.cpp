@@ -86,12 +86,12 @@ void SceneSmoother::settle() {
 }
 
 /// `changed`: of the base.
-void SceneSmoother::update_times(FrameletPool const& pool, std::span<PixelRect const> changed, Side& side) const {
-    update_shown_times(pool.newest(), changed, side.base_times);
-    side.times = side.base_times;
+void SceneSmoother::update_times(FrameletPool const& pool, std::span<PixelRect const> changed, Side& shown) const {
+    update_shown_times(pool.newest(), changed, shown.base_times);
+    shown.times = shown.base_times;
     for (std::size_t i = 0; i < pool.slot_count(); ++i) {
         if (pool.belongs_to_base(i)) {
-            add_later_times(pool.slot(i), side.times);
+            add_later_times(pool.slot(i), shown.times);
         }
     }
 }

@@ -55,7 +55,7 @@ private:
     };
 
     void take_due(SceneTime scene_time);
-    void update_times(FrameletPool const& pool, std::span<PixelRect const> changed, Side& side) const;
+    void update_times(FrameletPool const& pool, std::span<PixelRect const> changed, Side& shown) const;
     void mark(std::vector<PixelRect> const& rects, std::vector<std::uint8_t>& flags) const;
     void mix_block(std::size_t index, Picture& picture);
     PixelRect block_rect(std::size_t index) const;
