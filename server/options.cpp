@@ -64,8 +64,8 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
     app.add_flag("--insecure", insecure, "Listen beyond this machine without token and TLS");
     app.add_option(
         "--record", options.record,
-        "Write what is planned for each viewer into this folder: a line of JSON for each batch, and pictures "
-        "of tiles, density, error and motion");
+        "Write what is planned for each viewer into this folder: a line of JSON for each batch, and for viewers "
+        "that move nothing pictures of tiles, density, error and motion");
     app.add_option("--record-rate", options.record_rate, "Sets of such pictures a second, for each viewer")
         ->check(CLI::Range(0.01, 1000.0))
         ->capture_default_str();

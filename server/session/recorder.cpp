@@ -53,7 +53,8 @@ void Recorder::add(CycleRecord record, AdaptiveRefresh const& refresh, double no
             return;
         }
         auto const [next, first] = next_picture_.try_emplace(record.session, now);
-        draw = !drawing_ && now >= next->second;
+        // A plan that the mirror made has no field behind it.
+        draw = !drawing_ && now >= next->second && refresh.choices().size() == refresh.field().size();
         drawing_ = drawing_ || draw;
         next->second = draw ? now + picture_period_ : next->second;
     }

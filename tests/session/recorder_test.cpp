@@ -71,6 +71,27 @@ TEST_F(RecorderTest, ALineForEachBatchAndPicturesAtTheirRate) {
     folder = folder.parent_path();
 }
 
+TEST_F(RecorderTest, APlanWithoutChoicesHasNoPictures) {
+    BodyMotions const motions;
+    AdaptiveRefresh refresh;
+    {
+        Recorder recorder(folder, 2);
+        CycleRecord record;
+        recorder.add(record, refresh, 10);
+        RefreshInput input;
+        input.state.view.viewport = {320, 200};
+        input.now = 1;
+        input.samples_per_second = 1e6;
+        input.motions = &motions;
+        input.moment = HeldMoment{input.state, 0.5};
+        RefreshPlan plan;
+        refresh.plan(input, plan);
+        recorder.add(record, refresh, 11);
+    }
+    EXPECT_EQ(lines().size(), 2u);
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1);
+}
+
 TEST_F(RecorderTest, RefusesAFolderThatCannotBe) {
     std::ofstream(folder) << "a file";
     EXPECT_THROW(Recorder(folder, 4), InputError);
