@@ -1,5 +1,7 @@
 #include "client/frame_writer.h"
 
+#include <utility>
+
 #include "common/cpu_clock.h"
 #include "common/error.h"
 #include "common/picture_writer.h"
@@ -76,7 +78,7 @@ FrameWriter::~FrameWriter() {
     stop();
 }
 
-void FrameWriter::add(Picture const& picture, bool changed) {
+void FrameWriter::add(Picture const& picture, bool changed, bool taken) {
     Frame frame{frames_++, std::nullopt};
     if (!pattern_.numbered()) {
         if (changed || !last_) {
@@ -84,7 +86,11 @@ void FrameWriter::add(Picture const& picture, bool changed) {
         }
         return;
     }
-    if (changed || frame.number == 0) {
+    is_new_ = is_new_ || changed;
+    if (!taken) {
+        return;
+    }
+    if (std::exchange(is_new_, false)) {
         frame.picture = picture;
     }
     std::unique_lock lock(mutex_);
@@ -151,8 +157,9 @@ void FrameWriter::write(Frame const& frame) {
     if (frame.picture) {
         write_picture(file, *frame.picture);
     } else {
-        fs::copy_file(pattern_.path(frame.number - 1), file, fs::copy_options::overwrite_existing);
+        fs::copy_file(newest_file_, file, fs::copy_options::overwrite_existing);
     }
+    newest_file_ = file;
 }
 
 } // namespace framelet

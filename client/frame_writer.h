@@ -40,8 +40,9 @@ public:
     FrameWriter& operator=(FrameWriter const&) = delete;
 
     /// Takes a copy of the next frame; `changed` false says that it equals the one before, which costs a copy of the
-    /// file. Waits while many frames are waiting to be written. Throws InputError once writing has failed.
-    void add(Picture const& picture, bool changed);
+    /// file. `taken` false leaves it out; the number goes on. Waits while many frames are waiting to be written. Throws
+    /// InputError once writing has failed.
+    void add(Picture const& picture, bool changed, bool taken = true);
     /// Waits until everything is written; nothing may be added afterwards. Throws InputError where writing failed.
     void finish();
     std::uint64_t frames() const { return frames_; }
@@ -51,7 +52,7 @@ public:
 private:
     struct Frame {
         std::uint64_t number;
-        std::optional<Picture> picture; ///< empty: as the one before
+        std::optional<Picture> picture; ///< empty: as the one that was written before
     };
     static constexpr std::size_t most_waiting = 4;
 
@@ -62,8 +63,10 @@ private:
 
     FramePattern const pattern_;
     std::uint64_t frames_ = 0;
+    bool is_new_ = true; ///< what was added since the last frame that was taken
     std::optional<Picture> last_; ///< of a pattern without number
     std::atomic<double> cpu_seconds_ = 0;
+    std::filesystem::path newest_file_; ///< that was written; the writing thread's
 
     mutable std::mutex mutex_; // guards what follows
     std::condition_variable changed_;

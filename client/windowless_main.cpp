@@ -12,6 +12,7 @@
 #include "client/client_core.h"
 #include "client/connection_arguments.h"
 #include "client/display_arguments.h"
+#include "client/frame_choice.h"
 #include "client/frame_log.h"
 #include "client/frame_writer.h"
 #include "client/statistics_text.h"
@@ -32,6 +33,7 @@ struct Options {
     std::optional<double> duration;
     std::string camera_file;
     std::optional<double> rate;
+    std::vector<double> output_times;
     std::string output;
     std::string frames_file;
     bool json = false;
@@ -122,6 +124,7 @@ RunFigures show(ClientCore& core, Options const& options, std::optional<CameraPa
     Picture picture = bare_picture(viewport);
     Picture overlaid; //< and what is drawn over it
     std::vector<PixelRect> changed;
+    FrameChoice choice(options.output_times);
     Clock::time_point const start = Clock::now();
     Clock::time_point next = start;
     while (true) {
@@ -149,7 +152,7 @@ RunFigures show(ClientCore& core, Options const& options, std::optional<CameraPa
                 overlaid = picture;
                 core.draw_overlay(options.overlay, overlaid);
             }
-            writer->add(draws ? overlaid : picture, news);
+            writer->add(draws ? overlaid : picture, news, choice.takes(now));
         }
         if (run.converged_seconds < 0 && (done || core.is_complete())) {
             run.converged_seconds = now;
@@ -225,6 +228,9 @@ int main(int argc, char** argv) {
     app.add_option("--output", options.output,
                    "Picture file for each frame, as in frames/%04d.png (or .ppm: larger, quicker); without a number: "
                    "for the last frame");
+    app.add_option("--output-times", options.output_times,
+                   "With numbered files: only the three frames from each of these times on, seconds; the numbers stay")
+        ->check(CLI::Range(0.0, 1e6));
     app.add_option("--frames", options.frames_file,
                    "Write a line of JSON for each frame to this file: when it was shown, the scene's time, bytes, CPU");
     std::map<std::string, DrawnOver> const overlays{{"outlines", DrawnOver::outlines},

@@ -1,5 +1,7 @@
 #include "client/frame_writer.h"
 
+#include "client/frame_choice.h"
+
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -62,6 +64,32 @@ TEST_F(FrameWriterTest, WritesEveryFrameAndRepeatsThoseThatDidNotChange) {
         EXPECT_EQ(picture.width, 8);
         EXPECT_EQ(picture.rgba[0], i / 3 * 3);
     }
+}
+
+TEST_F(FrameWriterTest, LeavesOutWhatIsNotTaken) {
+    FramePattern const pattern((folder_ / "%d.png").string());
+    FrameWriter writer(pattern);
+    for (int i = 0; i < 10; ++i) {
+        writer.add(grey(static_cast<std::uint8_t>(i / 4)), i % 4 == 0, i == 1 || i == 3 || i == 6);
+    }
+    writer.finish();
+    for (std::uint64_t i = 0; i < 10; ++i) {
+        ASSERT_EQ(fs::exists(pattern.path(i)), i == 1 || i == 3 || i == 6) << i;
+        if (fs::exists(pattern.path(i))) {
+            EXPECT_EQ(read_picture(pattern.path(i)).rgba[0], i / 4) << i;
+        }
+    }
+}
+
+TEST(FrameChoice, TakesThreeFramesFromEachTimeOn) {
+    FrameChoice all({});
+    FrameChoice some({0.5, 0.2});
+    std::string taken;
+    for (int i = 0; i < 10; ++i) {
+        EXPECT_TRUE(all.takes(0.1 * i));
+        taken += some.takes(0.1 * i + 0.01) ? 'x' : '.';
+    }
+    EXPECT_EQ(taken, "..xxxxxx..");
 }
 
 TEST_F(FrameWriterTest, WithoutANumberKeepsTheLast) {

@@ -52,7 +52,7 @@ void add_live_verbs(CLI::App& app, VerbOptions& options, LiveVerbOptions& live, 
         return command;
     };
     add("live", "The real programs as a person runs them, every method: pictures a second, errors, costs",
-        add_live_options, [&] { return answer_live(live, bundled_scenes()); });
+        add_live_options, [&] { return answer_live(live, bundled_scenes(), options.costs_file); });
     add("replay", "A recorded session through the same pipeline: whether the same bytes come out", add_replay_options,
         [&] { return answer_replay(live); });
     add("serve", "Serves a method to `look`, for `live`", add_serve_options, [&] {

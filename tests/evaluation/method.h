@@ -14,6 +14,7 @@
 #include "common/image.h"
 #include "tests/evaluation/bench_scene.h"
 #include "tests/evaluation/cost_table.h"
+#include "tests/evaluation/session_times.h"
 
 namespace framelet {
 class AdaptiveRefresh;
@@ -66,6 +67,7 @@ struct MethodSetup {
     std::size_t batch_framelets = 0; ///< most framelets of one batch; 0: what a cycle has time for
     FrameletParts parts{};
     RivalParts rivals{}; ///< what is left to choose is 1 and no margin
+    SessionTimes* times = nullptr; ///< of framelet's own methods: gets what their stages take
 };
 
 /// What the viewer's answer tells of a message.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <utility>
 
 #include "server/schedule/tiling.h"
 
@@ -14,60 +15,134 @@ constexpr double idle_seconds = 0.002;
 /// Of a viewer's display, pictures a second.
 constexpr double display_rate = 60;
 
-void add(StageSeconds& sum, StageSeconds const& step, double server, double viewer) {
-    sum.render += server * step.render;
-    sum.response += server * step.response;
-    sum.encode += server * step.encode;
-    sum.decode += viewer * step.decode;
-    sum.reconstruct += viewer * step.reconstruct;
+void add_server(StageSeconds& sum, StageSeconds const& step, double machine) {
+    sum.render += machine * step.render;
+    sum.response += machine * step.response;
+    sum.encode += machine * step.encode;
 }
 
-/// Hands the picture out at every reference time that passes.
-class Spectator {
+/// One processor: what arrives is decoded at once, and in the time that this leaves a picture is made for each display
+/// frame. As in the client, a picture is of the moment at which it is expected to be ready.
+class SimulatedViewer {
 public:
-    Spectator(BenchScene const& scene, Method& method, RunParameters const& parameters, double viewer_machine,
-              OnReferenceTime const& on_reference_time)
-        : scene_(scene), method_(method), parameters_(parameters), viewer_machine_(viewer_machine),
-          count_(reference_count(parameters)), on_reference_time_(on_reference_time) {}
+    SimulatedViewer(BenchScene const& scene, Method& method, RunParameters const& parameters, double machine,
+                    double now, OnReferenceTime const& on_reference_time, RunResult& result)
+        : scene_(scene), method_(method), parameters_(parameters), machine_(machine),
+          count_(reference_count(parameters)), on_reference_time_(on_reference_time), result_(result), free_(now),
+          next_frame_(now) {}
 
-    /// Until `end` the viewer goes on with what it has.
-    void watch(double end) {
-        while (next_ < count_ && reference_time(parameters_, next_) < end) {
-            // What is seen at a time was begun when the picture before it was done.
-            double const now = reference_time(parameters_, next_);
-            double const begun = std::max(0.0, now - last_.seconds.viewer() * viewer_machine_);
-            SceneTime const time = scene_time(parameters_, begun);
-            last_ = method_.present({1, camera_at(scene_, time), parameters_.viewport}, time);
-            presenting_ += viewer_machine_ * last_.seconds.viewer() * display_rate / parameters_.reference_rate;
-            hand_out(method_.picture(), method_.mean_sample_time());
+    /// Makes all pictures that are begun before `end`.
+    void show_until(double end) {
+        for (double begin = next_begin(); begin < end; begin = next_begin()) {
+            make_picture(begin);
         }
     }
 
-    /// Until `end` the viewer shows this.
-    void watch(double end, Picture const& shown, double sample_time) {
-        while (next_ < count_ && reference_time(parameters_, next_) < end) {
-            hand_out(shown, sample_time);
-        }
+    /// Decodes a message, `sent` at a time and begun at another; messages come in the order of their arrival. Returns
+    /// when it is done, which the answer says. A picture that is being made meanwhile is late by that.
+    double receive(double arrived, double begun, std::vector<std::byte> const& message) {
+        show_until(arrived);
+        StageSeconds const seconds = scaled(method_.consume(message).seconds);
+        double const begin = std::max(arrived, decoder_free_);
+        decoder_free_ = begin + seconds.viewer();
+        free_ = std::max(free_, begin) + seconds.viewer();
+        spend(begin, seconds);
+        unseen_.push_back(begun);
+        return decoder_free_;
     }
 
-    /// CPU seconds of pictures without a message.
-    double presenting() const { return presenting_; }
+    /// Shows what is left to be shown, and brings the result's means up to date.
+    void finish() {
+        show_until(std::max(parameters_.seconds, free_));
+        while (next_ < count_) {
+            make_picture(next_begin());
+        }
+        result_.mean_delay = seen_ == 0 ? 0 : delays_ / static_cast<double>(seen_);
+    }
+
+    /// That its work took so far.
+    double spent_seconds() const { return spent_seconds_; }
 
 private:
-    void hand_out(Picture const& shown, double sample_time) {
-        double const age = scene_time(parameters_, reference_time(parameters_, next_)) - sample_time;
-        on_reference_time_(next_++, shown, age);
+    double next_reference() const { return reference_time(parameters_, next_); }
+
+    /// A display frame just before a reference time waits for it, so that what is compared is of that very moment.
+    double next_begin() const {
+        double const aim = std::max(next_frame_, free_ + making_);
+        double const reference = next_ < count_ ? next_reference() : 0;
+        bool const waits = reference > aim && reference - aim < frame_seconds;
+        return std::max(free_, (waits ? reference : aim) - making_);
     }
+
+    void make_picture(double begin) {
+        double aim = begin + making_;
+        std::size_t const first = next_;
+        while (next_ < count_ && next_reference() < aim + time_tolerance) {
+            ++next_;
+        }
+        if (next_ > first) {
+            aim = reference_time(parameters_, next_ - 1);
+        }
+        next_frame_ = std::max(next_frame_ + frame_seconds, aim + frame_seconds / 2);
+        SceneTime const time = scene_time(parameters_, aim);
+        StageSeconds const seconds =
+            scaled(method_.present({1, camera_at(scene_, time), parameters_.viewport}, time).seconds);
+        free_ = begin + seconds.viewer();
+        constexpr double weight = 0.2; // as in the client
+        making_ += weight * (seconds.viewer() - making_);
+        spend(begin, seconds);
+        note_shown(seconds.reconstruct > 0);
+        for (std::size_t i = first; i < next_; ++i) {
+            double const then = scene_time(parameters_, reference_time(parameters_, i));
+            on_reference_time_(i, method_.picture(), then - method_.mean_sample_time());
+        }
+    }
+
+    void note_shown(bool is_moved) {
+        bool const is_measured = free_ >= 0 && free_ < parameters_.seconds;
+        if (is_measured && (is_moved || !unseen_.empty())) {
+            result_.displayed.push_back(free_);
+        }
+        for (double const begun : unseen_) {
+            delays_ += begun >= 0 ? free_ - begun : 0;
+            seen_ += begun >= 0 ? 1 : 0;
+        }
+        unseen_.clear();
+    }
+
+    void spend(double when, StageSeconds const& seconds) {
+        spent_seconds_ += seconds.viewer();
+        if (when >= 0 && when < parameters_.seconds) {
+            result_.cpu.decode += seconds.decode;
+            result_.cpu.reconstruct += seconds.reconstruct;
+        }
+    }
+
+    StageSeconds scaled(StageSeconds seconds) const {
+        seconds.decode *= machine_;
+        seconds.reconstruct *= machine_;
+        return seconds;
+    }
+
+    static constexpr double frame_seconds = 1 / display_rate;
+    static constexpr double time_tolerance = 1e-9;
 
     BenchScene const& scene_;
     Method& method_;
     RunParameters const& parameters_;
-    double const viewer_machine_;
+    double const machine_;
     std::size_t const count_;
     OnReferenceTime const& on_reference_time_;
-    std::size_t next_ = 0;
-    ViewerStep last_;
-    double presenting_ = 0;
+    RunResult& result_;
+    std::size_t next_ = 0; ///< reference time
+    double free_; ///< from when on the processor can make a picture
+    double decoder_free_ = -INFINITY;
+    double next_frame_; ///< of the display
+    double making_ = 0; ///< seconds that a picture took lately
+    double spent_seconds_ = 0;
+    std::vector<double> unseen_; ///< of messages that no picture shows yet: when they were begun
+    double delays_ = 0;
+    std::size_t seen_ = 0;
 };
 
 } // namespace
@@ -83,7 +158,8 @@ MethodSetup method_setup(RunParameters const& parameters, double machine, CostTa
             parameters.bias,
             parameters.batch_framelets,
             {},
-            parameters.rivals};
+            parameters.rivals,
+            parameters.times};
 }
 
 double lead_seconds(RunParameters const& parameters) {
@@ -124,11 +200,10 @@ RunResult run_method(BenchScene& scene, Method& method, RunParameters const& par
                      OnReferenceTime const& on_reference_time, OnStep const& on_step) {
     SimulatedLink link(parameters.link);
     bool const shared = parameters.counting == Counting::total;
-    double const viewer_machine = shared ? machine : 1;
-    Spectator spectator(scene, method, parameters, viewer_machine, on_reference_time);
     RunResult result;
     double now = -lead_seconds(parameters);
-    double viewer_free = now;
+    SimulatedViewer viewer(scene, method, parameters, shared ? machine : 1, now, on_reference_time, result);
+    double viewer_spent = 0;
     Window const window = method.window();
     std::deque<double> in_flight; // when each message no longer counts
     struct Answer {
@@ -137,7 +212,6 @@ RunResult run_method(BenchScene& scene, Method& method, RunParameters const& par
     };
     std::deque<Answer> answers;
     std::vector<DeliveredMessage> delivered;
-    Picture shown = method.picture();
     NumberedView view{0, {}, parameters.viewport};
     while (now < parameters.seconds) {
         while (!in_flight.empty() && in_flight.front() <= now) {
@@ -174,8 +248,8 @@ RunResult run_method(BenchScene& scene, Method& method, RunParameters const& par
         }
         bool const measured = started >= 0;
         if (measured) {
-            add(result.cpu, step.seconds, machine, 0);
-            add(result.cpu, step.later, machine, 0);
+            add_server(result.cpu, step.seconds, machine);
+            add_server(result.cpu, step.later, machine);
             result.samples += step.samples;
         }
         now += machine * step.seconds.server();
@@ -186,35 +260,23 @@ RunResult run_method(BenchScene& scene, Method& method, RunParameters const& par
         SimulatedLink::Delivery const delivery = link.send(now, step.message.size());
         method.sent(now, static_cast<double>(step.message.size()));
 
-        double const begin = std::max(delivery.arrived, viewer_free);
-        spectator.watch(begin);
-        double const sample_time = method.mean_sample_time();
-        shown = method.picture();
-        ViewerStep const viewed = method.consume(step.message);
-        double const displayed = begin + viewer_machine * viewed.seconds.viewer();
-        spectator.watch(displayed, shown, sample_time);
-        viewer_free = displayed;
+        double const answered = viewer.receive(delivery.arrived, step.begun.value_or(started), step.message);
         double const delay = parameters.link.delay_seconds;
-        in_flight.push_back(displayed + (window.beyond_round_trip ? -delay : delay));
-        answers.push_back({displayed + delay,
+        in_flight.push_back(answered + (window.beyond_round_trip ? -delay : delay));
+        answers.push_back({answered + delay,
                            delivery.arrived,
                            {static_cast<double>(step.message.size()), delivery.departed - delivery.begun}});
         if (shared) {
-            now += machine * viewed.seconds.viewer();
+            now += viewer.spent_seconds() - std::exchange(viewer_spent, viewer.spent_seconds());
         }
         if (measured) {
-            add(result.cpu, viewed.seconds, 0, viewer_machine);
             result.bytes += step.message.size();
             ++result.messages;
-            result.mean_delay += displayed - step.begun.value_or(started);
-            result.displayed.push_back(displayed);
             result.deliveries.push_back({now, static_cast<double>(step.message.size()), delivery.begun - now});
         }
         now += machine * step.later.server();
     }
-    spectator.watch(INFINITY);
-    result.cpu.reconstruct += spectator.presenting();
-    result.mean_delay /= std::max<double>(1, static_cast<double>(result.messages));
+    viewer.finish();
     return result;
 }
 

@@ -31,6 +31,7 @@ struct RunParameters {
     std::size_t batch_framelets = 0; ///< as in MethodSetup
     double scene_stops = INFINITY; ///< seconds of the run, from which on scene and camera stand still
     RivalParts rivals{}; ///< as in MethodSetup
+    SessionTimes* times = nullptr; ///< likewise
 };
 
 /// What such a run tells its method, on a machine of this speed.

@@ -165,14 +165,4 @@ void add_report_options(CLI::App& verb, VerbOptions& options) {
     verb.add_flag("--no-live", options.without_live, "No runs of the real programs");
 }
 
-void add_wall_options(CLI::App& verb, VerbOptions& options) {
-    verb.add_option("--threads", options.wall.server_threads,
-                    "Threads of the server; client and link need processors of their own")
-        ->check(CLI::Range(1, 1024))
-        ->capture_default_str();
-    verb.add_option("--display-rate", options.wall.display_rate, "Frames a second that the client shows")
-        ->check(CLI::Range(1.0, 240.0))
-        ->capture_default_str();
-}
-
 } // namespace framelet::bench

@@ -13,7 +13,7 @@
 #include "tests/evaluation/estimators/estimator_verbs.h"
 #include "tests/evaluation/report/report_runs.h"
 #include "tests/evaluation/stability.h"
-#include "tests/evaluation/wall.h"
+#include "tests/evaluation/study.h"
 
 namespace CLI {
 class App;
@@ -53,7 +53,6 @@ struct VerbOptions {
     ReportOptions report;
     std::vector<std::string> live_scenes; ///< files or names, of the report
     bool without_live = false, without_links = false;
-    WallOptions wall{.server_threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1)};
 };
 
 /// The project's own scene files, in the order of their names.
@@ -74,7 +73,6 @@ void add_study_options(CLI::App& verb, VerbOptions& options);
 void add_stability_options(CLI::App& verb, VerbOptions& options);
 void add_table_options(CLI::App& verb, VerbOptions& options);
 void add_correspondence_options(CLI::App& verb, VerbOptions& options);
-void add_wall_options(CLI::App& verb, VerbOptions& options);
 void add_report_options(CLI::App& verb, VerbOptions& options);
 
 } // namespace framelet::bench

@@ -98,15 +98,6 @@ json answer_stillness(VerbOptions& options) {
     return measure_stillness({}, options.study);
 }
 
-json answer_wall(VerbOptions& options) {
-    json result = json::array();
-    for (auto const& file : options.study.scenes) {
-        auto const scene = load_bench_scene(file, options.study.camera);
-        result.push_back(measure_wall(*scene, options.study, options.wall));
-    }
-    return result;
-}
-
 json answer_sensitivity(VerbOptions& options) {
     options.study.sees_events = !options.start;
     json result = json::array();
@@ -265,11 +256,6 @@ std::span<Verb const> verbs() {
          .scenes = {},
          .usual = {.seconds = 4, .rate = 20},
          .quick = {.viewport = {128, 72}, .rate = 20}},
-        {.name = "wall",
-         .question = "The real server and client through an emulated link, beside what the virtual clock predicts",
-         .answer = answer_wall,
-         .scenes = chase,
-         .add_options = add_wall_options},
         {.name = "sensitivity",
          .question = "How tsar answers to steeper and flatter templates of its error estimate",
          .answer = answer_sensitivity,

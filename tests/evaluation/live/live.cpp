@@ -14,12 +14,14 @@
 #include <tbb/parallel_for.h>
 
 #include "client/camera_path.h"
+#include "client/frame_choice.h"
 #include "common/cpu_clock.h"
 #include "common/error.h"
 #include "common/image_io.h"
 #include "common/picture_writer.h"
 #include "server/render/framelet_renderer.h"
 #include "tests/evaluation/codecs/link_emulator.h"
+#include "tests/evaluation/live/prediction.h"
 #include "tests/evaluation/measures/measures.h"
 #include "tests/evaluation/measures/steadiness.h"
 #include "tests/evaluation/rival_choice.h"
@@ -32,8 +34,6 @@ using namespace std::chrono_literals;
 using nlohmann::json;
 
 constexpr auto patience = 120s; ///< for a client that still writes its last pictures
-/// Pictures from this long after the first one on are compared: until then the methods build up what they hold.
-constexpr double build_up_seconds = 1;
 
 struct LiveFrame {
     std::uint64_t number = 0;
@@ -99,11 +99,28 @@ Programs programs_of(std::string const& method, RivalParts const& rivals, std::s
     return {self, self, joined({"serve", method, scene}, parts), {"look", method, scene}, parts};
 }
 
-void pin(pid_t pid, int core) {
-    cpu_set_t cores;
-    CPU_ZERO(&cores);
-    CPU_SET(static_cast<std::size_t>(core), &cores);
-    sched_setaffinity(pid, sizeof cores, &cores);
+/// What this thread starts meanwhile stays on one core, and knows of no other from its beginning on.
+class OnCore {
+public:
+    explicit OnCore(std::optional<std::size_t> core) {
+        sched_getaffinity(0, sizeof before_, &before_);
+        if (core) {
+            cpu_set_t one;
+            CPU_ZERO(&one);
+            CPU_SET(*core, &one);
+            sched_setaffinity(0, sizeof one, &one);
+        }
+    }
+    ~OnCore() { sched_setaffinity(0, sizeof before_, &before_); }
+    OnCore(OnCore const&) = delete;
+    OnCore& operator=(OnCore const&) = delete;
+
+private:
+    cpu_set_t before_{};
+};
+
+std::optional<std::size_t> core_if(bool pinned, std::size_t core) {
+    return pinned ? std::optional(core) : std::nullopt;
 }
 
 double cpu_of(pid_t pid) {
@@ -133,7 +150,10 @@ void run_programs(BenchScene const& scene, std::string const& method, RivalParts
     std::snprintf(stops, sizeof stops, "%.9g", std::log2(static_cast<double>(scene.exposure)));
     std::vector<std::string> server_options{"--exposure", stops, "--threads",
                                             std::to_string(options.pinned ? 1 : options.server_threads)};
-    auto server = test::ServerProcess::of_program(programs.server, joined(programs.server_words, server_options));
+    auto server = [&] {
+        OnCore const core(core_if(options.pinned, 0));
+        return test::ServerProcess::of_program(programs.server, joined(programs.server_words, server_options));
+    }();
     std::string const& address = server.address();
     auto const port = static_cast<std::uint16_t>(std::stoi(address.substr(address.rfind(':') + 1)));
     std::optional<LinkEmulator> link;
@@ -152,6 +172,12 @@ void run_programs(BenchScene const& scene, std::string const& method, RivalParts
                                             (run.folder.path() / "%06d.ppm").string(),
                                             "--frames",
                                             (run.folder.path() / "frames.jsonl").string()};
+    std::vector<std::string> times{"--output-times"};
+    for (int k = 0; k < options.moments; ++k) {
+        double const window = options.seconds - build_up_seconds;
+        times.push_back(std::to_string(build_up_seconds + (k + 0.5) / options.moments * window));
+    }
+    client_options = joined(client_options, times);
     if (!options.camera_file.empty()) {
         client_options = joined(client_options, {"--camera", options.camera_file.string()});
     } else if (scene.scene_camera != none) {
@@ -159,15 +185,13 @@ void run_programs(BenchScene const& scene, std::string const& method, RivalParts
             joined(client_options,
                    {"--camera", run.folder.write("camera.json", json{{"scene_camera", scene.scene_camera}}.dump())});
     }
-    if (options.pinned) {
-        pin(server.process().pid(), 0);
-    }
     double const before = cpu_of(server.process().pid());
     auto const start = std::chrono::steady_clock::now();
-    test::Process client(programs.client, joined(joined(programs.client_words, client_options), programs.client_more));
-    if (options.pinned) {
-        pin(client.pid(), 1);
-    }
+    auto client = [&] {
+        OnCore const core(core_if(options.pinned, 1));
+        return test::Process(programs.client,
+                             joined(joined(programs.client_words, client_options), programs.client_more));
+    }();
     if (int const code = client.wait(patience); code != 0) {
         throw ConnectionError(method + ": the viewer ended with " + std::to_string(code) + ": " + client.errors());
     }
@@ -223,6 +247,11 @@ json run_figures(LiveRun const& run) {
         }
     }
     LiveFrame const& last = run.frames.back();
+    auto const steady = std::ranges::find_if(run.frames, [&run](LiveFrame const& frame) {
+        return frame.seconds >= run.frames.front().seconds + build_up_seconds;
+    });
+    double const steady_span = last.seconds - steady->seconds;
+    auto const steady_pictures = std::count_if(steady, run.frames.end(), [](auto const& frame) { return frame.changed; });
     double const span = last.seconds - run.frames.front().seconds;
     double const cores = std::max(1u, std::thread::hardware_concurrency());
     double const viewer = (last.cpu_seconds - run.frames.front().cpu_seconds) / span;
@@ -230,29 +259,35 @@ json run_figures(LiveRun const& run) {
     return {{"pictures_per_second", changed / span},
             {"frames_per_second", static_cast<double>(run.frames.size()) / span},
             {"gap_p99_ms", 1e3 * percentile(gaps, 0.99)},
+            {"server_cores", server},
+            {"viewer_cores", viewer},
             {"server_busy", server / cores},
             {"server_busy_of_rest", server / std::max(cores - viewer, 0.01)},
             {"viewer_busy", viewer / cores},
             {"samples_per_second", last.samples / span},
             {"kB_per_second", last.bytes / span / 1e3},
+            {"start_seconds", run.frames.front().scene_time},
+            {"steady",
+             {{"pictures_per_second", static_cast<double>(steady_pictures) / steady_span},
+              {"kB_per_second", (last.bytes - steady->bytes) / steady_span / 1e3}}},
             {"photon_ms", photons.empty() ? json() : json(1e3 * percentile(photons, 0.5))},
             {"photon_p99_ms", photons.empty() ? json() : json(1e3 * percentile(photons, 0.99))}};
 }
 
 /// Errors at some moments, spread over the run.
 json error_figures(BenchScene& scene, std::string const& method, LiveRun const& run, LiveOptions const& options) {
-    std::vector<std::size_t> late;
-    for (std::size_t i = 0; i + 2 < run.frames.size(); ++i) {
-        if (run.frames[i].seconds > run.frames.front().seconds + build_up_seconds) {
-            late.push_back(i);
+    std::vector<std::size_t> written;
+    for (std::size_t i = 0; i < run.frames.size(); ++i) {
+        if (std::filesystem::exists(run.picture_file(run.frames[i].number))) {
+            written.push_back(i);
         }
     }
     json figures{{"mse", 0.0}, {"ssim", 0.0}, {"flip", 0.0}, {"steadiness", 0.0}, {"psnr_each", json::array()}};
-    auto const count = std::min(static_cast<std::size_t>(options.moments), late.size());
+    std::size_t const count = written.size() / FrameChoice::frames_at_once;
     for (std::size_t k = 0; k < count; ++k) {
-        std::size_t const first = late[(2 * k + 1) * late.size() / (2 * count)];
-        std::array<Picture, 3> shown, reference;
-        for (std::size_t i = 0; i < 3; ++i) {
+        std::size_t const first = written[k * FrameChoice::frames_at_once];
+        std::array<Picture, FrameChoice::frames_at_once> shown, reference;
+        for (std::size_t i = 0; i < shown.size(); ++i) {
             shown[i] = run.picture(first + i);
             reference[i] = reference_of(scene, run.frames[first + i], options);
         }
@@ -307,6 +342,19 @@ void print(std::string const& method, json const& f) {
     std::fflush(stdout);
 }
 
+/// Where nothing is built up any more, both clocks in turn.
+void print_prediction(json const& figures) {
+    auto const line = [&figures](char const* name, json const& rates, json const& of) {
+        std::printf("  %-16s %6.1f pictures/s  %7.0f kB/s  %6.2f dB  %5.2f Msamples/s  server %.2f  viewer %.2f cores\n",
+                    name, rates["pictures_per_second"].get<double>(), rates["kB_per_second"].get<double>(),
+                    of["psnr"].get<double>(), of["samples_per_second"].get<double>() / 1e6,
+                    of["server_cores"].get<double>(), of["viewer_cores"].get<double>());
+    };
+    line("wall clock", figures["steady"], figures);
+    line("virtual clock", figures["virtual"], figures["virtual"]);
+    std::fflush(stdout);
+}
+
 } // namespace
 
 json measure_live(BenchScene& scene, LiveOptions const& options) {
@@ -319,8 +367,12 @@ json measure_live(BenchScene& scene, LiveOptions const& options) {
                 "unsteady");
     json methods;
     for (std::string const& method : options.methods) {
-        methods[method] = best_run(scene, method, options);
-        print(method, methods[method]);
+        json& figures = methods[method] = best_run(scene, method, options);
+        print(method, figures);
+        if (options.predicts && (method == "framelet" || method == "framelet-unwarped")) {
+            figures["virtual"] = predict_live(scene, method, options, figures["start_seconds"]);
+            print_prediction(figures);
+        }
     }
     return {
         {"scene", scene.name},

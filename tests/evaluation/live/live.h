@@ -11,6 +11,7 @@
 
 #include "tests/evaluation/bench_scene.h"
 #include "tests/evaluation/codecs/simulated_link.h"
+#include "tests/evaluation/cost_table.h"
 
 namespace framelet::bench {
 
@@ -26,7 +27,12 @@ struct LiveOptions {
     int moments = 4; ///< at which pictures are compared
     int samples_per_side = 4; ///< of the reference: 1, 2, 4 or 8
     std::filesystem::path charts; ///< folder for pictures beside their reference; empty: none
+    bool predicts = false; ///< beside framelet's own methods what the virtual clock says of them, a core each
+    CostTable costs; ///< for that
 };
+
+/// From the first picture on: until then the methods build up what they hold, and nothing is compared.
+inline constexpr double build_up_seconds = 1;
 
 /// Prints and returns the figures of all methods. Throws InputError or ConnectionError where a program fails.
 nlohmann::json measure_live(BenchScene& scene, LiveOptions const& options);

@@ -54,6 +54,8 @@ void add_live_options(CLI::App& verb, LiveVerbOptions& options) {
     verb.add_option("--reference-samples", options.live.samples_per_side, "Along a side of a reference's pixel")
         ->check(CLI::IsMember({1, 2, 4, 8}))
         ->capture_default_str();
+    verb.add_flag("--virtual", options.live.predicts,
+                  "Also what the virtual clock says of framelet's methods; needs --pinned");
     verb.add_option("--charts", options.live.charts, "Write what was shown beside its reference into this folder");
 }
 
@@ -76,6 +78,7 @@ void add_look_options(CLI::App& verb, LiveVerbOptions& options) {
     verb.add_option("--camera", look.camera_file, "Camera file");
     add_rival_options(verb, look.rivals);
     verb.add_option("--output", look.output, "Picture files")->required();
+    verb.add_option("--output-times", look.output_times, "Only the frames from these times on, seconds");
     verb.add_option("--frames", look.frames_file, "A line of JSON for each frame")->required();
 }
 
@@ -83,8 +86,13 @@ void add_replay_options(CLI::App& verb, LiveVerbOptions& options) {
     verb.add_option("RECORDING", options.recording, "What framelet-server --record-events wrote")->required();
 }
 
-json answer_live(LiveVerbOptions& options, std::vector<std::filesystem::path> const& bundled) {
+json answer_live(LiveVerbOptions& options, std::vector<std::filesystem::path> const& bundled,
+                 std::filesystem::path const& costs_file) {
     LiveOptions& live = options.live;
+    if (live.predicts && (!live.pinned || !live.camera_file.empty())) {
+        throw InputError("--virtual is of a server and a viewer with a core each (--pinned) and of the scene's own camera");
+    }
+    live.costs = read_cost_table(costs_file);
     live.viewport = parse_size(options.size);
     live.link.bits_per_second = 1e6 * options.megabits;
     live.link.delay_seconds = 1e-3 * options.delay_ms;

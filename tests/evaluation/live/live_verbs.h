@@ -35,7 +35,8 @@ void add_serve_options(CLI::App& verb, LiveVerbOptions& options);
 void add_look_options(CLI::App& verb, LiveVerbOptions& options);
 void add_replay_options(CLI::App& verb, LiveVerbOptions& options);
 
-nlohmann::json answer_live(LiveVerbOptions& options, std::vector<std::filesystem::path> const& bundled);
+nlohmann::json answer_live(LiveVerbOptions& options, std::vector<std::filesystem::path> const& bundled,
+                           std::filesystem::path const& costs_file);
 nlohmann::json answer_serve(LiveVerbOptions& options, std::filesystem::path const& costs_file);
 nlohmann::json answer_look(LiveVerbOptions& options, std::filesystem::path const& costs_file);
 /// Throws InputError where the replayed bytes are others than the recorded ones.

@@ -7,6 +7,7 @@
 
 #include <tbb/global_control.h>
 
+#include "client/frame_choice.h"
 #include "client/frame_log.h"
 #include "client/frame_writer.h"
 #include "client/server_connection.h"
@@ -47,9 +48,10 @@ public:
         std::scoped_lock const lock(mutex_);
         return std::exchange(messages_, {});
     }
-    SceneTime scene_time() const {
+    /// So many seconds from now.
+    SceneTime scene_time(double later = 0) const {
         std::scoped_lock const lock(mutex_);
-        double const elapsed = clock_.playing ? seconds_between(clock_read_, Clock::now()) : 0;
+        double const elapsed = clock_.playing ? seconds_between(clock_read_, Clock::now()) + later : 0;
         return clock_.time + elapsed * static_cast<double>(clock_.speed);
     }
 
@@ -124,12 +126,14 @@ void look_at_method(LookOptions const& options) {
         connected = &connection;
         mailbox.set_clock(connection.welcome().clock);
     }
+    FrameChoice choice(options.output_times);
     Clock::time_point const start = Clock::now();
     NumberedView view{0, {}, options.viewport};
     Picture const* shown = &method->picture();
+    double making = 0; ///< seconds that a picture took lately
     for (std::uint64_t frame = 0; seconds_between(start, Clock::now()) < options.duration; ++frame) {
         Clock::time_point const begun = Clock::now();
-        SceneTime const time = mailbox.scene_time();
+        SceneTime const time = mailbox.scene_time(making); // as in the client, when it will be ready
         Camera const camera = scene_camera >= 0 ? camera_at(*scene, time)
                               : path            ? path->at(seconds_between(start, begun))
                                                 : scene->camera;
@@ -146,6 +150,8 @@ void look_at_method(LookOptions const& options) {
             changed = true;
         }
         ViewerStep const presented = method->present(view, time);
+        constexpr double weight = 0.2;
+        making += weight * (seconds_between(begun, Clock::now()) - making);
         changed = changed || presented.seconds.reconstruct > 0;
         shown = &method->picture();
         double const photon = changed ? seconds_between(begun, Clock::now()) : -1;
@@ -156,7 +162,7 @@ void look_at_method(LookOptions const& options) {
         }
         log.add({frame, unix_seconds(), mailbox.scene_time(), changed, false, received,
                  cpu_seconds_of(CLOCK_PROCESS_CPUTIME_ID) - writer.cpu_seconds(), 0, photon, scene_camera, camera});
-        writer.add(*shown, true);
+        writer.add(*shown, true, choice.takes(seconds_between(start, begun)));
         std::this_thread::sleep_until(
             begun + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / options.rate)));
     }

@@ -32,6 +32,7 @@ struct LookOptions {
     double rate = 60;
     std::string camera_file;
     std::string output;
+    std::vector<double> output_times; ///< as in FrameChoice
     std::string frames_file;
     RivalParts rivals;
     CostTable costs;

@@ -1,5 +1,6 @@
 // `framelet`: the project's own server and viewer, the very pipelines that the programs run, driven on the virtual
 // clock. `framelet-unwarped`: the same with the viewer's reprojection switched off.
+#include <deque>
 #include <utility>
 
 #include "protocol/batch_codec.h"
@@ -15,7 +16,7 @@ class Framelets final : public Method {
 public:
     Framelets(MethodSetup const& setup, bool reprojects)
         : setup_(setup), reprojects_(reprojects && setup.parts.reprojection), plane_(setup.viewport),
-          viewer_(setup.viewport, setup.costs, {reprojects_, true}), cells_((setup.viewport.width + cell - 1) / cell),
+          viewer_(setup.viewport, setup.costs, {reprojects_, true}, setup.times), cells_((setup.viewport.width + cell - 1) / cell),
           times_(static_cast<std::size_t>(cells_) *
                  static_cast<std::size_t>((setup.viewport.height + cell - 1) / cell)) {}
 
@@ -28,19 +29,28 @@ public:
         PosedScene& scene = *input.scene.posed;
         double const rate = rate_.samples_per_second > 0 ? rate_.samples_per_second : first_rate();
         ServerStep step;
-        if (stream_->plan({input.now, input.time, rate, setup_.machine * plan_seconds()}, scene) != Step::render) {
+        Step next{};
+        clocked(setup_.times, &SessionTimes::plan, [&] {
+            next = stream_->plan({input.now, input.time, rate, setup_.machine * plan_seconds()}, scene);
+        });
+        if (next != Step::render) {
             return step;
         }
-        scene.pose(stream_->moment());
-        stream_->render(scene);
-        bool const sends = stream_->learn(scene);
+        clocked(setup_.times, &SessionTimes::render, [&] {
+            scene.pose(stream_->moment());
+            stream_->render(scene);
+        });
+        bool sends = false;
+        clocked(setup_.times, &SessionTimes::learn, [&] { sends = stream_->learn(scene); });
         TurnFigures const& figures = stream_->learnt_figures();
-        step.seconds = seconds_of(figures);
+        double const planning = figures.is_new_cycle ? plan_seconds() : 0;
+        step.seconds = seconds_of(figures, planning);
         step.samples = figures.rays + figures.probes;
         step.begun = input.now;
-        rate_ = update_render_rate(rate_, static_cast<double>(figures.rays), setup_.machine * step.seconds.server());
+        rate_ = update_render_rate(rate_, static_cast<double>(figures.rays),
+                                   setup_.machine * (step.seconds.server() - planning)); // as in SessionLoop
         if (sends) {
-            step.message = encode_message(stream_->encode());
+            clocked(setup_.times, &SessionTimes::encode, [&] { step.message = encode_message(stream_->encode()); });
         }
         return step;
     }
@@ -49,18 +59,23 @@ public:
         stream_->take({now, BatchSent{stream_->last_batch(), static_cast<std::uint64_t>(bytes)}});
     }
     void answered(double now, double arrived) override {
-        if (!let_go_.empty()) {
-            stream_->take({now, LetGo{std::exchange(let_go_, {})}});
+        if (std::vector<SentTile>& framelets = let_go_.front(); !framelets.empty()) {
+            stream_->take({now, LetGo{std::move(framelets)}});
         }
+        let_go_.pop_front();
         stream_->take({now, Ack{++answered_, static_cast<std::uint64_t>(1e6 * (arrived + clock_offset)), 0}});
     }
 
     ViewerStep consume(std::vector<std::byte> const& message) override {
-        Batch const batch = codec_.decode(std::get<EncodedBatch>(decode_message(message)), &received_);
+        Batch batch;
+        clocked(setup_.times, &SessionTimes::decode,
+                [&] { batch = codec_.decode(std::get<EncodedBatch>(decode_message(message)), &received_); });
         ViewerStep step = viewer_.insert(batch);
-        viewer_.take_let_go(let_go_);
+        viewer_.take_let_go(let_go_.emplace_back());
         double const decoding = batch.quality.empty() ? setup_.costs.decode_sample : setup_.costs.decode_lossy_sample;
-        step.seconds.decode += 1e-9 * static_cast<double>(batch.framelets.size() * framelet_samples) * decoding;
+        step.seconds.decode +=
+            charged(setup_.times, &SessionTimes::decode,
+                    1e-9 * static_cast<double>(batch.framelets.size() * framelet_samples) * decoding);
         for (DisplayFramelet const& framelet : batch.framelets) {
             stamp(plane_.tile_rect(framelet.tile), batch.scene_time);
         }
@@ -122,20 +137,24 @@ private:
     }
 
     /// What the calibrated machine takes for a turn.
-    StageSeconds seconds_of(TurnFigures const& figures) const {
+    StageSeconds seconds_of(TurnFigures const& figures, double planning) const {
         CostTable const& costs = setup_.costs;
         auto const nanoseconds = [](std::uint64_t count, double each) {
             return 1e-9 * static_cast<double>(count) * each;
         };
+        auto const charge = [this](SessionTimes::Stage SessionTimes::*stage, double sum) {
+            return charged(setup_.times, stage, sum);
+        };
         StageSeconds seconds;
-        seconds.render = nanoseconds(figures.segments, costs.coherent_segment) +
-                         nanoseconds(figures.probe_segments, costs.incoherent_segment);
-        seconds.response =
-            (figures.is_new_cycle ? plan_seconds() : 0) + nanoseconds(figures.learnt_samples, costs.learn_sample);
-        seconds.encode = nanoseconds(figures.rays, costs.display_sample) +
-                         nanoseconds(figures.exact_samples, costs.encode_sample) +
-                         nanoseconds(figures.lossy_samples, costs.encode_lossy_sample) +
-                         nanoseconds(figures.shaped_samples, costs.shape_sample);
+        seconds.render = charge(&SessionTimes::render, nanoseconds(figures.segments, costs.coherent_segment) +
+                                                           nanoseconds(figures.probe_segments, costs.incoherent_segment) +
+                                                           nanoseconds(figures.rays, costs.display_sample));
+        seconds.response = charge(&SessionTimes::plan, planning) +
+                           charge(&SessionTimes::learn, nanoseconds(figures.learnt_samples, costs.learn_sample) +
+                                                            nanoseconds(figures.shaped_samples, costs.shape_sample));
+        seconds.encode =
+            charge(&SessionTimes::encode, nanoseconds(figures.exact_samples, costs.encode_sample) +
+                                              nanoseconds(figures.lossy_samples, costs.encode_lossy_sample));
         return seconds;
     }
 
@@ -168,7 +187,7 @@ private:
     std::uint64_t answered_ = 0; ///< batches
     BatchCodec codec_;
     HeldPicture received_;
-    std::vector<SentTile> let_go_; ///< that the server does not know of yet
+    std::deque<std::vector<SentTile>> let_go_; ///< with each batch that the server has no answer to yet
     WarpViewer viewer_;
     int const cells_; ///< in a row
     std::vector<double> times_; ///< scene time shown in each cell

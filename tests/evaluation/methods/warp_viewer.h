@@ -11,7 +11,9 @@ namespace framelet::bench {
 
 class WarpViewer {
 public:
-    WarpViewer(Viewport viewport, CostTable const& costs, PictureSettings const& settings = {});
+    /// `times`: as in MethodSetup.
+    WarpViewer(Viewport viewport, CostTable const& costs, PictureSettings const& settings = {},
+               SessionTimes* times = nullptr);
 
     /// Returns what putting it into the cache costs; the picture stays as it is.
     ViewerStep insert(Batch const& batch);
@@ -27,6 +29,7 @@ public:
 private:
     CostTable const costs_;
     PictureSettings const settings_;
+    SessionTimes* const times_;
     PictureMaker maker_;
     std::vector<PixelRect> changed_;
     std::vector<SentTile> let_go_; ///< scratch

@@ -1,0 +1,39 @@
+// Which frames of a run are written to files: all, or some that follow given times, so that writing does not take the
+// processor from what is shown. In: times. Out: yes or no, frame by frame.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace framelet {
+
+class FrameChoice {
+public:
+    /// In a row, from each time on: as many as tell how a picture changes, and how that changes.
+    static constexpr int frames_at_once = 3;
+
+    /// `times`: seconds; none: all frames.
+    explicit FrameChoice(std::vector<double> times) : times_(std::move(times)) { std::ranges::sort(times_); }
+
+    /// Of the next frame, shown at `now`, seconds. Time does not go back.
+    bool takes(double now) {
+        while (next_ < times_.size() && times_[next_] <= now) {
+            left_ = frames_at_once;
+            ++next_;
+        }
+        if (times_.empty()) {
+            return true;
+        }
+        left_ = std::max(left_ - 1, -1);
+        return left_ >= 0;
+    }
+
+private:
+    std::vector<double> times_;
+    std::size_t next_ = 0;
+    int left_ = 0;
+};
+
+} // namespace framelet

@@ -1,0 +1,42 @@
+// What the stages of sessions take on this machine, beside what the table of costs charges for them: by this the table
+// is calibrated on sessions as they run, whose viewer holds several moments and whose caches are full of other things.
+#pragma once
+
+#include "tests/evaluation/cost_table.h"
+#include "tests/evaluation/stopwatch.h"
+
+namespace framelet::bench {
+
+struct SessionTimes {
+    /// Seconds of one thread.
+    struct Stage {
+        double measured = 0, charged = 0;
+
+        /// What the table's entries of this stage are to be multiplied by.
+        double factor() const { return measured > 0 && charged > 0 ? measured / charged : 1; }
+    };
+    Stage plan, render, learn, encode, decode, insert, paint;
+};
+
+/// Does the work, and notes how long it took where somebody wants to know.
+template <class Work>
+void clocked(SessionTimes* times, SessionTimes::Stage SessionTimes::*stage, Work&& work) {
+    if (times == nullptr) {
+        work();
+    } else {
+        (times->*stage).measured += processor_seconds_of(work);
+    }
+}
+
+/// What the table charges for work that `clocked` saw. Returns the seconds.
+inline double charged(SessionTimes* times, SessionTimes::Stage SessionTimes::*stage, double seconds) {
+    if (times != nullptr) {
+        (times->*stage).charged += seconds;
+    }
+    return seconds;
+}
+
+/// A table by which these sessions would be charged what they took.
+CostTable calibrated(CostTable costs, SessionTimes const& times);
+
+} // namespace framelet::bench
