@@ -91,7 +91,8 @@ struct ServerStep {
     std::vector<std::byte> message;
     StageSeconds seconds; ///< until the message is sent
     StageSeconds later; ///< from then on, for what the next step sends
-    std::uint64_t samples = 0;
+    std::uint64_t samples = 0; ///< that were rendered
+    std::uint64_t sent_samples = 0; ///< of framelet's own methods
     std::optional<double> begun; ///< when what the message shows was; nothing: in this step
 };
 

@@ -251,6 +251,7 @@ RunResult run_method(BenchScene& scene, Method& method, RunParameters const& par
             add_server(result.cpu, step.seconds, machine);
             add_server(result.cpu, step.later, machine);
             result.samples += step.samples;
+            result.sent_samples += step.sent_samples;
         }
         now += machine * step.seconds.server();
         if (step.message.empty()) {

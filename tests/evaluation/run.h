@@ -57,7 +57,7 @@ using OnStep = std::function<void(double start, ServerStep const& step)>;
 
 struct RunResult {
     StageSeconds cpu; ///< spent in the measured time; server stages in seconds of the run's machine
-    std::uint64_t samples = 0;
+    std::uint64_t samples = 0, sent_samples = 0; ///< as in ServerStep
     std::uint64_t bytes = 0;
     std::uint64_t messages = 0;
     std::vector<double> displayed; ///< times at which the picture changed

@@ -132,8 +132,7 @@ double cpu_of(pid_t pid) {
 struct LiveRun {
     test::TemporaryFolder folder;
     std::vector<LiveFrame> frames;
-    double server_cpu = 0; ///< seconds while the client ran
-    double seconds = 0; ///< that it ran
+    double server_cores = 0; ///< that it used while both were at work
 
     std::filesystem::path picture_file(std::uint64_t frame) const {
         char name[40];
@@ -185,18 +184,21 @@ void run_programs(BenchScene const& scene, std::string const& method, RivalParts
             joined(client_options,
                    {"--camera", run.folder.write("camera.json", json{{"scene_camera", scene.scene_camera}}.dump())});
     }
-    double const before = cpu_of(server.process().pid());
-    auto const start = std::chrono::steady_clock::now();
     auto client = [&] {
         OnCore const core(core_if(options.pinned, 1));
         return test::Process(programs.client,
                              joined(joined(programs.client_words, client_options), programs.client_more));
     }();
+    // Without the client's beginning and end, when the server has little to do.
+    std::this_thread::sleep_for(std::chrono::duration<double>(build_up_seconds));
+    double const before = cpu_of(server.process().pid());
+    auto const begun = std::chrono::steady_clock::now();
+    std::this_thread::sleep_for(std::chrono::duration<double>(options.seconds - build_up_seconds - 0.2));
+    std::chrono::duration<double> const watched = std::chrono::steady_clock::now() - begun;
+    run.server_cores = (cpu_of(server.process().pid()) - before) / watched.count();
     if (int const code = client.wait(patience); code != 0) {
         throw ConnectionError(method + ": the viewer ended with " + std::to_string(code) + ": " + client.errors());
     }
-    run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    run.server_cpu = cpu_of(server.process().pid()) - before;
     run.frames = read_frames(run.folder.path() / "frames.jsonl");
     if (run.frames.size() < 10) {
         throw ConnectionError(method + ": the viewer showed " + std::to_string(run.frames.size()) + " pictures");
@@ -255,14 +257,13 @@ json run_figures(LiveRun const& run) {
     double const span = last.seconds - run.frames.front().seconds;
     double const cores = std::max(1u, std::thread::hardware_concurrency());
     double const viewer = (last.cpu_seconds - run.frames.front().cpu_seconds) / span;
-    double const server = run.server_cpu / run.seconds;
     return {{"pictures_per_second", changed / span},
             {"frames_per_second", static_cast<double>(run.frames.size()) / span},
             {"gap_p99_ms", 1e3 * percentile(gaps, 0.99)},
-            {"server_cores", server},
+            {"server_cores", run.server_cores},
             {"viewer_cores", viewer},
-            {"server_busy", server / cores},
-            {"server_busy_of_rest", server / std::max(cores - viewer, 0.01)},
+            {"server_busy", run.server_cores / cores},
+            {"server_busy_of_rest", run.server_cores / std::max(cores - viewer, 0.01)},
             {"viewer_busy", viewer / cores},
             {"samples_per_second", last.samples / span},
             {"kB_per_second", last.bytes / span / 1e3},
@@ -370,7 +371,7 @@ json measure_live(BenchScene& scene, LiveOptions const& options) {
         json& figures = methods[method] = best_run(scene, method, options);
         print(method, figures);
         if (options.predicts && (method == "framelet" || method == "framelet-unwarped")) {
-            figures["virtual"] = predict_live(scene, method, options, figures["start_seconds"]);
+            figures["virtual"] = predict_live(scene, method, options, figures);
             print_prediction(figures);
         }
     }

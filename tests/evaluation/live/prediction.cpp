@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stop_token>
-#include <thread>
+#include <initializer_list>
 
 #include <nlohmann/json.hpp>
 #include <tbb/global_control.h>
@@ -13,8 +12,12 @@
 namespace framelet::bench {
 namespace {
 
+using nlohmann::json;
+
 /// Of the pictures' references, seconds: sessions that begin at about the same time share what is kept of them.
 constexpr double start_step = 0.1;
+/// A session goes by what it costs, and costs by how it goes.
+constexpr int calibrations = 3;
 
 /// The machine as fast as the calibrated one: a core of it.
 RunParameters on_one_core(BenchScene& scene, RunParameters run, CostTable const& costs) {
@@ -23,73 +26,86 @@ RunParameters on_one_core(BenchScene& scene, RunParameters run, CostTable const&
     return run;
 }
 
-void serve(BenchScene& scene, std::string const& method, RunParameters const& run, CostTable const& costs) {
-    auto const session = make_method(method, method_setup(run, 1, costs));
-    run_method(scene, *session, run, 1, [](std::size_t, Picture const&, double) {});
+/// Rates of what is measured, in the time in which nothing is built up any more.
+json rates_of(RunResult const& run, RunParameters const& parameters) {
+    double const seconds = parameters.seconds - build_up_seconds;
+    double bytes = 0;
+    for (RunResult::Delivery const& delivery : run.deliveries) {
+        bytes += delivery.sent >= build_up_seconds ? delivery.bytes : 0;
+    }
+    auto const pictures = std::ranges::count_if(run.displayed, [](double when) { return when >= build_up_seconds; });
+    return {{"kB_per_second", 1e-3 * bytes / seconds},
+            {"pictures_per_second", static_cast<double>(pictures) / seconds},
+            {"samples_per_second", static_cast<double>(run.sent_samples) / parameters.seconds},
+            {"server_cores", run.cpu.server() / parameters.seconds},
+            {"viewer_cores", run.cpu.viewer() / parameters.seconds}};
 }
 
-/// What the stages take where another core is as busy: cores share caches, memory and heat.
-SessionTimes clock_session(BenchScene& scene, std::string const& method, RunParameters run, CostTable const& costs) {
+double ratio(json const& figures, char const* amount, char const* count) {
+    return figures[amount].get<double>() / std::max(figures[count].get<double>(), 1e-9);
+}
+
+/// What is measured in these stages becomes what the processes took of which they are the whole work: `processes` over
+/// `charged`, each for one of what they make.
+void fit(std::initializer_list<SessionTimes::Stage*> stages, double processes, double charged) {
+    double clocked_sum = 0, charged_sum = 0;
+    for (SessionTimes::Stage const* const stage : stages) {
+        clocked_sum += stage->measured;
+        charged_sum += stage->charged;
+    }
+    if (clocked_sum > 0 && charged > 0) {
+        double const factor = processes / charged * charged_sum / clocked_sum;
+        std::ranges::for_each(stages, [factor](SessionTimes::Stage* stage) { stage->measured *= factor; });
+    }
+}
+
+/// The table for the machine as it was: how the stages share their time is clocked in a session like the measured one,
+/// how much they take together is what the processes took.
+CostTable calibrated(BenchScene& scene, std::string const& method, RunParameters run, CostTable const& costs,
+                     json const& measured) {
     tbb::global_control const one_thread(tbb::global_control::max_allowed_parallelism, 1);
-    run = on_one_core(scene, run, costs);
     SessionTimes times;
-    std::jthread const other([&file = scene.file, camera = scene.scene_camera, &method, run, &costs](
-                                 std::stop_token const& stop) {
-        auto const same = load_bench_scene(file, std::max(camera, 0));
-        while (!stop.stop_requested()) {
-            serve(*same, method, run, costs);
-        }
-    });
     run.times = &times;
-    serve(scene, method, run, costs);
-    return times;
+    auto const session = make_method(method, method_setup(run, 1, costs));
+    json const figures = rates_of(run_method(scene, *session, run, 1, [](std::size_t, Picture const&, double) {}), run);
+    fit({&times.plan, &times.render, &times.learn, &times.encode},
+        ratio(measured, "server_cores", "samples_per_second"), ratio(figures, "server_cores", "samples_per_second"));
+    fit({&times.decode, &times.insert, &times.paint}, ratio(measured, "viewer_cores", "pictures_per_second"),
+        ratio(figures, "viewer_cores", "pictures_per_second"));
+    return bench::calibrated(costs, times);
 }
 
 } // namespace
 
-nlohmann::json predict_live(BenchScene& scene, std::string const& method, LiveOptions const& options, SceneTime start) {
+json predict_live(BenchScene& scene, std::string const& method, LiveOptions const& options, json const& measured) {
     RunParameters run;
     run.viewport = options.viewport;
-    run.start = start_step * std::round(start / start_step);
+    run.start = start_step * std::round(measured["start_seconds"].get<double>() / start_step);
     run.seconds = options.seconds;
     run.reference_rate = options.moments / (options.seconds - build_up_seconds);
     run.link = options.link;
-    SessionTimes const times = clock_session(scene, method, run, options.costs);
-    CostTable const costs = calibrated(options.costs, times);
+    CostTable costs = options.costs;
+    for (int i = 0; i < calibrations; ++i) {
+        run = on_one_core(scene, run, costs);
+        costs = calibrated(scene, method, run, costs, measured);
+    }
     run = on_one_core(scene, run, costs);
     Reference const reference(
         scene, {run.viewport, run.seconds, run.reference_rate, options.samples_per_side, run.start},
         default_reference_cache());
     MethodRecord const record = record_method(scene, reference, method, run, 1, costs);
-
-    double const seconds = options.seconds - build_up_seconds;
-    double mse = 0, bytes = 0, count = 0;
+    json figures = rates_of(record.run, run);
+    double mse = 0, count = 0;
     for (std::size_t i = 0; i < record.measures.size(); ++i) {
         if (reference_time(run, i) >= build_up_seconds) {
             mse += record.measures[i].mse;
             ++count;
         }
     }
-    for (RunResult::Delivery const& delivery : record.run.deliveries) {
-        bytes += delivery.sent >= build_up_seconds ? delivery.bytes : 0;
-    }
-    auto const pictures =
-        std::ranges::count_if(record.run.displayed, [](double when) { return when >= build_up_seconds; });
-    return {{"mse", mse / count},
-            {"psnr", psnr_from_mse(mse / count)},
-            {"kB_per_second", 1e-3 * bytes / seconds},
-            {"pictures_per_second", static_cast<double>(pictures) / seconds},
-            {"samples_per_second", static_cast<double>(record.run.samples) / options.seconds},
-            {"server_cores", record.run.cpu.server() / options.seconds},
-            {"viewer_cores", record.run.cpu.viewer() / options.seconds},
-            {"factors",
-             {{"plan", times.plan.factor()},
-              {"render", times.render.factor()},
-              {"learn", times.learn.factor()},
-              {"encode", times.encode.factor()},
-              {"decode", times.decode.factor()},
-              {"insert", times.insert.factor()},
-              {"paint", times.paint.factor()}}}};
+    figures["mse"] = mse / count;
+    figures["psnr"] = psnr_from_mse(mse / count);
+    figures["costs"] = to_json(costs);
+    return figures;
 }
 
 } // namespace framelet::bench

@@ -46,6 +46,7 @@ public:
         double const planning = figures.is_new_cycle ? plan_seconds() : 0;
         step.seconds = seconds_of(figures, planning);
         step.samples = figures.rays + figures.probes;
+        step.sent_samples = figures.exact_samples + figures.lossy_samples;
         step.begun = input.now;
         rate_ = update_render_rate(rate_, static_cast<double>(figures.rays),
                                    setup_.machine * (step.seconds.server() - planning)); // as in SessionLoop
