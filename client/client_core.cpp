@@ -5,8 +5,10 @@
 #include <condition_variable>
 #include <deque>
 #include <mutex>
+#include <thread>
 #include <utility>
 
+#include "client/making_time.h"
 #include "client/picture_maker.h"
 #include "client/server_connection.h"
 #include "common/error.h"
@@ -80,7 +82,7 @@ struct ClientCore::Impl {
     std::uint64_t last_batch = 0;
     Camera shown_camera;
     SceneTime shown_time = 0;
-    double making_seconds = 0; ///< that a picture took lately
+    MakingTime making;
     bool is_smooth = false;
     Status status;
     Clock::time_point status_time = start;
@@ -284,12 +286,28 @@ struct ClientCore::Impl {
                last_batch >= status.last_batch;
     }
 
+    /// What is shown depends on when. Under the lock.
+    bool is_timed(ClockState const& clock) const {
+        return clock.playing && !is_smooth && picture_settings.scene_moves && picture_settings.reproject;
+    }
+
+    /// A picture that is ready before the moment that it is of is shown then: motion would not be even else.
+    void wait_until_due(Clock::time_point begun) const {
+        double seconds = 0;
+        {
+            std::lock_guard const lock(mutex);
+            seconds = is_timed(status.clock) ? making.expected() : 0;
+        }
+        std::this_thread::sleep_until(begun + std::chrono::duration_cast<Clock::duration>(
+                                                  std::chrono::duration<double>(seconds)));
+    }
+
     /// Of what will be the present when the picture is made; not where the scene is to be late anyway.
     PictureRequest picture_request() const {
         std::lock_guard const lock(mutex);
         ClockState clock = clock_now();
-        if (clock.playing && !is_smooth) {
-            clock.time += making_seconds * static_cast<double>(clock.speed);
+        if (is_timed(clock)) {
+            clock.time += making.expected() * static_cast<double>(clock.speed);
             clock.time = std::clamp(clock.time, 0.0, max_scene_time);
         }
         return {view.view.camera,
@@ -301,20 +319,13 @@ struct ClientCore::Impl {
                 is_settled()};
     }
 
-    /// Under the lock.
-    void note_making(double seconds) {
-        constexpr double weight = 0.2, most = 0.1;
-        making_seconds += weight * (std::min(seconds, most) - making_seconds);
-    }
-
-    /// How old what the last picture shows is; -1: nothing new. Under the lock.
-    double photon_seconds(Clock::time_point now) {
+    /// How old what the last picture, of the camera of this number, shows is; -1: nothing new. Under the lock.
+    double photon_seconds(std::uint64_t number, Clock::time_point now) {
         ClockState const clock = clock_now();
         if (view.scene_camera >= 0) {
             bool const moves = clock.playing && clock.speed != 0 && picture_settings.scene_moves;
             return moves ? (clock.time - shown_time) / static_cast<double>(clock.speed) : -1;
         }
-        std::uint64_t const number = maker->shown_camera_number();
         double seconds = -1;
         while (!set_cameras.empty() && set_cameras.front().number <= number) {
             seconds = set_cameras.front().number == number ? seconds_between(set_cameras.front().time, now) : seconds;
@@ -409,26 +420,39 @@ bool ClientCore::update_picture(Picture& picture, std::vector<PixelRect>& change
             return false;
         }
     }
-    std::lock_guard const picture_lock(core.picture_mutex);
-    core.take_in();
-    Clock::time_point const before = Clock::now();
-    bool const drawn = core.maker->show(core.picture_request(), picture, changed);
-    Clock::time_point const after = Clock::now();
+    Clock::time_point begun, made;
+    bool drawn = false;
+    Camera camera;
+    SceneTime time = 0;
+    std::uint64_t camera_number = 0;
+    {
+        std::lock_guard const picture_lock(core.picture_mutex);
+        core.take_in();
+        begun = Clock::now();
+        drawn = core.maker->show(core.picture_request(), picture, changed);
+        made = Clock::now();
+        camera = core.maker->shown_camera();
+        time = core.maker->shown_time();
+        camera_number = core.maker->shown_camera_number();
+    }
+    if (drawn) {
+        core.wait_until_due(begun);
+    }
     std::lock_guard const lock(core.mutex);
-    core.shown_camera = core.maker->shown_camera();
-    core.shown_time = core.maker->shown_time();
-    core.statistics.photon_seconds = drawn ? core.photon_seconds(after) : -1;
+    core.shown_camera = camera;
+    core.shown_time = time;
+    core.statistics.photon_seconds = drawn ? core.photon_seconds(camera_number, Clock::now()) : -1;
     if (!drawn) {
         return false;
     }
     for (PixelRect const& rect : changed) {
         core.statistics.pixels += static_cast<std::uint64_t>(rect.width()) * static_cast<std::uint64_t>(rect.height());
     }
-    core.statistics.reconstruct_seconds += seconds_between(before, after);
-    core.note_making(seconds_between(before, after));
+    core.statistics.reconstruct_seconds += seconds_between(begun, made);
+    core.making.note(seconds_between(begun, made));
     ++core.statistics.pictures;
     if (core.statistics.first_picture_seconds < 0 && core.first_camera_time) {
-        core.statistics.first_picture_seconds = seconds_between(*core.first_camera_time, after);
+        core.statistics.first_picture_seconds = seconds_between(*core.first_camera_time, made);
     }
     return true;
 }

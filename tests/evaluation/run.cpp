@@ -5,6 +5,7 @@
 #include <deque>
 #include <utility>
 
+#include "client/making_time.h"
 #include "server/schedule/tiling.h"
 
 namespace framelet::bench {
@@ -68,14 +69,14 @@ private:
 
     /// A display frame just before a reference time waits for it, so that what is compared is of that very moment.
     double next_begin() const {
-        double const aim = std::max(next_frame_, free_ + making_);
+        double const aim = std::max(next_frame_, free_ + making_.expected());
         double const reference = next_ < count_ ? next_reference() : 0;
         bool const waits = reference > aim && reference - aim < frame_seconds;
-        return std::max(free_, (waits ? reference : aim) - making_);
+        return std::max(free_, (waits ? reference : aim) - making_.expected());
     }
 
     void make_picture(double begin) {
-        double aim = begin + making_;
+        double aim = begin + making_.expected();
         std::size_t const first = next_;
         while (next_ < count_ && next_reference() < aim + time_tolerance) {
             ++next_;
@@ -88,8 +89,7 @@ private:
         StageSeconds const seconds =
             scaled(method_.present({1, camera_at(scene_, time), parameters_.viewport}, time).seconds);
         free_ = begin + seconds.viewer();
-        constexpr double weight = 0.2; // as in the client
-        making_ += weight * (seconds.viewer() - making_);
+        making_.note(seconds.viewer());
         spend(begin, seconds);
         note_shown(seconds.reconstruct > 0);
         for (std::size_t i = first; i < next_; ++i) {
@@ -138,7 +138,7 @@ private:
     double free_; ///< from when on the processor can make a picture
     double decoder_free_ = -INFINITY;
     double next_frame_; ///< of the display
-    double making_ = 0; ///< seconds that a picture took lately
+    MakingTime making_;
     double spent_seconds_ = 0;
     std::vector<double> unseen_; ///< of messages that no picture shows yet: when they were begun
     double delays_ = 0;

@@ -9,6 +9,7 @@
 
 #include "client/frame_choice.h"
 #include "client/frame_log.h"
+#include "client/making_time.h"
 #include "client/frame_writer.h"
 #include "client/server_connection.h"
 #include "common/cpu_clock.h"
@@ -23,6 +24,10 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_between(Clock::time_point from, Clock::time_point to) {
     return std::chrono::duration<double>(to - from).count();
+}
+
+Clock::duration duration_of(double seconds) {
+    return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
 }
 
 double unix_seconds() {
@@ -130,10 +135,10 @@ void look_at_method(LookOptions const& options) {
     Clock::time_point const start = Clock::now();
     NumberedView view{0, {}, options.viewport};
     Picture const* shown = &method->picture();
-    double making = 0; ///< seconds that a picture took lately
+    MakingTime making;
     for (std::uint64_t frame = 0; seconds_between(start, Clock::now()) < options.duration; ++frame) {
         Clock::time_point const begun = Clock::now();
-        SceneTime const time = mailbox.scene_time(making); // as in the client, when it will be ready
+        SceneTime const time = mailbox.scene_time(making.expected()); // as in the client, when it will be ready
         Camera const camera = scene_camera >= 0 ? camera_at(*scene, time)
                               : path            ? path->at(seconds_between(start, begun))
                                                 : scene->camera;
@@ -150,8 +155,11 @@ void look_at_method(LookOptions const& options) {
             changed = true;
         }
         ViewerStep const presented = method->present(view, time);
-        constexpr double weight = 0.2;
-        making += weight * (seconds_between(begun, Clock::now()) - making);
+        double const due = making.expected();
+        making.note(seconds_between(begun, Clock::now()));
+        if (presented.seconds.reconstruct > 0) {
+            std::this_thread::sleep_until(begun + duration_of(due));
+        }
         changed = changed || presented.seconds.reconstruct > 0;
         shown = &method->picture();
         double const photon = changed ? seconds_between(begun, Clock::now()) : -1;
@@ -164,7 +172,7 @@ void look_at_method(LookOptions const& options) {
                  cpu_seconds_of(CLOCK_PROCESS_CPUTIME_ID) - writer.cpu_seconds(), 0, photon, scene_camera, camera});
         writer.add(*shown, true, choice.takes(seconds_between(start, begun)));
         std::this_thread::sleep_until(
-            begun + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / options.rate)));
+            begun + duration_of(1 / options.rate));
     }
     writer.finish();
     std::scoped_lock const lock(mutex);

@@ -1,0 +1,36 @@
+#include "client/making_time.h"
+
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace framelet {
+namespace {
+
+TEST(MakingTime, MostPicturesAreReadyInTime) {
+    MakingTime making;
+    EXPECT_EQ(making.expected(), 0);
+    std::mt19937 random(1);
+    std::normal_distribution<double> taken(0.02, 0.002);
+    int late = 0;
+    for (int i = 0; i < 1000; ++i) {
+        double const seconds = taken(random);
+        late += i >= 100 && seconds > making.expected() ? 1 : 0;
+        making.note(seconds);
+    }
+    EXPECT_LT(late, 900 / 5);
+    EXPECT_LT(making.expected(), 0.026) << "and do not wait for long";
+}
+
+TEST(MakingTime, AHiccupDoesNotStay) {
+    MakingTime making;
+    making.note(1000);
+    EXPECT_LE(making.expected(), 0.1);
+    for (int i = 0; i < 50; ++i) {
+        making.note(0.01);
+    }
+    EXPECT_NEAR(making.expected(), 0.01, 0.001);
+}
+
+} // namespace
+} // namespace framelet
