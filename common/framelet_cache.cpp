@@ -53,10 +53,6 @@ std::uint64_t FrameletCache::covered_below(int depth, int column, int row) const
     return lowest;
 }
 
-std::size_t FrameletCache::insert(Batch const& batch) {
-    return insert(batch, {});
-}
-
 std::size_t FrameletCache::insert(Batch const& batch, std::span<std::uint8_t const> chosen) {
     FRAMELET_CHECK(batch.view.viewport == plane_.viewport());
     FRAMELET_CHECK(batch.number > 0); // 0 stands for bare

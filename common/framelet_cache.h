@@ -77,10 +77,9 @@ public:
 
     /// Takes what the batch brings that is newer than what is held; returns how many of its framelets were taken. The
     /// batch's viewport must be the cache's and every tile one that the plane accepts. Work is proportional to the
-    /// batch; nothing is allocated unless more framelets are held than ever before.
-    std::size_t insert(Batch const& batch);
-    /// Only those of its framelets for which `chosen` is not 0.
-    std::size_t insert(Batch const& batch, std::span<std::uint8_t const> chosen);
+    /// batch; nothing is allocated unless more framelets are held than ever before. Where there are flags, only those
+    /// framelets whose flag is not 0 count.
+    std::size_t insert(Batch const& batch, std::span<std::uint8_t const> chosen = {});
     /// As if what another cache of this plane holds had been inserted. Appends what of it is not taken.
     void take(FrameletCache const& other, std::vector<SentTile>& left);
 

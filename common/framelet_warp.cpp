@@ -23,9 +23,7 @@ constexpr double largest_splat = 32;
 /// Numbers as large as this, and what is not a number, do not get into a patch.
 constexpr double largest = 1e18;
 
-/// A shadow shows before all that it comes over, however good that is, for so long (scene time): it was seen to go
-/// there. Then it must be better, as everything: it may have gone elsewhere.
-constexpr float drifting_seconds = 0.2f;
+/// Of the worn spacing of what leads: nothing else is as good.
 constexpr float ahead_of_all = 1.0f / 64;
 
 /// Order-dependent hash of what a patch is made of.
@@ -176,7 +174,7 @@ void FrameletWarp::rate(std::uint32_t view, FadingCode fading, Layer const& laye
     patch.worn = worn_step(worn_spacing(spacing, age, fading_rate(fading)) + misplaced);
     if (drifts(layer)) {
         patch.group = drifting_group(patch.group);
-        patch.worn *= std::abs(age) < drifting_seconds ? ahead_of_all : 1.0f;
+        patch.worn *= leads(layer.body, layer.velocity, age) ? ahead_of_all : 1.0f;
     }
     patch.hides = spacing < most_hiding;
 }

@@ -38,6 +38,14 @@ inline float worn_spacing(float spacing, float age, float rate) {
     return std::max(spacing, finest_shown_spacing) + rate * std::abs(age);
 }
 
+/// Whether what is carried so, and lies on a layer, shows before all that it comes over, however good that is: a shadow
+/// (or what deforms) was seen to go there. After so long (seconds of scene time) it must be better, as everything: it
+/// may have gone elsewhere.
+inline bool leads(BodyNumber body, Vec3 const& velocity, float age) {
+    constexpr float leading_seconds = 0.2f;
+    return body == static_body && velocity != Vec3(0) && std::abs(age) < leading_seconds;
+}
+
 /// In steps of 1/4 within each octave, so that what is about as good does not change places from picture to picture.
 /// What is not a number is as bad as can be.
 inline float worn_step(float worn) {

@@ -10,6 +10,7 @@
 #include "server/render/sample_motion.h"
 #include "server/render/shadow_motion.h"
 #include "server/render/tracing.h"
+#include "server/render/view_packet.h"
 
 namespace framelet {
 namespace {
@@ -41,21 +42,6 @@ Footprint sample_footprint(ViewRays const& view, float spacing) {
     return footprint;
 }
 
-/// `place(lane)`: where on the image plane that lane looks, pixels.
-template <class Place>
-void trace_places(RenderScene const& scene, ViewRays const& view, Footprint const& footprint, Place&& place,
-                  TracedPacket& traced) {
-    RayPacket rays;
-    for (int i = 0; i < lanes; ++i) {
-        Vec2 const p = place(i);
-        rays.origin.set(i, view.origin + view.origin_dx * p.x + view.origin_dy * p.y);
-        rays.direction.set(i, view.direction + view.direction_dx * p.x + view.direction_dy * p.y);
-    }
-    rays.near.fill(0);
-    rays.far.fill(INFINITY);
-    trace(scene.prepared(), rays, all_lanes, footprint, mirror_bounces, traced);
-}
-
 } // namespace
 
 std::uint32_t render_framelet(RenderScene const& scene, ViewRays const& view, ImagePlane const& plane, Tile tile,
@@ -77,7 +63,8 @@ std::uint32_t render_framelet(RenderScene const& scene, ViewRays const& view, Im
             Vec2 const cell(morton_x(sample), morton_y(sample));
             return corner + (cell + place_in_cell(seed, tile, sample)) * spacing;
         };
-        trace_places(scene, view, footprint, place, traced);
+        RayPacket rays = rays_through(view, place);
+        trace(scene.prepared(), rays, all_lanes, footprint, mirror_bounces, traced);
         segments += traced.segments;
         for (int i = 0; i < lanes; ++i) {
             std::size_t const sample = static_cast<std::size_t>(first) + static_cast<std::size_t>(i);
@@ -133,8 +120,8 @@ std::uint64_t render_places(RenderScene const& scene, ViewRays const& view, std:
             footprint.slope[i] = slope * spacing(of_lane(i));
         }
         TracedPacket traced{};
-        trace_places(
-            scene, view, footprint, [&](int i) { return places[of_lane(i)]; }, traced);
+        RayPacket rays = rays_through(view, [&](int i) { return places[of_lane(i)]; });
+        trace(scene.prepared(), rays, all_lanes, footprint, mirror_bounces, traced);
         for (std::size_t i = 0; i < count; ++i) {
             radiance[first + i] = traced.radiance.get(static_cast<int>(i));
         }

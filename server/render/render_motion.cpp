@@ -28,8 +28,9 @@ double to_other_moment(Scene const& scene, std::span<Index const> clips, SceneTi
 
 /// Metres a second from which on shadows are worth following: slower ones stay where they are for a tenth of a second.
 constexpr float fast_shadow = 0.5f;
-/// Radians a second above which something spins: a fifth of a second later it shows another side.
-constexpr float fast_spin = 4;
+/// Radians a second above which something spins: a third of a second later it shows another side,
+/// and where a ray meets it says little of where its outline goes.
+constexpr float fast_spin = 3;
 
 /// How fast something turns whose transform changes so, radians a second.
 float spin_of(Instance const& instance) {

@@ -7,6 +7,7 @@
 #include "server/render/flush_denormals.h"
 #include "server/render/prepared_scene.h"
 #include "server/render/surface.h"
+#include "server/render/view_packet.h"
 
 namespace framelet {
 namespace {
@@ -18,14 +19,7 @@ static_assert(packet_side * packet_side == lanes);
 /// Inverse depths of 4x4 neighbouring places.
 template <class Place>
 void look(PreparedScene const& scene, ViewRays const& view, Place&& place, LaneFloats& inverse_depth) {
-    RayPacket rays;
-    for (int i = 0; i < lanes; ++i) {
-        Vec2 const p = place(i);
-        rays.origin.set(i, view.origin + view.origin_dx * p.x + view.origin_dy * p.y);
-        rays.direction.set(i, view.direction + view.direction_dx * p.x + view.direction_dy * p.y);
-    }
-    rays.near.fill(0);
-    rays.far.fill(INFINITY);
+    RayPacket const rays = rays_through(view, place);
     HitPacket hits{};
     LaneMask const hit = scene.bvh.intersect(rays, all_lanes, EmbreeScene::Behind::stops, hits);
     inverse_depth.fill(0);

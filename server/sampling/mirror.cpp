@@ -377,6 +377,7 @@ bool Mirror::place(Piece const& piece, TurnedBody const& turned, Placed& placed)
     Vec2 const slope = share * (piece.depth_slope - placed.inverse_depth * Vec2(dx.z, dy.z)); // along its own axes
     placed.depth_slope = Vec2(down.y * slope.x - right.y * slope.y, right.x * slope.y - down.x * slope.x) / area;
     placed.tolerance = tolerance;
+    placed.leads = leads(piece.body, piece.velocity, age) && !piece.is_loose;
     placed.worn = worn_step(worn_spacing(spacing, age, piece.fading) + misplaced);
     return true;
 }
@@ -412,6 +413,7 @@ void Mirror::show(Moment const& moment, std::size_t index, unsigned mask, int co
     if (is_better(moment, placed, w, share, cell)) {
         cell.inverse_depth = w;
         cell.worn = placed.worn;
+        cell.leads = placed.leads;
         cell.detail = moment.pieces[index].detail / placed.scale;
         cell.piece = static_cast<std::uint32_t>(index);
         cell.moment = static_cast<std::uint8_t>(&moment - moments_.data());
@@ -429,6 +431,9 @@ bool Mirror::is_better(Moment const& moment, Placed const& placed, float inverse
     float const limit = same_surface * std::max(inverse_depth, cell.inverse_depth) + placed.tolerance;
     if (std::abs(difference) > limit) {
         return difference > 0;
+    }
+    if (placed.leads != cell.leads) {
+        return placed.leads;
     }
     return placed.worn != cell.worn ? placed.worn < cell.worn : moment.number > moments_[cell.moment].number;
 }

@@ -36,6 +36,7 @@ struct Cell {
     std::uint16_t covered = 0; ///< by anything: a bit for each pixel, row by row
     std::uint8_t moment = 0; ///< slot
     std::uint8_t share = 0; ///< of its pixels that what shows covers, of 16
+    bool leads = false; ///< as the viewer has it, before what is better
     bool is_wrong = false; ///< something nearer is there, which the viewer does not hold
 
     bool is_shown() const { return share > 0; }
@@ -95,6 +96,7 @@ private:
         float tolerance = 0; ///< by which its inverse depths may differ
         float scale = 1;
         float worn = 0; ///< spacing, pixels
+        bool leads = false; ///< a shadow that shows before what it comes over
     };
     struct Moment {
         ViewRays rays;

@@ -26,11 +26,10 @@ TEST(EventLog, GivesBackWhatWasAdded) {
     batch.view = camera.view;
     batch.payload = Bytes(5);
     Turn const turn{1.5, 2.5, 3e6, 1e-4};
-    std::vector<StreamEvent> const events{{0.1, camera},
-                                          {0.2, ViewerSettings{1.5f, -0.25f, false}},
-                                          {0.3, Ack{9, 8, 7}},
-                                          {0.4, ClockChanged{}},
-                                          {0.5, BatchSent{6, 12345}}};
+    std::vector<StreamEvent> const events{
+        {0.1, camera},         {0.2, ViewerSettings{1.5f, -0.25f, false}},
+        {0.3, Ack{9, 8, 7}},   {0.4, LetGo{{{4, Tile{5}}, {4, Tile{21}}, {6, Tile{5}}}}},
+        {0.5, ClockChanged{}}, {0.6, BatchSent{6, 12345}}};
     {
         EventLog log(file.path, served);
         log.add_viewer(11, coding::all);

@@ -1,0 +1,23 @@
+// Rays through places of a picture, side by side. In: a camera's rays, where each lane looks. Out: a packet to trace.
+#pragma once
+
+#include "common/camera.h"
+#include "server/render/packet.h"
+
+namespace framelet {
+
+/// `place(lane)`: where on the image plane that lane looks, pixels.
+template <class Place>
+RayPacket rays_through(ViewRays const& view, Place&& place) {
+    RayPacket rays;
+    for (int i = 0; i < lanes; ++i) {
+        Vec2 const p = place(i);
+        rays.origin.set(i, view.origin + view.origin_dx * p.x + view.origin_dy * p.y);
+        rays.direction.set(i, view.direction + view.direction_dx * p.x + view.direction_dy * p.y);
+    }
+    rays.near.fill(0);
+    rays.far.fill(INFINITY);
+    return rays;
+}
+
+} // namespace framelet
