@@ -41,8 +41,7 @@ double mean_of(MethodRecord const& record, Value&& value) {
 }
 
 MethodRecord record_run(BenchScene& scene, Reference const& reference, std::string const& name,
-                        RunParameters const& parameters, double machine, CostTable const& costs,
-                        std::vector<Picture>* pictures) {
+                        RunParameters const& parameters, double machine, CostTable const& costs) {
     std::size_t const times = reference_count(parameters);
     FRAMELET_CHECK(reference.size() >= times);
     MethodRecord record;
@@ -61,9 +60,6 @@ MethodRecord record_run(BenchScene& scene, Reference const& reference, std::stri
                 record.sample = shown;
             }
             last = {std::move(last[1]), std::move(last[2]), shown};
-            if (pictures != nullptr) {
-                pictures->push_back(shown);
-            }
             measuring.run([&record, &reference, index, last] {
                 record.measures[index] = measure(last[2], reference.picture(index));
                 if (index >= 2) {
@@ -79,24 +75,16 @@ MethodRecord record_run(BenchScene& scene, Reference const& reference, std::stri
 } // namespace
 
 MethodRecord record_method(BenchScene& scene, Reference const& reference, std::string const& name,
-                           RunParameters const& parameters, double machine, CostTable const& costs,
-                           std::vector<Picture>* pictures) {
+                           RunParameters const& parameters, double machine, CostTable const& costs) {
     std::vector<MethodRecord> records;
     std::vector<double> errors;
-    std::vector<std::vector<Picture>> shown;
     for (RivalParts const& choice : rival_choices(name, parameters.rivals)) {
         RunParameters chosen = parameters;
         chosen.rivals = choice;
-        shown.emplace_back();
-        records.push_back(
-            record_run(scene, reference, name, chosen, machine, costs, pictures != nullptr ? &shown.back() : nullptr));
+        records.push_back(record_run(scene, reference, name, chosen, machine, costs));
         errors.push_back(mean_mse(records.back()));
     }
-    std::size_t const best = best_choice(errors);
-    if (pictures != nullptr) {
-        *pictures = std::move(shown[best]);
-    }
-    return std::move(records[best]);
+    return std::move(records[best_choice(errors)]);
 }
 
 Comparison compare_methods(BenchScene& scene, Reference const& reference, std::vector<std::string> const& methods,
@@ -105,6 +93,7 @@ Comparison compare_methods(BenchScene& scene, Reference const& reference, std::v
     comparison.scene = scene.name;
     comparison.parameters = parameters;
     comparison.machine = machine_factor(scene, parameters, costs);
+    comparison.turn = scene.turn.degrees_per_second;
     std::size_t const times = reference_count(parameters);
     comparison.reference_sample = reference.picture(times / 2);
     for (std::string const& name : methods) {
@@ -157,6 +146,7 @@ json to_json(Comparison const& comparison) {
                 {"counting", p.counting == Counting::total ? "total" : "server"},
                 {"seed", p.seed},
                 {"machine_factor", comparison.machine},
+                {"turn_degrees_per_second", comparison.turn},
                 {"link", {{"bits_per_second", p.link.bits_per_second}, {"delay_seconds", p.link.delay_seconds}}}};
     MethodRecord const* const framed = find_framed(comparison);
     for (MethodRecord const& record : comparison.records) {
@@ -206,6 +196,9 @@ void print(Comparison const& comparison) {
                 p.viewport.width, p.viewport.height, p.seconds, p.start, p.frames_per_second);
     if (p.link.bits_per_second > 0 || p.link.delay_seconds > 0) {
         std::printf("link %.3g Mbit/s, %.0f ms each way\n", p.link.bits_per_second / 1e6, 1e3 * p.link.delay_seconds);
+    }
+    if (comparison.turn > 0) {
+        std::printf("camera turning %g degrees a second\n", comparison.turn);
     }
     std::printf("%-12s %10s %6s %6s %6s %7s %8s %7s %7s %9s %9s\n", "method", "mse", "psnr", "ssim", "flip", "age ms",
                 "ratio", "suit. %", "CPU s", "viewer s", "kB/s");

@@ -12,7 +12,6 @@
 #include "tests/evaluation/correspondence/correspondence.h"
 #include "tests/evaluation/estimators/estimator_verbs.h"
 #include "tests/evaluation/report/report_runs.h"
-#include "tests/evaluation/stability.h"
 #include "tests/evaluation/study.h"
 
 namespace CLI {
@@ -46,7 +45,6 @@ struct VerbOptions {
     StudyOptions study;
 
     // Of one verb each.
-    StabilityOptions stability;
     std::vector<int> table_runs;
     EstimatorStudy estimators;
     CorrespondenceStudy correspondence;
@@ -70,7 +68,7 @@ void settle(VerbOptions& options, Scale const& scale, std::vector<std::string> c
 /// Those that verbs share.
 void add_study_options(CLI::App& verb, VerbOptions& options);
 
-void add_stability_options(CLI::App& verb, VerbOptions& options);
+void add_compare_options(CLI::App& verb, VerbOptions& options);
 void add_table_options(CLI::App& verb, VerbOptions& options);
 void add_correspondence_options(CLI::App& verb, VerbOptions& options);
 void add_report_options(CLI::App& verb, VerbOptions& options);

@@ -10,10 +10,8 @@
 #include "tests/evaluation/calibrate.h"
 #include "tests/evaluation/charts/charts.h"
 #include "tests/evaluation/charts/picture_sheet.h"
-#include "tests/evaluation/codec/codec_study.h"
 #include "tests/evaluation/comparison.h"
 #include "tests/evaluation/limits.h"
-#include "tests/evaluation/link_turn.h"
 #include "tests/evaluation/report/report_page.h"
 #include "tests/evaluation/sensitivity.h"
 #include "tests/evaluation/stillness.h"
@@ -73,22 +71,6 @@ json answer_table(VerbOptions& options) {
     return run_table(part, source_folder / "scenes", options.study);
 }
 
-json answer_turn(VerbOptions& options) {
-    if (options.study.methods.empty()) {
-        options.study.methods = {"framed+h264", "framed+warp", "framelet"};
-    }
-    json result = json::object();
-    for (auto const& file : options.study.scenes) {
-        auto const scene = load_bench_scene(file, options.study.camera);
-        result[scene->name] = turn_study(*scene, options.study);
-    }
-    return result;
-}
-
-json answer_stability(VerbOptions& options) {
-    return measure_stability(options.stability, options.study);
-}
-
 json answer_ablation(VerbOptions& options) {
     options.study.sees_events = !options.start;
     return measure_ablation({}, options.study);
@@ -123,17 +105,6 @@ json answer_correspondence(VerbOptions& options) {
     study.viewport = options.study.run.viewport;
     study.times = options.quick ? 1 : study.times;
     return measure_correspondence(study);
-}
-
-json answer_codec(VerbOptions& options) {
-    CodecStudy study{.scenes = options.study.scenes, .corpus = {}, .charts = options.study.charts};
-    study.corpus.viewport = options.study.run.viewport;
-    study.corpus.frames_per_second = options.study.run.frames_per_second;
-    if (options.quick) {
-        study.corpus.moments = 1;
-        study.rounds = 1;
-    }
-    return compare_codecs(study);
 }
 
 json answer_calibrate(VerbOptions& options) {
@@ -220,7 +191,8 @@ std::span<Verb const> verbs() {
         {.name = "compare",
          .question = "Error over time and cost of every method, beside the reference",
          .answer = answer_compare,
-         .scenes = chase},
+         .scenes = chase,
+         .add_options = add_compare_options},
         {.name = "report",
          .question = "All of docs/RESULTS.md: speed against accuracy, scene by scene, the real programs (hours)",
          .answer = answer_report,
@@ -235,17 +207,6 @@ std::span<Verb const> verbs() {
          .usual = {.seconds = 5, .rate = 10},
          .quick = {.seconds = 5, .rate = 10},
          .add_options = add_table_options},
-        {.name = "turn",
-         .question = "Error and lag against the round trip while the camera turns",
-         .answer = answer_turn,
-         .scenes = chase},
-        {.name = "stability",
-         .question = "How the loop of error, density and tiling settles after events, and how steady it is then",
-         .answer = answer_stability,
-         .scenes = {"stop", "flicker", "teleport"},
-         .usual = {.rate = 40},
-         .quick = {.viewport = {128, 72}, .rate = 20},
-         .add_options = add_stability_options},
         {.name = "ablation",
          .question = "What each part of framelet buys, and what it costs: error, bytes and work without it",
          .answer = answer_ablation,
@@ -274,12 +235,6 @@ std::span<Verb const> verbs() {
          .usual = screen,
          .quick = half_screen,
          .add_options = add_correspondence_options},
-        {.name = "codec",
-         .question = "Bytes of a sample against the error of what is decoded, for each way of coding framelets",
-         .answer = answer_codec,
-         .scenes = vehicles,
-         .usual = screen,
-         .quick = half_screen},
         {.name = "calibrate",
          .question = "What every stage costs on this machine",
          .answer = answer_calibrate,

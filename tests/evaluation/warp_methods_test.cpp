@@ -1,12 +1,9 @@
 // Methods whose viewer moves what it holds: the camera's own motion, and whole frames with depth beside those without.
-#include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include <gtest/gtest.h>
 
 #include "tests/evaluation/comparison.h"
-#include "tests/evaluation/link_turn.h"
 #include "tests/evaluation/small_run.h"
 
 namespace framelet::bench {
@@ -38,26 +35,6 @@ TEST(CameraTurn, GoesBackAndForthAtOneSpeed) {
     EXPECT_NEAR(glm::dot(after.up(), camera.up()), 1, 1e-5f);
     EXPECT_LT(glm::dot(after.forward(), camera.right()), 0) << "to the left";
     EXPECT_EQ(turned(camera, {}, 1), camera);
-}
-
-TEST(PictureLag, IsFoundWhateverTheErrorIs) {
-    std::vector<Picture> truth;
-    std::vector<Picture> shown;
-    for (int i = 0; i < 30; ++i) {
-        Picture picture(16, 16);
-        for (std::size_t byte = 0; byte < picture.rgba.size(); ++byte) {
-            picture.rgba[byte] =
-                static_cast<std::uint8_t>(128 + 80 * std::sin(0.1 * static_cast<double>(byte) + 0.3 * i));
-        }
-        truth.push_back(picture);
-        Picture late = truth[static_cast<std::size_t>(std::max(i - 4, 0))];
-        for (std::size_t byte = 0; byte < late.rgba.size(); byte += 3) {
-            late.rgba[byte] ^= 7;
-        }
-        shown.push_back(late);
-    }
-    EXPECT_EQ(picture_lag(shown, truth, 12), 4u);
-    EXPECT_EQ(picture_lag(truth, truth, 12), 0u);
 }
 
 TEST_F(Warp, FramesThatStandStillAreShownAsTheyCame) {
