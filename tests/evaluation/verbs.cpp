@@ -118,7 +118,7 @@ json answer_calibrate(VerbOptions& options) {
 
 json answer_limits(VerbOptions& options) {
     auto const scene = load_bench_scene(options.study.scenes.front(), options.study.camera);
-    return measure_limits(*scene, {options.study.run.viewport, options.quick ? 3 : 9});
+    return measure_limits(*scene, options.study.run.viewport, options.quick ? 3 : 9);
 }
 
 template <class List>
@@ -242,7 +242,7 @@ std::span<Verb const> verbs() {
          .usual = {.viewport = {512, 512}},
          .quick = {.viewport = {512, 512}}},
         {.name = "limits",
-         .question = "Each stage against its bare limit",
+         .question = "The whole server against bare Embree and shading",
          .answer = answer_limits,
          .scenes = chase,
          .usual = screen,
