@@ -5,12 +5,13 @@
 #include <nlohmann/json.hpp>
 
 #include "common/error.h"
-#include "common/picture_writer.h"
 #include "tests/evaluation/ablation.h"
 #include "tests/evaluation/calibrate.h"
 #include "tests/evaluation/charts/charts.h"
 #include "tests/evaluation/charts/picture_sheet.h"
 #include "tests/evaluation/comparison.h"
+#include "tests/evaluation/correspondence/correspondence.h"
+#include "tests/evaluation/estimators/estimator_verbs.h"
 #include "tests/evaluation/limits.h"
 #include "tests/evaluation/report/report_page.h"
 #include "tests/evaluation/sensitivity.h"
@@ -23,7 +24,6 @@ namespace {
 using nlohmann::json;
 
 void draw_comparison(Comparison const& comparison, std::filesystem::path const& folder) {
-    std::filesystem::create_directories(folder);
     ErrorOverTime chart{.title = comparison.scene + ": error over time", .series = {}};
     std::vector<Picture> shown;
     for (MethodRecord const& record : comparison.records) {
@@ -31,12 +31,11 @@ void draw_comparison(Comparison const& comparison, std::filesystem::path const& 
         shown.push_back(record.sample);
     }
     draw(chart, folder / (comparison.scene + "-error"));
-    write_png(folder / (comparison.scene + "-side-by-side.png"), beside_reference(comparison.reference_sample, shown));
+    write_beside_reference(folder / (comparison.scene + "-side-by-side.png"), comparison.reference_sample, shown);
 }
 
 json answer_compare(VerbOptions& options) {
-    StudyOptions& study = options.study;
-    study.sees_events = !options.start;
+    StudyOptions const& study = options.study;
     json result = json::array();
     for (auto const& file : study.scenes) {
         Subject const subject = prepare(file, study);
@@ -56,55 +55,16 @@ json answer_table(VerbOptions& options) {
     if (options.study.methods.empty()) {
         options.study.methods = {"afr", "framelet-unwarped", "framelet"};
     }
-    auto const published = read_published_table(source_folder / "tests/evaluation/published_table_7_2.csv");
-    std::vector<std::string> names;
-    for (auto const& file : options.study.scenes) {
-        names.push_back(file.stem().string());
-    }
-    auto part = part_of(published, options.table_runs, options.scenes.empty() ? std::vector<std::string>{} : names);
-    if (options.quick) {
-        std::erase_if(part.runs, [](PublishedRun const& run) { return run.side > 256; });
-    }
-    if (part.runs.empty()) {
+    PublishedTable table = published_table();
+    std::erase_if(table.runs, [&](PublishedRun const& run) {
+        std::vector<int> const& told = options.table_runs;
+        return (options.quick && run.side > 256) ||
+               (!told.empty() && std::ranges::find(told, run.number) == told.end());
+    });
+    if (table.runs.empty()) {
         throw InputError("--quick leaves none of these runs: it takes those of 256x256 pixels alone");
     }
-    return run_table(part, source_folder / "scenes", options.study);
-}
-
-json answer_ablation(VerbOptions& options) {
-    options.study.sees_events = !options.start;
-    return measure_ablation({}, options.study);
-}
-
-json answer_stillness(VerbOptions& options) {
-    return measure_stillness({}, options.study);
-}
-
-json answer_sensitivity(VerbOptions& options) {
-    options.study.sees_events = !options.start;
-    json result = json::array();
-    for (auto const& file : options.study.scenes) {
-        result.push_back(sensitivity(prepare(file, options.study), options.study));
-    }
-    return result;
-}
-
-json answer_estimators(VerbOptions& options) {
-    EstimatorStudy& study = options.estimators;
-    study.scenes = options.study.scenes;
-    study.observation.seed = static_cast<std::uint32_t>(options.study.run.seed);
-    study.charts = options.study.charts;
-    study.quick = options.quick;
-    return compare_estimators(study);
-}
-
-json answer_correspondence(VerbOptions& options) {
-    CorrespondenceStudy& study = options.correspondence;
-    study.scenes = options.study.scenes;
-    study.camera = options.study.camera;
-    study.viewport = options.study.run.viewport;
-    study.times = options.quick ? 1 : study.times;
-    return measure_correspondence(study);
+    return run_table(table, options.study);
 }
 
 json answer_calibrate(VerbOptions& options) {
@@ -209,27 +169,27 @@ std::span<Verb const> verbs() {
          .add_options = add_table_options},
         {.name = "ablation",
          .question = "What each part of framelet buys, and what it costs: error, bytes and work without it",
-         .answer = answer_ablation,
+         .answer = [](VerbOptions& o) { return measure_ablation(o.study); },
          .scenes = {"vehicle_chase", "vehicle_flyby", "vehicle_fixed", "stop", "windmill", "globe", "dim"}},
         {.name = "stillness",
          .question = "How good the picture gets once everything stands still, how soon, and what is sent then",
-         .answer = answer_stillness,
+         .answer = [](VerbOptions& o) { return measure_stillness(o.study); },
          .scenes = {},
          .usual = {.seconds = 4, .rate = 20},
          .quick = {.viewport = {128, 72}, .rate = 20}},
         {.name = "sensitivity",
          .question = "How tsar answers to steeper and flatter templates of its error estimate",
-         .answer = answer_sensitivity,
+         .answer = [](VerbOptions& o) { return measure_sensitivity(o.study); },
          .scenes = chase},
         {.name = "estimators",
          .question = "Cost of error estimators against their agreement with the ideal density",
-         .answer = answer_estimators,
+         .answer = [](VerbOptions& o) { return compare_estimators(o.study, o.observation, o.quick); },
          .scenes = {"vehicle_crossing", "windmill", "vehicle_fixed", "vehicle_chase", "vehicle_flyby",
                     "vehicle_approach", "globe", "flicker", "foliage", "stop"},
-         .add_options = [](CLI::App& verb, VerbOptions& o) { add_estimator_options(verb, o.estimators); }},
+         .add_options = add_estimator_options},
         {.name = "correspondence",
          .question = "How far off the viewer shows what it moves",
-         .answer = answer_correspondence,
+         .answer = [](VerbOptions& o) { return measure_correspondence(o.study, o.ahead, o.quick ? 1 : 3); },
          .scenes = {"globe", "windmill", "vehicle_approach", "vehicle_chase", "vehicle_crossing", "vehicle_fixed",
                     "vehicle_flyby"},
          .usual = screen,
