@@ -35,6 +35,10 @@ void pose_at(BenchScene& scene, SceneTime time) {
     scene.camera = camera_at(scene, time);
 }
 
+bool same_pose(ScenePose const& a, ScenePose const& b) {
+    return a.world_from_node == b.world_from_node && a.morph_weights == b.morph_weights;
+}
+
 Camera camera_at(BenchScene const& scene, SceneTime time) {
     return turned(own_camera_at(scene, time), scene.turn, time);
 }

@@ -39,6 +39,9 @@ std::unique_ptr<BenchScene> load_bench_scene(std::filesystem::path const& file, 
 /// Moves everything, the camera included, to where it is at `time`.
 void pose_at(BenchScene& scene, SceneTime time);
 
+/// Everything stands where it did, whatever the time.
+bool same_pose(ScenePose const& a, ScenePose const& b);
+
 /// Where the camera is at `time`; the scene stays as it is.
 Camera camera_at(BenchScene const& scene, SceneTime time);
 /// Where the scene itself has it, whatever its viewer does with it.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <functional>
 #include <numeric>
 #include <utility>
 
@@ -10,6 +11,7 @@
 #include <tbb/task_group.h>
 
 #include "common/error.h"
+#include "tests/evaluation/figure_table.h"
 #include "tests/evaluation/measures/ratio_summary.h"
 #include "tests/evaluation/measures/steadiness.h"
 #include "tests/evaluation/rival_choice.h"
@@ -22,27 +24,25 @@ using nlohmann::json;
 /// Errors below this are those of rounding to bytes.
 constexpr double least_mse = 1e-9;
 
-template <class Value>
-json series(std::vector<MethodRecord>::value_type const& record, Value&& value) {
+json series(MethodRecord const& record, double Measures::*value) {
     json list = json::array();
     for (Measures const& measures : record.measures) {
-        list.push_back(value(measures));
+        list.push_back(measures.*value);
     }
     return list;
 }
 
-template <class Value>
-double mean_of(MethodRecord const& record, Value&& value) {
+template <class Element, class Value>
+double mean_of(std::vector<Element> const& elements, Value&& value) {
     double sum = 0;
-    for (Measures const& measures : record.measures) {
-        sum += value(measures);
+    for (Element const& element : elements) {
+        sum += std::invoke(value, element);
     }
-    return record.measures.empty() ? 0 : sum / static_cast<double>(record.measures.size());
+    return elements.empty() ? 0 : sum / static_cast<double>(elements.size());
 }
 
 MethodRecord record_run(BenchScene& scene, Reference const& reference, std::string const& name,
-                        RunParameters const& parameters, double machine, CostTable const& costs,
-                        std::vector<Picture>* pictures) {
+                        RunParameters const& parameters, double machine, CostTable const& costs) {
     std::size_t const times = reference_count(parameters);
     FRAMELET_CHECK(reference.size() >= times);
     MethodRecord record;
@@ -61,9 +61,6 @@ MethodRecord record_run(BenchScene& scene, Reference const& reference, std::stri
                 record.sample = shown;
             }
             last = {std::move(last[1]), std::move(last[2]), shown};
-            if (pictures != nullptr) {
-                pictures->push_back(shown);
-            }
             measuring.run([&record, &reference, index, last] {
                 record.measures[index] = measure(last[2], reference.picture(index));
                 if (index >= 2) {
@@ -79,24 +76,16 @@ MethodRecord record_run(BenchScene& scene, Reference const& reference, std::stri
 } // namespace
 
 MethodRecord record_method(BenchScene& scene, Reference const& reference, std::string const& name,
-                           RunParameters const& parameters, double machine, CostTable const& costs,
-                           std::vector<Picture>* pictures) {
+                           RunParameters const& parameters, double machine, CostTable const& costs) {
     std::vector<MethodRecord> records;
     std::vector<double> errors;
-    std::vector<std::vector<Picture>> shown;
     for (RivalParts const& choice : rival_choices(name, parameters.rivals)) {
         RunParameters chosen = parameters;
         chosen.rivals = choice;
-        shown.emplace_back();
-        records.push_back(
-            record_run(scene, reference, name, chosen, machine, costs, pictures != nullptr ? &shown.back() : nullptr));
+        records.push_back(record_run(scene, reference, name, chosen, machine, costs));
         errors.push_back(mean_mse(records.back()));
     }
-    std::size_t const best = best_choice(errors);
-    if (pictures != nullptr) {
-        *pictures = std::move(shown[best]);
-    }
-    return std::move(records[best]);
+    return std::move(records[best_choice(errors)]);
 }
 
 Comparison compare_methods(BenchScene& scene, Reference const& reference, std::vector<std::string> const& methods,
@@ -105,6 +94,7 @@ Comparison compare_methods(BenchScene& scene, Reference const& reference, std::v
     comparison.scene = scene.name;
     comparison.parameters = parameters;
     comparison.machine = machine_factor(scene, parameters, costs);
+    comparison.turn = scene.turn.degrees_per_second;
     std::size_t const times = reference_count(parameters);
     comparison.reference_sample = reference.picture(times / 2);
     for (std::string const& name : methods) {
@@ -143,7 +133,7 @@ double mean_unsteadiness(MethodRecord const& record) {
 }
 
 double mean_mse(MethodRecord const& record) {
-    return mean_of(record, [](Measures const& m) { return m.mse; });
+    return mean_of(record.measures, &Measures::mse);
 }
 
 json to_json(Comparison const& comparison) {
@@ -157,15 +147,17 @@ json to_json(Comparison const& comparison) {
                 {"counting", p.counting == Counting::total ? "total" : "server"},
                 {"seed", p.seed},
                 {"machine_factor", comparison.machine},
+                {"turn_degrees_per_second", comparison.turn},
                 {"link", {{"bits_per_second", p.link.bits_per_second}, {"delay_seconds", p.link.delay_seconds}}}};
     MethodRecord const* const framed = find_framed(comparison);
     for (MethodRecord const& record : comparison.records) {
         json entry{{"method", record.method},
                    {"mean",
                     {{"mse", mean_mse(record)},
-                     {"psnr", mean_of(record, [](Measures const& m) { return m.psnr; })},
-                     {"ssim", mean_of(record, [](Measures const& m) { return m.ssim; })},
-                     {"flip", mean_of(record, [](Measures const& m) { return m.flip; })},
+                     {"psnr", mean_of(record.measures, &Measures::psnr)},
+                     {"ssim", mean_of(record.measures, &Measures::ssim)},
+                     {"flip", mean_of(record.measures, &Measures::flip)},
+                     {"age", mean_of(record.ages, std::identity())},
                      {"unsteadiness", mean_unsteadiness(record)}}},
                    {"cpu_seconds",
                     {{"render", record.run.cpu.render},
@@ -177,14 +169,15 @@ json to_json(Comparison const& comparison) {
                      {"viewer", record.run.cpu.viewer()}}},
                    {"samples", record.run.samples},
                    {"bytes", record.run.bytes},
+                   {"bytes_per_second", static_cast<double>(record.run.bytes) / p.seconds},
                    {"messages", record.run.messages},
                    {"mean_delay_seconds", record.run.mean_delay},
                    {"displayed", record.run.displayed},
                    {"age", record.ages},
                    {"unsteadiness", record.unsteadiness},
-                   {"mse", series(record, [](Measures const& m) { return m.mse; })},
-                   {"ssim", series(record, [](Measures const& m) { return m.ssim; })},
-                   {"flip", series(record, [](Measures const& m) { return m.flip; })}};
+                   {"mse", series(record, &Measures::mse)},
+                   {"ssim", series(record, &Measures::ssim)},
+                   {"flip", series(record, &Measures::flip)}};
         if (has_spacing(record.method)) {
             entry["spacing"] = record.rivals.spacing;
         }
@@ -207,33 +200,25 @@ void print(Comparison const& comparison) {
     if (p.link.bits_per_second > 0 || p.link.delay_seconds > 0) {
         std::printf("link %.3g Mbit/s, %.0f ms each way\n", p.link.bits_per_second / 1e6, 1e3 * p.link.delay_seconds);
     }
-    std::printf("%-12s %10s %6s %6s %6s %7s %8s %7s %7s %9s %9s\n", "method", "mse", "psnr", "ssim", "flip", "age ms",
-                "ratio", "suit. %", "CPU s", "viewer s", "kB/s");
-    MethodRecord const* const framed = find_framed(comparison);
-    for (MethodRecord const& record : comparison.records) {
-        double age = 0;
-        for (double const a : record.ages) {
-            age += a / static_cast<double>(record.ages.size());
-        }
-        std::printf("%-12s %10.3e %6.2f %6.4f %6.4f %7.0f ", record.method.c_str(), mean_mse(record),
-                    mean_of(record, [](Measures const& m) { return m.psnr; }),
-                    mean_of(record, [](Measures const& m) { return m.ssim; }),
-                    mean_of(record, [](Measures const& m) { return m.flip; }), 1e3 * age);
-        if (framed) {
-            RatioSummary const ratio = summarise_ratios(error_ratios(record, *framed));
-            std::printf("%8.3f %7.0f ", ratio.median, ratio.suitable);
-        } else {
-            std::printf("%8s %7s ", "-", "-");
-        }
-        std::printf("%7.3f %9.4f %9.1f", record.run.cpu.server(), record.run.cpu.viewer(),
-                    static_cast<double>(record.run.bytes) / p.seconds / 1e3);
-        if (has_spacing(record.method)) {
-            std::printf("  a sample every %d pixels", record.rivals.spacing);
-        }
-        if (record.rivals.margin > 0 && has_margin(record.method)) {
-            std::printf(", margin %g", record.rivals.margin);
-        }
-        std::printf("\n");
+    if (comparison.turn > 0) {
+        std::printf("camera turning %g degrees a second\n", comparison.turn);
+    }
+    FigureTable const table({{"method", "/method", -17},
+                             {"mse", "/mean/mse", 10, 3, 1, true},
+                             {"psnr", "/mean/psnr", 6},
+                             {"ssim", "/mean/ssim", 6, 4},
+                             {"flip", "/mean/flip", 6, 4},
+                             {"age ms", "/mean/age", 7, 0, 1e3},
+                             {"ratio", "/ratio_to_framed/median", 8, 3},
+                             {"suit. %", "/ratio_to_framed/suitable_percentile", 7, 0},
+                             {"CPU s", "/cpu_seconds/server", 7, 3},
+                             {"viewer s", "/cpu_seconds/viewer", 9, 4},
+                             {"kB/s", "/bytes_per_second", 9, 1, 1e-3},
+                             {"spacing", "/spacing", 7, 0},
+                             {"margin", "/margin", 6, 3}});
+    json const figures = to_json(comparison);
+    for (json const& method : figures["methods"]) {
+        table.print(method);
     }
 }
 

@@ -30,16 +30,16 @@ struct Comparison {
     std::string scene;
     RunParameters parameters;
     double machine = 1;
+    double turn = 0; ///< of the camera, degrees a second
     std::vector<MethodRecord> records;
     Picture reference_sample;
 };
 
 /// One method on a machine of this speed; measures are taken in parallel to the run. `reference` must have a picture
 /// for each reference time. Where the parameters leave a choice to a rival, it is run with each, and the record is the
-/// one of the least mean MSE. `pictures`: gets what was shown at each reference time, unless null.
+/// one of the least mean MSE.
 MethodRecord record_method(BenchScene& scene, Reference const& reference, std::string const& method,
-                           RunParameters const& parameters, double machine, CostTable const& costs,
-                           std::vector<Picture>* pictures = nullptr);
+                           RunParameters const& parameters, double machine, CostTable const& costs);
 
 /// Runs the methods one after the other, on the machine that the parameters state.
 Comparison compare_methods(BenchScene& scene, Reference const& reference, std::vector<std::string> const& methods,

@@ -6,20 +6,15 @@
 #include <nlohmann/json.hpp>
 
 #include "common/error.h"
-#include "tests/evaluation/comparison.h"
 #include "tests/evaluation/methods/kd_leaves.h"
 #include "tests/evaluation/small_run.h"
 
 namespace framelet::bench {
 namespace {
 
-class Evaluation : public testing::Test {
+class Evaluation : public SmallRuns {
 protected:
-    std::unique_ptr<BenchScene> scene = load_bench_scene(source / "scenes/vehicle_chase.glb");
-    CostTable costs = usual_costs();
-    ReferenceFolder folder{"evaluation"};
-
-    Reference reference(RunParameters const& parameters) { return folder.reference(*scene, parameters); }
+    std::unique_ptr<BenchScene> scene = load_bench_scene(bundled("vehicle_chase"));
 };
 
 TEST_F(Evaluation, TheSameSeedGivesTheSameFigures) {
@@ -28,7 +23,7 @@ TEST_F(Evaluation, TheSameSeedGivesTheSameFigures) {
     parameters.link.delay_seconds = 0.02;
     parameters.link.jitter_seconds = 0.01;
     parameters.link.stalls = {{0.2, 0.1}};
-    Reference const truth = reference(parameters);
+    Reference const truth = reference(*scene, parameters);
     auto const run = [&] { return to_json(compare_methods(*scene, truth, method_names(), parameters, costs)).dump(); };
     std::string const once = run();
     EXPECT_EQ(once, run());
@@ -40,15 +35,12 @@ TEST_F(Evaluation, FramedReachesTheRateThatTheMachineIsStatedBy) {
         RunParameters parameters = small_run({64, 48}, 40);
         parameters.seconds = 2;
         parameters.frames_per_second = rate;
-        double const machine = machine_factor(*scene, parameters, costs);
         parameters.rivals = plain_rivals; // what the machine is stated by
-        auto const framed = make_method("framed", method_setup(parameters, machine, costs));
         std::size_t times = 0;
-        RunResult const result =
-            run_method(*scene, *framed, parameters, machine, [&](std::size_t index, Picture const&, double age) {
-                EXPECT_EQ(index, times++);
-                EXPECT_GE(age, 0);
-            });
+        RunResult const result = show(*scene, "framed", parameters, [&](std::size_t index, Picture const&, double age) {
+            EXPECT_EQ(index, times++);
+            EXPECT_GE(age, 0);
+        });
         EXPECT_EQ(times, 80u);
         EXPECT_NEAR(static_cast<double>(result.messages), 2 * rate, 0.1 * rate + 1);
         EXPECT_NEAR(result.cpu.server(), 2, 0.3) << "busy all the time";
@@ -58,25 +50,22 @@ TEST_F(Evaluation, FramedReachesTheRateThatTheMachineIsStatedBy) {
 TEST_F(Evaluation, EveryMethodSpendsTheSameOnTheServer) {
     RunParameters parameters = small_run({64, 48}, 40);
     parameters.seconds = 1;
-    Reference const truth = reference(parameters);
-    for (MethodRecord const& record : compare_methods(*scene, truth, method_names(), parameters, costs).records) {
+    for (MethodRecord const& record : records(*scene, method_names(), parameters)) {
         EXPECT_NEAR(record.run.cpu.server(), 1, 0.15) << record.method;
         EXPECT_GT(record.run.bytes, 0u) << record.method;
     }
 }
 
 TEST_F(Evaluation, AStillSceneIsShownWithoutError) {
-    auto const still = load_bench_scene(source / "scenes/vehicle_fixed.glb");
+    auto const still = load_bench_scene(bundled("vehicle_fixed"));
     RunParameters parameters = small_run({64, 48}, 40);
     parameters.seconds = 0.05; // the lead-in is over, nothing to speak of has moved
     parameters.frames_per_second = 30;
-    double const machine = machine_factor(*still, parameters, costs);
     pose_at(*still, 0);
     Picture const first = render_picture(*still->render_scene, still->camera, parameters.viewport, still->exposure, 1);
     for (std::string const name : {"framed", "frameless", "afr"}) {
         parameters.rivals = plain_rivals; // a sample a pixel and no more, as `first`
-        auto const method = make_method(name, method_setup(parameters, machine, costs));
-        run_method(*still, *method, parameters, machine, [&](std::size_t index, Picture const& shown, double) {
+        show(*still, name, parameters, [&](std::size_t index, Picture const& shown, double) {
             if (index == 0) {
                 EXPECT_LT(mean_squared_error(shown, first), 1e-6) << name;
             }
@@ -88,12 +77,10 @@ TEST_F(Evaluation, ALinkDelaysWhatIsShown) {
     RunParameters parameters = small_run({64, 48}, 40);
     auto const age_with = [&](double delay) {
         parameters.link.delay_seconds = delay;
-        double const machine = machine_factor(*scene, parameters, costs);
-        // What moves what it holds may hold it longer.
-        auto const method = make_method("framelet-unwarped", {parameters.viewport, costs, machine, 10, 0, 1});
         double sum = 0;
-        run_method(*scene, *method, parameters, machine,
-                   [&](std::size_t, Picture const&, double age) { sum += age / 20; });
+        // What moves what it holds may hold it longer.
+        show(*scene, "framelet-unwarped", parameters,
+             [&](std::size_t, Picture const&, double age) { sum += age / 20; });
         return sum;
     };
     double const near = age_with(0);
@@ -109,40 +96,36 @@ TEST_F(Evaluation, CodedFramesFollowTheLinkDown) {
     parameters.seconds = 3;
     parameters.link.bits_per_second = 4e6;
     parameters.link.delay_seconds = 0.02;
-    double const machine = machine_factor(*scene, parameters, costs);
-    auto const run_at_end = [&](std::string const& name, std::vector<RateStep> steps) {
+    auto const run_at_end = [&](std::vector<RateStep> steps) {
         parameters.link.rate_steps = std::move(steps);
-        auto const method = make_method(name, {parameters.viewport, costs, machine, 10, 4e6, 1});
         double age_sum = 0;
         RunResult const result =
-            run_method(*scene, *method, parameters, machine,
-                       [&](std::size_t index, Picture const&, double age) { age_sum += index >= 80 ? age / 40 : 0; });
+            show(*scene, "framed+h264", parameters,
+                 [&](std::size_t index, Picture const&, double age) { age_sum += index >= 80 ? age / 40 : 0; });
         return std::pair(age_sum, result.bytes);
     };
-    for (std::string const name : {"framed+h264"}) {
-        auto const [age, bytes] = run_at_end(name, {});
-        auto const [narrow_age, narrow_bytes] = run_at_end(name, {{0.5, 0.25e6}});
-        EXPECT_LT(narrow_age, age + 0.12) << name << ": a queue would hold its frames up for seconds";
-        EXPECT_LT(narrow_bytes, bytes / 2) << name;
-        EXPECT_GT(static_cast<double>(narrow_bytes), 0.6 * 2.5 * 0.25e6 / 8) << name << ": the link is used";
-    }
+    auto const [age, bytes] = run_at_end({});
+    auto const [narrow_age, narrow_bytes] = run_at_end({{0.5, 0.25e6}});
+    EXPECT_LT(narrow_age, age + 0.12) << "a queue would hold its frames up for seconds";
+    EXPECT_LT(narrow_bytes, bytes / 2);
+    EXPECT_GT(static_cast<double>(narrow_bytes), 0.6 * 2.5 * 0.25e6 / 8) << "the link is used";
 }
 
 TEST_F(Evaluation, ReferencesAreKeptAndMadeAgainWhenTheyAreWrong) {
     RunParameters const parameters = small_run({64, 48}, 40);
-    Picture const first = reference(parameters).picture(0);
-    auto const file = reference(parameters).folder() / "00000.png";
+    Picture const first = reference(*scene, parameters).picture(0);
+    auto const file = reference(*scene, parameters).folder() / "00000.png";
     auto const written = std::filesystem::last_write_time(file);
-    reference(parameters);
+    reference(*scene, parameters);
     EXPECT_EQ(std::filesystem::last_write_time(file), written);
-    std::filesystem::copy_file(reference(parameters).folder() / "00019.png", file,
+    std::filesystem::copy_file(reference(*scene, parameters).folder() / "00019.png", file,
                                std::filesystem::copy_options::overwrite_existing);
-    EXPECT_EQ(reference(parameters).picture(0), first);
+    EXPECT_EQ(reference(*scene, parameters).picture(0), first);
 }
 
 TEST(EvaluationInput, BadOnesAreRefusedInOneLine) {
     EXPECT_THROW(make_method("magic", {}), InputError);
-    EXPECT_THROW(load_bench_scene(source / "scenes/dim.glb", 7), InputError);
+    EXPECT_THROW(load_bench_scene(bundled("dim"), 7), InputError);
     auto const file = std::filesystem::temp_directory_path() / "framelet-costs-test.json";
     for (char const* const text : {"", "[]", "{}", "{\"coherent_segment\": -1}"}) {
         std::ofstream(file) << text;

@@ -1,31 +1,64 @@
 #include "tests/evaluation/limits.h"
 
-#include <algorithm>
+#include <chrono>
 #include <cstdio>
-#include <cstring>
-#include <functional>
+#include <set>
 #include <thread>
 
 #include <nlohmann/json.hpp>
-#include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 
-#include "common/color.h"
-#include "common/framelet_cache.h"
-#include "common/reconstruction.h"
-#include "protocol/batch_codec.h"
-#include "server/schedule/tiling.h"
 #include "server/session/server.h"
-#include "tests/evaluation/sink_viewer.h"
 #include "tests/evaluation/stopwatch.h"
+#include "tests/evaluation/visit.h"
 
 namespace framelet::bench {
 namespace {
 
-using nlohmann::json;
+using std::chrono::steady_clock;
 
-/// Embree and shading alone: the same tiles as the server's batches, one parallel loop over all of them.
+/// What the server sent for one still view, from the first camera until it has every tile with one ray a sample.
+struct SinkRecord {
+    std::vector<Tile> tiles;
+    double seconds = 0; ///< from the camera's departure to the arrival of the last batch
+    std::size_t payload_bytes = 0;
+};
+
+/// A viewer that looks at nothing: it acknowledges batches without decoding them, so that what is measured is the
+/// server. It stays until the picture has converged or a tile comes once more, which takes four rays a sample.
+SinkRecord watch_until_repeated(std::uint16_t port, Camera const& camera, Viewport viewport) {
+    SinkRecord record;
+    steady_clock::time_point start, last;
+    std::uint64_t newest = 0;
+    std::set<Tile> seen;
+    auto const receive = [&](FramedStream& stream, Message const& message) {
+        if (std::holds_alternative<Welcome>(message)) {
+            start = steady_clock::now();
+            stream.send(CameraUpdate{{1, camera, viewport}, -1});
+        } else if (auto const* const batch = std::get_if<EncodedBatch>(&message)) {
+            for (Tile const tile : batch->tiles) {
+                if (!seen.insert(tile).second) {
+                    return true;
+                }
+            }
+            last = steady_clock::now();
+            newest = batch->number;
+            record.tiles.insert(record.tiles.end(), batch->tiles.begin(), batch->tiles.end());
+            record.payload_bytes += batch->payload.size();
+            stream.send(Ack{batch->number, 0, 0});
+        } else if (auto const* const status = std::get_if<Status>(&message)) {
+            // The word that it is complete may overtake the last batch, which is still being encoded.
+            return status->converged && status->camera_number == 1 && status->last_batch == newest;
+        }
+        return false;
+    };
+    visit(port, coding::all, receive);
+    record.seconds = std::chrono::duration<double>(last - start).count();
+    return record;
+}
+
+/// The same tiles as the server's batches, one parallel loop over all of them.
 double bare_loop_seconds(BenchScene& scene, Viewport viewport, std::vector<Tile> const& tiles) {
     ImagePlane const plane(viewport);
     ViewRays const rays = make_view_rays(scene.camera, viewport);
@@ -37,8 +70,9 @@ double bare_loop_seconds(BenchScene& scene, Viewport viewport, std::vector<Tile>
     });
 }
 
-/// The whole server, its socket included, against the bare loop on the very same framelets.
-json measure_server(BenchScene& scene, LimitsOptions const& options) {
+} // namespace
+
+nlohmann::json measure_limits(BenchScene& scene, Viewport viewport, int rounds) {
     ServerOptions server_options;
     server_options.port = 0;
     server_options.paused = true;
@@ -48,117 +82,30 @@ json measure_server(BenchScene& scene, LimitsOptions const& options) {
 
     std::vector<double> ratios, server_rates, bare_rates;
     SinkRecord record;
-    for (int round = 0; round < options.rounds; ++round) {
-        record = watch_until_repeated(server.port(), scene.camera, options.viewport);
-        std::vector<Tile> tiles;
-        for (auto const& batch : record.batches) {
-            tiles.insert(tiles.end(), batch.begin(), batch.end());
-        }
-        double const samples = static_cast<double>(record.samples);
+    for (int round = 0; round < rounds; ++round) {
+        record = watch_until_repeated(server.port(), scene.camera, viewport);
+        double const samples = static_cast<double>(record.tiles.size() * framelet_samples);
         server_rates.push_back(samples / record.seconds);
-        bare_rates.push_back(samples / bare_loop_seconds(scene, options.viewport, tiles));
+        bare_rates.push_back(samples / bare_loop_seconds(scene, viewport, record.tiles));
         ratios.push_back(server_rates.back() / bare_rates.back());
     }
     server.stop();
-    return {{"samples", record.samples},
-            {"batches", record.batches.size()},
-            {"bytes_per_sample", static_cast<double>(record.payload_bytes) / static_cast<double>(record.samples)},
+    std::size_t const samples = record.tiles.size() * framelet_samples;
+    double const bytes_per_sample = static_cast<double>(record.payload_bytes) / static_cast<double>(samples);
+    int const threads = tbb::info::default_concurrency();
+    std::printf("%s, %dx%d, %d threads, medians of %d rounds\n", scene.name.c_str(), viewport.width, viewport.height,
+                threads, rounds);
+    std::printf("bare Embree + shading loop  %8.2f Msamples/s\n", median(bare_rates) / 1e6);
+    std::printf("whole server                %8.2f Msamples/s, %.3f of the bare loop, %.2f B/sample on the wire\n",
+                median(server_rates) / 1e6, median(ratios), bytes_per_sample);
+    return {{"scene", scene.name},
+            {"viewport", {viewport.width, viewport.height}},
+            {"threads", threads},
+            {"samples", samples},
+            {"bytes_per_sample", bytes_per_sample},
             {"server_samples_per_second", median(server_rates)},
             {"bare_samples_per_second", median(bare_rates)},
             {"ratio", median(ratios)}};
-}
-
-/// Rounds of one stage on one thread, each beside a memcpy of the bytes that it has to move. What a median says depends
-/// on what shares the machine; the fastest round says most of what the stage itself costs.
-json measure_stage(int rounds, double units, std::size_t bytes, std::function<void()> const& stage) {
-    std::vector<std::byte> const from(bytes);
-    std::vector<std::byte> to(bytes);
-    std::vector<double> stage_ns, copy_ns, ratios;
-    for (int round = 0; round < rounds; ++round) {
-        double const copy = processor_seconds_of([&] { std::memcpy(to.data(), from.data(), bytes); });
-        double const work = processor_seconds_of(stage);
-        stage_ns.push_back(1e9 * work / units);
-        copy_ns.push_back(1e9 * copy / units);
-        ratios.push_back(work / copy);
-    }
-    return {{"ns", median(stage_ns)},
-            {"fastest_ns", *std::ranges::min_element(stage_ns)},
-            {"memcpy_ns", median(copy_ns)},
-            {"times_memcpy", median(ratios)}};
-}
-
-json measure_stages(BenchScene& scene, LimitsOptions const& options) {
-    ImagePlane const plane(options.viewport);
-    Tiling const tiling = make_uniform_tiling(plane, plane.pixel_depth());
-    std::vector<Framelet> rendered(tiling.tiles.size());
-    render_framelets(*scene.render_scene, scene.camera, plane, tiling.tiles, 0, rendered);
-
-    tbb::global_control const one_thread(tbb::global_control::max_allowed_parallelism, 1);
-    Batch batch;
-    batch.number = 1;
-    batch.view = {1, scene.camera, options.viewport};
-    batch.framelets.resize(rendered.size());
-    double const samples = static_cast<double>(rendered.size() * framelet_samples);
-    std::size_t const bytes = rendered.size() * framelet_samples * 3;
-    json result;
-    result["display"] = measure_stage(options.rounds, samples, bytes, [&] {
-        std::transform(rendered.begin(), rendered.end(), batch.framelets.begin(),
-                       [&](Framelet const& framelet) { return to_display(framelet, scene.exposure); });
-    });
-    BatchCodec codec;
-    EncodedBatch encoded;
-    Batch decoded;
-    result["encode"] = measure_stage(options.rounds, samples, bytes, [&] { encoded = codec.encode(batch); });
-    result["decode"] = measure_stage(options.rounds, samples, bytes, [&] { decoded = codec.decode(encoded); });
-    result["encode"]["bytes_per_sample"] = static_cast<double>(encoded.payload.size()) / samples;
-
-    FrameletCache cache(plane);
-    Picture picture(options.viewport.width, options.viewport.height);
-    std::vector<PixelRect> changed;
-    double const pixels = static_cast<double>(picture.rgba.size() / 4);
-    result["cache"] = measure_stage(options.rounds, samples, bytes, [&] {
-        ++decoded.number;
-        cache.insert(decoded);
-    });
-    result["reconstruct"] = measure_stage(options.rounds, pixels, picture.rgba.size(), [&] {
-        ++decoded.number;
-        cache.insert(decoded);
-        cache.take_changed(changed);
-        reconstruct(cache, changed, picture);
-    });
-    return result;
-}
-
-} // namespace
-
-json measure_limits(BenchScene& scene, LimitsOptions const& options) {
-    json result;
-    result["scene"] = scene.name;
-    result["viewport"] = {options.viewport.width, options.viewport.height};
-    result["threads"] = tbb::info::default_concurrency();
-    result["server"] = measure_server(scene, options);
-    result["stages"] = measure_stages(scene, options);
-
-    json const& server = result["server"];
-    std::printf("%s, %dx%d, %d threads, medians of %d rounds and the fastest one\n\n", scene.name.c_str(),
-                options.viewport.width, options.viewport.height, result["threads"].get<int>(), options.rounds);
-    std::printf("rendering, all threads        Msamples/s\n");
-    std::printf("  bare Embree + shading loop  %8.2f\n", server["bare_samples_per_second"].get<double>() / 1e6);
-    std::printf("  whole server                %8.2f   %.3f of the bare loop, %.2f B/sample on the wire\n\n",
-                server["server_samples_per_second"].get<double>() / 1e6, server["ratio"].get<double>(),
-                server["bytes_per_sample"].get<double>());
-    std::printf("one thread, ns a sample         median  fastest   memcpy   times memcpy (medians)\n");
-    auto const print = [](char const* name, json const& figures, char const* remark) {
-        std::printf("  %-28s %8.2f %8.2f %8.2f %10.1f%s\n", name, figures["ns"].get<double>(),
-                    figures["fastest_ns"].get<double>(), figures["memcpy_ns"].get<double>(),
-                    figures["times_memcpy"].get<double>(), remark);
-    };
-    json const& stages = result["stages"];
-    for (auto const* stage : {"display", "encode", "decode", "cache"}) {
-        print(stage, stages[stage], "");
-    }
-    print("reconstruct", stages["reconstruct"], "   (a pixel, insertion included)");
-    return result;
 }
 
 } // namespace framelet::bench

@@ -1,5 +1,5 @@
-// framelet-bench limits: each stage beside its bare limit, measured in turn in one run, so that the ratios stand on a
-// noisy machine too.
+// framelet-bench limits: the whole server beside its bare limit, measured in turn in one run, so that the ratio stands
+// on a noisy machine too. What single stages cost is for `calibrate` to say.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -8,13 +8,8 @@
 
 namespace framelet::bench {
 
-struct LimitsOptions {
-    Viewport viewport{1280, 720};
-    int rounds = 9; ///< each stage and its limit in turn; medians are reported, of stages the fastest round too
-};
-
-/// Prints a table to stdout and returns the same figures. Of a stage: `ns` (median) and `fastest_ns` for each sample or
-/// pixel, `memcpy_ns` (median) of the same bytes and `times_memcpy`, the median of the rounds' quotients.
-nlohmann::json measure_limits(BenchScene& scene, LimitsOptions const& options);
+/// Prints and returns medians of so many rounds: samples a second of the whole server, its socket included, and of
+/// Embree and shading alone on the very same framelets.
+nlohmann::json measure_limits(BenchScene& scene, Viewport viewport, int rounds);
 
 } // namespace framelet::bench

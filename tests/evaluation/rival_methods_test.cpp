@@ -5,11 +5,9 @@
 #include <gtest/gtest.h>
 
 #include "common/color.h"
-#include "tests/evaluation/comparison.h"
 #include "tests/evaluation/methods/frame_forecast.h"
 #include "tests/evaluation/methods/frame_grid.h"
 #include "tests/evaluation/methods/interruptible.h"
-#include "tests/evaluation/methods/margin_viewer.h"
 #include "tests/evaluation/methods/whole_frame.h"
 #include "tests/evaluation/rival_choice.h"
 #include "tests/evaluation/small_run.h"
@@ -25,13 +23,10 @@ MethodSetup setup_of(Viewport viewport, RivalParts rivals) {
     return setup;
 }
 
-class Rivals : public testing::Test {
+class Rivals : public SmallRuns {
 protected:
-    CostTable costs = usual_costs();
-    ReferenceFolder folder{"rivals"};
-
-    MethodRecord record(BenchScene& scene, std::string const& method, RunParameters const& p) {
-        return compare_methods(scene, folder.reference(scene, p), {method}, p, costs).records.front();
+    MethodRecord record(BenchScene& scene, std::string const& method, RunParameters const& run) const {
+        return records(scene, {method}, run).front();
     }
 };
 
@@ -49,7 +44,7 @@ TEST(RivalChoice, TheBestOneIsTheLeast) {
 }
 
 TEST_F(Rivals, TheRecordIsOfTheSpacingWithTheLeastError) {
-    auto const scene = load_bench_scene(source / "scenes/vehicle_chase.glb");
+    auto const scene = load_bench_scene(bundled("vehicle_chase"));
     RunParameters parameters = small_run({96, 64}, 20);
     MethodRecord const chosen = record(*scene, "framed+h264", parameters);
     double least = INFINITY;
@@ -85,7 +80,7 @@ TEST(Upsampling, IsLinearInLight) {
 }
 
 TEST(FrameGrid, TheMeanOfAllPlacesIsTheStratifiedPicture) {
-    auto const scene = load_bench_scene(source / "scenes/vehicle_fixed.glb");
+    auto const scene = load_bench_scene(bundled("vehicle_fixed"));
     Viewport const viewport{80, 48};
     FrameGrid grid(viewport, 1);
     Picture const truth = render_reference(*scene, viewport, 16);
@@ -102,18 +97,16 @@ TEST(FrameGrid, TheMeanOfAllPlacesIsTheStratifiedPicture) {
 }
 
 TEST_F(Rivals, APictureThatStandsStillBecomesAsGoodAsTheReference) {
-    auto const scene = load_bench_scene(source / "scenes/teleport.glb");
+    auto const scene = load_bench_scene(bundled("teleport"));
     RunParameters parameters = small_run({64, 48}, 20);
     parameters.frames_per_second = 400; // there is half a second until then
     parameters.seconds = 0.05; // of which only the first moment is looked at
     pose_at(*scene, 0);
     Picture const truth = render_reference(*scene, parameters.viewport, 16);
-    double const machine = machine_factor(*scene, parameters, costs);
     for (std::string const name : {"framed", "framed+h264", "framed+warp", "interruptible"}) {
         for (RivalParts const& choice : rival_choices(name, {})) {
             parameters.rivals = choice;
-            auto const method = make_method(name, method_setup(parameters, machine, costs));
-            run_method(*scene, *method, parameters, machine, [&](std::size_t index, Picture const& shown, double) {
+            show(*scene, name, parameters, [&](std::size_t index, Picture const& shown, double) {
                 if (index == 0) {
                     EXPECT_GT(psnr_from_mse(mean_squared_error(shown, truth)), 38)
                         << name << ", a sample every " << choice.spacing << " pixels, margin " << choice.margin;
@@ -124,7 +117,7 @@ TEST_F(Rivals, APictureThatStandsStillBecomesAsGoodAsTheReference) {
 }
 
 TEST_F(Rivals, NothingIsSentOnceThePictureIsAsGoodAsItGets) {
-    auto const scene = load_bench_scene(source / "scenes/teleport.glb");
+    auto const scene = load_bench_scene(bundled("teleport"));
     RunParameters parameters = small_run({48, 32}, 20);
     parameters.frames_per_second = 400;
     parameters.seconds = 1;
@@ -139,7 +132,7 @@ TEST_F(Rivals, NothingIsSentOnceThePictureIsAsGoodAsItGets) {
 
 /// What is shown of a scene that runs, on the average, is neither early nor late.
 TEST_F(Rivals, FramesAreOfTheMiddleOfTheirTimeOnDisplay) {
-    auto const scene = load_bench_scene(source / "scenes/vehicle_chase.glb");
+    auto const scene = load_bench_scene(bundled("vehicle_chase"));
     RunParameters parameters = small_run({64, 48}, 60);
     parameters.seconds = 1.5;
     parameters.link = {.bits_per_second = 20e6, .delay_seconds = 0.05};
@@ -155,7 +148,7 @@ TEST_F(Rivals, FramesAreOfTheMiddleOfTheirTimeOnDisplay) {
 }
 
 TEST(FrameForecast, KnowsTheScenesCameraAndFollowsTheViewers) {
-    auto const scene = load_bench_scene(source / "scenes/vehicle_chase.glb");
+    auto const scene = load_bench_scene(bundled("vehicle_chase"));
     MethodSetup setup = setup_of({64, 48}, {});
     setup.delay_seconds = 0.05;
     for (double const speed : {0.0, 40.0}) {
@@ -183,7 +176,7 @@ TEST(FrameForecast, KnowsTheScenesCameraAndFollowsTheViewers) {
 }
 
 TEST(Margin, ShowsTheSamePixelsAndThoseAround) {
-    auto const scene = load_bench_scene(source / "scenes/vehicle_fixed.glb");
+    auto const scene = load_bench_scene(bundled("vehicle_fixed"));
     Viewport const viewport{96, 64};
     int const x = margin_pixels(0.125, viewport.width);
     int const y = margin_pixels(0.125, viewport.height);
@@ -208,26 +201,24 @@ TEST(Margin, ShowsTheSamePixelsAndThoseAround) {
 
 /// Nothing of the run knows of the turn, and it goes no further than the margin.
 TEST_F(Rivals, APanShowsNoHoleWithinTheMargin) {
-    auto const scene = load_bench_scene(source / "scenes/teleport.glb");
+    auto const scene = load_bench_scene(bundled("teleport"));
     scene->turn = {.degrees_per_second = 20, .reach_degrees = 30};
     RunParameters parameters = small_run({96, 64}, 20);
     parameters.seconds = 0.25; // five degrees
     parameters.link.delay_seconds = 0.3;
     parameters.frames_per_second = 60;
-    Reference const truth = folder.reference(*scene, parameters);
-    double const machine = machine_factor(*scene, parameters, costs);
+    Reference const truth = reference(*scene, parameters);
     auto const edge_error = [&](double margin) {
         parameters.rivals = {true, true, 1, margin};
-        auto const method = make_method("framed+warp", method_setup(parameters, machine, costs));
         double sum = 0;
-        run_method(*scene, *method, parameters, machine, [&](std::size_t index, Picture const& shown, double) {
-            Picture const reference = truth.picture(index);
+        show(*scene, "framed+warp", parameters, [&](std::size_t index, Picture const& shown, double) {
             if (index == 0) {
                 return;
             }
+            Picture const exact = truth.picture(index);
             for (int y = 0; y < shown.height; ++y) {
                 for (int x = 0; x < 4 * 6; ++x) { // the side that comes into view
-                    double const off = shown.row(y)[x] - reference.row(y)[x];
+                    double const off = shown.row(y)[x] - exact.row(y)[x];
                     sum += off * off;
                 }
             }
@@ -240,7 +231,7 @@ TEST_F(Rivals, APanShowsNoHoleWithinTheMargin) {
 }
 
 TEST(Interruptible, GoesFromCoarseToFineAndBeginsAnewOnlyAtTheBeginning) {
-    auto const scene = load_bench_scene(source / "scenes/vehicle_chase.glb");
+    auto const scene = load_bench_scene(bundled("vehicle_chase"));
     RunParameters parameters = small_run({96, 64}, 20);
     parameters.frames_per_second = 60;
     CostTable const costs = usual_costs();
@@ -265,7 +256,7 @@ TEST(Interruptible, GoesFromCoarseToFineAndBeginsAnewOnlyAtTheBeginning) {
 
 TEST_F(Rivals, NoChoiceOfFramesIsBetterThanTheOracles) {
     for (std::string const name : {"vehicle_fixed", "teleport"}) {
-        auto const scene = load_bench_scene(source / ("scenes/" + name + ".glb"));
+        auto const scene = load_bench_scene(bundled(name));
         RunParameters parameters = small_run({96, 64}, 20);
         MethodRecord const warped = record(*scene, "framed+warp", parameters);
         MethodRecord const oracle = record(*scene, "oracle", parameters);

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 
 #include <nlohmann/json.hpp>
 
 #include "common/picture_writer.h"
 #include "tests/evaluation/charts/picture_sheet.h"
+#include "tests/evaluation/figure_table.h"
 #include "tests/evaluation/measures/measures.h"
 #include "tests/evaluation/methods/tsar.h"
 
@@ -127,32 +127,32 @@ json to_json(Cell const& cell) {
 
 } // namespace
 
-json sensitivity(Subject const& subject, StudyOptions const& options) {
-    std::string const& scene = subject.scene->name;
+json measure_sensitivity(StudyOptions const& study) {
+    FigureTable const table({{"scene", "/scene", -17},
+                             {"slope in space", "/space/slope", 14},
+                             {"in time", "/time/slope", 7},
+                             {"mse", "/mse", 9, 2, 1, true},
+                             {"age ms", "/age_seconds", 6, 0, 1e3},
+                             {"samples a pixel", "/samples_per_pixel", 15},
+                             {"refreshes a second", "/refreshes_per_second/mean", 18, 1}});
     RateTemplates const usual = TsarParameters{}.templates;
-    std::vector<Cell> grid;
-    std::printf(
-        "%s: mean squared error, samples a pixel, mean refreshes a second; slope in space from left to right, in "
-        "time downwards\n",
-        scene.c_str());
-    for (int y = 0; y < cells; ++y) {
-        float const time = slope_step * static_cast<float>(cells / 2 - y);
-        for (int x = 0; x < cells; ++x) {
-            float const space = slope_step * static_cast<float>(cells / 2 - x);
-            grid.push_back(run_cell(subject, options.costs, {turned(usual.space, space), turned(usual.time, time)}));
-            Cell const& cell = grid.back();
-            std::printf("  %8.2e %4.2f %4.1f", cell.mse, cell.samples_per_pixel, cell.mean_rate);
+    json rows = json::array();
+    for (std::filesystem::path const& file : study.scenes) {
+        Subject const subject = prepare(file, study);
+        std::vector<Cell> grid;
+        for (int i = 0; i < cells * cells; ++i) {
+            float const space = slope_step * static_cast<float>(cells / 2 - i % cells);
+            float const time = slope_step * static_cast<float>(cells / 2 - i / cells);
+            grid.push_back(run_cell(subject, study.costs, {turned(usual.space, space), turned(usual.time, time)}));
+            rows.push_back(to_json(grid.back()));
+            rows.back()["scene"] = subject.scene->name;
+            table.print(rows.back());
         }
-        std::printf("\n");
+        if (!study.charts.empty()) {
+            draw_sheets(grid, study.charts, subject.scene->name);
+        }
     }
-    if (!options.charts.empty()) {
-        draw_sheets(grid, options.charts, scene);
-    }
-    json result{{"scene", scene}, {"cells", json::array()}};
-    for (Cell const& cell : grid) {
-        result["cells"].push_back(to_json(cell));
-    }
-    return result;
+    return rows;
 }
 
 } // namespace framelet::bench

@@ -11,6 +11,6 @@ namespace framelet::bench {
 /// tolerated at fine scales and the stronger the response. Draws two sheets of 5x5 pictures (004 fig. 7.24 and 7.25):
 /// what is shown at half the run, and the tiling then, brighter where tiles are refreshed more often. From left to
 /// right less sensitive in space, from top to bottom in time.
-nlohmann::json sensitivity(Subject const& subject, StudyOptions const& options);
+nlohmann::json measure_sensitivity(StudyOptions const& study);
 
 } // namespace framelet::bench

@@ -4,11 +4,11 @@
 #include <filesystem>
 #include <string>
 
+#include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "tests/evaluation/cost_table.h"
-#include "tests/evaluation/reference.h"
-#include "tests/evaluation/run.h"
+#include "tests/evaluation/comparison.h"
+#include "tests/evaluation/study.h"
 
 namespace framelet::bench {
 
@@ -16,6 +16,10 @@ inline std::filesystem::path const source = FRAMELET_SOURCE_DIR;
 
 inline CostTable usual_costs() {
     return read_cost_table(source / "tests/evaluation/costs.json");
+}
+
+inline std::filesystem::path bundled(std::string const& name) {
+    return source / "scenes" / (name + ".glb");
 }
 
 /// Half a second.
@@ -27,22 +31,36 @@ inline RunParameters small_run(Viewport viewport, double reference_rate) {
     return parameters;
 }
 
-/// A folder of this process for references, which goes when this does.
-class ReferenceFolder {
-public:
-    explicit ReferenceFolder(std::string const& name)
-        : path_(std::filesystem::temp_directory_path() / ("framelet-" + name + "-" + std::to_string(getpid()))) {}
-    ~ReferenceFolder() { std::filesystem::remove_all(path_); }
-    ReferenceFolder(ReferenceFolder const&) = delete;
-    ReferenceFolder& operator=(ReferenceFolder const&) = delete;
+/// References are in a folder of this test, which goes when the test does.
+class SmallRuns : public testing::Test {
+protected:
+    ~SmallRuns() override { std::filesystem::remove_all(cache); }
 
-    std::filesystem::path const& path() const { return path_; }
-    Reference reference(BenchScene& scene, RunParameters const& run) const {
-        return {scene, {run.viewport, run.seconds, run.reference_rate, 3}, path_};
+    StudyOptions study(RunParameters const& run) const {
+        StudyOptions options;
+        options.run = run;
+        options.reference_cache = cache;
+        options.costs = costs;
+        return options;
+    }
+    Reference reference(BenchScene& scene, RunParameters const& run) const { return reference_of(scene, study(run)); }
+
+    std::vector<MethodRecord> records(BenchScene& scene, std::vector<std::string> const& methods,
+                                      RunParameters const& run) const {
+        return compare_methods(scene, reference(scene, run), methods, run, costs).records;
     }
 
-private:
-    std::filesystem::path path_;
+    /// A method with what the parameters say and nothing tried out.
+    RunResult show(BenchScene& scene, std::string const& method, RunParameters const& run,
+                   OnReferenceTime const& on_reference_time) const {
+        double const machine = machine_factor(scene, run, costs);
+        return run_method(scene, *make_method(method, method_setup(run, machine, costs)), run, machine,
+                          on_reference_time);
+    }
+
+    CostTable const costs = usual_costs();
+    std::filesystem::path const cache =
+        std::filesystem::temp_directory_path() / ("framelet-references-" + std::to_string(getpid()));
 };
 
 } // namespace framelet::bench

@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "common/error.h"
-#include "common/picture_writer.h"
 #include "tests/evaluation/charts/charts.h"
 #include "tests/evaluation/charts/picture_sheet.h"
+#include "tests/evaluation/figure_table.h"
 #include "tests/evaluation/measures/measures.h"
 
 namespace framelet::bench {
@@ -17,6 +17,8 @@ namespace {
 
 using nlohmann::json;
 
+constexpr double stops = 0.5; ///< seconds of scene time that everything moves
+constexpr int reference_side = 16; ///< samples along a side of the reference's pixel
 /// The first second moves most; after two the picture should be good.
 constexpr double listed_seconds[] = {0.25, 0.5, 1, 2, 4};
 
@@ -29,18 +31,18 @@ struct Still {
     Picture last;
 };
 
-Still watch(BenchScene& scene, StillnessStudy const& study, StudyOptions const& options) {
+Still watch(BenchScene& scene, StudyOptions const& options) {
     RunParameters run = options.run;
-    run.seconds += study.stops;
-    run.scene_stops = study.stops;
+    run.seconds += stops;
+    run.scene_stops = stops;
     double const machine = machine_factor(scene, options.run, options.costs);
-    pose_at(scene, study.stops);
+    pose_at(scene, stops);
     Still still;
-    still.reference = render_reference(scene, run.viewport, study.reference_side);
+    still.reference = render_reference(scene, run.viewport, reference_side);
     auto const method = make_method("framelet", method_setup(run, machine, options.costs));
     RunResult const result =
         run_method(scene, *method, run, machine, [&](std::size_t index, Picture const& shown, double) {
-            double const since = reference_time(run, index) - study.stops;
+            double const since = reference_time(run, index) - stops;
             if (since >= 0) {
                 still.quality.seconds.push_back(since);
                 still.quality.psnr.push_back(psnr_from_mse(mean_squared_error(shown, still.reference)));
@@ -48,19 +50,13 @@ Still watch(BenchScene& scene, StillnessStudy const& study, StudyOptions const& 
         });
     still.last = method->picture();
     for (RunResult::Delivery const& delivery : result.deliveries) {
-        if (delivery.sent > study.stops) {
-            still.last_sent = delivery.sent - study.stops;
+        if (delivery.sent > stops) {
+            still.last_sent = delivery.sent - stops;
             still.bytes += delivery.bytes;
         }
         still.last_second_bytes += delivery.sent > run.seconds - 1 ? delivery.bytes : 0;
     }
     return still;
-}
-
-/// What is shown in the end, beside the reference.
-void write_last(std::filesystem::path const& folder, std::string const& scene, Still const& still) {
-    std::filesystem::create_directories(folder);
-    write_png(folder / (scene + "-still.png"), beside_reference(still.reference, std::array{still.last}));
 }
 
 } // namespace
@@ -79,16 +75,21 @@ double PsnrOverTime::most_fall() const {
     return fall;
 }
 
-json measure_stillness(StillnessStudy const& study, StudyOptions const& options) {
+json measure_stillness(StudyOptions const& options) {
     FRAMELET_CHECK(options.run.seconds >= 1);
-    Viewport const viewport = options.run.viewport;
-    std::printf("%dx%d, %g samples a pixel and second; PSNR [dB] after everything has come to rest\n", viewport.width,
-                viewport.height, options.run.frames_per_second);
-    std::printf("%-18s", "after [s]");
-    for (double const after : listed_seconds) {
-        std::printf("  %6.2f", after);
-    }
-    std::printf("     end  falls [dB]  last sent [s]       kB  bytes in the last second\n");
+    std::printf("%dx%d, %g samples a pixel and second; PSNR [dB] after everything has come to rest\n",
+                options.run.viewport.width, options.run.viewport.height, options.run.frames_per_second);
+    FigureTable const table({{"after [s]", "/scene", -17},
+                             {"0.25", "/psnr/0/psnr", 6},
+                             {"0.5", "/psnr/1/psnr", 6},
+                             {"1", "/psnr/2/psnr", 6},
+                             {"2", "/psnr/3/psnr", 6},
+                             {"4", "/psnr/4/psnr", 6},
+                             {"end", "/final_psnr", 6},
+                             {"falls [dB]", "/most_fall_db", 10, 3},
+                             {"last sent [s]", "/last_sent_seconds", 13},
+                             {"kB", "/bytes", 7, 0, 1e-3},
+                             {"bytes in the last second", "/last_second_bytes", 24, 0}});
     json rows = json::array();
     Curves curves{.title = "PSNR after everything has come to rest",
                   .x_title = "time since [s]",
@@ -97,18 +98,13 @@ json measure_stillness(StillnessStudy const& study, StudyOptions const& options)
                   .curves = {}};
     for (std::filesystem::path const& file : options.scenes) {
         auto const scene = load_bench_scene(file, options.camera);
-        Still const still = watch(*scene, study, options);
-        std::printf("%-18s", scene->name.c_str());
+        Still const still = watch(*scene, options);
         json psnr = json::array();
         for (double const after : listed_seconds) {
             if (after <= options.run.seconds) {
-                std::printf("  %6.2f", still.quality.at(after));
                 psnr.push_back({{"after_seconds", after}, {"psnr", still.quality.at(after)}});
             }
         }
-        std::printf("  %6.2f  %10.3f  %13.2f  %7.0f  %24.0f\n", still.quality.psnr.back(), still.quality.most_fall(),
-                    still.last_sent, 1e-3 * still.bytes, still.last_second_bytes);
-        std::fflush(stdout);
         rows.push_back({{"scene", scene->name},
                         {"psnr", psnr},
                         {"final_psnr", still.quality.psnr.back()},
@@ -116,8 +112,10 @@ json measure_stillness(StillnessStudy const& study, StudyOptions const& options)
                         {"last_sent_seconds", still.last_sent},
                         {"bytes", still.bytes},
                         {"last_second_bytes", still.last_second_bytes}});
+        table.print(rows.back());
         if (!options.charts.empty()) {
-            write_last(options.charts, scene->name, still);
+            write_beside_reference(options.charts / (scene->name + "-still.png"), still.reference,
+                                   std::array{still.last});
         }
         curves.curves.push_back({scene->name, still.quality.seconds, still.quality.psnr});
     }

@@ -10,11 +10,6 @@
 
 namespace framelet::bench {
 
-struct StillnessStudy {
-    double stops = 0.5; ///< seconds of scene time that everything moves
-    int reference_side = 16; ///< samples along a side of the reference's pixel
-};
-
 /// How good the picture was when, since the stop. As many of each, at least one; seconds ascend.
 struct PsnrOverTime {
     std::vector<double> seconds;
@@ -30,6 +25,6 @@ struct PsnrOverTime {
 /// and how much has been sent by then since the stop, and the bytes that are sent in the last second of the run.
 /// `options.run.seconds` is what is watched after the stop, at least a second.
 /// Charts: PSNR over time, and for each scene the last picture beside its reference.
-nlohmann::json measure_stillness(StillnessStudy const& study, StudyOptions const& options);
+nlohmann::json measure_stillness(StudyOptions const& options);
 
 } // namespace framelet::bench

@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "tests/evaluation/small_run.h"
+
 namespace framelet::bench {
 namespace {
-
-std::filesystem::path const source = FRAMELET_SOURCE_DIR;
 
 TEST(PsnrOverTime, IsThatOfTheLastMeasurement) {
     PsnrOverTime const quality{{0.1, 0.2, 0.3}, {30, 35, 40}};
@@ -22,16 +22,14 @@ TEST(PsnrOverTime, AFallIsFromTheBestBefore) {
     EXPECT_EQ((PsnrOverTime{{0, 1, 2, 3, 4}, {30, 38, 36, 35, 50}}.most_fall()), 3);
 }
 
-TEST(Stillness, ThePictureBecomesTheReferenceAndNothingMoreIsSent) {
-    StillnessStudy study;
-    StudyOptions options;
-    options.scenes = {source / "scenes/globe.glb", source / "scenes/stop.glb"};
-    options.run.viewport = {48, 32};
+using Stillness = SmallRuns;
+
+TEST_F(Stillness, ThePictureBecomesTheReferenceAndNothingMoreIsSent) {
+    StudyOptions options = study(small_run({48, 32}, 10));
+    options.scenes = {bundled("globe"), bundled("stop")};
     options.run.frames_per_second = 30;
-    options.run.reference_rate = 10;
     options.run.seconds = 8;
-    options.costs = read_cost_table(source / "tests/evaluation/costs.json");
-    auto const rows = measure_stillness(study, options);
+    auto const rows = measure_stillness(options);
     ASSERT_EQ(rows.size(), 2u);
     for (auto const& row : rows) {
         EXPECT_GE(row["final_psnr"], 40) << row["scene"];

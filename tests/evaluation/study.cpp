@@ -13,6 +13,7 @@ Reference reference_of(BenchScene& scene, StudyOptions const& options) {
 
 Subject prepare(std::filesystem::path const& file, StudyOptions const& options) {
     auto scene = load_bench_scene(file, options.camera);
+    scene->turn.degrees_per_second = options.turn;
     StudyOptions of_scene = options;
     if (options.sees_events) {
         of_scene.run.start = window_start(scene->name, options.run.seconds);

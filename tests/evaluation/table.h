@@ -1,8 +1,7 @@
-// The 16 runs and five scenes of Table 7.2 of the dissertation (004), ours beside the published. In: the table's file,
-// which runs and scenes. Out: suitable percentile, median ratio and cost of every method in every run.
+// The 16 runs and five scenes of Table 7.2 of the dissertation (004), ours beside the published. In: which runs and
+// scenes. Out: suitable percentile, median ratio and cost of every method in every run.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -24,16 +23,13 @@ struct PublishedTable {
     std::vector<PublishedRun> runs;
 };
 
-/// Reads the table. Throws InputError that names the line.
-PublishedTable read_published_table(std::filesystem::path const& file);
+/// Table 7.2 of A. J. Stephens, "Control of Spatial and Temporal Fidelity with Adaptive Sampling" (dissertation,
+/// University of Utah, 2011): for each run the greatest percentile at which the error ratio MSE(adaptive) / MSE(framed
+/// at equal total cost) is not above 1; 100: better at all times. Scenes are this project's remakes of its five inputs.
+PublishedTable const& published_table();
 
-/// The table of these runs and scenes alone, in the order of the whole one; all where a list is empty. InputError for
-/// what the table does not have.
-PublishedTable part_of(PublishedTable const& table, std::vector<int> const& runs,
-                       std::vector<std::string> const& scenes);
-
-/// Every run of the table, cost counted in total as its source did. Of `study`, viewport, batch and counting are the
-/// table's. Scenes are loaded from `folder`.
-nlohmann::json run_table(PublishedTable const& table, std::filesystem::path const& folder, StudyOptions const& study);
+/// Every run of the table on the study's scenes, cost counted in total as its source did. Of `study`, viewport, batch
+/// and counting are the table's. InputError for a scene that the table does not have.
+nlohmann::json run_table(PublishedTable const& table, StudyOptions const& study);
 
 } // namespace framelet::bench

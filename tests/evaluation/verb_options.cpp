@@ -52,9 +52,6 @@ void add_method_options(CLI::App& verb, VerbOptions& options) {
                     "What the rivals do not do, of accumulation, ahead, spacing and margin")
         ->delimiter(',')
         ->check(CLI::IsMember(rival_part_names));
-    verb.add_option("--rivals-spacing", run.rivals.spacing,
-                    "Pixels from sample to sample of whole frames while something moves (default: the best)")
-        ->check(CLI::IsMember({1, 2, 4}));
     verb.add_option("--seed", run.seed, "Of everything that is random")->capture_default_str();
 }
 
@@ -64,15 +61,19 @@ void add_machine_options(CLI::App& verb, VerbOptions& options) {
         ->check(CLI::Range(0.5, 60.0))
         ->capture_default_str();
     verb.add_flag("--total", options.total, "The viewer's work is charged to the server's processors");
-    verb.add_option("--bandwidth", options.megabits, "The link's rate, Mbit/s; 0: unlimited")
-        ->check(CLI::Range(0.0, 1e6))
-        ->capture_default_str();
-    verb.add_option("--delay", options.delay_ms, "The link's delay each way, ms")
-        ->check(CLI::Range(0.0, 10000.0))
-        ->capture_default_str();
+    add_link_options(verb, options.megabits, options.delay_ms);
 }
 
 } // namespace
+
+void add_link_options(CLI::App& verb, double& megabits, double& delay_ms) {
+    verb.add_option("--bandwidth", megabits, "The link's rate, Mbit/s; 0: unlimited")
+        ->check(CLI::Range(0.0, 1e6))
+        ->capture_default_str();
+    verb.add_option("--delay", delay_ms, "The link's delay each way, ms")
+        ->check(CLI::Range(0.0, 10000.0))
+        ->capture_default_str();
+}
 
 std::vector<std::filesystem::path> bundled_scenes() {
     std::vector<std::filesystem::path> files;
@@ -107,6 +108,7 @@ void settle(VerbOptions& options, Scale const& scale, std::vector<std::string> c
     }
     study.run.viewport = options.size.value_or(scale.viewport);
     study.run.start = options.start.value_or(0);
+    study.sees_events = !options.start;
     study.run.seconds = options.seconds.value_or(scale.seconds);
     study.run.reference_rate = options.rate.value_or(scale.rate);
     study.run.link.bits_per_second = 1e6 * options.megabits;
@@ -128,24 +130,30 @@ void add_study_options(CLI::App& verb, VerbOptions& options) {
     add_machine_options(verb, options);
 }
 
-void add_table_options(CLI::App& verb, VerbOptions& options) {
-    verb.add_option("--runs", options.table_runs, "Which runs of the table, by number (default: all)")->delimiter(',');
+void add_compare_options(CLI::App& verb, VerbOptions& options) {
+    verb.add_option("--turn", options.study.turn, "The camera turns back and forth, degrees a second")
+        ->check(CLI::Range(0.0, 3600.0));
 }
 
-void add_stability_options(CLI::App& verb, VerbOptions& options) {
-    verb.add_option("--batches", options.stability.batches, "Most framelets of a batch, one run each")
+void add_table_options(CLI::App& verb, VerbOptions& options) {
+    verb.add_option("--runs", options.table_runs, "Which runs of the table, by number (default: all)")
         ->delimiter(',')
-        ->check(CLI::Range(std::size_t(1), max_batch_framelets))
-        ->capture_default_str();
-    verb.add_option("--factor", options.stability.factor, "Settled is what is within so many times its final level")
-        ->check(CLI::Range(1.01, 100.0))
-        ->capture_default_str();
+        ->check(CLI::Range(0, 15));
 }
 
 void add_correspondence_options(CLI::App& verb, VerbOptions& options) {
-    verb.add_option("--ahead", options.correspondence.ahead, "Seconds that pictures are moved ahead")
+    verb.add_option("--ahead", options.ahead, "Seconds that pictures are moved ahead")
         ->delimiter(',')
         ->check(CLI::Range(0.0, 10.0))
+        ->capture_default_str();
+}
+
+void add_estimator_options(CLI::App& verb, VerbOptions& options) {
+    verb.add_option("--windows", options.observation.windows, "Times of each scene")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    verb.add_option("--places", options.observation.places, "Places at each time")
+        ->check(CLI::Range(1, 1000))
         ->capture_default_str();
 }
 

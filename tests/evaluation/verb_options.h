@@ -9,10 +9,8 @@
 #include <thread>
 #include <vector>
 
-#include "tests/evaluation/correspondence/correspondence.h"
-#include "tests/evaluation/estimators/estimator_verbs.h"
+#include "tests/evaluation/estimators/observations.h"
 #include "tests/evaluation/report/report_runs.h"
-#include "tests/evaluation/stability.h"
 #include "tests/evaluation/study.h"
 
 namespace CLI {
@@ -46,10 +44,9 @@ struct VerbOptions {
     StudyOptions study;
 
     // Of one verb each.
-    StabilityOptions stability;
     std::vector<int> table_runs;
-    EstimatorStudy estimators;
-    CorrespondenceStudy correspondence;
+    ObservationOptions observation; ///< of the estimators
+    std::vector<double> ahead{1.0 / 60, 1.0 / 15, 0.2}; ///< seconds, of the correspondence
     ReportOptions report;
     std::vector<std::string> live_scenes; ///< files or names, of the report
     bool without_live = false, without_links = false;
@@ -67,12 +64,16 @@ void settle(VerbOptions& options, Scale const& scale, std::vector<std::string> c
 
 // The options must outlive the parsing.
 
+/// Of a link: Mbit/s, ms each way.
+void add_link_options(CLI::App& verb, double& megabits, double& delay_ms);
+
 /// Those that verbs share.
 void add_study_options(CLI::App& verb, VerbOptions& options);
 
-void add_stability_options(CLI::App& verb, VerbOptions& options);
+void add_compare_options(CLI::App& verb, VerbOptions& options);
 void add_table_options(CLI::App& verb, VerbOptions& options);
 void add_correspondence_options(CLI::App& verb, VerbOptions& options);
+void add_estimator_options(CLI::App& verb, VerbOptions& options);
 void add_report_options(CLI::App& verb, VerbOptions& options);
 
 } // namespace framelet::bench

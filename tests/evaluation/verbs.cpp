@@ -5,15 +5,14 @@
 #include <nlohmann/json.hpp>
 
 #include "common/error.h"
-#include "common/picture_writer.h"
 #include "tests/evaluation/ablation.h"
 #include "tests/evaluation/calibrate.h"
 #include "tests/evaluation/charts/charts.h"
 #include "tests/evaluation/charts/picture_sheet.h"
-#include "tests/evaluation/codec/codec_study.h"
 #include "tests/evaluation/comparison.h"
+#include "tests/evaluation/correspondence/correspondence.h"
+#include "tests/evaluation/estimators/estimator_verbs.h"
 #include "tests/evaluation/limits.h"
-#include "tests/evaluation/link_turn.h"
 #include "tests/evaluation/report/report_page.h"
 #include "tests/evaluation/sensitivity.h"
 #include "tests/evaluation/stillness.h"
@@ -25,7 +24,6 @@ namespace {
 using nlohmann::json;
 
 void draw_comparison(Comparison const& comparison, std::filesystem::path const& folder) {
-    std::filesystem::create_directories(folder);
     ErrorOverTime chart{.title = comparison.scene + ": error over time", .series = {}};
     std::vector<Picture> shown;
     for (MethodRecord const& record : comparison.records) {
@@ -33,12 +31,11 @@ void draw_comparison(Comparison const& comparison, std::filesystem::path const& 
         shown.push_back(record.sample);
     }
     draw(chart, folder / (comparison.scene + "-error"));
-    write_png(folder / (comparison.scene + "-side-by-side.png"), beside_reference(comparison.reference_sample, shown));
+    write_beside_reference(folder / (comparison.scene + "-side-by-side.png"), comparison.reference_sample, shown);
 }
 
 json answer_compare(VerbOptions& options) {
-    StudyOptions& study = options.study;
-    study.sees_events = !options.start;
+    StudyOptions const& study = options.study;
     json result = json::array();
     for (auto const& file : study.scenes) {
         Subject const subject = prepare(file, study);
@@ -58,82 +55,16 @@ json answer_table(VerbOptions& options) {
     if (options.study.methods.empty()) {
         options.study.methods = {"afr", "framelet-unwarped", "framelet"};
     }
-    auto const published = read_published_table(source_folder / "tests/evaluation/published_table_7_2.csv");
-    std::vector<std::string> names;
-    for (auto const& file : options.study.scenes) {
-        names.push_back(file.stem().string());
-    }
-    auto part = part_of(published, options.table_runs, options.scenes.empty() ? std::vector<std::string>{} : names);
-    if (options.quick) {
-        std::erase_if(part.runs, [](PublishedRun const& run) { return run.side > 256; });
-    }
-    if (part.runs.empty()) {
+    PublishedTable table = published_table();
+    std::erase_if(table.runs, [&](PublishedRun const& run) {
+        std::vector<int> const& told = options.table_runs;
+        return (options.quick && run.side > 256) ||
+               (!told.empty() && std::ranges::find(told, run.number) == told.end());
+    });
+    if (table.runs.empty()) {
         throw InputError("--quick leaves none of these runs: it takes those of 256x256 pixels alone");
     }
-    return run_table(part, source_folder / "scenes", options.study);
-}
-
-json answer_turn(VerbOptions& options) {
-    if (options.study.methods.empty()) {
-        options.study.methods = {"framed+h264", "framed+warp", "framelet"};
-    }
-    json result = json::object();
-    for (auto const& file : options.study.scenes) {
-        auto const scene = load_bench_scene(file, options.study.camera);
-        result[scene->name] = turn_study(*scene, options.study);
-    }
-    return result;
-}
-
-json answer_stability(VerbOptions& options) {
-    return measure_stability(options.stability, options.study);
-}
-
-json answer_ablation(VerbOptions& options) {
-    options.study.sees_events = !options.start;
-    return measure_ablation({}, options.study);
-}
-
-json answer_stillness(VerbOptions& options) {
-    return measure_stillness({}, options.study);
-}
-
-json answer_sensitivity(VerbOptions& options) {
-    options.study.sees_events = !options.start;
-    json result = json::array();
-    for (auto const& file : options.study.scenes) {
-        result.push_back(sensitivity(prepare(file, options.study), options.study));
-    }
-    return result;
-}
-
-json answer_estimators(VerbOptions& options) {
-    EstimatorStudy& study = options.estimators;
-    study.scenes = options.study.scenes;
-    study.observation.seed = static_cast<std::uint32_t>(options.study.run.seed);
-    study.charts = options.study.charts;
-    study.quick = options.quick;
-    return compare_estimators(study);
-}
-
-json answer_correspondence(VerbOptions& options) {
-    CorrespondenceStudy& study = options.correspondence;
-    study.scenes = options.study.scenes;
-    study.camera = options.study.camera;
-    study.viewport = options.study.run.viewport;
-    study.times = options.quick ? 1 : study.times;
-    return measure_correspondence(study);
-}
-
-json answer_codec(VerbOptions& options) {
-    CodecStudy study{.scenes = options.study.scenes, .corpus = {}, .charts = options.study.charts};
-    study.corpus.viewport = options.study.run.viewport;
-    study.corpus.frames_per_second = options.study.run.frames_per_second;
-    if (options.quick) {
-        study.corpus.moments = 1;
-        study.rounds = 1;
-    }
-    return compare_codecs(study);
+    return run_table(table, options.study);
 }
 
 json answer_calibrate(VerbOptions& options) {
@@ -147,7 +78,7 @@ json answer_calibrate(VerbOptions& options) {
 
 json answer_limits(VerbOptions& options) {
     auto const scene = load_bench_scene(options.study.scenes.front(), options.study.camera);
-    return measure_limits(*scene, {options.study.run.viewport, options.quick ? 3 : 9});
+    return measure_limits(*scene, options.study.run.viewport, options.quick ? 3 : 9);
 }
 
 template <class List>
@@ -220,7 +151,8 @@ std::span<Verb const> verbs() {
         {.name = "compare",
          .question = "Error over time and cost of every method, beside the reference",
          .answer = answer_compare,
-         .scenes = chase},
+         .scenes = chase,
+         .add_options = add_compare_options},
         {.name = "report",
          .question = "All of docs/RESULTS.md: speed against accuracy, scene by scene, the real programs (hours)",
          .answer = answer_report,
@@ -235,51 +167,34 @@ std::span<Verb const> verbs() {
          .usual = {.seconds = 5, .rate = 10},
          .quick = {.seconds = 5, .rate = 10},
          .add_options = add_table_options},
-        {.name = "turn",
-         .question = "Error and lag against the round trip while the camera turns",
-         .answer = answer_turn,
-         .scenes = chase},
-        {.name = "stability",
-         .question = "How the loop of error, density and tiling settles after events, and how steady it is then",
-         .answer = answer_stability,
-         .scenes = {"stop", "flicker", "teleport"},
-         .usual = {.rate = 40},
-         .quick = {.viewport = {128, 72}, .rate = 20},
-         .add_options = add_stability_options},
         {.name = "ablation",
          .question = "What each part of framelet buys, and what it costs: error, bytes and work without it",
-         .answer = answer_ablation,
+         .answer = [](VerbOptions& o) { return measure_ablation(o.study); },
          .scenes = {"vehicle_chase", "vehicle_flyby", "vehicle_fixed", "stop", "windmill", "globe", "dim"}},
         {.name = "stillness",
          .question = "How good the picture gets once everything stands still, how soon, and what is sent then",
-         .answer = answer_stillness,
+         .answer = [](VerbOptions& o) { return measure_stillness(o.study); },
          .scenes = {},
          .usual = {.seconds = 4, .rate = 20},
          .quick = {.viewport = {128, 72}, .rate = 20}},
         {.name = "sensitivity",
          .question = "How tsar answers to steeper and flatter templates of its error estimate",
-         .answer = answer_sensitivity,
+         .answer = [](VerbOptions& o) { return measure_sensitivity(o.study); },
          .scenes = chase},
         {.name = "estimators",
          .question = "Cost of error estimators against their agreement with the ideal density",
-         .answer = answer_estimators,
+         .answer = [](VerbOptions& o) { return compare_estimators(o.study, o.observation, o.quick); },
          .scenes = {"vehicle_crossing", "windmill", "vehicle_fixed", "vehicle_chase", "vehicle_flyby",
                     "vehicle_approach", "globe", "flicker", "foliage", "stop"},
-         .add_options = [](CLI::App& verb, VerbOptions& o) { add_estimator_options(verb, o.estimators); }},
+         .add_options = add_estimator_options},
         {.name = "correspondence",
          .question = "How far off the viewer shows what it moves",
-         .answer = answer_correspondence,
+         .answer = [](VerbOptions& o) { return measure_correspondence(o.study, o.ahead, o.quick ? 1 : 3); },
          .scenes = {"globe", "windmill", "vehicle_approach", "vehicle_chase", "vehicle_crossing", "vehicle_fixed",
                     "vehicle_flyby"},
          .usual = screen,
          .quick = half_screen,
          .add_options = add_correspondence_options},
-        {.name = "codec",
-         .question = "Bytes of a sample against the error of what is decoded, for each way of coding framelets",
-         .answer = answer_codec,
-         .scenes = vehicles,
-         .usual = screen,
-         .quick = half_screen},
         {.name = "calibrate",
          .question = "What every stage costs on this machine",
          .answer = answer_calibrate,
@@ -287,7 +202,7 @@ std::span<Verb const> verbs() {
          .usual = {.viewport = {512, 512}},
          .quick = {.viewport = {512, 512}}},
         {.name = "limits",
-         .question = "Each stage against its bare limit",
+         .question = "The whole server against bare Embree and shading",
          .answer = answer_limits,
          .scenes = chase,
          .usual = screen,

@@ -1,27 +1,14 @@
 // Methods whose viewer moves what it holds: the camera's own motion, and whole frames with depth beside those without.
-#include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include <gtest/gtest.h>
 
-#include "tests/evaluation/comparison.h"
-#include "tests/evaluation/link_turn.h"
 #include "tests/evaluation/small_run.h"
 
 namespace framelet::bench {
 namespace {
 
-class Warp : public testing::Test {
-protected:
-    CostTable costs = usual_costs();
-    ReferenceFolder folder{"warp"};
-
-    std::vector<MethodRecord> records(BenchScene& scene, std::vector<std::string> const& methods,
-                                      RunParameters const& p) {
-        return compare_methods(scene, folder.reference(scene, p), methods, p, costs).records;
-    }
-};
+using Warp = SmallRuns;
 
 TEST(CameraTurn, GoesBackAndForthAtOneSpeed) {
     CameraTurn const turn{90, 30};
@@ -40,35 +27,15 @@ TEST(CameraTurn, GoesBackAndForthAtOneSpeed) {
     EXPECT_EQ(turned(camera, {}, 1), camera);
 }
 
-TEST(PictureLag, IsFoundWhateverTheErrorIs) {
-    std::vector<Picture> truth;
-    std::vector<Picture> shown;
-    for (int i = 0; i < 30; ++i) {
-        Picture picture(16, 16);
-        for (std::size_t byte = 0; byte < picture.rgba.size(); ++byte) {
-            picture.rgba[byte] =
-                static_cast<std::uint8_t>(128 + 80 * std::sin(0.1 * static_cast<double>(byte) + 0.3 * i));
-        }
-        truth.push_back(picture);
-        Picture late = truth[static_cast<std::size_t>(std::max(i - 4, 0))];
-        for (std::size_t byte = 0; byte < late.rgba.size(); byte += 3) {
-            late.rgba[byte] ^= 7;
-        }
-        shown.push_back(late);
-    }
-    EXPECT_EQ(picture_lag(shown, truth, 12), 4u);
-    EXPECT_EQ(picture_lag(truth, truth, 12), 0u);
-}
-
 TEST_F(Warp, FramesThatStandStillAreShownAsTheyCame) {
-    auto const scene = load_bench_scene(source / "scenes/teleport.glb"); // nothing moves until the camera cuts
+    auto const scene = load_bench_scene(bundled("teleport")); // nothing moves until the camera cuts
     auto const found = records(*scene, {"framed+h264", "framed+warp"}, small_run({96, 64}, 20));
     EXPECT_NEAR(found[1].measures[0].mse, found[0].measures[0].mse, 0.05 * found[0].measures[0].mse);
     EXPECT_LT(mean_squared_error(found[1].sample, found[0].sample), 1e-5);
 }
 
 TEST_F(Warp, FramesAreMovedToWhereTheCameraIs) {
-    auto const scene = load_bench_scene(source / "scenes/vehicle_chase.glb");
+    auto const scene = load_bench_scene(bundled("vehicle_chase"));
     RunParameters parameters = small_run({96, 64}, 20);
     parameters.link = {.bits_per_second = 20e6, .delay_seconds = 0.05};
     parameters.rivals = plain_rivals; // which leave all of the delay to the viewer
@@ -80,7 +47,7 @@ TEST_F(Warp, FramesAreMovedToWhereTheCameraIs) {
 
 /// The link is so long that nothing of the run knows of the turn.
 TEST_F(Warp, ATurnShowsBeforeAnyMessageKnowsOfIt) {
-    auto const scene = load_bench_scene(source / "scenes/teleport.glb");
+    auto const scene = load_bench_scene(bundled("teleport"));
     scene->turn = {.degrees_per_second = 30, .reach_degrees = 30};
     RunParameters parameters = small_run({96, 64}, 20);
     parameters.seconds = 0.3;

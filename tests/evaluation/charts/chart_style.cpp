@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
+#include <string_view>
 
 #include "tests/evaluation/charts/gnuplot.h"
 
@@ -11,7 +11,7 @@ namespace framelet::bench {
 namespace {
 
 struct MethodStyle {
-    char const* name;
+    std::string_view name;
     char const* color;
     int dash;
     int point;
@@ -32,15 +32,6 @@ constexpr std::array other_colors{"#332288", "#cc6677", "#117733", "#ddaa33",
 constexpr std::array other_points{6, 12, 8, 4, 10, 14, 5, 9};
 constexpr std::size_t dashes = 5; // gnuplot's, solid first
 
-/// FNV-1a.
-std::size_t hash_of(std::string const& name) {
-    std::uint32_t hash = 2166136261u;
-    for (char const c : name) {
-        hash = (hash ^ static_cast<unsigned char>(c)) * 16777619u;
-    }
-    return hash;
-}
-
 constexpr double tolerance = 1e-9; // of a mark that should stand on the end of its axis
 
 std::string mark_label(int mantissa, int exponent) {
@@ -55,20 +46,17 @@ std::string mark_label(int mantissa, int exponent) {
 
 std::vector<LineStyle> line_styles(std::span<std::string const> names) {
     std::vector<LineStyle> styles;
-    std::array<std::size_t, other_colors.size()> used{};
+    std::size_t others = 0;
     for (std::string const& name : names) {
-        auto const method = std::find_if(methods.begin(), methods.end(), [&](auto const& m) { return name == m.name; });
+        auto const method = std::ranges::find(methods, name, &MethodStyle::name);
         if (method != methods.end()) {
             styles.push_back({method->color, method->dash, method->point, method->width});
             continue;
         }
-        std::size_t color = hash_of(name) % used.size();
-        std::size_t const fewest = *std::min_element(used.begin(), used.end());
-        while (used[color] > fewest) {
-            color = (color + 1) % used.size();
-        }
-        int const dash = static_cast<int>(used[color]++ % dashes) + 1;
+        std::size_t const color = others % other_colors.size();
+        int const dash = static_cast<int>(others / other_colors.size() % dashes) + 1;
         styles.push_back({other_colors[color], dash, other_points[color], 2});
+        ++others;
     }
     return styles;
 }

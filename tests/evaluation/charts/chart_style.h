@@ -15,8 +15,8 @@ struct LineStyle {
 };
 
 /// A style for each name. The methods of the evaluation have theirs fixed (colours that the colour-blind tell apart,
-/// after Okabe and Ito and P. Tol); any other name has a colour that follows from its letters, or the next
-/// free one where two of one chart would be alike; beyond eight such names colours return with other dashes.
+/// after Okabe and Ito and P. Tol); other names have the next colours in their order, and beyond eight of them colours
+/// return with other dashes.
 std::vector<LineStyle> line_styles(std::span<std::string const> names);
 
 /// "lc rgb ... lw ... dt ... pt ..." for a plot command.

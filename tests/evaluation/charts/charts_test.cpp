@@ -24,7 +24,6 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// gnuplot's own idea of right: the files are there, the drawing has ink in it, its texts are in the SVG.
 class Drawn : public testing::Test {
 protected:
-    Drawn() { fs::create_directories(folder_); }
     ~Drawn() override { fs::remove_all(folder_); }
 
     std::string svg(fs::path const& stem) const {
@@ -111,9 +110,6 @@ TEST(ChartStyle, AMethodLooksTheSameInEveryChart) {
     auto const one = line_styles(std::vector<std::string>{"framelet"});
     EXPECT_EQ(to_string(both[1]), to_string(one[0]));
     EXPECT_NE(both[0].color, both[1].color);
-    auto const other = line_styles(std::vector<std::string>{"framelet", "no response"});
-    EXPECT_EQ(to_string(other[1]), to_string(line_styles(std::vector<std::string>{"no response"})[0]));
-
     std::vector<std::string> names;
     std::set<std::string> looks;
     names.reserve(24);
@@ -171,10 +167,10 @@ TEST(Gnuplot, AFailingScriptSaysWhere) {
 
 TEST(Gnuplot, FilesThatCannotBeWrittenAreNamed) {
     try {
-        render({"", "plot x\n"}, "/nowhere/at all/chart");
+        render({"", "plot x\n"}, "/dev/null/chart");
         FAIL();
     } catch (InputError const& error) {
-        EXPECT_STREQ(error.what(), "cannot write '/nowhere/at all/chart.svg'");
+        EXPECT_STREQ(error.what(), "cannot write '/dev/null/chart.svg'");
     }
 }
 

@@ -1,15 +1,13 @@
 #include "tests/evaluation/charts/gnuplot.h"
 
 #include <array>
-#include <cerrno>
 #include <charconv>
-#include <cstring>
-#include <fcntl.h>
+#include <cstdio>
 #include <fstream>
-#include <spawn.h>
+#include <memory>
+#include <sstream>
 #include <string_view>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include "common/error.h"
 
@@ -17,30 +15,6 @@ namespace framelet::bench {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A folder of its own that goes when it goes out of scope.
-class TemporaryFolder {
-public:
-    TemporaryFolder() {
-        std::string name = (fs::temp_directory_path() / "framelet-gnuplot-XXXXXX").string();
-        if (mkdtemp(name.data()) == nullptr) {
-            throw InputError("cannot make a folder in '" + fs::temp_directory_path().string() +
-                             "': " + std::strerror(errno));
-        }
-        path_ = name;
-    }
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        fs::remove_all(path_, ignored);
-    }
-    TemporaryFolder(TemporaryFolder const&) = delete;
-    TemporaryFolder& operator=(TemporaryFolder const&) = delete;
-
-    fs::path const& path() const { return path_; }
-
-private:
-    fs::path path_;
-};
 
 void write_text(fs::path const& file, std::string_view text) {
     std::ofstream stream(file, std::ios::binary);
@@ -52,43 +26,16 @@ void write_text(fs::path const& file, std::string_view text) {
 
 /// gnuplot echoes the offending command before it says what is wrong with it: the line that names a place in the script
 /// is the message, if there is one.
-std::string complaint_in(fs::path const& file) {
-    std::ifstream stream(file);
+std::string complaint_in(std::string const& text) {
+    std::istringstream stream(text);
     std::string first;
     for (std::string line; std::getline(stream, line);) {
         if (std::size_t const place = line.find("\" line "); place != std::string::npos) {
             return line.substr(place + 2);
         }
-        if (first.empty()) {
-            first = line;
-        }
+        first = first.empty() ? line : first;
     }
     return first.empty() ? "it gave no reason" : first;
-}
-
-/// The child's exit status as waitpid gives it.
-int run(fs::path const& script, fs::path const& complaints) {
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, complaints.c_str(), O_WRONLY | O_CREAT, 0600);
-    std::string name = "gnuplot", defaults = "-d", file = script.string();
-    std::array<char*, 4> arguments{name.data(), defaults.data(), file.data(), nullptr};
-    pid_t child = 0;
-    int const error = posix_spawnp(&child, "gnuplot", &actions, nullptr, arguments.data(), environ);
-    posix_spawn_file_actions_destroy(&actions);
-    if (error == ENOENT) {
-        throw InputError("gnuplot was not found: install it (Debian: gnuplot-nox) to draw charts");
-    }
-    if (error != 0) {
-        throw InputError(std::string("cannot start gnuplot: ") + std::strerror(error));
-    }
-    int status = 0;
-    while (waitpid(child, &status, 0) < 0) {
-        FRAMELET_CHECK(errno == EINTR);
-    }
-    return status;
 }
 
 std::string size_of(Plot const& plot) {
@@ -98,11 +45,26 @@ std::string size_of(Plot const& plot) {
 } // namespace
 
 void run_gnuplot(std::string const& script) {
-    TemporaryFolder const folder;
-    fs::path const file = folder.path() / "script.gp";
-    fs::path const complaints = folder.path() / "stderr.txt";
-    write_text(file, script);
-    if (run(file, complaints) != 0) {
+    // A file that has no name, which the child inherits: nothing is left behind, whatever happens.
+    std::unique_ptr<FILE, int (*)(FILE*)> const file(std::tmpfile(), std::fclose);
+    if (!file || std::fwrite(script.data(), 1, script.size(), file.get()) != script.size() || std::fflush(file.get())) {
+        throw InputError("cannot write a script for gnuplot into a temporary file");
+    }
+    std::string const command =
+        "gnuplot -d /dev/fd/" + std::to_string(fileno(file.get())) + " 2>&1 >/dev/null </dev/null";
+    FILE* const pipe = popen(command.c_str(), "r");
+    FRAMELET_CHECK(pipe != nullptr);
+    std::string complaints;
+    std::array<char, 256> buffer{};
+    while (std::fgets(buffer.data(), buffer.size(), pipe) != nullptr) {
+        complaints += buffer.data();
+    }
+    int const status = pclose(pipe);
+    constexpr int not_found = 127; // by the shell
+    if (WIFEXITED(status) && WEXITSTATUS(status) == not_found) {
+        throw InputError("gnuplot was not found: install it (Debian: gnuplot-nox) to draw charts");
+    }
+    if (status != 0) {
         throw InputError("gnuplot failed: " + complaint_in(complaints));
     }
 }
@@ -110,6 +72,8 @@ void run_gnuplot(std::string const& script) {
 void render(Plot const& plot, std::filesystem::path const& stem) {
     std::string const svg = stem.string() + ".svg";
     std::string const png = stem.string() + ".png";
+    std::error_code ignored; // where there is no folder, writing says so
+    fs::create_directories(stem.parent_path(), ignored);
     write_text(svg, ""); // gnuplot's complaint would not name the file
     write_text(png, "");
     std::string const size = size_of(plot);

@@ -18,8 +18,8 @@ struct Plot {
     int height = 560; ///< pixels
 };
 
-/// Draws to `stem`.svg and `stem`.png (`stem` is a path without ending; dots in its name stay). InputError where a file
-/// cannot be written.
+/// Draws to `stem`.svg and `stem`.png (`stem` is a path without ending; dots in its name stay), in a folder that is
+/// made where there is none. InputError where a file cannot be written.
 void render(Plot const& plot, std::filesystem::path const& stem);
 
 /// A string constant of gnuplot's; control characters become blanks.

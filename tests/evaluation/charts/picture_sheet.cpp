@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/error.h"
+#include "common/picture_writer.h"
 
 namespace framelet::bench {
 namespace {
@@ -68,6 +69,12 @@ Picture beside_reference(Picture const& reference, std::span<Picture const> show
         pictures.push_back(error_picture(pictures[i], reference));
     }
     return picture_sheet(pictures, static_cast<int>(columns));
+}
+
+void write_beside_reference(std::filesystem::path const& file, Picture const& reference,
+                            std::span<Picture const> shown) {
+    std::filesystem::create_directories(file.parent_path());
+    write_png(file, beside_reference(reference, shown));
 }
 
 } // namespace framelet::bench

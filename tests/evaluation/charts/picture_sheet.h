@@ -1,6 +1,7 @@
 // Several pictures as one, to be looked at side by side.
 #pragma once
 
+#include <filesystem>
 #include <span>
 
 #include "common/image.h"
@@ -17,5 +18,9 @@ inline constexpr int error_gain = 4;
 /// A column for the reference and one for each of `shown`, in their order; below each of these the root mean square of
 /// its three bytes' differences from the reference, times `error_gain`, in grey. InputError likewise.
 Picture beside_reference(Picture const& reference, std::span<Picture const> shown);
+
+/// That as a PNG file, in a folder that is made where there is none.
+void write_beside_reference(std::filesystem::path const& file, Picture const& reference,
+                            std::span<Picture const> shown);
 
 } // namespace framelet::bench

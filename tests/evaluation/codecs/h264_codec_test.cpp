@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "common/error.h"
+#include "tests/evaluation/measures/measures.h"
 
 namespace framelet::bench {
 namespace {
@@ -23,14 +24,6 @@ Picture waves(int width, int height, double time) {
     return picture;
 }
 
-double psnr(Picture const& a, Picture const& b) {
-    double sum = 0;
-    for (std::size_t i = 0; i < a.rgba.size(); ++i) {
-        sum += (a.rgba[i] - b.rgba[i]) * (a.rgba[i] - b.rgba[i]);
-    }
-    return 10 * std::log10(255.0 * 255.0 * 0.75 * static_cast<double>(a.rgba.size()) / (sum + 1e-9));
-}
-
 TEST(H264Codec, MovingPicturesComeOutAtOnceAndAlike) {
     for (auto const& [width, height] : {std::pair{192, 128}, std::pair{97, 65}}) {
         H264Encoder encoder(width, height, 30);
@@ -41,7 +34,7 @@ TEST(H264Codec, MovingPicturesComeOutAtOnceAndAlike) {
             decoder.decode(encoder.encode(picture, INFINITY), out);
             ASSERT_EQ(out.width, width);
             ASSERT_EQ(out.height, height);
-            EXPECT_GT(psnr(picture, out), 45) << i;
+            EXPECT_GT(psnr_from_mse(mean_squared_error(picture, out)), 45) << i;
         }
     }
 }

@@ -43,8 +43,6 @@ public:
     /// Times of calls must not decrease.
     Delivery send(double now, std::size_t bytes);
 
-    /// How long the sender's queue still needs.
-    double backlog_seconds(double now) const { return free_ > now ? free_ - now : 0; }
     /// What has been sent and has not left yet. `now`: not before the last call of `send`.
     double backlog_bytes(double now) const;
     /// Bits a second in force, stalls apart; 0: unlimited.

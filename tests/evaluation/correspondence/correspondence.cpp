@@ -14,8 +14,8 @@
 #include "server/schedule/tiling.h"
 #include "tests/evaluation/bench_scene.h"
 #include "tests/evaluation/correspondence/exact_motion.h"
-#include "tests/evaluation/correspondence/flight.h"
 #include "tests/evaluation/correspondence/place_code.h"
+#include "tests/evaluation/figure_table.h"
 
 namespace framelet::bench {
 namespace {
@@ -227,79 +227,77 @@ void compare(Surfaces const& before, Surfaces const& after, ExactMotion const& b
     }
 }
 
-/// Where the camera is so many seconds after `time`, when it was `camera`.
-Camera camera_after(BenchScene const& scene, Camera const& camera, float median_depth, SceneTime time, double seconds) {
-    return scene.scene_camera != none ? camera_at(scene, time + seconds) : flown(camera, median_depth, seconds);
-}
-
-void measure_from(BenchScene& scene, CorrespondenceStudy const& study, SceneTime time, std::vector<Found>& found) {
-    ImagePlane const plane(study.viewport);
+void measure_from(BenchScene& scene, Viewport viewport, std::vector<double> const& ahead, SceneTime time,
+                  std::vector<Found>& found) {
+    ImagePlane const plane(viewport);
     pose_at(scene, time);
     Camera const camera = scene.camera;
     ScenePose const pose = scene.pose;
     SceneBodies const& bodies = scene.render_scene->bodies();
-    Surfaces const before = render_surfaces(scene, camera, study.viewport);
+    Surfaces const before = render_surfaces(scene, camera, viewport);
     auto const first_key = static_cast<std::int64_t>(std::floor(time * body_keys_per_second));
-    double const farthest = *std::ranges::max_element(study.ahead);
+    double const farthest = *std::ranges::max_element(ahead);
     auto const keys = static_cast<std::size_t>(std::ceil(farthest * body_keys_per_second)) + 2;
     std::vector<BodyTrack> const tracks = body_tracks(scene.scene, scene.clips, bodies, first_key, keys);
     constexpr double instant = 1.0 / 60;
     float const speed =
-        glm::distance(camera_after(scene, camera, median_depth(before.framelets), time, instant).position,
-                      camera.position) /
-        static_cast<float>(instant);
+        glm::distance(camera_at(scene, time + instant).position, camera.position) / static_cast<float>(instant);
     FrameletCache caches[2]{FrameletCache(plane), FrameletCache(plane)};
     BodyMotions motions;
     for (int shift = 0; shift < 2; ++shift) {
         hold_places(before, scene, camera, speed, shift, caches[shift], tracks, motions);
     }
-    for (std::size_t i = 0; i < study.ahead.size(); ++i) {
-        SceneTime const later = time + study.ahead[i];
-        Camera const moved = camera_after(scene, camera, median_depth(before.framelets), time, study.ahead[i]);
+    for (std::size_t i = 0; i < ahead.size(); ++i) {
+        SceneTime const later = time + ahead[i];
         pose_at(scene, later);
-        Surfaces const after = render_surfaces(scene, moved, study.viewport);
+        Camera const moved = scene.camera;
+        Surfaces const after = render_surfaces(scene, moved, viewport);
         WarpPlan plans[2];
         for (int shift = 0; shift < 2; ++shift) {
             plans[shift].make(caches[shift], 0, true, moved, later, motions);
         }
-        ExactMotion const back(bodies, {scene.pose, moved}, {pose, camera}, study.viewport);
+        ExactMotion const back(bodies, {scene.pose, moved}, {pose, camera}, viewport);
         compare(before, after, back, plans, found[i]);
     }
 }
 
 } // namespace
 
-json measure_correspondence(CorrespondenceStudy const& study) {
-    std::printf("%dx%d, a sample per pixel; share of the pixels that were visible already, %%\n", study.viewport.width,
-                study.viewport.height);
-    std::printf("%-18s ahead [ms]  visible   <= 0.1   <= 0.5     <= 1    holes | silhouettes   <= 0.1   <= 0.5     <= 1"
-                "    holes | holes of all\n",
-                "");
+json measure_correspondence(StudyOptions const& study, std::vector<double> const& ahead, int times) {
+    Viewport const viewport = study.run.viewport;
+    std::printf("%dx%d, a sample per pixel; share of the pixels that were visible already, %%; s.: at silhouettes\n",
+                viewport.width, viewport.height);
+    FigureTable const table({{"scene", "/scene", -17},
+                             {"ahead [ms]", "/ahead_seconds", 10, 1, 1e3},
+                             {"visible", "/visible", 8, 2, 100},
+                             {"<= 0.1", "/all/within_0.1", 8, 2, 100},
+                             {"<= 0.5", "/all/within_0.5", 8, 2, 100},
+                             {"<= 1", "/all/within_1", 8, 2, 100},
+                             {"holes", "/all/holes", 8, 3, 100},
+                             {"s. visible", "/silhouettes_visible", 10, 2, 100},
+                             {"<= 0.1", "/silhouettes/within_0.1", 8, 2, 100},
+                             {"<= 0.5", "/silhouettes/within_0.5", 8, 2, 100},
+                             {"<= 1", "/silhouettes/within_1", 8, 2, 100},
+                             {"holes", "/silhouettes/holes", 8, 3, 100},
+                             {"holes of all", "/holes_of_all_pixels", 12, 2, 100}});
     json rows = json::array();
     for (std::filesystem::path const& file : study.scenes) {
         auto const scene = load_bench_scene(file, study.camera);
-        std::vector<Found> found(study.ahead.size());
-        int const times = scene->duration > 0 ? study.times : 1;
-        for (int k = 0; k < times; ++k) {
-            measure_from(*scene, study, scene->duration * (k + 0.5) / times, found);
+        std::vector<Found> found(ahead.size());
+        int const moments = scene->duration > 0 ? times : 1;
+        for (int k = 0; k < moments; ++k) {
+            measure_from(*scene, viewport, ahead, scene->duration * (k + 0.5) / moments, found);
         }
         for (std::size_t i = 0; i < found.size(); ++i) {
             Found const& f = found[i];
-            auto const percent = [](Counts const& counts, double count) { return 100 * counts.share(count); };
-            std::printf("%-18s %10.1f %8.2f %8.2f %8.2f %8.2f %8.3f | %11.2f %8.2f %8.2f %8.2f %8.3f | %8.2f\n",
-                        scene->name.c_str(), 1e3 * study.ahead[i], 100 * f.all.visible / f.pixels,
-                        percent(f.all, f.all.tenth), percent(f.all, f.all.half), percent(f.all, f.all.one),
-                        percent(f.all, f.all.holes), 100 * f.silhouettes.visible / f.pixels,
-                        percent(f.silhouettes, f.silhouettes.tenth), percent(f.silhouettes, f.silhouettes.half),
-                        percent(f.silhouettes, f.silhouettes.one), percent(f.silhouettes, f.silhouettes.holes),
-                        100 * f.holes / f.pixels);
-            std::fflush(stdout);
             rows.push_back({{"scene", scene->name},
-                            {"ahead_seconds", study.ahead[i]},
+                            {"ahead_seconds", ahead[i]},
                             {"visible", f.all.visible / f.pixels},
                             {"all", f.all.to_json()},
+                            {"silhouettes_visible", f.silhouettes.visible / f.pixels},
                             {"silhouettes", f.silhouettes.to_json()},
                             {"holes_of_all_pixels", f.holes / f.pixels}});
+            table.print(rows.back());
         }
     }
     return rows;

@@ -2,11 +2,10 @@
 
 #include <cstdio>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "tests/evaluation/charts/charts.h"
 #include "tests/evaluation/estimators/agreement.h"
+#include "tests/evaluation/figure_table.h"
 #include "tests/evaluation/stopwatch.h"
 
 namespace framelet::bench {
@@ -16,13 +15,10 @@ using nlohmann::json;
 
 constexpr std::size_t quick_scenes = 2;
 
-std::vector<Place> observe(EstimatorStudy const& study) {
+std::vector<Place> observe(StudyOptions const& study, ObservationOptions options, bool quick) {
     std::vector<Place> places;
-    std::size_t const count = study.quick ? std::min(quick_scenes, study.scenes.size()) : study.scenes.size();
-    ObservationOptions options = study.observation;
-    if (study.quick) {
-        options.windows = std::min(options.windows, 3);
-    }
+    std::size_t const count = quick ? std::min(quick_scenes, study.scenes.size()) : study.scenes.size();
+    options.seed = static_cast<std::uint32_t>(study.run.seed);
     for (std::size_t i = 0; i < count; ++i) {
         auto const scene = load_bench_scene(study.scenes[i]);
         std::fprintf(stderr, "oracle: %s, %zu of %zu\n", scene->name.c_str(), i + 1, count);
@@ -57,15 +53,6 @@ json to_json(Agreement const& agreement) {
             {"balanced_signs", agreement.signs.balanced}};
 }
 
-void print_row(char const* name, std::string const& cost, Agreement const& space, Agreement const& time) {
-    std::printf("%-12s %8s", name, cost.c_str());
-    for (Agreement const& axis : {space, time}) {
-        std::printf("   %6.3f  %6.3f  %5.1f%%  %5.1f%%", axis.rank, axis.rank_at_rate, 100 * axis.signs.all,
-                    100 * axis.signs.balanced);
-    }
-    std::printf("\n");
-}
-
 json places_of(std::vector<Place> const& places) {
     json result = json::array();
     for (Place const& place : places) {
@@ -77,61 +64,39 @@ json places_of(std::vector<Place> const& places) {
     return result;
 }
 
-json parameters_of(EstimatorStudy const& study) {
-    return {{"share", study.observation.oracle.share},
-            {"floor", study.observation.oracle.floor},
-            {"seed", study.observation.seed}};
-}
-
 } // namespace
 
-void add_estimator_options(CLI::App& verb, EstimatorStudy& study) {
-    verb.add_option("--windows", study.observation.windows, "Times of each scene")
-        ->check(CLI::Range(1, 1000))
-        ->capture_default_str();
-    verb.add_option("--places", study.observation.places, "Places at each time")
-        ->check(CLI::Range(1, 1000))
-        ->capture_default_str();
-    verb.add_option("--share", study.observation.oracle.share, "Of a place's energy that its ideal density captures")
-        ->check(CLI::Range(0.01, 0.9999))
-        ->capture_default_str();
-    verb.add_option("--floor", study.observation.oracle.floor, "Mean square of luma that need not be captured")
-        ->check(CLI::Range(0.0, 1.0))
-        ->capture_default_str();
-}
-
-json compare_estimators(EstimatorStudy const& study) {
-    std::vector<Place> const places = observe(study);
-    std::printf("%zu places, ideal density captures %g of the energy\n\n", places.size(),
-                study.observation.oracle.share);
-    std::printf("                 ns a   space                              time\n");
-    std::printf("estimator    framelet     rank at rate   signs balanced     rank at rate   signs balanced\n");
-    json result = parameters_of(study);
-    Curves chart{.title = "Error estimators against the oracle, space and time",
-                 .x_title = "cost [ns a framelet]",
-                 .y_title = "rank correlation",
-                 .curves = {}};
+json compare_estimators(StudyOptions const& study, ObservationOptions const& observation, bool quick) {
+    std::vector<Place> const places = observe(study, observation, quick);
+    std::printf("%zu places, ideal density captures %g of the energy\n\n", places.size(), observation.oracle.share);
+    FigureTable const table({{"estimator", "/name", -12},
+                             {"ns a framelet", "/ns", 13, 0},
+                             {"space: rank", "/space/rank", 11, 3},
+                             {"at rate", "/space/rank_at_rate", 7, 3},
+                             {"signs %", "/space/signs", 7, 1, 100},
+                             {"balanced", "/space/balanced_signs", 8, 1, 100},
+                             {"time: rank", "/time/rank", 10, 3},
+                             {"at rate", "/time/rank_at_rate", 7, 3},
+                             {"signs %", "/time/signs", 7, 1, 100},
+                             {"balanced", "/time/balanced_signs", 8, 1, 100}});
+    json rows = json::array();
+    auto const add = [&](char const* name, json const& ns, Agreement const& space, Agreement const& time) {
+        rows.push_back({{"name", name}, {"ns", ns}, {"space", to_json(space)}, {"time", to_json(time)}});
+        table.print(rows.back());
+    };
     Verdicts verdicts;
     for (ErrorEstimator const& estimator : error_estimators) {
         verdicts = judge(estimator, estimator.templates, places);
-        Agreement const space = agreement(verdicts.space), time = agreement(verdicts.time);
-        double const cost = cost_of(estimator, places, study.quick ? 101 : 301);
-        char text[32];
-        std::snprintf(text, sizeof(text), "%.0f", cost);
-        print_row(estimator.name, text, space, time);
-        result["estimators"][estimator.name] = {{"ns", cost}, {"space", to_json(space)}, {"time", to_json(time)}};
-        chart.curves.push_back({estimator.name, {cost, cost}, {space.rank, time.rank}});
+        add(estimator.name, cost_of(estimator, places, quick ? 101 : 301), agreement(verdicts.space),
+            agreement(verdicts.time));
     }
-    Agreement const space = agreement_of_rate_alone(verdicts.space, RateOrder::ascending);
-    Agreement const time = agreement_of_rate_alone(verdicts.time, RateOrder::descending);
-    print_row("rate alone", "", space, time);
-    result["rate_alone"] = {{"space", to_json(space)}, {"time", to_json(time)}};
-    result["places"] = places_of(places);
-    if (!study.charts.empty()) {
-        std::filesystem::create_directories(study.charts);
-        draw(chart, study.charts / "estimators");
-    }
-    return result;
+    add("rate alone", {}, agreement_of_rate_alone(verdicts.space, RateOrder::ascending),
+        agreement_of_rate_alone(verdicts.time, RateOrder::descending));
+    return {{"share", observation.oracle.share},
+            {"floor", observation.oracle.floor},
+            {"seed", study.run.seed},
+            {"estimators", rows},
+            {"places", places_of(places)}};
 }
 
 } // namespace framelet::bench

@@ -1,12 +1,74 @@
 #include "tests/evaluation/estimators/ideal_density.h"
 
 #include <algorithm>
+#include <cmath>
+#include <complex>
+#include <memory>
+#include <mutex>
+#include <numbers>
+
+#include <fftw3.h>
 
 #include "common/error.h"
-#include "tests/evaluation/charts/real_dft.h"
 
 namespace framelet::bench {
 namespace {
+
+/// FFTW executes side by side but plans one at a time.
+std::mutex& planner() {
+    static std::mutex mutex;
+    return mutex;
+}
+
+/// A real signal of some sizes (slowest first) and its transform, of which the last size is n/2 + 1.
+class RealDft {
+public:
+    explicit RealDft(std::vector<int> const& sizes) {
+        std::size_t samples = 1;
+        for (int const size : sizes) {
+            samples *= static_cast<std::size_t>(size);
+        }
+        auto const last = static_cast<std::size_t>(sizes.back());
+        signal_.reset(fftw_alloc_real(samples));
+        transform_.reset(fftw_alloc_real(2 * (samples / last) * (last / 2 + 1)));
+        FRAMELET_CHECK(signal_ && transform_);
+        std::lock_guard const lock(planner());
+        plan_ = fftw_plan_dft_r2c(static_cast<int>(sizes.size()), sizes.data(), signal_.get(),
+                                  reinterpret_cast<fftw_complex*>(transform_.get()), FFTW_ESTIMATE);
+        FRAMELET_CHECK(plan_ != nullptr);
+    }
+    ~RealDft() {
+        std::lock_guard const lock(planner());
+        fftw_destroy_plan(plan_);
+    }
+    RealDft(RealDft const&) = delete;
+    RealDft& operator=(RealDft const&) = delete;
+
+    double* signal() { return signal_.get(); }
+    void execute() { fftw_execute(plan_); }
+    double power(std::size_t bin) const {
+        return std::norm(std::complex(transform_[2 * bin], transform_[2 * bin + 1]));
+    }
+
+private:
+    struct Free {
+        void operator()(double* memory) const { fftw_free(memory); }
+    };
+
+    std::unique_ptr<double[], Free> signal_;
+    std::unique_ptr<double[], Free> transform_; ///< real and imaginary parts in turn
+    fftw_plan plan_ = nullptr;
+};
+
+/// Hann window, sampled at the middle of its cells, so that none is zero.
+std::vector<double> hann(int size) {
+    std::vector<double> window(static_cast<std::size_t>(size));
+    for (std::size_t i = 0; i < window.size(); ++i) {
+        double const sine = std::sin(std::numbers::pi * (static_cast<double>(i) + 0.5) / size);
+        window[i] = sine * sine;
+    }
+    return window;
+}
 
 /// How often a bin of the last axis stands in the whole transform: the other half is its mirror image.
 double multiplicity(int bin, int size) {
@@ -17,7 +79,7 @@ double multiplicity(int bin, int size) {
 std::vector<double> spatial_energies(SampleVolume const& volume) {
     int const side = volume.side, mirrored = 2 * side;
     auto const n = static_cast<std::size_t>(side), m = static_cast<std::size_t>(mirrored);
-    RealDft dft({mirrored, mirrored}, 1);
+    RealDft dft({mirrored, mirrored});
     std::vector<double> energies(n + 1);
     for (int t = 0; t < volume.times; ++t) {
         float const* const picture = volume.luma.data() + static_cast<std::size_t>(t) * n * n;
@@ -70,7 +132,7 @@ std::vector<double> temporal_energies(SampleVolume const& volume) {
         sum += weight;
         squares += weight * weight;
     }
-    RealDft dft({volume.times}, 1);
+    RealDft dft({volume.times});
     std::vector<double> energies(times / 2 + 1);
     for (std::size_t i = 0; i < pixels; ++i) {
         double mean = 0;

@@ -10,6 +10,7 @@
 #include "server/scene/scene_import.h"
 #include "server/stream/replay.h"
 #include "tests/evaluation/method.h"
+#include "tests/evaluation/verb_options.h"
 
 namespace framelet::bench {
 
@@ -38,12 +39,7 @@ void add_live_options(CLI::App& verb, LiveVerbOptions& options) {
         ->delimiter(',')
         ->check(CLI::IsMember(method_names()))
         ->capture_default_str();
-    verb.add_option("--bandwidth", options.megabits, "The link's rate, Mbit/s; 0: unlimited")
-        ->check(CLI::Range(0.0, 1e6))
-        ->capture_default_str();
-    verb.add_option("--delay", options.delay_ms, "The link's delay each way, ms")
-        ->check(CLI::Range(0.0, 10000.0))
-        ->capture_default_str();
+    add_link_options(verb, options.megabits, options.delay_ms);
     verb.add_option("--threads", options.live.server_threads, "Threads of the server; 0: one a core")
         ->check(CLI::Range(0, 1024))
         ->capture_default_str();

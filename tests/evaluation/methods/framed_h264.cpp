@@ -1,7 +1,6 @@
 // `framed+h264`: whole frames in turn through x264, no frame larger than the link carries in its time.
-#include "tests/evaluation/methods/frame_message.h"
+#include "tests/evaluation/methods/h264_frames.h"
 #include "tests/evaluation/methods/methods.h"
-#include "tests/evaluation/methods/scaled_h264.h"
 #include "tests/evaluation/methods/whole_frame.h"
 
 namespace framelet::bench {
@@ -10,8 +9,9 @@ namespace {
 class FramedH264 final : public Method {
 public:
     explicit FramedH264(MethodSetup const& setup)
-        : setup_(setup), frame_(setup, 1e-9 * pixel_count(setup.viewport) * setup.costs.h264_decode_pixel),
-          encoder_(setup.frames_per_second), picture_(setup.viewport.width, setup.viewport.height) {}
+        : encode_pixel_(setup.costs.h264_encode_pixel),
+          frame_(setup, 1e-9 * pixel_count(setup.viewport) * setup.costs.h264_decode_pixel),
+          encoder_(setup.frames_per_second), viewer_(setup) {}
 
     ServerStep produce(StepInput const& input) override {
         ServerStep step = frame_.render(input);
@@ -20,7 +20,7 @@ public:
         }
         FrameGrid& grid = frame_.grid();
         Picture const& picture = grid.picture();
-        double const encoding = 1e-9 * pixel_count(picture) * setup_.costs.h264_encode_pixel;
+        double const encoding = 1e-9 * pixel_count(picture) * encode_pixel_;
         auto const bytes = encoder_.encode(grid.spacing(), picture, frame_.budget(input, step, encoding));
         last_bytes_ = bytes.size();
         step.message = frame_message({frame_.time(), static_cast<double>(grid.spacing())}, bytes);
@@ -28,30 +28,18 @@ public:
         return step;
     }
 
-    ViewerStep consume(std::vector<std::byte> const& message) override {
-        auto const unit = access_unit(message, header_);
-        auto const spacing = static_cast<int>(header_.spacing);
-        decoder_.decode(spacing, unit, decoded_);
-        upsample(decoded_, spacing, picture_);
-        ViewerStep step;
-        step.seconds.decode = 1e-9 * pixel_count(decoded_) * setup_.costs.h264_decode_pixel;
-        step.seconds.reconstruct = spacing > 1 ? 1e-9 * pixel_count(picture_) * setup_.costs.reconstruct_pixel : 0;
-        return step;
-    }
-
-    Picture const& picture() const override { return picture_; }
-    double mean_sample_time() const override { return header_.time; }
+    ViewerStep consume(std::vector<std::byte> const& message) override { return viewer_.consume(message); }
+    Picture const& picture() const override { return viewer_.picture(); }
+    double mean_sample_time() const override { return viewer_.time(); }
     void sent(double now, double) override { frame_.sent(now); }
     void answered(double, double arrived) override { frame_.answered(arrived); }
 
 private:
-    MethodSetup const setup_;
+    double const encode_pixel_; ///< nanoseconds
     WholeFrame frame_;
     ScaledH264Encoder encoder_;
-    ScaledH264Decoder decoder_;
     std::size_t last_bytes_ = 0;
-    Picture decoded_, picture_;
-    FrameHeader header_;
+    H264FrameViewer viewer_;
 };
 
 } // namespace

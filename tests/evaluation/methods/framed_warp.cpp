@@ -7,9 +7,9 @@
 
 #include "protocol/batch_codec.h"
 #include "server/layers/shape_feed.h"
-#include "tests/evaluation/methods/margin_viewer.h"
+#include "tests/evaluation/methods/h264_frames.h"
 #include "tests/evaluation/methods/methods.h"
-#include "tests/evaluation/methods/scaled_h264.h"
+#include "tests/evaluation/methods/warp_viewer.h"
 #include "tests/evaluation/methods/whole_frame.h"
 
 namespace framelet::bench {
@@ -17,6 +17,41 @@ namespace {
 
 /// However much its shapes take, colour gets this share of what a frame may take.
 constexpr double least_colour_share = 0.1;
+
+/// A viewer that holds more than it shows: a margin around the viewport, which a turn of the camera brings into view
+/// before any message knows of it.
+class MarginViewer {
+public:
+    /// The margin is that of `setup.rivals`.
+    explicit MarginViewer(MethodSetup const& setup)
+        : viewport_(setup.viewport), margin_x_(margin_pixels(setup.rivals.margin, viewport_.width)),
+          margin_y_(margin_pixels(setup.rivals.margin, viewport_.height)),
+          wide_(with_margin(viewport_, margin_x_, margin_y_), setup.costs),
+          picture_(viewport_.width, viewport_.height) {}
+
+    /// Of the larger viewport.
+    ViewerStep insert(Batch const& batch) { return wide_.insert(batch); }
+
+    /// Charged is what is shown: a viewer need not paint the margin.
+    ViewerStep present(Camera const& camera, SceneTime time) {
+        ViewerStep step = wide_.present(with_margin(camera, viewport_, margin_y_), time);
+        Picture const& wide = wide_.picture();
+        for (int y = 0; y < picture_.height; ++y) {
+            std::copy_n(wide.row(y + margin_y_) + 4 * static_cast<std::ptrdiff_t>(margin_x_),
+                        4 * static_cast<std::ptrdiff_t>(picture_.width), picture_.row(y));
+        }
+        step.seconds.reconstruct *= pixel_count(picture_) / pixel_count(wide);
+        return step;
+    }
+
+    Picture const& picture() const { return picture_; }
+
+private:
+    Viewport const viewport_;
+    int const margin_x_, margin_y_;
+    WarpViewer wide_;
+    Picture picture_;
+};
 
 class FramedWarp final : public Method {
 public:

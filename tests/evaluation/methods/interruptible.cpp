@@ -8,7 +8,6 @@
 #include <bit>
 #include <cmath>
 
-#include "tests/evaluation/methods/frame_message.h"
 #include "tests/evaluation/methods/methods.h"
 
 namespace framelet::bench {
@@ -17,7 +16,7 @@ Interruptible::Interruptible(MethodSetup const& setup)
     : setup_(setup), rate_{setup.bits_per_second > 0 ? setup.bits_per_second / 8 : INFINITY},
       forecast_(setup, 1e-9 * pixel_count(setup.viewport) * setup.costs.h264_decode_pixel),
       grids_{FrameGrid(setup.viewport, 4), FrameGrid(setup.viewport, 2), FrameGrid(setup.viewport, 1)},
-      encoder_(setup.frames_per_second), picture_(setup.viewport.width, setup.viewport.height) {}
+      encoder_(setup.frames_per_second), viewer_(setup) {}
 
 ServerStep Interruptible::produce(StepInput const& input) {
     for (DeliveredMessage const& message : input.delivered) {
@@ -45,9 +44,7 @@ ServerStep Interruptible::produce(StepInput const& input) {
 }
 
 bool Interruptible::is_still(StepInput const& input, FrameMoment const& moment) const {
-    return level_ >= 0 && moment.camera == moment_.camera &&
-           input.scene.pose.world_from_node == pose_.world_from_node &&
-           input.scene.pose.morph_weights == pose_.morph_weights;
+    return level_ >= 0 && moment.camera == moment_.camera && same_pose(input.scene.pose, pose_);
 }
 
 /// The coarsest that is nearer to the scene than what is on display, which has been moved away from by then.
@@ -102,17 +99,6 @@ ServerStep Interruptible::render(StepInput const& input, bool still) {
     } else {
         forecast_.follow(input.now);
     }
-    return step;
-}
-
-ViewerStep Interruptible::consume(std::vector<std::byte> const& message) {
-    auto const unit = access_unit(message, header_);
-    auto const spacing = static_cast<int>(header_.spacing);
-    decoder_.decode(spacing, unit, decoded_);
-    upsample(decoded_, spacing, picture_);
-    ViewerStep step;
-    step.seconds.decode = 1e-9 * pixel_count(decoded_) * setup_.costs.h264_decode_pixel;
-    step.seconds.reconstruct = spacing > 1 ? 1e-9 * pixel_count(picture_) * setup_.costs.reconstruct_pixel : 0;
     return step;
 }
 

@@ -6,10 +6,9 @@
 #include "tests/evaluation/codecs/delivery_rate.h"
 #include "tests/evaluation/methods/frame_forecast.h"
 #include "tests/evaluation/methods/frame_grid.h"
-#include "tests/evaluation/methods/frame_message.h"
+#include "tests/evaluation/methods/h264_frames.h"
 #include "tests/evaluation/methods/margin.h"
 #include "tests/evaluation/methods/refinement_gain.h"
-#include "tests/evaluation/methods/scaled_h264.h"
 
 namespace framelet::bench {
 
@@ -18,9 +17,9 @@ public:
     explicit Interruptible(MethodSetup const& setup);
 
     ServerStep produce(StepInput const& input) override;
-    ViewerStep consume(std::vector<std::byte> const& message) override;
-    Picture const& picture() const override { return picture_; }
-    double mean_sample_time() const override { return header_.time; }
+    ViewerStep consume(std::vector<std::byte> const& message) override { return viewer_.consume(message); }
+    Picture const& picture() const override { return viewer_.picture(); }
+    double mean_sample_time() const override { return viewer_.time(); }
     void sent(double now, double) override { forecast_.sent(now); }
     void answered(double, double arrived) override { forecast_.answered(arrived); }
     /// Levels are small, the first ones above all.
@@ -52,9 +51,7 @@ private:
     int frame_ = 0;
     bool begins_ = false; ///< the frame, with the level that comes
     ScaledH264Encoder encoder_;
-    ScaledH264Decoder decoder_;
-    Picture decoded_, picture_;
-    FrameHeader header_;
+    H264FrameViewer viewer_;
 };
 
 } // namespace framelet::bench

@@ -27,10 +27,6 @@ std::vector<float> errors_by_pixel(Picture const& shown, Picture const& referenc
     return errors;
 }
 
-bool same_pose(ScenePose const& a, ScenePose const& b) {
-    return a.world_from_node == b.world_from_node && a.morph_weights == b.morph_weights;
-}
-
 bool overlap(Tile a, Tile b) {
     int const deeper = 2 * (b.depth() - a.depth());
     return deeper >= 0 ? b.code >> deeper == a.code : a.code >> -deeper == b.code;
@@ -109,34 +105,32 @@ void TrueGain::compare(BenchScene const& scene, SceneTime rendered, SceneTime se
     level.errors = errors_by_pixel(viewer.picture(), reference_);
 }
 
-/// What finer tiles of the same batch cover stays as it is.
-double TrueGain::gain_of(Level const& level, Tile tile) const {
+/// Those in the picture.
+template <class Look>
+void TrueGain::each_pixel(Tile tile, Look&& look) const {
     PixelRect const rect = plane_.tile_rect(tile);
     auto const [width, height] = plane_.viewport();
-    double sum = 0;
     for (int y = rect.top; y < std::min(rect.bottom, height); ++y) {
         for (int x = rect.left; x < std::min(rect.right, width); ++x) {
-            std::size_t const i =
-                static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-            sum += level.depth > depths_[i] ? held_errors_[i] - level.errors[i] : 0;
+            look(static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x));
         }
     }
+}
+
+/// What finer tiles of the same batch cover stays as it is.
+double TrueGain::gain_of(Level const& level, Tile tile) const {
+    double sum = 0;
+    each_pixel(tile, [&](std::size_t i) { sum += level.depth > depths_[i] ? held_errors_[i] - level.errors[i] : 0; });
     return sum;
 }
 
 void TrueGain::take(Level const& level, Tile tile) {
-    PixelRect const rect = plane_.tile_rect(tile);
-    auto const [width, height] = plane_.viewport();
-    for (int y = rect.top; y < std::min(rect.bottom, height); ++y) {
-        for (int x = rect.left; x < std::min(rect.right, width); ++x) {
-            std::size_t const i =
-                static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-            if (level.depth > depths_[i]) {
-                held_errors_[i] = level.errors[i];
-                depths_[i] = static_cast<std::int8_t>(level.depth);
-            }
+    each_pixel(tile, [&](std::size_t i) {
+        if (level.depth > depths_[i]) {
+            held_errors_[i] = level.errors[i];
+            depths_[i] = static_cast<std::int8_t>(level.depth);
         }
-    }
+    });
 }
 
 std::vector<TrueGain::Chosen> TrueGain::choose(std::size_t most) {

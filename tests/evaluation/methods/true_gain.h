@@ -48,6 +48,8 @@ private:
 
     void render(BenchScene const& scene, Level& level) const;
     void compare(BenchScene const& scene, SceneTime rendered, SceneTime seen, double now, Level& level) const;
+    template <class Look>
+    void each_pixel(Tile tile, Look&& look) const;
     void take(Level const& level, Tile tile);
     double gain_of(Level const& level, Tile tile) const;
 

@@ -14,10 +14,6 @@ constexpr double longest_saved = 0.25;
 constexpr double worth_repeating = 1.0 / 32;
 constexpr int most_repeats = 16;
 
-bool same_pose(ScenePose const& a, ScenePose const& b) {
-    return a.world_from_node == b.world_from_node && a.morph_weights == b.morph_weights;
-}
-
 } // namespace
 
 WholeFrame::WholeFrame(MethodSetup const& setup, double viewer_seconds)

@@ -81,29 +81,36 @@ std::vector<Mark> core_marks() {
     return marks;
 }
 
-/// Over all scenes at each machine, without a link's limit.
-Curves machine_chart(ReportFigures const& figures, std::string const& what, Value const& value) {
-    Curves chart{.title = what + ": geometric mean over scenes, quartiles shaded",
-                 .x_title = "machine [samples a displayed pixel and second]",
-                 .y_title = what,
-                 .log_x = true,
-                 .log_y = true,
-                 .curves = {},
-                 .marks = core_marks()};
-    auto const free = part(figures.runs, [](ReportRun const& run) { return run.link == 0; });
-    for (std::string const& method : distinct(free, [](ReportRun const& run) { return run.method; })) {
+/// Of each method over all scenes: a point for each value of `step`.
+std::vector<Curve> curves_of(std::vector<ReportRun> const& runs, Value const& step, Value const& x, Value const& y) {
+    std::vector<Curve> curves;
+    for (std::string const& method : distinct(runs, [](ReportRun const& run) { return run.method; })) {
         Curve curve{method, {}, {}};
-        for (double const machine : distinct(free, [](ReportRun const& run) { return run.machine; })) {
-            Spread const spread = spread_over(
-                part(free, [&](ReportRun const& r) { return r.method == method && r.machine == machine; }), value);
-            curve.x.push_back(machine);
+        for (double const value : distinct(runs, step)) {
+            auto const there =
+                part(runs, [&](ReportRun const& run) { return run.method == method && step(run) == value; });
+            Spread const spread = spread_over(there, y);
+            curve.x.push_back(spread_over(there, x).mean);
             curve.y.push_back(spread.mean);
             curve.low.push_back(spread.low);
             curve.high.push_back(spread.high);
         }
-        chart.curves.push_back(std::move(curve));
+        curves.push_back(std::move(curve));
     }
-    return chart;
+    return curves;
+}
+
+/// At each machine, without a link's limit.
+Curves machine_chart(ReportFigures const& figures, std::string const& what, Value const& value) {
+    Value const machine = [](ReportRun const& run) { return run.machine; };
+    return {.title = what + ": geometric mean over scenes, quartiles shaded",
+            .x_title = "machine [samples a displayed pixel and second]",
+            .y_title = what,
+            .log_x = true,
+            .log_y = true,
+            .curves = curves_of(part(figures.runs, [](ReportRun const& run) { return run.link == 0; }), machine,
+                                machine, value),
+            .marks = core_marks()};
 }
 
 ReportRun const* find_run(std::vector<ReportRun> const& runs, std::string const& scene, std::string const& method) {
@@ -287,26 +294,15 @@ Curves steadiness_chart(ReportFigures const& figures) {
 }
 
 Curves bits_chart(ReportFigures const& figures) {
-    Curves chart{.title = "error over the reference's own noise: geometric mean over scenes, quartiles shaded",
-                 .x_title = "sent [bits a displayed pixel and second]",
-                 .y_title = "error over the reference's own noise",
-                 .log_x = true,
-                 .log_y = true,
-                 .curves = {}};
-    auto const linked = part(figures.runs, [](ReportRun const& run) { return run.link > 0; });
-    for (std::string const& method : distinct(linked, [](ReportRun const& run) { return run.method; })) {
-        Curve curve{method, {}, {}};
-        for (double const link : distinct(linked, [](ReportRun const& run) { return run.link; })) {
-            auto const runs = part(linked, [&](ReportRun const& r) { return r.method == method && r.link == link; });
-            Spread const error = spread_over(runs, relative_error);
-            curve.x.push_back(spread_over(runs, [](ReportRun const& run) { return run.bits; }).mean);
-            curve.y.push_back(error.mean);
-            curve.low.push_back(error.low);
-            curve.high.push_back(error.high);
-        }
-        chart.curves.push_back(std::move(curve));
-    }
-    return chart;
+    return {.title = "error over the reference's own noise: geometric mean over scenes, quartiles shaded",
+            .x_title = "sent [bits a displayed pixel and second]",
+            .y_title = "error over the reference's own noise",
+            .log_x = true,
+            .log_y = true,
+            .curves = curves_of(
+                part(figures.runs, [](ReportRun const& run) { return run.link > 0; }),
+                [](ReportRun const& run) { return run.link; }, [](ReportRun const& run) { return run.bits; },
+                relative_error)};
 }
 
 std::string report_page(ReportFigures const& figures, ReportOptions const& options, StudyOptions const& study,

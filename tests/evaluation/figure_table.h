@@ -1,0 +1,31 @@
+// A table on stdout of the figures that a verb returns: a column says where in a row's JSON its figure is, and how it
+// is printed.
+#pragma once
+
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace framelet::bench {
+
+struct Column {
+    char const* title;
+    char const* figure; ///< JSON pointer within the row; where nothing is there, a dash is printed
+    int width; ///< characters at least; < 0: text, to the left
+    int digits = 2; ///< after the point
+    double scale = 1; ///< what is printed of a figure of 1
+    bool scientific = false;
+};
+
+class FigureTable {
+public:
+    /// Prints the titles.
+    explicit FigureTable(std::vector<Column> columns);
+
+    void print(nlohmann::json const& row) const;
+
+private:
+    std::vector<Column> const columns_;
+};
+
+} // namespace framelet::bench
