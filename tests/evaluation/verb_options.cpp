@@ -130,15 +130,25 @@ void add_study_options(CLI::App& verb, VerbOptions& options) {
     add_machine_options(verb, options);
 }
 
+void add_table_options(CLI::App& verb, VerbOptions& options) {
+    verb.add_option("--runs", options.table_runs, "Which runs of the table, by number (default: all)")
+        ->delimiter(',')
+        ->check(CLI::Range(0, 15));
+}
+
 void add_compare_options(CLI::App& verb, VerbOptions& options) {
     verb.add_option("--turn", options.study.turn, "The camera turns back and forth, degrees a second")
         ->check(CLI::Range(0.0, 3600.0));
 }
 
-void add_table_options(CLI::App& verb, VerbOptions& options) {
-    verb.add_option("--runs", options.table_runs, "Which runs of the table, by number (default: all)")
+void add_stability_options(CLI::App& verb, VerbOptions& options) {
+    verb.add_option("--batches", options.stability.batches, "Most framelets of a batch, one run each")
         ->delimiter(',')
-        ->check(CLI::Range(0, 15));
+        ->check(CLI::Range(std::size_t(1), max_batch_framelets))
+        ->capture_default_str();
+    verb.add_option("--factor", options.stability.factor, "Settled is what is within so many times its final level")
+        ->check(CLI::Range(1.01, 100.0))
+        ->capture_default_str();
 }
 
 void add_correspondence_options(CLI::App& verb, VerbOptions& options) {

@@ -11,6 +11,7 @@
 
 #include "tests/evaluation/estimators/observations.h"
 #include "tests/evaluation/report/report_runs.h"
+#include "tests/evaluation/stability.h"
 #include "tests/evaluation/study.h"
 
 namespace CLI {
@@ -44,6 +45,7 @@ struct VerbOptions {
     StudyOptions study;
 
     // Of one verb each.
+    StabilityOptions stability;
     std::vector<int> table_runs;
     ObservationOptions observation; ///< of the estimators
     std::vector<double> ahead{1.0 / 60, 1.0 / 15, 0.2}; ///< seconds, of the correspondence
@@ -71,6 +73,7 @@ void add_link_options(CLI::App& verb, double& megabits, double& delay_ms);
 void add_study_options(CLI::App& verb, VerbOptions& options);
 
 void add_compare_options(CLI::App& verb, VerbOptions& options);
+void add_stability_options(CLI::App& verb, VerbOptions& options);
 void add_table_options(CLI::App& verb, VerbOptions& options);
 void add_correspondence_options(CLI::App& verb, VerbOptions& options);
 void add_estimator_options(CLI::App& verb, VerbOptions& options);

@@ -1,0 +1,128 @@
+// Properties of `stability`'s measures, and of the whole verb at a tiny size. Nothing here is about how fast.
+#include "tests/evaluation/stability.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "common/error.h"
+#include "scenes/failure_scenes.h"
+#include "tests/evaluation/cycle_log.h"
+#include "tests/evaluation/scene_events.h"
+#include "tests/evaluation/settling.h"
+
+namespace framelet::bench {
+namespace {
+
+std::filesystem::path const source = FRAMELET_SOURCE_DIR;
+
+Settling settle(std::vector<double> const& errors) {
+    std::vector<double> times;
+    for (std::size_t i = 0; i < errors.size(); ++i) {
+        times.push_back(5 + 0.1 * static_cast<double>(i));
+    }
+    return measure_settling(times, errors, 5, 2);
+}
+
+TEST(Settling, AnErrorThatFallsOnceHasSettledOnce) {
+    Settling const result = settle({0.8, 0.4, 0.15, 0.1, 0.1, 0.1, 0.1, 0.1});
+    EXPECT_DOUBLE_EQ(result.final_level, 0.1);
+    EXPECT_DOUBLE_EQ(result.peak, 0.8);
+    EXPECT_NEAR(result.first.value(), 0.2, 1e-9);
+    EXPECT_NEAR(result.settled.value(), 0.2, 1e-9);
+    EXPECT_NEAR(result.overshoot, 1.5, 1e-9);
+}
+
+TEST(Settling, OneThatRisesAgainSettlesLater) {
+    Settling const result = settle({0.8, 0.1, 0.5, 0.1, 0.1, 0.1, 0.1, 0.1});
+    EXPECT_NEAR(result.first.value(), 0.1, 1e-9);
+    EXPECT_NEAR(result.settled.value(), 0.3, 1e-9);
+    EXPECT_NEAR(result.overshoot, 5, 1e-9);
+}
+
+TEST(Settling, OneThatSwingsDoesNot) {
+    EXPECT_FALSE(settle({0.8, 0.1, 0.5, 0.1, 0.1, 0.5, 0.1, 0.1, 0.5, 0.1, 0.5, 0.1}).settled);
+}
+
+TEST(Settling, NoErrorIsAsGoodAsHardlyAny) {
+    Settling const result = settle({1e-5, 0, 1.5e-5, 0, 0, 0, 0, 0});
+    EXPECT_DOUBLE_EQ(result.final_level, settled_floor);
+    EXPECT_EQ(result.settled.value(), 0);
+}
+
+TEST(CycleLog, HuntingAndConservationAreMeansOverTheirTime) {
+    std::vector<CycleEntry> const entries{
+        {0, 100, 90, 1, 10, 10}, {1, 100, 150, 4, 10, 5}, {2, 100, 100, 2, 10, 0}, {3, 100, 80, 2, 10, 0}};
+    Hunting const hunting = measure_hunting(entries, 1, 3);
+    EXPECT_EQ(hunting.cycles, 2u);
+    EXPECT_DOUBLE_EQ(hunting.changed_share, 0.25);
+    EXPECT_DOUBLE_EQ(hunting.price_octaves, 1.5);
+    EXPECT_EQ(measure_hunting(entries, 3, 4).changed_share, 0);
+    EXPECT_EQ(measure_hunting(entries, 5, 9).cycles, 0u);
+    Conservation const conservation = measure_conservation(entries, 0, 4);
+    EXPECT_DOUBLE_EQ(conservation.samples, 340) << "the last one has not ended";
+    EXPECT_DOUBLE_EQ(conservation.budget, 300);
+    EXPECT_DOUBLE_EQ(conservation.largest_share, 1.5);
+    // Short cycles make up for each other within a tenth of a second.
+    std::vector<CycleEntry> const hasty{
+        {0, 1000, 30, 1, 1, 0}, {0.04, 1000, 90, 1, 1, 0}, {0.08, 1000, 10, 1, 1, 0}, {0.2, 1000, 0, 1, 1, 0}};
+    EXPECT_DOUBLE_EQ(measure_conservation(hasty, 0, 1).largest_share, 130.0 / 200);
+}
+
+TEST(SceneEvents, AreThoseOfTheGenerator) {
+    SceneEvents const stop = events_of(make_stop_scene({.duration = 6, .moving = 3}), 6);
+    EXPECT_EQ(stop.times, std::vector<double>{3});
+    EXPECT_EQ(phase_at(stop, 1), Phase::moving);
+    EXPECT_EQ(phase_at(stop, 3.1), Phase::event);
+    EXPECT_EQ(phase_at(stop, 3 + event_seconds), Phase::settled);
+    SceneEvents const flicker = events_of(make_flicker_scene({.duration = 4, .lit = {true, true, false, false}}), 4);
+    EXPECT_EQ(flicker.times, std::vector<double>{2});
+    EXPECT_EQ(phase_at(flicker, 1), Phase::settled);
+    EXPECT_EQ(events_of("teleport").times, (std::vector<double>{1, 2, 3, 4, 5}));
+}
+
+TEST(SceneEvents, AShortRunSeesOne) {
+    EXPECT_EQ(window_start("stop", 2), 2) << "half of it before the stop";
+    EXPECT_EQ(window_start("teleport", 2), 0);
+    EXPECT_EQ(window_start("globe", 2), 2) << "no event: the middle";
+    EXPECT_EQ(window_start("vehicle_approach", 4), 1) << "no later than the scene has so many seconds left";
+    EXPECT_EQ(window_start("a scene of somebody's", 2), 0);
+}
+
+TEST(Stability, EveryEventIsToldOfAndTheBudgetIsKept) {
+    auto const cache = std::filesystem::temp_directory_path() / ("framelet-stability-" + std::to_string(getpid()));
+    StudyOptions study;
+    study.run.viewport = {48, 32};
+    study.run.reference_rate = 20;
+    study.samples_per_side = 2;
+    study.reference_cache = cache;
+    study.costs = read_cost_table(source / "tests/evaluation/costs.json");
+    StabilityOptions options;
+    study.scenes = {source / "scenes/stop.glb", source / "scenes/teleport.glb"};
+    options.batches = {8, 128};
+    auto const figures = measure_stability(options, study);
+    ASSERT_EQ(figures["scenes"].size(), 2u);
+    for (auto const& scene : figures["scenes"]) {
+        ASSERT_EQ(scene["runs"].size(), 2u);
+        for (auto const& run : scene["runs"]) {
+            ASSERT_EQ(run["events"].size(), scene["events"].size());
+            for (auto const& event : run["events"]) {
+                EXPECT_GE(event["final_mse"], settled_floor);
+                EXPECT_GE(event["peak_mse"].get<double>() + settled_floor, event["final_mse"].get<double>());
+                EXPECT_GE(event["overshoot"], 1);
+                if (!event["settled_seconds"].is_null()) {
+                    EXPECT_GE(event["settled_seconds"], event["first_seconds"]);
+                }
+            }
+            EXPECT_GT(run["conservation"]["samples"], 0);
+            // In all; for a while after a cut the samples may be cheaper than those the rate was measured with.
+            EXPECT_LE(run["conservation"]["samples"].get<double>(), 1.05 * run["conservation"]["budget"].get<double>());
+        }
+    }
+    study.scenes = {"no such scene.glb"};
+    EXPECT_THROW(measure_stability(options, study), InputError);
+    std::filesystem::remove_all(cache);
+}
+
+} // namespace
+} // namespace framelet::bench
