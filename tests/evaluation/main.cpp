@@ -69,6 +69,9 @@ std::string command_of(std::vector<std::string> const& words) {
     for (std::size_t i = 0; i < words.size(); ++i) {
         if (words[i] == "--folder" || words[i] == "--documents" || words[i] == "--reference-cache") {
             ++i; // its value as well
+        } else if (words[i] == "--assets") {
+            command += " --assets FOLDER";
+            ++i;
         } else {
             command += " " + words[i];
         }

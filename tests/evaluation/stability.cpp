@@ -153,12 +153,12 @@ void draw_charts(std::string const& scene, std::vector<StabilityRun> const& runs
                   .x_title = "seconds",
                   .y_title = "mean squared error",
                   .log_y = true,
-                  .points = false,
+                  .drawn = Drawn::lines,
                   .curves = {}};
     Curves tilings{.title = scene + ": patches of the tiling that a cycle changes",
                    .x_title = "seconds",
                    .y_title = "share of the tiling [%]",
-                   .points = false,
+                   .drawn = Drawn::lines,
                    .curves = {}};
     for (StabilityRun const& run : runs) {
         std::string const name = std::to_string(run.batch) + " framelets";

@@ -94,7 +94,7 @@ json measure_stillness(StudyOptions const& options) {
     Curves curves{.title = "PSNR after everything has come to rest",
                   .x_title = "time since [s]",
                   .y_title = "PSNR [dB]",
-                  .points = false,
+                  .drawn = Drawn::lines,
                   .curves = {}};
     for (std::filesystem::path const& file : options.scenes) {
         auto const scene = load_bench_scene(file, options.camera);

@@ -76,9 +76,13 @@ void add_link_options(CLI::App& verb, double& megabits, double& delay_ms) {
 }
 
 std::vector<std::filesystem::path> bundled_scenes() {
+    return files_in(source_folder / "scenes", ".glb");
+}
+
+std::vector<std::filesystem::path> files_in(std::filesystem::path const& folder, char const* extension) {
     std::vector<std::filesystem::path> files;
-    for (auto const& entry : std::filesystem::directory_iterator(source_folder / "scenes")) {
-        if (entry.path().extension() == ".glb") {
+    for (auto const& entry : std::filesystem::directory_iterator(folder)) {
+        if (entry.path().extension() == extension) {
             files.push_back(entry.path());
         }
     }
@@ -179,6 +183,8 @@ void add_report_options(CLI::App& verb, VerbOptions& options) {
         ->delimiter(',')
         ->check(CLI::Range(0.01, 1e4));
     verb.add_option("--live-scenes", options.live_scenes, "Scenes of the real programs' runs")->delimiter(',');
+    verb.add_option("--assets", options.assets,
+                    "Folder of models: the real programs also fly through those that tests/evaluation/flights names");
     verb.add_flag("--no-links", options.without_links, "No runs over links");
     verb.add_flag("--no-live", options.without_live, "No runs of the real programs");
 }

@@ -51,11 +51,15 @@ struct VerbOptions {
     std::vector<double> ahead{1.0 / 60, 1.0 / 15, 0.2}; ///< seconds, of the correspondence
     ReportOptions report;
     std::vector<std::string> live_scenes; ///< files or names, of the report
+    std::filesystem::path assets; ///< folder of models, for the report's flights; empty: none
     bool without_live = false, without_links = false;
 };
 
 /// The project's own scene files, in the order of their names.
 std::vector<std::filesystem::path> bundled_scenes();
+
+/// In the order of their names.
+std::vector<std::filesystem::path> files_in(std::filesystem::path const& folder, char const* extension);
 
 /// The file itself, or else the bundled scene of that name.
 std::filesystem::path scene_file(std::string const& file_or_name);

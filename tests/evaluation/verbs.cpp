@@ -112,18 +112,31 @@ void choose_programs(VerbOptions& options) {
     ReportOptions& report = options.report;
     report.live.methods = {"framelet", "framelet-unwarped", "framed+h264", "framed+warp"};
     report.live.samples_per_side = 2;
-    report.live.moments = 2;
+    report.live.moments = 4;
+    report.clock_sizes = {{256, 256}, {1280, 720}};
     report.quick = options.quick;
     if (options.quick) {
         report.feature_viewport = {320, 180};
         report.live.viewport = {320, 180};
         report.live.seconds = 2;
         report.live.moments = 1;
+        report.clock_sizes = {{256, 144}};
         fall_back(options.live_scenes, {"vehicle_chase"});
     }
-    fall_back(options.live_scenes, {"vehicle_chase", "globe", "stop", "foliage"});
-    if (!options.without_live) {
-        std::ranges::transform(options.live_scenes, std::back_inserter(report.live_scenes), scene_file);
+    if (options.live_scenes.empty()) {
+        report.live_scenes = bundled_scenes();
+    }
+    std::ranges::transform(options.live_scenes, std::back_inserter(report.live_scenes), scene_file);
+    for (std::filesystem::path const& camera : files_in(source_folder / "tests/evaluation/flights", ".json")) {
+        std::string const model = camera.stem().string();
+        auto const file = options.assets / model / (model + ".glb");
+        if (!options.assets.empty() && std::filesystem::exists(file)) {
+            report.flights.push_back({file, camera});
+        }
+    }
+    if (options.without_live) {
+        report.live_scenes.clear();
+        report.flights.clear();
     }
     for (char const* const name : {"stop", "globe", "vehicle_chase"}) {
         report.pictured_scenes.push_back(scene_file(name));

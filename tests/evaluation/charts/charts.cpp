@@ -175,6 +175,10 @@ std::string add_refreshes(Plot& plot, std::vector<ErrorSeries> const& series, st
     return command;
 }
 
+char const* word_of(Drawn drawn) {
+    return drawn == Drawn::lines ? "lines" : drawn == Drawn::points ? "points" : "linespoints";
+}
+
 } // namespace
 
 Plot plot_of(Curves const& chart) {
@@ -188,7 +192,7 @@ Plot plot_of(Curves const& chart) {
     plot.commands += x ? log_axis_with_margin("x", *x) : "";
     plot.commands += y ? log_axis_with_margin("y", *y) : "";
     plot.commands += mark_commands(chart.marks);
-    plot.commands += add_lines(plot, chart.curves, x, y, chart.points ? "linespoints" : "lines") + "\n";
+    plot.commands += add_lines(plot, chart.curves, x, y, word_of(chart.drawn)) + "\n";
     return plot;
 }
 

@@ -23,6 +23,9 @@ struct Mark {
     std::string text;
 };
 
+/// What stands at and between a curve's points.
+enum class Drawn { lines, points, both };
+
 /// General lines with a mark at each point: sweeps, ablations. On a logarithmic axis values of zero and
 /// less stand at its lower end.
 struct Curves {
@@ -31,7 +34,7 @@ struct Curves {
     std::string y_title; ///< with unit
     bool log_x = false;
     bool log_y = false;
-    bool points = true; ///< a mark at each point
+    Drawn drawn = Drawn::both;
     std::vector<Curve> curves;
     std::vector<Mark> marks{};
 };

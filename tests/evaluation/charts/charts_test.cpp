@@ -22,9 +22,9 @@ namespace fs = std::filesystem;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// gnuplot's own idea of right: the files are there, the drawing has ink in it, its texts are in the SVG.
-class Drawn : public testing::Test {
+class ChartFile : public testing::Test {
 protected:
-    ~Drawn() override { fs::remove_all(folder_); }
+    ~ChartFile() override { fs::remove_all(folder_); }
 
     std::string svg(fs::path const& stem) const {
         std::ifstream stream(stem.string() + ".svg");
@@ -54,7 +54,7 @@ void expect_has(std::string const& text, std::string const& part) {
     EXPECT_NE(text.find(part), std::string::npos) << "no '" << part << "' in:\n" << text.substr(0, 3000);
 }
 
-TEST_F(Drawn, ErrorOverTime) {
+TEST_F(ChartFile, ErrorOverTime) {
     ErrorOverTime const chart{.title = "Scene 'x' at {5} Mbit/s",
                               .series = {{"framed_a", {0, 1, 2, 3}, {1e-3, 2e-3, 1e-3, 0}, {0, 2}},
                                          {"framelet", {0, 1, 2, 3}, {1e-4, NAN, 2e-5, 1e-5}, {}}}};
@@ -70,18 +70,18 @@ TEST_F(Drawn, ErrorOverTime) {
     EXPECT_EQ(data.find("$refresh1"), std::string::npos);
 }
 
-TEST_F(Drawn, Curves) {
-    Curves chart{"t", "link [Mbit/s]", "PSNR [dB]", true, false, true, {{"tsar", {1, 10, 100}, {20, 25, 30}}}};
+TEST_F(ChartFile, Curves) {
+    Curves chart{"t", "link [Mbit/s]", "PSNR [dB]", true, false, Drawn::both, {{"tsar", {1, 10, 100}, {20, 25, 30}}}};
     std::string const text = drawn(chart);
     expect_has(text, "link [Mbit/s]");
     expect_has(text, ">100<"); // a mark of the axis
     chart.log_x = false;
-    chart.points = false;
+    chart.drawn = Drawn::lines;
     chart.curves[0].y = {0, 0, 0};
     drawn(chart);
 }
 
-TEST_F(Drawn, BandsAndMarks) {
+TEST_F(ChartFile, BandsAndMarks) {
     Curves chart{.title = "t",
                  .x_title = "samples",
                  .y_title = "error",
@@ -96,7 +96,7 @@ TEST_F(Drawn, BandsAndMarks) {
 }
 
 TEST(Charts, BadInputIsRefused) {
-    Curves chart{"t", "x", "y", false, false, true, {}};
+    Curves chart{"t", "x", "y", false, false, Drawn::both, {}};
     EXPECT_THROW(plot_of(chart), InputError);
     chart.curves = {{"a", {1, 2}, {1}}};
     EXPECT_THROW(plot_of(chart), InputError);

@@ -55,28 +55,35 @@ void MethodStream::render(PosedScene const&) {
     if (scene_camera_ >= 0) {
         view.camera = scene_.camera;
     }
-    step_ = method_->produce({scene_, turn_.present, turn_.now, view, 0, delivered_});
+    ServerStep step = method_->produce({scene_, turn_.present, turn_.now, view, 0, delivered_});
     delivered_.clear();
-    figures_.rays = step_.samples;
-    if (step_.message.empty() && step_.samples == 0) {
+    figures_.rays = step.samples;
+    if (step.message.empty() && step.samples == 0) {
         idle_of_ = ViewState{view_, 1, turn_.present};
     }
+    std::scoped_lock const lock(mutex_);
+    rendered_.push_back({std::move(step), view_, turn_.present});
 }
 
 bool MethodStream::learn(PosedScene const&) {
-    if (step_.message.empty()) {
+    {
+        std::scoped_lock const lock(mutex_);
+        learnt_ = std::move(rendered_.front());
+        rendered_.pop_front();
+    }
+    if (learnt_.step.message.empty()) {
         return false;
     }
-    in_flight_.push_back({++number_, static_cast<double>(step_.message.size())});
+    in_flight_.push_back({++number_, static_cast<double>(learnt_.step.message.size())});
     return true;
 }
 
 EncodedBatch MethodStream::encode() {
     EncodedBatch batch;
     batch.number = number_;
-    batch.view = view_;
-    batch.scene_time = turn_.present;
-    batch.payload = std::move(step_.message);
+    batch.view = learnt_.view;
+    batch.scene_time = learnt_.time;
+    batch.payload = std::move(learnt_.step.message);
     return batch;
 }
 

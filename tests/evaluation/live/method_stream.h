@@ -4,6 +4,7 @@
 
 #include <deque>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "server/schedule/view_state.h"
@@ -41,7 +42,15 @@ private:
     std::deque<std::pair<std::uint64_t, double>> in_flight_; ///< numbers and bytes
     std::vector<DeliveredMessage> delivered_;
     std::uint64_t number_ = 0;
-    ServerStep step_;
+    /// What was made for a moment.
+    struct Made {
+        ServerStep step;
+        NumberedView view;
+        SceneTime time = 0;
+    };
+    std::mutex mutex_; // the next one may be rendered while one is learnt
+    std::deque<Made> rendered_; ///< and not learnt, in order
+    Made learnt_; ///< for `encode`, which may go on beside either
     TurnFigures figures_;
     bool idle_ = false; ///< it had nothing to do
     std::optional<ViewState> idle_of_; ///< for that

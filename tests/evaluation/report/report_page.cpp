@@ -178,6 +178,77 @@ std::string ratio_table(std::vector<ReportRun> const& runs) {
     return text + "\n";
 }
 
+double best_rival(json const& scene, char const* measure, bool most) {
+    double best = most ? -INFINITY : INFINITY;
+    for (auto const& [method, figures] : scene["methods"].items()) {
+        if (is_rival(method)) {
+            best = most ? std::max(best, figures[measure].get<double>()) : std::min(best, figures[measure].get<double>());
+        }
+    }
+    return best;
+}
+
+/// In how many scenes the project is not worse than the best rival, by each measure.
+std::string live_summary(std::vector<json> const& live) {
+    std::vector<double> ratios;
+    std::size_t ssim = 0, flip = 0, steady = 0;
+    for (json const& scene : live) {
+        json const& own = scene["methods"]["framelet"];
+        ratios.push_back(own["mse"].get<double>() / best_rival(scene, "mse", false));
+        ssim += own["ssim"] >= best_rival(scene, "ssim", true) ? 1 : 0;
+        flip += own["flip"] <= best_rival(scene, "flip", false) ? 1 : 0;
+        steady += own["steadiness"] <= best_rival(scene, "steadiness", false) ? 1 : 0;
+    }
+    std::ranges::sort(ratios);
+    auto const mse = std::ranges::count_if(ratios, [](double ratio) { return ratio <= 1; });
+    return printed("\n`framelet` is at least as good as the best rival in %zd of %zu by MSE (median ratio %.2f), in %zu by "
+                   "SSIM, %zu by FLIP, %zu in steadiness.\n",
+                   mse, live.size(), ratios[ratios.size() / 2], ssim, flip, steady);
+}
+
+/// What virtual and wall clock say of the same sessions, a row a scene.
+std::string clock_table(std::vector<json> const& clocks) {
+    std::vector<std::string> scenes;
+    std::map<std::string, std::string> rows;
+    std::string sizes, line;
+    std::vector<double> errors, bytes, pictures;
+    for (json const& run : clocks) {
+        std::string const scene = run["scene"];
+        json const& wall = run["methods"]["framelet"];
+        json const& said = wall["virtual"];
+        auto const ratio = [&](char const* what) {
+            return said[what].get<double>() / std::max(wall["steady"][what].get<double>(), 1e-9);
+        };
+        if (rows[scene].empty()) {
+            scenes.push_back(scene);
+            rows[scene] = "| `" + scene + "` |";
+        }
+        std::string const size = printed("%dx%d", run["size"][0].get<int>(), run["size"][1].get<int>());
+        if (sizes.find(size) == std::string::npos) {
+            sizes += " " + size + ": dB | virtual | kB/s | pictures |";
+            line += "---|---|---|---|";
+        }
+        double const difference = said["psnr"].get<double>() - wall["psnr"].get<double>();
+        errors.push_back(std::abs(difference));
+        bytes.push_back(std::abs(ratio("kB_per_second") - 1));
+        pictures.push_back(std::abs(ratio("pictures_per_second") - 1));
+        rows[scene] += printed(std::abs(difference) > 0.5 ? " %.2f | **%+.2f** |" : " %.2f | %+.2f |",
+                               wall["psnr"].get<double>(), difference);
+        for (char const* const what : {"kB_per_second", "pictures_per_second"}) {
+            rows[scene] += printed(std::abs(ratio(what) - 1) > 0.1 ? " **%.2f** |" : " %.2f |", ratio(what));
+        }
+    }
+    std::string text = "| scene |" + sizes + "\n|---|" + line + "\n";
+    for (std::string const& scene : scenes) {
+        text += rows[scene] + "\n";
+    }
+    auto const within = [](std::vector<double> const& values, double bound) {
+        return std::ranges::count_if(values, [bound](double value) { return value <= bound; });
+    };
+    return text + printed("\nWithin 0.5 dB: %zd of %zu; within 10%%: bytes %zd, pictures %zd.\n", within(errors, 0.5),
+                          errors.size(), within(bytes, 0.1), within(pictures, 0.1));
+}
+
 std::string live_table(std::vector<json> const& live) {
     std::string text =
         "| scene | method | pictures/s | gap p99, ms | server | viewer | Msamples/s | kB/s | photon, ms | "
@@ -189,7 +260,9 @@ std::string live_table(std::vector<json> const& live) {
         }
         for (auto const& [method, f] : scene["methods"].items()) {
             bool const is_best = f["mse"] == least;
-            text += "| `" + scene["scene"].get<std::string>() + "` | `" + method + "` |";
+            text += "| `" + scene["scene"].get<std::string>() + "` | `" + method + "`";
+            text += f.contains("spacing") ? printed(f["margin"] > 0 ? " (%d, margin) |" : " (%d) |", f["spacing"].get<int>())
+                                          : " |";
             text +=
                 printed(" %.1f | %.0f | %.2f | %.2f | %.2f | %.0f | ", f["pictures_per_second"].get<double>(),
                         f["gap_p99_ms"].get<double>(), f["server_busy"].get<double>(), f["viewer_busy"].get<double>(),
@@ -200,7 +273,7 @@ std::string live_table(std::vector<json> const& live) {
                             f["steadiness"].get<double>());
         }
     }
-    return text;
+    return text + live_summary(live);
 }
 
 std::string feature_table(json const& rows) {
@@ -305,6 +378,31 @@ Curves bits_chart(ReportFigures const& figures) {
                 relative_error)};
 }
 
+Curves live_chart(std::vector<json> const& live) {
+    Curves chart{.title = "the real programs: a point a scene",
+                 .x_title = "pictures a second",
+                 .y_title = "mean squared error over the best method's",
+                 .log_y = true,
+                 .drawn = Drawn::points,
+                 .curves = {}};
+    for (json const& scene : live) {
+        double least = INFINITY;
+        for (json const& figures : scene["methods"]) {
+            least = std::min(least, figures["mse"].get<double>());
+        }
+        for (auto const& [method, figures] : scene["methods"].items()) {
+            auto curve = std::ranges::find(chart.curves, method, &Curve::name);
+            if (curve == chart.curves.end()) {
+                chart.curves.push_back({method, {}, {}});
+                curve = std::prev(chart.curves.end());
+            }
+            curve->x.push_back(figures["pictures_per_second"]);
+            curve->y.push_back(figures["mse"].get<double>() / std::max(least, least_mse));
+        }
+    }
+    return chart;
+}
+
 std::string report_page(ReportFigures const& figures, ReportOptions const& options, StudyOptions const& study,
                         std::string const& command) {
     RunParameters const& run = study.run;
@@ -351,9 +449,16 @@ std::string report_page(ReportFigures const& figures, ReportOptions const& optio
     if (!figures.live.empty()) {
         page +=
             printed("\n## The real programs\n\n`framelet-bench live` at %dx%d for %g s: server and viewer on the same "
-                    "cores, a real socket, the clock running. The best picture in bold.\n\n",
-                    options.live.viewport.width, options.live.viewport.height, options.live.seconds);
+                    "cores, a real socket, the clock running; compared at %d moments. The best picture in bold; in brackets "
+                    "the spacing of whole frames that errs least.\n\n![error against pictures a second](pictures/live.png)\n\n",
+                    options.live.viewport.width, options.live.viewport.height, options.live.seconds, options.live.moments);
         page += live_table(figures.live);
+    }
+    if (!figures.clocks.empty()) {
+        page += "\n### The same sessions on the virtual clock\n\n`framelet` with a core for the server and one for the viewer: PSNR by "
+                "the wall clock, how much more the virtual clock says, its bytes and pictures over the wall clock's. Far "
+                "ones in bold.\n\n";
+        page += clock_table(figures.clocks);
     }
     page +=
         printed("\n## What each kind of scene costs\n\nA sample of a session at %dx%d, one thread: the scene `stop`, "
@@ -372,6 +477,9 @@ void write_report(ReportFigures const& figures, ReportOptions const& options, St
     draw_png(steadiness_chart(figures), pictures / "steadiness");
     if (!options.links.empty()) {
         draw_png(bits_chart(figures), pictures / "bits");
+    }
+    if (!figures.live.empty()) {
+        draw_png(live_chart(figures.live), pictures / "live");
     }
     auto const file = options.documents / "RESULTS.md";
     std::ofstream stream(file);

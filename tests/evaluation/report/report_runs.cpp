@@ -157,6 +157,17 @@ std::string take_screenshot(std::filesystem::path const& scene, ReportOptions co
     return name;
 }
 
+json live_run(std::filesystem::path const& file, LiveOptions const& options, RunStore& store) {
+    std::string const name = file.stem().string() + (options.predicts ? "-clocks-" : "-live-") +
+                             text_of(options.viewport) + "-" + text_of(options.seconds) + "s-" +
+                             text_of(options.moments) + (options.camera_file.empty() ? "" : "-flown");
+    return store.get(name, [&] {
+        auto const scene = load_bench_scene(file);
+        scene->name += options.camera_file.empty() ? "" : ", flown";
+        return measure_live(*scene, options);
+    });
+}
+
 } // namespace
 
 ReportFigures measure_report(ReportOptions const& options, StudyOptions const& study) {
@@ -166,7 +177,8 @@ ReportFigures measure_report(ReportOptions const& options, StudyOptions const& s
         1 + options.machines.size() * study.methods.size() + options.links.size() * options.linked_methods.size();
     // The noise is asked for with each run.
     std::size_t const expected =
-        study.scenes.size() * (2 * runs_a_scene - 2) + options.pictured_scenes.size() + options.live_scenes.size() + 1;
+        study.scenes.size() * (2 * runs_a_scene - 2) + options.pictured_scenes.size() +
+        options.live_scenes.size() * (1 + options.clock_sizes.size()) + options.flights.size() + 1;
     RunStore store(options.folder, figures.commit, expected);
     for (auto const& file : study.scenes) {
         SceneRuns scene(file, study, store);
@@ -185,10 +197,23 @@ ReportFigures measure_report(ReportOptions const& options, StudyOptions const& s
         figures.pictures.push_back(take_screenshot(file, options, study, store));
     }
     for (auto const& file : options.live_scenes) {
-        figures.live.push_back(
-            store.get(file.stem().string() + "-live-" + text_of(options.live.viewport) + "-" +
-                          text_of(options.live.seconds) + "s",
-                      [&] { return measure_live(*load_bench_scene(file, study.camera), options.live); }));
+        figures.live.push_back(live_run(file, options.live, store));
+    }
+    for (Flight const& flight : options.flights) {
+        LiveOptions live = options.live;
+        live.camera_file = flight.camera;
+        figures.live.push_back(live_run(flight.scene, live, store));
+    }
+    for (Viewport const size : options.clock_sizes) {
+        for (auto const& file : options.live_scenes) {
+            LiveOptions live = options.live;
+            live.viewport = size;
+            live.methods = {"framelet"};
+            live.moments = 2 * options.live.moments;
+            live.pinned = live.predicts = true;
+            live.costs = study.costs;
+            figures.clocks.push_back(live_run(file, live, store));
+        }
     }
     figures.features = store.get("features-" + text_of(options.feature_viewport), [&] {
         return measure_feature_costs(FRAMELET_SOURCE_DIR "/scenes/stop.glb", options.feature_viewport,

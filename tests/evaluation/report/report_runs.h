@@ -14,6 +14,11 @@
 
 namespace framelet::bench {
 
+/// A scene through which the viewer's own camera flies: files.
+struct Flight {
+    std::filesystem::path scene, camera;
+};
+
 struct ReportOptions {
     std::filesystem::path folder = "report"; ///< keeps each run's figures
     std::filesystem::path documents = FRAMELET_SOURCE_DIR "/docs"; ///< where RESULTS.md and pictures/ go
@@ -23,6 +28,8 @@ struct ReportOptions {
     double link_delay = 0.02; ///< seconds each way
     std::vector<std::string> linked_methods; ///< of those of the study, which go over links
     std::vector<std::filesystem::path> live_scenes, pictured_scenes; ///< files
+    std::vector<Flight> flights; ///< that the real programs go on as well
+    std::vector<Viewport> clock_sizes; ///< at which the live scenes' virtual clock is held against the wall's
     LiveOptions live;
     Viewport feature_viewport{1280, 720};
     bool quick = false; ///< said on the page
@@ -41,7 +48,7 @@ struct ReportRun {
 
 struct ReportFigures {
     std::vector<ReportRun> runs;
-    std::vector<nlohmann::json> live; ///< as measure_live returns them
+    std::vector<nlohmann::json> live, clocks; ///< as measure_live returns them
     nlohmann::json features; ///< as measure_feature_costs returns them
     std::vector<std::string> pictures; ///< stems in the documents' pictures/
     std::string commit; ///< of this program
