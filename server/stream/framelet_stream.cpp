@@ -109,9 +109,6 @@ Step FrameletStream::plan_batch(Turn const& turn, ViewState const& present, Pose
         if (planned_ != nullptr) {
             return Step::finish;
         }
-        if (wanted.moment && moments_.end(turn.now)) { // all that is worth it is done: the next one is newer
-            return plan_batch(turn, present, scene);
-        }
         return wanted.moment ? Step::wait : Step::nothing; // at rest there will be more to do
     }
     work.figures = {};

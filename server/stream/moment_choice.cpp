@@ -14,14 +14,6 @@ bool MomentChoice::goes_on(ViewState const& present, double now) const {
            held.view.camera.projection == present.view.camera.projection && held.exposure == present.exposure;
 }
 
-bool MomentChoice::end(double now) {
-    bool const is_over = held_ && now >= held_->begun + least_moment_seconds;
-    if (is_over) {
-        held_.reset();
-    }
-    return is_over;
-}
-
 std::optional<HeldMoment> MomentChoice::choose(ViewState const& present, double now, bool viewer_moves_samples) {
     bool const was_resting = now - changed_ > rest_seconds;
     if (!last_ || !same_picture(*last_, present)) {

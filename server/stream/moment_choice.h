@@ -10,8 +10,6 @@ namespace framelet {
 
 /// While anything moves a moment lasts until the next multiple of this, seconds: viewers of one scene change together.
 inline constexpr double moment_seconds = 0.1;
-/// It lasts no shorter than this, even where there is nothing left to do for it.
-inline constexpr double least_moment_seconds = 0.02;
 /// What has stayed as it is for so long is at rest, seconds: longer than a slow display's frame.
 inline constexpr double rest_seconds = 0.05;
 
@@ -21,8 +19,6 @@ public:
     /// rest. Begins anew where the picture has another size, projection or exposure, or something begins to move.
     /// `now`: seconds, steady.
     std::optional<HeldMoment> choose(ViewState const& present, double now, bool viewer_moves_samples);
-    /// There is nothing left to do for the moment: the next choice begins another one, unless it is too early for that.
-    bool end(double now);
     /// The next choice begins a moment: the scene's clock was set.
     void begin_anew() { held_.reset(); }
 

@@ -29,18 +29,6 @@ TEST(MomentChoice, WhatMovesIsSeenAtAFewMomentsASecond) {
     EXPECT_EQ(seen.size(), 11u);
 }
 
-TEST(MomentChoice, AMomentForWhichNothingIsLeftToDoEndsEarly) {
-    MomentChoice moments;
-    EXPECT_FALSE(moments.end(5)) << "there is none";
-    double const begun = 5.01;
-    ASSERT_TRUE(moments.choose(state_at(begun), begun, true));
-    EXPECT_FALSE(moments.end(begun + 0.5 * least_moment_seconds));
-    double const now = begun + 1.1 * least_moment_seconds;
-    EXPECT_EQ(moments.choose(state_at(now), now, true)->begun, begun);
-    EXPECT_TRUE(moments.end(now));
-    EXPECT_EQ(moments.choose(state_at(now), now, true)->begun, now);
-}
-
 TEST(MomentChoice, ViewersOfOneSceneChangeTogether) {
     MomentChoice one, other;
     double const late = 7.04;
