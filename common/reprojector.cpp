@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <cstddef>
 #include <cstring>
 
@@ -168,7 +167,7 @@ void Reprojector::show_exact(FrameletPool const& pool, std::span<PixelRect const
     }
     exact_slot_ = pool.newest_slot();
     is_exact_ = true;
-    tried_slots_ = 0;
+    noted_slots_ = 0;
     hole_share_ = 0;
 }
 
@@ -177,7 +176,6 @@ void Reprojector::start_moving(Viewport viewport, std::size_t blocks) {
     if (is_exact_ || blocks_.size() != blocks) {
         blocks_.assign(blocks, {});
     }
-    viewport_ = viewport;
     auto const pixels = static_cast<std::size_t>(viewport.width) * static_cast<std::size_t>(viewport.height);
     inverse_depth_.resize(pixels);
     block_means_.resize(blocks);
@@ -198,10 +196,10 @@ void Reprojector::show(FrameletPool const& pool, std::span<PixelRect const> chan
     while (plans_.size() < pool.slot_count()) {
         plans_.emplace_back();
     }
-    tried_slots_ = 0;
+    noted_slots_ = 0;
     for (std::size_t i = 0; i < pool.slot_count(); ++i) {
         plans_[i].make(pool.slot(i), i, pool.is_recent(i), camera, scene_time, motions);
-        tried_slots_ |= pool.is_tried(i) ? 1u << i : 0u;
+        noted_slots_ |= pool.is_tried(i) ? 1u << i : 0u;
     }
     columns_ = plans_[0].columns();
     rows_ = plans_[0].rows();
@@ -235,9 +233,7 @@ void Reprojector::show(FrameletPool const& pool, std::span<PixelRect const> chan
 
 /// As it was.
 void Reprojector::show_cut(FrameletCache const& moment, Picture& picture, std::vector<PixelRect>& repainted) {
-    for (BlockState& block : blocks_) {
-        block.signature = 0; // no block is as the plan says
-    }
+    blocks_.clear(); // no block is as the plan says
     std::ranges::fill(painted_, std::uint8_t{0});
     reconstruct_all(moment, picture);
     repainted.assign(1, {0, 0, picture.width, picture.height});
@@ -249,10 +245,8 @@ bool Reprojector::update_block(FrameletPool const& pool, Camera const& camera, S
     auto const index =
         static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
     FrameletCache const& newest = pool.newest();
-    BlockState& state = blocks_[index];
     patches.clear();
     plans_[pool.newest_slot()].add_block(index, patches);
-    std::uint32_t sources = 1u << pool.newest_slot();
     std::size_t const newest_patches = patches.size();
     bool in_place = std::ranges::all_of(patches, [](PatchView const& view) { return view.patch->is_still; }) &&
                     is_block_in_place(newest, camera, scene_time, motions, column, row);
@@ -260,14 +254,13 @@ bool Reprojector::update_block(FrameletPool const& pool, Camera const& camera, S
     for (std::size_t i = 0; i < pool.slot_count(); ++i) {
         if (pool.belongs_to_base(i) || (all && i != pool.newest_slot())) {
             plans_[i].add_block(index, patches);
-            sources |= 1u << i;
         }
     }
     in_place = in_place && patches.size() == newest_patches;
     order(patches);
     std::uint64_t const signature = signature_of(patches, in_place);
-    if (signature == state.signature) {
-        state.is_noted = false;
+    bool const is_same = signature == blocks_[index].signature;
+    if (is_same && (blocks_[index].slots & noted_slots_) == 0) {
         return false;
     }
     Viewport const viewport = pool.plane().viewport();
@@ -275,6 +268,9 @@ bool Reprojector::update_block(FrameletPool const& pool, Camera const& camera, S
     int const top = row * side;
     WarpedBlock block;
     paint_warped_block(patches, column, row, viewport, block);
+    if (is_same) { // it was to note what shows
+        return false;
+    }
     if (in_place) {
         block.holes = 0;
         for (float& inverse_depth : block.inverse_depth) {
@@ -286,42 +282,17 @@ bool Reprojector::update_block(FrameletPool const& pool, Camera const& camera, S
     }
     write_plane(block.inverse_depth, left, top, viewport, inverse_depth_);
     block_means_[index] = far_mean(block);
-    state = {signature, block.holes, slots_of(block), sources, true};
+    blocks_[index] = {signature, block.holes, slots_of(block)};
     painted_[index] = 1;
     return true;
 }
 
-bool Reprojector::add_shown(std::size_t slot, std::vector<Tile>& tiles) {
-    if ((tried_slots_ >> slot & 1) == 0) {
+bool Reprojector::add_shown(std::size_t slot, std::vector<Tile>& tiles) const {
+    if ((noted_slots_ >> slot & 1) == 0) {
         return false;
     }
-    tbb::parallel_for(0, rows_, [&](int row) {
-        std::vector<PatchView> patches;
-        for (int column = 0; column < columns_; ++column) {
-            note_block(slot, column, row, patches);
-        }
-    });
     plans_[slot].add_shown(tiles);
     return true;
-}
-
-/// Painting notes what shows; blocks that stayed as they were are painted for that alone. What has been replaced in the
-/// caches since the plan was made is painted as what it was replaced by, in the same place.
-void Reprojector::note_block(std::size_t slot, int column, int row, std::vector<PatchView>& patches) {
-    auto const index =
-        static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
-    BlockState& state = blocks_[index];
-    if (state.is_noted || (state.slots >> slot & 1) == 0) {
-        return;
-    }
-    patches.clear();
-    for (std::uint32_t left = state.sources; left != 0; left &= left - 1) {
-        plans_[static_cast<std::size_t>(std::countr_zero(left))].add_block(index, patches);
-    }
-    order(patches);
-    WarpedBlock unused;
-    paint_warped_block(patches, column, row, viewport_, unused);
-    state.is_noted = true;
 }
 
 void Reprojector::count_blocks(Picture const& picture, std::size_t slots) {

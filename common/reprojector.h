@@ -41,9 +41,8 @@ public:
     /// By slot of the pool: in how many blocks of the last picture something of it shows.
     std::span<std::uint32_t const> shown_blocks() const { return shown_blocks_; }
     /// The tiles of one slot of which something shows in the last picture, if that is known: false where the slot had
-    /// not been tried by then or the picture was exact. Some come more than once. The pool must hold its moments in the
-    /// same slots as when the picture was made.
-    bool add_shown(std::size_t slot, std::vector<Tile>& tiles);
+    /// not been tried by then or the picture was exact. Some come more than once.
+    bool add_shown(std::size_t slot, std::vector<Tile>& tiles) const;
     /// Pixels of the last picture that nothing shows, in [0, 1]; 0 where it is exact.
     double hole_share() const { return hole_share_; }
 
@@ -52,8 +51,6 @@ private:
         std::uint64_t signature = 0;
         std::int32_t holes = 0;
         std::uint32_t slots = 0; ///< a bit for each slot of which something shows
-        std::uint32_t sources = 0; ///< likewise of which something might
-        bool is_noted = false; ///< the plans know what shows in it
     };
 
     bool is_in_place(FrameletPool const& pool, Camera const& camera, SceneTime scene_time) const;
@@ -64,7 +61,6 @@ private:
     bool update_block(FrameletPool const& pool, Camera const& camera, SceneTime scene_time, BodyMotions const& motions,
                       int column, int row, std::vector<PatchView>& patches, Picture& picture);
     void show_cut(FrameletCache const& moment, Picture& picture, std::vector<PixelRect>& repainted);
-    void note_block(std::size_t slot, int column, int row, std::vector<PatchView>& patches);
     void count_blocks(Picture const& picture, std::size_t slots);
     bool is_beside_hole(int column, int row) const;
     void fill(Picture& picture);
@@ -72,10 +68,9 @@ private:
     bool has_shown_ = false;
     bool is_exact_ = false;
     double hole_share_ = 0;
-    std::uint32_t tried_slots_ = 0; ///< a bit for each that was when the last picture was made
+    std::uint32_t noted_slots_ = 0; ///< a bit for each of which the plan knows what shows in the last picture
     std::size_t exact_slot_ = 0; ///< that an exact picture shows
     std::vector<WarpPlan> plans_; ///< by slot
-    Viewport viewport_;
     int columns_ = 0, rows_ = 0; ///< of blocks
     std::vector<BlockState> blocks_;
     std::vector<FarMean> block_means_;
