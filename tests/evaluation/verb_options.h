@@ -50,7 +50,7 @@ struct VerbOptions {
     ObservationOptions observation; ///< of the estimators
     std::vector<double> ahead{1.0 / 60, 1.0 / 15, 0.2}; ///< seconds, of the correspondence
     ReportOptions report;
-    std::vector<std::string> live_scenes; ///< files or names, of the report
+    std::vector<std::string> live_scenes, clock_scenes; ///< files or names, of the report
     std::filesystem::path assets; ///< folder of models, for the report's flights; empty: none
     bool without_live = false, without_links = false;
 };

@@ -135,8 +135,11 @@ void choose_programs(VerbOptions& options) {
             report.flights.push_back({file, camera});
         }
     }
+    std::ranges::transform(options.clock_scenes, std::back_inserter(report.clock_scenes), scene_file);
+    fall_back(report.clock_scenes, report.live_scenes);
     if (options.without_live) {
         report.live_scenes.clear();
+        report.clock_scenes.clear();
         report.flights.clear();
     }
     for (char const* const name : {"stop", "globe", "vehicle_chase"}) {

@@ -178,7 +178,8 @@ ReportFigures measure_report(ReportOptions const& options, StudyOptions const& s
     // The noise is asked for with each run.
     std::size_t const expected =
         study.scenes.size() * (2 * runs_a_scene - 2) + options.pictured_scenes.size() +
-        options.live_scenes.size() * (1 + options.clock_sizes.size()) + options.flights.size() + 1;
+        options.live_scenes.size() + options.flights.size() +
+        options.clock_scenes.size() * options.clock_sizes.size() + 1;
     RunStore store(options.folder, figures.commit, expected);
     for (auto const& file : study.scenes) {
         SceneRuns scene(file, study, store);
@@ -205,7 +206,7 @@ ReportFigures measure_report(ReportOptions const& options, StudyOptions const& s
         figures.live.push_back(live_run(flight.scene, live, store));
     }
     for (Viewport const size : options.clock_sizes) {
-        for (auto const& file : options.live_scenes) {
+        for (auto const& file : options.clock_scenes) {
             LiveOptions live = options.live;
             live.viewport = size;
             live.methods = {"framelet"};

@@ -27,9 +27,9 @@ struct ReportOptions {
     double link_machine = 10; ///< of the runs over links
     double link_delay = 0.02; ///< seconds each way
     std::vector<std::string> linked_methods; ///< of those of the study, which go over links
-    std::vector<std::filesystem::path> live_scenes, pictured_scenes; ///< files
+    std::vector<std::filesystem::path> live_scenes, clock_scenes, pictured_scenes; ///< files
     std::vector<Flight> flights; ///< that the real programs go on as well
-    std::vector<Viewport> clock_sizes; ///< at which the live scenes' virtual clock is held against the wall's
+    std::vector<Viewport> clock_sizes; ///< at which the virtual clock is held against the wall's
     LiveOptions live;
     Viewport feature_viewport{1280, 720};
     bool quick = false; ///< said on the page
