@@ -286,27 +286,11 @@ struct ClientCore::Impl {
                last_batch >= status.last_batch;
     }
 
-    /// What is shown depends on when. Under the lock.
-    bool is_timed(ClockState const& clock) const {
-        return clock.playing && !is_smooth && picture_settings.scene_moves && picture_settings.reproject;
-    }
-
-    /// A picture that is ready before the moment that it is of is shown then: motion would not be even else.
-    void wait_until_due(Clock::time_point begun) const {
-        double seconds = 0;
-        {
-            std::lock_guard const lock(mutex);
-            seconds = is_timed(status.clock) ? making.expected() : 0;
-        }
-        std::this_thread::sleep_until(begun + std::chrono::duration_cast<Clock::duration>(
-                                                  std::chrono::duration<double>(seconds)));
-    }
-
     /// Of what will be the present when the picture is made; not where the scene is to be late anyway.
     PictureRequest picture_request() const {
         std::lock_guard const lock(mutex);
         ClockState clock = clock_now();
-        if (is_timed(clock)) {
+        if (clock.playing && !is_smooth && picture_settings.scene_moves && picture_settings.reproject) {
             clock.time += making.expected() * static_cast<double>(clock.speed);
             clock.time = std::clamp(clock.time, 0.0, max_scene_time);
         }
@@ -434,9 +418,6 @@ bool ClientCore::update_picture(Picture& picture, std::vector<PixelRect>& change
         camera = core.maker->shown_camera();
         time = core.maker->shown_time();
         camera_number = core.maker->shown_camera_number();
-    }
-    if (drawn) {
-        core.wait_until_due(begun);
     }
     std::lock_guard const lock(core.mutex);
     core.shown_camera = camera;

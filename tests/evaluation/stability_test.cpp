@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include "common/error.h"
-#include "scenes/failure_scenes.h"
 #include "tests/evaluation/cycle_log.h"
 #include "tests/evaluation/scene_events.h"
 #include "tests/evaluation/settling.h"
@@ -67,26 +66,6 @@ TEST(CycleLog, HuntingAndConservationAreMeansOverTheirTime) {
     std::vector<CycleEntry> const hasty{
         {0, 1000, 30, 1, 1, 0}, {0.04, 1000, 90, 1, 1, 0}, {0.08, 1000, 10, 1, 1, 0}, {0.2, 1000, 0, 1, 1, 0}};
     EXPECT_DOUBLE_EQ(measure_conservation(hasty, 0, 1).largest_share, 130.0 / 200);
-}
-
-TEST(SceneEvents, AreThoseOfTheGenerator) {
-    SceneEvents const stop = events_of(make_stop_scene({.duration = 6, .moving = 3}), 6);
-    EXPECT_EQ(stop.times, std::vector<double>{3});
-    EXPECT_EQ(phase_at(stop, 1), Phase::moving);
-    EXPECT_EQ(phase_at(stop, 3.1), Phase::event);
-    EXPECT_EQ(phase_at(stop, 3 + event_seconds), Phase::settled);
-    SceneEvents const flicker = events_of(make_flicker_scene({.duration = 4, .lit = {true, true, false, false}}), 4);
-    EXPECT_EQ(flicker.times, std::vector<double>{2});
-    EXPECT_EQ(phase_at(flicker, 1), Phase::settled);
-    EXPECT_EQ(events_of("teleport").times, (std::vector<double>{1, 2, 3, 4, 5}));
-}
-
-TEST(SceneEvents, AShortRunSeesOne) {
-    EXPECT_EQ(window_start("stop", 2), 2) << "half of it before the stop";
-    EXPECT_EQ(window_start("teleport", 2), 0);
-    EXPECT_EQ(window_start("globe", 2), 2) << "no event: the middle";
-    EXPECT_EQ(window_start("vehicle_approach", 4), 1) << "no later than the scene has so many seconds left";
-    EXPECT_EQ(window_start("a scene of somebody's", 2), 0);
 }
 
 TEST(Stability, EveryEventIsToldOfAndTheBudgetIsKept) {

@@ -249,11 +249,15 @@ json run_figures(LiveRun const& run) {
         }
     }
     LiveFrame const& last = run.frames.back();
-    auto const steady = std::ranges::find_if(run.frames, [&run](LiveFrame const& frame) {
+    auto steady = std::ranges::find_if(run.frames, [&run](LiveFrame const& frame) {
         return frame.seconds >= run.frames.front().seconds + build_up_seconds;
     });
+    if (steady == run.frames.end()) { // it ended early
+        steady = run.frames.begin();
+    }
     double const steady_span = last.seconds - steady->seconds;
-    auto const steady_pictures = std::count_if(steady, run.frames.end(), [](auto const& frame) { return frame.changed; });
+    auto const steady_pictures =
+        std::count_if(steady, run.frames.end(), [](auto const& frame) { return frame.changed; });
     double const span = last.seconds - run.frames.front().seconds;
     double const cores = std::max(1u, std::thread::hardware_concurrency());
     double const viewer = (last.cpu_seconds - run.frames.front().cpu_seconds) / span;
@@ -346,10 +350,11 @@ void print(std::string const& method, json const& f) {
 /// Where nothing is built up any more, both clocks in turn.
 void print_prediction(json const& figures) {
     auto const line = [&figures](char const* name, json const& rates, json const& of) {
-        std::printf("  %-16s %6.1f pictures/s  %7.0f kB/s  %6.2f dB  %5.2f Msamples/s  server %.2f  viewer %.2f cores\n",
-                    name, rates["pictures_per_second"].get<double>(), rates["kB_per_second"].get<double>(),
-                    of["psnr"].get<double>(), of["samples_per_second"].get<double>() / 1e6,
-                    of["server_cores"].get<double>(), of["viewer_cores"].get<double>());
+        std::printf(
+            "  %-16s %6.1f pictures/s  %7.0f kB/s  %6.2f dB  %5.2f Msamples/s  server %.2f  viewer %.2f cores\n", name,
+            rates["pictures_per_second"].get<double>(), rates["kB_per_second"].get<double>(), of["psnr"].get<double>(),
+            of["samples_per_second"].get<double>() / 1e6, of["server_cores"].get<double>(),
+            of["viewer_cores"].get<double>());
     };
     line("wall clock", figures["steady"], figures);
     line("virtual clock", figures["virtual"], figures["virtual"]);

@@ -86,7 +86,8 @@ json answer_live(LiveVerbOptions& options, std::vector<std::filesystem::path> co
                  std::filesystem::path const& costs_file) {
     LiveOptions& live = options.live;
     if (live.predicts && (!live.pinned || !live.camera_file.empty())) {
-        throw InputError("--virtual is of a server and a viewer with a core each (--pinned) and of the scene's own camera");
+        throw InputError(
+            "--virtual is of a server and a viewer with a core each (--pinned) and of the scene's own camera");
     }
     live.costs = read_cost_table(costs_file);
     live.viewport = parse_size(options.size);

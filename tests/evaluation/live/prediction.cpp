@@ -90,9 +90,9 @@ json predict_live(BenchScene& scene, std::string const& method, LiveOptions cons
         costs = calibrated(scene, method, run, costs, measured);
     }
     run = on_one_core(scene, run, costs);
-    Reference const reference(
-        scene, {run.viewport, run.seconds, run.reference_rate, options.samples_per_side, run.start},
-        default_reference_cache());
+    Reference const reference(scene,
+                              {run.viewport, run.seconds, run.reference_rate, options.samples_per_side, run.start},
+                              default_reference_cache());
     MethodRecord const record = record_method(scene, reference, method, run, 1, costs);
     json figures = rates_of(record.run, run);
     double mse = 0, count = 0;

@@ -9,8 +9,8 @@
 
 #include "client/frame_choice.h"
 #include "client/frame_log.h"
-#include "client/making_time.h"
 #include "client/frame_writer.h"
+#include "client/making_time.h"
 #include "client/server_connection.h"
 #include "common/cpu_clock.h"
 #include "common/error.h"
@@ -155,11 +155,7 @@ void look_at_method(LookOptions const& options) {
             changed = true;
         }
         ViewerStep const presented = method->present(view, time);
-        double const due = making.expected();
         making.note(seconds_between(begun, Clock::now()));
-        if (presented.seconds.reconstruct > 0) {
-            std::this_thread::sleep_until(begun + duration_of(due));
-        }
         changed = changed || presented.seconds.reconstruct > 0;
         shown = &method->picture();
         double const photon = changed ? seconds_between(begun, Clock::now()) : -1;
@@ -171,8 +167,7 @@ void look_at_method(LookOptions const& options) {
         log.add({frame, unix_seconds(), mailbox.scene_time(), changed, false, received,
                  cpu_seconds_of(CLOCK_PROCESS_CPUTIME_ID) - writer.cpu_seconds(), 0, photon, scene_camera, camera});
         writer.add(*shown, true, choice.takes(seconds_between(start, begun)));
-        std::this_thread::sleep_until(
-            begun + duration_of(1 / options.rate));
+        std::this_thread::sleep_until(begun + duration_of(1 / options.rate));
     }
     writer.finish();
     std::scoped_lock const lock(mutex);

@@ -182,7 +182,8 @@ double best_rival(json const& scene, char const* measure, bool most) {
     double best = most ? -INFINITY : INFINITY;
     for (auto const& [method, figures] : scene["methods"].items()) {
         if (is_rival(method)) {
-            best = most ? std::max(best, figures[measure].get<double>()) : std::min(best, figures[measure].get<double>());
+            best =
+                most ? std::max(best, figures[measure].get<double>()) : std::min(best, figures[measure].get<double>());
         }
     }
     return best;
@@ -201,9 +202,10 @@ std::string live_summary(std::vector<json> const& live) {
     }
     std::ranges::sort(ratios);
     auto const mse = std::ranges::count_if(ratios, [](double ratio) { return ratio <= 1; });
-    return printed("\n`framelet` is at least as good as the best rival in %zd of %zu by MSE (median ratio %.2f), in %zu by "
-                   "SSIM, %zu by FLIP, %zu in steadiness.\n",
-                   mse, live.size(), ratios[ratios.size() / 2], ssim, flip, steady);
+    return printed(
+        "\n`framelet` is at least as good as the best rival in %zd of %zu by MSE (median ratio %.2f), in %zu by "
+        "SSIM, %zu by FLIP, %zu in steadiness.\n",
+        mse, live.size(), ratios[ratios.size() / 2], ssim, flip, steady);
 }
 
 /// What virtual and wall clock say of the same sessions, a row a scene.
@@ -261,8 +263,9 @@ std::string live_table(std::vector<json> const& live) {
         for (auto const& [method, f] : scene["methods"].items()) {
             bool const is_best = f["mse"] == least;
             text += "| `" + scene["scene"].get<std::string>() + "` | `" + method + "`";
-            text += f.contains("spacing") ? printed(f["margin"] > 0 ? " (%d, margin) |" : " (%d) |", f["spacing"].get<int>())
-                                          : " |";
+            text += f.contains("spacing")
+                        ? printed(f["margin"] > 0 ? " (%d, margin) |" : " (%d) |", f["spacing"].get<int>())
+                        : " |";
             text +=
                 printed(" %.1f | %.0f | %.2f | %.2f | %.2f | %.0f | ", f["pictures_per_second"].get<double>(),
                         f["gap_p99_ms"].get<double>(), f["server_busy"].get<double>(), f["viewer_busy"].get<double>(),
@@ -447,17 +450,19 @@ std::string report_page(ReportFigures const& figures, ReportOptions const& optio
         page += ratio_table(at(options.link_machine, link));
     }
     if (!figures.live.empty()) {
-        page +=
-            printed("\n## The real programs\n\n`framelet-bench live` at %dx%d for %g s: server and viewer on the same "
-                    "cores, a real socket, the clock running; compared at %d moments. The best picture in bold; in brackets "
-                    "the spacing of whole frames that errs least.\n\n![error against pictures a second](pictures/live.png)\n\n",
-                    options.live.viewport.width, options.live.viewport.height, options.live.seconds, options.live.moments);
+        page += printed(
+            "\n## The real programs\n\n`framelet-bench live` at %dx%d for %g s: server and viewer on the same "
+            "cores, a real socket, the clock running; compared at %d moments. The best picture in bold; in brackets "
+            "the spacing of whole frames that errs least.\n\n![error against pictures a second](pictures/live.png)\n\n",
+            options.live.viewport.width, options.live.viewport.height, options.live.seconds, options.live.moments);
         page += live_table(figures.live);
     }
     if (!figures.clocks.empty()) {
-        page += "\n### The same sessions on the virtual clock\n\n`framelet` with a core for the server and one for the viewer: PSNR by "
-                "the wall clock, how much more the virtual clock says, its bytes and pictures over the wall clock's. Far "
-                "ones in bold.\n\n";
+        page +=
+            "\n### The same sessions on the virtual clock\n\n`framelet` with a core for the server and one for the "
+            "viewer: PSNR by "
+            "the wall clock, how much more the virtual clock says, its bytes and pictures over the wall clock's. Far "
+            "ones in bold.\n\n";
         page += clock_table(figures.clocks);
     }
     page +=

@@ -176,10 +176,9 @@ ReportFigures measure_report(ReportOptions const& options, StudyOptions const& s
     std::size_t const runs_a_scene =
         1 + options.machines.size() * study.methods.size() + options.links.size() * options.linked_methods.size();
     // The noise is asked for with each run.
-    std::size_t const expected =
-        study.scenes.size() * (2 * runs_a_scene - 2) + options.pictured_scenes.size() +
-        options.live_scenes.size() + options.flights.size() +
-        options.clock_scenes.size() * options.clock_sizes.size() + 1;
+    std::size_t const expected = study.scenes.size() * (2 * runs_a_scene - 2) + options.pictured_scenes.size() +
+                                 options.live_scenes.size() + options.flights.size() +
+                                 options.clock_scenes.size() * options.clock_sizes.size() + 1;
     RunStore store(options.folder, figures.commit, expected);
     for (auto const& file : study.scenes) {
         SceneRuns scene(file, study, store);
