@@ -1,5 +1,5 @@
-// Which frames of a run are written to files: all, or some that follow given times, so that writing does not take the
-// processor from what is shown. In: times. Out: yes or no, frame by frame.
+// Which frames of a run are written to files: all, or some that follow given times of the scene, so that writing does
+// not take the processor from what is shown. In: times. Out: yes or no, frame by frame.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ public:
     /// `times`: seconds; none: all frames.
     explicit FrameChoice(std::vector<double> times) : times_(std::move(times)) { std::ranges::sort(times_); }
 
-    /// Of the next frame, shown at `now`, seconds. Time does not go back.
+    /// Of the next frame, which is to show the scene at `now`, seconds. Time does not go back.
     bool takes(double now) {
         while (next_ < times_.size() && times_[next_] <= now) {
             left_ = frames_at_once;

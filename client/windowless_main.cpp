@@ -152,7 +152,7 @@ RunFigures show(ClientCore& core, Options const& options, std::optional<CameraPa
                 overlaid = picture;
                 core.draw_overlay(options.overlay, overlaid);
             }
-            writer->add(draws ? overlaid : picture, news, choice.takes(now));
+            writer->add(draws ? overlaid : picture, news, choice.takes(core.clock().time));
         }
         if (run.converged_seconds < 0 && (done || core.is_complete())) {
             run.converged_seconds = now;
@@ -229,7 +229,8 @@ int main(int argc, char** argv) {
                    "Picture file for each frame, as in frames/%04d.png (or .ppm: larger, quicker); without a number: "
                    "for the last frame");
     app.add_option("--output-times", options.output_times,
-                   "With numbered files: only the three frames from each of these times on, seconds; the numbers stay")
+                   "With numbered files: only the three frames from each of these times of the scene on, seconds; the "
+                   "numbers stay")
         ->check(CLI::Range(0.0, 1e6));
     app.add_option("--frames", options.frames_file,
                    "Write a line of JSON for each frame to this file: when it was shown, the scene's time, bytes, CPU");

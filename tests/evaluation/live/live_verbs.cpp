@@ -74,7 +74,7 @@ void add_look_options(CLI::App& verb, LiveVerbOptions& options) {
     verb.add_option("--camera", look.camera_file, "Camera file");
     add_rival_options(verb, look.rivals);
     verb.add_option("--output", look.output, "Picture files")->required();
-    verb.add_option("--output-times", look.output_times, "Only the frames from these times on, seconds");
+    verb.add_option("--output-times", look.output_times, "Only the frames from these times of the scene on, seconds");
     verb.add_option("--frames", look.frames_file, "A line of JSON for each frame")->required();
 }
 

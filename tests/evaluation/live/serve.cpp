@@ -166,7 +166,7 @@ void look_at_method(LookOptions const& options) {
         }
         log.add({frame, unix_seconds(), mailbox.scene_time(), changed, false, received,
                  cpu_seconds_of(CLOCK_PROCESS_CPUTIME_ID) - writer.cpu_seconds(), 0, photon, scene_camera, camera});
-        writer.add(*shown, true, choice.takes(seconds_between(start, begun)));
+        writer.add(*shown, true, choice.takes(mailbox.scene_time()));
         std::this_thread::sleep_until(begun + duration_of(1 / options.rate));
     }
     writer.finish();
