@@ -25,6 +25,11 @@ constexpr float nearer_share = 0.25f;
 constexpr float thinnest = 1e-4f;
 /// Inverse depths that differ by less than this share belong to one surface, besides by what pieces may be off.
 constexpr float same_surface = 0.02f;
+/// Of a probe: by how much of the detail it may differ from a slope over each pixel of the piece, squared luma, as
+/// `Looks` has it.
+constexpr float bend_share = 0.3f, rounding = 4e-6f;
+/// Beyond so many standard deviations it is a change, or where all probes around it together are.
+constexpr float doubt = 4;
 constexpr int cell_pixels = cell_side * cell_side;
 /// A piece that covers less of a cell than this is not what it shows, where there is another.
 constexpr int least_share = cell_pixels / 2;
@@ -100,14 +105,13 @@ bool Mirror::check(PlaceGrid const& grid, std::span<float const> inverse_depth) 
     int const columns = grid.columns(viewport_);
     int const rows = grid.rows(viewport_);
     FRAMELET_CHECK(inverse_depth.size() == static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
-    Vec2 const half(0.5f * static_cast<float>(grid.spacing));
     bool any = false;
     auto seen = inverse_depth.begin();
     for (int row = 0; row < rows; ++row) {
         for (int column = 0; column < columns; ++column, ++seen) {
             Vec2 const place = grid.place(column, row);
             if (!shows_as_near(static_cast<int>(place.x) / cell_side, static_cast<int>(place.y) / cell_side, *seen)) {
-                mark_wrong(place - half, place + half);
+                mark(place, grid.spacing, [](Cell& cell) { cell.is_wrong = true; });
                 any = true;
             }
         }
@@ -115,14 +119,84 @@ bool Mirror::check(PlaceGrid const& grid, std::span<float const> inverse_depth) 
     return any;
 }
 
-/// Cells in a box, pixels.
-void Mirror::mark_wrong(Vec2 low, Vec2 high) {
+void Mirror::list_probes(PlaceGrid const& grid, std::vector<Probe>& probes) const {
+    probes.clear();
+    int const columns = grid.columns(viewport_);
+    int const rows = grid.rows(viewport_);
+    for (int row = 0; row < rows; ++row) {
+        for (int column = 0; column < columns; ++column) {
+            Vec2 const at = grid.place(column, row);
+            Cell const& shown = cell(static_cast<int>(at.x) / cell_side, static_cast<int>(at.y) / cell_side);
+            if (shown.share == cell_pixels && !piece_of(shown).is_loose && time_of(shown) != target_.scene_time) {
+                probes.push_back({at, 1, luma_of(shown, at)});
+            }
+        }
+    }
+}
+
+bool Mirror::check_looks(std::span<Probe const> probes, std::span<float const> luma, int spacing) {
+    FRAMELET_CHECK(probes.size() == luma.size());
+    if (probes.empty()) {
+        return false;
+    }
+    int const columns = viewport_.width / spacing + 3; // one beyond each side
+    auto const index_at = [&](Vec2 at) {
+        return (static_cast<int>(at.y) / spacing + 1) * columns + static_cast<int>(at.x) / spacing + 1;
+    };
+    differences_.assign(static_cast<std::size_t>(columns * (viewport_.height / spacing + 3)), {});
+    for (std::size_t i = 0; i < probes.size(); ++i) {
+        differences_[static_cast<std::size_t>(index_at(probes[i].place))] = compare(probes[i], luma[i]);
+    }
+    bool any = false;
+    for (Probe const& probe : probes) {
+        int const at = index_at(probe.place);
+        Difference const own = differences_[static_cast<std::size_t>(at)];
+        Difference around;
+        for (int const row : {at - columns, at, at + columns}) {
+            for (int i = row - 1; i <= row + 1; ++i) {
+                around.luma += differences_[static_cast<std::size_t>(i)].luma;
+                around.chance += differences_[static_cast<std::size_t>(i)].chance;
+            }
+        }
+        if (own.chance > 0 && (own.beyond(doubt) || around.beyond(doubt))) {
+            float const stale = own.luma * own.luma;
+            mark(probe.place, spacing, [stale](Cell& cell) { cell.stale = std::max(cell.stale, stale); });
+            any = true;
+        }
+    }
+    return any;
+}
+
+/// What a probe really shows with what the viewer does.
+Mirror::Difference Mirror::compare(Probe const& probe, float luma) const {
+    Cell const& shown = cell(static_cast<int>(probe.place.x) / cell_side, static_cast<int>(probe.place.y) / cell_side);
+    if (shown.share < cell_pixels) { // something else has come
+        return {};
+    }
+    Piece const& piece = piece_of(shown);
+    float const scale = scale_of(shown);
+    float const side = std::max(piece.half_side.x, piece.half_side.y);
+    return {luma - probe.luma, piece.detail / scale * (1 + scale * (piece.spacing + bend_share * 2 * side)) + rounding};
+}
+
+/// Display-encoded, that a cell shows at a place of the picture.
+float Mirror::luma_of(Cell const& cell, Vec2 at) const {
+    Piece const& piece = piece_of(cell);
+    return piece.luma + glm::dot(piece.slope, at - place_of(cell)) / scale_of(cell);
+}
+
+/// The cells of a square around a place.
+template <class Mark>
+void Mirror::mark(Vec2 at, int spacing, Mark mark) {
     auto const cell_of = [](float pixel, int count) {
         return std::clamp(static_cast<int>(std::round(pixel / float{cell_side})), 0, count);
     };
+    Vec2 const half(0.5f * static_cast<float>(spacing));
+    Vec2 const low = at - half;
+    Vec2 const high = at + half;
     for (int row = cell_of(low.y, rows_); row < cell_of(high.y, rows_); ++row) {
         for (int column = cell_of(low.x, columns_); column < cell_of(high.x, columns_); ++column) {
-            cells_[index_of(column, row)].is_wrong = true;
+            mark(cells_[index_of(column, row)]);
         }
     }
 }
@@ -405,7 +479,10 @@ void Mirror::show(Moment const& moment, std::size_t index, unsigned mask, int co
     Placed const& placed = moment.placed[index];
     Cell& cell = cells_[index_of(column, row)];
     cell.covered = static_cast<std::uint16_t>(cell.covered | mask);
-    cell.is_wrong = cell.is_wrong && !moment.is_of_camera;
+    if (moment.is_of_camera) {
+        cell.is_wrong = false;
+        cell.stale = 0;
+    }
     Vec2 const middle((static_cast<float>(column) + 0.5f) * cell_side, (static_cast<float>(row) + 0.5f) * cell_side);
     Vec2 const from = glm::clamp(middle - placed.at, -placed.half_side, placed.half_side);
     float const w = std::max(placed.inverse_depth + glm::dot(placed.depth_slope, from), 0.0f);

@@ -13,6 +13,7 @@
 #include "common/body_motion.h"
 #include "common/picture/framelet_pool.h"
 #include "common/place_grid.h"
+#include "common/probe.h"
 #include "common/reprojection.h"
 #include "server/sampling/piece.h"
 
@@ -38,6 +39,7 @@ struct Cell {
     std::uint8_t share = 0; ///< of its pixels that what shows covers, of 16
     bool leads = false; ///< as the viewer has it, before what is better
     bool is_wrong = false; ///< something nearer is there, which the viewer does not hold
+    float stale = 0; ///< squared luma by which the moment was found to look otherwise
 
     bool is_shown() const { return share > 0; }
     float covered_share() const { return static_cast<float>(std::popcount(covered)) / (cell_side * cell_side); }
@@ -80,6 +82,13 @@ public:
     /// row, < 0 where that is not known. Where neither the cell of a place nor those beside it show anything about as
     /// near, the cells around the place are wrong until something of the moment comes there. True where some are.
     bool check(PlaceGrid const& grid, std::span<float const> inverse_depth);
+    /// Replaces `probes` by one for each place of a grid that shows, well within a surface, what is of another time:
+    /// with the luma that the viewer shows there.
+    void list_probes(PlaceGrid const& grid, std::vector<Probe>& probes) const;
+    /// Compares what probes showed with what they really show of the moment, luma in their order: where that differs by
+    /// more than chance the cells around the place are stale until something of the moment comes there; `spacing`:
+    /// pixels from one to the next. True where some are.
+    bool check_looks(std::span<Probe const> probes, std::span<float const> luma, int spacing);
     /// The viewer has let go of these; from the next look on.
     void forget(std::span<SentTile const> framelets);
 
@@ -134,7 +143,15 @@ private:
     void show(Moment const& moment, std::size_t index, unsigned mask, int column, int row);
     bool is_better(Moment const& moment, Placed const& placed, float inverse_depth, int share, Cell const& cell) const;
     bool shows_loose(Moment const& moment) const;
-    void mark_wrong(Vec2 low, Vec2 high);
+    struct Difference { ///< of luma: of one probe, or summed over some
+        float luma = 0;
+        float chance = 0; ///< its variance where nothing has changed; 0: not known
+        bool beyond(float deviations) const { return luma * luma > deviations * deviations * chance; }
+    };
+    Difference compare(Probe const& probe, float luma) const;
+    template <class Mark>
+    void mark(Vec2 at, int spacing, Mark mark);
+    float luma_of(Cell const& cell, Vec2 at) const;
     bool shows_as_near(int column, int row, float inverse_depth) const;
 
     Viewport viewport_;
@@ -153,6 +170,7 @@ private:
     std::vector<std::uint64_t> newest_batch_; ///< by cell
     std::vector<Piece> standing_, moving_; ///< scratch
     std::vector<TurnedBody> turned_; ///< by body
+    std::vector<Difference> differences_; ///< by place of a grid of probes
     std::uint64_t stamp_ = 0;
 };
 

@@ -65,7 +65,30 @@ void MomentPlan::find(Mirror const& mirror, PlaceField const& field, MomentBudge
             solve(field, budget, low);
         }
     }
+    if (stale_ > 0.5f * wrong_) {
+        choose_horizon(field, budget);
+    }
     collect(field, 0, 0, rated);
+}
+
+/// What gains much for few samples is shown before what those lack is refined: of the dearer prices too the one is
+/// taken whose patches gain most a second, where each plan takes `overhead` besides.
+void MomentPlan::choose_horizon(PlaceField const& field, MomentBudget const& budget) {
+    constexpr int most_steps = 12;
+    float const first = price_;
+    float best_rate = -1;
+    float best = first;
+    for (int step = 0; step <= most_steps; ++step) {
+        float const price = std::ldexp(first, step);
+        auto const spent = static_cast<float>(solve(field, budget, price));
+        float const rate = gain_ / (spent + static_cast<float>(budget.overhead));
+        if (rate > best_rate) {
+            best_rate = rate;
+            best = price;
+        }
+    }
+    price_ = best;
+    solve(field, budget, best);
 }
 
 void MomentPlan::find_gains(Mirror const& mirror, PlaceField const& field, MomentBudget const& budget) {
@@ -77,6 +100,7 @@ void MomentPlan::find_gains(Mirror const& mirror, PlaceField const& field, Momen
     }
     mean_detail_ = shown > 0 ? static_cast<float>(detail / static_cast<double>(shown)) : unknown_detail;
     leaves_.assign(field.size(), Leaf{});
+    stale_ = wrong_ = 0;
     for (std::uint32_t const index : field.visible()) {
         add_gains(mirror, field, index, budget);
     }
@@ -112,13 +136,17 @@ void MomentPlan::add_gains(Mirror const& mirror, PlaceField const& field, std::u
             float covered = cell.is_wrong ? 0 : cell.covered_share() * pixels;
             float const detail = cell.is_shown() ? cell.detail : hidden_detail;
             float worn = cell.is_shown() ? cell.worn : INFINITY;
+            float stale = cell.stale;
             if (had >= 0) {
                 covered = pixels;
                 worn = std::min(worn, spacing_of(had));
+                stale = 0;
             }
             // What comes is shown although it is worse, or only where it is better.
             float const least = cell.is_shown() && mirror.gives_way(cell) ? -most_error : 0.0f;
-            float const now = covered > 0 ? spacing_error(detail, worn) : 0;
+            float const now = covered > 0 ? spacing_error(detail, worn) + stale : 0;
+            stale_ += covered * stale;
+            wrong_ += covered * now + (pixels - covered) * hole_error;
             for (std::size_t level = 0; level < leaf.gain.size(); ++level) {
                 float const then = std::min(detail * missed_shares[level], most_error);
                 leaf.gain[level] +=
@@ -163,6 +191,7 @@ double MomentPlan::solve(PlaceField const& field, MomentBudget const& budget, fl
         }
     }
     double all = 0;
+    gain_ = 0;
     for (std::uint32_t const index : field.visible()) {
         Leaf& leaf = leaves_[index];
         leaf.level = -1;
@@ -181,6 +210,7 @@ double MomentPlan::solve(PlaceField const& field, MomentBudget const& budget, fl
             nodes_[deepest - 1][index >> 2].spent += spent;
         }
         all += static_cast<double>(spent);
+        gain_ += best;
     }
     for (std::size_t depth = deepest; depth-- > 0;) {
         for (std::size_t i = 0; i < nodes_[depth].size(); ++i) {
@@ -189,6 +219,7 @@ double MomentPlan::solve(PlaceField const& field, MomentBudget const& budget, fl
             node.whole = node.cost > 0 && value > node.best;
             if (node.whole) {
                 all += static_cast<double>(node.cost - node.spent);
+                gain_ += value - node.best;
                 node.best = value;
                 node.spent = node.cost;
             }
@@ -198,6 +229,7 @@ double MomentPlan::solve(PlaceField const& field, MomentBudget const& budget, fl
             }
         }
     }
+    gain_ += price * static_cast<float>(all);
     return all;
 }
 

@@ -29,6 +29,7 @@ struct MomentBudget {
     ResponseLimits limits{};
     std::span<LevelCosts const> costs{}; ///< as of `Budget`
     double moment_begun = 0; ///< what has been rendered since then is of this moment
+    double overhead = 0; ///< samples that a plan costs besides, be it short or long
 };
 
 class MomentPlan {
@@ -56,11 +57,14 @@ private:
     void find_gains(Mirror const& mirror, PlaceField const& field, MomentBudget const& budget);
     void add_gains(Mirror const& mirror, PlaceField const& field, std::uint32_t index, MomentBudget const& budget);
     void sum_nodes(PlaceField const& field, MomentBudget const& budget);
+    void choose_horizon(PlaceField const& field, MomentBudget const& budget);
     double solve(PlaceField const& field, MomentBudget const& budget, float price);
     void collect(PlaceField const& field, int depth, std::uint32_t index, std::vector<RatedPatch>& rated) const;
 
     float price_ = 0;
+    float gain_ = 0; ///< of what was chosen last
     float mean_detail_ = 0;
+    float stale_ = 0, wrong_ = 0; ///< squared error summed over pixels: by changed looks, all of it
     std::vector<Leaf> leaves_; ///< of the places
     std::vector<std::vector<Node>> nodes_; ///< by depth, above the places
 };

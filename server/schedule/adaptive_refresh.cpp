@@ -25,6 +25,8 @@ constexpr double most_unseen = 0.5;
 constexpr float enough = 5e-5f;
 /// The samples of so many seconds are planned together: what they cannot do at their price can wait.
 constexpr double planned_seconds = 0.2;
+/// A plan shows so many seconds late, besides what it takes to render.
+constexpr double plan_overhead = 0.05;
 /// A scene time that jumps by more than this over what has passed has been set.
 constexpr double most_time_step = 0.5;
 
@@ -39,6 +41,16 @@ int visibility_spacing(Viewport viewport, double samples) {
     constexpr int most = 16;
     int spacing = cell_side;
     while (spacing < most && viewport.width / spacing * (viewport.height / spacing) > share * samples) {
+        spacing *= 2;
+    }
+    return spacing;
+}
+
+/// Of places at which looks are checked, pixels: as many as may be for so many samples.
+int probe_spacing(Viewport viewport, double samples) {
+    constexpr int least = 16, most = 64;
+    int spacing = least;
+    while (spacing < most && probe_cost * (viewport.width / spacing) * (viewport.height / spacing) > samples) {
         spacing *= 2;
     }
     return spacing;
@@ -286,19 +298,29 @@ void AdaptiveRefresh::plan_patches(RefreshInput const& input, double samples) {
     }
 }
 
+/// Finds what the viewer shows of a moment that begins, and asks where that is not true. Returns what that costs.
+double AdaptiveRefresh::look_at_moment(RefreshInput const& input, RefreshPlan& plan) {
+    looked_ = input.moment->begun;
+    mirror_.look({plan.moment.rays, plan.moment.scene_time}, *plan.moment.motions);
+    double const samples = input.samples_per_second * planned_seconds;
+    plan.visibility = cell_grid(cell_side, visibility_spacing(plan.viewport, samples), ++looks_taken_);
+    if (scene_moves_) {
+        plan.probe_spacing = probe_spacing(plan.viewport, input.limits.probe_share * samples);
+        mirror_.list_probes(cell_grid(cell_side, plan.probe_spacing, looks_taken_), plan.probes);
+    }
+    return visibility_cost * plan.visibility->columns(plan.viewport) * plan.visibility->rows(plan.viewport) +
+           probe_cost * static_cast<double>(plan.probes.size());
+}
+
 /// Where what the viewer holds shows the moment worst.
 void AdaptiveRefresh::plan_moment(RefreshInput const& input, double samples, RefreshPlan& plan) {
     if (looked_ != input.moment->begun) {
-        mirror_.look({plan.moment.rays, plan.moment.scene_time}, *plan.moment.motions);
-        looked_ = input.moment->begun;
-        plan.visibility = cell_grid(
-            cell_side, visibility_spacing(plan.viewport, planned_seconds * input.samples_per_second), ++looks_taken_);
-        samples -= visibility_cost * plan.visibility->columns(plan.viewport) * plan.visibility->rows(plan.viewport);
+        samples -= look_at_moment(input, plan);
     }
     is_checked_ = false;
     find_costs(input);
     MomentBudget const budget{std::max(input.samples_per_second * planned_seconds, samples), input.limits, costs_,
-                              input.moment->begun};
+                              input.moment->begun, input.samples_per_second * plan_overhead};
     moment_plan_.find(mirror_, field_, budget, rated_);
     double const most = std::max(input.rendered_per_second, input.samples_per_second) / input.samples_per_second;
     select_patches(samples, most * samples, rated_);
@@ -457,6 +479,9 @@ std::vector<std::uint8_t> const& AdaptiveRefresh::learn(RefreshPlan const& plan,
         send_.assign(framelets.size(), 1);
         return send_;
     }
+    if (plan.is_mirrored && mirror_.looks_at({plan.moment.rays, plan.moment.scene_time})) {
+        is_checked_ = mirror_.check_looks(plan.probes, probe_luma, plan.probe_spacing) || is_checked_;
+    }
     std::size_t probe = 0;
     for (std::uint32_t const index : plan.probed) {
         Place& place = field_[index];
@@ -508,7 +533,7 @@ void AdaptiveRefresh::note_sent(RefreshPlan const& plan, std::uint64_t batch,
 
 void AdaptiveRefresh::note_visibility(RefreshPlan const& plan, std::span<float const> inverse_depth) {
     if (plan.viewport == mirror_.viewport() && mirror_.looks_at({plan.moment.rays, plan.moment.scene_time})) {
-        is_checked_ = mirror_.check(*plan.visibility, inverse_depth);
+        is_checked_ = mirror_.check(*plan.visibility, inverse_depth) || is_checked_;
     }
 }
 

@@ -61,6 +61,7 @@ struct RefreshPlan {
     std::optional<PlaceGrid> visibility;
     std::vector<Probe> probes; ///< of the probed places, in order
     std::vector<std::uint32_t> probed; ///< places
+    int probe_spacing = 0; ///< where probes are not of places: pixels from one to the next
 
     bool is_empty() const { return tiles.empty() && probes.empty() && !visibility; }
     /// Through the samples of the tiles.
@@ -122,6 +123,7 @@ private:
     double plan_inspections(RefreshInput const& input);
     void find_costs(RefreshInput const& input);
     void plan_patches(RefreshInput const& input, double samples);
+    double look_at_moment(RefreshInput const& input, RefreshPlan& plan);
     void plan_moment(RefreshInput const& input, double samples, RefreshPlan& plan);
     void plan_probes(double samples, RefreshPlan& plan);
     void plan_refinement(double samples);

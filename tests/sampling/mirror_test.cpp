@@ -279,6 +279,40 @@ TEST(Mirror, SomethingNearerThanWhatShowsIsWrongUntilItComes) {
     EXPECT_EQ(wrong(), 0) << "that is what it looks like now";
 }
 
+TEST(Mirror, WhatLooksOtherwiseIsStaleUntilItComes) {
+    MirrorView const later = view_at(Vec3(0), 1);
+    PlaceGrid const grid = cell_grid(cell_side, 16, 0);
+    auto const lamp = [](float x, float) { return Seen{10, x < 64 ? 0.9f : 0.5f}; };
+    Mirror mirror(viewport);
+    mirror.look(view_at(Vec3(0)), no_motions);
+    mirror.add(view_at(Vec3(0)).rays, no_motions, render_pieces(plane, plane.pixel_depth(), wall));
+    std::vector<Probe> probes;
+    mirror.list_probes(grid, probes);
+    EXPECT_TRUE(probes.empty()) << "what is of the moment needs none";
+    mirror.look(later, no_motions);
+    mirror.list_probes(grid, probes);
+    ASSERT_EQ(probes.size(), std::size_t{viewport.width / 16 * (viewport.height / 16)});
+    std::vector<float> luma;
+    for (Probe const& probe : probes) {
+        EXPECT_NEAR(probe.luma, 0.5f, 4e-3f);
+        luma.push_back(probe.luma);
+    }
+    EXPECT_FALSE(mirror.check_looks(probes, luma, grid.spacing));
+    for (std::size_t i = 0; i < probes.size(); ++i) {
+        luma[i] = lamp(probes[i].place.x, probes[i].place.y).luma;
+    }
+    EXPECT_TRUE(mirror.check_looks(probes, luma, grid.spacing));
+    for (int y = 0; y < viewport.height - 16; y += cell_side) {
+        for (int x = 0; x < viewport.width; x += cell_side) {
+            if (x < 48 || x >= 72) { // the squares of probes on both sides of the change
+                EXPECT_NEAR(mirror.cell(x / cell_side, y / cell_side).stale, x < 64 ? 0.16f : 0, 4e-3f);
+            }
+        }
+    }
+    mirror.add(later.rays, no_motions, render_pieces(plane, plane.pixel_depth(), lamp, 2, 1));
+    EXPECT_TRUE(std::ranges::all_of(mirror.cells(), [](Cell const& cell) { return cell.stale == 0; }));
+}
+
 TEST(PlaceGrid, EveryCellHasItsTurn) {
     for (int const spacing : {4, 8, 16}) {
         std::set<std::pair<float, float>> firsts;

@@ -89,6 +89,34 @@ TEST(MomentPlan, TheBusyHalfGetsTheFinerSamples) {
     }
 }
 
+TEST(MomentPlan, WhatHasChangedIsRenderedCoarselyFirst) {
+    Planner planner;
+    constexpr double samples = viewport.width * viewport.height;
+    planner.mirror.look(view_at(0), no_motions);
+    planner.find(samples);
+    planner.render(view_at(0), half_busy);
+    MirrorView later = view_at(0);
+    later.scene_time = 1;
+    planner.mirror.look(later, no_motions);
+    double const refined = planner.find(samples);
+    std::vector<Probe> probes;
+    planner.mirror.list_probes(cell_grid(cell_side, 16, 0), probes);
+    planner.mirror.check_looks(probes, std::vector<float>(probes.size(), 0.0f), 16); // the light is out
+    planner.plan.find(planner.mirror, planner.field, {samples, {}, {}, 0, 0.25 * samples}, planner.rated);
+    double cost = 0;
+    for (RatedPatch const& entry : planner.rated) {
+        cost += entry.cost;
+    }
+    EXPECT_GT(cost, 0);
+    EXPECT_LT(cost, 0.3 * samples) << refined;
+    std::size_t pixels = 0;
+    for (Tile const tile : planner.tiles()) {
+        PixelRect const rect = plane.tile_rect(tile);
+        pixels += static_cast<std::size_t>(rect.width() * rect.height());
+    }
+    EXPECT_GT(static_cast<double>(pixels), 0.9 * samples) << "all of it";
+}
+
 TEST(MomentPlan, NothingIsPlannedTwiceAndInTheEndNothing) {
     Planner planner;
     std::set<Tile> rendered;
