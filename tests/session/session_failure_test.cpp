@@ -115,7 +115,7 @@ TEST_P(SessionFailure, WhileABatchIsPlanned) {
 
 TEST_P(SessionFailure, WhileABatchIsEncoded) {
     RunningServer const server({}, moving_scene());
-    bench::LinkEmulator const link(server.port(), {.bits_per_second = 1.5e6, .delay_seconds = 0.002});
+    bench::LinkEmulator const link(server.port(), {.bits_per_second = 0.4e6, .delay_seconds = 0.002});
     RawViewer small(server.port()), large(link.port());
     small.send(camera_update(1, {64, 48}));
     ASSERT_TRUE(small.watch(is_batch));
