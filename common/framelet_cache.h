@@ -150,7 +150,7 @@ private:
         std::size_t square_columns = 0;
         std::size_t first_square = 0;
     };
-    using Chunk = std::array<CachedFramelet, 256>;
+    using Chunk = std::array<CachedFramelet, 64>;
 
     Level const& level(int depth) const { return levels_[static_cast<std::size_t>(depth - plane_.min_depth())]; }
     Node const& node(int depth, int column, int row) const {

@@ -19,7 +19,7 @@ namespace framelet {
 class FrameletPool {
 public:
     /// Where things move there are some ten moments a second; a picture shows more than a second of them.
-    static constexpr std::size_t most_moments = 8;
+    static constexpr std::size_t most_moments = 16;
     /// What came so lately has hardly been shown.
     static constexpr std::uint64_t untried_moments = 3;
     /// Of what lies on no plane only so many moments show: what more of them would cost to paint shows hardly.

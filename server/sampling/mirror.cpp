@@ -30,6 +30,8 @@ constexpr float same_surface = 0.02f;
 constexpr float bend_share = 0.3f, rounding = 4e-6f;
 /// Beyond so many standard deviations it is a change, or where all probes around it together are.
 constexpr float doubt = 4;
+/// What is loose and has stopped showing is missed for so many moments more.
+constexpr std::uint64_t missed_moments = 3;
 constexpr int cell_pixels = cell_side * cell_side;
 /// A piece that covers less of a cell than this is not what it shows, where there is another.
 constexpr int least_share = cell_pixels / 2;
@@ -98,6 +100,11 @@ void Mirror::look(MirrorView const& view, BodyMotions const& motions) {
     erase_forgotten();
     for (Moment& moment : moments_) {
         place(moment, 0, motions);
+    }
+    for (Moment const& moment : moments_) {
+        if (!shows_loose(moment)) {
+            miss(moment, motions);
+        }
     }
 }
 
@@ -224,7 +231,7 @@ void Mirror::forget(std::span<SentTile const> framelets) {
 
 void Mirror::erase_forgotten() {
     for (Moment& moment : moments_) {
-        bool const loose = shows_loose(moment);
+        bool const loose = shows_loose(moment) || is_missed(moment);
         std::uint64_t last = 0; // pieces of a framelet follow each other
         bool is_gone = false;
         std::erase_if(moment.pieces, [&](Piece const& piece) {
@@ -383,6 +390,39 @@ Mirror::TurnedBody const& Mirror::turn_to(Moment const& moment, Piece const& pie
 bool Mirror::shows_loose(Moment const& moment) const {
     return &moment == &moments_[base_] ||
            moment.number + FrameletPool::recent_moments > last_number_ + (awaits_moment_ ? 1 : 0);
+}
+
+/// What is loose in it may be behind nothing that shows, though it shows no longer.
+bool Mirror::is_missed(Moment const& moment) const {
+    return moment.number + FrameletPool::recent_moments + missed_moments > last_number_;
+}
+
+/// Where what is loose in a moment no longer shows, and only what is farther and was rendered before it does, the
+/// viewer shows that through it: crowns are full of such holes, and rays that are not shaded tell little of leaves.
+void Mirror::miss(Moment const& moment, BodyMotions const& motions) {
+    ++stamp_;
+    for (std::size_t i = 0; i < moment.pieces.size(); ++i) {
+        Piece const& piece = moment.pieces[i];
+        if (i > 0 && piece.scene_time != moment.pieces[i - 1].scene_time) {
+            ++stamp_; // bodies were elsewhere
+        }
+        Placed placed;
+        if (!piece.is_loose || !place(piece, turn_to(moment, piece, motions), placed)) {
+            continue;
+        }
+        Vec2 const low = glm::max(placed.at - placed.half_side, Vec2(0)) / float{cell_side};
+        Vec2 const high = (placed.at + placed.half_side) / float{cell_side};
+        // Cells of which it covers the middle.
+        for (int row = static_cast<int>(low.y + 0.5f); row < std::min(static_cast<int>(high.y + 0.5f), rows_); ++row) {
+            for (int column = static_cast<int>(low.x + 0.5f);
+                 column < std::min(static_cast<int>(high.x + 0.5f), columns_); ++column) {
+                Cell& cell = cells_[index_of(column, row)];
+                bool const was_before = cell.is_shown() && moments_[cell.moment].number < moment.number;
+                cell.is_wrong =
+                    cell.is_wrong || (was_before && cell.inverse_depth < placed.inverse_depth * (1 - nearer_share));
+            }
+        }
+    }
 }
 
 /// Of a moment, from piece `first` on.

@@ -143,6 +143,8 @@ private:
     void show(Moment const& moment, std::size_t index, unsigned mask, int column, int row);
     bool is_better(Moment const& moment, Placed const& placed, float inverse_depth, int share, Cell const& cell) const;
     bool shows_loose(Moment const& moment) const;
+    bool is_missed(Moment const& moment) const;
+    void miss(Moment const& moment, BodyMotions const& motions);
     struct Difference { ///< of luma: of one probe, or summed over some
         float luma = 0;
         float chance = 0; ///< its variance where nothing has changed; 0: not known

@@ -105,7 +105,7 @@ TEST(StandingCamera, WhatMovedWhenTheBaseBeganGoesAsOtherMomentsDo) {
     std::vector<SentTile> gone;
     for (std::uint64_t i = 1; i <= FrameletPool::most_moments; ++i) {
         EXPECT_TRUE(gone.empty());
-        pool.insert(rendered(scene, 1 + i, 0.01 * static_cast<double>(i), {moving.front()}));
+        pool.insert(rendered(scene, 1 + i, 0.005 * static_cast<double>(i), {moving.front()}));
         pool.take_let_go(gone);
     }
     EXPECT_EQ(std::ranges::count(gone, 1U, &SentTile::batch), static_cast<std::ptrdiff_t>(moving.size()));
