@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/error.h"
+#include "common/scene_clock.h"
 
 namespace framelet {
 
@@ -77,12 +78,24 @@ Step FrameletStream::plan(Turn const& turn, PosedScene& scene) {
     return has_room(turn.now) ? plan_batch(turn, present, scene) : Step::wait;
 }
 
-Step FrameletStream::plan_batch(Turn const& turn, ViewState const& present, PosedScene const& scene) {
+/// The scene's time when a moment that begins now will be over, if its clock goes on as it did. That is what is
+/// rendered: most of it is shown about then, and lamps and cuts are there when they come.
+SceneTime FrameletStream::end_of_moment(Turn const& turn) {
+    constexpr double least_passed = 0.005; // seconds, to tell the clock's speed
+    if (double const passed = turn.now - clocked_.now; passed >= least_passed) {
+        clock_speed_ = (turn.present - clocked_.present) / passed;
+        clocked_ = turn;
+    }
+    bool const runs = std::abs(clock_speed_) <= 1.1 * double{max_clock_speed}; // else it was set
+    return runs ? std::max(turn.present + clock_speed_ * moment_seconds, 0.0) : turn.present;
+}
+
+Step FrameletStream::plan_batch(Turn const& turn, ViewState const& present, PosedScene& scene) {
     LinkState const link = link_.state();
     double const rendered = turn.samples_per_second;
     RefreshInput wanted;
     wanted.state = present;
-    wanted.moment = moments_.choose(present, turn.now, takes_shapes());
+    wanted.moment = moments_.choose(present, present_state(end_of_moment(turn), scene), turn.now, takes_shapes());
     bool const still = !wanted.moment && viewer_.refresh.is_still(present);
     wanted.now = turn.now;
     wanted.samples_per_second = options_.follows_link ? bounded_rate(link, rendered) : rendered;

@@ -56,7 +56,8 @@ private:
     ViewState present_state(SceneTime present, PosedScene& scene) const;
     int moving_camera(PosedScene const& scene) const;
     bool has_room(double now) const;
-    Step plan_batch(Turn const& turn, ViewState const& present, PosedScene const& scene);
+    SceneTime end_of_moment(Turn const& turn);
+    Step plan_batch(Turn const& turn, ViewState const& present, PosedScene& scene);
     void plan_exactly(ViewState const& present, PosedScene const& scene);
     BatchWork& free_work();
     void set_planned(BatchWork& work);
@@ -69,6 +70,8 @@ private:
     LinkEstimate link_;
     QualityChoice choice_;
     MomentChoice moments_;
+    Turn clocked_; ///< when the clock's speed was told last
+    double clock_speed_ = 0; ///< seconds of the scene a second
     ViewerKnowledge viewer_;
 
     std::array<BatchWork, 2> works_;

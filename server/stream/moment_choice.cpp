@@ -14,7 +14,8 @@ bool MomentChoice::goes_on(ViewState const& present, double now) const {
            held.view.camera.projection == present.view.camera.projection && held.exposure == present.exposure;
 }
 
-std::optional<HeldMoment> MomentChoice::choose(ViewState const& present, double now, bool viewer_moves_samples) {
+std::optional<HeldMoment> MomentChoice::choose(ViewState const& present, ViewState const& ahead, double now,
+                                               bool viewer_moves_samples) {
     bool const was_resting = now - changed_ > rest_seconds;
     if (!last_ || !same_picture(*last_, present)) {
         changed_ = now;
@@ -26,7 +27,7 @@ std::optional<HeldMoment> MomentChoice::choose(ViewState const& present, double 
         return std::nullopt;
     }
     if (was_resting || !goes_on(present, now)) {
-        held_ = HeldMoment{present, now};
+        held_ = HeldMoment{ahead, now};
     }
     return held_;
 }

@@ -17,8 +17,9 @@ class MomentChoice {
 public:
     /// The moment to render while things move; nothing where the present is: for a viewer that moves nothing, and at
     /// rest. Begins anew where the picture has another size, projection or exposure, or something begins to move.
-    /// `now`: seconds, steady.
-    std::optional<HeldMoment> choose(ViewState const& present, double now, bool viewer_moves_samples);
+    /// `ahead`: what will be to be seen when a moment that begins now is over. `now`: seconds, steady.
+    std::optional<HeldMoment> choose(ViewState const& present, ViewState const& ahead, double now,
+                                     bool viewer_moves_samples);
     /// The next choice begins a moment: the scene's clock was set.
     void begin_anew() { held_.reset(); }
 
