@@ -79,8 +79,8 @@ TEST(MomentChoice, IsOfWhatIsToBeSeenWhenItEnds) {
     MomentChoice moments;
     double const now = 10.2 * moment_seconds;
     EXPECT_EQ(moments.choose(state_at(1), state_at(2), now, true)->state.scene_time, 2);
-    EXPECT_EQ(moments.choose(state_at(1.05), state_at(2.05), now + 0.5 * moment_seconds, true)->state.scene_time, 2);
-    EXPECT_EQ(moments.choose(state_at(1.1), state_at(2.1), now + 1.1 * moment_seconds, true)->state.scene_time, 2.1);
+    EXPECT_EQ(moments.choose(state_at(1.05), state_at(2.05), now + 0.04, true)->state.scene_time, 2);
+    EXPECT_EQ(moments.choose(state_at(1.1), state_at(2.1), now + 0.085, true)->state.scene_time, 2.1);
 }
 
 } // namespace
