@@ -21,9 +21,6 @@ constexpr float share_of_around = 0.25f, share_of_usual = 0.05f;
 constexpr float least_change = 1e-5f;
 /// What is seen in a mirror by a camera that moves.
 constexpr float restless_change = 0.02f;
-/// Squared difference by which pieces of the same looks may differ: of the detail that lies between their samples, and
-/// of what they show besides their slope, a share of the detail as large as they are; display steps.
-constexpr float bend_share = 0.3f, rounding = 4e-6f;
 /// Beyond twice what is expected by chance it is a change.
 constexpr float doubt = 2;
 
@@ -94,12 +91,12 @@ FadingCode Looks::learn(Mirror const& mirror, std::span<Piece> pieces, SceneTime
                     continue;
                 }
                 scale = mirror.scale_of(cell);
-                float const shown = old.luma + glm::dot(old.slope, at - mirror.place_of(cell)) / scale;
+                float const shown = mirror.luma_of(cell, at);
                 float const seen = piece.luma + glm::dot(piece.slope, at - piece.centre);
                 squares += (seen - shown) * (seen - shown);
-                float const side = std::max({piece.half_side.x, piece.half_side.y, scale * old.half_side.x});
+                float const side = 2 * std::max({piece.half_side.x, piece.half_side.y, scale * old.half_side.x});
                 float const blur = piece.spacing / samples_of(piece) + scale * old.spacing / samples_of(old);
-                chance += std::max(piece.detail, old.detail / scale) * (blur + bend_share * 2 * side) + rounding;
+                chance += chance_difference(std::max(piece.detail, old.detail / scale), blur, side);
                 age += static_cast<float>(std::abs(scene_time - mirror.time_of(cell)));
                 before += old.change;
                 ++compared;

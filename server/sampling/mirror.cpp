@@ -25,9 +25,6 @@ constexpr float nearer_share = 0.25f;
 constexpr float thinnest = 1e-4f;
 /// Inverse depths that differ by less than this share belong to one surface, besides by what pieces may be off.
 constexpr float same_surface = 0.02f;
-/// Of a probe: by how much of the detail it may differ from a slope over each pixel of the piece, squared luma, as
-/// `Looks` has it.
-constexpr float bend_share = 0.3f, rounding = 4e-6f;
 /// Beyond so many standard deviations it is a change, or where all probes around it together are.
 constexpr float doubt = 4;
 /// What is loose and has stopped showing is missed for so many moments more.
@@ -102,7 +99,7 @@ void Mirror::look(MirrorView const& view, BodyMotions const& motions) {
         place(moment, 0, motions);
     }
     for (Moment const& moment : moments_) {
-        if (!shows_loose(moment)) {
+        if (!shows_loose(moment) && is_missed(moment)) {
             miss(moment, motions);
         }
     }
@@ -182,11 +179,10 @@ Mirror::Difference Mirror::compare(Probe const& probe, float luma) const {
     }
     Piece const& piece = piece_of(shown);
     float const scale = scale_of(shown);
-    float const side = std::max(piece.half_side.x, piece.half_side.y);
-    return {luma - probe.luma, piece.detail / scale * (1 + scale * (piece.spacing + bend_share * 2 * side)) + rounding};
+    float const side = 2 * scale * std::max(piece.half_side.x, piece.half_side.y);
+    return {luma - probe.luma, chance_difference(piece.detail / scale, probe.spacing + scale * piece.spacing, side)};
 }
 
-/// Display-encoded, that a cell shows at a place of the picture.
 float Mirror::luma_of(Cell const& cell, Vec2 at) const {
     Piece const& piece = piece_of(cell);
     return piece.luma + glm::dot(piece.slope, at - place_of(cell)) / scale_of(cell);

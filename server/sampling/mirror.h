@@ -62,6 +62,8 @@ public:
     /// rendered; of when it is.
     Vec2 place_of(Cell const& cell) const { return moments_[cell.moment].placed[cell.piece].at; }
     float scale_of(Cell const& cell) const { return moments_[cell.moment].placed[cell.piece].scale; }
+    /// The luma that a cell shows at a place of its picture, display-encoded.
+    float luma_of(Cell const& cell, Vec2 at) const;
     SceneTime time_of(Cell const& cell) const { return piece_of(cell).scene_time; }
     /// True where a new framelet takes the place of what shows, be it better or not: it is of the base of the camera
     /// that is looked through.
@@ -153,7 +155,6 @@ private:
     Difference compare(Probe const& probe, float luma) const;
     template <class Mark>
     void mark(Vec2 at, int spacing, Mark mark);
-    float luma_of(Cell const& cell, Vec2 at) const;
     bool shows_as_near(int column, int row, float inverse_depth) const;
 
     Viewport viewport_;

@@ -38,6 +38,14 @@ struct Piece {
 /// Inverse depths of one surface differ by less than this share of the greater one.
 inline constexpr float surface_tolerance = 0.05f;
 
+/// The squared luma by which two looks at one surface may differ by chance: of its detail what lies between the samples
+/// of both (`blur`: the sum over both of their spacing, for each sample that is averaged), a share that grows with the
+/// side of the piece of what is no slope; display steps. `detail` as of a piece, lengths in pixels of the same picture.
+inline float chance_difference(float detail, float blur, float side) {
+    constexpr float bend_share = 0.3f, rounding = 4e-6f;
+    return detail * (blur + bend_share * side) + rounding;
+}
+
 /// Appends the pieces of a framelet of a scene time and a batch: for each layer, squares of 4 .. 16 pixels or what of
 /// them lies on it; what is loose in a square is split in a near and a far part. `fading` and `change` stay 0. All
 /// numbers are finite where those of the shape are.

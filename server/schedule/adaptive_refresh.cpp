@@ -13,10 +13,6 @@
 namespace framelet {
 namespace {
 
-/// A probe's rays go together with none of their neighbours.
-constexpr double probe_cost = 2;
-/// A ray that is not shaded, of a sample.
-constexpr double visibility_cost = 0.25;
 /// A place is probed again after so many seconds, sooner beside something that moves.
 constexpr double probe_period = 0.25;
 /// What should have been refreshed by then, and has not, is probed after so many.
@@ -33,27 +29,6 @@ constexpr double most_time_step = 0.5;
 bool is_cut(ViewState const& a, ViewState const& b, double seconds) {
     return a.exposure != b.exposure || std::abs(b.scene_time - a.scene_time) > seconds * 4 + most_time_step ||
            a.view.camera.projection != b.view.camera.projection;
-}
-
-/// Of places at which visibility is checked, pixels: as many as may be for so many samples of a plan.
-int visibility_spacing(Viewport viewport, double samples) {
-    constexpr double share = 0.08;
-    constexpr int most = 16;
-    int spacing = cell_side;
-    while (spacing < most && viewport.width / spacing * (viewport.height / spacing) > share * samples) {
-        spacing *= 2;
-    }
-    return spacing;
-}
-
-/// Of places at which looks are checked, pixels: as many as may be for so many samples.
-int probe_spacing(Viewport viewport, double samples) {
-    constexpr int least = 16, most = 64;
-    int spacing = least;
-    while (spacing < most && probe_cost * (viewport.width / spacing) * (viewport.height / spacing) > samples) {
-        spacing *= 2;
-    }
-    return spacing;
 }
 
 /// `still`: nothing moves, so that a large batch costs no freshness.
@@ -108,9 +83,7 @@ void AdaptiveRefresh::advance(RefreshInput const& input) {
     if (!seen_ || seen_->view.viewport != state.view.viewport) {
         field_ = PlaceField(ImagePlane(state.view.viewport));
         history_.clear();
-        mirror_ = Mirror(state.view.viewport);
-        looks_ = Looks(state.view.viewport);
-        looked_ = never;
+        moments_ = MomentRefresh(state.view.viewport);
         price_ = 1e-6f;
         still_since_ = input.now;
         scene_moves_ = false;
@@ -121,8 +94,7 @@ void AdaptiveRefresh::advance(RefreshInput const& input) {
         }
         scene_moves_ = seen_->scene_time != state.scene_time;
         if (seen_->exposure != state.exposure) {
-            mirror_ = Mirror(state.view.viewport);
-            looked_ = never;
+            moments_ = MomentRefresh(state.view.viewport);
         }
         if (is_cut(*seen_, state, seconds)) {
             invalidate(field_);
@@ -141,7 +113,7 @@ bool AdaptiveRefresh::goes_on(RefreshInput const& input, bool mirrored) const {
     double const seconds = input.now - planned_;
     return next_ < cycle_.size() && seconds < static_cast<double>(input.cycle_seconds) &&
            (rays_per_sample_ == single_ray || same_picture(*seen_, input.state)) &&
-           (!mirrored || (looked_ == input.moment->begun && !is_checked_)) &&
+           (!mirrored || moments_.is_planned(input.moment->begun)) &&
            seen_->view.viewport == input.state.view.viewport && !is_cut(*seen_, input.state, seconds);
 }
 
@@ -152,7 +124,7 @@ void AdaptiveRefresh::plan(RefreshInput const& input, RefreshPlan& plan) {
     plan.tiles.clear();
     plan.probes.clear();
     plan.probed.clear();
-    plan.visibility.reset();
+    plan.checks.reset();
     HeldMoment const moment = input.moment.value_or(HeldMoment{input.state, input.now});
     NumberedView const& view = moment.state.view;
     plan.now = input.now;
@@ -298,30 +270,20 @@ void AdaptiveRefresh::plan_patches(RefreshInput const& input, double samples) {
     }
 }
 
-/// Finds what the viewer shows of a moment that begins, and asks where that is not true. Returns what that costs.
-double AdaptiveRefresh::look_at_moment(RefreshInput const& input, RefreshPlan& plan) {
-    looked_ = input.moment->begun;
-    mirror_.look({plan.moment.rays, plan.moment.scene_time}, *plan.moment.motions);
-    double const samples = input.samples_per_second * planned_seconds;
-    plan.visibility = cell_grid(cell_side, visibility_spacing(plan.viewport, samples), ++looks_taken_);
-    if (scene_moves_) {
-        plan.probe_spacing = probe_spacing(plan.viewport, input.limits.probe_share * samples);
-        mirror_.list_probes(cell_grid(cell_side, plan.probe_spacing, looks_taken_), plan.probes);
-    }
-    return visibility_cost * plan.visibility->columns(plan.viewport) * plan.visibility->rows(plan.viewport) +
-           probe_cost * static_cast<double>(plan.probes.size());
-}
-
 /// Where what the viewer holds shows the moment worst.
 void AdaptiveRefresh::plan_moment(RefreshInput const& input, double samples, RefreshPlan& plan) {
-    if (looked_ != input.moment->begun) {
-        samples -= look_at_moment(input, plan);
+    double const planned = input.samples_per_second * planned_seconds;
+    if (!moments_.looks_at(input.moment->begun)) {
+        plan.checks = moments_.look(plan.moment, input.moment->begun, planned,
+                                    scene_moves_ ? input.limits.probe_share * planned : 0, plan.probes);
+        samples -= visibility_cost * plan.checks->visibility.columns(plan.viewport) *
+                       plan.checks->visibility.rows(plan.viewport) +
+                   probe_cost * static_cast<double>(plan.probes.size());
     }
-    is_checked_ = false;
     find_costs(input);
-    MomentBudget const budget{std::max(input.samples_per_second * planned_seconds, samples), input.limits, costs_,
-                              input.moment->begun, input.samples_per_second * plan_overhead};
-    moment_plan_.find(mirror_, field_, budget, rated_);
+    MomentBudget const budget{std::max(planned, samples), input.limits, costs_, input.moment->begun,
+                              input.samples_per_second * plan_overhead};
+    moments_.plan(field_, budget, rated_);
     double const most = std::max(input.rendered_per_second, input.samples_per_second) / input.samples_per_second;
     select_patches(samples, most * samples, rated_);
     if (!costs_.empty()) {
@@ -479,8 +441,8 @@ std::vector<std::uint8_t> const& AdaptiveRefresh::learn(RefreshPlan const& plan,
         send_.assign(framelets.size(), 1);
         return send_;
     }
-    if (plan.is_mirrored && mirror_.looks_at({plan.moment.rays, plan.moment.scene_time})) {
-        is_checked_ = mirror_.check_looks(plan.probes, probe_luma, plan.probe_spacing) || is_checked_;
+    if (plan.checks && plan.checks->probe_spacing > 0) {
+        moments_.note_looks(plan.moment, plan.probes, probe_luma, plan.checks->probe_spacing);
     }
     std::size_t probe = 0;
     for (std::uint32_t const index : plan.probed) {
@@ -512,28 +474,14 @@ std::vector<std::uint8_t> const& AdaptiveRefresh::learn(RefreshPlan const& plan,
 void AdaptiveRefresh::note_sent(RefreshPlan const& plan, std::uint64_t batch,
                                 std::span<DisplayFramelet const> framelets, std::span<Framelet const> rendered,
                                 std::span<std::uint8_t const> sent, std::span<FrameletShape> shapes) {
-    FRAMELET_CHECK(framelets.size() == sent.size() && rendered.size() == sent.size());
-    if (plan.moment.motions == nullptr || plan.viewport != field_.plane().viewport()) {
-        return;
+    if (plan.moment.motions != nullptr && plan.viewport == field_.plane().viewport()) {
+        moments_.note_sent(plan.moment, batch, framelets, rendered, sent, shapes, plan.is_mirrored);
     }
-    MirrorView const view{plan.moment.rays, plan.moment.scene_time};
-    bool const comparable = plan.is_mirrored && mirror_.looks_at(view);
-    pieces_.clear();
-    auto shape = shapes.begin();
-    for (std::size_t i = 0; i < framelets.size(); ++i) {
-        if (sent[i] != 0) {
-            std::size_t const first = pieces_.size();
-            cut_pieces(rendered[i], framelets[i], *shape, field_.plane(), view.scene_time, batch, pieces_);
-            shape->fading = looks_.learn(mirror_, std::span(pieces_).subspan(first), view.scene_time, comparable);
-            ++shape;
-        }
-    }
-    mirror_.add(view.rays, *plan.moment.motions, pieces_);
 }
 
 void AdaptiveRefresh::note_visibility(RefreshPlan const& plan, std::span<float const> inverse_depth) {
-    if (plan.viewport == mirror_.viewport() && mirror_.looks_at({plan.moment.rays, plan.moment.scene_time})) {
-        is_checked_ = mirror_.check(*plan.visibility, inverse_depth) || is_checked_;
+    if (plan.viewport == field_.plane().viewport()) {
+        moments_.note_visibility(plan.moment, plan.checks->visibility, inverse_depth);
     }
 }
 

@@ -7,10 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "common/place_grid.h"
 #include "common/rays_per_sample.h"
-#include "server/sampling/looks.h"
-#include "server/sampling/moment_plan.h"
+#include "server/sampling/moment_refresh.h"
 #include "server/schedule/patch_selection.h"
 #include "server/schedule/place_learning.h"
 #include "server/schedule/view_state.h"
@@ -58,12 +56,11 @@ struct RefreshPlan {
     std::vector<Tile> tiles; ///< of the patches, in order
     int rays_per_sample = single_ray; ///< of the tiles
     /// Where what the moment shows is to be compared with what the viewer would.
-    std::optional<PlaceGrid> visibility;
+    std::optional<MomentChecks> checks;
     std::vector<Probe> probes; ///< of the probed places, in order
     std::vector<std::uint32_t> probed; ///< places
-    int probe_spacing = 0; ///< where probes are not of places: pixels from one to the next
 
-    bool is_empty() const { return tiles.empty() && probes.empty() && !visibility; }
+    bool is_empty() const { return tiles.empty() && probes.empty() && !checks; }
     /// Through the samples of the tiles.
     std::size_t ray_count() const {
         return tiles.size() * framelet_samples * static_cast<std::size_t>(rays_per_sample);
@@ -98,12 +95,12 @@ public:
     /// / metres, row by row; < 0: not known.
     void note_visibility(RefreshPlan const& plan, std::span<float const> inverse_depth);
     /// The viewer no longer holds these.
-    void forget(std::span<SentTile const> framelets) { mirror_.forget(framelets); }
+    void forget(std::span<SentTile const> framelets) { moments_.forget(framelets); }
     /// The viewer is told that it holds all of the picture.
-    void settle() { mirror_.settle(); }
+    void settle() { moments_.settle(); }
 
     // To look at it.
-    Mirror const& mirror() const { return mirror_; }
+    Mirror const& mirror() const { return moments_.mirror(); }
     PlaceField const& field() const { return field_; }
     Choices const& choices() const { return choices_; }
     float price() const { return price_; }
@@ -123,7 +120,6 @@ private:
     double plan_inspections(RefreshInput const& input);
     void find_costs(RefreshInput const& input);
     void plan_patches(RefreshInput const& input, double samples);
-    double look_at_moment(RefreshInput const& input, RefreshPlan& plan);
     void plan_moment(RefreshInput const& input, double samples, RefreshPlan& plan);
     void plan_probes(double samples, RefreshPlan& plan);
     void plan_refinement(double samples);
@@ -161,12 +157,7 @@ private:
     int rays_per_sample_ = single_ray; ///< of the cycle
     std::size_t next_ = 0; ///< of these
     std::vector<std::uint8_t> send_;
-    Mirror mirror_;
-    Looks looks_;
-    MomentPlan moment_plan_;
-    std::uint32_t looks_taken_ = 0;
-    bool is_checked_ = false; ///< more is known of the moment than when the cycle was planned
-    double looked_ = never; ///< when the moment began at which the mirror looks
+    MomentRefresh moments_;
 
     // Scratch.
     std::vector<float> due_errors_;
@@ -174,7 +165,6 @@ private:
     TilingScratch tiling_scratch_;
     std::vector<Patch> cut_;
     std::vector<RatedPatch> rated_;
-    std::vector<Piece> pieces_; ///< of a framelet
     std::vector<std::uint32_t> suspects_;
     std::vector<std::pair<float, std::uint32_t>> unresolved_; ///< error and index of places
     std::vector<std::uint8_t> active_; ///< of the places: whether it moves

@@ -93,13 +93,13 @@ void SessionLoop::run() {
 /// One turn for each; true when something was rendered or learnt.
 bool SessionLoop::give_turns(Sessions const& sessions, WallTime now) {
     forget_ended(sessions);
-    SceneTime const present = clock_.state(now).time;
+    ClockState const clock = clock_.state(now);
     waits_for_room_ = false;
     double const share = sessions.empty() ? 1 : 1 / static_cast<double>(sessions.size());
     bool worked = false;
     for (auto const& session : sessions) {
         bool const served =
-            contain(*session, [&] { worked |= give_turn(session, viewer_of(*session), present, share); });
+            contain(*session, [&] { worked |= give_turn(session, viewer_of(*session), clock, share); });
         if (!served) {
             drop_rendered(*session);
         }
@@ -121,11 +121,13 @@ SessionLoop::Viewer& SessionLoop::viewer_of(Session const& session) {
     return *viewer;
 }
 
-bool SessionLoop::give_turn(std::shared_ptr<Session> const& session, Viewer& viewer, SceneTime present, double share) {
+bool SessionLoop::give_turn(std::shared_ptr<Session> const& session, Viewer& viewer, ClockState const& clock,
+                            double share) {
     ViewerStream& stream = *viewer.stream;
     viewer.version = session->take_events(viewer.events);
     double const rate = rate_.samples_per_second > 0 ? rate_.samples_per_second : first_rate;
-    Turn const turn{seconds_of(std::chrono::steady_clock::now()), present, share * rate, plan_seconds_};
+    double const speed = clock.playing ? double{clock.speed} : 0;
+    Turn const turn{seconds_of(std::chrono::steady_clock::now()), clock.time, speed, share * rate, plan_seconds_};
     EventLog* const log = options_.event_log;
     for (StreamEvent const& event : viewer.events) {
         stream.take(event);

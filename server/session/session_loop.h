@@ -59,7 +59,7 @@ private:
     struct Pipeline;
 
     bool give_turns(Sessions const& sessions, WallTime now);
-    bool give_turn(std::shared_ptr<Session> const& session, Viewer& viewer, SceneTime present, double share);
+    bool give_turn(std::shared_ptr<Session> const& session, Viewer& viewer, ClockState const& clock, double share);
     Viewer& viewer_of(Session const& session);
     void note_rate(TurnFigures const& figures, double seconds);
     void start_finishing();

@@ -25,8 +25,8 @@ void BatchWork::render(PosedScene const& scene) {
                                           order.plan.rays_per_sample, fresh_.local(), rendered_[i], display_[i]),
                            std::memory_order_relaxed);
     });
-    if (order.plan.visibility) {
-        segments += render_visibility(scene.render_scene(), rays, view.viewport, *order.plan.visibility, visibility_);
+    if (order.plan.checks) {
+        segments += render_visibility(scene.render_scene(), rays, view.viewport, order.plan.checks->visibility, visibility_);
     }
     figures.segments = segments;
     figures.probe_segments =
@@ -34,7 +34,7 @@ void BatchWork::render(PosedScene const& scene) {
 }
 
 bool BatchWork::learn(PosedScene const& scene, ViewerKnowledge& viewer) {
-    if (order.plan.visibility) {
+    if (order.plan.checks) {
         viewer.refresh.note_visibility(order.plan, visibility_);
     }
     if (order.again) {

@@ -12,7 +12,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "numbers are copied as they are");
 
-constexpr char const* first_line = "framelet events 1";
+constexpr char const* first_line = "framelet events 2";
 
 enum Kind : std::uint8_t {
     viewer = 1,
@@ -125,7 +125,8 @@ void EventLog::add_event(std::uint64_t session, StreamEvent const& event) {
 
 void EventLog::add_turn(std::uint64_t session, Turn const& given, Step step) {
     Bytes content;
-    for (double const number : {given.now, given.present, given.samples_per_second, given.plan_seconds}) {
+    for (double const number :
+         {given.now, given.present, given.clock_speed, given.samples_per_second, given.plan_seconds}) {
         put(content, number);
     }
     put(content, step);
@@ -204,7 +205,8 @@ std::optional<LogRecord> EventLogReader::next() {
         });
     case turn: {
         Turn given;
-        for (double* const number : {&given.now, &given.present, &given.samples_per_second, &given.plan_seconds}) {
+        for (double* const number :
+             {&given.now, &given.present, &given.clock_speed, &given.samples_per_second, &given.plan_seconds}) {
             *number = content.take<double>();
         }
         return LogRecord{session, TurnGiven{given, static_cast<Step>(content.take<std::uint8_t>())}};

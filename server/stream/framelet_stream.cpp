@@ -31,12 +31,12 @@ void FrameletStream::take(StreamEvent const& event) {
     } else if (auto const* const sent = std::get_if<BatchSent>(&event.what)) {
         link_.sent(sent->batch, event.seconds, static_cast<double>(sent->bytes));
     } else {
-        moments_.begin_anew();
+        moments_.forget();
     }
 }
 
-ViewState FrameletStream::present_state(SceneTime present, PosedScene& scene) const {
-    SceneTime const time = scene.is_animated() ? present : 0;
+ViewState FrameletStream::state_at(SceneTime clock, PosedScene& scene) const {
+    SceneTime const time = scene.is_animated() ? clock : 0;
     NumberedView view = camera_->view;
     int const scene_camera = camera_->scene_camera;
     if (scene_camera >= 0 && scene_camera < static_cast<int>(scene.scene().cameras.size())) {
@@ -59,7 +59,7 @@ Step FrameletStream::plan(Turn const& turn, PosedScene& scene) {
     if (!camera_) {
         return Step::nothing;
     }
-    ViewState const present = present_state(turn.present, scene);
+    ViewState const present = state_at(turn.present, scene);
     if (viewer_.refresh.is_complete(present)) {
         if (planned_ != nullptr) {
             return Step::finish;
@@ -78,16 +78,14 @@ Step FrameletStream::plan(Turn const& turn, PosedScene& scene) {
     return has_room(turn.now) ? plan_batch(turn, present, scene) : Step::wait;
 }
 
-/// The scene's time when a moment that begins now will be over, if its clock goes on as it did. That is what is
-/// rendered: most of it is shown about then, and lamps and cuts are there when they come.
-SceneTime FrameletStream::end_of_moment(Turn const& turn) {
-    constexpr double least_passed = 0.005; // seconds, to tell the clock's speed
-    if (double const passed = turn.now - clocked_.now; passed >= least_passed) {
-        clock_speed_ = (turn.present - clocked_.present) / passed;
-        clocked_ = turn;
+/// A moment is of what is to be seen when it ends, if the scene's clock goes on as it does: most of it is shown about
+/// then, and lamps and cuts are there when they come.
+std::optional<HeldMoment> FrameletStream::moment_at(Turn const& turn, ViewState const& present, PosedScene& scene) {
+    if (moments_.observe(present, turn.now, takes_shapes())) {
+        SceneTime const end = turn.present + turn.clock_speed * moment_seconds;
+        moments_.begin(state_at(std::clamp(end, 0.0, max_scene_time), scene), turn.now);
     }
-    bool const runs = std::abs(clock_speed_) <= 1.1 * double{max_clock_speed}; // else it was set
-    return runs ? std::max(turn.present + clock_speed_ * moment_seconds, 0.0) : turn.present;
+    return moments_.held();
 }
 
 Step FrameletStream::plan_batch(Turn const& turn, ViewState const& present, PosedScene& scene) {
@@ -95,7 +93,7 @@ Step FrameletStream::plan_batch(Turn const& turn, ViewState const& present, Pose
     double const rendered = turn.samples_per_second;
     RefreshInput wanted;
     wanted.state = present;
-    wanted.moment = moments_.choose(present, present_state(end_of_moment(turn), scene), turn.now, takes_shapes());
+    wanted.moment = moment_at(turn, present, scene);
     bool const still = !wanted.moment && viewer_.refresh.is_still(present);
     wanted.now = turn.now;
     wanted.samples_per_second = options_.follows_link ? bounded_rate(link, rendered) : rendered;

@@ -53,10 +53,10 @@ private:
     bool takes_loss() const { return (codings_ & coding::haar_colour) != 0; }
     bool takes_predictions() const { return takes_loss() && (codings_ & coding::predicted_colour) != 0; }
     bool takes_shapes() const { return settings_.reproject && (codings_ & coding::shapes_and_tracks) != 0; }
-    ViewState present_state(SceneTime present, PosedScene& scene) const;
+    ViewState state_at(SceneTime clock, PosedScene& scene) const;
     int moving_camera(PosedScene const& scene) const;
     bool has_room(double now) const;
-    SceneTime end_of_moment(Turn const& turn);
+    std::optional<HeldMoment> moment_at(Turn const& turn, ViewState const& present, PosedScene& scene);
     Step plan_batch(Turn const& turn, ViewState const& present, PosedScene& scene);
     void plan_exactly(ViewState const& present, PosedScene const& scene);
     BatchWork& free_work();
@@ -70,8 +70,6 @@ private:
     LinkEstimate link_;
     QualityChoice choice_;
     MomentChoice moments_;
-    Turn clocked_; ///< when the clock's speed was told last
-    double clock_speed_ = 0; ///< seconds of the scene a second
     ViewerKnowledge viewer_;
 
     std::array<BatchWork, 2> works_;

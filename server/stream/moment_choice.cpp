@@ -14,8 +14,7 @@ bool MomentChoice::goes_on(ViewState const& present, double now) const {
            held.view.camera.projection == present.view.camera.projection && held.exposure == present.exposure;
 }
 
-std::optional<HeldMoment> MomentChoice::choose(ViewState const& present, ViewState const& ahead, double now,
-                                               bool viewer_moves_samples) {
+bool MomentChoice::observe(ViewState const& present, double now, bool viewer_moves_samples) {
     bool const was_resting = now - changed_ > rest_seconds;
     if (!last_ || !same_picture(*last_, present)) {
         changed_ = now;
@@ -24,12 +23,9 @@ std::optional<HeldMoment> MomentChoice::choose(ViewState const& present, ViewSta
     last_ = present;
     if (!viewer_moves_samples || rests) {
         held_.reset();
-        return std::nullopt;
+        return false;
     }
-    if (was_resting || !goes_on(present, now)) {
-        held_ = HeldMoment{ahead, now};
-    }
-    return held_;
+    return was_resting || !goes_on(present, now);
 }
 
 } // namespace framelet

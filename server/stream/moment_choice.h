@@ -15,13 +15,15 @@ inline constexpr double rest_seconds = 0.05;
 
 class MomentChoice {
 public:
-    /// The moment to render while things move; nothing where the present is: for a viewer that moves nothing, and at
-    /// rest. Begins anew where the picture has another size, projection or exposure, or something begins to move.
-    /// `ahead`: what will be to be seen when a moment that begins now is over. `now`: seconds, steady.
-    std::optional<HeldMoment> choose(ViewState const& present, ViewState const& ahead, double now,
-                                     bool viewer_moves_samples);
-    /// The next choice begins a moment: the scene's clock was set.
-    void begin_anew() { held_.reset(); }
+    /// Takes in what is to be seen at present. True when another moment is to `begin` now: the last one has lasted long
+    /// enough, the picture has another size, projection or exposure, or something begins to move. Never at rest, nor
+    /// for a viewer that moves nothing. `now`: seconds, steady.
+    bool observe(ViewState const& present, double now, bool viewer_moves_samples);
+    void begin(ViewState const& state, double now) { held_ = HeldMoment{state, now}; }
+    /// The moment to render; nothing where the present is.
+    std::optional<HeldMoment> const& held() const { return held_; }
+    /// The next moment begins anew: the scene's clock was set.
+    void forget() { held_.reset(); }
 
 private:
     bool goes_on(ViewState const& present, double now) const;

@@ -21,6 +21,7 @@ class AdaptiveRefresh;
 struct Turn {
     double now = 0; ///< seconds, the clock of the events
     SceneTime present = 0; ///< what the scene's clock says
+    double clock_speed = 0; ///< of the scene's clock, scene seconds a second; 0 while it is paused
     double samples_per_second = 0; ///< that the renderer has for this viewer
     double plan_seconds = 0; ///< what planning a cycle takes
     bool operator==(Turn const&) const = default;

@@ -31,7 +31,7 @@ public:
         ServerStep step;
         Step next{};
         clocked(setup_.times, &SessionTimes::plan, [&] {
-            next = stream_->plan({input.now, input.time, rate, setup_.machine * plan_seconds()}, scene);
+            next = stream_->plan({input.now, input.time, 1, rate, setup_.machine * plan_seconds()}, scene);
         });
         if (next != Step::render) {
             return step;
