@@ -20,7 +20,7 @@ public:
     /// Of the next frame, which is to show the scene at `now`, seconds. Time does not go back.
     bool takes(double now) {
         while (next_ < times_.size() && times_[next_] <= now) {
-            left_ = frames_at_once;
+            left_ = left_ > 0 ? left_ : frames_at_once; // a row that has begun is finished first
             ++next_;
         }
         if (times_.empty()) {

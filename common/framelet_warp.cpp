@@ -176,7 +176,10 @@ void FrameletWarp::rate(std::uint32_t view, FadingCode fading, Layer const& laye
         patch.group = drifting_group(patch.group);
         patch.worn *= leads(layer.body, layer.velocity, age) ? ahead_of_all : 1.0f;
     }
-    patch.hides = spacing < most_hiding;
+    patch.hides = hides(spacing, misplaced);
+    if (is_astray(spacing, misplaced)) {
+        patch.tolerance = static_cast<float>(largest); // nearer than nothing
+    }
 }
 
 float FrameletWarp::parallax_at(glm::dvec2 pixel) const {

@@ -18,6 +18,17 @@ inline constexpr float finest_shown_spacing = 0.5f;
 /// hide anything; the plane of a few that is seen from its side now may not even be one.
 inline constexpr float most_hiding = 8.5f;
 
+/// Whether samples so far apart once moved, and so far off their places at most, pixels, hide what lies behind them;
+/// else they show only where nothing does that hides.
+inline bool hides(float spacing, float misplaced) {
+    return spacing < most_hiding && misplaced < most_hiding;
+}
+
+/// Whether they may be anywhere: then they show where nothing else does, be that nearer or farther.
+inline bool is_astray(float spacing, float misplaced) {
+    return !(misplaced < most_hiding && spacing < 8 * most_hiding);
+}
+
 /// By how many pixels a second (of scene time) samples become worse, as if they lay so much farther apart. 0 for code
 /// 0.
 inline float fading_rate(FadingCode code) {

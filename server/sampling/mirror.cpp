@@ -476,12 +476,12 @@ bool Mirror::place(Piece const& piece, TurnedBody const& turned, Placed& placed)
     if (!piece.is_loose) { // as the viewer rates them
         float const squares = glm::dot(right, right) + glm::dot(down, down);
         spacing *= std::sqrt(0.5f * (squares + std::sqrt(std::max(squares * squares - 4 * area * area, 0.0f))));
-        if (!(spacing < most_hiding)) { // it shows where nothing else does
-            return false;
-        }
         misplaced = turned.is_still && piece.velocity == Vec3(0)
                         ? 0
                         : tolerance * glm::length(Vec2(parallax) - parallax.z * placed.at);
+        if (!hides(spacing, misplaced)) { // it shows where nothing else does
+            return false;
+        }
     }
     placed.inverse_depth = share * piece.inverse_depth;
     Vec2 const slope = share * (piece.depth_slope - placed.inverse_depth * Vec2(dx.z, dy.z)); // along its own axes

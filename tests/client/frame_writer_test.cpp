@@ -92,6 +92,15 @@ TEST(FrameChoice, TakesThreeFramesFromEachTimeOn) {
     EXPECT_EQ(taken, "..xxxxxx..");
 }
 
+TEST(FrameChoice, FinishesWhatItHasBegun) {
+    FrameChoice choice({0.2, 0.3, 0.7}); // the second comes among the three from the first on
+    std::string taken;
+    for (int i = 0; i < 10; ++i) {
+        taken += choice.takes(0.1 * i + 0.01) ? 'x' : '.';
+    }
+    EXPECT_EQ(taken, "..xxx..xxx");
+}
+
 TEST_F(FrameWriterTest, WithoutANumberKeepsTheLast) {
     FrameWriter writer(FramePattern((folder_ / "only.png").string()));
     writer.add(grey(5), true);

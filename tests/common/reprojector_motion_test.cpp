@@ -236,6 +236,33 @@ TEST(ReprojectorMotion, NewerWinsOnOneSurfaceNearerWinsElse) {
     EXPECT_EQ(shown.picture.row(90)[4 * 163], 200);
 }
 
+TEST(ReprojectorMotion, WhatMayBeFarOffItsPlaceShowsBeforeNothing) {
+    AnalyticScene scene;
+    scene.quads.push_back({{-20, -20, -4}, {40, 0, 0}, {0, 40, 0}, plain(50, 50, 50)});
+    scene.quads.push_back({{-1, 0, 1}, {2, 0, 0}, {0, 2, 0}, plain(200, 200, 200)});
+    AnalyticScene bare = scene;
+    bare.quads.pop_back();
+    ImagePlane const plane(viewport);
+    std::vector<Tile> const all = visible_tiles(plane, plane.pixel_depth());
+    Camera display = front();
+    display.position.x -= 0.1f;
+    for (bool const is_sure : {true, false}) {
+        Batch batch = scene.batch(plane, 1, front(), 0, all);
+        for (FrameletShape& shape : batch.shapes) {
+            for (Layer& layer : std::span(shape.layers).first(shape.layer_count)) {
+                layer.error = is_sure ? layer.error : 10 * layer.at;
+            }
+        }
+        FrameletPool pool(plane);
+        pool.insert(batch);
+        EXPECT_EQ(show(pool, display, 0).picture.row(90)[4 * 163], 200) << "there is nothing else";
+        Camera aside = front();
+        aside.position.x -= 0.5f;
+        pool.insert(bare.batch(plane, 2, aside, 0, all)); // the board is not seen from there, as it were
+        EXPECT_EQ(show(pool, display, 0).picture.row(90)[4 * 163], is_sure ? 200 : 50);
+    }
+}
+
 TEST(ReprojectorMotion, StrangeCamerasAndShapesGiveNumbers) {
     ImagePlane const plane(viewport);
     std::mt19937 random(2);

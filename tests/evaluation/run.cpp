@@ -145,6 +145,12 @@ private:
     std::size_t seen_ = 0;
 };
 
+/// The scene's motion before the measured time.
+double running_lead_seconds(RunParameters const& parameters) {
+    constexpr double enough = 0.5;
+    return std::clamp(parameters.start, 0.0, enough);
+}
+
 } // namespace
 
 MethodSetup method_setup(RunParameters const& parameters, double machine, CostTable const& costs) {
@@ -163,7 +169,9 @@ MethodSetup method_setup(RunParameters const& parameters, double machine, CostTa
 }
 
 double lead_seconds(RunParameters const& parameters) {
-    return std::max(0.5, 3 / parameters.frames_per_second) + 4 * parameters.link.delay_seconds;
+    return parameters.begins_empty ? 0
+                                   : std::max(0.5, 3 / parameters.frames_per_second) +
+                                         4 * parameters.link.delay_seconds + running_lead_seconds(parameters);
 }
 
 std::size_t reference_count(RunParameters const& parameters) {
@@ -175,7 +183,7 @@ double reference_time(RunParameters const& parameters, std::size_t index) {
 }
 
 SceneTime scene_time(RunParameters const& parameters, double now) {
-    return parameters.start + std::clamp(now, 0.0, parameters.scene_stops);
+    return parameters.start + std::clamp(now, -running_lead_seconds(parameters), parameters.scene_stops);
 }
 
 double machine_factor(BenchScene& scene, RunParameters const& parameters, CostTable const& costs) {

@@ -32,12 +32,14 @@ struct RunParameters {
     double scene_stops = INFINITY; ///< seconds of the run, from which on scene and camera stand still
     RivalParts rivals{}; ///< as in MethodSetup
     SessionTimes* times = nullptr; ///< likewise
+    bool begins_empty = false; ///< the viewer comes when the measured time begins
 };
 
 /// What such a run tells its method, on a machine of this speed.
 MethodSetup method_setup(RunParameters const& parameters, double machine, CostTable const& costs);
 
-/// The scene stands still for this long before the run, so that every method starts from a finished picture.
+/// So long before the measured time a run begins: while the scene stands, so that every method has a finished picture,
+/// and then, as far as the scene has begun by then, runs, so that none shows it for long.
 double lead_seconds(RunParameters const& parameters);
 std::size_t reference_count(RunParameters const& parameters);
 double reference_time(RunParameters const& parameters, std::size_t index);

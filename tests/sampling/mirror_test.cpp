@@ -88,6 +88,20 @@ TEST(Mirror, WhatComesNearerGetsCoarser) {
     EXPECT_NEAR(summary_of(mirror).worn, 0.5, 1e-3);
 }
 
+TEST(Mirror, WhatMayBeFarOffItsPlaceIsAHole) {
+    Mirror mirror(viewport);
+    mirror.look(view_at(Vec3(0)), no_motions);
+    std::vector<Piece> pieces = render_pieces(plane, plane.pixel_depth(), wall);
+    for (Piece& piece : pieces) {
+        piece.error = 0.5f * piece.inverse_depth;
+    }
+    mirror.add(view_at(Vec3(0)).rays, no_motions, pieces);
+    mirror.look(view_at(Vec3(8 * 10 * pixel_size(), 0, 0)), no_motions); // by 8 pixels, give or take 4
+    EXPECT_NEAR(summary_of(mirror).holes, 8.0 / viewport.width, 0.02);
+    mirror.look(view_at(Vec3(32 * 10 * pixel_size(), 0, 0)), no_motions);
+    EXPECT_EQ(summary_of(mirror).holes, 1);
+}
+
 TEST(Mirror, WhatIsUncoveredWasHeldOnceOrIsAHole) {
     // A near square before a wall, and the camera goes by it.
     auto const look_from = [](float shift) {
@@ -340,7 +354,7 @@ TEST(Mirror, WhatWasLooseIsMissedWhereOlderThingsShowThroughIt) {
             mirror.look(moved(moment), no_motions);
             EXPECT_EQ(wrong(), 0);
             mirror.add(moved(moment).rays, no_motions,
-                       piece_of(seen_again ? crown : Tile{make_tile(plane.pixel_depth(), 0, 0)}, 10));
+                       piece_of(seen_again ? crown : make_tile(plane.pixel_depth(), 0, 0), 10));
         }
         mirror.look(moved(moment), no_motions);
         EXPECT_EQ(mirror.cell((rect.left + 8) / cell_side, (rect.top + 8) / cell_side).is_wrong, !seen_again);

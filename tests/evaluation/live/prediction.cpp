@@ -82,6 +82,7 @@ json predict_live(BenchScene& scene, std::string const& method, LiveOptions cons
     run.viewport = options.viewport;
     run.start = start_step * std::round(measured["start_seconds"].get<double>() / start_step);
     run.seconds = options.seconds;
+    run.begins_empty = true;
     run.reference_rate = options.moments / (options.seconds - build_up_seconds);
     run.link = options.link;
     CostTable costs = options.costs;
