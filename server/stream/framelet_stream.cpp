@@ -16,6 +16,7 @@ void FrameletStream::take(StreamEvent const& event) {
     if (auto const* const camera = std::get_if<CameraUpdate>(&event.what)) {
         if (!camera_ || camera->view.number > camera_->view.number) { // else a newer one is here already
             camera_ = *camera;
+            camera->scene_camera < 0 ? forecast_.add(camera->view.camera, event.seconds) : forecast_.forget();
         }
     } else if (auto const* const settings = std::get_if<ViewerSettings>(&event.what)) {
         settings_ = *settings;
@@ -78,12 +79,16 @@ Step FrameletStream::plan(Turn const& turn, PosedScene& scene) {
     return has_room(turn.now) ? plan_batch(turn, present, scene) : Step::wait;
 }
 
-/// A moment is of what is to be seen when it ends, if the scene's clock goes on as it does: most of it is shown about
-/// then, and lamps and cuts are there when they come.
+/// A moment is of what is to be seen when it ends, if the scene's clock and the viewer's camera go on as they do: most of
+/// it is shown about then, and lamps, cuts and what enters the picture are there when they come.
 std::optional<HeldMoment> FrameletStream::moment_at(Turn const& turn, ViewState const& present, PosedScene& scene) {
     if (moments_.observe(present, turn.now, takes_shapes())) {
         SceneTime const end = turn.present + turn.clock_speed * moment_seconds;
-        moments_.begin(state_at(std::clamp(end, 0.0, max_scene_time), scene), turn.now);
+        ViewState state = state_at(std::clamp(end, 0.0, max_scene_time), scene);
+        if (camera_->scene_camera < 0) {
+            state.view.camera = forecast_.at(turn.now, moment_seconds);
+        }
+        moments_.begin(state, turn.now);
     }
     return moments_.held();
 }

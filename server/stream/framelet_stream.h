@@ -7,6 +7,7 @@
 #include "server/flow/link_estimate.h"
 #include "server/flow/quality_choice.h"
 #include "server/stream/batch_work.h"
+#include "server/stream/camera_forecast.h"
 #include "server/stream/moment_choice.h"
 #include "server/stream/viewer_stream.h"
 
@@ -69,6 +70,7 @@ private:
     std::uint64_t acknowledged_ = 0;
     LinkEstimate link_;
     QualityChoice choice_;
+    CameraForecast forecast_; ///< of a camera that is the viewer's own
     MomentChoice moments_;
     ViewerKnowledge viewer_;
 

@@ -1,4 +1,5 @@
 // The report's sums and page, of figures with known answers.
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -69,6 +70,31 @@ TEST(Report, ALossIsMarkedAndTheOracleIsNoRival) {
     EXPECT_NE(page.find("Lost: 2 of 4. Median while something moves: 0.50."), std::string::npos) << page;
     EXPECT_NE(page.find("| + mirrors | 300 | 40 | 2.00 | 1.00 |"), std::string::npos) << page;
     EXPECT_EQ(page.find("real programs"), std::string::npos) << "none was run";
+}
+
+nlohmann::json live_figures(double psnr, double flip) {
+    return {{"mse", std::pow(10, -0.1 * psnr)}, {"psnr", psnr},   {"ssim", 0.9},        {"flip", flip},
+            {"steadiness", 1e-3},               {"gap_p99_ms", 30}, {"server_busy", 0.5}, {"pictures_per_second", 40},
+            {"kB_per_second", 100}};
+}
+
+TEST(Report, TheRealProgramsStandBesideTheirBestRival) {
+    ReportFigures with_live = figures();
+    nlohmann::json warp = live_figures(33, 0.2);
+    warp["spacing"] = 2;
+    warp["margin"] = 0;
+    with_live.live.push_back({{"scene", "stop"},
+                              {"methods",
+                               {{"framed", live_figures(20, 0.05)},
+                                {"framed+warp", warp},
+                                {"framelet", live_figures(30, 0.1)}}}});
+    ReportOptions options;
+    options.machines = {2, 5};
+    std::string const page = report_page(with_live, options, {}, "framelet-bench report");
+    EXPECT_NE(page.find("| `stop` | `framed+warp` (2) | 30.00 / - / **33.00** | **0.900** / - / **0.900** | "
+                        "**0.100** / - / 0.200 |"),
+              std::string::npos)
+        << page;
 }
 
 TEST(RunStore, WhatWasRunIsNotRunAgain) {

@@ -251,30 +251,56 @@ std::string clock_table(std::vector<json> const& clocks) {
                           errors.size(), within(bytes, 0.1), within(pictures, 0.1));
 }
 
+/// The rival that errs least in a scene, as `methods` names it; empty where none ran.
+std::string best_rival_of(json const& scene) {
+    std::string best;
+    for (auto const& [method, figures] : scene["methods"].items()) {
+        if (is_rival(method) && (best.empty() || figures["mse"] < scene["methods"][best]["mse"])) {
+            best = method;
+        }
+    }
+    return best;
+}
+
+/// One figure of several runs, "-" where it is none; the best of them in bold: the least, or, for `sign` -1, the most.
+/// `sign` 0: none is.
+std::string side_by_side(std::vector<json> const& runs, char const* figure, char const* format, double scale, int sign) {
+    auto const value = [&](json const& run) {
+        return run.contains(figure) && run[figure].is_number() ? scale * run[figure].get<double>() : NAN;
+    };
+    double best = INFINITY;
+    for (json const& run : runs) {
+        best = std::min(best, sign * value(run)); // what is no number is not less
+    }
+    std::string text;
+    for (json const& run : runs) {
+        bool const is_best = sign != 0 && sign * value(run) == best;
+        std::string const number = std::isnan(value(run)) ? "-" : printed(format, value(run));
+        text += (text.empty() ? "" : " / ") + (is_best ? "**" + number + "**" : number);
+    }
+    return text + " | ";
+}
+
 std::string live_table(std::vector<json> const& live) {
-    std::string text =
-        "| scene | method | pictures/s | gap p99, ms | server | viewer | Msamples/s | kB/s | photon, ms | "
-        "PSNR | SSIM | FLIP | unsteady |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+    std::string text = "| scene | best rival | PSNR | SSIM | FLIP | unsteady, 1e-3 | pictures/s | gap p99, ms | "
+                       "server busy | kB/s |\n|---|---|---|---|---|---|---|---|---|---|\n";
     for (json const& scene : live) {
-        double least = INFINITY;
-        for (json const& f : scene["methods"]) {
-            least = std::min(least, f["mse"].get<double>());
+        std::string const rival = best_rival_of(scene);
+        std::vector<json> runs;
+        for (std::string const& method : {std::string("framelet"), std::string("framelet-unwarped"), rival}) {
+            runs.push_back(scene["methods"].value(method, json::object()));
         }
-        for (auto const& [method, f] : scene["methods"].items()) {
-            bool const is_best = f["mse"] == least;
-            text += "| `" + scene["scene"].get<std::string>() + "` | `" + method + "`";
-            text += f.contains("spacing")
-                        ? printed(f["margin"] > 0 ? " (%d, margin) |" : " (%d) |", f["spacing"].get<int>())
-                        : " |";
-            text +=
-                printed(" %.1f | %.0f | %.2f | %.2f | %.2f | %.0f | ", f["pictures_per_second"].get<double>(),
-                        f["gap_p99_ms"].get<double>(), f["server_busy"].get<double>(), f["viewer_busy"].get<double>(),
-                        f["samples_per_second"].get<double>() / 1e6, f["kB_per_second"].get<double>());
-            text += f["photon_ms"].is_number() ? printed("%.0f", f["photon_ms"].get<double>()) : "-";
-            text += printed(is_best ? " | **%.2f**" : " | %.2f", psnr_from_mse(f["mse"]));
-            text += printed(" | %.3f | %.3f | %.1e |\n", f["ssim"].get<double>(), f["flip"].get<double>(),
-                            f["steadiness"].get<double>());
-        }
+        json const& best = runs.back();
+        text += "| `" + scene["scene"].get<std::string>() + "` | `" + rival + "`";
+        text += best.contains("spacing")
+                    ? printed(best["margin"] > 0 ? " (%d, margin) | " : " (%d) | ", best["spacing"].get<int>())
+                    : " | ";
+        text += side_by_side(runs, "psnr", "%.2f", 1, -1) + side_by_side(runs, "ssim", "%.3f", 1, -1) +
+                side_by_side(runs, "flip", "%.3f", 1, 1) + side_by_side(runs, "steadiness", "%.2f", 1e3, 1) +
+                side_by_side(runs, "pictures_per_second", "%.0f", 1, 0) +
+                side_by_side(runs, "gap_p99_ms", "%.0f", 1, 0) + side_by_side(runs, "server_busy", "%.2f", 1, 0) +
+                side_by_side(runs, "kB_per_second", "%.0f", 1, 0);
+        text.back() = '\n';
     }
     return text + live_summary(live);
 }
@@ -452,8 +478,9 @@ std::string report_page(ReportFigures const& figures, ReportOptions const& optio
     if (!figures.live.empty()) {
         page += printed(
             "\n## The real programs\n\n`framelet-bench live` at %dx%d for %g s: server and viewer on the same "
-            "cores, a real socket, the clock running; compared at %d moments. The best picture in bold; in brackets "
-            "the spacing of whole frames that errs least.\n\n![error against pictures a second](pictures/live.png)\n\n",
+            "cores, a real socket, the clock running; compared at %d moments. Figures are of `framelet` / the same "
+            "without reprojection / the rival that errs least (in brackets the spacing of its frames), the best in "
+            "bold.\n\n![error against pictures a second](pictures/live.png)\n\n",
             options.live.viewport.width, options.live.viewport.height, options.live.seconds, options.live.moments);
         page += live_table(figures.live);
     }
