@@ -12,6 +12,8 @@ namespace framelet {
 namespace {
 
 constexpr double watched_seconds = 0.12;
+/// Of cameras that come sooner after each other only the last one counts: there may be any number.
+constexpr double least_seconds = 0.002;
 /// A camera that has stayed for so long stands, seconds: longer than a slow display's frame.
 constexpr double standing_seconds = 0.05;
 
@@ -41,6 +43,9 @@ Quat turned(Quat const& orientation, Vec3 turn) {
 
 void CameraForecast::add(Camera const& camera, double seconds) {
     std::erase_if(known_, [&](Known const& known) { return known.seconds < seconds - watched_seconds; });
+    if (!known_.empty() && seconds - known_.back().seconds < least_seconds) {
+        known_.pop_back();
+    }
     known_.push_back({camera, seconds});
 }
 

@@ -16,7 +16,11 @@ void FrameletStream::take(StreamEvent const& event) {
     if (auto const* const camera = std::get_if<CameraUpdate>(&event.what)) {
         if (!camera_ || camera->view.number > camera_->view.number) { // else a newer one is here already
             camera_ = *camera;
-            camera->scene_camera < 0 ? forecast_.add(camera->view.camera, event.seconds) : forecast_.forget();
+            if (camera->scene_camera < 0) {
+                forecast_.add(camera->view.camera, event.seconds);
+            } else {
+                forecast_.forget();
+            }
         }
     } else if (auto const* const settings = std::get_if<ViewerSettings>(&event.what)) {
         settings_ = *settings;

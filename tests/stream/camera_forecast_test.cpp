@@ -60,6 +60,15 @@ TEST(CameraForecast, WhatTurnsBackIsNotLed) {
     EXPECT_EQ(forecast.at(8 * frame, 0.1).position.x, 4);
 }
 
+TEST(CameraForecast, AFloodOfCamerasIsOneCameraAtATime) {
+    CameraForecast forecast;
+    for (int i = 0; i <= 300'000; ++i) { // 0.3 s; none may be gone through many times
+        double const time = 1e-6 * i;
+        forecast.add(camera_at({static_cast<float>(time), 0, 0}), time);
+    }
+    EXPECT_EQ(forecast.at(0.3, 0.1).position.x, 0.3f);
+}
+
 TEST(CameraForecast, AnyCamerasGiveOne) {
     std::mt19937 random(1);
     std::uniform_real_distribution<float> exponent(-12, 10), sign(-1, 1);
