@@ -132,7 +132,7 @@ Cost serve(Scene const& scene, Viewport viewport, double seconds) {
     std::uint64_t answered = 0;
     for (double now = 0; now < seconds;) {
         Step step = Step::nothing;
-        cost.other += processor_seconds_of([&] { step = stream.plan({now, now, rate, 0}, posed); });
+        cost.other += processor_seconds_of([&] { step = stream.plan({now, now, 1, rate, 0}, posed); });
         if (step != Step::render) {
             now += 0.002;
             continue;
