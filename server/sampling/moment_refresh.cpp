@@ -30,10 +30,10 @@ MomentChecks MomentRefresh::look(RenderedMoment const& moment, double begun, dou
     ++looks_taken_;
     mirror_.look(view_of(moment), *moment.motions);
     MomentChecks checks;
-    checks.visibility =
-        cell_grid(cell_side,
-                  grid_spacing(viewport, cell_side, most_visibility_spacing, visibility_cost, visibility_share * samples),
-                  looks_taken_);
+    checks.visibility = cell_grid(
+        cell_side,
+        grid_spacing(viewport, cell_side, most_visibility_spacing, visibility_cost, visibility_share * samples),
+        looks_taken_);
     if (probe_samples > 0) {
         checks.probe_spacing =
             grid_spacing(viewport, least_probe_spacing, most_probe_spacing, probe_cost, probe_samples);
@@ -54,8 +54,8 @@ void MomentRefresh::note_visibility(RenderedMoment const& moment, PlaceGrid cons
     }
 }
 
-void MomentRefresh::note_looks(RenderedMoment const& moment, std::span<Probe const> probes,
-                               std::span<float const> luma, int probe_spacing) {
+void MomentRefresh::note_looks(RenderedMoment const& moment, std::span<Probe const> probes, std::span<float const> luma,
+                               int probe_spacing) {
     if (mirror_.looks_at(view_of(moment))) {
         is_checked_ = mirror_.check_looks(probes, luma, probe_spacing) || is_checked_;
     }

@@ -12,13 +12,13 @@ namespace framelet {
 namespace {
 
 constexpr double watched_seconds = 0.12;
-/// Of cameras that come sooner after each other only the last one counts: there may be any number.
+/// Of cameras that come sooner after each other only the last one counts: there may be any number of them.
 constexpr double least_seconds = 0.002;
 /// A camera that has stayed for so long stands, seconds: longer than a slow display's frame.
 constexpr double standing_seconds = 0.05;
 
-/// A motion or a turn a second, axis times angle, is what both halves agree in: the later one, as far as the earlier one
-/// was like it.
+/// A motion or a turn a second, axis times angle, is what both halves agree in: the later one, as far as the earlier
+/// one was like it.
 Vec3 agreed(Vec3 earlier, Vec3 later) {
     float const most = std::max(glm::dot(earlier, earlier), glm::dot(later, later));
     float const share = most > 0 ? std::clamp(glm::dot(earlier, later) / most, 0.0f, 1.0f) : 0.0f;
@@ -43,7 +43,7 @@ Quat turned(Quat const& orientation, Vec3 turn) {
 
 void CameraForecast::add(Camera const& camera, double seconds) {
     std::erase_if(known_, [&](Known const& known) { return known.seconds < seconds - watched_seconds; });
-    if (!known_.empty() && seconds - known_.back().seconds < least_seconds) {
+    if (known_.size() > 1 && known_.back().seconds - known_[known_.size() - 2].seconds < least_seconds) {
         known_.pop_back();
     }
     known_.push_back({camera, seconds});
@@ -67,9 +67,9 @@ Camera CameraForecast::at(double now, double ahead) const {
     Camera camera = last.camera;
     camera.position += time * agreed((middle.camera.position - first.camera.position) / early,
                                      (last.camera.position - middle.camera.position) / late);
-    camera.orientation = turned(
-        camera.orientation, time * agreed(turn_between(first.camera.orientation, middle.camera.orientation) / early,
-                                          turn_between(middle.camera.orientation, last.camera.orientation) / late));
+    camera.orientation = turned(camera.orientation,
+                                time * agreed(turn_between(first.camera.orientation, middle.camera.orientation) / early,
+                                              turn_between(middle.camera.orientation, last.camera.orientation) / late));
     return within_bounds(camera);
 }
 

@@ -1,5 +1,5 @@
-// Where a viewer's camera will be. In: its cameras, and when they came. Out: the camera a little later, if it goes on as
-// it does.
+// Where a viewer's camera will be. In: its cameras, and when they came. Out: the camera a little later, if it goes on
+// as it does.
 #pragma once
 
 #include <vector>
@@ -15,8 +15,8 @@ public:
     /// The camera is another one, and what is known of the last one says nothing of it.
     void forget() { known_.clear(); }
     /// The camera `ahead` seconds after `now`, which is no earlier than the last that was added, of which there is one.
-    /// It has gone on as fast as it did in the last tenth of a second or so, as far as it did so in both halves of that:
-    /// what has just begun, stops or jumps stays where it is.
+    /// It has gone on as fast as it did in the last tenth of a second or so, as far as it did so in both halves of
+    /// that: what has just begun, stops or jumps stays where it is.
     Camera at(double now, double ahead) const;
 
 private:

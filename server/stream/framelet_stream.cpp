@@ -83,8 +83,8 @@ Step FrameletStream::plan(Turn const& turn, PosedScene& scene) {
     return has_room(turn.now) ? plan_batch(turn, present, scene) : Step::wait;
 }
 
-/// A moment is of what is to be seen when it ends, if the scene's clock and the viewer's camera go on as they do: most of
-/// it is shown about then, and lamps, cuts and what enters the picture are there when they come.
+/// A moment is of what is to be seen when it ends, if the scene's clock and the viewer's camera go on as they do: most
+/// of it is shown about then, and lamps, cuts and what enters the picture are there when they come.
 std::optional<HeldMoment> FrameletStream::moment_at(Turn const& turn, ViewState const& present, PosedScene& scene) {
     if (moments_.observe(present, turn.now, takes_shapes())) {
         SceneTime const end = turn.present + turn.clock_speed * moment_seconds;

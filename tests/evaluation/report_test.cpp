@@ -73,8 +73,14 @@ TEST(Report, ALossIsMarkedAndTheOracleIsNoRival) {
 }
 
 nlohmann::json live_figures(double psnr, double flip) {
-    return {{"mse", std::pow(10, -0.1 * psnr)}, {"psnr", psnr},   {"ssim", 0.9},        {"flip", flip},
-            {"steadiness", 1e-3},               {"gap_p99_ms", 30}, {"server_busy", 0.5}, {"pictures_per_second", 40},
+    return {{"mse", std::pow(10, -0.1 * psnr)},
+            {"psnr", psnr},
+            {"ssim", 0.9},
+            {"flip", flip},
+            {"steadiness", 1e-3},
+            {"gap_p99_ms", 30},
+            {"server_busy", 0.5},
+            {"pictures_per_second", 40},
             {"kB_per_second", 100}};
 }
 
@@ -83,11 +89,10 @@ TEST(Report, TheRealProgramsStandBesideTheirBestRival) {
     nlohmann::json warp = live_figures(33, 0.2);
     warp["spacing"] = 2;
     warp["margin"] = 0;
-    with_live.live.push_back({{"scene", "stop"},
-                              {"methods",
-                               {{"framed", live_figures(20, 0.05)},
-                                {"framed+warp", warp},
-                                {"framelet", live_figures(30, 0.1)}}}});
+    with_live.live.push_back(
+        {{"scene", "stop"},
+         {"methods",
+          {{"framed", live_figures(20, 0.05)}, {"framed+warp", warp}, {"framelet", live_figures(30, 0.1)}}}});
     ReportOptions options;
     options.machines = {2, 5};
     std::string const page = report_page(with_live, options, {}, "framelet-bench report");

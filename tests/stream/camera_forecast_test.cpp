@@ -60,13 +60,13 @@ TEST(CameraForecast, WhatTurnsBackIsNotLed) {
     EXPECT_EQ(forecast.at(8 * frame, 0.1).position.x, 4);
 }
 
-TEST(CameraForecast, AFloodOfCamerasIsOneCameraAtATime) {
+TEST(CameraForecast, AFloodOfCamerasIsForecastAsAFewAre) {
     CameraForecast forecast;
     for (int i = 0; i <= 300'000; ++i) { // 0.3 s; none may be gone through many times
         double const time = 1e-6 * i;
         forecast.add(camera_at({static_cast<float>(time), 0, 0}), time);
     }
-    EXPECT_EQ(forecast.at(0.3, 0.1).position.x, 0.3f);
+    EXPECT_NEAR(forecast.at(0.3, 0.1).position.x, 0.4, 1e-4);
 }
 
 TEST(CameraForecast, AnyCamerasGiveOne) {

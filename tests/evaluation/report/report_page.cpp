@@ -264,7 +264,8 @@ std::string best_rival_of(json const& scene) {
 
 /// One figure of several runs, "-" where it is none; the best of them in bold: the least, or, for `sign` -1, the most.
 /// `sign` 0: none is.
-std::string side_by_side(std::vector<json> const& runs, char const* figure, char const* format, double scale, int sign) {
+std::string side_by_side(std::vector<json> const& runs, char const* figure, char const* format, double scale,
+                         int sign) {
     auto const value = [&](json const& run) {
         return run.contains(figure) && run[figure].is_number() ? scale * run[figure].get<double>() : NAN;
     };

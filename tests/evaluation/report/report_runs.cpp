@@ -110,12 +110,14 @@ private:
         return figures;
     }
 
-    std::map<std::string, double> means_by_phase(std::vector<double> const& errors) const {
-        SceneEvents const events = events_of(scene());
-        double const start = window_start(scene(), study_.run.seconds);
+    std::map<std::string, double> means_by_phase(std::vector<double> const& errors) {
+        if (!events_) {
+            events_ = events_of(scene());
+            start_ = window_start(scene(), study_.run.seconds);
+        }
         std::map<std::string, std::pair<double, double>> sums;
         for (std::size_t i = 0; i < errors.size(); ++i) {
-            Phase const phase = phase_at(events, start + reference_time(study_.run, i));
+            Phase const phase = phase_at(*events_, start_ + reference_time(study_.run, i));
             auto& [sum, count] = sums[phase == Phase::moving ? "moving" : phase == Phase::event ? "event" : "settled"];
             sum += errors[i];
             ++count;
@@ -131,6 +133,8 @@ private:
     StudyOptions const& study_;
     RunStore& store_;
     std::optional<Subject> subject_;
+    std::optional<SceneEvents> events_; ///< found with the first run
+    double start_ = 0; ///< of the window, likewise
 };
 
 /// What `framelet` shows in the middle of its run; written where it is not there yet.

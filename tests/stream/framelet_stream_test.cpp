@@ -1,0 +1,56 @@
+#include "server/stream/framelet_stream.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/session/triangle_scenes.h"
+
+namespace framelet {
+namespace {
+
+struct Served {
+    Scene scene = moving_scene();
+    RenderScene render_scene{scene, std::nullopt};
+    PosedScene posed{scene, {0}, render_scene};
+    FrameletStream stream{StreamOptions{}, coding::all};
+
+    Served() { stream.take({0, ViewerSettings{0, 0, true}}); }
+    void look(Camera const& camera, std::uint64_t number, double now) {
+        stream.take({now, CameraUpdate{{number, camera, {64, 48}}, -1}});
+    }
+    Step plan(double now, SceneTime present, double clock_speed) {
+        return stream.plan({now, present, clock_speed, 1e5, 1e-4}, posed);
+    }
+};
+
+TEST(FrameletStream, AMomentIsOfTheTimeAtWhichItEnds) {
+    for (double const speed : {1.0, -2.0, 0.0}) {
+        Served served;
+        served.look({}, 1, 10);
+        ASSERT_EQ(served.plan(10, 0.5, speed), Step::render);
+        EXPECT_NEAR(served.stream.moment(), 0.5 + speed * moment_seconds, 1e-12);
+    }
+    Served served;
+    served.look({}, 1, 10);
+    ASSERT_EQ(served.plan(10, 0.01, -1), Step::render);
+    EXPECT_EQ(served.stream.moment(), 0) << "the clock stands there";
+}
+
+TEST(FrameletStream, AMomentIsOfTheCameraWithWhichItEnds) {
+    Served served;
+    double now = 0;
+    std::uint64_t number = 0;
+    for (; number < 10; now = static_cast<double>(number) / 60) {
+        Camera camera;
+        camera.position.x = static_cast<float>(now);
+        served.look(camera, ++number, now);
+    }
+    ASSERT_EQ(served.plan(now, 0.5, 0), Step::render);
+    served.stream.render(served.posed);
+    ASSERT_TRUE(served.stream.learn(served.posed));
+    Batch const& batch = served.stream.learnt_batch();
+    EXPECT_NEAR(batch.view.camera.position.x, now + moment_seconds, 1e-4) << "it came a frame ago";
+    EXPECT_EQ(batch.view.number, number);
+}
+
+} // namespace
+} // namespace framelet
