@@ -26,7 +26,7 @@ struct MomentChecks {
 
 class MomentRefresh {
 public:
-    explicit MomentRefresh(Viewport viewport = {}) : mirror_(viewport), looks_(viewport) {}
+    explicit MomentRefresh(Viewport viewport = {}) : mirror_(viewport) {}
 
     Mirror const& mirror() const { return mirror_; }
     /// False when another moment has begun, or more is known of this one than when a plan was found last.
@@ -58,7 +58,6 @@ public:
 
 private:
     Mirror mirror_;
-    Looks looks_;
     MomentPlan plan_;
     double looked_ = never; ///< when the moment began at which the mirror looks
     std::uint32_t looks_taken_ = 0;

@@ -23,8 +23,8 @@ struct GoingBy {
         return {make_view_rays(camera, viewport), seconds * moment};
     }
 
-    template <class Looks2D>
-    void step(Looks2D&& luma) {
+    template <class Luma>
+    void step(Luma&& luma) {
         mirror.look(view(), no_motions);
         std::vector<Piece> all;
         for (std::uint32_t row = 0; row < 8; ++row) {
@@ -39,7 +39,7 @@ struct GoingBy {
                 std::vector<Piece> pieces;
                 cut_pieces(one, plane, seconds * moment, pieces);
                 codes[row][column] =
-                    looks.learn(mirror, pieces, seconds * moment, mirror.looks_at(view()) && moment > 0);
+                    learn_fading(mirror, pieces, seconds * moment, mirror.looks_at(view()) && moment > 0);
                 all.insert(all.end(), pieces.begin(), pieces.end());
             }
         }
@@ -49,7 +49,6 @@ struct GoingBy {
 
     int moment = 0;
     Mirror mirror{viewport};
-    Looks looks{viewport};
     FadingCode codes[8][8] = {};
 };
 
@@ -67,7 +66,6 @@ TEST(Looks, WhatOnlyTheCameraMovesPastDoesNotFade) {
             EXPECT_LT(fading_rate(wall.codes[row][column]), 0.2f) << column << ' ' << row;
         }
     }
-    EXPECT_LT(wall.looks.usual_change(), 1e-4f);
 }
 
 TEST(Looks, AShadowFadesWhatItPasses) {
