@@ -87,7 +87,7 @@ std::size_t Mirror::moment_count() const {
 
 void Mirror::look(MirrorView const& view, BodyMotions const& motions) {
     target_ = view;
-    camera_stands_ = moments_[base_].number > 0 && same_camera(moments_[base_].rays, view.rays);
+    camera_stands_ = moments_[base_].number == 0 || same_camera(moments_[base_].rays, view.rays);
     if (std::exchange(settles_, false)) {
         settle_now();
     }
@@ -435,6 +435,20 @@ void Mirror::place(Moment& moment, std::size_t first, BodyMotions const& motions
         moment.placed[i] = {};
         if ((!piece.is_loose || loose) && place(piece, turn_to(moment, piece, motions), moment.placed[i])) {
             splat(moment, i);
+        }
+        if (&moment == &moments_[base_] && moment.is_of_camera && !piece.moves) {
+            cover(piece);
+        }
+    }
+}
+
+/// Of a framelet of the base of which nothing moves: pieces of a square may leave gaps between each other, its samples
+/// do not.
+void Mirror::cover(Piece const& piece) {
+    PixelRect const part = part_of(piece, ImagePlane(viewport_));
+    for (int row = part.top / cell_side; row < std::min(part.bottom / cell_side, rows_); ++row) {
+        for (int column = part.left / cell_side; column < std::min(part.right / cell_side, columns_); ++column) {
+            cells_[index_of(column, row)].covered = 0xffff;
         }
     }
 }

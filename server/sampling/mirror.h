@@ -68,7 +68,8 @@ public:
     /// True where a new framelet takes the place of what shows, be it better or not: it is of the base of the camera
     /// that is looked through.
     bool gives_way(Cell const& cell) const { return cell.moment == base_ && moments_[base_].is_of_camera; }
-    /// True when the picture is from where the newest that had come by then was rendered: the camera stands.
+    /// True when the picture is from where the newest that had come by then was rendered, or nothing had: the camera
+    /// stands, for all that is known.
     bool camera_stands() const { return camera_stands_; }
     /// True when the picture is of this moment.
     bool looks_at(MirrorView const& view) const;
@@ -142,6 +143,7 @@ private:
     void place(Moment& moment, std::size_t first, BodyMotions const& motions);
     bool place(Piece const& piece, TurnedBody const& turned, Placed& placed) const;
     void splat(Moment const& moment, std::size_t index);
+    void cover(Piece const& piece);
     void show(Moment const& moment, std::size_t index, unsigned mask, int column, int row);
     bool is_better(Moment const& moment, Placed const& placed, float inverse_depth, int share, Cell const& cell) const;
     bool shows_loose(Moment const& moment) const;

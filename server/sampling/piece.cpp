@@ -126,6 +126,14 @@ std::array<float, framelet_samples / 4> details_of(std::span<float const, framel
 
 } // namespace
 
+PixelRect part_of(Piece const& piece, ImagePlane const& plane) {
+    PixelRect const rect = plane.tile_rect(piece.of.tile);
+    int const side = part_side(rect.width());
+    int const left = rect.left + (static_cast<int>(piece.centre.x) - rect.left) / side * side;
+    int const top = rect.top + (static_cast<int>(piece.centre.y) - rect.top) / side * side;
+    return {left, top, left + side, top + side};
+}
+
 void cut_pieces(Framelet const& rendered, DisplayFramelet const& shown, FrameletShape const& shape,
                 ImagePlane const& plane, SceneTime scene_time, std::uint64_t batch, std::vector<Piece>& pieces) {
     std::array<float, framelet_samples> luma;

@@ -52,4 +52,7 @@ inline float chance_difference(float detail, float blur, float side) {
 void cut_pieces(Framelet const& rendered, DisplayFramelet const& shown, FrameletShape const& shape,
                 ImagePlane const& plane, SceneTime scene_time, std::uint64_t batch, std::vector<Piece>& pieces);
 
+/// The square of its framelet of which it is all there is, or with others; pixels, also beyond the viewport.
+PixelRect part_of(Piece const& piece, ImagePlane const& plane);
+
 } // namespace framelet

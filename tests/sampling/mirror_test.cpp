@@ -48,6 +48,19 @@ TEST(Mirror, AStillPictureShowsWhatItWasSent) {
     }
 }
 
+TEST(Mirror, WhatStandsHasNoHolesBetweenItsLayers) {
+    Look const edge = [](float x, float y) { return Seen{0.31f * x + y < 70 ? 5.0f : 10.0f}; };
+    for (int level = 0; level <= coarsest_levels + finest_levels; ++level) {
+        Mirror mirror(viewport);
+        mirror.look(view_at(Vec3(0)), no_motions);
+        mirror.add(view_at(Vec3(0)).rays, no_motions,
+                   render_pieces(plane, plane.pixel_depth() - coarsest_levels + level, edge));
+        EXPECT_EQ(summary_of(mirror).holes, 0);
+        mirror.look(view_at(Vec3(0), 1), no_motions);
+        EXPECT_EQ(summary_of(mirror).holes, 0);
+    }
+}
+
 TEST(Mirror, AShadowShowsForAWhileBeforeWhatItComesOver) {
     Mirror mirror(viewport);
     mirror.look(view_at(Vec3(0)), no_motions);
