@@ -35,6 +35,7 @@ FrameletCache::FrameletCache(ImagePlane plane) : plane_(plane) {
     }
     nodes_.resize(nodes);
     versions_.resize(squares);
+    square_changes_.resize(squares);
     Level const& blocks = level(plane.pixel_depth());
     changed_blocks_.resize(static_cast<std::size_t>(blocks.columns) * static_cast<std::size_t>(blocks.rows));
 }
@@ -210,13 +211,12 @@ void FrameletCache::drop(Node& owner) {
 }
 
 void FrameletCache::set_version(Tile tile, std::uint64_t version) {
-    Level const& l = level(tile.depth());
     std::uint32_t const column = tile.column();
     std::uint32_t const row = tile.row();
     constexpr std::uint32_t side = SquareVersions::side;
-    SquareVersions& square = versions_[l.first_square + row / side * l.square_columns + column / side];
-    square.tiles[morton_index(column % side, row % side)] = version;
-    square.newest = ++changes_;
+    std::size_t const square = square_index(tile.depth(), column / side, row / side);
+    versions_[square].tiles[morton_index(column % side, row % side)] = version;
+    square_changes_[square] = ++changes_;
 }
 
 void FrameletCache::release(std::int32_t slot) {
@@ -408,8 +408,9 @@ bool FrameletCache::is_covered_from(int depth) const {
 
 std::size_t FrameletCache::memory_bytes() const {
     return chunks_.size() * sizeof(Chunk) + nodes_.capacity() * sizeof(Node) + slot_tiles_.capacity() * sizeof(Tile) +
-           versions_.capacity() * sizeof(SquareVersions) + free_slots_.capacity() * sizeof(std::int32_t) +
-           views_.capacity() * sizeof(HeldView) + changed_blocks_.capacity() + shape_bytes_;
+           versions_.capacity() * (sizeof(SquareVersions) + sizeof(std::uint64_t)) +
+           free_slots_.capacity() * sizeof(std::int32_t) + views_.capacity() * sizeof(HeldView) +
+           changed_blocks_.capacity() + shape_bytes_;
 }
 
 } // namespace framelet

@@ -51,7 +51,6 @@ struct SquareVersions {
     static constexpr int levels = 3; ///< of the tiles below the square
     static constexpr std::uint32_t side = 1u << levels;
 
-    std::uint64_t newest = 0; ///< changes where anything does
     /// In Morton order: another number for another framelet that `find` finds, 0 where there is none.
     std::array<std::uint64_t, side * side> tiles{};
 };
@@ -127,9 +126,15 @@ public:
     Tile tile_at_slot(std::size_t slot) const { return slot_tiles_[slot]; }
     /// Of the tiles of that depth in a square that is visible, which is counted in squares.
     SquareVersions const& versions(int depth, std::uint32_t square_column, std::uint32_t square_row) const {
-        Level const& l = level(depth);
-        return versions_[l.first_square + square_row * l.square_columns + square_column];
+        return versions_[square_index(depth, square_column, square_row)];
     }
+    /// Its index in `square_changes`.
+    std::size_t square_index(int depth, std::uint32_t square_column, std::uint32_t square_row) const {
+        Level const& l = level(depth);
+        return l.first_square + square_row * l.square_columns + square_column;
+    }
+    /// Of all squares: another number where anything of its versions is another.
+    std::span<std::uint64_t const> square_changes() const { return square_changes_; }
     /// The lowest batch number that shows through where only the tiles below this one are looked at; 0 where they leave
     /// a part of it bare. The tile must be visible.
     std::uint64_t covered_below(int depth, int column, int row) const;
@@ -191,6 +196,7 @@ private:
     std::vector<std::unique_ptr<Chunk>> chunks_;
     std::vector<Tile> slot_tiles_; ///< of what is in place
     std::vector<SquareVersions> versions_; ///< squares of each level in rows
+    std::vector<std::uint64_t> square_changes_; ///< of those, close together: many are looked at
     std::uint64_t changes_ = 0; ///< of these
     std::vector<std::int32_t> free_slots_;
     std::vector<HeldView> views_;

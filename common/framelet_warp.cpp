@@ -111,8 +111,7 @@ void FrameletWarp::add(CachedFramelet const& framelet, unsigned parts, std::vect
     if ((parts >> FrameletShape::loose & 1) != 0 && !shape.loose.empty()) {
         common.is_loose = true;
         common.layer = FrameletShape::loose;
-        auto const age = static_cast<float>(time_ - cache_.views()[framelet.view].scene_time);
-        common.worn = worn_spacing(static_cast<float>(spacing_), age, fading_rate(shape.fading));
+        common.worn = worn(framelet.view, shape.fading, static_cast<float>(spacing_), 0);
         common.place = framelet.tile.code * 4 + FrameletShape::loose;
         common.first_splat = static_cast<std::uint32_t>(splats.size());
         add_splats(framelet, common, splats);
@@ -153,7 +152,25 @@ void FrameletWarp::add_layer(std::uint32_t view, HeldLayer const& layer, FadingC
     }
 }
 
-void FrameletWarp::rate(std::uint32_t view, FadingCode fading, Layer const& layer, WarpPatch& patch) const {
+/// As `worn_step` has it.
+float FrameletWarp::worn(std::uint32_t view, FadingCode fading, float spacing, float misplaced) {
+    SceneTime const rendered = cache_.views()[view].scene_time;
+    float const rate = fading_rate(fading);
+    float const fresh = worn_spacing(spacing, 0, rate) + misplaced;
+    float const step = worn_step(worn_spacing(spacing, static_cast<float>(time_ - rendered), rate) + misplaced);
+    if (rate > 0) {
+        constexpr float rounding = 1e-6f;
+        auto const [low, high] = worn_of_step(step);
+        auto const since = static_cast<double>((low * (1 + rounding) - fresh) / rate);
+        auto const until = static_cast<double>((high * (1 - rounding) - fresh) / rate);
+        bool const both = !(since > 0); // also before it was rendered
+        lasts_.first = std::max(lasts_.first, rendered + (both || time_ < rendered ? -until : since));
+        lasts_.last = std::min(lasts_.last, rendered + (both || time_ >= rendered ? until : -since));
+    }
+    return step;
+}
+
+void FrameletWarp::rate(std::uint32_t view, FadingCode fading, Layer const& layer, WarpPatch& patch) {
     float const x = 0.5f * static_cast<float>(patch.box.width());
     float const y = 0.5f * static_cast<float>(patch.box.height());
     auto const at = [&](std::size_t i) { return patch.at[i] + x * patch.dx[i] + y * patch.dy[i]; };
@@ -170,9 +187,9 @@ void FrameletWarp::rate(std::uint32_t view, FadingCode fading, Layer const& laye
     // By so many pixels its samples may be shown off their places: their inverse depths are not quite the plane's.
     glm::dvec2 const middle = 0.5 * glm::dvec2(patch.box.left + patch.box.right, patch.box.top + patch.box.bottom);
     float const misplaced = is_still_ ? 0 : layer.error * z * parallax_at(middle);
-    auto const age = static_cast<float>(time_ - cache_.views()[view].scene_time);
-    patch.worn = worn_step(worn_spacing(spacing, age, fading_rate(fading)) + misplaced);
+    patch.worn = worn(view, fading, spacing, misplaced);
     if (drifts(layer)) {
+        auto const age = static_cast<float>(time_ - cache_.views()[view].scene_time);
         patch.group = drifting_group(patch.group);
         patch.worn *= leads(layer.body, layer.velocity, age) ? ahead_of_all : 1.0f;
     }
@@ -212,6 +229,9 @@ double FrameletWarp::inverse_depth_within(double pixels, MergedLayer const& merg
 void FrameletWarp::turn_to(std::uint32_t view, BodyNumber body, Vec3 const& velocity) {
     if (has_transform_ && view == view_ && body == body_ && velocity == velocity_) {
         return;
+    }
+    if (body != static_body || velocity != Vec3(0)) {
+        lasts_ = {time_, -INFINITY};
     }
     has_transform_ = true;
     view_ = view;

@@ -2,6 +2,7 @@
 // motions. Out: a patch for each of its layers, a splat for each of its loose samples.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -12,6 +13,13 @@
 #include "common/warp_patch.h"
 
 namespace framelet {
+
+/// From one scene time to another, seconds; empty where that comes before.
+struct TimeSpan {
+    SceneTime first = 0, last = 0;
+
+    bool contains(SceneTime time) const { return first <= time && time <= last; }
+};
 
 /// Transforms one framelet after the other; neighbours mostly share view and body. What is not finite or too large for
 /// single precision does not show.
@@ -32,13 +40,18 @@ public:
     /// in the picture. 0 where it stays in its place.
     double inverse_depth_within(double pixels, MergedLayer const& merged);
 
+    /// For which display times all that was added would be as it is, if the camera stays: neither does anything carry
+    /// it then, nor is it worn by a step more or less. Maybe less than that.
+    TimeSpan lasts() const { return lasts_; }
+
 private:
     void turn_to(std::uint32_t view, BodyNumber body, Vec3 const& velocity);
     glm::dvec2 low(HeldLayer const& layer) const;
     glm::dvec2 high(HeldLayer const& layer) const;
     void add_layer(std::uint32_t view, HeldLayer const& layer, FadingCode fading, std::uint64_t content,
                    WarpPatch& patch, std::vector<WarpPatch>& patches);
-    void rate(std::uint32_t view, FadingCode fading, Layer const& layer, WarpPatch& patch) const;
+    float worn(std::uint32_t view, FadingCode fading, float spacing, float misplaced);
+    void rate(std::uint32_t view, FadingCode fading, Layer const& layer, WarpPatch& patch);
     /// Pixels for each 1 / metre, of what is shown at a pixel at depth 1.
     float parallax_at(glm::dvec2 pixel) const;
     bool place_still(HeldLayer const& held, WarpPatch& patch) const;
@@ -52,6 +65,8 @@ private:
     ViewRays display_rays_;
     SceneTime time_;
     BodyMotions const& motions_;
+
+    TimeSpan lasts_{-INFINITY, INFINITY};
 
     PixelRect rect_; // of the framelet at hand
     double spacing_ = 1; // of its moving grid

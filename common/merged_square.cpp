@@ -35,13 +35,10 @@ std::uint32_t number_of(std::size_t place, std::size_t layer) {
 
 } // namespace
 
-void MergedSquare::update(FrameletCache const& cache, Tile square, int depth, LayerJoining& joining) {
+bool MergedSquare::update(FrameletCache const& cache, Tile square, int depth, LayerJoining& joining) {
     square_ = square;
     depth_ = depth;
     SquareVersions const& versions = cache.versions(depth, square.column(), square.row());
-    if (versions.newest == versions_.newest) {
-        return;
-    }
     std::uint64_t const changed = changes(versions);
     versions_ = versions;
     if (changed != 0) {
@@ -49,6 +46,7 @@ void MergedSquare::update(FrameletCache const& cache, Tile square, int depth, La
         joining.join(*layers_, {child_side_, spacing_});
         keep(joining);
     }
+    return changed != 0;
 }
 
 Tile MergedSquare::child_tile(std::size_t place) const {

@@ -173,14 +173,30 @@ void Reprojector::show_exact(FrameletPool const& pool, std::span<PixelRect const
 
 /// After an exact picture no block is known to be as the plan says.
 void Reprojector::start_moving(Viewport viewport, std::size_t blocks) {
-    if (is_exact_ || blocks_.size() != blocks) {
+    bool const is_new = is_exact_ || blocks_.size() != blocks;
+    if (is_new) {
         blocks_.assign(blocks, {});
     }
+    replanned_.assign(blocks, is_new ? 1 : 0);
     auto const pixels = static_cast<std::size_t>(viewport.width) * static_cast<std::size_t>(viewport.height);
     inverse_depth_.resize(pixels);
     block_means_.resize(blocks);
     painted_.resize(blocks);
     is_exact_ = false;
+}
+
+/// All of them where what shows in its place is another slot's.
+void Reprojector::flag_replanned(FrameletPool const& pool) {
+    std::uint32_t base_slots = 0;
+    for (std::size_t i = 0; i < pool.slot_count(); ++i) {
+        base_slots |= pool.belongs_to_base(i) ? 1u << i : 0u;
+        plans_[i].flag_replanned(replanned_);
+    }
+    if (newest_slot_ != pool.newest_slot() || base_slots_ != base_slots) {
+        std::ranges::fill(replanned_, std::uint8_t{1});
+    }
+    newest_slot_ = pool.newest_slot();
+    base_slots_ = base_slots;
 }
 
 void Reprojector::show(FrameletPool const& pool, std::span<PixelRect const> changed, Camera const& camera,
@@ -204,12 +220,16 @@ void Reprojector::show(FrameletPool const& pool, std::span<PixelRect const> chan
     columns_ = plans_[0].columns();
     rows_ = plans_[0].rows();
     start_moving(viewport, static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
+    flag_replanned(pool);
     std::atomic<bool> any = false;
     tbb::parallel_for(0, rows_, [&](int row) {
         bool painted = false;
         std::vector<PatchView> patches;
-        for (int column = 0; column < columns_; ++column) {
-            painted |= update_block(pool, camera, scene_time, motions, column, row, patches, picture);
+        auto index = static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_);
+        for (int column = 0; column < columns_; ++column, ++index) {
+            if (replanned_[index] != 0 || (blocks_[index].slots & noted_slots_) != 0) {
+                painted |= update_block(pool, camera, scene_time, motions, column, row, patches, picture);
+            }
         }
         if (painted) {
             any.store(true, std::memory_order_relaxed);

@@ -57,6 +57,7 @@ private:
     void show_exact(FrameletPool const& pool, std::span<PixelRect const> changed, Picture& picture,
                     std::vector<PixelRect>& repainted);
     void start_moving(Viewport viewport, std::size_t blocks);
+    void flag_replanned(FrameletPool const& pool);
     /// True when it had to be painted.
     bool update_block(FrameletPool const& pool, Camera const& camera, SceneTime scene_time, BodyMotions const& motions,
                       int column, int row, std::vector<PatchView>& patches, Picture& picture);
@@ -71,6 +72,9 @@ private:
     std::uint32_t noted_slots_ = 0; ///< a bit for each of which the plan knows what shows in the last picture
     std::size_t exact_slot_ = 0; ///< that an exact picture shows
     std::vector<WarpPlan> plans_; ///< by slot
+    std::size_t newest_slot_ = 0; ///< of the last plans
+    std::uint32_t base_slots_ = 0; ///< of the last plans, a bit for each that belongs to the newest slot
+    std::vector<std::uint8_t> replanned_; ///< a flag for each block whose patches may be others than the last time
     int columns_ = 0, rows_ = 0; ///< of blocks
     std::vector<BlockState> blocks_;
     std::vector<FarMean> block_means_;

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include "common/framelet_shape.h"
 
@@ -57,13 +58,23 @@ inline bool leads(BodyNumber body, Vec3 const& velocity, float age) {
     return body == static_body && velocity != Vec3(0) && std::abs(age) < leading_seconds;
 }
 
-/// In steps of 1/4 within each octave, so that what is about as good does not change places from picture to picture.
-/// What is not a number is as bad as can be.
+/// Steps of a worn spacing, of a float's mantissa: 1/4 within each octave.
+inline constexpr std::uint32_t worn_step_bits = 1u << 21;
+/// What is worn more is no worse.
+inline constexpr float worst_worn = 1e3f;
+
+/// In steps, so that what is about as good does not change places from picture to picture. What is not a number is as
+/// bad as can be.
 inline float worn_step(float worn) {
-    constexpr float worst = 1e3f;
-    constexpr std::uint32_t step = 1u << 21; // of the mantissa's 23 bits
-    auto const bits = std::bit_cast<std::uint32_t>(worn < worst ? worn : worst);
-    return std::bit_cast<float>((bits + step / 2) & ~(step - 1));
+    auto const bits = std::bit_cast<std::uint32_t>(worn < worst_worn ? worn : worst_worn);
+    return std::bit_cast<float>((bits + worn_step_bits / 2) & ~(worn_step_bits - 1));
+}
+
+/// The worn spacings of which `step` is the step: from the first, below the second.
+inline std::pair<float, float> worn_of_step(float step) {
+    auto const bits = std::bit_cast<std::uint32_t>(step);
+    float const next = std::bit_cast<float>(bits + worn_step_bits / 2);
+    return {std::bit_cast<float>(bits - worn_step_bits / 2), next > worst_worn ? INFINITY : next};
 }
 
 } // namespace framelet

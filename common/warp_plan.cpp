@@ -13,9 +13,8 @@ namespace framelet {
 
 namespace {
 
-constexpr std::size_t squares_per_chunk = 4;
 /// What is joined takes the place of two layers or more.
-constexpr std::uint32_t patches_per_chunk = squares_per_chunk * MergedSquare::most_children * (max_layers + 1);
+constexpr std::uint32_t patches_per_square = MergedSquare::most_children * (max_layers + 1);
 constexpr int block_side = FrameletCache::block_side;
 
 /// How far off merging may show a sample.
@@ -67,25 +66,71 @@ WarpPlan::~WarpPlan() = default;
 WarpPlan::WarpPlan(WarpPlan&&) noexcept = default;
 WarpPlan& WarpPlan::operator=(WarpPlan&&) noexcept = default;
 
+void WarpPlan::Square::clear() {
+    before.clear();
+    for (WarpPatch const& patch : patches) {
+        before.push_back(patch.box);
+    }
+    patches.clear();
+    splats.clear();
+    places.clear();
+}
+
 void WarpPlan::make(FrameletCache const& cache, std::size_t slot, bool loose, Camera const& display,
                     SceneTime display_time, BodyMotions const& motions) {
     set_size(cache.plane().viewport());
-    set_squares(cache.plane());
-    chunks_.resize((squares_.size() + squares_per_chunk - 1) / squares_per_chunk);
-    tbb::parallel_for(std::size_t{0}, chunks_.size(), [&](std::size_t i) {
-        Chunk& chunk = chunks_[i];
-        chunk.clear();
-        FrameletWarp warp(cache, slot, display, display_time, motions);
-        LayerJoining& joining = joinings_->local();
-        std::size_t const first = i * squares_per_chunk;
-        for (std::size_t k = first; k < std::min(first + squares_per_chunk, squares_.size()); ++k) {
-            Square& square = squares_[k];
-            square.merged.update(cache, square.tile, square.depth, joining);
-            add_square(static_cast<std::uint32_t>(k), square.merged, loose, warp, chunk);
+    set_squares(cache);
+    bool const is_new = is_limited_ || loose != loose_ || !(display == display_);
+    display_ = display;
+    loose_ = loose;
+    replanned_.clear();
+    for (std::uint32_t i = 0; i < known_.size(); ++i) {
+        Known& known = known_[i];
+        std::uint64_t const change = cache.square_changes()[known.index];
+        bool const holds = change == 0 || (!is_new && known.lasts.contains(display_time)); // 0: nothing ever was there
+        if (known.change != change || !holds) {
+            known.change = change;
+            replanned_.push_back(i);
         }
-        chunk.shows.assign(chunk.patches.size(), 0);
+    }
+    tbb::parallel_for(std::size_t{0}, replanned_.size(), [&](std::size_t i) {
+        std::uint32_t const index = replanned_[i];
+        Square& square = squares_[index];
+        square.merged.update(cache, square.tile, square.depth, joinings_->local());
+        FrameletWarp warp(cache, slot, display, display_time, motions);
+        plan(square, loose, warp);
+        known_[index].lasts = warp.lasts();
+        known_[index].is_empty = square.patches.empty();
     });
-    make_bins();
+    if (!replanned_.empty() || first_entry_.empty()) {
+        occupied_.clear();
+        for (std::uint32_t i = 0; i < known_.size(); ++i) {
+            if (!known_[i].is_empty) {
+                occupied_.push_back(i);
+            }
+        }
+        make_bins();
+    }
+    for (std::uint32_t const i : occupied_) {
+        squares_[i].shows.assign(squares_[i].patches.size(), 0);
+    }
+}
+
+/// Also all that it has samples of, whether they show or not.
+void WarpPlan::flag_replanned(std::vector<std::uint8_t>& blocks) const {
+    auto const flag = [&](PixelRect const& box) {
+        for_each_block(box, columns_, [&](std::size_t block) { blocks[block] = 1; });
+    };
+    for (std::uint32_t const i : replanned_) {
+        Square const& square = squares_[i];
+        std::ranges::for_each(square.before, flag);
+        for (WarpPatch const& patch : square.patches) {
+            flag(patch.box);
+        }
+        PixelRect const rect = plane_.tile_rect(square.tile);
+        Viewport const viewport = plane_.viewport();
+        flag({rect.left, rect.top, std::min(rect.right, viewport.width), std::min(rect.bottom, viewport.height)});
+    }
 }
 
 void WarpPlan::set_size(Viewport viewport) {
@@ -93,42 +138,47 @@ void WarpPlan::set_size(Viewport viewport) {
     rows_ = (viewport.height + block_side - 1) / block_side;
 }
 
-void WarpPlan::set_squares(ImagePlane const& plane) {
+void WarpPlan::set_squares(FrameletCache const& cache) {
+    ImagePlane const& plane = cache.plane();
     if (!squares_.empty() && plane == plane_) {
         return;
     }
     plane_ = plane;
     squares_.clear();
+    known_.clear();
+    first_entry_.clear();
     for (int depth = plane.min_depth(); depth <= plane.max_depth(); ++depth) {
         int const square_depth = std::max(depth - MergedSquare::most_levels, 0);
         for (std::uint32_t index = 0; index < 1u << 2 * square_depth; ++index) {
             Tile const tile{(1u << 2 * square_depth) + index};
             if (plane.is_visible(tile)) {
-                squares_.push_back({tile, depth, {}});
+                Square& square = squares_.emplace_back();
+                square.tile = tile;
+                square.depth = depth;
+                known_.emplace_back().index = cache.square_index(depth, tile.column(), tile.row());
             }
         }
     }
 }
 
 /// Nothing is added where it is out of the picture. False where what is joined is not near enough to its parts.
-bool WarpPlan::add_joined(std::uint32_t index, MergedLayer const& merged, FrameletWarp& warp, Chunk& chunk) {
+bool WarpPlan::add_joined(MergedLayer const& merged, FrameletWarp& warp, Square& square) {
     if (merged.difference > 0 && !(merged.difference <= warp.inverse_depth_within(merging_pixels, merged))) {
         return false;
     }
-    warp.add(merged, chunk.patches);
-    chunk.note_parts({index, merged.parts[0] | merged.parts[1] | merged.parts[2]});
+    warp.add(merged, square.patches);
+    square.note_places(merged.parts[0] | merged.parts[1] | merged.parts[2]);
     return true;
 }
 
 /// Fours as far as they are near enough; what is left is `alone`.
-void WarpPlan::add_parts(std::uint32_t index, MergedSquare const& square, MergedLayer const& merged, FrameletWarp& warp,
-                         Chunk& chunk, LayerBits& alone) {
+void WarpPlan::add_parts(MergedLayer const& merged, FrameletWarp& warp, Square& square, LayerBits& alone) {
     LayerBits left = merged.parts;
-    for (JoinedLayer const& four : square.fours()) {
+    for (JoinedLayer const& four : square.merged.fours()) {
         if ((four.parts[0] & ~left[0]) == 0 && four.parts != merged.parts) {
-            MergedLayer part = square.merge(four);
+            MergedLayer part = square.merged.merge(four);
             part.number = merged.number; // as its samples have
-            left[0] &= add_joined(index, part, warp, chunk) ? ~four.parts[0] : ~std::uint64_t{0};
+            left[0] &= add_joined(part, warp, square) ? ~four.parts[0] : ~std::uint64_t{0};
         }
     }
     for (std::size_t k = 0; k < max_layers; ++k) {
@@ -137,24 +187,24 @@ void WarpPlan::add_parts(std::uint32_t index, MergedSquare const& square, Merged
 }
 
 /// What is joined, then what is left of the framelets.
-void WarpPlan::add_square(std::uint32_t index, MergedSquare const& square, bool loose, FrameletWarp& warp,
-                          Chunk& chunk) {
+void WarpPlan::plan(Square& square, bool loose, FrameletWarp& warp) {
+    square.clear();
     LayerBits alone{};
-    for (MergedLayer const& merged : square.merged()) {
-        if (!add_joined(index, merged, warp, chunk)) {
-            add_parts(index, square, merged, warp, chunk, alone);
+    for (MergedLayer const& merged : square.merged.merged()) {
+        if (!add_joined(merged, warp, square)) {
+            add_parts(merged, warp, square, alone);
         }
     }
-    std::span<MergedSquare::Child const> const children = square.children();
-    for (std::uint64_t left = alone[0] | alone[1] | alone[2] | (loose ? square.loose_children() : 0); left != 0;
+    std::span<MergedSquare::Child const> const children = square.merged.children();
+    for (std::uint64_t left = alone[0] | alone[1] | alone[2] | (loose ? square.merged.loose_children() : 0); left != 0;
          left &= left - 1) {
         auto const place = static_cast<std::size_t>(std::countr_zero(left));
         unsigned parts = loose && children[place].has_loose ? 1u << FrameletShape::loose : 0u;
         for (std::size_t k = 0; k < max_layers; ++k) {
             parts |= static_cast<unsigned>(alone[k] >> place & 1) << k;
         }
-        warp.add(*children[place].framelet, parts, chunk.patches, chunk.splats);
-        chunk.note_parts({index, std::uint64_t{1} << place});
+        warp.add(*children[place].framelet, parts, square.patches, square.splats);
+        square.note_places(std::uint64_t{1} << place);
     }
 }
 
@@ -162,8 +212,8 @@ void WarpPlan::add_square(std::uint32_t index, MergedSquare const& square, bool 
 bool WarpPlan::count_entries(std::size_t most) {
     first_entry_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_) + 1, 0);
     std::size_t total = 0;
-    for (Chunk const& chunk : chunks_) {
-        for (WarpPatch const& patch : chunk.patches) {
+    for (std::uint32_t const i : occupied_) {
+        for (WarpPatch const& patch : squares_[i].patches) {
             total += block_count(patch.box);
             if (total > most) {
                 return false;
@@ -176,8 +226,8 @@ bool WarpPlan::count_entries(std::size_t most) {
 
 void WarpPlan::limit_entries(std::size_t most) {
     std::vector<WarpPatch*> order;
-    for (Chunk& chunk : chunks_) {
-        for (WarpPatch& patch : chunk.patches) {
+    for (std::uint32_t const i : occupied_) {
+        for (WarpPatch& patch : squares_[i].patches) {
             order.push_back(&patch);
         }
     }
@@ -195,7 +245,8 @@ void WarpPlan::limit_entries(std::size_t most) {
 void WarpPlan::make_bins() {
     std::size_t const blocks = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
     std::size_t const most = most_patches_per_block * blocks;
-    if (!count_entries(most)) {
+    is_limited_ = !count_entries(most);
+    if (is_limited_) {
         limit_entries(most);
         count_entries(most);
     }
@@ -204,9 +255,9 @@ void WarpPlan::make_bins() {
     }
     entries_.resize(first_entry_.back());
     next_entry_.assign(first_entry_.begin(), first_entry_.end() - 1);
-    for (std::size_t i = 0; i < chunks_.size(); ++i) {
-        std::uint32_t entry = static_cast<std::uint32_t>(i) * patches_per_chunk;
-        for (WarpPatch const& patch : chunks_[i].patches) {
+    for (std::uint32_t const i : occupied_) {
+        std::uint32_t entry = i * patches_per_square;
+        for (WarpPatch const& patch : squares_[i].patches) {
             for_each_block(patch.box, columns_, [&](std::size_t block) { entries_[next_entry_[block]++] = entry; });
             ++entry;
         }
@@ -214,15 +265,15 @@ void WarpPlan::make_bins() {
 }
 
 WarpPatch const& WarpPlan::patch_at(std::uint32_t entry) const {
-    return chunks_[entry / patches_per_chunk].patches[entry % patches_per_chunk];
+    return squares_[entry / patches_per_square].patches[entry % patches_per_square];
 }
 
 void WarpPlan::add_block(std::size_t index, std::vector<PatchView>& patches) {
     for (std::uint32_t i = first_entry_[index]; i < first_entry_[index + 1]; ++i) {
-        Chunk& chunk = chunks_[entries_[i] / patches_per_chunk];
-        std::size_t const patch = entries_[i] % patches_per_chunk;
-        WarpPatch const& own = chunk.patches[patch];
-        patches.push_back({&own, chunk.splats.data(), &chunk.shows[patch], rank_of(own)});
+        Square& square = squares_[entries_[i] / patches_per_square];
+        std::size_t const patch = entries_[i] % patches_per_square;
+        WarpPatch const& own = square.patches[patch];
+        patches.push_back({&own, square.splats.data(), &square.shows[patch], rank_of(own)});
     }
     // Those of the block that is most likely asked for next.
     std::size_t const next = std::min(index + 2, first_entry_.size() - 1);
@@ -235,11 +286,11 @@ void WarpPlan::add_block(std::size_t index, std::vector<PatchView>& patches) {
 }
 
 void WarpPlan::add_shown(std::vector<Tile>& tiles) const {
-    for (Chunk const& chunk : chunks_) {
-        for (std::size_t i = 0; i < chunk.shows.size(); ++i) {
-            if (chunk.shows[i] != 0) {
-                Square const& square = squares_[chunk.parts[i].square];
-                for (std::uint64_t left = chunk.parts[i].places; left != 0; left &= left - 1) {
+    for (std::uint32_t const index : occupied_) {
+        Square const& square = squares_[index];
+        for (std::size_t i = 0; i < square.shows.size(); ++i) {
+            if (square.shows[i] != 0) {
+                for (std::uint64_t left = square.places[i]; left != 0; left &= left - 1) {
                     tiles.push_back(square.merged.child_tile(static_cast<std::size_t>(std::countr_zero(left))));
                 }
             }

@@ -27,13 +27,15 @@ public:
     WarpPlan(WarpPlan&&) noexcept;
     WarpPlan& operator=(WarpPlan&&) noexcept;
 
-    /// Replaces the plan; `cache` is always the same one. Runs in parallel; allocates only where more is held than ever
-    /// before.
+    /// Replaces the plan; `cache` and `slot` are always the same ones. Squares of which all stays as it was planned
+    /// last are kept. Runs in parallel; allocates only where more is held than ever before.
     void make(FrameletCache const& cache, std::size_t slot, bool loose, Camera const& display, SceneTime display_time,
               BodyMotions const& motions);
 
     int columns() const { return columns_; }
     int rows() const { return rows_; }
+    /// Sets the flags of blocks for which the plan may be another one than before it was made last.
+    void flag_replanned(std::vector<std::uint8_t>& blocks) const;
     /// Adds what may touch a block to `patches`.
     void add_block(std::size_t index, std::vector<PatchView>& patches);
     /// Adds the tiles of what was noted to show since the plan was made; some come more than once.
@@ -48,25 +50,29 @@ private:
         std::uint64_t places = 0; ///< bits, as `MergedLayer::parts`
     };
 
-    struct Chunk {
-        std::vector<WarpPatch> patches;
-        std::vector<Splat> splats;
-        std::vector<PatchParts> parts; ///< of patches
-        std::vector<std::uint8_t> shows; ///< of patches: whether something of it showed when blocks were painted
-
-        void clear() {
-            patches.clear();
-            splats.clear();
-            parts.clear();
-        }
-        /// That have been added since the last call are of these.
-        void note_parts(PatchParts const& some) { parts.resize(patches.size(), some); }
-    };
-
+    /// All framelets of one depth below a tile.
     struct Square {
         Tile tile;
-        int depth = 0; ///< of the framelets below it
+        int depth = 0; ///< of the framelets
         MergedSquare merged;
+        std::vector<PixelRect> before; ///< where its patches were before it was planned
+
+        std::vector<WarpPatch> patches;
+        std::vector<Splat> splats;
+        std::vector<std::uint64_t> places; ///< of what framelets each patch is: bits, as `MergedLayer::parts`
+        std::vector<std::uint8_t> shows; ///< of patches: whether something of it showed when blocks were painted
+
+        void clear();
+        /// Patches that have been added since the last call are of these.
+        void note_places(std::uint64_t some) { places.resize(patches.size(), some); }
+    };
+
+    /// Of a square, close together: all are looked at each time.
+    struct Known {
+        std::size_t index = 0; ///< in the cache's `square_changes`
+        std::uint64_t change = 0; ///< of it, when it was planned
+        TimeSpan lasts{0, -1}; ///< display times for which the plan holds
+        bool is_empty = true; ///< has no patches
     };
 
     /// Bit p of word k: layer k of the framelet at place p.
@@ -74,12 +80,10 @@ private:
 
     WarpPatch const& patch_at(std::uint32_t entry) const;
     void set_size(Viewport viewport);
-    void set_squares(ImagePlane const& plane);
-    static void add_square(std::uint32_t index, MergedSquare const& square, bool loose, FrameletWarp& warp,
-                           Chunk& chunk);
-    static bool add_joined(std::uint32_t index, MergedLayer const& merged, FrameletWarp& warp, Chunk& chunk);
-    static void add_parts(std::uint32_t index, MergedSquare const& square, MergedLayer const& merged,
-                          FrameletWarp& warp, Chunk& chunk, LayerBits& alone);
+    void set_squares(FrameletCache const& cache);
+    static void plan(Square& square, bool loose, FrameletWarp& warp);
+    static bool add_joined(MergedLayer const& merged, FrameletWarp& warp, Square& square);
+    static void add_parts(MergedLayer const& merged, FrameletWarp& warp, Square& square, LayerBits& alone);
     bool count_entries(std::size_t most);
     void limit_entries(std::size_t most);
     void make_bins();
@@ -87,12 +91,17 @@ private:
     int columns_ = 0, rows_ = 0;
     ImagePlane plane_; ///< of the squares
     std::vector<Square> squares_; ///< all that can be held
+    std::vector<Known> known_; ///< of these
+    std::vector<std::uint32_t> replanned_; ///< those that were planned when the plan was made last
+    std::vector<std::uint32_t> occupied_; ///< those with patches
     struct Joinings;
     std::unique_ptr<Joinings> joinings_; ///< scratch
-    std::vector<Chunk> chunks_; ///< of squares
+    Camera display_; ///< of the plan
+    bool loose_ = false; ///< whether what is loose is in it
+    bool is_limited_ = false; ///< not all of it has room
     std::vector<std::uint32_t> first_entry_; ///< by block; one more at the end
     std::vector<std::uint32_t> next_entry_;
-    std::vector<std::uint32_t> entries_; ///< chunk * patches_per_chunk + patch
+    std::vector<std::uint32_t> entries_; ///< square * patches_per_square + patch
 };
 
 /// Puts the patches of a block into the order in which they are painted: the best samples first, the newest of those,

@@ -11,8 +11,6 @@ namespace {
 
 /// A comparison over so many seconds counts as much as all that was known before.
 constexpr float trusted_seconds = 0.2f;
-/// The least that is expected of anything, mean squared luma a second.
-constexpr float least_change = 1e-5f;
 /// What is seen in a mirror by a camera that moves.
 constexpr float restless_change = 0.02f;
 /// What is seen sooner again says little of how fast it changes.
@@ -94,7 +92,7 @@ FadingCode learn_fading(Mirror const& mirror, std::span<Piece> pieces, SceneTime
     float change = 0, detail = 0;
     for (Piece& piece : pieces) {
         piece.change = comparable ? change_after(compare(mirror, piece, scene_time)) : 0;
-        float expected = std::max(piece.change, least_change);
+        float expected = piece.change;
         if (piece.reflects && !mirror.camera_stands()) {
             expected = std::max(expected, restless_change);
         }

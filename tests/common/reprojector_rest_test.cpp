@@ -9,6 +9,7 @@
 
 #include "common/color.h"
 #include "common/reconstruction.h"
+#include "common/sample_worth.h"
 #include "tests/common/moved_room.h"
 
 namespace framelet {
@@ -84,7 +85,7 @@ TEST(ReprojectorRest, AfterACutWhatIsHeldStaysWhereItIs) {
 TEST(ReprojectorRest, IncrementalEqualsWholeAndThreadsMakeNoDifference) {
     ImagePlane const plane(viewport);
     AnalyticScene scene = room();
-    scene.motions.extend({5, 0, {BodyPose{}, BodyPose{Vec3(0.3f, 0, 0)}, BodyPose{Vec3(0.5f, 0.1f, 0)}}});
+    scene.motions.extend({5, 0, {BodyPose{}, BodyPose{Vec3(2, 0, 0)}, BodyPose{Vec3(-1, 0.1f, 0)}}});
     scene.quads[2].body = 5;
     std::mt19937 random(12);
     FrameletPool pool(plane);
@@ -102,9 +103,18 @@ TEST(ReprojectorRest, IncrementalEqualsWholeAndThreadsMakeNoDifference) {
             }
         }
         double const time = static_cast<double>(number / 4) / body_keys_per_second;
-        pool.insert(scene.batch(plane, number, camera, time, tiles));
+        Batch batch = scene.batch(plane, number, camera, time, tiles);
+        for (FrameletShape& shape : batch.shapes) {
+            shape.fading = fading_code(number % 3 == 0 ? 0.0f : std::exp2(static_cast<float>(random() % 8)));
+        }
+        pool.insert(batch);
         if (number % 5 == 0) {
             camera.position += Vec3(0.05f, 0.02f, -0.1f);
+        }
+        for (double const later : {0.3, 0.02, -0.04, 0.01}) { // the same, worn more or less
+            pool.newest().take_changed(changed);
+            kept.show(pool, changed, camera, time + later, scene.motions, picture, repainted);
+            ASSERT_EQ(picture, show(pool, camera, time + later, scene.motions).picture) << number << ' ' << later;
         }
         pool.newest().take_changed(changed);
         Picture const before = picture;
