@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <tbb/parallel_for.h>
+
 #include "common/error.h"
 #include "common/sample_worth.h"
 
@@ -100,9 +102,13 @@ void MomentPlan::find_gains(Mirror const& mirror, PlaceField const& field, Momen
     }
     mean_detail_ = shown > 0 ? static_cast<float>(detail / static_cast<double>(shown)) : unknown_detail;
     leaves_.assign(field.size(), Leaf{});
+    std::span<std::uint32_t const> const places = field.visible();
+    tbb::parallel_for(std::size_t{0}, places.size(),
+                      [&](std::size_t i) { add_gains(mirror, field, places[i], budget); });
     stale_ = wrong_ = 0;
-    for (std::uint32_t const index : field.visible()) {
-        add_gains(mirror, field, index, budget);
+    for (std::uint32_t const index : places) {
+        stale_ += leaves_[index].stale;
+        wrong_ += leaves_[index].wrong;
     }
 }
 
@@ -145,8 +151,8 @@ void MomentPlan::add_gains(Mirror const& mirror, PlaceField const& field, std::u
             // What comes is shown although it is worse, or only where it is better.
             float const least = cell.is_shown() && mirror.gives_way(cell) ? -most_error : 0.0f;
             float const now = covered > 0 ? spacing_error(detail, worn) + stale : 0;
-            stale_ += covered * stale;
-            wrong_ += covered * now + (pixels - covered) * hole_error;
+            leaf.stale += covered * stale;
+            leaf.wrong += covered * now + (pixels - covered) * hole_error;
             for (std::size_t level = 0; level < leaf.gain.size(); ++level) {
                 float const then = std::min(detail * missed_shares[level], most_error);
                 leaf.gain[level] +=

@@ -51,6 +51,7 @@ private:
     };
     struct Leaf {
         LevelGains gain{}, cost{};
+        float stale = 0, wrong = 0; ///< squared error summed over pixels: by changed looks, all of it
         int level = -1; ///< best; -1: none
     };
 
@@ -64,7 +65,7 @@ private:
     float price_ = 0;
     float gain_ = 0; ///< of what was chosen last
     float mean_detail_ = 0;
-    float stale_ = 0, wrong_ = 0; ///< squared error summed over pixels: by changed looks, all of it
+    float stale_ = 0, wrong_ = 0; ///< of all leaves
     std::vector<Leaf> leaves_; ///< of the places
     std::vector<std::vector<Node>> nodes_; ///< by depth, above the places
 };
