@@ -116,7 +116,7 @@ void WarpPlan::make(FrameletCache const& cache, std::size_t slot, bool loose, Ca
     }
 }
 
-/// Also all that it has samples of, whether they show or not.
+/// Where patches of replanned squares were, where they are, and the squares, whose samples may show in their places.
 void WarpPlan::flag_replanned(std::vector<std::uint8_t>& blocks) const {
     auto const flag = [&](PixelRect const& box) {
         for_each_block(box, columns_, [&](std::size_t block) { blocks[block] = 1; });

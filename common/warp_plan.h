@@ -34,7 +34,7 @@ public:
 
     int columns() const { return columns_; }
     int rows() const { return rows_; }
-    /// Sets the flags of blocks for which the plan may be another one than before it was made last.
+    /// Sets the flags of those blocks whose plan may not be what it was before `make` was called last.
     void flag_replanned(std::vector<std::uint8_t>& blocks) const;
     /// Adds what may touch a block to `patches`.
     void add_block(std::size_t index, std::vector<PatchView>& patches);
@@ -44,12 +44,6 @@ public:
     std::size_t entry_count() const { return entries_.size(); }
 
 private:
-    /// Of what framelets a patch is.
-    struct PatchParts {
-        std::uint32_t square = 0;
-        std::uint64_t places = 0; ///< bits, as `MergedLayer::parts`
-    };
-
     /// All framelets of one depth below a tile.
     struct Square {
         Tile tile;
