@@ -64,7 +64,9 @@ TEST_F(Table, EveryRunOfEverySceneGetsItsFigures) {
         EXPECT_EQ(cell["ratios"].size(), 10u);
         EXPECT_GT(cell["median_ratio"].get<double>(), 0);
         double const spent = cell["cpu_seconds"]["server"].get<double>() + cell["cpu_seconds"]["viewer"].get<double>();
-        EXPECT_NEAR(spent, 0.5, 0.15) << "equal in total: " << cell;
+        EXPECT_LE(spent, 0.65) << "equal in total: " << cell;
+        bool const rests = cell["method"] == "framelet" && cell["scene"] == "vehicle_fixed";
+        EXPECT_GE(spent, rests ? 0 : 0.35) << "but where nothing it could render would show: " << cell;
     }
     auto const ratios = [&](int i) { return figures["cells"][static_cast<std::size_t>(i)]["ratios"]; };
     EXPECT_EQ(ratios(0), ratios(1)) << "frameless knows no batches";
