@@ -35,7 +35,7 @@ std::uint32_t number_of(std::size_t place, std::size_t layer) {
 
 } // namespace
 
-bool MergedSquare::update(FrameletCache const& cache, Tile square, int depth, LayerJoining& joining) {
+void MergedSquare::update(FrameletCache const& cache, Tile square, int depth, LayerJoining& joining) {
     square_ = square;
     depth_ = depth;
     SquareVersions const& versions = cache.versions(depth, square.column(), square.row());
@@ -46,7 +46,6 @@ bool MergedSquare::update(FrameletCache const& cache, Tile square, int depth, La
         joining.join(*layers_, {child_side_, spacing_});
         keep(joining);
     }
-    return changed != 0;
 }
 
 Tile MergedSquare::child_tile(std::size_t place) const {

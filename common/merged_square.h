@@ -53,10 +53,9 @@ public:
         bool is_written = false; ///< to the grid
     };
 
-    /// Brings it up to date; true when anything has changed. Always of the same cache, square and depth. Looks at what
-    /// has changed since the last call only; allocates where more is held or joined than ever before. `joining` is
-    /// scratch.
-    bool update(FrameletCache const& cache, Tile square, int depth, LayerJoining& joining);
+    /// Brings it up to date. Always of the same cache, square and depth. Looks at what has changed since the last call
+    /// only; allocates where more is held or joined than ever before. `joining` is scratch.
+    void update(FrameletCache const& cache, Tile square, int depth, LayerJoining& joining);
 
     /// What is held of that depth below the square, by place (as in `SquareLayers`); empty where nothing ever was. This
     /// and what follows is valid until the next update.

@@ -66,5 +66,42 @@ TEST(WarpPlan, FrameletsOfOnePlaneAreOnePatchForManyBlocks) {
     }
 }
 
+/// What is not flagged has the patches that it had, also where one has left.
+TEST(WarpPlan, FlagsEachBlockOfWhichThePatchesAreOthers) {
+    ImagePlane const plane(viewport);
+    FrameletCache cache(plane);
+    AnalyticScene scene;
+    scene.quads.push_back({{-0.3, -0.3, 0}, {0.6, 0, 0}, {0, 0.6, 0}, [](double, double) {
+                               return Color{90, 90, 90};
+                           }});
+    scene.quads[0].body = 5;
+    scene.motions.extend({5, 0, {BodyPose{}, BodyPose{Vec3(1.5f, 0, 0)}, BodyPose{Vec3(-1.5f, 0, 0)}}});
+    Batch const batch = scene.batch(plane, 1, front(), 0, visible_tiles(plane, plane.pixel_depth() + 1));
+    cache.insert(batch);
+    WarpPlan plan;
+    std::vector<std::vector<std::uint64_t>> before;
+    int unflagged = 0;
+    for (double const time : {0.0, 1.0, 1.0, 2.0, 1.5}) {
+        plan.make(cache, 0, true, front(), time / body_keys_per_second, scene.motions);
+        auto const blocks = static_cast<std::size_t>(plan.columns() * plan.rows());
+        before.resize(blocks);
+        std::vector<std::uint8_t> flags(blocks);
+        plan.flag_replanned(flags);
+        for (std::size_t i = 0; i < blocks; ++i) {
+            std::vector<PatchView> patches;
+            plan.add_block(i, patches);
+            order(patches);
+            std::vector<std::uint64_t> now;
+            for (PatchView const& view : patches) {
+                now.push_back(view.patch->signature);
+            }
+            EXPECT_TRUE(flags[i] != 0 || now == before[i]) << i << ' ' << time;
+            unflagged += flags[i] == 0 ? 1 : 0;
+            before[i] = now;
+        }
+    }
+    EXPECT_GT(unflagged, 0);
+}
+
 } // namespace
 } // namespace framelet

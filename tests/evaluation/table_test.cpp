@@ -65,8 +65,11 @@ TEST_F(Table, EveryRunOfEverySceneGetsItsFigures) {
         EXPECT_GT(cell["median_ratio"].get<double>(), 0);
         double const spent = cell["cpu_seconds"]["server"].get<double>() + cell["cpu_seconds"]["viewer"].get<double>();
         EXPECT_LE(spent, 0.65) << "equal in total: " << cell;
-        bool const rests = cell["method"] == "framelet" && cell["scene"] == "vehicle_fixed";
-        EXPECT_GE(spent, rests ? 0 : 0.35) << "but where nothing it could render would show: " << cell;
+        if (spent < 0.35) { // everything is as fine as it gets, and what moves is small
+            EXPECT_EQ(cell["method"], "framelet") << cell;
+            EXPECT_EQ(cell["scene"], "vehicle_fixed") << cell;
+            EXPECT_LT(cell["median_ratio"].get<double>(), 0.8) << "better all the same: " << cell;
+        }
     }
     auto const ratios = [&](int i) { return figures["cells"][static_cast<std::size_t>(i)]["ratios"]; };
     EXPECT_EQ(ratios(0), ratios(1)) << "frameless knows no batches";
