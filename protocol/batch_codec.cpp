@@ -9,6 +9,7 @@
 #include "common/per_thread.h"
 #include "protocol/plane_codec.h"
 #include "protocol/shape_codec.h"
+#include "protocol/track_codec.h"
 #include "protocol/zstd_frames.h"
 
 namespace framelet {
@@ -53,6 +54,13 @@ struct Worker {
                 from += framelet_samples;
             }
         });
+    }
+
+    Bytes encode_tracks(Batch const& batch) {
+        content = framelet::encode_tracks(batch.tracks, batch.camera_track);
+        Bytes frame(most_frame_bytes(content.size()));
+        frame.resize(frames.compress(std::array{std::span<std::uint8_t const>(content)}, frame));
+        return frame;
     }
 
     Bytes encode_shapes(std::span<FrameletShape const> group, std::span<std::uint8_t const> side_bits) {
@@ -144,8 +152,9 @@ EncodedBatch BatchCodec::encode(Batch const& batch, HeldPicture* held) {
     if (!batch.shapes.empty()) {
         encoded.shapes = encode_shapes(batch);
     }
-    encoded.tracks = batch.tracks;
-    encoded.camera_track = batch.camera_track;
+    if (!batch.tracks.empty() || batch.camera_track) {
+        encoded.tracks = scratch_->workers.local().encode_tracks(batch);
+    }
     return encoded;
 }
 
@@ -212,8 +221,12 @@ void BatchCodec::decode(EncodedBatch const& encoded, HeldPicture* held, Batch& b
         held->take(batch.framelets);
     }
     decode_shapes(encoded, batch.shapes);
-    batch.tracks = encoded.tracks;
-    batch.camera_track = encoded.camera_track;
+    batch.tracks.clear();
+    batch.camera_track.reset();
+    if (!encoded.tracks.empty()) {
+        check_frame(encoded.tracks, 1, most_track_bytes);
+        decode_tracks(scratch_->workers.local().frames.decompress(encoded.tracks), batch.tracks, batch.camera_track);
+    }
 }
 
 void BatchCodec::decode_shapes(EncodedBatch const& encoded, std::vector<FrameletShape>& shapes) {

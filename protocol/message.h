@@ -28,7 +28,7 @@ namespace coding {
 inline constexpr std::uint32_t exact_colour = 1; ///< every viewer can
 inline constexpr std::uint32_t haar_colour = 2; ///< framelets with a quality
 inline constexpr std::uint32_t predicted_colour = 8; ///< framelets predicted from those of earlier batches
-inline constexpr std::uint32_t shapes_and_tracks = 16;
+inline constexpr std::uint32_t shapes_and_tracks = 32;
 inline constexpr std::uint32_t all = exact_colour | haar_colour | shapes_and_tracks | predicted_colour; ///< known here
 } // namespace coding
 
@@ -109,10 +109,7 @@ enum class SampleEncoding : std::uint8_t {
     predicted = 4, ///< the same, beside what the viewer holds
 };
 
-/// Most bodies of which one batch tells how they move, and most keys of one of them.
-inline constexpr std::size_t max_batch_tracks = 4096, max_track_keys = 1024;
-
-/// A batch as it travels: tiles and tracks in the clear, samples and shapes compressed by `batch_codec`.
+/// A batch as it travels: tiles in the clear, samples, shapes and tracks compressed by `batch_codec`.
 struct EncodedBatch {
     std::uint64_t number = 0;
     NumberedView view;
@@ -121,8 +118,7 @@ struct EncodedBatch {
     Bytes payload;
     SampleEncoding encoding = SampleEncoding::exact;
     Bytes shapes{}; ///< of all framelets; empty: the viewer has no use for them
-    std::vector<BodyTrack> tracks{};
-    std::optional<BodyTrack> camera_track{};
+    Bytes tracks{}; ///< empty: nothing moves but as the viewer knows
     bool operator==(EncodedBatch const&) const = default;
 };
 

@@ -102,56 +102,73 @@ Offset<wire::Batch> write(Builder& builder, EncodedBatch const& value) {
     if (!value.shapes.empty()) {
         list.push_back(write_section(builder, wire::Content::shape, wire::Encoding::fading_layers_zstd, value.shapes));
     }
+    if (!value.tracks.empty()) {
+        list.push_back(write_section(builder, wire::Content::track, wire::Encoding::tracks_zstd, value.tracks));
+    }
     auto const sections = builder.CreateVector(list);
-    Offset<TrackList> const tracks = value.tracks.empty() ? Offset<TrackList>() : write(builder, value.tracks);
-    Offset<wire::BodyTrack> const camera_track =
-        value.camera_track ? write(builder, *value.camera_track) : Offset<wire::BodyTrack>();
     std::uint32_t* codes = nullptr;
     auto const tiles = builder.CreateUninitializedVector(value.tiles.size(), &codes);
     std::transform(value.tiles.begin(), value.tiles.end(), codes, [](Tile tile) { return tile.code; });
     auto const view = write(builder, value.view);
-    return wire::CreateBatch(builder, value.number, view, value.scene_time, tiles, sections, tracks, camera_track);
+    return wire::CreateBatch(builder, value.number, view, value.scene_time, tiles, sections);
 }
 
+namespace {
+
+void take(wire::Section const& section, EncodedBatch& batch) {
+    wire::Encoding const encoding = section.encoding();
+    switch (section.content()) {
+    case wire::Content::colour:
+        if (encoding != wire::Encoding::planes_left_zstd && encoding != wire::Encoding::haar_zstd &&
+            encoding != wire::Encoding::predicted_haar_zstd) {
+            throw ProtocolError("a batch's samples are in an unknown encoding");
+        }
+        batch.encoding = static_cast<SampleEncoding>(encoding);
+        batch.payload = read_bytes(section);
+        return;
+    case wire::Content::shape:
+        if (encoding != wire::Encoding::fading_layers_zstd) {
+            throw ProtocolError("a batch's shapes are in an unknown encoding");
+        }
+        batch.shapes = read_bytes(section);
+        return;
+    case wire::Content::track:
+        if (encoding != wire::Encoding::tracks_zstd) {
+            throw ProtocolError("a batch's tracks are in an unknown encoding");
+        }
+        batch.tracks = read_bytes(section);
+        return;
+    case wire::Content::none:
+        break;
+    }
+    throw ProtocolError("a batch's section holds something unknown");
+}
+
+} // namespace
+
 EncodedBatch read(wire::Batch const& wire) {
-    std::size_t const sections = wire.sections()->size();
-    if (sections != 1 && sections != 2) {
-        throw ProtocolError("a batch has " + std::to_string(sections) + " sections instead of one or two");
+    if (wire.sections()->size() == 0) {
+        throw ProtocolError("a batch has no section");
     }
-    wire::Section const& section = *wire.sections()->Get(0);
-    wire::Section const* const shapes = sections == 2 ? wire.sections()->Get(1) : nullptr;
-    if (section.content() != wire::Content::colour ||
-        (shapes != nullptr && shapes->content() != wire::Content::shape)) {
-        throw ProtocolError("a batch's section holds something unknown");
-    }
-    if (section.encoding() != wire::Encoding::planes_left_zstd && section.encoding() != wire::Encoding::haar_zstd &&
-        section.encoding() != wire::Encoding::predicted_haar_zstd) {
-        throw ProtocolError("a batch's samples are in an unknown encoding");
-    }
-    if (shapes != nullptr && shapes->encoding() != wire::Encoding::fading_layers_zstd) {
-        throw ProtocolError("a batch's shapes are in an unknown encoding");
+    EncodedBatch value;
+    wire::Content before = wire::Content::none;
+    for (wire::Section const* const section : *wire.sections()) {
+        if (section->content() <= before ||
+            (before == wire::Content::none && section->content() != wire::Content::colour)) {
+            throw ProtocolError("a batch's sections are out of order");
+        }
+        before = section->content();
+        take(*section, value);
     }
     if (wire.tiles()->size() > max_batch_framelets) {
         throw ProtocolError("a batch has more than 32768 framelets");
     }
-    EncodedBatch value;
-    value.encoding = static_cast<SampleEncoding>(section.encoding());
     value.number = wire.number();
     value.view = read(*wire.view());
     value.scene_time = wire.scene_time();
     value.tiles.reserve(wire.tiles()->size());
     for (std::uint32_t const code : *wire.tiles()) {
         value.tiles.push_back({code});
-    }
-    value.payload = read_bytes(section);
-    if (shapes != nullptr) {
-        value.shapes = read_bytes(*shapes);
-    }
-    if (wire.tracks() != nullptr) {
-        value.tracks = read(*wire.tracks());
-    }
-    if (wire.camera_track() != nullptr) {
-        value.camera_track = read(*wire.camera_track());
     }
     return value;
 }
@@ -176,10 +193,7 @@ char const* problem(EncodedBatch const& value) {
     if (has_duplicate(value.tiles)) {
         return "a batch has the same tile twice";
     }
-    if (char const* const fault = value.camera_track ? problem(*value.camera_track) : nullptr) {
-        return fault;
-    }
-    return problem(value.tracks);
+    return nullptr;
 }
 
 Offset<wire::Status> write(Builder& builder, Status const& value) {

@@ -38,13 +38,6 @@ char const* problem(Camera const& value);
 Offset<wire::View> write(Builder& builder, NumberedView const& value);
 NumberedView read(wire::View const& wire);
 char const* problem(NumberedView const& value);
-using TrackList = flatbuffers::Vector<Offset<wire::BodyTrack>>;
-Offset<TrackList> write(Builder& builder, std::vector<BodyTrack> const& value);
-std::vector<BodyTrack> read(TrackList const& wire);
-char const* problem(std::vector<BodyTrack> const& value);
-Offset<wire::BodyTrack> write(Builder& builder, BodyTrack const& value);
-BodyTrack read(wire::BodyTrack const& wire);
-char const* problem(BodyTrack const& value);
 /// Text is made one line and cut on writing, because it comes from files; on reading it is refused.
 Offset<flatbuffers::String> write_text(Builder& builder, std::string const& text, std::size_t max_bytes);
 std::string read_text(flatbuffers::String const* wire, std::size_t max_bytes);

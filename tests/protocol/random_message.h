@@ -96,22 +96,6 @@ public:
         return shuffled;
     }
 
-    BodyTrack track(BodyNumber body) {
-        BodyTrack track{body, static_cast<std::int64_t>(number(-1e15, 1e15)), {}};
-        track.keys.resize(integer(1, 20));
-        for (BodyPose& key : track.keys) {
-            key = {vector(), camera().orientation, vector()};
-        }
-        if (integer(0, 1) == 0) { // travels once for all keys
-            BodyPose const first = track.keys[0];
-            for (BodyPose& key : track.keys) {
-                key.translation = first.translation;
-                key.scale = first.scale;
-            }
-        }
-        return track;
-    }
-
     EncodedBatch batch() {
         EncodedBatch batch;
         batch.number = any64() | 1u;
@@ -124,9 +108,7 @@ public:
         }
         if (coin()) {
             batch.shapes.resize(integer(1, 100), std::byte{7});
-            for (std::uint64_t i = integer(0, 5); i > 0; --i) {
-                batch.tracks.push_back(track(static_cast<BodyNumber>(10000 * i + integer(0, 9999))));
-            }
+            batch.tracks.resize(integer(0, 100), std::byte{5});
         }
         return batch;
     }
