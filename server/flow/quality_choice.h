@@ -9,8 +9,8 @@
 
 namespace framelet {
 
-/// The coarsest quality that is chosen: its loss, about 38 dB, is what sampling leaves of a fine picture anyway.
-inline constexpr std::uint8_t most_loss = 14;
+/// The coarsest quality that is chosen: its loss, about 32 dB, is what sampling leaves of a picture that moves anyway.
+inline constexpr std::uint8_t most_loss = 24;
 
 /// Goes step by step, so that one odd measurement does not show.
 class QualityChoice {
