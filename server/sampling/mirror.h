@@ -10,23 +10,15 @@
 #include <unordered_set>
 #include <vector>
 
-#include "common/body_motion.h"
 #include "common/picture/framelet_pool.h"
 #include "common/place_grid.h"
 #include "common/probe.h"
-#include "common/reprojection.h"
-#include "server/sampling/piece.h"
+#include "server/sampling/piece_reprojection.h"
 
 namespace framelet {
 
 /// Side of a cell, pixels.
 inline constexpr int cell_side = 4;
-
-/// A camera (perspective) and a scene time.
-struct MirrorView {
-    ViewRays rays{};
-    SceneTime scene_time = 0;
-};
 
 /// What a cell of the picture shows.
 struct Cell {
@@ -60,8 +52,8 @@ public:
     Piece const& piece_of(Cell const& cell) const { return moments_[cell.moment].pieces[cell.piece]; }
     /// Where the middle of that piece is in the picture of the cell, pixels; how much larger it is than it was
     /// rendered; of when it is.
-    Vec2 place_of(Cell const& cell) const { return moments_[cell.moment].placed[cell.piece].at; }
-    float scale_of(Cell const& cell) const { return moments_[cell.moment].placed[cell.piece].scale; }
+    Vec2 place_of(Cell const& cell) const { return moments_[cell.moment].reprojected[cell.piece].at; }
+    float scale_of(Cell const& cell) const { return moments_[cell.moment].reprojected[cell.piece].scale; }
     /// The luma that a cell shows at a place of its picture, display-encoded.
     float luma_of(Cell const& cell, Vec2 at) const;
     SceneTime time_of(Cell const& cell) const { return piece_of(cell).scene_time; }
@@ -100,33 +92,14 @@ public:
     bool is_empty() const { return piece_count() == 0; }
 
 private:
-    struct Placed { ///< a piece in the picture that is looked at
-        Vec2 at{0};
-        Vec2 half_side{0}; ///< of the box that it covers, pixels
-        float inverse_depth = -1; ///< < 0: not in the picture
-        Vec2 depth_slope{0}; ///< of the inverse depth, for each pixel
-        float tolerance = 0; ///< by which its inverse depths may differ
-        float scale = 1;
-        float worn = 0; ///< spacing, pixels
-        bool leads = false; ///< a shadow that shows before what it comes over
-    };
     struct Moment {
         ViewRays rays;
         SceneTime scene_time = 0; ///< of pieces that move
         std::uint64_t number = 0; ///< in order of their coming; 0: free
         std::vector<Piece> pieces;
-        std::vector<Placed> placed; ///< one each
+        std::vector<ReprojectedPiece> reprojected; ///< one each, in the picture that is looked at
         bool is_of_camera = false; ///< that is looked through
     };
-    struct TurnedBody { ///< takes pixels of a moment to the picture that is looked at
-        std::uint64_t stamp = 0; ///< for which it holds
-        Mat3 far{1};
-        Vec3 parallax{0};
-        bool is_still = false; ///< they stay where they are
-        std::array<Vec3, 3> carried{}; ///< of a metre along each axis of the world
-        float lens = 1;
-    };
-
     std::size_t index_of(int column, int row) const {
         return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
     }
@@ -139,13 +112,13 @@ private:
     Moment& slot_of_moving(SceneTime scene_time);
     Moment& begin_slot(ViewRays const& rays, SceneTime scene_time);
     Moment& free_slot();
-    TurnedBody const& turn_to(Moment const& moment, Piece const& piece, BodyMotions const& motions);
-    void place(Moment& moment, std::size_t first, BodyMotions const& motions);
-    bool place(Piece const& piece, TurnedBody const& turned, Placed& placed) const;
+    PieceReprojection to_picture(Moment const& moment, BodyMotions const& motions) const;
+    void draw(Moment& moment, std::size_t first, BodyMotions const& motions);
     void splat(Moment const& moment, std::size_t index);
     void cover(Piece const& piece);
     void show(Moment const& moment, std::size_t index, unsigned mask, int column, int row);
-    bool is_better(Moment const& moment, Placed const& placed, float inverse_depth, int share, Cell const& cell) const;
+    bool is_better(Moment const& moment, ReprojectedPiece const& reprojected, float inverse_depth, int share,
+                   Cell const& cell) const;
     bool shows_loose(Moment const& moment) const;
     bool is_missed(Moment const& moment) const;
     void miss(Moment const& moment, BodyMotions const& motions);
@@ -174,9 +147,9 @@ private:
 
     std::vector<std::uint64_t> newest_batch_; ///< by cell
     std::vector<Piece> standing_, moving_; ///< scratch
-    std::vector<TurnedBody> turned_; ///< by body
+    std::vector<ReprojectedPiece> missed_; ///< scratch
+    BodyTransforms transforms_; ///< scratch
     std::vector<Difference> differences_; ///< by place of a grid of probes
-    std::uint64_t stamp_ = 0;
 };
 
 } // namespace framelet
