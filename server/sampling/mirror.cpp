@@ -5,20 +5,13 @@
 #include <cmath>
 #include <utility>
 
-#include "common/error.h"
-
 namespace framelet {
 namespace {
 
-/// What is nearer by less than this share of its inverse depth is not worth looking for: crowns are full of it.
-constexpr float nearer_share = 0.25f;
 /// Inverse depths that differ by less than this share belong to one surface, besides by what pieces may be off.
 constexpr float same_surface = 0.02f;
-/// Beyond so many standard deviations it is a change, or where all probes around it together are.
-constexpr float doubt = 4;
 /// What is loose and has stopped showing is missed for so many moments more.
 constexpr std::uint64_t missed_moments = 3;
-constexpr int cell_pixels = cell_side * cell_side;
 /// A piece that covers less of a cell than this is not what it shows, where there is another.
 constexpr int least_share = cell_pixels / 2;
 /// More than a viewer can hold is not worth remembering as gone.
@@ -26,18 +19,6 @@ constexpr std::size_t most_forgotten = std::size_t{1} << 18;
 
 std::uint64_t key_of(SentTile const& sent) {
     return sent.batch << 32 ^ sent.tile.code;
-}
-
-/// Bits [first, last) of four, clipped.
-constexpr unsigned bits_between(int first, int last) {
-    first = std::max(first, 0);
-    last = std::min(last, cell_side);
-    return ((1u << last) - 1) & ~((1u << first) - 1);
-}
-
-/// Each of four bits to the first of four.
-constexpr unsigned spread_rows(unsigned rows) {
-    return (rows & 1) | (rows & 2) << 3 | (rows & 4) << 6 | (rows & 8) << 9;
 }
 
 } // namespace
@@ -89,116 +70,28 @@ void Mirror::look(MirrorView const& view, BodyMotions const& motions) {
     }
 }
 
-bool Mirror::check(PlaceGrid const& grid, std::span<float const> inverse_depth) {
-    int const columns = grid.columns(viewport_);
-    int const rows = grid.rows(viewport_);
-    FRAMELET_CHECK(inverse_depth.size() == static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
-    bool any = false;
-    auto seen = inverse_depth.begin();
-    for (int row = 0; row < rows; ++row) {
-        for (int column = 0; column < columns; ++column, ++seen) {
-            Vec2 const place = grid.place(column, row);
-            if (!shows_as_near(static_cast<int>(place.x) / cell_side, static_cast<int>(place.y) / cell_side, *seen)) {
-                mark(place, grid.spacing, [](Cell& cell) { cell.is_wrong = true; });
-                any = true;
-            }
-        }
-    }
-    return any;
-}
-
-void Mirror::list_probes(PlaceGrid const& grid, std::vector<Probe>& probes) const {
-    probes.clear();
-    int const columns = grid.columns(viewport_);
-    int const rows = grid.rows(viewport_);
-    for (int row = 0; row < rows; ++row) {
-        for (int column = 0; column < columns; ++column) {
-            Vec2 const at = grid.place(column, row);
-            Cell const& shown = cell(static_cast<int>(at.x) / cell_side, static_cast<int>(at.y) / cell_side);
-            if (shown.share == cell_pixels && !piece_of(shown).is_loose && time_of(shown) != target_.scene_time) {
-                probes.push_back({at, 1, luma_of(shown, at)});
-            }
-        }
-    }
-}
-
-bool Mirror::check_looks(std::span<Probe const> probes, std::span<float const> luma, int spacing) {
-    FRAMELET_CHECK(probes.size() == luma.size());
-    if (probes.empty()) {
-        return false;
-    }
-    int const columns = viewport_.width / spacing + 3; // one beyond each side
-    auto const index_at = [&](Vec2 at) {
-        return (static_cast<int>(at.y) / spacing + 1) * columns + static_cast<int>(at.x) / spacing + 1;
-    };
-    differences_.assign(static_cast<std::size_t>(columns * (viewport_.height / spacing + 3)), {});
-    for (std::size_t i = 0; i < probes.size(); ++i) {
-        differences_[static_cast<std::size_t>(index_at(probes[i].place))] = compare(probes[i], luma[i]);
-    }
-    bool any = false;
-    for (Probe const& probe : probes) {
-        int const at = index_at(probe.place);
-        Difference const own = differences_[static_cast<std::size_t>(at)];
-        Difference around;
-        for (int const row : {at - columns, at, at + columns}) {
-            for (int i = row - 1; i <= row + 1; ++i) {
-                around.luma += differences_[static_cast<std::size_t>(i)].luma;
-                around.chance += differences_[static_cast<std::size_t>(i)].chance;
-            }
-        }
-        if (own.chance > 0 && (own.beyond(doubt) || around.beyond(doubt))) {
-            float const stale = own.luma * own.luma;
-            mark(probe.place, spacing, [stale](Cell& cell) { cell.stale = std::max(cell.stale, stale); });
-            any = true;
-        }
-    }
-    return any;
-}
-
-/// What a probe really shows with what the viewer does.
-Mirror::Difference Mirror::compare(Probe const& probe, float luma) const {
-    Cell const& shown = cell(static_cast<int>(probe.place.x) / cell_side, static_cast<int>(probe.place.y) / cell_side);
-    if (shown.share < cell_pixels) { // something else has come
-        return {};
-    }
-    Piece const& piece = piece_of(shown);
-    float const scale = scale_of(shown);
-    float const side = 2 * scale * std::max(piece.half_side.x, piece.half_side.y);
-    return {luma - probe.luma, chance_difference(piece.detail / scale, probe.spacing + scale * piece.spacing, side)};
-}
-
 float Mirror::luma_of(Cell const& cell, Vec2 at) const {
     Piece const& piece = piece_of(cell);
     return piece.luma + glm::dot(piece.slope, at - place_of(cell)) / scale_of(cell);
 }
 
-/// The cells of a square around a place.
-template <class Mark>
-void Mirror::mark(Vec2 at, int spacing, Mark mark) {
+bool Mirror::mark(std::span<CellFault const> faults) {
     auto const cell_of = [](float pixel, int count) {
         return std::clamp(static_cast<int>(std::round(pixel / float{cell_side})), 0, count);
     };
-    Vec2 const half(0.5f * static_cast<float>(spacing));
-    Vec2 const low = at - half;
-    Vec2 const high = at + half;
-    for (int row = cell_of(low.y, rows_); row < cell_of(high.y, rows_); ++row) {
-        for (int column = cell_of(low.x, columns_); column < cell_of(high.x, columns_); ++column) {
-            mark(cells_[index_of(column, row)]);
-        }
-    }
-}
-
-/// It or a cell beside it.
-bool Mirror::shows_as_near(int column, int row, float inverse_depth) const {
-    float const least = inverse_depth * (1 - nearer_share);
-    for (int y = std::max(row - 1, 0); y <= std::min(row + 1, rows_ - 1); ++y) {
-        for (int x = std::max(column - 1, 0); x <= std::min(column + 1, columns_ - 1); ++x) {
-            if (cells_[index_of(x, y)].inverse_depth >= least) {
-                return true;
+    for (CellFault const& fault : faults) {
+        Vec2 const half(0.5f * static_cast<float>(fault.side));
+        Vec2 const low = fault.at - half;
+        Vec2 const high = fault.at + half;
+        for (int row = cell_of(low.y, rows_); row < cell_of(high.y, rows_); ++row) {
+            for (int column = cell_of(low.x, columns_); column < cell_of(high.x, columns_); ++column) {
+                Cell& cell = cells_[index_of(column, row)];
+                cell.is_wrong = cell.is_wrong || fault.is_wrong;
+                cell.stale = std::max(cell.stale, fault.stale);
             }
         }
     }
-    return false;
+    return !faults.empty();
 }
 
 void Mirror::forget(std::span<SentTile const> framelets) {
@@ -388,7 +281,9 @@ void Mirror::draw(Moment& moment, std::size_t first, BodyMotions const& motions)
               shows_loose(moment) ? PieceKinds::all : PieceKinds::layered, transforms_, moment.reprojected);
     for (std::size_t i = first; i < moment.pieces.size(); ++i) {
         if (moment.reprojected[i].is_in_picture()) {
-            splat(moment, i);
+            ReprojectedPiece const& piece = moment.reprojected[i];
+            for_each_covered(piece.at - piece.half_side, piece.at + piece.half_side, columns_, rows_,
+                             [&](int column, int row, unsigned mask) { show(moment, i, mask, column, row); });
         }
         if (&moment == &moments_[base_] && moment.is_of_camera && !moment.pieces[i].moves) {
             cover(moment.pieces[i]);
@@ -403,24 +298,6 @@ void Mirror::cover(Piece const& piece) {
     for (int row = part.top / cell_side; row < std::min(part.bottom / cell_side, rows_); ++row) {
         for (int column = part.left / cell_side; column < std::min(part.right / cell_side, columns_); ++column) {
             cells_[index_of(column, row)].covered = 0xffff;
-        }
-    }
-}
-
-void Mirror::splat(Moment const& moment, std::size_t index) {
-    ReprojectedPiece const& reprojected = moment.reprojected[index];
-    // Pixels whose centres it covers.
-    Vec2 const low = glm::max(reprojected.at - reprojected.half_side - 0.5f, Vec2(0));
-    Vec2 const high = glm::min(reprojected.at + reprojected.half_side + 0.5f, Vec2(columns_, rows_) * float{cell_side});
-    int const left = static_cast<int>(std::ceil(low.x));
-    int const top = static_cast<int>(std::ceil(low.y));
-    int const right = static_cast<int>(high.x);
-    int const bottom = static_cast<int>(high.y);
-    for (int row = top / cell_side; row * cell_side < bottom; ++row) {
-        unsigned const down = spread_rows(bits_between(top - row * cell_side, bottom - row * cell_side));
-        for (int column = left / cell_side; column * cell_side < right; ++column) {
-            show(moment, index, down * bits_between(left - column * cell_side, right - column * cell_side), column,
-                 row);
         }
     }
 }

@@ -4,38 +4,19 @@
 #pragma once
 
 #include <array>
-#include <bit>
 #include <cstdint>
 #include <span>
 #include <unordered_set>
 #include <vector>
 
 #include "common/picture/framelet_pool.h"
-#include "common/place_grid.h"
-#include "common/probe.h"
+#include "server/sampling/cell.h"
 #include "server/sampling/piece_reprojection.h"
 
 namespace framelet {
 
-/// Side of a cell, pixels.
-inline constexpr int cell_side = 4;
-
-/// What a cell of the picture shows.
-struct Cell {
-    float inverse_depth = -1; ///< of the nearest surface that covers most of it, in its middle, 1 / metres
-    float worn = 0; ///< least worn spacing on it, pixels; 0 where nothing shows
-    float detail = 0; ///< as of a piece, in this picture's pixels
-    std::uint32_t piece = 0; ///< of its moment
-    std::uint16_t covered = 0; ///< by anything: a bit for each pixel, row by row
-    std::uint8_t moment = 0; ///< slot
-    std::uint8_t share = 0; ///< of its pixels that what shows covers, of 16
-    bool leads = false; ///< as the viewer has it, before what is better
-    bool is_wrong = false; ///< something nearer is there, which the viewer does not hold
-    float stale = 0; ///< squared luma by which the moment was found to look otherwise
-
-    bool is_shown() const { return share > 0; }
-    float covered_share() const { return static_cast<float>(std::popcount(covered)) / (cell_side * cell_side); }
-};
+/// What is nearer by less than this share of its inverse depth is not worth looking for: crowns are full of it.
+inline constexpr float nearer_share = 0.25f;
 
 class Mirror {
 public:
@@ -63,6 +44,8 @@ public:
     /// True when the picture is from where the newest that had come by then was rendered, or nothing had: the camera
     /// stands, for all that is known.
     bool camera_stands() const { return camera_stands_; }
+    /// The moment that was looked at last.
+    MirrorView const& view() const { return target_; }
     /// True when the picture is of this moment.
     bool looks_at(MirrorView const& view) const;
 
@@ -73,17 +56,8 @@ public:
     /// The viewer settles (`FrameletPool::settle`); from the next look on.
     void settle() { settles_ = true; }
 
-    /// Compares what shows with what is really to be seen of the moment: inverse depths of the places of a grid, row by
-    /// row, < 0 where that is not known. Where neither the cell of a place nor those beside it show anything about as
-    /// near, the cells around the place are wrong until something of the moment comes there. True where some are.
-    bool check(PlaceGrid const& grid, std::span<float const> inverse_depth);
-    /// Replaces `probes` by one for each place of a grid that shows, well within a surface, what is of another time:
-    /// with the luma that the viewer shows there.
-    void list_probes(PlaceGrid const& grid, std::vector<Probe>& probes) const;
-    /// Compares what probes showed with what they really show of the moment, luma in their order: where that differs by
-    /// more than chance the cells around the place are stale until something of the moment comes there; `spacing`:
-    /// pixels from one to the next. True where some are.
-    bool check_looks(std::span<Probe const> probes, std::span<float const> luma, int spacing);
+    /// Marks what is at fault until something of the moment comes there. True where there is anything.
+    bool mark(std::span<CellFault const> faults);
     /// The viewer has let go of these; from the next look on.
     void forget(std::span<SentTile const> framelets);
 
@@ -114,7 +88,6 @@ private:
     Moment& free_slot();
     PieceReprojection to_picture(Moment const& moment, BodyMotions const& motions) const;
     void draw(Moment& moment, std::size_t first, BodyMotions const& motions);
-    void splat(Moment const& moment, std::size_t index);
     void cover(Piece const& piece);
     void show(Moment const& moment, std::size_t index, unsigned mask, int column, int row);
     bool is_better(Moment const& moment, ReprojectedPiece const& reprojected, float inverse_depth, int share,
@@ -122,15 +95,6 @@ private:
     bool shows_loose(Moment const& moment) const;
     bool is_missed(Moment const& moment) const;
     void miss(Moment const& moment, BodyMotions const& motions);
-    struct Difference { ///< of luma: of one probe, or summed over some
-        float luma = 0;
-        float chance = 0; ///< its variance where nothing has changed; 0: not known
-        bool beyond(float deviations) const { return luma * luma > deviations * deviations * chance; }
-    };
-    Difference compare(Probe const& probe, float luma) const;
-    template <class Mark>
-    void mark(Vec2 at, int spacing, Mark mark);
-    bool shows_as_near(int column, int row, float inverse_depth) const;
 
     Viewport viewport_;
     int columns_, rows_;
@@ -149,7 +113,6 @@ private:
     std::vector<Piece> standing_, moving_; ///< scratch
     std::vector<ReprojectedPiece> missed_; ///< scratch
     BodyTransforms transforms_; ///< scratch
-    std::vector<Difference> differences_; ///< by place of a grid of probes
 };
 
 } // namespace framelet
