@@ -35,7 +35,7 @@ struct Comparison {
 
 /// `at`: the middle of the cell, pixels.
 void Comparison::add(Mirror const& mirror, Cell const& cell, Vec2 at, Piece const& piece, SceneTime scene_time) {
-    if (cell.share < cell_side * cell_side) {
+    if (cell.share < cell_pixels) {
         return;
     }
     Piece const& old = mirror.piece_of(cell);

@@ -5,55 +5,20 @@
 #include <cmath>
 #include <utility>
 
-#include <glm/matrix.hpp>
-
-#include "common/error.h"
-#include "common/sample_worth.h"
-
 namespace framelet {
 namespace {
 
-/// Nearer than this (depth in the picture over depth where it was rendered) nothing is drawn.
-constexpr float nearest = 1e-3f;
-constexpr float most_pixels = 1e6f, most_scale = 1e6f;
-/// A moved piece covers somewhat more, or the gaps that turning and tilting leave between neighbours were holes,
-/// pixels.
-constexpr float margin = 0.5f;
-/// What is nearer by less than this share of its inverse depth is not worth looking for: crowns are full of it.
-constexpr float nearer_share = 0.25f;
-/// A plane whose area shrinks by more than this is seen edge-on.
-constexpr float thinnest = 1e-4f;
 /// Inverse depths that differ by less than this share belong to one surface, besides by what pieces may be off.
 constexpr float same_surface = 0.02f;
-/// Beyond so many standard deviations it is a change, or where all probes around it together are.
-constexpr float doubt = 4;
 /// What is loose and has stopped showing is missed for so many moments more.
 constexpr std::uint64_t missed_moments = 3;
-constexpr int cell_pixels = cell_side * cell_side;
 /// A piece that covers less of a cell than this is not what it shows, where there is another.
 constexpr int least_share = cell_pixels / 2;
 /// More than a viewer can hold is not worth remembering as gone.
 constexpr std::size_t most_forgotten = std::size_t{1} << 18;
 
-bool same_camera(ViewRays const& a, ViewRays const& b) {
-    return a.origin == b.origin && a.direction == b.direction && a.direction_dx == b.direction_dx &&
-           a.direction_dy == b.direction_dy;
-}
-
 std::uint64_t key_of(SentTile const& sent) {
     return sent.batch << 32 ^ sent.tile.code;
-}
-
-/// Bits [first, last) of four, clipped.
-constexpr unsigned bits_between(int first, int last) {
-    first = std::max(first, 0);
-    last = std::min(last, cell_side);
-    return ((1u << last) - 1) & ~((1u << first) - 1);
-}
-
-/// Each of four bits to the first of four.
-constexpr unsigned spread_rows(unsigned rows) {
-    return (rows & 1) | (rows & 2) << 3 | (rows & 4) << 6 | (rows & 8) << 9;
 }
 
 } // namespace
@@ -96,7 +61,7 @@ void Mirror::look(MirrorView const& view, BodyMotions const& motions) {
     std::ranges::fill(cells_, Cell{});
     erase_forgotten();
     for (Moment& moment : moments_) {
-        place(moment, 0, motions);
+        draw(moment, 0, motions);
     }
     for (Moment const& moment : moments_) {
         if (!shows_loose(moment) && is_missed(moment)) {
@@ -105,116 +70,28 @@ void Mirror::look(MirrorView const& view, BodyMotions const& motions) {
     }
 }
 
-bool Mirror::check(PlaceGrid const& grid, std::span<float const> inverse_depth) {
-    int const columns = grid.columns(viewport_);
-    int const rows = grid.rows(viewport_);
-    FRAMELET_CHECK(inverse_depth.size() == static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
-    bool any = false;
-    auto seen = inverse_depth.begin();
-    for (int row = 0; row < rows; ++row) {
-        for (int column = 0; column < columns; ++column, ++seen) {
-            Vec2 const place = grid.place(column, row);
-            if (!shows_as_near(static_cast<int>(place.x) / cell_side, static_cast<int>(place.y) / cell_side, *seen)) {
-                mark(place, grid.spacing, [](Cell& cell) { cell.is_wrong = true; });
-                any = true;
-            }
-        }
-    }
-    return any;
-}
-
-void Mirror::list_probes(PlaceGrid const& grid, std::vector<Probe>& probes) const {
-    probes.clear();
-    int const columns = grid.columns(viewport_);
-    int const rows = grid.rows(viewport_);
-    for (int row = 0; row < rows; ++row) {
-        for (int column = 0; column < columns; ++column) {
-            Vec2 const at = grid.place(column, row);
-            Cell const& shown = cell(static_cast<int>(at.x) / cell_side, static_cast<int>(at.y) / cell_side);
-            if (shown.share == cell_pixels && !piece_of(shown).is_loose && time_of(shown) != target_.scene_time) {
-                probes.push_back({at, 1, luma_of(shown, at)});
-            }
-        }
-    }
-}
-
-bool Mirror::check_looks(std::span<Probe const> probes, std::span<float const> luma, int spacing) {
-    FRAMELET_CHECK(probes.size() == luma.size());
-    if (probes.empty()) {
-        return false;
-    }
-    int const columns = viewport_.width / spacing + 3; // one beyond each side
-    auto const index_at = [&](Vec2 at) {
-        return (static_cast<int>(at.y) / spacing + 1) * columns + static_cast<int>(at.x) / spacing + 1;
-    };
-    differences_.assign(static_cast<std::size_t>(columns * (viewport_.height / spacing + 3)), {});
-    for (std::size_t i = 0; i < probes.size(); ++i) {
-        differences_[static_cast<std::size_t>(index_at(probes[i].place))] = compare(probes[i], luma[i]);
-    }
-    bool any = false;
-    for (Probe const& probe : probes) {
-        int const at = index_at(probe.place);
-        Difference const own = differences_[static_cast<std::size_t>(at)];
-        Difference around;
-        for (int const row : {at - columns, at, at + columns}) {
-            for (int i = row - 1; i <= row + 1; ++i) {
-                around.luma += differences_[static_cast<std::size_t>(i)].luma;
-                around.chance += differences_[static_cast<std::size_t>(i)].chance;
-            }
-        }
-        if (own.chance > 0 && (own.beyond(doubt) || around.beyond(doubt))) {
-            float const stale = own.luma * own.luma;
-            mark(probe.place, spacing, [stale](Cell& cell) { cell.stale = std::max(cell.stale, stale); });
-            any = true;
-        }
-    }
-    return any;
-}
-
-/// What a probe really shows with what the viewer does.
-Mirror::Difference Mirror::compare(Probe const& probe, float luma) const {
-    Cell const& shown = cell(static_cast<int>(probe.place.x) / cell_side, static_cast<int>(probe.place.y) / cell_side);
-    if (shown.share < cell_pixels) { // something else has come
-        return {};
-    }
-    Piece const& piece = piece_of(shown);
-    float const scale = scale_of(shown);
-    float const side = 2 * scale * std::max(piece.half_side.x, piece.half_side.y);
-    return {luma - probe.luma, chance_difference(piece.detail / scale, probe.spacing + scale * piece.spacing, side)};
-}
-
 float Mirror::luma_of(Cell const& cell, Vec2 at) const {
     Piece const& piece = piece_of(cell);
     return piece.luma + glm::dot(piece.slope, at - place_of(cell)) / scale_of(cell);
 }
 
-/// The cells of a square around a place.
-template <class Mark>
-void Mirror::mark(Vec2 at, int spacing, Mark mark) {
+bool Mirror::mark(std::span<CellFault const> faults) {
     auto const cell_of = [](float pixel, int count) {
         return std::clamp(static_cast<int>(std::round(pixel / float{cell_side})), 0, count);
     };
-    Vec2 const half(0.5f * static_cast<float>(spacing));
-    Vec2 const low = at - half;
-    Vec2 const high = at + half;
-    for (int row = cell_of(low.y, rows_); row < cell_of(high.y, rows_); ++row) {
-        for (int column = cell_of(low.x, columns_); column < cell_of(high.x, columns_); ++column) {
-            mark(cells_[index_of(column, row)]);
-        }
-    }
-}
-
-/// It or a cell beside it.
-bool Mirror::shows_as_near(int column, int row, float inverse_depth) const {
-    float const least = inverse_depth * (1 - nearer_share);
-    for (int y = std::max(row - 1, 0); y <= std::min(row + 1, rows_ - 1); ++y) {
-        for (int x = std::max(column - 1, 0); x <= std::min(column + 1, columns_ - 1); ++x) {
-            if (cells_[index_of(x, y)].inverse_depth >= least) {
-                return true;
+    for (CellFault const& fault : faults) {
+        Vec2 const half(0.5f * static_cast<float>(fault.side));
+        Vec2 const low = fault.at - half;
+        Vec2 const high = fault.at + half;
+        for (int row = cell_of(low.y, rows_); row < cell_of(high.y, rows_); ++row) {
+            for (int column = cell_of(low.x, columns_); column < cell_of(high.x, columns_); ++column) {
+                Cell& cell = cells_[index_of(column, row)];
+                cell.is_wrong = cell.is_wrong || fault.is_wrong;
+                cell.stale = std::max(cell.stale, fault.stale);
             }
         }
     }
-    return false;
+    return !faults.empty();
 }
 
 void Mirror::forget(std::span<SentTile const> framelets) {
@@ -268,7 +145,7 @@ void Mirror::add_to(Moment& moment, BodyMotions const& motions, std::span<Piece 
     replace(moment, pieces);
     std::size_t const first = moment.pieces.size();
     moment.pieces.insert(moment.pieces.end(), pieces.begin(), pieces.end());
-    place(moment, first, motions);
+    draw(moment, first, motions);
 }
 
 void Mirror::begin_base(ViewRays const& rays, SceneTime scene_time) {
@@ -308,7 +185,7 @@ void Mirror::settle_now() {
             base.scene_time = moment.scene_time;
         }
         moment.pieces.clear();
-        moment.placed.clear();
+        moment.reprojected.clear();
         moment.number = 0;
     }
     base.number = newest;
@@ -327,7 +204,7 @@ Mirror::Moment& Mirror::free_slot() {
         }
         free.number = 0;
         free.pieces.clear();
-        free.placed.clear();
+        free.reprojected.clear();
     }
     return free;
 }
@@ -357,31 +234,6 @@ void Mirror::replace(Moment& moment, std::span<Piece const> pieces) {
     }
 }
 
-Mirror::TurnedBody const& Mirror::turn_to(Moment const& moment, Piece const& piece, BodyMotions const& motions) {
-    BodyNumber const body = piece.body;
-    if (turned_.size() <= body) {
-        turned_.resize(std::size_t{body} + 1);
-    }
-    TurnedBody& turned = turned_[body];
-    if (turned.stamp == stamp_) {
-        return turned;
-    }
-    turned.stamp = stamp_;
-    Motion const motion = body == static_body ? Motion{} : motions.between(body, piece.scene_time, target_.scene_time);
-    ViewTransform const transform = make_view_transform(moment.rays, target_.rays, motion);
-    turned.far = Mat3(transform.far);
-    turned.parallax = Vec3(transform.parallax);
-    for (std::size_t axis = 0; axis < turned.carried.size(); ++axis) {
-        glm::dvec3 metre(0);
-        metre[static_cast<int>(axis)] = 1;
-        ViewTransform const carried = make_view_transform(moment.rays, target_.rays, motion, metre);
-        turned.carried[axis] = Vec3(carried.parallax - transform.parallax);
-    }
-    turned.is_still = moment.is_of_camera && motion == Motion{};
-    turned.lens = static_cast<float>(std::sqrt(std::abs(glm::determinant(transform.far))));
-    return turned;
-}
-
 /// What is loose shows of the base and of the newest moments only, of which one may be still to come.
 bool Mirror::shows_loose(Moment const& moment) const {
     return &moment == &moments_[base_] ||
@@ -396,18 +248,14 @@ bool Mirror::is_missed(Moment const& moment) const {
 /// Where what is loose in a moment no longer shows, and only what is farther and was rendered before it does, the
 /// viewer shows that through it: crowns are full of such holes, and rays that are not shaded tell little of leaves.
 void Mirror::miss(Moment const& moment, BodyMotions const& motions) {
-    ++stamp_;
-    for (std::size_t i = 0; i < moment.pieces.size(); ++i) {
-        Piece const& piece = moment.pieces[i];
-        if (i > 0 && piece.scene_time != moment.pieces[i - 1].scene_time) {
-            ++stamp_; // bodies were elsewhere
-        }
-        Placed placed;
-        if (!piece.is_loose || !place(piece, turn_to(moment, piece, motions), placed)) {
+    missed_.clear();
+    reproject(to_picture(moment, motions), moment.pieces, PieceKinds::loose, transforms_, missed_);
+    for (ReprojectedPiece const& missed : missed_) {
+        if (!missed.is_in_picture()) {
             continue;
         }
-        Vec2 const low = glm::max(placed.at - placed.half_side, Vec2(0)) / float{cell_side};
-        Vec2 const high = (placed.at + placed.half_side) / float{cell_side};
+        Vec2 const low = glm::max(missed.at - missed.half_side, Vec2(0)) / float{cell_side};
+        Vec2 const high = (missed.at + missed.half_side) / float{cell_side};
         // Cells of which it covers the middle.
         for (int row = static_cast<int>(low.y + 0.5f); row < std::min(static_cast<int>(high.y + 0.5f), rows_); ++row) {
             for (int column = static_cast<int>(low.x + 0.5f);
@@ -415,29 +263,30 @@ void Mirror::miss(Moment const& moment, BodyMotions const& motions) {
                 Cell& cell = cells_[index_of(column, row)];
                 bool const was_before = cell.is_shown() && moments_[cell.moment].number < moment.number;
                 cell.is_wrong =
-                    cell.is_wrong || (was_before && cell.inverse_depth < placed.inverse_depth * (1 - nearer_share));
+                    cell.is_wrong || (was_before && cell.inverse_depth < missed.inverse_depth * (1 - nearer_share));
             }
         }
     }
 }
 
+PieceReprojection Mirror::to_picture(Moment const& moment, BodyMotions const& motions) const {
+    return {moment.rays, target_, Vec2(columns_, rows_) * float{cell_side}, &motions}; // the last cells are whole, too
+}
+
 /// Of a moment, from piece `first` on.
-void Mirror::place(Moment& moment, std::size_t first, BodyMotions const& motions) {
-    ++stamp_;
+void Mirror::draw(Moment& moment, std::size_t first, BodyMotions const& motions) {
     moment.is_of_camera = same_camera(moment.rays, target_.rays);
-    moment.placed.resize(moment.pieces.size());
-    bool const loose = shows_loose(moment);
+    moment.reprojected.resize(first);
+    reproject(to_picture(moment, motions), std::span(moment.pieces).subspan(first),
+              shows_loose(moment) ? PieceKinds::all : PieceKinds::layered, transforms_, moment.reprojected);
     for (std::size_t i = first; i < moment.pieces.size(); ++i) {
-        Piece const& piece = moment.pieces[i];
-        if (i > first && piece.scene_time != moment.pieces[i - 1].scene_time) {
-            ++stamp_; // bodies were elsewhere
+        if (moment.reprojected[i].is_in_picture()) {
+            ReprojectedPiece const& piece = moment.reprojected[i];
+            for_each_covered(piece.at - piece.half_side, piece.at + piece.half_side, columns_, rows_,
+                             [&](int column, int row, unsigned mask) { show(moment, i, mask, column, row); });
         }
-        moment.placed[i] = {};
-        if ((!piece.is_loose || loose) && place(piece, turn_to(moment, piece, motions), moment.placed[i])) {
-            splat(moment, i);
-        }
-        if (&moment == &moments_[base_] && moment.is_of_camera && !piece.moves) {
-            cover(piece);
+        if (&moment == &moments_[base_] && moment.is_of_camera && !moment.pieces[i].moves) {
+            cover(moment.pieces[i]);
         }
     }
 }
@@ -453,80 +302,9 @@ void Mirror::cover(Piece const& piece) {
     }
 }
 
-/// False where it does not get into the picture.
-bool Mirror::place(Piece const& piece, TurnedBody const& turned, Placed& placed) const {
-    auto const age = static_cast<float>(target_.scene_time - piece.scene_time);
-    Vec3 parallax = turned.parallax;
-    if (piece.velocity != Vec3(0)) {
-        Vec3 const drift = age * piece.velocity;
-        parallax += drift.x * turned.carried[0] + drift.y * turned.carried[1] + drift.z * turned.carried[2];
-    }
-    Vec3 const at = turned.far * Vec3(piece.centre, 1) + piece.inverse_depth * parallax;
-    if (!(at.z > nearest)) {
-        return false;
-    }
-    float const share = 1 / at.z;
-    placed.at = share * Vec2(at);
-    // How far it goes for each pixel to the right and down in the picture of its moment.
-    Vec3 const dx = turned.far[0] + piece.depth_slope.x * parallax;
-    Vec3 const dy = turned.far[1] + piece.depth_slope.y * parallax;
-    Vec2 const right = share * (Vec2(dx) - dx.z * placed.at);
-    Vec2 const down = share * (Vec2(dy) - dy.z * placed.at);
-    float const area = right.x * down.y - right.y * down.x;
-    placed.scale = std::clamp(turned.lens * share, 1 / most_scale, most_scale);
-    placed.half_side =
-        glm::min(piece.half_side.x * glm::abs(right) + piece.half_side.y * glm::abs(down) + margin, Vec2(most_pixels));
-    Vec2 const low = placed.at - placed.half_side;
-    Vec2 const high = placed.at + placed.half_side;
-    auto const width = static_cast<float>(columns_ * cell_side); // the last cells are whole, too
-    auto const height = static_cast<float>(rows_ * cell_side);
-    if (!(area > thinnest * placed.scale * placed.scale && low.x < width && low.y < height && high.x > 0 &&
-          high.y > 0 && low.x > -most_pixels && low.y > -most_pixels && high.x < most_pixels && high.y < most_pixels)) {
-        return false;
-    }
-    float const tolerance = share * piece.error;
-    float spacing = piece.spacing;
-    float misplaced = 0;
-    if (!piece.is_loose) { // as the viewer rates them
-        float const squares = glm::dot(right, right) + glm::dot(down, down);
-        spacing *= std::sqrt(0.5f * (squares + std::sqrt(std::max(squares * squares - 4 * area * area, 0.0f))));
-        misplaced = turned.is_still && piece.velocity == Vec3(0)
-                        ? 0
-                        : tolerance * glm::length(Vec2(parallax) - parallax.z * placed.at);
-        if (!hides(spacing, misplaced)) { // it shows where nothing else does
-            return false;
-        }
-    }
-    placed.inverse_depth = share * piece.inverse_depth;
-    Vec2 const slope = share * (piece.depth_slope - placed.inverse_depth * Vec2(dx.z, dy.z)); // along its own axes
-    placed.depth_slope = Vec2(down.y * slope.x - right.y * slope.y, right.x * slope.y - down.x * slope.x) / area;
-    placed.tolerance = tolerance;
-    placed.leads = leads(piece.body, piece.velocity, age) && !piece.is_loose;
-    placed.worn = worn_step(worn_spacing(spacing, age, piece.fading) + misplaced);
-    return true;
-}
-
-void Mirror::splat(Moment const& moment, std::size_t index) {
-    Placed const& placed = moment.placed[index];
-    // Pixels whose centres it covers.
-    Vec2 const low = glm::max(placed.at - placed.half_side - 0.5f, Vec2(0));
-    Vec2 const high = glm::min(placed.at + placed.half_side + 0.5f, Vec2(columns_, rows_) * float{cell_side});
-    int const left = static_cast<int>(std::ceil(low.x));
-    int const top = static_cast<int>(std::ceil(low.y));
-    int const right = static_cast<int>(high.x);
-    int const bottom = static_cast<int>(high.y);
-    for (int row = top / cell_side; row * cell_side < bottom; ++row) {
-        unsigned const down = spread_rows(bits_between(top - row * cell_side, bottom - row * cell_side));
-        for (int column = left / cell_side; column * cell_side < right; ++column) {
-            show(moment, index, down * bits_between(left - column * cell_side, right - column * cell_side), column,
-                 row);
-        }
-    }
-}
-
 /// In the pixels `mask` of a cell.
 void Mirror::show(Moment const& moment, std::size_t index, unsigned mask, int column, int row) {
-    Placed const& placed = moment.placed[index];
+    ReprojectedPiece const& reprojected = moment.reprojected[index];
     Cell& cell = cells_[index_of(column, row)];
     cell.covered = static_cast<std::uint16_t>(cell.covered | mask);
     if (moment.is_of_camera) {
@@ -534,14 +312,14 @@ void Mirror::show(Moment const& moment, std::size_t index, unsigned mask, int co
         cell.stale = 0;
     }
     Vec2 const middle((static_cast<float>(column) + 0.5f) * cell_side, (static_cast<float>(row) + 0.5f) * cell_side);
-    Vec2 const from = glm::clamp(middle - placed.at, -placed.half_side, placed.half_side);
-    float const w = std::max(placed.inverse_depth + glm::dot(placed.depth_slope, from), 0.0f);
+    Vec2 const from = glm::clamp(middle - reprojected.at, -reprojected.half_side, reprojected.half_side);
+    float const w = std::max(reprojected.inverse_depth + glm::dot(reprojected.depth_slope, from), 0.0f);
     int const share = std::popcount(mask);
-    if (is_better(moment, placed, w, share, cell)) {
+    if (is_better(moment, reprojected, w, share, cell)) {
         cell.inverse_depth = w;
-        cell.worn = placed.worn;
-        cell.leads = placed.leads;
-        cell.detail = moment.pieces[index].detail / placed.scale;
+        cell.worn = reprojected.worn;
+        cell.leads = reprojected.leads;
+        cell.detail = moment.pieces[index].detail / reprojected.scale;
         cell.piece = static_cast<std::uint32_t>(index);
         cell.moment = static_cast<std::uint8_t>(&moment - moments_.data());
         cell.share = static_cast<std::uint8_t>(share);
@@ -549,20 +327,20 @@ void Mirror::show(Moment const& moment, std::size_t index, unsigned mask, int co
 }
 
 /// Than what a cell shows.
-bool Mirror::is_better(Moment const& moment, Placed const& placed, float inverse_depth, int share,
+bool Mirror::is_better(Moment const& moment, ReprojectedPiece const& reprojected, float inverse_depth, int share,
                        Cell const& cell) const {
     if (share < least_share || cell.share < least_share) {
         return share > cell.share;
     }
     float const difference = inverse_depth - cell.inverse_depth;
-    float const limit = same_surface * std::max(inverse_depth, cell.inverse_depth) + placed.tolerance;
+    float const limit = same_surface * std::max(inverse_depth, cell.inverse_depth) + reprojected.tolerance;
     if (std::abs(difference) > limit) {
         return difference > 0;
     }
-    if (placed.leads != cell.leads) {
-        return placed.leads;
+    if (reprojected.leads != cell.leads) {
+        return reprojected.leads;
     }
-    return placed.worn != cell.worn ? placed.worn < cell.worn : moment.number > moments_[cell.moment].number;
+    return reprojected.worn != cell.worn ? reprojected.worn < cell.worn : moment.number > moments_[cell.moment].number;
 }
 
 } // namespace framelet

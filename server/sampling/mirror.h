@@ -4,46 +4,19 @@
 #pragma once
 
 #include <array>
-#include <bit>
 #include <cstdint>
 #include <span>
 #include <unordered_set>
 #include <vector>
 
-#include "common/body_motion.h"
 #include "common/picture/framelet_pool.h"
-#include "common/place_grid.h"
-#include "common/probe.h"
-#include "common/reprojection.h"
-#include "server/sampling/piece.h"
+#include "server/sampling/cell.h"
+#include "server/sampling/piece_reprojection.h"
 
 namespace framelet {
 
-/// Side of a cell, pixels.
-inline constexpr int cell_side = 4;
-
-/// A camera (perspective) and a scene time.
-struct MirrorView {
-    ViewRays rays{};
-    SceneTime scene_time = 0;
-};
-
-/// What a cell of the picture shows.
-struct Cell {
-    float inverse_depth = -1; ///< of the nearest surface that covers most of it, in its middle, 1 / metres
-    float worn = 0; ///< least worn spacing on it, pixels; 0 where nothing shows
-    float detail = 0; ///< as of a piece, in this picture's pixels
-    std::uint32_t piece = 0; ///< of its moment
-    std::uint16_t covered = 0; ///< by anything: a bit for each pixel, row by row
-    std::uint8_t moment = 0; ///< slot
-    std::uint8_t share = 0; ///< of its pixels that what shows covers, of 16
-    bool leads = false; ///< as the viewer has it, before what is better
-    bool is_wrong = false; ///< something nearer is there, which the viewer does not hold
-    float stale = 0; ///< squared luma by which the moment was found to look otherwise
-
-    bool is_shown() const { return share > 0; }
-    float covered_share() const { return static_cast<float>(std::popcount(covered)) / (cell_side * cell_side); }
-};
+/// What is nearer by less than this share of its inverse depth is not worth looking for: crowns are full of it.
+inline constexpr float nearer_share = 0.25f;
 
 class Mirror {
 public:
@@ -60,8 +33,8 @@ public:
     Piece const& piece_of(Cell const& cell) const { return moments_[cell.moment].pieces[cell.piece]; }
     /// Where the middle of that piece is in the picture of the cell, pixels; how much larger it is than it was
     /// rendered; of when it is.
-    Vec2 place_of(Cell const& cell) const { return moments_[cell.moment].placed[cell.piece].at; }
-    float scale_of(Cell const& cell) const { return moments_[cell.moment].placed[cell.piece].scale; }
+    Vec2 place_of(Cell const& cell) const { return moments_[cell.moment].reprojected[cell.piece].at; }
+    float scale_of(Cell const& cell) const { return moments_[cell.moment].reprojected[cell.piece].scale; }
     /// The luma that a cell shows at a place of its picture, display-encoded.
     float luma_of(Cell const& cell, Vec2 at) const;
     SceneTime time_of(Cell const& cell) const { return piece_of(cell).scene_time; }
@@ -71,6 +44,8 @@ public:
     /// True when the picture is from where the newest that had come by then was rendered, or nothing had: the camera
     /// stands, for all that is known.
     bool camera_stands() const { return camera_stands_; }
+    /// The moment that was looked at last.
+    MirrorView const& view() const { return target_; }
     /// True when the picture is of this moment.
     bool looks_at(MirrorView const& view) const;
 
@@ -81,17 +56,8 @@ public:
     /// The viewer settles (`FrameletPool::settle`); from the next look on.
     void settle() { settles_ = true; }
 
-    /// Compares what shows with what is really to be seen of the moment: inverse depths of the places of a grid, row by
-    /// row, < 0 where that is not known. Where neither the cell of a place nor those beside it show anything about as
-    /// near, the cells around the place are wrong until something of the moment comes there. True where some are.
-    bool check(PlaceGrid const& grid, std::span<float const> inverse_depth);
-    /// Replaces `probes` by one for each place of a grid that shows, well within a surface, what is of another time:
-    /// with the luma that the viewer shows there.
-    void list_probes(PlaceGrid const& grid, std::vector<Probe>& probes) const;
-    /// Compares what probes showed with what they really show of the moment, luma in their order: where that differs by
-    /// more than chance the cells around the place are stale until something of the moment comes there; `spacing`:
-    /// pixels from one to the next. True where some are.
-    bool check_looks(std::span<Probe const> probes, std::span<float const> luma, int spacing);
+    /// Marks what is at fault until something of the moment comes there. True where there is anything.
+    bool mark(std::span<CellFault const> faults);
     /// The viewer has let go of these; from the next look on.
     void forget(std::span<SentTile const> framelets);
 
@@ -100,33 +66,14 @@ public:
     bool is_empty() const { return piece_count() == 0; }
 
 private:
-    struct Placed { ///< a piece in the picture that is looked at
-        Vec2 at{0};
-        Vec2 half_side{0}; ///< of the box that it covers, pixels
-        float inverse_depth = -1; ///< < 0: not in the picture
-        Vec2 depth_slope{0}; ///< of the inverse depth, for each pixel
-        float tolerance = 0; ///< by which its inverse depths may differ
-        float scale = 1;
-        float worn = 0; ///< spacing, pixels
-        bool leads = false; ///< a shadow that shows before what it comes over
-    };
     struct Moment {
         ViewRays rays;
         SceneTime scene_time = 0; ///< of pieces that move
         std::uint64_t number = 0; ///< in order of their coming; 0: free
         std::vector<Piece> pieces;
-        std::vector<Placed> placed; ///< one each
+        std::vector<ReprojectedPiece> reprojected; ///< one each, in the picture that is looked at
         bool is_of_camera = false; ///< that is looked through
     };
-    struct TurnedBody { ///< takes pixels of a moment to the picture that is looked at
-        std::uint64_t stamp = 0; ///< for which it holds
-        Mat3 far{1};
-        Vec3 parallax{0};
-        bool is_still = false; ///< they stay where they are
-        std::array<Vec3, 3> carried{}; ///< of a metre along each axis of the world
-        float lens = 1;
-    };
-
     std::size_t index_of(int column, int row) const {
         return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
     }
@@ -139,25 +86,15 @@ private:
     Moment& slot_of_moving(SceneTime scene_time);
     Moment& begin_slot(ViewRays const& rays, SceneTime scene_time);
     Moment& free_slot();
-    TurnedBody const& turn_to(Moment const& moment, Piece const& piece, BodyMotions const& motions);
-    void place(Moment& moment, std::size_t first, BodyMotions const& motions);
-    bool place(Piece const& piece, TurnedBody const& turned, Placed& placed) const;
-    void splat(Moment const& moment, std::size_t index);
+    PieceReprojection to_picture(Moment const& moment, BodyMotions const& motions) const;
+    void draw(Moment& moment, std::size_t first, BodyMotions const& motions);
     void cover(Piece const& piece);
     void show(Moment const& moment, std::size_t index, unsigned mask, int column, int row);
-    bool is_better(Moment const& moment, Placed const& placed, float inverse_depth, int share, Cell const& cell) const;
+    bool is_better(Moment const& moment, ReprojectedPiece const& reprojected, float inverse_depth, int share,
+                   Cell const& cell) const;
     bool shows_loose(Moment const& moment) const;
     bool is_missed(Moment const& moment) const;
     void miss(Moment const& moment, BodyMotions const& motions);
-    struct Difference { ///< of luma: of one probe, or summed over some
-        float luma = 0;
-        float chance = 0; ///< its variance where nothing has changed; 0: not known
-        bool beyond(float deviations) const { return luma * luma > deviations * deviations * chance; }
-    };
-    Difference compare(Probe const& probe, float luma) const;
-    template <class Mark>
-    void mark(Vec2 at, int spacing, Mark mark);
-    bool shows_as_near(int column, int row, float inverse_depth) const;
 
     Viewport viewport_;
     int columns_, rows_;
@@ -174,9 +111,8 @@ private:
 
     std::vector<std::uint64_t> newest_batch_; ///< by cell
     std::vector<Piece> standing_, moving_; ///< scratch
-    std::vector<TurnedBody> turned_; ///< by body
-    std::vector<Difference> differences_; ///< by place of a grid of probes
-    std::uint64_t stamp_ = 0;
+    std::vector<ReprojectedPiece> missed_; ///< scratch
+    BodyTransforms transforms_; ///< scratch
 };
 
 } // namespace framelet

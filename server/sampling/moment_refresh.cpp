@@ -1,6 +1,7 @@
 #include "server/sampling/moment_refresh.h"
 
 #include "common/error.h"
+#include "server/sampling/mirror_checks.h"
 
 namespace framelet {
 namespace {
@@ -37,7 +38,7 @@ MomentChecks MomentRefresh::look(RenderedMoment const& moment, double begun, dou
     if (probe_samples > 0) {
         checks.probe_spacing =
             grid_spacing(viewport, least_probe_spacing, most_probe_spacing, probe_cost, probe_samples);
-        mirror_.list_probes(cell_grid(cell_side, checks.probe_spacing, looks_taken_), probes);
+        list_probes(mirror_, cell_grid(cell_side, checks.probe_spacing, looks_taken_), probes);
     }
     return checks;
 }
@@ -50,14 +51,14 @@ void MomentRefresh::plan(PlaceField const& field, MomentBudget const& budget, st
 void MomentRefresh::note_visibility(RenderedMoment const& moment, PlaceGrid const& grid,
                                     std::span<float const> inverse_depth) {
     if (mirror_.looks_at(view_of(moment))) {
-        is_checked_ = mirror_.check(grid, inverse_depth) || is_checked_;
+        is_checked_ = mirror_.mark(find_wrong(mirror_, grid, inverse_depth)) || is_checked_;
     }
 }
 
 void MomentRefresh::note_looks(RenderedMoment const& moment, std::span<Probe const> probes, std::span<float const> luma,
                                int probe_spacing) {
     if (mirror_.looks_at(view_of(moment))) {
-        is_checked_ = mirror_.check_looks(probes, luma, probe_spacing) || is_checked_;
+        is_checked_ = mirror_.mark(find_stale(mirror_, probes, luma, probe_spacing)) || is_checked_;
     }
 }
 

@@ -7,65 +7,13 @@
 #include <optional>
 #include <vector>
 
-#include "common/rays_per_sample.h"
-#include "server/sampling/moment_refresh.h"
+#include "server/schedule/batch_learning.h"
 #include "server/schedule/patch_selection.h"
-#include "server/schedule/place_learning.h"
-#include "server/schedule/view_state.h"
+#include "server/schedule/probe_selection.h"
+#include "server/schedule/refinement_selection.h"
+#include "server/schedule/refresh_plan.h"
 
 namespace framelet {
-
-/// Bounds of a cycle's length.
-inline constexpr float least_cycle_seconds = 0.01f;
-inline constexpr float most_cycle_seconds = 0.05f;
-/// How long a cycle should be where planning one takes so long: planning may take a fortieth of it. `still`: nothing
-/// moves, so that a long one costs no freshness.
-float cycle_length(bool still, double plan_seconds);
-
-struct RefreshInput {
-    ViewState state; ///< what is to be seen at present
-    std::optional<HeldMoment> moment; ///< what is rendered instead, while things move; nothing: the present
-    double now = 0; ///< seconds, steady
-    double samples_per_second = 0; ///< what there is time for, to render and to send
-    /// What the renderer alone could do. Where that is more the link is what is scarce, and samples cost by the bytes
-    /// that they take: `samples_per_second` are of the mean then. 0: the same.
-    double rendered_per_second = 0;
-    float cycle_seconds = least_cycle_seconds; ///< how often the response is worked out anew
-    float delivery_seconds = 0; ///< from the end of its rendering until it shows
-    float bias = 0;
-    /// How bodies move, as the viewer knows it that moves what it holds along with them; null for one that does not.
-    BodyMotions const* motions = nullptr;
-    /// Most framelets of one batch; 0: what half a cycle has time for, so that it shows sooner, or all of it while
-    /// nothing moves.
-    std::size_t batch_framelets = 0;
-    std::size_t link_framelets = max_batch_framelets; ///< most that the link takes at once
-    ResponseLimits limits{};
-};
-
-/// What to render now.
-struct RefreshPlan {
-    double now = 0; ///< when
-    double still_since = 0; ///< when anything moved last
-    Viewport viewport;
-    double moment_begun = 0; ///< when what is rendered was the present
-    RenderedMoment moment; ///< whose motions must live until it is learnt
-    bool is_new_cycle = false; ///< worked out anew, not what the last one left
-    bool is_mirrored = false; ///< of a held moment, by what the viewer will see of it
-    std::vector<Patch> patches;
-    std::vector<std::size_t> tile_counts; ///< of each patch
-    std::vector<Tile> tiles; ///< of the patches, in order
-    int rays_per_sample = single_ray; ///< of the tiles
-    /// Where what the moment shows is to be compared with what the viewer would.
-    std::optional<MomentChecks> checks;
-    std::vector<Probe> probes; ///< of the probed places, in order
-    std::vector<std::uint32_t> probed; ///< places
-
-    bool is_empty() const { return tiles.empty() && probes.empty() && !checks; }
-    /// Through the samples of the tiles.
-    std::size_t ray_count() const {
-        return tiles.size() * framelet_samples * static_cast<std::size_t>(rays_per_sample);
-    }
-};
 
 class AdaptiveRefresh {
 public:
@@ -120,20 +68,10 @@ private:
     double plan_inspections(RefreshInput const& input);
     void find_costs(RefreshInput const& input);
     void plan_patches(RefreshInput const& input, double samples);
+    void append_rated(RefreshInput const& input, double samples);
     void plan_moment(RefreshInput const& input, double samples, RefreshPlan& plan);
     void plan_probes(double samples, RefreshPlan& plan);
-    void plan_refinement(double samples);
-    void plan_completion(double samples);
-    void plan_supersampling(double samples);
     void take_batch(std::size_t most_framelets, RefreshPlan& plan);
-    void take(Patch const& patch, double now);
-    void release(RefreshPlan const& plan);
-    bool is_finest(std::uint32_t index) const;
-    bool is_finished(std::uint32_t index) const;
-    void note_supersampled(RefreshPlan const& plan);
-    std::size_t place_count(Patch const& patch) const;
-    void examine(RefreshPlan const& plan, std::span<DisplayFramelet const> framelets,
-                 std::span<Framelet const> rendered);
 
     std::optional<ViewState> seen_;
     double advanced_ = 0; ///< the time that the field stands for
@@ -166,13 +104,9 @@ private:
     std::vector<Patch> cut_;
     std::vector<RatedPatch> rated_;
     std::vector<std::uint32_t> suspects_;
-    std::vector<std::pair<float, std::uint32_t>> unresolved_; ///< error and index of places
-    std::vector<std::uint8_t> active_; ///< of the places: whether it moves
-    std::vector<double> suspicions_;
-    std::vector<LumaHistory::Entry> entries_; ///< of the framelets learnt from
-    std::vector<PlaceFindings> findings_; ///< of the places of their patches
-    std::vector<double> same_since_; ///< of the patches
-    std::vector<std::pair<std::size_t, std::size_t>> firsts_; ///< first tile and first place of each patch
+    UnresolvedPlaces unresolved_;
+    ProbeScratch probe_scratch_;
+    BatchFindings findings_;
 };
 
 } // namespace framelet

@@ -60,7 +60,7 @@ void rate_patches(PlaceField const& field, Choices const& choices, std::span<flo
         PlaceField::Range const range = field.range_of(patch.node);
         for (std::uint32_t i = range.first; i < range.last && range.last - range.first > 1; ++i) {
             if (field.pixels_of(i) > 0) {
-                rate({{(1u << (2 * field.depth())) + i}, std::max(patch.depth, field.depth())});
+                rate(field.patch_of(i, std::max(patch.depth, field.depth())));
             }
         }
     }
@@ -80,6 +80,15 @@ void select_patches(double budget, double most_samples, std::vector<RatedPatch>&
         ++count;
     }
     rated.resize(count);
+}
+
+bool append_new(Patch const& patch, std::size_t count, std::vector<Patch>& patches) {
+    auto const end = patches.begin() + static_cast<std::ptrdiff_t>(count);
+    bool const is_new = std::find(patches.begin(), end, patch) == end;
+    if (is_new) {
+        patches.push_back(patch);
+    }
+    return is_new;
 }
 
 double inspection_period(PlaceField const& field, Budget const& budget) {
@@ -107,10 +116,9 @@ void select_inspections(PlaceField const& field, double now, Budget const& budge
         if (samples <= 0) {
             return;
         }
-        Patch const patch{{(1u << (2 * field.depth())) + index}, field.plane().pixel_depth()};
-        if (std::find(patches.begin(), patches.end(), patch) == patches.end()) {
+        Patch const patch = field.patch_of(index, field.plane().pixel_depth());
+        if (append_new(patch, patches.size(), patches)) {
             samples -= framelet_samples * tile_count(patch);
-            patches.push_back(patch);
         }
     }
 }

@@ -23,6 +23,9 @@ void rate_patches(PlaceField const& field, Choices const& choices, std::span<flo
 /// Keeps what is due, the most urgent first, until `budget` is spent or there are so many samples.
 void select_patches(double budget, double most_samples, std::vector<RatedPatch>& rated);
 
+/// Appends a patch unless it is among the first `count` already: once is enough. Returns whether it was appended.
+bool append_new(Patch const& patch, std::size_t count, std::vector<Patch>& patches);
+
 /// How long a place may go without a look at all of its pixels, seconds: at least two, and so long that looking takes a
 /// twentieth of the samples. It bounds how long anything small can stay unseen.
 double inspection_period(PlaceField const& field, Budget const& budget);

@@ -121,6 +121,25 @@ void drift_on(PlaceField& field, ViewRays const& from, ViewRays const& to, bool 
     }
 }
 
+void take(PlaceField& field, Patch const& patch, double now) {
+    PlaceField::Range const range = field.range_of(patch.node);
+    for (std::uint32_t i = range.first; i < range.last; ++i) {
+        field[i].taken = {field.level_of(patch.depth), 0, now};
+        field[i].asked = now;
+    }
+}
+
+void release(PlaceField& field, std::span<Patch const> patches, double when) {
+    for (Patch const& patch : patches) {
+        PlaceField::Range const range = field.range_of(patch.node);
+        for (std::uint32_t i = range.first; i < range.last; ++i) {
+            if (field[i].taken.when == when) {
+                field[i].taken = {};
+            }
+        }
+    }
+}
+
 void invalidate(PlaceField& field) {
     for (std::uint32_t const index : field.visible()) {
         field[index].drift = field[index].taken.drift = most_drift;

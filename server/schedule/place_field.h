@@ -69,11 +69,15 @@ public:
     /// Pixels along a side, and of the part inside the viewport.
     int place_side() const { return plane_.side() >> depth_; }
     PixelRect rect_of(std::uint32_t index) const;
+    /// The place alone, of tiles of a depth that is no less than the field's.
+    Patch patch_of(std::uint32_t index, int tile_depth) const { return {{(1u << (2 * depth_)) + index}, tile_depth}; }
     float pixels_of(std::uint32_t index) const { return pixels_[index]; }
 
     /// Indices of the places under a node.
     struct Range {
         std::uint32_t first = 0, last = 0;
+
+        std::size_t size() const { return last - first; }
     };
     Range range_of(Tile node) const;
 
@@ -94,6 +98,10 @@ inline constexpr float bare_error = 0.25f;
 /// move as well. A place drifts as it was found to, more where the camera has become faster, less where slower; as much
 /// as what it shows is carried away, or as what comes there instead.
 void drift_on(PlaceField& field, ViewRays const& from, ViewRays const& to, bool moving, float seconds);
+/// A patch has been taken to be rendered.
+void take(PlaceField& field, Patch const& patch, double now);
+/// What of these was taken at `when`, and not later again, is taken no longer.
+void release(PlaceField& field, std::span<Patch const> patches, double when);
 /// Nothing that is held is true any more (a cut, another exposure).
 void invalidate(PlaceField& field);
 

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "common/sample_worth.h"
+#include "server/sampling/mirror_checks.h"
 #include "tests/sampling/rendered_planes.h"
 
 namespace framelet {
@@ -291,13 +292,13 @@ TEST(Mirror, SomethingNearerThanWhatShowsIsWrongUntilItComes) {
     std::size_t const columns = static_cast<std::size_t>(grid.columns(viewport));
     std::vector<float> seen(columns * static_cast<std::size_t>(grid.rows(viewport)), 0.1f);
     mirror.look(view_at(Vec3(1e-4f, 0, 0)), no_motions);
-    EXPECT_FALSE(mirror.check(grid, seen));
+    EXPECT_FALSE(mirror.mark(find_wrong(mirror, grid, seen)));
     seen[5 * columns + 6] = -1; // not known
     seen[5 * columns + 7] = 0.05f; // farther
     seen[4 * columns + 4] = 0.11f; // hardly nearer
-    EXPECT_FALSE(mirror.check(grid, seen));
+    EXPECT_FALSE(mirror.mark(find_wrong(mirror, grid, seen)));
     seen[3 * columns + 2] = 0.5f;
-    EXPECT_TRUE(mirror.check(grid, seen));
+    EXPECT_TRUE(mirror.mark(find_wrong(mirror, grid, seen)));
     auto const wrong = [&] {
         return std::ranges::count_if(mirror.cells(), [](Cell const& cell) { return cell.is_wrong; });
     };
@@ -314,21 +315,21 @@ TEST(Mirror, WhatLooksOtherwiseIsStaleUntilItComes) {
     mirror.look(view_at(Vec3(0)), no_motions);
     mirror.add(view_at(Vec3(0)).rays, no_motions, render_pieces(plane, plane.pixel_depth(), wall));
     std::vector<Probe> probes;
-    mirror.list_probes(grid, probes);
+    list_probes(mirror, grid, probes);
     EXPECT_TRUE(probes.empty()) << "what is of the moment needs none";
     mirror.look(later, no_motions);
-    mirror.list_probes(grid, probes);
+    list_probes(mirror, grid, probes);
     ASSERT_EQ(probes.size(), std::size_t{viewport.width / 16 * (viewport.height / 16)});
     std::vector<float> luma;
     for (Probe const& probe : probes) {
         EXPECT_NEAR(probe.luma, 0.5f, 4e-3f);
         luma.push_back(probe.luma);
     }
-    EXPECT_FALSE(mirror.check_looks(probes, luma, grid.spacing));
+    EXPECT_FALSE(mirror.mark(find_stale(mirror, probes, luma, grid.spacing)));
     for (std::size_t i = 0; i < probes.size(); ++i) {
         luma[i] = lamp(probes[i].place.x, probes[i].place.y).luma;
     }
-    EXPECT_TRUE(mirror.check_looks(probes, luma, grid.spacing));
+    EXPECT_TRUE(mirror.mark(find_stale(mirror, probes, luma, grid.spacing)));
     for (int y = 0; y < viewport.height - 16; y += cell_side) {
         for (int x = 0; x < viewport.width; x += cell_side) {
             if (x < 48 || x >= 72) { // the squares of probes on both sides of the change

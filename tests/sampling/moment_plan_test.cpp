@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "server/sampling/mirror_checks.h"
 #include "tests/sampling/rendered_planes.h"
 
 namespace framelet {
@@ -100,8 +101,9 @@ TEST(MomentPlan, WhatHasChangedIsRenderedCoarselyFirst) {
     planner.mirror.look(later, no_motions);
     double const refined = planner.find(samples);
     std::vector<Probe> probes;
-    planner.mirror.list_probes(cell_grid(cell_side, 16, 0), probes);
-    planner.mirror.check_looks(probes, std::vector<float>(probes.size(), 0.0f), 16); // the light is out
+    list_probes(planner.mirror, cell_grid(cell_side, 16, 0), probes);
+    planner.mirror.mark(
+        find_stale(planner.mirror, probes, std::vector<float>(probes.size(), 0.0f), 16)); // the light is out
     planner.plan.find(planner.mirror, planner.field, {samples, {}, {}, 0, 0.25 * samples}, planner.rated);
     double cost = 0;
     for (RatedPatch const& entry : planner.rated) {

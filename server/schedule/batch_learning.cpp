@@ -1,0 +1,69 @@
+#include "server/schedule/batch_learning.h"
+
+#include <algorithm>
+
+#include <tbb/parallel_for.h>
+
+namespace framelet {
+namespace {
+
+bool shows_motion(Framelet const& framelet) {
+    return std::ranges::any_of(framelet.body, [](BodyNumber body) { return body != static_body; }) ||
+           std::ranges::any_of(framelet.velocity, [](Vec3 const& velocity) { return velocity != Vec3(0); });
+}
+
+} // namespace
+
+void examine_batch(PlaceField const& field, RefreshPlan const& plan, std::span<DisplayFramelet const> framelets,
+                   std::span<Framelet const> rendered, LumaHistory const& history, BatchFindings& findings) {
+    findings.firsts.clear();
+    std::size_t tiles = 0;
+    std::size_t places = 0;
+    for (std::size_t i = 0; i < plan.patches.size(); ++i) {
+        findings.firsts.push_back({tiles, places});
+        tiles += plan.tile_counts[i];
+        places += field.range_of(plan.patches[i].node).size();
+    }
+    findings.entries.resize(tiles);
+    findings.places.resize(places);
+    findings.same_since.resize(plan.patches.size());
+    tbb::parallel_for(std::size_t{0}, plan.patches.size(), [&](std::size_t i) {
+        Patch const& patch = plan.patches[i];
+        auto const [tile, place] = findings.firsts[i];
+        std::size_t const count = plan.tile_counts[i];
+        auto const of_patch = rendered.subspan(tile, count);
+        double const same_since =
+            examine_patch(field, patch, framelets.subspan(tile, count), of_patch, {plan.now, plan.moment_begun},
+                          plan.moment, history, std::span(findings.entries).subspan(tile, count),
+                          std::span(findings.places).subspan(place, field.range_of(patch.node).size()));
+        // The same picture may be of a body that has moved, and that the viewer has moved away.
+        bool const moved = plan.moment.motions != nullptr && std::ranges::any_of(of_patch, shows_motion);
+        findings.same_since[i] = moved ? never : same_since;
+    });
+}
+
+void learn_batch(PlaceField& field, RefreshPlan const& plan, BatchFindings const& findings,
+                 std::vector<std::uint8_t>& needed) {
+    needed.clear();
+    for (std::size_t i = 0; i < plan.patches.size(); ++i) {
+        Patch const& patch = plan.patches[i];
+        auto const places =
+            std::span(findings.places).subspan(findings.firsts[i].second, field.range_of(patch.node).size());
+        bool const is_needed = learn_patch(field, patch, places, findings.same_since[i], plan.still_since, plan.now);
+        needed.insert(needed.end(), plan.tile_counts[i], is_needed ? 1 : 0);
+    }
+}
+
+void learn_supersampled(PlaceField& field, RefreshPlan const& plan) {
+    for (Patch const& patch : plan.patches) {
+        PlaceField::Range const range = field.range_of(patch.node);
+        for (std::uint32_t i = range.first; i < range.last; ++i) {
+            Place& place = field[i];
+            place.drift = drift_since(place, plan.now);
+            place.level = field.level_of(patch.depth);
+            place.rendered = place.checked = place.supersampled = plan.now;
+        }
+    }
+}
+
+} // namespace framelet
