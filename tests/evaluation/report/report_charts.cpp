@@ -86,7 +86,7 @@ Curves live_chart(std::vector<json> const& live) {
                  .x_title = "pictures a second",
                  .y_title = "mean squared error over the best method's",
                  .log_y = true,
-                 .drawn = Drawn::points,
+                 .points_only = true,
                  .curves = {}};
     for (json const& scene : live) {
         double least = INFINITY;
