@@ -86,7 +86,7 @@ json measure_stillness(StudyOptions const& options) {
                              {"bytes in the last second", "/last_second_bytes", 24, 0}});
     json rows = json::array();
     for (std::filesystem::path const& file : options.scenes) {
-        auto const scene = load_bench_scene(file, options.camera);
+        auto const scene = load_bench_scene(file);
         Still const still = watch(*scene, options);
         json psnr = json::array();
         for (double const after : listed_seconds) {

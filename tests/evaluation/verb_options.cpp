@@ -22,7 +22,6 @@ Viewport read_size(std::string const& text) {
 
 void add_scene_options(CLI::App& verb, VerbOptions& options) {
     verb.add_option("--scenes,--scene", options.scenes, "Scene files, or names of bundled scenes")->delimiter(',');
-    verb.add_option("--scene-camera", options.study.camera, "Which of their cameras, from 0")->capture_default_str();
     verb.add_option_function<std::string>(
         "--size", [&options](std::string const& text) { options.size = read_size(text); },
         "Size of the picture, WIDTHxHEIGHT or the side of a square, pixels");

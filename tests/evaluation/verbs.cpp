@@ -69,7 +69,7 @@ json answer_table(VerbOptions& options) {
 }
 
 json answer_calibrate(VerbOptions& options) {
-    auto const scene = load_bench_scene(options.study.scenes.front(), options.study.camera);
+    auto const scene = load_bench_scene(options.study.scenes.front());
     json const costs = to_json(calibrate(*scene, options.study.run.viewport, options.quick ? 3 : 15));
     for (auto const& [name, cost] : costs.items()) {
         std::printf("%-26s %8.2f ns\n", name.c_str(), cost.get<double>());
@@ -78,7 +78,7 @@ json answer_calibrate(VerbOptions& options) {
 }
 
 json answer_limits(VerbOptions& options) {
-    auto const scene = load_bench_scene(options.study.scenes.front(), options.study.camera);
+    auto const scene = load_bench_scene(options.study.scenes.front());
     return measure_limits(*scene, options.study.run.viewport, options.quick ? 3 : 9);
 }
 

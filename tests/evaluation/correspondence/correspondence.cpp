@@ -229,7 +229,7 @@ json measure_correspondence(StudyOptions const& study, int times) {
                              {"holes of all", "/holes_of_all_pixels", 12, 2, 100}});
     json rows = json::array();
     for (std::filesystem::path const& file : study.scenes) {
-        auto const scene = load_bench_scene(file, study.camera);
+        auto const scene = load_bench_scene(file);
         std::vector<Found> found(std::size(times_ahead));
         int const moments = scene->duration > 0 ? times : 1;
         for (int k = 0; k < moments; ++k) {

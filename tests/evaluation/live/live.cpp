@@ -24,7 +24,6 @@
 #include "tests/evaluation/figure_table.h"
 #include "tests/evaluation/live/prediction.h"
 #include "tests/evaluation/measures/measures.h"
-#include "tests/evaluation/measures/steadiness.h"
 #include "tests/evaluation/rival_choice.h"
 #include "tests/loopback/process.h"
 
@@ -149,7 +148,7 @@ void run_programs(BenchScene const& scene, std::string const& method, RivalParts
     char stops[40];
     std::snprintf(stops, sizeof stops, "%.9g", std::log2(static_cast<double>(scene.exposure)));
     std::vector<std::string> server_options{"--exposure", stops, "--threads",
-                                            std::to_string(options.pinned ? 1 : options.server_threads)};
+                                            options.pinned ? "1" : "0"};
     auto server = [&] {
         OnCore const core(core_if(options.pinned, 0));
         return test::ServerProcess::of_program(programs.server, joined(programs.server_words, server_options));
@@ -167,7 +166,7 @@ void run_programs(BenchScene const& scene, std::string const& method, RivalParts
                                             "--duration",
                                             std::to_string(options.seconds),
                                             "--rate",
-                                            std::to_string(options.display_rate),
+                                            "60",
                                             "--output",
                                             (run.folder.path() / "%06d.ppm").string(),
                                             "--frames",
@@ -250,12 +249,10 @@ json run_figures(LiveRun const& run) {
     double const cores = std::max(1u, std::thread::hardware_concurrency());
     double const viewer = (last.cpu_seconds - run.frames.front().cpu_seconds) / span;
     return {{"pictures_per_second", changed / span},
-            {"frames_per_second", static_cast<double>(run.frames.size()) / span},
             {"gap_p99_ms", 1e3 * percentile(gaps, 0.99)},
             {"server_cores", run.server_cores},
             {"viewer_cores", viewer},
             {"server_busy", run.server_cores / cores},
-            {"server_busy_of_rest", run.server_cores / std::max(cores - viewer, 0.01)},
             {"viewer_busy", viewer / cores},
             {"samples_per_second", last.samples / span},
             {"kB_per_second", last.bytes / span / 1e3},
@@ -263,8 +260,7 @@ json run_figures(LiveRun const& run) {
             {"steady",
              {{"pictures_per_second", static_cast<double>(steady_pictures) / steady_span},
               {"kB_per_second", (last.bytes - steady->bytes) / steady_span / 1e3}}},
-            {"photon_ms", photons.empty() ? json() : json(1e3 * percentile(photons, 0.5))},
-            {"photon_p99_ms", photons.empty() ? json() : json(1e3 * percentile(photons, 0.99))}};
+            {"photon_ms", photons.empty() ? json() : json(1e3 * percentile(photons, 0.5))}};
 }
 
 /// Errors at some moments, spread over the run.
@@ -275,7 +271,7 @@ json error_figures(BenchScene& scene, std::string const& method, LiveRun const& 
             written.push_back(i);
         }
     }
-    json figures{{"mse", 0.0}, {"ssim", 0.0}, {"flip", 0.0}, {"steadiness", 0.0}, {"psnr_each", json::array()}};
+    json figures{{"mse", 0.0}, {"ssim", 0.0}, {"flip", 0.0}, {"steadiness", 0.0}};
     std::size_t const count = written.size() / FrameChoice::frames_at_once;
     for (std::size_t k = 0; k < count; ++k) {
         std::size_t const first = written[k * FrameChoice::frames_at_once];
@@ -292,7 +288,6 @@ json error_figures(BenchScene& scene, std::string const& method, LiveRun const& 
         add("ssim", measures.ssim);
         add("flip", measures.flip);
         add("steadiness", unsteadiness(shown, reference));
-        figures["psnr_each"].push_back(measures.psnr);
         if (!options.charts.empty()) {
             write_beside_reference(options.charts / (scene.name + "-" + method + "-" + std::to_string(k) + ".png"),
                                    reference[1], std::span(shown).subspan(1, 1));
