@@ -12,7 +12,8 @@ Settling measure_settling(std::span<double const> times, std::span<double const>
     FRAMELET_CHECK(times.size() == errors.size() && times.size() >= 4 && factor > 1);
     std::size_t const tail = times.size() - times.size() / 4;
     Settling result;
-    result.final_level = std::max(median({errors.begin() + static_cast<std::ptrdiff_t>(tail), errors.end()}), settled_floor);
+    result.final_level =
+        std::max(median({errors.begin() + static_cast<std::ptrdiff_t>(tail), errors.end()}), settled_floor);
     result.peak = *std::ranges::max_element(errors);
     std::size_t settled = times.size();
     while (settled > 0 && errors[settled - 1] <= factor * result.final_level) {

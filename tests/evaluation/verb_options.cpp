@@ -165,8 +165,7 @@ void add_report_options(CLI::App& verb, VerbOptions& options) {
         ->delimiter(',')
         ->check(CLI::Range(0.01, 1e4));
     verb.add_option("--live-scenes", options.live_scenes, "Scenes of the real programs' runs")->delimiter(',');
-    verb.add_option("--clock-scenes", options.clock_scenes,
-                    "Those that run on both clocks (default: the same)")
+    verb.add_option("--clock-scenes", options.clock_scenes, "Those that run on both clocks (default: the same)")
         ->delimiter(',');
     verb.add_option("--assets", options.assets,
                     "Folder of models: the real programs also fly through those that tests/evaluation/flights names");

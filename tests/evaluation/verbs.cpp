@@ -184,7 +184,10 @@ std::span<Verb const> verbs() {
          .add_options = add_table_options},
         {.name = "stability",
          .question = "How the loop of error, density and tiling settles after events, and how steady it is then",
-         .answer = [](VerbOptions& o) { return measure_stability(o.study, {8, 32, 128, 1024}); },
+         .answer =
+             [](VerbOptions& o) {
+                 return measure_stability(o.study, {8, 32, 128, 1024});
+             },
          .scenes = {"stop", "flicker", "teleport"},
          .usual = {.rate = 40},
          .quick = {.viewport = {128, 72}, .rate = 20}},

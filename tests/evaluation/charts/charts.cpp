@@ -162,8 +162,7 @@ std::string add_refreshes(Plot& plot, std::vector<ErrorSeries> const& series) {
         }
         plot.data += "EOD\n";
         command += ", \\\n  " + block + " using 1:2:(0):(" + number(0.6 * row_height) +
-                   ") axes x1y2 with vectors nohead lw 1 lc rgb '" + style_of(series[i].method).color +
-                   "' notitle";
+                   ") axes x1y2 with vectors nohead lw 1 lc rgb '" + style_of(series[i].method).color + "' notitle";
         ++row;
     }
     return command;

@@ -217,8 +217,8 @@ void measure_from(BenchScene& scene, Viewport viewport, SceneTime time, std::spa
 
 json measure_correspondence(StudyOptions const& study, int times) {
     Viewport const viewport = study.run.viewport;
-    std::printf("%dx%d, a sample per pixel; share of the pixels that were visible already, %%\n",
-                viewport.width, viewport.height);
+    std::printf("%dx%d, a sample per pixel; share of the pixels that were visible already, %%\n", viewport.width,
+                viewport.height);
     FigureTable const table({{"scene", "/scene", -17},
                              {"ahead [ms]", "/ahead_seconds", 10, 1, 1e3},
                              {"visible", "/visible", 8, 2, 100},

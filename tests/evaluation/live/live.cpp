@@ -147,8 +147,7 @@ void run_programs(BenchScene const& scene, std::string const& method, RivalParts
     Programs const programs = programs_of(method, rivals, scene.file.string());
     char stops[40];
     std::snprintf(stops, sizeof stops, "%.9g", std::log2(static_cast<double>(scene.exposure)));
-    std::vector<std::string> server_options{"--exposure", stops, "--threads",
-                                            options.pinned ? "1" : "0"};
+    std::vector<std::string> server_options{"--exposure", stops, "--threads", options.pinned ? "1" : "0"};
     auto server = [&] {
         OnCore const core(core_if(options.pinned, 0));
         return test::ServerProcess::of_program(programs.server, joined(programs.server_words, server_options));
@@ -318,9 +317,9 @@ json best_run(BenchScene& scene, std::string const& method, LiveOptions const& o
 
 /// A method, with the spacing that its frames had and an m for a margin.
 std::string row_title(std::string const& method, json const& figures) {
-    return figures.contains("spacing") ? method + " (" + std::to_string(figures["spacing"].get<int>()) +
-                                             (figures["margin"] > 0 ? "+m)" : ")")
-                                       : method;
+    return figures.contains("spacing")
+               ? method + " (" + std::to_string(figures["spacing"].get<int>()) + (figures["margin"] > 0 ? "+m)" : ")")
+               : method;
 }
 
 /// Where nothing is built up any more, both clocks in turn.

@@ -76,9 +76,8 @@ Curves bits_chart(ReportFigures const& figures) {
             .y_title = "error over the reference's own noise",
             .log_x = true,
             .log_y = true,
-            .curves = curves_of(
-                part(figures.runs, [](ReportRun const& run) { return run.link > 0; }), &ReportRun::link,
-                &ReportRun::bits, relative_error)};
+            .curves = curves_of(part(figures.runs, [](ReportRun const& run) { return run.link > 0; }), &ReportRun::link,
+                                &ReportRun::bits, relative_error)};
 }
 
 Curves live_chart(std::vector<json> const& live) {

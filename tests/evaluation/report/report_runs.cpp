@@ -49,9 +49,8 @@ public:
 
     ReportRun run(std::string const& method, double machine, double link, double delay) {
         RunParameters const& p = study_.run;
-        std::string const name =
-            scene() + "-" + method + "-" + text_of(p.viewport) +
-            printed("-%gs-%ghz-m%g-l%g", p.seconds, p.reference_rate, machine, link);
+        std::string const name = scene() + "-" + method + "-" + text_of(p.viewport) +
+                                 printed("-%gs-%ghz-m%g-l%g", p.seconds, p.reference_rate, machine, link);
         json const figures = store_.get(name, [&] { return measure_run(method, machine, link, delay); });
         ReportRun result{scene(), method, machine, link, noise(), 0, 0, 0, 0, {}};
         result.mse = figures["mean"]["mse"];
