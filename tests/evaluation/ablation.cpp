@@ -8,8 +8,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tests/evaluation/charts/charts.h"
-#include "tests/evaluation/charts/picture_sheet.h"
 #include "tests/evaluation/figure_table.h"
 #include "tests/evaluation/measures/measures.h"
 
@@ -26,9 +24,8 @@ struct Part {
     bool on_link_only = false; ///< does nothing where no link limits
 };
 
-constexpr char const* nothing_left_out = "whole";
 constexpr Part parts[] = {
-    {nothing_left_out, nullptr},
+    {"whole", nullptr},
     {"spacing", &FrameletParts::spacing},
     {"price", &FrameletParts::price},
     {"probes", &FrameletParts::probes},
@@ -39,12 +36,7 @@ constexpr Part parts[] = {
     {"loss", &FrameletParts::loss, true},
 };
 
-std::size_t middle_of(RunParameters const& parameters) {
-    return reference_count(parameters) / 2;
-}
-
-/// The figures of one run; `picture` gets what is shown in its middle.
-json run_without(Part const& part, Subject const& subject, CostTable const& costs, Picture& picture) {
+json run_without(Part const& part, Subject const& subject, CostTable const& costs) {
     RunParameters const& parameters = subject.run;
     MethodSetup setup = method_setup(parameters, subject.machine, costs);
     if (part.left_out != nullptr) {
@@ -56,9 +48,6 @@ json run_without(Part const& part, Subject const& subject, CostTable const& cost
     RunResult const run = run_method(*subject.scene, *method, parameters, subject.machine,
                                      [&](std::size_t index, Picture const& shown, double) {
                                          mse += mean_squared_error(shown, subject.reference.picture(index)) / count;
-                                         if (index == middle_of(parameters)) {
-                                             picture = shown;
-                                         }
                                      });
     return {{"scene", subject.scene->name},
             {"link", parameters.link.bits_per_second > 0 ? "link" : "free"},
@@ -74,26 +63,6 @@ json run_without(Part const& part, Subject const& subject, CostTable const& cost
 double ratio_of(double value, double whole) {
     constexpr double least = 1e-9;
     return std::max(value, least) / std::max(whole, least);
-}
-
-void draw_chart(json const& rows, std::filesystem::path const& folder) {
-    Curves chart{.title = "error without each part, as a multiple of the whole's",
-                 .x_title = "scene and link, as listed",
-                 .y_title = "ratio of mean squared errors",
-                 .log_y = true,
-                 .curves = {}};
-    double run = 0;
-    for (json const& row : rows) {
-        std::string const name = row["part"];
-        run += name == nothing_left_out ? 1 : 0;
-        auto found = std::ranges::find(chart.curves, name, &Curve::name);
-        if (found == chart.curves.end()) {
-            found = chart.curves.insert(chart.curves.end(), {name, {}, {}});
-        }
-        found->x.push_back(run);
-        found->y.push_back(row["ratio"]["mse"]);
-    }
-    draw(chart, folder / "ablation");
 }
 
 /// Of each part over all runs: least, geometric mean and greatest ratio of errors.
@@ -119,13 +88,12 @@ void print_summary(json const& rows) {
 /// A row for the whole, and one without each part that does something there.
 void measure_run(Subject const& subject, StudyOptions const& study, FigureTable const& table, json& rows) {
     bool const limited = subject.run.link.bits_per_second > 0;
-    std::vector<Picture> pictures;
     json of_whole;
     for (Part const& part : parts) {
         if (!limited && part.on_link_only) {
             continue;
         }
-        json row = run_without(part, subject, study.costs, pictures.emplace_back());
+        json row = run_without(part, subject, study.costs);
         of_whole = part.left_out == nullptr ? row : of_whole;
         for (char const* const figure :
              {"mse", "bytes_per_second", "server_seconds", "response_seconds", "viewer_seconds"}) {
@@ -133,10 +101,6 @@ void measure_run(Subject const& subject, StudyOptions const& study, FigureTable 
         }
         table.print(row);
         rows.push_back(std::move(row));
-    }
-    if (!study.charts.empty()) {
-        write_beside_reference(study.charts / (subject.scene->name + (limited ? "-parts-link.png" : "-parts.png")),
-                               subject.reference.picture(middle_of(subject.run)), pictures);
     }
 }
 
@@ -163,9 +127,6 @@ json measure_ablation(StudyOptions const& study) {
         }
     }
     print_summary(rows);
-    if (!study.charts.empty()) {
-        draw_chart(rows, study.charts);
-    }
     return {{"viewport", {study.run.viewport.width, study.run.viewport.height}},
             {"seconds", study.run.seconds},
             {"samples_per_pixel_and_second", study.run.frames_per_second},

@@ -1,26 +1,20 @@
 #include "tests/evaluation/bench_scene.h"
 
-#include "common/error.h"
 #include "server/scene/scene_import.h"
 
 namespace framelet::bench {
 
-std::unique_ptr<BenchScene> load_bench_scene(std::filesystem::path const& file, int camera) {
+std::unique_ptr<BenchScene> load_bench_scene(std::filesystem::path const& file) {
     auto loaded = std::make_unique<BenchScene>();
     loaded->file = file;
     loaded->name = file.stem().string();
     loaded->scene = import_scene(file);
-    auto const cameras = static_cast<int>(loaded->scene.cameras.size());
-    if (camera < 0 || camera >= std::max(cameras, 1)) {
-        throw InputError("'" + file.string() + "' has no camera " + std::to_string(camera) + ": it has " +
-                         std::to_string(cameras));
-    }
     loaded->clips = default_clips(loaded->scene);
     loaded->duration = animation_duration(loaded->scene, loaded->clips);
     loaded->render_scene = std::make_unique<RenderScene>(loaded->scene, std::nullopt);
     loaded->posed = std::make_unique<PosedScene>(loaded->scene, loaded->clips, *loaded->render_scene);
     loaded->pose = loaded->posed->pose_of(0);
-    loaded->scene_camera = cameras > 0 ? camera : none;
+    loaded->scene_camera = loaded->scene.cameras.empty() ? none : 0;
     loaded->default_camera = default_camera(scene_bounds(loaded->scene, loaded->pose));
     loaded->camera = camera_at(*loaded, 0);
     loaded->exposure = auto_exposure(*loaded->render_scene, loaded->camera);

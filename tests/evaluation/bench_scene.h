@@ -32,9 +32,9 @@ struct BenchScene {
     int followed_camera() const { return turn.turns() ? -1 : static_cast<int>(scene_camera); }
 };
 
-/// Loads the scene and poses it at time 0. `camera`: which of the scene's cameras, from 0; a scene that has none is
-/// seen by the default one. Throws InputError.
-std::unique_ptr<BenchScene> load_bench_scene(std::filesystem::path const& file, int camera = 0);
+/// Loads the scene and poses it at time 0. It is seen by its first camera, or by the default one where it has none.
+/// Throws InputError.
+std::unique_ptr<BenchScene> load_bench_scene(std::filesystem::path const& file);
 
 /// Moves everything, the camera included, to where it is at `time`.
 void pose_at(BenchScene& scene, SceneTime time);

@@ -13,7 +13,6 @@
 #include "common/error.h"
 #include "tests/evaluation/figure_table.h"
 #include "tests/evaluation/measures/ratio_summary.h"
-#include "tests/evaluation/measures/steadiness.h"
 #include "tests/evaluation/rival_choice.h"
 
 namespace framelet::bench {

@@ -125,7 +125,7 @@ TEST_F(Evaluation, ReferencesAreKeptAndMadeAgainWhenTheyAreWrong) {
 
 TEST(EvaluationInput, BadOnesAreRefusedInOneLine) {
     EXPECT_THROW(make_method("magic", {}), InputError);
-    EXPECT_THROW(load_bench_scene(bundled("dim"), 7), InputError);
+    EXPECT_THROW(load_bench_scene(bundled("no such scene")), InputError);
     auto const file = std::filesystem::temp_directory_path() / "framelet-costs-test.json";
     for (char const* const text : {"", "[]", "{}", "{\"coherent_segment\": -1}"}) {
         std::ofstream(file) << text;

@@ -2,20 +2,26 @@
 
 #include <chrono>
 #include <cstdio>
+#include <functional>
 #include <set>
+#include <string>
 #include <thread>
 
+#include <boost/asio/ip/tcp.hpp>
 #include <nlohmann/json.hpp>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 
+#include "common/error.h"
+#include "protocol/framed_stream.h"
+#include "protocol/stream_opening.h"
 #include "server/session/server.h"
 #include "tests/evaluation/stopwatch.h"
-#include "tests/evaluation/visit.h"
 
 namespace framelet::bench {
 namespace {
 
+namespace asio = boost::asio;
 using std::chrono::steady_clock;
 
 /// What the server sent for one still view, from the first camera until it has every tile with one ray a sample.
@@ -24,6 +30,37 @@ struct SinkRecord {
     double seconds = 0; ///< from the camera's departure to the arrival of the last batch
     std::size_t payload_bytes = 0;
 };
+
+/// Connects to 127.0.0.1:port, says hello and hands over each message, the Welcome first, until `receive` returns true:
+/// it has what it wanted. Throws ConnectionError where the server ends the connection before.
+void visit(std::uint16_t port, std::function<bool(FramedStream& stream, Message const& message)> const& receive) {
+    asio::io_context io{1};
+    asio::ip::tcp::socket socket(io);
+    socket.connect({asio::ip::address_v4::loopback(), port});
+    auto const stream = plain_stream(std::move(socket));
+    bool done = false;
+    std::string lost;
+    stream->start({[&](Message const& message) {
+                       if (auto const* const failure = std::get_if<Failure>(&message)) {
+                           lost = failure->text;
+                       } else if (!done && receive(*stream, message)) {
+                           done = true;
+                           stream->close();
+                           io.stop();
+                       }
+                   },
+                   [&](std::string reason) {
+                       lost = lost.empty() ? std::move(reason) : lost;
+                       io.stop();
+                   },
+                   {}},
+                  max_message_bytes);
+    stream->send(Hello{protocol_version, {}, coding::all});
+    io.run();
+    if (!done) {
+        throw ConnectionError("the measured server ended the connection: " + lost);
+    }
+}
 
 /// A viewer that looks at nothing: it acknowledges batches without decoding them, so that what is measured is the
 /// server. It stays until the picture has converged or a tile comes once more, which takes four rays a sample.
@@ -53,7 +90,7 @@ SinkRecord watch_until_repeated(std::uint16_t port, Camera const& camera, Viewpo
         }
         return false;
     };
-    visit(port, coding::all, receive);
+    visit(port, receive);
     record.seconds = std::chrono::duration<double>(last - start).count();
     return record;
 }

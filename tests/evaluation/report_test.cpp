@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "tests/evaluation/report/report_charts.h"
 #include "tests/evaluation/report/report_page.h"
 #include "tests/evaluation/report/run_store.h"
 

@@ -28,19 +28,6 @@ EnergyTemplate turned(EnergyTemplate line, float steeper) {
     return {line.offset - steeper * mean_octave, line.slope + steeper};
 }
 
-/// What one choice of slopes came to.
-struct Cell {
-    RateTemplates templates;
-    double mse = 0; ///< mean over the run
-    double age = 0; ///< likewise, seconds
-    RunResult run;
-    Picture picture; ///< at half the run, and all below
-    Picture tiling;
-    std::size_t tiles = 0;
-    double samples_per_pixel = 0;
-    double mean_rate = 0, least_rate = 0, most_rate = 0; ///< refreshes per second that the tiles ask for
-};
-
 /// Tiles with their outlines. Each doubling of the rate is one step brighter, up to a refresh each cycle.
 Picture draw_tiling(Tiling const& tiling, std::vector<double> const& rates, double most_rate) {
     Viewport const viewport = tiling.plane.viewport();
@@ -61,68 +48,54 @@ Picture draw_tiling(Tiling const& tiling, std::vector<double> const& rates, doub
     return picture;
 }
 
-void look_at(TsarServer const& server, double fastest, Cell& cell) {
+/// What the server made of its slopes by now.
+json tiling_figures(TsarServer const& server, std::vector<double> const& rates) {
     Tiling const& tiling = server.tiling();
-    std::vector<double> rates(tiling.tiles.size());
-    tiles_from_field(tiling.tiles, server.density().time, rates);
-    cell.tiling = draw_tiling(tiling, rates, fastest);
     Viewport const viewport = tiling.plane.viewport();
     double const pixels = static_cast<double>(viewport.width) * viewport.height;
-    cell.tiles = tiling.tiles.size();
-    cell.samples_per_pixel = static_cast<double>(cell.tiles * framelet_samples) / pixels;
     double const sum = std::accumulate(rates.begin(), rates.end(), 0.0);
-    cell.mean_rate = sum / static_cast<double>(rates.size());
     auto const [least, most] = std::ranges::minmax(rates);
-    cell.least_rate = least;
-    cell.most_rate = most;
-}
-
-Cell run_cell(Subject const& subject, CostTable const& costs, RateTemplates const& templates) {
-    RunParameters const& run = subject.run;
-    TsarParameters parameters;
-    parameters.templates = templates;
-    Tsar method(method_setup(run, subject.machine, costs), parameters);
-    Cell cell;
-    cell.templates = templates;
-    std::size_t const times = reference_count(run);
-    double const count = static_cast<double>(times);
-    cell.run = run_method(*subject.scene, method, run, subject.machine,
-                          [&](std::size_t index, Picture const& shown, double age) {
-                              cell.mse += mean_squared_error(shown, subject.reference.picture(index)) / count;
-                              cell.age += age / count;
-                              if (index == times / 2) {
-                                  cell.picture = shown;
-                                  look_at(method.server(), 4 * run.frames_per_second, cell);
-                              }
-                          });
-    return cell;
-}
-
-void draw_sheets(std::vector<Cell> const& grid, std::filesystem::path const& folder, std::string const& scene) {
-    std::filesystem::create_directories(folder);
-    std::vector<Picture> pictures, tilings;
-    for (Cell const& cell : grid) {
-        pictures.push_back(cell.picture);
-        tilings.push_back(cell.tiling);
-    }
-    write_png(folder / (scene + "-sensitivity.png"), picture_sheet(pictures, cells, middle));
-    write_png(folder / (scene + "-sensitivity-tiling.png"), picture_sheet(tilings, cells, middle));
+    return {{"tiles", tiling.tiles.size()},
+            {"samples_per_pixel", static_cast<double>(tiling.tiles.size() * framelet_samples) / pixels},
+            {"refreshes_per_second",
+             {{"mean", sum / static_cast<double>(rates.size())}, {"least", least}, {"most", most}}}};
 }
 
 json to_json(EnergyTemplate const& line) {
     return {{"offset", line.offset}, {"slope", line.slope}};
 }
 
-json to_json(Cell const& cell) {
-    return {{"space", to_json(cell.templates.space)},
-            {"time", to_json(cell.templates.time)},
-            {"mse", cell.mse},
-            {"age_seconds", cell.age},
-            {"samples", cell.run.samples},
-            {"bytes", cell.run.bytes},
-            {"tiles", cell.tiles},
-            {"samples_per_pixel", cell.samples_per_pixel},
-            {"refreshes_per_second", {{"mean", cell.mean_rate}, {"least", cell.least_rate}, {"most", cell.most_rate}}}};
+/// One choice of slopes. What is shown at half the run goes to `pictures`, and its tiling to `tilings`.
+json run_cell(Subject const& subject, CostTable const& costs, RateTemplates const& templates,
+              std::vector<Picture>& pictures, std::vector<Picture>& tilings) {
+    RunParameters const& run = subject.run;
+    TsarParameters parameters;
+    parameters.templates = templates;
+    Tsar method(method_setup(run, subject.machine, costs), parameters);
+    std::size_t const times = reference_count(run);
+    double mse = 0, age_seconds = 0;
+    json row;
+    RunResult const result = run_method(
+        *subject.scene, method, run, subject.machine, [&](std::size_t index, Picture const& shown, double age) {
+            mse += mean_squared_error(shown, subject.reference.picture(index)) / static_cast<double>(times);
+            age_seconds += age / static_cast<double>(times);
+            if (index == times / 2) {
+                Tiling const& tiling = method.server().tiling();
+                std::vector<double> rates(tiling.tiles.size());
+                tiles_from_field(tiling.tiles, method.server().density().time, rates);
+                row = tiling_figures(method.server(), rates);
+                pictures.push_back(shown);
+                tilings.push_back(draw_tiling(tiling, rates, 4 * run.frames_per_second));
+            }
+        });
+    row.update({{"scene", subject.scene->name},
+                {"space", to_json(templates.space)},
+                {"time", to_json(templates.time)},
+                {"mse", mse},
+                {"age_seconds", age_seconds},
+                {"samples", result.samples},
+                {"bytes", result.bytes}});
+    return row;
 }
 
 } // namespace
@@ -139,17 +112,18 @@ json measure_sensitivity(StudyOptions const& study) {
     json rows = json::array();
     for (std::filesystem::path const& file : study.scenes) {
         Subject const subject = prepare(file, study);
-        std::vector<Cell> grid;
+        std::vector<Picture> pictures, tilings;
         for (int i = 0; i < cells * cells; ++i) {
             float const space = slope_step * static_cast<float>(cells / 2 - i % cells);
             float const time = slope_step * static_cast<float>(cells / 2 - i / cells);
-            grid.push_back(run_cell(subject, study.costs, {turned(usual.space, space), turned(usual.time, time)}));
-            rows.push_back(to_json(grid.back()));
-            rows.back()["scene"] = subject.scene->name;
-            table.print(rows.back());
+            RateTemplates const templates{turned(usual.space, space), turned(usual.time, time)};
+            table.print(rows.emplace_back(run_cell(subject, study.costs, templates, pictures, tilings)));
         }
         if (!study.charts.empty()) {
-            draw_sheets(grid, study.charts, subject.scene->name);
+            std::filesystem::create_directories(study.charts);
+            std::string const stem = subject.scene->name + "-sensitivity";
+            write_png(study.charts / (stem + ".png"), picture_sheet(pictures, cells, middle));
+            write_png(study.charts / (stem + "-tiling.png"), picture_sheet(tilings, cells, middle));
         }
     }
     return rows;

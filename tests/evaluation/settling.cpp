@@ -4,17 +4,16 @@
 #include <vector>
 
 #include "common/error.h"
+#include "tests/evaluation/stopwatch.h"
 
 namespace framelet::bench {
 
 Settling measure_settling(std::span<double const> times, std::span<double const> errors, double event, double factor) {
     FRAMELET_CHECK(times.size() == errors.size() && times.size() >= 4 && factor > 1);
     std::size_t const tail = times.size() - times.size() / 4;
-    std::vector<double> last(errors.begin() + static_cast<std::ptrdiff_t>(tail), errors.end());
-    auto const middle = last.begin() + static_cast<std::ptrdiff_t>(last.size() / 2);
-    std::ranges::nth_element(last, middle);
     Settling result;
-    result.final_level = std::max(*middle, settled_floor);
+    result.final_level =
+        std::max(median({errors.begin() + static_cast<std::ptrdiff_t>(tail), errors.end()}), settled_floor);
     result.peak = *std::ranges::max_element(errors);
     std::size_t settled = times.size();
     while (settled > 0 && errors[settled - 1] <= factor * result.final_level) {

@@ -11,13 +11,8 @@
 
 namespace framelet::bench {
 
-struct StabilityOptions {
-    std::vector<std::size_t> batches{8, 32, 128, 1024}; ///< framelets
-    double factor = 2; ///< settled: within so many times the final level
-};
-
-/// Whole scenes. Of `study`, methods, start, seconds and batch are not looked at. InputError for a scene that is not
-/// the generator's, or in which nothing happens.
-nlohmann::json measure_stability(StabilityOptions const& options, StudyOptions const& study);
+/// Whole scenes, one run for each of `batches` (most framelets of a batch). Of `study`, methods, start, seconds and
+/// batch are not looked at. InputError for a scene that is not the generator's, or in which nothing happens.
+nlohmann::json measure_stability(StudyOptions const& study, std::vector<std::size_t> const& batches);
 
 } // namespace framelet::bench

@@ -1,14 +1,11 @@
 #include "tests/evaluation/stillness.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdio>
 
 #include <nlohmann/json.hpp>
 
 #include "common/error.h"
-#include "tests/evaluation/charts/charts.h"
-#include "tests/evaluation/charts/picture_sheet.h"
 #include "tests/evaluation/figure_table.h"
 #include "tests/evaluation/measures/measures.h"
 
@@ -27,8 +24,6 @@ struct Still {
     double last_sent = 0; ///< seconds since the stop
     double bytes = 0; ///< since the stop
     double last_second_bytes = 0;
-    Picture reference;
-    Picture last;
 };
 
 Still watch(BenchScene& scene, StudyOptions const& options) {
@@ -38,17 +33,16 @@ Still watch(BenchScene& scene, StudyOptions const& options) {
     double const machine = machine_factor(scene, options.run, options.costs);
     pose_at(scene, stops);
     Still still;
-    still.reference = render_reference(scene, run.viewport, reference_side);
+    Picture const reference = render_reference(scene, run.viewport, reference_side);
     auto const method = make_method("framelet", method_setup(run, machine, options.costs));
     RunResult const result =
         run_method(scene, *method, run, machine, [&](std::size_t index, Picture const& shown, double) {
             double const since = reference_time(run, index) - stops;
             if (since >= 0) {
                 still.quality.seconds.push_back(since);
-                still.quality.psnr.push_back(psnr_from_mse(mean_squared_error(shown, still.reference)));
+                still.quality.psnr.push_back(psnr_from_mse(mean_squared_error(shown, reference)));
             }
         });
-    still.last = method->picture();
     for (RunResult::Delivery const& delivery : result.deliveries) {
         if (delivery.sent > stops) {
             still.last_sent = delivery.sent - stops;
@@ -91,13 +85,8 @@ json measure_stillness(StudyOptions const& options) {
                              {"kB", "/bytes", 7, 0, 1e-3},
                              {"bytes in the last second", "/last_second_bytes", 24, 0}});
     json rows = json::array();
-    Curves curves{.title = "PSNR after everything has come to rest",
-                  .x_title = "time since [s]",
-                  .y_title = "PSNR [dB]",
-                  .drawn = Drawn::lines,
-                  .curves = {}};
     for (std::filesystem::path const& file : options.scenes) {
-        auto const scene = load_bench_scene(file, options.camera);
+        auto const scene = load_bench_scene(file);
         Still const still = watch(*scene, options);
         json psnr = json::array();
         for (double const after : listed_seconds) {
@@ -113,14 +102,6 @@ json measure_stillness(StudyOptions const& options) {
                         {"bytes", still.bytes},
                         {"last_second_bytes", still.last_second_bytes}});
         table.print(rows.back());
-        if (!options.charts.empty()) {
-            write_beside_reference(options.charts / (scene->name + "-still.png"), still.reference,
-                                   std::array{still.last});
-        }
-        curves.curves.push_back({scene->name, still.quality.seconds, still.quality.psnr});
-    }
-    if (!options.charts.empty()) {
-        draw(curves, options.charts / "stillness");
     }
     return rows;
 }

@@ -24,7 +24,6 @@ struct PsnrOverTime {
 /// One row a scene: PSNR [dB] at times after the stop, by how much it ever falls again, when the last message leaves
 /// and how much has been sent by then since the stop, and the bytes that are sent in the last second of the run.
 /// `options.run.seconds` is what is watched after the stop, at least a second.
-/// Charts: PSNR over time, and for each scene the last picture beside its reference.
 nlohmann::json measure_stillness(StudyOptions const& options);
 
 } // namespace framelet::bench

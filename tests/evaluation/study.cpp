@@ -12,7 +12,7 @@ Reference reference_of(BenchScene& scene, StudyOptions const& options) {
 }
 
 Subject prepare(std::filesystem::path const& file, StudyOptions const& options) {
-    auto scene = load_bench_scene(file, options.camera);
+    auto scene = load_bench_scene(file);
     scene->turn.degrees_per_second = options.turn;
     StudyOptions of_scene = options;
     if (options.sees_events) {

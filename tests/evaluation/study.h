@@ -14,8 +14,7 @@ namespace framelet::bench {
 
 struct StudyOptions {
     std::vector<std::filesystem::path> scenes; ///< files
-    int camera = 0; ///< of each scene
-    double turn = 0; ///< of that camera, degrees a second (`CameraTurn`)
+    double turn = 0; ///< of the camera, degrees a second (`CameraTurn`)
     bool sees_events = false; ///< each scene's run begins where `window_start` says, and not at `run.start`
     std::vector<std::string> methods;
     RunParameters run;

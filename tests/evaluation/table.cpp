@@ -17,43 +17,18 @@ namespace {
 
 using nlohmann::json;
 
-/// One method in one run of one scene.
-struct Cell {
-    std::string method, scene;
-    PublishedRun run;
-    double published = 0;
-    std::vector<double> ratios;
-    StageSeconds cpu, framed_cpu;
-};
-
-json seconds_of(StageSeconds const& cpu) {
+json halves_of(StageSeconds const& cpu) {
     return {{"server", cpu.server()}, {"viewer", cpu.viewer()}};
-}
-
-json to_json(Cell const& cell) {
-    RatioSummary const summary = summarise_ratios(cell.ratios);
-    return {{"method", cell.method},
-            {"scene", cell.scene},
-            {"run", cell.run.number},
-            {"batch", cell.run.batch},
-            {"side", cell.run.side},
-            {"published_percentile", cell.published},
-            {"suitable_percentile", summary.suitable},
-            {"median_ratio", summary.median},
-            {"cpu_seconds", seconds_of(cell.cpu)},
-            {"framed_cpu_seconds", seconds_of(cell.framed_cpu)},
-            {"ratios", cell.ratios}};
 }
 
 /// All runs of one scene, picture by picture size, since the runs of one size share reference and framed. A method
 /// without batches does the same in all of them and is run once.
-std::vector<Cell> run_scene(PublishedTable const& table, BenchScene& scene, StudyOptions options,
-                            FigureTable const& progress) {
+json run_scene(PublishedTable const& table, BenchScene& scene, StudyOptions options, FigureTable const& progress) {
     auto const column = static_cast<std::size_t>(std::ranges::find(table.scenes, scene.name) - table.scenes.begin());
     if (column == table.scenes.size()) {
         throw InputError("the published table has no scene '" + scene.name + "'");
     }
-    std::vector<Cell> cells;
+    json cells = json::array();
     std::map<int, std::vector<PublishedRun>> runs_by_side;
     for (PublishedRun const& run : table.runs) {
         runs_by_side[run.side].push_back(run);
@@ -77,9 +52,20 @@ std::vector<Cell> run_scene(PublishedTable const& table, BenchScene& scene, Stud
                 if (!recorded || has_batches(method)) {
                     recorded = record(method, run.batch);
                 }
-                cells.push_back({method, scene.name, run, run.suitable[column], error_ratios(*recorded, framed),
-                                 recorded->run.cpu, framed.run.cpu});
-                progress.print(to_json(cells.back()));
+                std::vector<double> const ratios = error_ratios(*recorded, framed);
+                RatioSummary const summary = summarise_ratios(ratios);
+                cells.push_back({{"method", method},
+                                 {"scene", scene.name},
+                                 {"run", run.number},
+                                 {"batch", run.batch},
+                                 {"side", run.side},
+                                 {"published_percentile", run.suitable[column]},
+                                 {"suitable_percentile", summary.suitable},
+                                 {"median_ratio", summary.median},
+                                 {"cpu_seconds", halves_of(recorded->run.cpu)},
+                                 {"framed_cpu_seconds", halves_of(framed.run.cpu)},
+                                 {"ratios", ratios}});
+                progress.print(cells.back());
             }
         }
     }
@@ -87,7 +73,7 @@ std::vector<Cell> run_scene(PublishedTable const& table, BenchScene& scene, Stud
 }
 
 /// As Table 7.2 is set: a row a run, in each scene ours beside the published.
-void print_table(PublishedTable const& table, std::vector<Cell> const& cells, std::string const& method) {
+void print_table(PublishedTable const& table, json const& cells, std::string const& method) {
     std::printf("\n%s: suitable percentile (published)\n%3s %5s %5s", method.c_str(), "run", "batch", "side");
     for (std::string const& scene : table.scenes) {
         std::printf(" %17s", scene.c_str());
@@ -96,17 +82,17 @@ void print_table(PublishedTable const& table, std::vector<Cell> const& cells, st
     for (PublishedRun const& run : table.runs) {
         std::printf("\n%3d %5d %5d", run.number, run.batch, run.side);
         for (std::string const& scene : table.scenes) {
-            auto const cell = std::ranges::find_if(cells, [&](Cell const& c) {
-                return c.method == method && c.scene == scene && c.run.number == run.number;
+            auto const cell = std::ranges::find_if(cells, [&](json const& c) {
+                return c["method"] == method && c["scene"] == scene && c["run"] == run.number;
             });
             if (cell == cells.end()) {
                 std::printf(" %17s", "-");
                 continue;
             }
-            double const suitable = summarise_ratios(cell->ratios).suitable;
-            std::printf(" %11.0f (%3.0f)", suitable, cell->published);
+            double const suitable = (*cell)["suitable_percentile"], published = (*cell)["published_percentile"];
+            std::printf(" %11.0f (%3.0f)", suitable, published);
             ours += suitable;
-            theirs += cell->published;
+            theirs += published;
             count += 1;
         }
     }
@@ -144,7 +130,6 @@ PublishedTable const& published_table() {
 json run_table(PublishedTable const& table, StudyOptions const& study) {
     StudyOptions options = study;
     std::erase(options.methods, "framed"); // what the others are divided by
-    std::vector<Cell> cells;
     FigureTable const progress({{"method", "/method", -17},
                                 {"run", "/run", 3, 0},
                                 {"batch", "/batch", 5, 0},
@@ -157,22 +142,20 @@ json run_table(PublishedTable const& table, StudyOptions const& study) {
                                 {"viewer s", "/cpu_seconds/viewer", 8, 3},
                                 {"framed srv", "/framed_cpu_seconds/server", 10},
                                 {"framed view", "/framed_cpu_seconds/viewer", 11, 3}});
+    json cells = json::array();
     for (std::filesystem::path const& file : options.scenes) {
-        auto const of_scene = run_scene(table, *load_bench_scene(file), options, progress);
+        json const of_scene = run_scene(table, *load_bench_scene(file), options, progress);
         cells.insert(cells.end(), of_scene.begin(), of_scene.end());
-    }
-    json result{{"counting", "total"},
-                {"seconds", options.run.seconds},
-                {"reference_rate", options.run.reference_rate},
-                {"samples_per_pixel_and_second", options.run.frames_per_second},
-                {"seed", options.run.seed}};
-    for (Cell const& cell : cells) {
-        result["cells"].push_back(to_json(cell));
     }
     for (std::string const& method : options.methods) {
         print_table(table, cells, method);
     }
-    return result;
+    return {{"counting", "total"},
+            {"seconds", options.run.seconds},
+            {"reference_rate", options.run.reference_rate},
+            {"samples_per_pixel_and_second", options.run.frames_per_second},
+            {"seed", options.run.seed},
+            {"cells", cells}};
 }
 
 } // namespace framelet::bench

@@ -22,7 +22,6 @@ Viewport read_size(std::string const& text) {
 
 void add_scene_options(CLI::App& verb, VerbOptions& options) {
     verb.add_option("--scenes,--scene", options.scenes, "Scene files, or names of bundled scenes")->delimiter(',');
-    verb.add_option("--scene-camera", options.study.camera, "Which of their cameras, from 0")->capture_default_str();
     verb.add_option_function<std::string>(
         "--size", [&options](std::string const& text) { options.size = read_size(text); },
         "Size of the picture, WIDTHxHEIGHT or the side of a square, pixels");
@@ -125,7 +124,7 @@ void settle(VerbOptions& options, Scale const& scale, std::vector<std::string> c
 void add_study_options(CLI::App& verb, VerbOptions& options) {
     verb.add_option("--json", options.json_file, "Write the figures to this file as well");
     verb.add_flag("--quick", options.quick, "Smaller pictures, less time");
-    verb.add_option("--charts", options.study.charts, "Draw charts into this folder");
+    verb.add_option("--charts", options.study.charts, "Draw charts into this folder (compare, sensitivity)");
     verb.add_option("--costs", options.costs_file, "Table of stage costs (calibrate writes one)")
         ->capture_default_str();
     add_scene_options(verb, options);
@@ -143,23 +142,6 @@ void add_table_options(CLI::App& verb, VerbOptions& options) {
 void add_compare_options(CLI::App& verb, VerbOptions& options) {
     verb.add_option("--turn", options.study.turn, "The camera turns back and forth, degrees a second")
         ->check(CLI::Range(0.0, 3600.0));
-}
-
-void add_stability_options(CLI::App& verb, VerbOptions& options) {
-    verb.add_option("--batches", options.stability.batches, "Most framelets of a batch, one run each")
-        ->delimiter(',')
-        ->check(CLI::Range(std::size_t(1), max_batch_framelets))
-        ->capture_default_str();
-    verb.add_option("--factor", options.stability.factor, "Settled is what is within so many times its final level")
-        ->check(CLI::Range(1.01, 100.0))
-        ->capture_default_str();
-}
-
-void add_correspondence_options(CLI::App& verb, VerbOptions& options) {
-    verb.add_option("--ahead", options.ahead, "Seconds that pictures are moved ahead")
-        ->delimiter(',')
-        ->check(CLI::Range(0.0, 10.0))
-        ->capture_default_str();
 }
 
 void add_estimator_options(CLI::App& verb, VerbOptions& options) {
@@ -183,12 +165,10 @@ void add_report_options(CLI::App& verb, VerbOptions& options) {
         ->delimiter(',')
         ->check(CLI::Range(0.01, 1e4));
     verb.add_option("--live-scenes", options.live_scenes, "Scenes of the real programs' runs")->delimiter(',');
-    verb.add_option("--clock-scenes", options.clock_scenes,
-                    "Those that run on both clocks (default: the same)")
+    verb.add_option("--clock-scenes", options.clock_scenes, "Those that run on both clocks (default: the same)")
         ->delimiter(',');
     verb.add_option("--assets", options.assets,
                     "Folder of models: the real programs also fly through those that tests/evaluation/flights names");
-    verb.add_flag("--no-links", options.without_links, "No runs over links");
     verb.add_flag("--no-live", options.without_live, "No runs of the real programs");
 }
 

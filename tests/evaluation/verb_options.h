@@ -11,7 +11,6 @@
 
 #include "tests/evaluation/estimators/observations.h"
 #include "tests/evaluation/report/report_runs.h"
-#include "tests/evaluation/stability.h"
 #include "tests/evaluation/study.h"
 
 namespace CLI {
@@ -45,14 +44,12 @@ struct VerbOptions {
     StudyOptions study;
 
     // Of one verb each.
-    StabilityOptions stability;
     std::vector<int> table_runs;
     ObservationOptions observation; ///< of the estimators
-    std::vector<double> ahead{1.0 / 60, 1.0 / 15, 0.2}; ///< seconds, of the correspondence
     ReportOptions report;
     std::vector<std::string> live_scenes, clock_scenes; ///< files or names, of the report
     std::filesystem::path assets; ///< folder of models, for the report's flights; empty: none
-    bool without_live = false, without_links = false;
+    bool without_live = false;
 };
 
 /// The project's own scene files, in the order of their names.
@@ -77,9 +74,7 @@ void add_link_options(CLI::App& verb, double& megabits, double& delay_ms);
 void add_study_options(CLI::App& verb, VerbOptions& options);
 
 void add_compare_options(CLI::App& verb, VerbOptions& options);
-void add_stability_options(CLI::App& verb, VerbOptions& options);
 void add_table_options(CLI::App& verb, VerbOptions& options);
-void add_correspondence_options(CLI::App& verb, VerbOptions& options);
 void add_estimator_options(CLI::App& verb, VerbOptions& options);
 void add_report_options(CLI::App& verb, VerbOptions& options);
 

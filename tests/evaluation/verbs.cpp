@@ -15,6 +15,7 @@
 #include "tests/evaluation/limits.h"
 #include "tests/evaluation/report/report_page.h"
 #include "tests/evaluation/sensitivity.h"
+#include "tests/evaluation/stability.h"
 #include "tests/evaluation/stillness.h"
 #include "tests/evaluation/table.h"
 
@@ -68,7 +69,7 @@ json answer_table(VerbOptions& options) {
 }
 
 json answer_calibrate(VerbOptions& options) {
-    auto const scene = load_bench_scene(options.study.scenes.front(), options.study.camera);
+    auto const scene = load_bench_scene(options.study.scenes.front());
     json const costs = to_json(calibrate(*scene, options.study.run.viewport, options.quick ? 3 : 15));
     for (auto const& [name, cost] : costs.items()) {
         std::printf("%-26s %8.2f ns\n", name.c_str(), cost.get<double>());
@@ -77,7 +78,7 @@ json answer_calibrate(VerbOptions& options) {
 }
 
 json answer_limits(VerbOptions& options) {
-    auto const scene = load_bench_scene(options.study.scenes.front(), options.study.camera);
+    auto const scene = load_bench_scene(options.study.scenes.front());
     return measure_limits(*scene, options.study.run.viewport, options.quick ? 3 : 9);
 }
 
@@ -99,9 +100,6 @@ void choose_runs(VerbOptions& options) {
                               "framelet", "oracle"});
     fall_back(report.machines, {0.5, 1, 2, 5, 10, 20, 60});
     fall_back(report.links, {0.5, 2, 5, 20, 80});
-    if (options.without_links) {
-        report.links.clear();
-    }
     std::ranges::copy_if(study.methods, std::back_inserter(report.linked_methods), [](std::string const& method) {
         return method != "oracle" && method != "tsar" && method != "afr"; // they know no link
     });
@@ -186,11 +184,13 @@ std::span<Verb const> verbs() {
          .add_options = add_table_options},
         {.name = "stability",
          .question = "How the loop of error, density and tiling settles after events, and how steady it is then",
-         .answer = [](VerbOptions& o) { return measure_stability(o.stability, o.study); },
+         .answer =
+             [](VerbOptions& o) {
+                 return measure_stability(o.study, {8, 32, 128, 1024});
+             },
          .scenes = {"stop", "flicker", "teleport"},
          .usual = {.rate = 40},
-         .quick = {.viewport = {128, 72}, .rate = 20},
-         .add_options = add_stability_options},
+         .quick = {.viewport = {128, 72}, .rate = 20}},
         {.name = "ablation",
          .question = "What each part of framelet buys, and what it costs: error, bytes and work without it",
          .answer = [](VerbOptions& o) { return measure_ablation(o.study); },
@@ -213,12 +213,11 @@ std::span<Verb const> verbs() {
          .add_options = add_estimator_options},
         {.name = "correspondence",
          .question = "How far off the viewer shows what it moves",
-         .answer = [](VerbOptions& o) { return measure_correspondence(o.study, o.ahead, o.quick ? 1 : 3); },
+         .answer = [](VerbOptions& o) { return measure_correspondence(o.study, o.quick ? 1 : 3); },
          .scenes = {"globe", "windmill", "vehicle_approach", "vehicle_chase", "vehicle_crossing", "vehicle_fixed",
                     "vehicle_flyby"},
          .usual = screen,
-         .quick = half_screen,
-         .add_options = add_correspondence_options},
+         .quick = half_screen},
         {.name = "calibrate",
          .question = "What every stage costs on this machine",
          .answer = answer_calibrate,

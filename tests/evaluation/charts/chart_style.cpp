@@ -1,36 +1,21 @@
 #include "tests/evaluation/charts/chart_style.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <string_view>
+#include <map>
 
 #include "tests/evaluation/charts/gnuplot.h"
 
 namespace framelet::bench {
 namespace {
 
-struct MethodStyle {
-    std::string_view name;
-    char const* color;
-    int dash;
-    int point;
-    double width;
+std::map<std::string, LineStyle> const methods{
+    {"framed", {"#333333", 1, 5}},       {"interruptible", {"#e69f00", 1, 9}}, {"framed+h264", {"#0072b2", 1, 11}},
+    {"framed+warp", {"#56b4e9", 1, 13}}, {"frameless", {"#cc79a7", 1, 4}},     {"afr", {"#009e73", 1, 8}},
+    {"tsar", {"#882255", 1, 10}},        {"tsar-e", {"#332288", 1, 6}},        {"tsar-fill", {"#cc6677", 1, 12}},
+    {"tsar-surplus", {"#117733", 1, 8}}, {"framelet", {"#d55e00", 1, 7, 3}},   {"framelet-unwarped", {"#ee9966", 2, 7}},
+    {"oracle", {"#999933", 2, 6}},
 };
-
-constexpr std::array methods{
-    MethodStyle{"reference", "#999999", 1, 1, 1.5},   MethodStyle{"framed", "#333333", 1, 5, 2},
-    MethodStyle{"interruptible", "#e69f00", 1, 9, 2}, MethodStyle{"framed+h264", "#0072b2", 1, 11, 2},
-    MethodStyle{"framed+warp", "#56b4e9", 1, 13, 2},  MethodStyle{"frameless", "#cc79a7", 1, 4, 2},
-    MethodStyle{"afr", "#009e73", 1, 8, 2},           MethodStyle{"tsar", "#882255", 1, 10, 2},
-    MethodStyle{"framelet", "#d55e00", 1, 7, 3},      MethodStyle{"framelet-unwarped", "#ee9966", 2, 7, 2},
-    MethodStyle{"oracle", "#999933", 2, 6, 2},
-};
-
-constexpr std::array other_colors{"#332288", "#cc6677", "#117733", "#ddaa33",
-                                  "#44aa99", "#aa4499", "#004488", "#8c564b"};
-constexpr std::array other_points{6, 12, 8, 4, 10, 14, 5, 9};
-constexpr std::size_t dashes = 5; // gnuplot's, solid first
 
 constexpr double tolerance = 1e-9; // of a mark that should stand on the end of its axis
 
@@ -44,21 +29,9 @@ std::string mark_label(int mantissa, int exponent) {
 
 } // namespace
 
-std::vector<LineStyle> line_styles(std::span<std::string const> names) {
-    std::vector<LineStyle> styles;
-    std::size_t others = 0;
-    for (std::string const& name : names) {
-        auto const method = std::ranges::find(methods, name, &MethodStyle::name);
-        if (method != methods.end()) {
-            styles.push_back({method->color, method->dash, method->point, method->width});
-            continue;
-        }
-        std::size_t const color = others % other_colors.size();
-        int const dash = static_cast<int>(others / other_colors.size() % dashes) + 1;
-        styles.push_back({other_colors[color], dash, other_points[color], 2});
-        ++others;
-    }
-    return styles;
+LineStyle style_of(std::string const& name) {
+    auto const method = methods.find(name);
+    return method != methods.end() ? method->second : LineStyle{"#999999", 1, 1, 1.5};
 }
 
 std::string to_string(LineStyle const& style) {

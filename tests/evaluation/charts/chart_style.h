@@ -3,7 +3,6 @@
 
 #include <span>
 #include <string>
-#include <vector>
 
 namespace framelet::bench {
 
@@ -14,10 +13,9 @@ struct LineStyle {
     double width = 2;
 };
 
-/// A style for each name. The methods of the evaluation have theirs fixed (colours that the colour-blind tell apart,
-/// after Okabe and Ito and P. Tol); other names have the next colours in their order, and beyond eight of them colours
-/// return with other dashes.
-std::vector<LineStyle> line_styles(std::span<std::string const> names);
+/// Of a method of the evaluation: colours that the colour-blind tell apart, after Okabe and Ito and P. Tol. Other names
+/// are grey.
+LineStyle style_of(std::string const& name);
 
 /// "lc rgb ... lw ... dt ... pt ..." for a plot command.
 std::string to_string(LineStyle const& style);

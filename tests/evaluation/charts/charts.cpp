@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
-#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -94,12 +93,6 @@ std::string data_block(std::string const& name, Curve const& curve, OptionalRang
     return out + "EOD\n";
 }
 
-std::vector<LineStyle> styles_of(std::vector<Curve> const& curves) {
-    std::vector<std::string> names;
-    std::transform(curves.begin(), curves.end(), std::back_inserter(names), [](Curve const& c) { return c.name; });
-    return line_styles(names);
-}
-
 /// The data block of the curve's band and the command that fills it, to go before the line's.
 std::string add_band(Plot& plot, std::size_t i, Curve const& curve, LineStyle const& style, OptionalRange const& x,
                      OptionalRange const& y) {
@@ -132,14 +125,14 @@ std::string mark_commands(std::vector<Mark> const& marks) {
 /// The data blocks $curve0... and the plot command without an end of line.
 std::string add_lines(Plot& plot, std::vector<Curve> const& curves, OptionalRange const& x, OptionalRange const& y,
                       char const* with) {
-    std::vector<LineStyle> const styles = styles_of(curves);
     std::string command = "plot ";
     for (std::size_t i = 0; i < curves.size(); ++i) {
         std::string const block = block_name("curve", i);
+        LineStyle const style = style_of(curves[i].name);
         plot.data += data_block(block, curves[i], x, y);
-        std::string const band = add_band(plot, i, curves[i], styles[i], x, y);
+        std::string const band = add_band(plot, i, curves[i], style, x, y);
         command += (i == 0 ? "" : ", \\\n  ") + band + (band.empty() ? "" : ", \\\n  ") + block + " with " + with +
-                   " " + to_string(styles[i]) + " title " + quoted(curves[i].name);
+                   " " + to_string(style) + " title " + quoted(curves[i].name);
     }
     return command;
 }
@@ -154,7 +147,7 @@ std::string log_axis_with_margin(std::string const& axis, Range const& range) {
 constexpr double row_height = 0.03; // of one method's refreshes, as share of the chart's
 
 /// Data and plot commands of the rows of refreshes, on a second y axis from 0 to 1.
-std::string add_refreshes(Plot& plot, std::vector<ErrorSeries> const& series, std::vector<LineStyle> const& styles) {
+std::string add_refreshes(Plot& plot, std::vector<ErrorSeries> const& series) {
     std::string command;
     std::size_t row = 0;
     for (std::size_t i = 0; i < series.size(); ++i) {
@@ -169,14 +162,10 @@ std::string add_refreshes(Plot& plot, std::vector<ErrorSeries> const& series, st
         }
         plot.data += "EOD\n";
         command += ", \\\n  " + block + " using 1:2:(0):(" + number(0.6 * row_height) +
-                   ") axes x1y2 with vectors nohead lw 1 lc rgb '" + styles[i].color + "' notitle";
+                   ") axes x1y2 with vectors nohead lw 1 lc rgb '" + style_of(series[i].method).color + "' notitle";
         ++row;
     }
     return command;
-}
-
-char const* word_of(Drawn drawn) {
-    return drawn == Drawn::lines ? "lines" : drawn == Drawn::points ? "points" : "linespoints";
 }
 
 } // namespace
@@ -192,7 +181,7 @@ Plot plot_of(Curves const& chart) {
     plot.commands += x ? log_axis_with_margin("x", *x) : "";
     plot.commands += y ? log_axis_with_margin("y", *y) : "";
     plot.commands += mark_commands(chart.marks);
-    plot.commands += add_lines(plot, chart.curves, x, y, word_of(chart.drawn)) + "\n";
+    plot.commands += add_lines(plot, chart.curves, x, y, chart.points_only ? "points" : "linespoints") + "\n";
     return plot;
 }
 
@@ -225,7 +214,7 @@ Plot plot_of(ErrorOverTime const& chart) {
                          " right font ',9' textcolor rgb '#666666'\n";
     }
     plot.commands += add_lines(plot, curves, std::nullopt, y, "lines");
-    plot.commands += add_refreshes(plot, chart.series, styles_of(curves)) + "\n";
+    plot.commands += add_refreshes(plot, chart.series) + "\n";
     return plot;
 }
 

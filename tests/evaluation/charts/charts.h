@@ -23,18 +23,15 @@ struct Mark {
     std::string text;
 };
 
-/// What stands at and between a curve's points.
-enum class Drawn { lines, points, both };
-
-/// General lines with a mark at each point: sweeps, ablations. On a logarithmic axis values of zero and
-/// less stand at its lower end.
+/// Lines with a mark at each point, or these marks alone. On a logarithmic axis values of zero and less stand at its
+/// lower end.
 struct Curves {
     std::string title;
     std::string x_title; ///< with unit
     std::string y_title; ///< with unit
     bool log_x = false;
     bool log_y = false;
-    Drawn drawn = Drawn::both;
+    bool points_only = false;
     std::vector<Curve> curves;
     std::vector<Mark> marks{};
 };

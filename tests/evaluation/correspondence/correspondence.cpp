@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <span>
 
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
@@ -22,11 +23,8 @@ namespace {
 
 using nlohmann::json;
 
-/// Pixels from a discontinuity that belong to a silhouette.
-constexpr int silhouette_pixels = 2;
-
-/// A second difference of inverse depth of more than this share of it is a step.
-constexpr float step_share = 0.02f;
+/// Seconds that pictures are moved ahead.
+constexpr double times_ahead[] = {1.0 / 60, 1.0 / 15, 0.2};
 
 /// Inverse depths that differ by this share more than their neighbours do are of two surfaces.
 constexpr float same_surface = 0.01f;
@@ -38,40 +36,16 @@ struct Surfaces {
     std::vector<float> inverse_depth;
     std::vector<BodyNumber> body;
     std::vector<Vec3> velocity;
-    std::vector<std::uint8_t> silhouette; ///< within `silhouette_pixels` of a discontinuity
 
     std::size_t index(int x, int y) const {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(viewport.width) + static_cast<std::size_t>(x);
     }
 };
 
-void mark_silhouettes(Surfaces& surfaces) {
-    auto const [width, height] = surfaces.viewport;
-    auto const is_step = [&](std::size_t before, std::size_t at, std::size_t after) {
-        float const a = surfaces.inverse_depth[before], b = surfaces.inverse_depth[at],
-                    c = surfaces.inverse_depth[after];
-        return surfaces.body[at] != surfaces.body[after] || std::abs(a - 2 * b + c) > step_share * std::max({a, b, c});
-    };
-    surfaces.silhouette.assign(surfaces.body.size(), 0);
-    for (int y = 1; y + 1 < height; ++y) {
-        for (int x = 1; x + 1 < width; ++x) {
-            std::size_t const at = surfaces.index(x, y);
-            if (!is_step(at - 1, at, at + 1) && !is_step(surfaces.index(x, y - 1), at, surfaces.index(x, y + 1))) {
-                continue;
-            }
-            for (int j = std::max(y - silhouette_pixels, 0); j <= std::min(y + silhouette_pixels, height - 1); ++j) {
-                for (int i = std::max(x - silhouette_pixels, 0); i <= std::min(x + silhouette_pixels, width - 1); ++i) {
-                    surfaces.silhouette[surfaces.index(i, j)] = 1;
-                }
-            }
-        }
-    }
-}
-
 Surfaces render_surfaces(BenchScene& scene, Camera const& camera, Viewport viewport) {
     ImagePlane const plane(viewport);
     Tiling const tiling = make_uniform_tiling(plane, plane.pixel_depth());
-    Surfaces out{viewport, {}, {}, {}, {}, {}};
+    Surfaces out{viewport, {}, {}, {}, {}};
     out.framelets.resize(tiling.tiles.size());
     render_framelets(*scene.render_scene, camera, plane, tiling.tiles, 0, out.framelets);
     auto const pixels = static_cast<std::size_t>(viewport.width) * static_cast<std::size_t>(viewport.height);
@@ -90,7 +64,6 @@ Surfaces render_surfaces(BenchScene& scene, Camera const& camera, Viewport viewp
             }
         }
     }
-    mark_silhouettes(out);
     return out;
 }
 
@@ -151,29 +124,18 @@ void hold_places(Surfaces const& surfaces, BenchScene const& scene, Camera const
     }
 }
 
-struct Counts {
-    double pixels = 0, visible = 0, tenth = 0, half = 0, one = 0, holes = 0;
+struct Found {
+    double pixels = 0, all_holes = 0; ///< also of what was not visible
+    double visible = 0, tenth = 0, half = 0, one = 0, holes = 0;
 
     void add(float error) {
         ++visible;
+        holes += std::isinf(error) ? 1 : 0;
         tenth += error <= 0.1f ? 1 : 0;
         half += error <= 0.5f ? 1 : 0;
         one += error <= 1.0f ? 1 : 0;
     }
     double share(double count) const { return visible > 0 ? count / visible : 1; }
-    json to_json() const {
-        return {{"visible", visible},
-                {"within_0.1", share(tenth)},
-                {"within_0.5", share(half)},
-                {"within_1", share(one)},
-                {"holes", share(holes)}};
-    }
-};
-
-struct Found {
-    Counts all, silhouettes;
-    double pixels = 0; ///< also those that were not visible
-    double holes = 0; ///< also among those
 };
 
 void compare(Surfaces const& before, Surfaces const& after, ExactMotion const& back, WarpPlan (&plans)[2],
@@ -202,7 +164,7 @@ void compare(Surfaces const& before, Surfaces const& after, ExactMotion const& b
             Vec2 const pixel = Vec2(x, y) + 0.5f;
             bool const is_hole = blocks[0].inverse_depth[k] == hole_depth;
             ++found.pixels;
-            found.holes += is_hole ? 1 : 0;
+            found.all_holes += is_hole ? 1 : 0;
             ExactMotion::Place const exact =
                 back.shown(pixel, after.inverse_depth[at], after.body[at], after.velocity[at]);
             if (!shows(before, exact, after.body[at])) {
@@ -212,23 +174,13 @@ void compare(Surfaces const& before, Surfaces const& after, ExactMotion const& b
             int const shift_y = steady_shift(exact.pixel.y);
             Vec2 const taken(place_of(blocks[shift_x].squares[0][k], shift_x, exact.pixel.x),
                              place_of(blocks[shift_y].squares[1][k], shift_y, exact.pixel.y));
-            float const error = is_hole ? INFINITY : glm::distance(taken, exact.pixel);
-            bool const is_silhouette =
-                after.silhouette[at] != 0 ||
-                before.silhouette[before.index(std::min(static_cast<int>(exact.pixel.x), viewport.width - 1),
-                                               std::min(static_cast<int>(exact.pixel.y), viewport.height - 1))] != 0;
-            found.all.add(error);
-            found.all.holes += is_hole ? 1 : 0;
-            if (is_silhouette) {
-                found.silhouettes.add(error);
-                found.silhouettes.holes += is_hole ? 1 : 0;
-            }
+            found.add(is_hole ? INFINITY : glm::distance(taken, exact.pixel));
         }
     }
 }
 
-void measure_from(BenchScene& scene, Viewport viewport, std::vector<double> const& ahead, SceneTime time,
-                  std::vector<Found>& found) {
+/// `found`: one for each of `times_ahead`.
+void measure_from(BenchScene& scene, Viewport viewport, SceneTime time, std::span<Found> found) {
     ImagePlane const plane(viewport);
     pose_at(scene, time);
     Camera const camera = scene.camera;
@@ -236,7 +188,7 @@ void measure_from(BenchScene& scene, Viewport viewport, std::vector<double> cons
     SceneBodies const& bodies = scene.render_scene->bodies();
     Surfaces const before = render_surfaces(scene, camera, viewport);
     auto const first_key = static_cast<std::int64_t>(std::floor(time * body_keys_per_second));
-    double const farthest = *std::ranges::max_element(ahead);
+    double const farthest = *std::ranges::max_element(times_ahead);
     auto const keys = static_cast<std::size_t>(std::ceil(farthest * body_keys_per_second)) + 2;
     std::vector<BodyTrack> const tracks = body_tracks(scene.scene, scene.clips, bodies, first_key, keys);
     constexpr double instant = 1.0 / 60;
@@ -247,8 +199,8 @@ void measure_from(BenchScene& scene, Viewport viewport, std::vector<double> cons
     for (int shift = 0; shift < 2; ++shift) {
         hold_places(before, scene, camera, speed, shift, caches[shift], tracks, motions);
     }
-    for (std::size_t i = 0; i < ahead.size(); ++i) {
-        SceneTime const later = time + ahead[i];
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        SceneTime const later = time + times_ahead[i];
         pose_at(scene, later);
         Camera const moved = scene.camera;
         Surfaces const after = render_surfaces(scene, moved, viewport);
@@ -263,40 +215,36 @@ void measure_from(BenchScene& scene, Viewport viewport, std::vector<double> cons
 
 } // namespace
 
-json measure_correspondence(StudyOptions const& study, std::vector<double> const& ahead, int times) {
+json measure_correspondence(StudyOptions const& study, int times) {
     Viewport const viewport = study.run.viewport;
-    std::printf("%dx%d, a sample per pixel; share of the pixels that were visible already, %%; s.: at silhouettes\n",
-                viewport.width, viewport.height);
+    std::printf("%dx%d, a sample per pixel; share of the pixels that were visible already, %%\n", viewport.width,
+                viewport.height);
     FigureTable const table({{"scene", "/scene", -17},
                              {"ahead [ms]", "/ahead_seconds", 10, 1, 1e3},
                              {"visible", "/visible", 8, 2, 100},
-                             {"<= 0.1", "/all/within_0.1", 8, 2, 100},
-                             {"<= 0.5", "/all/within_0.5", 8, 2, 100},
-                             {"<= 1", "/all/within_1", 8, 2, 100},
-                             {"holes", "/all/holes", 8, 3, 100},
-                             {"s. visible", "/silhouettes_visible", 10, 2, 100},
-                             {"<= 0.1", "/silhouettes/within_0.1", 8, 2, 100},
-                             {"<= 0.5", "/silhouettes/within_0.5", 8, 2, 100},
-                             {"<= 1", "/silhouettes/within_1", 8, 2, 100},
-                             {"holes", "/silhouettes/holes", 8, 3, 100},
+                             {"<= 0.1", "/within_0.1", 8, 2, 100},
+                             {"<= 0.5", "/within_0.5", 8, 2, 100},
+                             {"<= 1", "/within_1", 8, 2, 100},
+                             {"holes", "/holes", 8, 3, 100},
                              {"holes of all", "/holes_of_all_pixels", 12, 2, 100}});
     json rows = json::array();
     for (std::filesystem::path const& file : study.scenes) {
-        auto const scene = load_bench_scene(file, study.camera);
-        std::vector<Found> found(ahead.size());
+        auto const scene = load_bench_scene(file);
+        std::vector<Found> found(std::size(times_ahead));
         int const moments = scene->duration > 0 ? times : 1;
         for (int k = 0; k < moments; ++k) {
-            measure_from(*scene, viewport, ahead, scene->duration * (k + 0.5) / moments, found);
+            measure_from(*scene, viewport, scene->duration * (k + 0.5) / moments, found);
         }
         for (std::size_t i = 0; i < found.size(); ++i) {
             Found const& f = found[i];
             rows.push_back({{"scene", scene->name},
-                            {"ahead_seconds", ahead[i]},
-                            {"visible", f.all.visible / f.pixels},
-                            {"all", f.all.to_json()},
-                            {"silhouettes_visible", f.silhouettes.visible / f.pixels},
-                            {"silhouettes", f.silhouettes.to_json()},
-                            {"holes_of_all_pixels", f.holes / f.pixels}});
+                            {"ahead_seconds", times_ahead[i]},
+                            {"visible", f.visible / f.pixels},
+                            {"within_0.1", f.share(f.tenth)},
+                            {"within_0.5", f.share(f.half)},
+                            {"within_1", f.share(f.one)},
+                            {"holes", f.share(f.holes)},
+                            {"holes_of_all_pixels", f.all_holes / f.pixels}});
             table.print(rows.back());
         }
     }

@@ -53,17 +53,6 @@ json to_json(Agreement const& agreement) {
             {"balanced_signs", agreement.signs.balanced}};
 }
 
-json places_of(std::vector<Place> const& places) {
-    json result = json::array();
-    for (Place const& place : places) {
-        result.push_back({{"tile", place.tile.code},
-                          {"time", place.time},
-                          {"samples_per_pixel", place.ideal.samples_per_pixel()},
-                          {"refreshes_per_second", place.ideal.refreshes_per_second()}});
-    }
-    return result;
-}
-
 } // namespace
 
 json compare_estimators(StudyOptions const& study, ObservationOptions const& observation, bool quick) {
@@ -95,8 +84,7 @@ json compare_estimators(StudyOptions const& study, ObservationOptions const& obs
     return {{"share", observation.oracle.share},
             {"floor", observation.oracle.floor},
             {"seed", study.run.seed},
-            {"estimators", rows},
-            {"places", places_of(places)}};
+            {"estimators", rows}};
 }
 
 } // namespace framelet::bench

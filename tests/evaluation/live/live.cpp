@@ -18,12 +18,12 @@
 #include "common/cpu_clock.h"
 #include "common/error.h"
 #include "common/image_io.h"
-#include "common/picture_writer.h"
 #include "server/render/framelet_renderer.h"
+#include "tests/evaluation/charts/picture_sheet.h"
 #include "tests/evaluation/codecs/link_emulator.h"
+#include "tests/evaluation/figure_table.h"
 #include "tests/evaluation/live/prediction.h"
 #include "tests/evaluation/measures/measures.h"
-#include "tests/evaluation/measures/steadiness.h"
 #include "tests/evaluation/rival_choice.h"
 #include "tests/loopback/process.h"
 
@@ -147,8 +147,7 @@ void run_programs(BenchScene const& scene, std::string const& method, RivalParts
     Programs const programs = programs_of(method, rivals, scene.file.string());
     char stops[40];
     std::snprintf(stops, sizeof stops, "%.9g", std::log2(static_cast<double>(scene.exposure)));
-    std::vector<std::string> server_options{"--exposure", stops, "--threads",
-                                            std::to_string(options.pinned ? 1 : options.server_threads)};
+    std::vector<std::string> server_options{"--exposure", stops, "--threads", options.pinned ? "1" : "0"};
     auto server = [&] {
         OnCore const core(core_if(options.pinned, 0));
         return test::ServerProcess::of_program(programs.server, joined(programs.server_words, server_options));
@@ -166,7 +165,7 @@ void run_programs(BenchScene const& scene, std::string const& method, RivalParts
                                             "--duration",
                                             std::to_string(options.seconds),
                                             "--rate",
-                                            std::to_string(options.display_rate),
+                                            "60",
                                             "--output",
                                             (run.folder.path() / "%06d.ppm").string(),
                                             "--frames",
@@ -212,19 +211,6 @@ Picture reference_of(BenchScene& scene, LiveFrame const& frame, LiveOptions cons
     return render_picture(*scene.render_scene, camera, options.viewport, scene.exposure, options.samples_per_side);
 }
 
-void write_beside(Picture const& shown, Picture const& reference, std::filesystem::path const& file) {
-    Picture both(shown.width + reference.width, shown.height);
-    std::size_t const row = 4 * static_cast<std::size_t>(shown.width);
-    for (int y = 0; y < shown.height; ++y) {
-        auto const from = static_cast<std::size_t>(y) * row;
-        std::copy_n(shown.rgba.begin() + static_cast<std::ptrdiff_t>(from), row,
-                    both.rgba.begin() + static_cast<std::ptrdiff_t>(2 * from));
-        std::copy_n(reference.rgba.begin() + static_cast<std::ptrdiff_t>(from), row,
-                    both.rgba.begin() + static_cast<std::ptrdiff_t>(2 * from + row));
-    }
-    write_png(file.string(), both);
-}
-
 double percentile(std::vector<double> values, double share) {
     if (values.empty()) {
         return 0;
@@ -262,12 +248,10 @@ json run_figures(LiveRun const& run) {
     double const cores = std::max(1u, std::thread::hardware_concurrency());
     double const viewer = (last.cpu_seconds - run.frames.front().cpu_seconds) / span;
     return {{"pictures_per_second", changed / span},
-            {"frames_per_second", static_cast<double>(run.frames.size()) / span},
             {"gap_p99_ms", 1e3 * percentile(gaps, 0.99)},
             {"server_cores", run.server_cores},
             {"viewer_cores", viewer},
             {"server_busy", run.server_cores / cores},
-            {"server_busy_of_rest", run.server_cores / std::max(cores - viewer, 0.01)},
             {"viewer_busy", viewer / cores},
             {"samples_per_second", last.samples / span},
             {"kB_per_second", last.bytes / span / 1e3},
@@ -275,8 +259,7 @@ json run_figures(LiveRun const& run) {
             {"steady",
              {{"pictures_per_second", static_cast<double>(steady_pictures) / steady_span},
               {"kB_per_second", (last.bytes - steady->bytes) / steady_span / 1e3}}},
-            {"photon_ms", photons.empty() ? json() : json(1e3 * percentile(photons, 0.5))},
-            {"photon_p99_ms", photons.empty() ? json() : json(1e3 * percentile(photons, 0.99))}};
+            {"photon_ms", photons.empty() ? json() : json(1e3 * percentile(photons, 0.5))}};
 }
 
 /// Errors at some moments, spread over the run.
@@ -287,7 +270,7 @@ json error_figures(BenchScene& scene, std::string const& method, LiveRun const& 
             written.push_back(i);
         }
     }
-    json figures{{"mse", 0.0}, {"ssim", 0.0}, {"flip", 0.0}, {"steadiness", 0.0}, {"psnr_each", json::array()}};
+    json figures{{"mse", 0.0}, {"ssim", 0.0}, {"flip", 0.0}, {"steadiness", 0.0}};
     std::size_t const count = written.size() / FrameChoice::frames_at_once;
     for (std::size_t k = 0; k < count; ++k) {
         std::size_t const first = written[k * FrameChoice::frames_at_once];
@@ -304,10 +287,9 @@ json error_figures(BenchScene& scene, std::string const& method, LiveRun const& 
         add("ssim", measures.ssim);
         add("flip", measures.flip);
         add("steadiness", unsteadiness(shown, reference));
-        figures["psnr_each"].push_back(measures.psnr);
         if (!options.charts.empty()) {
-            write_beside(shown[1], reference[1],
-                         options.charts / (scene.name + "-" + method + "-" + std::to_string(k) + ".png"));
+            write_beside_reference(options.charts / (scene.name + "-" + method + "-" + std::to_string(k) + ".png"),
+                                   reference[1], std::span(shown).subspan(1, 1));
         }
     }
     figures["psnr"] = psnr_from_mse(figures["mse"]);
@@ -333,18 +315,11 @@ json best_run(BenchScene& scene, std::string const& method, LiveOptions const& o
     return runs[best_choice(errors)];
 }
 
-void print(std::string const& method, json const& f) {
-    std::string name = method;
-    if (f.contains("spacing")) {
-        name += " (" + std::to_string(f["spacing"].get<int>()) + (f["margin"] > 0 ? "+m)" : ")");
-    }
-    std::printf(
-        "%-18s %6.1f %6.0f %6.2f %6.2f %7.2f %7.0f %7s %6.2f %6.4f %6.4f %9.2e\n", name.c_str(),
-        f["pictures_per_second"].get<double>(), f["gap_p99_ms"].get<double>(), f["server_busy"].get<double>(),
-        f["viewer_busy"].get<double>(), f["samples_per_second"].get<double>() / 1e6, f["kB_per_second"].get<double>(),
-        f["photon_ms"].is_null() ? "-" : std::to_string(std::lround(f["photon_ms"].get<double>())).c_str(),
-        f["psnr"].get<double>(), f["ssim"].get<double>(), f["flip"].get<double>(), f["steadiness"].get<double>());
-    std::fflush(stdout);
+/// A method, with the spacing that its frames had and an m for a margin.
+std::string row_title(std::string const& method, json const& figures) {
+    return figures.contains("spacing")
+               ? method + " (" + std::to_string(figures["spacing"].get<int>()) + (figures["margin"] > 0 ? "+m)" : ")")
+               : method;
 }
 
 /// Where nothing is built up any more, both clocks in turn.
@@ -364,17 +339,26 @@ void print_prediction(json const& figures) {
 } // namespace
 
 json measure_live(BenchScene& scene, LiveOptions const& options) {
-    if (!options.charts.empty()) {
-        std::filesystem::create_directories(options.charts);
-    }
-    std::printf("%s, %dx%d, %g s%s\n%-18s %6s %6s %6s %6s %7s %7s %7s %6s %6s %6s %9s\n", scene.name.c_str(),
-                options.viewport.width, options.viewport.height, options.seconds, options.pinned ? ", a core each" : "",
-                "method", "pict/s", "gap ms", "server", "viewer", "Msam/s", "kB/s", "photon", "PSNR", "SSIM", "FLIP",
-                "unsteady");
+    std::printf("%s, %dx%d, %g s%s\n", scene.name.c_str(), options.viewport.width, options.viewport.height,
+                options.seconds, options.pinned ? ", a core each" : "");
+    FigureTable const table({{"method", "/title", -18},
+                             {"pict/s", "/pictures_per_second", 6, 1},
+                             {"gap ms", "/gap_p99_ms", 6, 0},
+                             {"server", "/server_busy", 6},
+                             {"viewer", "/viewer_busy", 6},
+                             {"Msam/s", "/samples_per_second", 7, 2, 1e-6},
+                             {"kB/s", "/kB_per_second", 7, 0},
+                             {"photon", "/photon_ms", 7, 0},
+                             {"PSNR", "/psnr", 6},
+                             {"SSIM", "/ssim", 6, 4},
+                             {"FLIP", "/flip", 6, 4},
+                             {"unsteady", "/steadiness", 9, 2, 1, true}});
     json methods;
     for (std::string const& method : options.methods) {
         json& figures = methods[method] = best_run(scene, method, options);
-        print(method, figures);
+        json row = figures;
+        row["title"] = row_title(method, figures);
+        table.print(row);
         if (options.predicts && (method == "framelet" || method == "framelet-unwarped")) {
             figures["virtual"] = predict_live(scene, method, options, figures);
             print_prediction(figures);

@@ -19,10 +19,8 @@ struct LiveOptions {
     std::vector<std::string> methods{"framelet", "framelet-unwarped", "framed", "framed+h264", "framed+warp"};
     Viewport viewport{1280, 720};
     double seconds = 4;
-    double display_rate = 60;
     std::filesystem::path camera_file; ///< as framelet-client takes it; empty: the scene's own camera
     LinkParameters link; ///< no limit and no delay: none is emulated
-    int server_threads = 0; ///< 0: one a core
     bool pinned = false; ///< server and viewer on a core each
     int moments = 4; ///< at which pictures are compared
     int samples_per_side = 4; ///< of the reference: 1, 2, 4 or 8

@@ -29,7 +29,6 @@ void add_rival_options(CLI::App& verb, RivalParts& rivals) {
 
 void add_live_options(CLI::App& verb, LiveVerbOptions& options) {
     verb.add_option("--scenes,--scene", options.scenes, "Scene files (default: all bundled ones)");
-    verb.add_option("--scene-camera", options.camera, "Which of their cameras, from 0")->capture_default_str();
     verb.add_option("--camera", options.live.camera_file, "Camera file to fly by, as framelet-client takes it");
     verb.add_option("--size", options.size, "Size of the picture, WIDTHxHEIGHT")->capture_default_str();
     verb.add_option("--seconds", options.live.seconds, "How long each method runs")
@@ -40,9 +39,6 @@ void add_live_options(CLI::App& verb, LiveVerbOptions& options) {
         ->check(CLI::IsMember(method_names()))
         ->capture_default_str();
     add_link_options(verb, options.megabits, options.delay_ms);
-    verb.add_option("--threads", options.live.server_threads, "Threads of the server; 0: one a core")
-        ->check(CLI::Range(0, 1024))
-        ->capture_default_str();
     verb.add_flag("--pinned", options.live.pinned, "Server and viewer on a core each");
     verb.add_option("--moments", options.live.moments, "Moments at which pictures are compared")
         ->check(CLI::Range(1, 1000))
@@ -95,7 +91,7 @@ json answer_live(LiveVerbOptions& options, std::vector<std::filesystem::path> co
     live.link.delay_seconds = 1e-3 * options.delay_ms;
     json runs = json::array();
     for (std::filesystem::path const& file : options.scenes.empty() ? bundled : options.scenes) {
-        runs.push_back(measure_live(*load_bench_scene(file, options.camera), live));
+        runs.push_back(measure_live(*load_bench_scene(file), live));
     }
     return runs;
 }

@@ -18,7 +18,6 @@ namespace framelet::bench {
 
 struct LiveVerbOptions {
     std::vector<std::filesystem::path> scenes; ///< empty: the bundled ones
-    int camera = 0; ///< of the scenes'
     std::string size = "1280x720";
     double megabits = 0, delay_ms = 0;
     LiveOptions live;

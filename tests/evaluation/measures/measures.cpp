@@ -21,6 +21,23 @@ double psnr_from_mse(double mse) {
     return -10 * std::log10(std::max(mse, 1e-10));
 }
 
+double unsteadiness(std::array<Picture, 3> const& shown, std::array<Picture, 3> const& reference) {
+    double sum = 0;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < shown[0].rgba.size(); ++i) {
+        if (i % 4 == 3) {
+            continue;
+        }
+        auto const error = [&](std::size_t k) {
+            return static_cast<double>(shown[k].rgba[i]) - static_cast<double>(reference[k].rgba[i]);
+        };
+        double const second = (error(0) - 2 * error(1) + error(2)) / 255;
+        sum += second * second;
+        ++count;
+    }
+    return sum / static_cast<double>(count);
+}
+
 Measures measure(Picture const& shown, Picture const& reference) {
     Measures measures;
     measures.mse = mean_squared_error(shown, reference);

@@ -1,6 +1,8 @@
 // How far a shown picture is from the reference. Both as displayed: sRGB-encoded bytes, the same size.
 #pragma once
 
+#include <array>
+
 #include "common/image.h"
 
 namespace framelet::bench {
@@ -29,7 +31,11 @@ inline constexpr double usual_pixels_per_degree = 67.02;
 /// Mean of LDR-FLIP (Andersson et al., "FLIP: A Difference Evaluator for Alternating Images", 2020), [0, 1].
 double mean_flip(Picture const& shown, Picture const& reference, double pixels_per_degree = usual_pixels_per_degree);
 
-/// All of them. The result does not depend on threads.
+/// Mean over pixels and RGB in [0, 1] of the squared second difference of the error over three pictures in a row, all
+/// of one size; 0 where an error stays or grows evenly.
+double unsteadiness(std::array<Picture, 3> const& shown, std::array<Picture, 3> const& reference);
+
+/// All of a picture alone. The result does not depend on threads.
 Measures measure(Picture const& shown, Picture const& reference);
 
 } // namespace framelet::bench

@@ -12,7 +12,6 @@
 #include "common/error.h"
 #include "common/image_io.h"
 #include "tests/evaluation/measures/ratio_summary.h"
-#include "tests/evaluation/measures/steadiness.h"
 
 namespace framelet::bench {
 namespace {

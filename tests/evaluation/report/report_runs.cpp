@@ -9,6 +9,7 @@
 #include "common/picture_writer.h"
 #include "tests/evaluation/comparison.h"
 #include "tests/evaluation/report/feature_cost.h"
+#include "tests/evaluation/report/report_text.h"
 #include "tests/evaluation/report/run_store.h"
 #include "tests/evaluation/scene_events.h"
 
@@ -36,14 +37,8 @@ std::string commit_of_source() {
     return commit.empty() ? "unknown" : commit;
 }
 
-std::string text_of(double value) {
-    char text[32];
-    std::snprintf(text, sizeof(text), "%g", value);
-    return text;
-}
-
 std::string text_of(Viewport const& size) {
-    return std::to_string(size.width) + "x" + std::to_string(size.height);
+    return printed("%dx%d", size.width, size.height);
 }
 
 /// A scene's runs: loaded with the first that is not there yet.
@@ -54,8 +49,8 @@ public:
 
     ReportRun run(std::string const& method, double machine, double link, double delay) {
         RunParameters const& p = study_.run;
-        std::string const name = scene() + "-" + method + "-" + text_of(p.viewport) + "-" + text_of(p.seconds) + "s-" +
-                                 text_of(p.reference_rate) + "hz-m" + text_of(machine) + "-l" + text_of(link);
+        std::string const name = scene() + "-" + method + "-" + text_of(p.viewport) +
+                                 printed("-%gs-%ghz-m%g-l%g", p.seconds, p.reference_rate, machine, link);
         json const figures = store_.get(name, [&] { return measure_run(method, machine, link, delay); });
         ReportRun result{scene(), method, machine, link, noise(), 0, 0, 0, 0, {}};
         result.mse = figures["mean"]["mse"];
@@ -83,7 +78,7 @@ private:
     /// Of the reference: against one of a hundred times as many samples, which has next to none.
     double noise() {
         RunParameters const& p = study_.run;
-        std::string const name = scene() + "-noise-" + text_of(p.viewport) + "-" + text_of(p.seconds) + "s";
+        std::string const name = scene() + "-noise-" + text_of(p.viewport) + printed("-%gs", p.seconds);
         return store_.get(name, [&] {
             Subject& s = subject();
             std::size_t const middle = reference_count(s.run) / 2;
@@ -163,8 +158,8 @@ std::string take_screenshot(std::filesystem::path const& scene, ReportOptions co
 
 json live_run(std::filesystem::path const& file, LiveOptions const& options, RunStore& store) {
     std::string const name = file.stem().string() + (options.predicts ? "-clocks-" : "-live-") +
-                             text_of(options.viewport) + "-" + text_of(options.seconds) + "s-" +
-                             text_of(options.moments) + (options.camera_file.empty() ? "" : "-flown");
+                             text_of(options.viewport) + printed("-%gs-%d", options.seconds, options.moments) +
+                             (options.camera_file.empty() ? "" : "-flown");
     return store.get(name, [&] {
         auto const scene = load_bench_scene(file);
         scene->name += options.camera_file.empty() ? "" : ", flown";
