@@ -84,14 +84,20 @@ Step FrameletStream::plan(Turn const& turn, PosedScene& scene) {
 }
 
 /// A moment is of what is to be seen when it ends, if the scene's clock and the viewer's camera go on as they do: most
-/// of it is shown about then, and lamps, cuts and what enters the picture are there when they come.
+/// of it is shown about then, and lamps, cuts and what enters the picture are there when they come. Its camera is ahead
+/// of that by what the first batch of the next moment takes until it is shown: till then what newly comes into view has
+/// to be there. The scene is not: what is switched shows nothing of it before its time.
 std::optional<HeldMoment> FrameletStream::moment_at(Turn const& turn, ViewState const& present, PosedScene& scene) {
     if (moments_.observe(present, turn.now, takes_shapes())) {
-        SceneTime const end = turn.present + turn.clock_speed * moment_seconds;
-        ViewState state = state_at(std::clamp(end, 0.0, max_scene_time), scene);
-        if (camera_->scene_camera < 0) {
-            state.view.camera = forecast_.at(turn.now, moment_seconds);
-        }
+        double const batch_seconds = 0.5 * cycle_length(false, turn.plan_seconds);
+        double const ahead =
+            std::min(turn.plan_seconds + batch_seconds + link_.state().delivery_seconds, moment_seconds);
+        auto const scene_time = [&](double seconds) {
+            return std::clamp(turn.present + turn.clock_speed * seconds, 0.0, max_scene_time);
+        };
+        ViewState state = state_at(scene_time(moment_seconds), scene);
+        state.view.camera = camera_->scene_camera < 0 ? forecast_.at(turn.now, moment_seconds + ahead)
+                                                      : state_at(scene_time(moment_seconds + ahead), scene).view.camera;
         moments_.begin(state, turn.now);
     }
     return moments_.held();

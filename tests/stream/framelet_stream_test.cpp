@@ -17,8 +17,8 @@ struct Served {
     void look(Camera const& camera, std::uint64_t number, double now) {
         stream.take({now, CameraUpdate{{number, camera, {64, 48}}, -1}});
     }
-    Step plan(double now, SceneTime present, double clock_speed) {
-        return stream.plan({now, present, clock_speed, 1e5, 1e-4}, posed);
+    Step plan(double now, SceneTime present, double clock_speed, double plan_seconds = 1e-4) {
+        return stream.plan({now, present, clock_speed, 1e5, plan_seconds}, posed);
     }
 };
 
@@ -35,7 +35,8 @@ TEST(FrameletStream, AMomentIsOfTheTimeAtWhichItEnds) {
     EXPECT_EQ(served.stream.moment(), 0) << "the clock stands there";
 }
 
-TEST(FrameletStream, AMomentIsOfTheCameraWithWhichItEnds) {
+/// Where a camera is that goes 1 m a second when the first moment begins that it is rendered for.
+float rendered_ahead(double plan_seconds) {
     Served served;
     double now = 0;
     std::uint64_t number = 0;
@@ -44,12 +45,20 @@ TEST(FrameletStream, AMomentIsOfTheCameraWithWhichItEnds) {
         camera.position.x = static_cast<float>(now);
         served.look(camera, ++number, now);
     }
-    ASSERT_EQ(served.plan(now, 0.5, 0), Step::render);
+    EXPECT_EQ(served.plan(now, 0.5, 0, plan_seconds), Step::render);
     served.stream.render(served.posed);
-    ASSERT_TRUE(served.stream.learn(served.posed));
+    EXPECT_TRUE(served.stream.learn(served.posed));
     Batch const& batch = served.stream.learnt_batch();
-    EXPECT_NEAR(batch.view.camera.position.x, now + moment_seconds, 1e-4) << "it came a frame ago";
     EXPECT_EQ(batch.view.number, number);
+    return batch.view.camera.position.x - static_cast<float>(now);
+}
+
+TEST(FrameletStream, AMomentIsOfTheCameraWithWhichItIsShownLast) {
+    double const quick = moment_seconds + 0.5 * cycle_length(false, 0); // nothing has been delivered yet
+    EXPECT_NEAR(rendered_ahead(0), quick, 1e-4) << "it came a frame ago";
+    double const slow = moment_seconds + 0.01 + 0.5 * cycle_length(false, 0.01);
+    EXPECT_NEAR(rendered_ahead(0.01), slow, 1e-4);
+    EXPECT_NEAR(rendered_ahead(10), 2 * moment_seconds, 1e-4) << "no more than another moment";
 }
 
 } // namespace
