@@ -26,7 +26,8 @@ void BatchWork::render(PosedScene const& scene) {
                            std::memory_order_relaxed);
     });
     if (order.plan.checks) {
-        segments += render_visibility(scene.render_scene(), rays, view.viewport, order.plan.checks->visibility, visibility_);
+        segments +=
+            render_visibility(scene.render_scene(), rays, view.viewport, order.plan.checks->visibility, visibility_);
     }
     figures.segments = segments;
     figures.probe_segments =
