@@ -29,8 +29,10 @@ constexpr std::size_t rotation = 1;
 /// A member's number on the wire stands for so many times 2^(unit - unit_zero).
 constexpr int unit_zero = 160;
 constexpr int relative_bits = 20, rotation_bits = 16;
-/// In place of a unit: the member stays as it is, and its numbers follow once.
-constexpr std::uint8_t stays = 0;
+/// In place of a unit: the member stays as it is, and its numbers follow once; or they follow as they are.
+constexpr std::uint8_t stays = 0, exact = 1;
+/// Whether what moves is rounded.
+enum class Rounding : bool { none, fine };
 constexpr std::int64_t farthest_key = std::int64_t{1} << 62;
 
 KeyNumbers numbers_of(BodyPose const& pose) {
@@ -132,7 +134,7 @@ std::uint8_t unit_of(std::span<KeyNumbers const> keys, Member member) {
         }
     }
     int const exponent = largest > 0 ? std::ilogb(largest) + 1 : 0;
-    return static_cast<std::uint8_t>(std::clamp(exponent - relative_bits + unit_zero, 1, 255));
+    return static_cast<std::uint8_t>(std::clamp(exponent - relative_bits + unit_zero, exact + 1, 255));
 }
 
 /// Second differences: of what moves steadily they are all but 0. They wrap.
@@ -171,7 +173,7 @@ std::vector<KeyNumbers> numbers_of(BodyTrack const& track) {
     return keys;
 }
 
-void put(Content& out, BodyTrack const& track) {
+void put(Content& out, BodyTrack const& track, Rounding rounding) {
     FRAMELET_CHECK(problem(track) == nullptr);
     put(out, track.body);
     put(out, zigzag(track.first_key));
@@ -182,9 +184,12 @@ void put(Content& out, BodyTrack const& track) {
         bool const is_constant = std::ranges::all_of(keys, [&, first = first, end = end](KeyNumbers const& key) {
             return std::equal(&key[first], key.data() + end, &keys[0][first]);
         });
-        if (is_constant) {
-            out.push_back(stays);
-            std::for_each(&keys[0][first], keys[0].data() + end, [&](float number) { put_float(out, number); });
+        if (is_constant || rounding == Rounding::none) {
+            out.push_back(is_constant ? stays : exact);
+            for (std::size_t i = first; i < end; ++i) {
+                std::for_each(keys.begin(), is_constant ? keys.begin() + 1 : keys.end(),
+                              [&](KeyNumbers const& key) { put_float(out, key[i]); });
+            }
         } else {
             std::uint8_t const unit = m == rotation ? unit_zero - rotation_bits : unit_of(keys, members[m]);
             out.push_back(unit);
@@ -203,13 +208,16 @@ BodyTrack take_track(ByteCursor& bytes) {
     std::vector<KeyNumbers> keys(count);
     for (Member const& member : members) {
         std::uint8_t const unit = bytes.take(1)[0];
-        if (unit != stays) {
+        if (unit > exact) {
             take_moving(bytes, keys, member, unit);
             continue;
         }
         for (std::size_t i = member.first; i < member.end; ++i) {
-            float const number = take_float(bytes);
-            std::ranges::for_each(keys, [&](KeyNumbers& key) { key[i] = number; });
+            float number = 0;
+            for (std::size_t k = 0; k < keys.size(); ++k) {
+                number = k == 0 || unit == exact ? take_float(bytes) : number;
+                keys[k][i] = number;
+            }
         }
     }
     BodyTrack track{static_cast<BodyNumber>(body), first_key, {}};
@@ -226,9 +234,9 @@ Content encode_tracks(std::span<BodyTrack const> tracks, std::optional<BodyTrack
     FRAMELET_CHECK(problem(tracks) == nullptr);
     Content out;
     put(out, tracks.size());
-    std::ranges::for_each(tracks, [&](BodyTrack const& track) { put(out, track); });
+    std::ranges::for_each(tracks, [&](BodyTrack const& track) { put(out, track, Rounding::fine); });
     if (camera_track) {
-        put(out, *camera_track);
+        put(out, *camera_track, Rounding::none);
     }
     return out;
 }

@@ -17,8 +17,9 @@ inline constexpr std::size_t max_batch_tracks = 4096, max_track_keys = 1024;
 /// Most bytes of the tracks of one batch: each key with ten numbers of five bytes.
 inline constexpr std::size_t most_track_bytes = 64 * (max_batch_tracks + 2) + 50 * (max_batch_keys + max_track_keys);
 
-/// What moves is rounded: translations and scales to 2^-20 of the largest one of their track, rotations to 2^-16. Every
-/// number must be inside its range of PROTOCOL.md (FRAMELET_CHECK).
+/// What moves is rounded: translations and scales to 2^-20 of the largest one of their track, rotations to 2^-16. The
+/// camera is not: framelets show exactly what it sees only from where they were rendered. Every number must be inside
+/// its range of PROTOCOL.md (FRAMELET_CHECK).
 std::vector<std::uint8_t> encode_tracks(std::span<BodyTrack const> tracks,
                                         std::optional<BodyTrack> const& camera_track);
 

@@ -93,6 +93,19 @@ TEST(TrackCodec, WhatMovesIsRounded) {
     }
 }
 
+TEST(TrackCodec, TheCameraIsExact) {
+    BodyTrack const camera = wheel(2, 100);
+    Decoded const result = through({wheel(3, 100)}, camera);
+    ASSERT_TRUE(result.camera_track);
+    ASSERT_EQ(result.camera_track->keys.size(), camera.keys.size());
+    for (std::size_t k = 0; k < camera.keys.size(); ++k) {
+        BodyPose const& is = result.camera_track->keys[k];
+        BodyPose const& was = camera.keys[k];
+        EXPECT_EQ(is.translation, was.translation);
+        EXPECT_EQ(distance(is.rotation, was.rotation), 0) << "its sign says nothing";
+    }
+}
+
 TEST(TrackCodec, SteadyMotionTakesFewBytes) {
     std::size_t const keys = 60;
     std::size_t const bytes = encode_tracks(Tracks{wheel(3, keys)}, {}).size();
