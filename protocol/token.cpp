@@ -1,8 +1,10 @@
 #include "protocol/token.h"
 
+#include <array>
 #include <fstream>
 
 #include <openssl/crypto.h>
+#include <openssl/rand.h>
 
 #include "common/error.h"
 #include "protocol/text.h"
@@ -11,6 +13,17 @@ namespace framelet {
 
 bool same_token(std::string_view left, std::string_view right) {
     return left.size() == right.size() && CRYPTO_memcmp(left.data(), right.data(), left.size()) == 0;
+}
+
+std::string make_token() {
+    std::array<unsigned char, 16> random{};
+    FRAMELET_CHECK(RAND_bytes(random.data(), static_cast<int>(random.size())) == 1);
+    std::string token;
+    for (unsigned char const byte : random) {
+        token += "0123456789abcdef"[byte >> 4];
+        token += "0123456789abcdef"[byte & 15];
+    }
+    return token;
 }
 
 std::string read_token_file(std::filesystem::path const& file) {
@@ -27,6 +40,11 @@ std::string read_token_file(std::filesystem::path const& file) {
     line.erase(0, line.find_first_not_of(" \t"));
     if (line.empty()) {
         throw InputError("token file '" + file.string() + "' has an empty first line; put the token there");
+    }
+    if (line.size() < min_token_bytes) {
+        throw InputError("token file '" + file.string() + "': the first line is shorter than " +
+                         std::to_string(min_token_bytes) +
+                         " characters and could be guessed: put a line there that framelet-server --make-token prints");
     }
     if (line.size() > max_token_bytes) {
         throw InputError("token file '" + file.string() + "': the first line is longer than 4096 bytes");

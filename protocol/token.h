@@ -1,4 +1,4 @@
-// The shared secret that lets a viewer in: how it is read and how it is compared. In: a file, or what a peer sent.
+// The shared secret that lets a viewer in: how it is made, read and compared. In: a file, or what a peer sent.
 // Out: the token, or whether two are the same. Tokens never stand in messages of errors.
 #pragma once
 
@@ -8,11 +8,17 @@
 
 namespace framelet {
 
+/// A shorter one can be guessed.
+inline constexpr std::size_t min_token_bytes = 16;
+
+/// 128 bits of the system's randomness, in 32 hexadecimal digits.
+std::string make_token();
+
 /// True when both are the same. Takes a time that depends on their lengths only.
 bool same_token(std::string_view left, std::string_view right);
 
 /// The first line of `file` without the white space around it. InputError where the file cannot be read, or the line is
-/// empty, longer than 4096 bytes or not UTF-8 text.
+/// empty, shorter than `min_token_bytes`, longer than 4096 bytes or not UTF-8 text.
 std::string read_token_file(std::filesystem::path const& file);
 
 } // namespace framelet

@@ -33,7 +33,8 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
     app.set_version_flag("--version", "framelet-server " FRAMELET_VERSION);
     app.add_option("SCENE", options.scene, "Scene file: .gltf, .glb, .obj and what else the import library reads")
         ->required();
-    app.add_option("--bind", options.server.bind, "Address to listen on")->capture_default_str();
+    app.add_option("--bind", options.server.bind, "Address to listen on, or a name: all addresses that it stands for")
+        ->capture_default_str();
     app.add_option("--port", options.server.port, "Port to listen on; 0 picks a free one")->capture_default_str();
     app.add_option("--threads", options.threads, "Threads to render with; 0: one a core")
         ->check(CLI::Range(0, 1024))
@@ -58,7 +59,14 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
                    "picture does not fit is refused")
         ->check(CLI::Range(1, 1 << 20))
         ->capture_default_str();
-    app.add_option("--token-file", token_file, "File whose first line a viewer has to know");
+    app.add_option("--token-file", token_file, "File whose first line a viewer has to know, at least 16 characters");
+    app.add_flag_callback(
+        "--make-token",
+        [] {
+            std::cout << make_token() << '\n';
+            throw CLI::Success();
+        },
+        "Print a token that nobody can guess, and exit");
     app.add_option("--tls-cert", options.server.tls_certificate, "Certificate chain (PEM): encrypt connections");
     app.add_option("--tls-key", options.server.tls_key, "Private key (PEM) of the certificate");
     app.add_flag("--insecure", insecure, "Listen beyond this machine without token and TLS");
@@ -83,6 +91,8 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
         return app.exit(help);
     } catch (CLI::CallForVersion const& version) {
         return app.exit(version);
+    } catch (CLI::Success const&) {
+        return 0;
     } catch (std::exception const& error) {
         std::cerr << "framelet-server: " << error.what() << " (--help lists the options)\n";
         return 2;

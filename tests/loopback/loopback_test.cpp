@@ -248,8 +248,8 @@ TEST(Loopback, GarbageDoesNotHarmTheServer) {
 
 TEST(Loopback, TokenIsAsked) {
     TemporaryFolder folder;
-    std::string const right = folder.write("right", "open sesame\n");
-    std::string const wrong = folder.write("wrong", "open barley\n");
+    std::string const right = folder.write("right", "open sesame, please\n");
+    std::string const wrong = folder.write("wrong", "open barley, please\n");
     ServerProcess server(scene_file, {"--token-file", right, "--paused"});
     auto const connect = [&](std::vector<std::string> more) {
         more.insert(more.begin(), {server.address(), "--size", "64x64", "--duration", "60", "--until-converged"});

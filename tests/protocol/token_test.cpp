@@ -29,9 +29,9 @@ protected:
 };
 
 TEST_F(TokenFile, FirstLineTrimmed) {
-    for (char const* content : {"secret", "secret\n", " \tsecret \r\nmore\n"}) {
+    for (char const* content : {"a secret of many", "a secret of many\n", " \ta secret of many \r\nmore\n"}) {
         put(content);
-        EXPECT_EQ(read_token_file(file_), "secret");
+        EXPECT_EQ(read_token_file(file_), "a secret of many");
     }
     put(std::string(4096, 'x') + "\n");
     EXPECT_EQ(read_token_file(file_).size(), 4096u);
@@ -43,17 +43,26 @@ TEST_F(TokenFile, Refused) {
         put(content);
         expect_refused("empty");
     }
+    put("fifteen letters\n");
+    expect_refused("--make-token");
     put(std::string(4097, 'x'));
     expect_refused("longer");
     put(std::string(1 << 20, 'x'));
     expect_refused("longer");
-    put("\x01\x02");
+    put(std::string(16, '\x01'));
     expect_refused("UTF-8");
 }
 
 TEST_F(TokenFile, FolderIsRefused) {
     std::filesystem::create_directory(file_);
     expect_refused("cannot be read");
+}
+
+TEST(Token, MadeOnesAreLongAndDiffer) {
+    std::string const token = make_token();
+    EXPECT_EQ(token.size(), 32u);
+    EXPECT_EQ(token.find_first_not_of("0123456789abcdef"), std::string::npos) << token;
+    EXPECT_NE(token, make_token());
 }
 
 TEST(Token, Comparison) {
