@@ -24,7 +24,7 @@ std::shared_ptr<FramedStream> tls_client_stream(StreamSocket socket,
                                                 std::shared_ptr<boost::asio::ssl::context> const& context,
                                                 std::string const& host);
 
-/// Contexts for TLS 1.2 and later. Throw InputError that names the file.
+/// Contexts for TLS 1.3 and later. Throw InputError that names the file.
 std::shared_ptr<boost::asio::ssl::context> make_tls_server_context(std::string const& certificate_file,
                                                                    std::string const& key_file);
 /// `authority_file` empty: the system's certificate authorities.

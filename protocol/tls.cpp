@@ -13,7 +13,8 @@ namespace ssl = boost::asio::ssl;
 
 std::shared_ptr<ssl::context> make_context(ssl::context::method method) {
     auto context = std::make_shared<ssl::context>(method);
-    FRAMELET_CHECK(SSL_CTX_set_min_proto_version(context->native_handle(), TLS1_2_VERSION) == 1);
+    // Earlier versions have suites without forward secrecy; both sides are of one release.
+    FRAMELET_CHECK(SSL_CTX_set_min_proto_version(context->native_handle(), TLS1_3_VERSION) == 1);
     SSL_CTX_set_options(context->native_handle(), SSL_OP_NO_RENEGOTIATION | SSL_OP_NO_COMPRESSION);
     return context;
 }

@@ -273,8 +273,18 @@ TEST_F(TlsStream, CloseWhileMuchIsQueued) {
 
 TEST_F(TlsStream, OldVersionsAreRefused) {
     for (auto const& context : {identity_.server(), identity_.client()}) {
-        EXPECT_EQ(SSL_CTX_get_min_proto_version(context->native_handle()), TLS1_2_VERSION);
+        EXPECT_EQ(SSL_CTX_get_min_proto_version(context->native_handle()), TLS1_3_VERSION);
     }
+    auto const old = identity_.client();
+    SSL_CTX_set_min_proto_version(old->native_handle(), TLS1_2_VERSION);
+    SSL_CTX_set_max_proto_version(old->native_handle(), TLS1_2_VERSION);
+    SSL_CTX_set_cipher_list(old->native_handle(), "kRSA:ECDHE");
+    End server(tls_server_stream(std::move(sockets_.first), identity_.server()));
+    End client(tls_client_stream(std::move(sockets_.second), old, "localhost"));
+    server.start(thread_);
+    client.start(thread_);
+    expect_names(server.wait_for_close(), "TLS handshake failed");
+    EXPECT_TRUE(client.wait_for_close().has_value());
 }
 
 TEST_F(TlsStream, FilesThatCannotBeUsed) {
