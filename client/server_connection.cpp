@@ -107,7 +107,7 @@ struct ServerConnection::Impl {
         events.on_close = [this](std::string const& reason) {
             end(open ? "the connection to the server at " + server + " ended: " + reason
                      : "cannot connect to " + server + ": it did not open a session: " + reason +
-                           (options.tls ? "" : ": does it want --tls?"));
+                           (options.tls ? "" : ": does it want --tls, or has it no room?"));
         };
         events.on_sent = [this](std::size_t) {
             if (open) {

@@ -31,7 +31,7 @@ std::string stream_reason(boost::system::error_code const& error, bool within_me
 std::string handshake_reason(boost::system::error_code const& error, SSL* ssl) {
     std::string const failed = "TLS handshake failed: ";
     if (is_end(error) || error == asio::error::connection_reset || error == asio::error::broken_pipe) {
-        return failed + "the other side closed the connection; it may not use TLS";
+        return failed + "the other side closed the connection; it may not use TLS, or have no room";
     }
     std::string reason = failed + error.message();
     if (error.category() != asio::error::get_ssl_category()) {

@@ -1,7 +1,9 @@
 // framelet-server: loads a scene and serves it to viewers.
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <exception>
+#include <fstream>
 #include <iostream>
 
 #include <spdlog/sinks/stdout_color_sinks.h>
@@ -9,9 +11,11 @@
 #include <tbb/global_control.h>
 
 #include "common/error.h"
+#include "protocol/stream_opening.h"
 #include "server/options.h"
 #include "server/progress_bar.h"
 #include "server/render/framelet_renderer.h"
+#include "server/session/listener.h"
 #include "server/stream/event_log.h"
 
 namespace framelet {
@@ -39,7 +43,22 @@ std::vector<Index> choose_clips(Scene const& scene, std::vector<std::string> con
     return chosen;
 }
 
+/// Throws InputError where these files are of no use; to find that out only when they are needed could take as long as
+/// the scene does.
+void check_files(Options const& options) {
+    ServerOptions const& server = options.server;
+    if (!server.tls_certificate.empty()) {
+        make_tls_server_context(server.tls_certificate, server.tls_key);
+    }
+    if (!options.record_events.empty() && !std::ofstream(options.record_events, std::ios::app)) {
+        throw InputError("cannot write '" + options.record_events.string() +
+                         "': give --record-events a file in a folder that exists");
+    }
+}
+
 void serve(Options& options) {
+    auto listener = std::make_unique<Listener>(options.server.bind, options.server.port);
+    check_files(options);
     tbb::global_control const threads(
         tbb::global_control::max_allowed_parallelism,
         options.threads > 0 ? static_cast<std::size_t>(options.threads)
@@ -48,16 +67,16 @@ void serve(Options& options) {
     if (!options.record.empty()) {
         recorder.emplace(options.record, options.record_rate);
     }
+    std::optional<Environment> environment;
+    if (options.environment) {
+        environment = Environment::load(*options.environment);
+    }
     Progress const progress = make_progress_bar(options.quiet);
     Scene const scene = import_scene(options.scene, progress);
     for (std::string const& warning : scene.warnings) {
         spdlog::warn("{}", warning);
     }
     std::vector<Index> const clips = choose_clips(scene, options.clips);
-    std::optional<Environment> environment;
-    if (options.environment) {
-        environment = Environment::load(*options.environment);
-    }
     RenderScene render_scene(scene, std::move(environment), progress);
     ScenePose const pose = evaluate_pose(scene, clips, 0);
     render_scene.set_pose(pose);
@@ -81,8 +100,10 @@ void serve(Options& options) {
                         stream.exposure, stream.bias, stream.batch_framelets});
         options.server.loop.event_log = &*event_log;
     }
-    Server server(scene, clips, render_scene, options.server);
-    std::cout << "listening on " << server.address() << std::endl;
+    Server server(scene, clips, render_scene, options.server, std::move(listener));
+    for (std::string const& address : server.addresses()) {
+        std::cout << "listening on " << address << std::endl;
+    }
     server.run(true);
 }
 
@@ -90,6 +111,7 @@ void serve(Options& options) {
 } // namespace framelet
 
 int main(int argc, char** argv) {
+    std::signal(SIGPIPE, SIG_IGN); // whoever reads the log may go away; viewers stay
     auto parsed = framelet::parse_options(argc, argv);
     if (int const* const exit_code = std::get_if<int>(&parsed)) {
         return *exit_code;

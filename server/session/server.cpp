@@ -1,7 +1,9 @@
 #include "server/session/server.h"
 
+#include <csignal>
 #include <map>
 #include <mutex>
+#include <random>
 #include <thread>
 
 #include <boost/asio/ip/tcp.hpp>
@@ -16,7 +18,13 @@
 #include "protocol/token.h"
 #include "server/scene/animation.h"
 #include "server/session/clock_requests.h"
+#include "server/session/farewells.h"
+#include "server/session/listener.h"
+#include "server/session/log_limit.h"
 #include "server/session/session_memory.h"
+#include "server/session/source.h"
+#include "server/session/token_guesses.h"
+#include "server/session/waiting_room.h"
 
 namespace framelet {
 
@@ -27,9 +35,6 @@ using std::chrono::steady_clock;
 namespace {
 
 constexpr std::chrono::seconds heartbeat{1};
-constexpr std::chrono::seconds handshake_timeout{10};
-/// Connections that may be amid their handshake at a time, beyond the open sessions.
-constexpr std::size_t max_waiting_connections = 64;
 /// A connection whose bytes nobody confirms for so long is dropped by the kernel, milliseconds.
 constexpr unsigned user_timeout_ms = 15000;
 
@@ -57,20 +62,28 @@ bool is_loopback(std::string const& bind) {
 }
 
 struct Server::Impl {
-    asio::io_context io{1};
-    tcp::acceptor acceptor{io};
+    std::unique_ptr<Listener> const listener;
+    asio::io_context& io = listener->io;
     asio::steady_timer timer{io}, clock_timer{io};
     asio::signal_set signals{io};
     ServerOptions const options;
     std::shared_ptr<asio::ssl::context> tls;
     Welcome const welcome;
     SceneClock clock;
-    ClockRequests clock_requests; ///< for the io thread only, as the next
+    ClockRequests clock_requests; ///< for the io thread only, as all down to the sessions
     SessionMemory memory;
+    WaitingRoom waiting;
+    TokenGuesses guesses;
+    LogLimit wrong_tokens, turned_away; ///< for what the log says of them
+    std::minstd_rand random{std::random_device{}()};
+    Farewells farewells;
 
     struct Connection {
         std::shared_ptr<Session> session;
-        steady_clock::time_point since;
+        std::shared_ptr<FramedStream> stream;
+        std::string source;
+        std::unique_ptr<asio::steady_timer> start; ///< null: at once
+        bool admitted = false;
     };
     mutable std::mutex sessions_mutex;
     std::map<std::uint64_t, Connection> connections; ///< changed on the io thread only
@@ -78,41 +91,16 @@ struct Server::Impl {
 
     SessionLoop loop;
 
-    Impl(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene, ServerOptions const& given)
-        : options(given), welcome(make_welcome(scene, clips)), clock(!given.paused, steady_clock::now()),
-          memory(given.session_megabytes * 1'000'000),
+    Impl(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene, ServerOptions const& given,
+         std::unique_ptr<Listener> bound)
+        : listener(std::move(bound)), options(given), welcome(make_welcome(scene, clips)),
+          clock(!given.paused, steady_clock::now()), memory(given.session_megabytes * 1'000'000),
           loop(scene, std::move(clips), render_scene, clock, given.loop,
                {[this] { return open_sessions(); }, [this] { asio::post(io, [this] { send_status(); }); }}) {
         if (!options.tls_certificate.empty()) {
             tls = make_tls_server_context(options.tls_certificate, options.tls_key);
         }
-        listen();
-    }
-
-    void listen() {
-        std::string const place = options.bind + ":" + std::to_string(options.port);
-        boost::system::error_code error;
-        tcp::resolver resolver(io);
-        auto const found = resolver.resolve(options.bind, std::to_string(options.port),
-                                            tcp::resolver::passive | tcp::resolver::numeric_service, error);
-        if (error || found.empty()) {
-            throw InputError("cannot listen on " + place + ": no such address: give --bind an address of this machine");
-        }
-        tcp::endpoint const endpoint = *found.begin();
-        acceptor.open(endpoint.protocol(), error);
-        if (!error) {
-            acceptor.set_option(tcp::acceptor::reuse_address(true), error);
-        }
-        if (!error) {
-            acceptor.bind(endpoint, error);
-        }
-        if (!error) {
-            acceptor.listen(asio::socket_base::max_listen_connections, error);
-        }
-        if (error) {
-            throw InputError("cannot listen on " + place + ": " + error.message() +
-                             ": choose another --port or --bind");
-        }
+        listener->listen();
     }
 
     SessionLoop::Sessions open_sessions() const {
@@ -126,58 +114,83 @@ struct Server::Impl {
         return open;
     }
 
-    void accept() {
-        acceptor.async_accept([this](boost::system::error_code error, tcp::socket socket) {
-            if (error == asio::error::operation_aborted) {
-                return;
-            }
-            if (error) {
-                spdlog::warn("cannot accept a connection: {}", error.message());
-            } else {
-                add_connection(std::move(socket));
-            }
-            accept();
-        });
-    }
-
     void add_connection(tcp::socket socket) {
-        if (connections.size() >= options.max_sessions + max_waiting_connections) {
-            return; // closes the socket: too many that have not said hello
+        boost::system::error_code error;
+        auto const endpoint = socket.remote_endpoint(error);
+        if (error) {
+            return; // it is gone already
+        }
+        std::uint64_t const id = next_id++;
+        std::string const source = source_of(endpoint.address());
+        if (auto const dropped = waiting.enter(id, source, std::generate_canonical<double, 32>(random))) {
+            connections.at(*dropped).session->end(
+                "too many connections at a time have not said yet who they are: try again");
         }
         ::setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_USER_TIMEOUT, &user_timeout_ms, sizeof user_timeout_ms);
-        auto stream = tls ? tls_server_stream(std::move(socket), tls) : plain_stream(std::move(socket));
-        std::uint64_t const id = next_id++;
+        Connection connection;
+        connection.source = source;
+        connection.stream = tls ? tls_server_stream(std::move(socket), tls) : plain_stream(std::move(socket));
+        connection.session = std::make_shared<Session>(id, connection.stream, session_events(id));
+        auto const session = connection.session;
+        auto const delay = guesses.delay(source, steady_clock::now());
+        if (delay.count() > 0) {
+            connection.start = std::make_unique<asio::steady_timer>(io, delay);
+            connection.start->async_wait([session](boost::system::error_code aborted) {
+                if (!aborted) {
+                    session->start();
+                }
+            });
+        }
+        {
+            std::scoped_lock const lock(sessions_mutex);
+            connections[id] = std::move(connection);
+        }
+        if (delay.count() <= 0) {
+            session->start();
+        }
+    }
+
+    Session::Events session_events(std::uint64_t id) {
         Session::Events events;
-        events.admit = [this](Hello const& hello) { return admit(hello); };
+        events.admit = [this, id](Hello const& hello) { return admit(id, hello); };
         events.clock_request = [this](ClockRequest const& request) { set_clock(request); };
         events.resize = [this, id](Viewport viewport, bool predicts) { return memory.reserve(id, viewport, predicts); };
         events.changed = [this] { loop.wake(); };
         events.ended = [this, id](std::string const& reason) { end_session(id, reason); };
-        auto session = std::make_shared<Session>(id, std::move(stream), std::move(events));
-        spdlog::info("viewer {} connects from {}", id, session->peer());
-        {
-            std::scoped_lock const lock(sessions_mutex);
-            connections[id] = {session, steady_clock::now()};
-        }
-        session->start();
+        return events;
     }
 
-    std::variant<Welcome, Failure> admit(Hello const& hello) {
+    std::variant<Welcome, Failure> admit(std::uint64_t id, Hello const& hello) {
+        Connection& connection = connections.at(id);
         if (hello.version != protocol_version) {
             return Failure{"this server speaks protocol version " + std::to_string(protocol_version) +
                            ", the viewer version " + std::to_string(hello.version) +
                            ": install the same release on both"};
         }
         if (!options.token.empty() && !same_token(hello.token, options.token)) {
+            if (!hello.token.empty()) { // which would be no guess
+                note_wrong_token(connection.source);
+            }
             return Failure{"wrong or missing token: start the viewer with --token-file"};
         }
         if (open_sessions().size() >= options.max_sessions) {
             return Failure{"the server has its " + std::to_string(options.max_sessions) +
                            " viewers already: try later or raise --max-sessions"};
         }
+        spdlog::info("viewer {} connects from {}", id, connection.session->peer());
+        connection.admitted = true;
+        waiting.leave(id);
         Welcome answer = welcome;
         answer.clock = clock.state(steady_clock::now());
         return answer;
+    }
+
+    void note_wrong_token(std::string const& source) {
+        auto const now = steady_clock::now();
+        guesses.note_wrong(source, now);
+        if (auto const more = wrong_tokens.next(now)) {
+            spdlog::warn("wrong token from {}{}", source, *more);
+        }
     }
 
     void set_clock(ClockRequest const& request) {
@@ -202,14 +215,28 @@ struct Server::Impl {
     }
 
     void end_session(std::uint64_t id, std::string const& reason) {
-        spdlog::info("viewer {} left: {}", id, reason);
         // Later: the session is still on the stack.
-        asio::post(io, [this, id] {
-            std::scoped_lock const lock(sessions_mutex);
-            connections.erase(id);
+        asio::post(io, [this, id, reason] {
+            auto const found = connections.find(id);
+            if (found == connections.end()) {
+                return; // two threads ended it at once
+            }
+            log_end(id, found->second, reason);
+            farewells.add(found->second.stream);
+            waiting.leave(id);
             memory.release(id);
+            std::scoped_lock const lock(sessions_mutex);
+            connections.erase(found);
         });
         loop.wake();
+    }
+
+    void log_end(std::uint64_t id, Connection const& connection, std::string const& reason) {
+        if (connection.admitted) {
+            spdlog::info("viewer {} left: {}", id, reason);
+        } else if (auto const more = turned_away.next(steady_clock::now())) {
+            spdlog::info("a connection from {} ended before it was a viewer's: {}{}", connection.source, reason, *more);
+        }
     }
 
     void send_status() {
@@ -224,20 +251,15 @@ struct Server::Impl {
         }
     }
 
-    void drop_silent_connections() {
+    void drop_overdue_connections() {
         auto const now = steady_clock::now();
-        std::vector<std::pair<std::shared_ptr<Session>, std::string>> silent;
-        {
-            std::scoped_lock const lock(sessions_mutex);
-            for (auto const& [id, connection] : connections) {
-                if (connection.session->has_stopped_answering(now)) {
-                    silent.emplace_back(connection.session, "the viewer stopped acknowledging");
-                } else if (!connection.session->is_open() && now - connection.since > handshake_timeout) {
-                    silent.emplace_back(connection.session, "no Hello within the time for it");
-                }
+        std::vector<std::pair<std::shared_ptr<Session>, std::string>> overdue;
+        for (auto const& [id, connection] : connections) {
+            if (auto const reason = connection.session->overdue(now)) {
+                overdue.emplace_back(connection.session, *reason);
             }
         }
-        for (auto const& [session, reason] : silent) {
+        for (auto const& [session, reason] : overdue) {
             session->end(reason);
         }
     }
@@ -246,7 +268,7 @@ struct Server::Impl {
         timer.expires_after(heartbeat);
         timer.async_wait([this](boost::system::error_code error) {
             if (!error) {
-                drop_silent_connections();
+                drop_overdue_connections();
                 send_status();
                 beat();
             }
@@ -255,36 +277,48 @@ struct Server::Impl {
 
     void shut_down() {
         boost::system::error_code ignored;
-        acceptor.close(ignored);
+        listener->close();
         timer.cancel();
         clock_timer.cancel();
         signals.cancel(ignored);
-        std::scoped_lock const lock(sessions_mutex);
         for (auto const& [id, connection] : connections) {
             connection.session->close("the server shuts down");
+            if (connection.start) {
+                connection.start->cancel();
+            }
         }
     }
 };
 
+Server::Server(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene, ServerOptions const& options,
+               std::unique_ptr<Listener> listener)
+    : impl_(std::make_unique<Impl>(scene, std::move(clips), render_scene, options, std::move(listener))) {}
+
 Server::Server(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene, ServerOptions const& options)
-    : impl_(std::make_unique<Impl>(scene, std::move(clips), render_scene, options)) {}
+    : Server(scene, std::move(clips), render_scene, options, std::make_unique<Listener>(options.bind, options.port)) {}
 
 Server::~Server() = default;
 
 std::uint16_t Server::port() const {
-    return impl_->acceptor.local_endpoint().port();
+    return impl_->listener->endpoints().front().port();
 }
 
-std::string Server::address() const {
-    auto const endpoint = impl_->acceptor.local_endpoint();
-    std::string const host = endpoint.address().to_string();
-    return (endpoint.address().is_v6() ? "[" + host + "]" : host) + ":" + std::to_string(endpoint.port());
+std::vector<std::string> Server::addresses() const {
+    std::vector<std::string> texts;
+    for (auto const& endpoint : impl_->listener->endpoints()) {
+        texts.push_back(text_of(endpoint));
+    }
+    return texts;
 }
 
 void Server::run(bool handle_signals) {
     if (handle_signals) {
         impl_->signals.add(SIGINT);
         impl_->signals.add(SIGTERM);
+        struct sigaction hang_up {};
+        if (::sigaction(SIGHUP, nullptr, &hang_up) == 0 && hang_up.sa_handler != SIG_IGN) { // as nohup does
+            impl_->signals.add(SIGHUP);
+        }
         impl_->signals.async_wait([this](boost::system::error_code error, int signal) {
             if (!error) {
                 spdlog::info("ending on signal {}", signal);
@@ -292,7 +326,7 @@ void Server::run(bool handle_signals) {
             }
         });
     }
-    impl_->accept();
+    impl_->listener->accept([this](tcp::socket socket) { impl_->add_connection(std::move(socket)); });
     impl_->beat();
     std::jthread const loop([this] { impl_->loop.run(); });
     try {

@@ -13,8 +13,10 @@
 
 namespace framelet {
 
+class Listener;
+
 struct ServerOptions {
-    std::string bind = "127.0.0.1";
+    std::string bind = "127.0.0.1"; ///< address, or a name: all that it stands for
     std::uint16_t port = 7070; ///< 0: any free one
     std::string token; ///< what a viewer has to say; empty: nothing
     std::string tls_certificate; ///< PEM file; empty: no TLS
@@ -27,17 +29,21 @@ struct ServerOptions {
 
 class Server {
 public:
-    /// Binds and listens: viewers can connect from now on (they are answered once `run` runs). Throws InputError where
-    /// the address cannot be had. `scene` and `render_scene` must outlive the server.
+    /// Listens at what is bound already: viewers can connect from now on (they are answered once `run` runs). Throws
+    /// InputError where the certificate is of no use, or another program listens there meanwhile. `scene` and
+    /// `render_scene` must outlive the server.
+    Server(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene, ServerOptions const& options,
+           std::unique_ptr<Listener> listener);
+    /// Binds by itself. Throws InputError where the address cannot be had.
     Server(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene, ServerOptions const& options);
     ~Server();
 
-    /// Address that it listens on, with the real port.
-    std::string address() const;
+    /// Addresses that it listens on, with the real port, which is the same for all.
+    std::vector<std::string> addresses() const;
     std::uint16_t port() const;
 
-    /// Serves until `stop` or, when asked for, SIGINT or SIGTERM. The calling thread does the network, one other the
-    /// loop.
+    /// Serves until `stop` or, when asked for, SIGINT, SIGTERM or SIGHUP (which whoever started the program may have
+    /// told it to ignore). The calling thread does the network, one other the loop.
     void run(bool handle_signals);
     /// From any thread.
     void stop();

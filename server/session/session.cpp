@@ -17,6 +17,11 @@ Session::Session(std::uint64_t id, std::shared_ptr<FramedStream> stream, Events 
     : id_(id), stream_(std::move(stream)), events_(std::move(events)) {}
 
 void Session::start() {
+    {
+        std::scoped_lock const lock(mutex_);
+        started_ = true;
+        last_progress_ = std::chrono::steady_clock::now();
+    }
     FramedStream::Handlers handlers;
     handlers.on_message = [self = shared_from_this()](Message message) { self->receive(std::move(message)); };
     handlers.on_close = [self = shared_from_this()](std::string const& reason) { self->fail(reason); };
@@ -116,9 +121,20 @@ Status Session::status() const {
     return status;
 }
 
-bool Session::has_stopped_answering(std::chrono::steady_clock::time_point now) const {
+std::optional<std::string> Session::overdue(std::chrono::steady_clock::time_point now) const {
     std::scoped_lock const lock(mutex_);
-    return open_ && last_batch_ != last_ack_ && now - last_progress_ > ack_timeout;
+    if (!started_ || ended_) {
+        return std::nullopt;
+    }
+    auto const waiting = now - last_progress_;
+    if (!open_) {
+        return waiting > hello_timeout ? std::optional("no Hello within the time for it") : std::nullopt;
+    }
+    if (camera_number_ == 0) {
+        return waiting > camera_timeout ? std::optional("no camera within the time for it") : std::nullopt;
+    }
+    bool const owes = last_batch_ != last_ack_;
+    return owes && waiting > ack_timeout ? std::optional("the viewer stopped acknowledging") : std::nullopt;
 }
 
 void Session::receive(Message message) {
@@ -219,6 +235,7 @@ void Session::receive_hello(Message const& message) {
     {
         std::scoped_lock const lock(mutex_);
         open_ = true;
+        last_progress_ = std::chrono::steady_clock::now();
         codings_ = hello->codings;
     }
     stream_->send(std::get<Welcome>(std::move(answer)));

@@ -32,6 +32,10 @@ public:
         std::function<void(std::string const& reason)> ended;
     };
 
+    /// From the start of reading to Hello, a TLS handshake between them.
+    static constexpr std::chrono::seconds hello_timeout{5};
+    /// From Welcome to the first camera: a viewer that looks nowhere takes the place of one that would.
+    static constexpr std::chrono::seconds camera_timeout{10};
     /// A viewer that owes an acknowledgement for so long is taken for gone.
     static constexpr std::chrono::seconds ack_timeout{30};
 
@@ -62,8 +66,8 @@ public:
     bool report(std::uint64_t version, bool converged);
     /// The session's part of a status message: newest batch, its camera, convergence.
     Status status() const;
-    /// True when the oldest unanswered batch is older than `ack_timeout`.
-    bool has_stopped_answering(std::chrono::steady_clock::time_point now) const;
+    /// What the viewer should have sent by now, one line; nothing where it has.
+    std::optional<std::string> overdue(std::chrono::steady_clock::time_point now) const;
 
 private:
     void receive(Message message);
@@ -80,6 +84,7 @@ private:
     Events const events_;
 
     mutable std::mutex mutex_;
+    bool started_ = false;
     bool open_ = false; ///< handshake done, not ended
     bool ended_ = false;
     std::uint32_t codings_ = coding::exact_colour;
@@ -91,7 +96,7 @@ private:
     std::uint64_t last_batch_ = 0;
     std::uint64_t last_ack_ = 0;
     std::uint64_t converged_version_ = 0; ///< for which there is nothing left to refine; 0: none
-    std::chrono::steady_clock::time_point last_progress_;
+    std::chrono::steady_clock::time_point last_progress_; ///< of what the viewer owes: a hello, a camera or an Ack
 };
 
 } // namespace framelet

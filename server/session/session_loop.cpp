@@ -98,8 +98,7 @@ bool SessionLoop::give_turns(Sessions const& sessions, WallTime now) {
     double const share = sessions.empty() ? 1 : 1 / static_cast<double>(sessions.size());
     bool worked = false;
     for (auto const& session : sessions) {
-        bool const served =
-            contain(*session, [&] { worked |= give_turn(session, viewer_of(*session), clock, share); });
+        bool const served = contain(*session, [&] { worked |= give_turn(session, viewer_of(*session), clock, share); });
         if (!served) {
             drop_rendered(*session);
         }

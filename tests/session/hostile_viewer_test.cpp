@@ -81,6 +81,7 @@ TEST_P(HostileViewer, FloodsTheClock) {
     RawViewer bystander(server.port());
     RawViewer hostile(server.port());
     bystander.send(camera_update(1));
+    hostile.send(camera_update(1));
     ASSERT_TRUE(bystander.watch(is_batch));
     auto const start = std::chrono::steady_clock::now();
     std::thread flood([&] { // and reads nothing of what is answered

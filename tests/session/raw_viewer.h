@@ -18,11 +18,11 @@ namespace framelet {
 
 class RawViewer {
 public:
-    explicit RawViewer(std::uint16_t port, std::uint32_t codings = coding::all) {
+    explicit RawViewer(std::uint16_t port, std::uint32_t codings = coding::all, std::string const& token = {}) {
         socket_.connect({boost::asio::ip::address_v4::loopback(), port});
         timeval const most_wait{30, 0};
         ::setsockopt(socket_.native_handle(), SOL_SOCKET, SO_RCVTIMEO, &most_wait, sizeof most_wait);
-        send(encode_message(Hello{protocol_version, {}, codings}));
+        send(encode_message(Hello{protocol_version, token, codings}));
     }
 
     /// Does nothing where the server has ended the connection.

@@ -4,25 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include "fake_stream.h"
+
 namespace framelet {
 namespace {
-
-/// A connection without a socket: the test says what comes.
-class FakeStream : public FramedStream {
-public:
-    void start(Handlers handlers, std::size_t) override { handlers_ = std::move(handlers); }
-    void set_max_body(std::size_t) override {}
-    std::size_t send(Message const&) override { return 0; }
-    std::size_t unsent_bytes() const override { return 0; }
-    void close_after_sending() override {}
-    void close() override {}
-    std::string peer() const override { return "nobody"; }
-
-    void bring(Message const& message) { handlers_.on_message(message); }
-
-private:
-    Handlers handlers_;
-};
 
 TEST(Session, AFloodOfWhatAViewerLetsGoOfIsBounded) {
     constexpr std::size_t most_waiting = std::size_t{1} << 18;
@@ -51,6 +36,48 @@ TEST(Session, AFloodOfWhatAViewerLetsGoOfIsBounded) {
     EXPECT_EQ(waiting(), most_waiting);
     stream->bring(full);
     EXPECT_EQ(waiting(), 1) << "what has been taken makes room";
+}
+
+/// A viewer whose server lets it in.
+struct Viewed {
+    std::shared_ptr<FakeStream> stream = std::make_shared<FakeStream>();
+    std::shared_ptr<Session> session;
+
+    Viewed() {
+        Session::Events events;
+        events.admit = [](Hello const&) { return Welcome{}; };
+        events.resize = [](Viewport, bool) { return std::nullopt; };
+        events.changed = [] {};
+        events.ended = [](std::string const& reason) { FAIL() << reason; };
+        session = std::make_shared<Session>(1, stream, std::move(events));
+    }
+    /// What is overdue when nothing comes for so long from now on.
+    std::string overdue_after(std::chrono::steady_clock::duration wait) const {
+        return session->overdue(std::chrono::steady_clock::now() + wait).value_or("");
+    }
+};
+
+TEST(Session, HelloCameraAndAckAreOverdueInTheirTurn) {
+    Viewed viewer;
+    EXPECT_EQ(viewer.overdue_after(std::chrono::hours(1)), "") << "nothing is read yet";
+    viewer.session->start();
+    EXPECT_EQ(viewer.overdue_after({}), "");
+    EXPECT_NE(viewer.overdue_after(Session::hello_timeout).find("Hello"), std::string::npos);
+    viewer.stream->bring(Hello{});
+    EXPECT_EQ(viewer.overdue_after({}), "");
+    EXPECT_NE(viewer.overdue_after(Session::camera_timeout).find("camera"), std::string::npos);
+    viewer.stream->bring(ViewerSettings{});
+    EXPECT_NE(viewer.overdue_after(Session::camera_timeout).find("camera"), std::string::npos)
+        << "nothing else is as good";
+    viewer.stream->bring(CameraUpdate{{1, Camera{}, {64, 48}}, -1});
+    EXPECT_EQ(viewer.overdue_after(std::chrono::hours(1)), "") << "it owes nothing";
+    EncodedBatch batch;
+    batch.number = 1;
+    viewer.session->send_batch(batch);
+    EXPECT_EQ(viewer.overdue_after({}), "");
+    EXPECT_NE(viewer.overdue_after(Session::ack_timeout).find("acknowledging"), std::string::npos);
+    viewer.stream->bring(Ack{1, 0, 0});
+    EXPECT_EQ(viewer.overdue_after(std::chrono::hours(1)), "");
 }
 
 } // namespace

@@ -85,7 +85,7 @@ void serve_method(ServeOptions const& options) {
         return std::make_unique<MethodStream>(options.method, *scene, setup);
     };
     Server server(scene->scene, scene->clips, *scene->render_scene, server_options);
-    std::cout << "listening on " << server.address() << std::endl;
+    std::cout << "listening on " << server.addresses().front() << std::endl;
     server.run(true);
 }
 

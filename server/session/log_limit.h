@@ -1,0 +1,35 @@
+// A line of the log that others can make come however often: it is said at most once in a while, with how many were
+// left out. In: the time. Out: what to put behind the line.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "server/session/scene_clock.h"
+
+namespace framelet {
+
+class LogLimit {
+public:
+    static constexpr std::chrono::seconds interval{10};
+
+    /// Nothing where the line is not to be said now.
+    std::optional<std::string> next(WallTime now) {
+        if (said_ && now - *said_ < interval) {
+            ++left_out_;
+            return std::nullopt;
+        }
+        said_ = now;
+        std::size_t const left_out = std::exchange(left_out_, 0);
+        return left_out > 0 ? " (and " + std::to_string(left_out) + " more like it since the last line)" : "";
+    }
+
+private:
+    std::optional<WallTime> said_;
+    std::size_t left_out_ = 0;
+};
+
+} // namespace framelet
