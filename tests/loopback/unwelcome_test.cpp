@@ -1,0 +1,200 @@
+// The real server while others do it no good: connections that say nothing, guesses of the token, no file descriptors,
+// a log that nobody reads, a terminal that is gone, and arguments that are found to be wrong before the scene is
+// loaded.
+#include <csignal>
+#include <thread>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "tests/loopback/process.h"
+#include "tests/session/raw_viewer.h"
+
+namespace framelet::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+std::string const scene_file = FRAMELET_SOURCE_DIR "/scenes/vehicle_chase.glb";
+constexpr auto patience = 120s;
+
+std::uint16_t port_of(ServerProcess const& server) {
+    return static_cast<std::uint16_t>(std::stoi(server.address().substr(server.address().rfind(':') + 1)));
+}
+
+/// Connections that say this, or nothing, and stay.
+class SilentConnections {
+public:
+    SilentConnections(std::uint16_t port, std::size_t count, std::string const& words = {}) {
+        for (std::size_t i = 0; i < count; ++i) {
+            sockets_.emplace_back(io_).connect({boost::asio::ip::address_v4::loopback(), port});
+            sockets_.back().send(boost::asio::buffer(words));
+        }
+    }
+
+private:
+    boost::asio::io_context io_;
+    std::vector<boost::asio::ip::tcp::socket> sockets_;
+};
+
+/// One line on stderr where the client could not see a picture, otherwise empty.
+std::string connect_client(ServerProcess const& server, std::vector<std::string> more = {}) {
+    more.insert(more.begin(), {server.address(), "--size", "64x64", "--duration", "60", "--until-converged"});
+    Process client(FRAMELET_CLIENT, more);
+    return client.wait(patience) == 0 ? "" : client.errors() + "(failed)";
+}
+
+/// The server by a shell that does this before.
+ServerProcess server_after(std::string const& shell, std::vector<std::string> const& options) {
+    std::vector<std::string> arguments{"-c", shell + "exec \"$0\" \"$@\"", FRAMELET_SERVER, scene_file, "--port", "0"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return ServerProcess::of_program("/bin/sh", arguments);
+}
+
+bool eventually(std::function<bool()> const& holds) {
+    auto const deadline = std::chrono::steady_clock::now() + patience;
+    while (!holds()) {
+        if (std::chrono::steady_clock::now() > deadline) {
+            return false;
+        }
+        std::this_thread::sleep_for(20ms);
+    }
+    return true;
+}
+
+std::size_t lines_in(std::string const& text) {
+    return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+TEST(Unwelcome, ConnectionsWithoutAHelloLockNobodyOut) {
+    TemporaryFolder folder;
+    std::string const token = folder.write("token", "0123456789abcdef0123456789abcdef\n");
+    ServerProcess server(scene_file, {"--token-file", token, "--paused"});
+    SilentConnections const silent(port_of(server), 80);
+    EXPECT_EQ(connect_client(server, {"--token-file", token}), "");
+}
+
+TEST(Unwelcome, WithoutFileDescriptorsItWaitsForThem) {
+    ServerProcess server = server_after("ulimit -n 30; ", {"--paused"});
+    {
+        SilentConnections const silent(port_of(server), 100);
+        EXPECT_TRUE(eventually([&] {
+            return server.process().errors().find("cannot accept a connection") != std::string::npos;
+        })) << "otherwise this tests nothing";
+        std::this_thread::sleep_for(1s);
+        EXPECT_LT(lines_in(server.process().errors()), 100u);
+    }
+    EXPECT_EQ(connect_client(server), "");
+}
+
+TEST(Unwelcome, RefusedConnectionsDoNotPileUp) {
+    ServerProcess server(scene_file, {"--paused"});
+    auto const open_files = [&] {
+        std::filesystem::path const folder = "/proc/" + std::to_string(server.process().pid()) + "/fd";
+        return std::distance(std::filesystem::directory_iterator(folder), {});
+    };
+    auto const before = open_files();
+    std::string const a_message_that_is_none("\x01\0\0\0x", 5);
+    std::ptrdiff_t most = 0;
+    std::vector<std::unique_ptr<SilentConnections>> refused;
+    for (int i = 0; i < 20; ++i) {
+        refused.push_back(std::make_unique<SilentConnections>(port_of(server), 20, a_message_that_is_none));
+        most = std::max(most, open_files() - before);
+    }
+    EXPECT_LT(most, 100) << "16 that wait, 64 that are told why they end";
+    EXPECT_EQ(connect_client(server), "");
+}
+
+TEST(Unwelcome, GuessesOfTheTokenAreSlowAndLogged) {
+    TemporaryFolder folder;
+    std::string const token = folder.write("token", "0123456789abcdef0123456789abcdef\n");
+    ServerProcess server(scene_file, {"--token-file", token, "--paused", "--quiet"});
+    auto const start = std::chrono::steady_clock::now();
+    for (int i = 0; i < 5; ++i) {
+        RawViewer viewer(port_of(server), coding::all, "guess " + std::to_string(i));
+        EXPECT_NE(viewer.failure().find("token"), std::string::npos);
+    }
+    EXPECT_GE(std::chrono::steady_clock::now() - start, 3750ms) << "0, 1/4, 1/2, 1 and 2 s";
+    EXPECT_NE(server.process().errors().find("wrong token from 127.0.0.1"), std::string::npos)
+        << server.process().errors();
+    EXPECT_LE(lines_in(server.process().errors()), 2u);
+    EXPECT_EQ(connect_client(server, {"--token-file", token}), "");
+}
+
+TEST(Unwelcome, ShortTokensAreRefusedAndLongOnesAreMade) {
+    TemporaryFolder folder;
+    Process with_short(FRAMELET_SERVER, {scene_file, "--port", "0", "--token-file", folder.write("short", "x\n")});
+    EXPECT_EQ(with_short.wait(30s), 2);
+    EXPECT_NE(with_short.errors().find("--make-token"), std::string::npos) << with_short.errors();
+    std::vector<std::string> made;
+    for (int i = 0; i < 2; ++i) {
+        Process maker(FRAMELET_SERVER, {"--make-token"});
+        EXPECT_EQ(maker.wait(30s), 0) << maker.errors();
+        made.push_back(maker.output());
+        EXPECT_EQ(lines_in(made.back()), 1u);
+    }
+    EXPECT_NE(made[0], made[1]);
+    std::string const token = folder.write("made", made[0]);
+    ServerProcess const server(scene_file, {"--token-file", token, "--paused"});
+    EXPECT_EQ(connect_client(server, {"--token-file", token}), "");
+}
+
+TEST(Unwelcome, ALogThatNobodyReadsEndsNothing) {
+    TemporaryFolder folder;
+    std::string const pipe = (folder.path() / "log").string();
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    int const reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    ServerProcess server = server_after("exec 2>'" + pipe + "'; ", {"--paused"});
+    ::close(reader);
+    EXPECT_EQ(connect_client(server), "");
+    EXPECT_EQ(connect_client(server), "") << "of whom the log says that it came, and that another left";
+    EXPECT_TRUE(server.process().running());
+}
+
+TEST(Unwelcome, WhenTheTerminalIsGoneViewersHearOfIt) {
+    ServerProcess server(scene_file, {"--paused"});
+    RawViewer viewer(port_of(server));
+    ASSERT_TRUE(viewer.watch([](Message const& message) { return std::holds_alternative<Welcome>(message); }));
+    server.process().signal(SIGHUP);
+    EXPECT_EQ(viewer.failure(), "the server shuts down");
+    EXPECT_EQ(server.process().wait(30s), 0);
+}
+
+TEST(Unwelcome, UnderNohupItGoesOnWithoutATerminal) {
+    ServerProcess server = server_after("trap '' HUP; ", {"--paused"});
+    server.process().signal(SIGHUP);
+    EXPECT_EQ(connect_client(server), "");
+}
+
+TEST(Unwelcome, WrongArgumentsAreFoundBeforeTheSceneIsLoaded) {
+    TemporaryFolder folder;
+    std::string const text = folder.write("notes.txt", "neither a picture nor a certificate");
+    ServerProcess const first(scene_file, {"--paused"});
+    struct Wrong {
+        std::vector<std::string> arguments;
+        std::string says;
+    };
+    Wrong const cases[] = {
+        {{"--port", std::to_string(port_of(first))}, std::to_string(port_of(first))},
+        {{"--bind", "no.such.host.invalid", "--insecure"}, "no.such.host.invalid"},
+        {{"--port", "0", "--tls-cert", text, "--tls-key", text}, "TLS certificate"},
+        {{"--port", "0", "--environment", text}, "notes.txt"},
+        {{"--port", "0", "--record", text}, "notes.txt"},
+        {{"--port", "0", "--record-events", text + "/events"}, "notes.txt/events"},
+    };
+    for (Wrong const& wrong : cases) {
+        std::vector<std::string> arguments{"/nonexistent/scene.glb"};
+        arguments.insert(arguments.end(), wrong.arguments.begin(), wrong.arguments.end());
+        Process process(FRAMELET_SERVER, arguments);
+        EXPECT_EQ(process.wait(60s), 1);
+        EXPECT_NE(process.errors().find(wrong.says), std::string::npos) << process.errors();
+        EXPECT_EQ(process.errors().find("scene.glb"), std::string::npos) << process.errors();
+    }
+}
+
+} // namespace
+} // namespace framelet::test
