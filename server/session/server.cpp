@@ -123,8 +123,9 @@ struct Server::Impl {
         std::uint64_t const id = next_id++;
         std::string const source = source_of(endpoint.address());
         if (auto const dropped = waiting.enter(id, source, std::generate_canonical<double, 32>(random))) {
-            connections.at(*dropped).session->end(
-                "too many connections at a time have not said yet who they are: try again");
+            auto const session = connections.at(*dropped).session;
+            session->start(); // it may have been delayed, and is told nothing before that
+            session->end("too many connections at a time have not said yet who they are: try again");
         }
         ::setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_USER_TIMEOUT, &user_timeout_ms, sizeof user_timeout_ms);
         Connection connection;

@@ -19,7 +19,9 @@ Session::Session(std::uint64_t id, std::shared_ptr<FramedStream> stream, Events 
 void Session::start() {
     {
         std::scoped_lock const lock(mutex_);
-        started_ = true;
+        if (std::exchange(started_, true)) {
+            return;
+        }
         last_progress_ = std::chrono::steady_clock::now();
     }
     FramedStream::Handlers handlers;

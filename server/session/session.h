@@ -41,6 +41,7 @@ public:
 
     Session(std::uint64_t id, std::shared_ptr<FramedStream> stream, Events events);
 
+    /// Begins to read. Does nothing the second time.
     void start();
     void close(std::string const& farewell);
 

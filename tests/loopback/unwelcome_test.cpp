@@ -78,6 +78,25 @@ TEST(Unwelcome, ConnectionsWithoutAHelloLockNobodyOut) {
     EXPECT_EQ(connect_client(server, {"--token-file", token}), "");
 }
 
+TEST(Unwelcome, WhoLosesItsPlaceIsToldWhy) {
+    TemporaryFolder folder;
+    std::string const token = folder.write("token", "0123456789abcdef0123456789abcdef\n");
+    ServerProcess server(scene_file, {"--token-file", token, "--paused"});
+    for (int wrong = 0; wrong < 2; ++wrong) { // at first it is read at once, then not yet
+        boost::asio::io_context io;
+        boost::asio::ip::tcp::socket socket(io);
+        socket.connect({boost::asio::ip::address_v4::loopback(), port_of(server)});
+        SilentConnections const others(port_of(server), 200);
+        std::string told(4096, '\0');
+        boost::system::error_code error;
+        told.resize(socket.read_some(boost::asio::buffer(told), error));
+        EXPECT_NE(told.find("try again"), std::string::npos) << told.size() << " bytes: " << error.message();
+        for (int i = 0; i < 4; ++i) {
+            RawViewer(port_of(server), coding::all, "wrong").failure();
+        }
+    }
+}
+
 TEST(Unwelcome, WithoutFileDescriptorsItWaitsForThem) {
     ServerProcess server = server_after("ulimit -n 30; ", {"--paused"});
     {
