@@ -41,6 +41,8 @@ public:
     /// True where a new framelet takes the place of what shows, be it better or not: it is of the base of the camera
     /// that is looked through.
     bool gives_way(Cell const& cell) const { return cell.moment == base_ && moments_[base_].is_of_camera; }
+    /// True where what shows was rendered as another camera saw it: it is interpolated between its samples.
+    bool is_moved(Cell const& cell) const { return !moments_[cell.moment].is_of_camera; }
     /// True when the picture is from where the newest that had come by then was rendered, or nothing had: the camera
     /// stands, for all that is known.
     bool camera_stands() const { return camera_stands_; }

@@ -15,6 +15,9 @@ namespace {
 constexpr float unknown_detail = 0.0025f;
 /// However coarse samples are, their mean is about right.
 constexpr float most_error = 0.1f;
+/// As if they lay so much farther apart, pixels, are samples that are interpolated, beside those that come to lie on
+/// their own pixels before a camera that stands.
+constexpr float interpolated_wear = 1;
 /// Prices outside are of no use: of a sample, squared error summed over pixels.
 constexpr float least_price = 2e-5f, most_price = 1e2f;
 
@@ -142,6 +145,7 @@ void MomentPlan::add_gains(Mirror const& mirror, PlaceField const& field, std::u
             float covered = cell.is_wrong ? 0 : cell.covered_share() * pixels;
             float const detail = cell.is_shown() ? cell.detail : hidden_detail;
             float worn = cell.is_shown() ? cell.worn : INFINITY;
+            worn += cell.is_shown() && mirror.camera_stands() && mirror.is_moved(cell) ? interpolated_wear : 0;
             float stale = cell.stale;
             if (had >= 0) {
                 covered = pixels;
