@@ -144,6 +144,8 @@ CameraPath parse_camera_path(std::string const& json, std::string const& name) {
         document = Json::parse(json);
     } catch (Json::parse_error const& error) {
         reader.fail("not JSON: byte " + std::to_string(error.byte));
+    } catch (Json::out_of_range const&) {
+        reader.fail("a number in it is out of range");
     }
     CameraPath out;
     if (document.is_object() && document.contains("scene_camera")) {

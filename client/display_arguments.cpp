@@ -3,13 +3,14 @@
 #include <string>
 
 #include "client/client_core.h"
+#include "common/number_range.h"
 
 namespace framelet {
 
 void add_display_options(CLI::App& app, DisplayArguments& arguments) {
     app.add_option("--exposure", arguments.exposure_ev,
                    "Stops brighter (or darker: negative) than the server's exposure")
-        ->check(CLI::Range(-16.0, 16.0));
+        ->check(number_in(-16.0, 16.0));
     CLI::Option* const unwarped =
         app.add_flag("--no-reprojection", arguments.unwarped,
                      "Show pixels where they were rendered: nothing is moved to where it is by now");
@@ -18,7 +19,7 @@ void add_display_options(CLI::App& app, DisplayArguments& arguments) {
                  "Show the scene, not the camera, " + usual +
                      " ms late (or --smooth=MS): between what was rendered before that moment and after it, instead of "
                      "going on from what is newest")
-        ->check(CLI::Range(0.0, 1e3 * max_lag_seconds))
+        ->check(number_in(0.0, 1e3 * max_lag_seconds))
         ->excludes(unwarped);
 }
 

@@ -19,6 +19,7 @@
 #include "common/color.h"
 #include "common/cpu_clock.h"
 #include "common/error.h"
+#include "common/number_range.h"
 #include "common/reconstruction.h"
 
 namespace framelet {
@@ -221,17 +222,17 @@ int main(int argc, char** argv) {
     add_connection_options(app, options.connection)->required();
     app.add_option("--size", options.size, "Size of the picture in pixels")->capture_default_str();
     app.add_option("--duration", options.duration, "Seconds after which to end (default 10; with --until-converged 60)")
-        ->check(CLI::Range(0.0, 1e6));
+        ->check(number_in(0.0, 1e6));
     app.add_option("--camera", options.camera_file, "Camera file, see below (default: the scene's own view)");
     app.add_option("--rate", options.rate, "Display frames a second (default 60; with numbered files 10)")
-        ->check(CLI::Range(0.1, 1000.0));
+        ->check(number_in(0.1, 1000.0));
     app.add_option("--output", options.output,
                    "Picture file for each frame, as in frames/%04d.png (or .ppm: larger, quicker); without a number: "
                    "for the last frame");
     app.add_option("--output-times", options.output_times,
                    "With numbered files: only the three frames from each of these times of the scene on, seconds; the "
                    "numbers stay")
-        ->check(CLI::Range(0.0, 1e6));
+        ->check(number_in(0.0, 1e6));
     app.add_option("--frames", options.frames_file,
                    "Write a line of JSON for each frame to this file: when it was shown, the scene's time, bytes, CPU");
     std::map<std::string, DrawnOver> const overlays{{"outlines", DrawnOver::outlines},
@@ -247,7 +248,7 @@ int main(int argc, char** argv) {
     CLI::Option* const play = app.add_flag("--play", options.play, "Let the scene's clock run");
     app.add_flag("--pause", options.pause, "Stop the scene's clock")->excludes(play);
     app.add_option("--seek", options.seek, "Set the scene's clock to this second")
-        ->check(CLI::Range(0.0, max_scene_time));
+        ->check(number_in(0.0, max_scene_time));
 
     Viewport viewport;
     ConnectionOptions connection;

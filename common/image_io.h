@@ -1,7 +1,8 @@
-// Image files in, through OpenImageIO. Every failure is an InputError that names the file.
+// Image files in, through OpenImageIO and libpng. Every failure is an InputError that names the file.
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 
@@ -9,12 +10,15 @@
 
 namespace framelet {
 
+/// Told the size that the header gives before memory is taken for so many pixels. May throw; that ends the reading.
+using SizeCheck = std::function<void(int width, int height)>;
+
 /// Reads any format the library knows as 8-bit RGBA, values as stored (no colour conversion, ICC and gAMA ignored).
 /// Grey is replicated to RGB; missing alpha is 255; 16-bit is rounded to 8.
-Picture read_picture(std::filesystem::path const& file);
+Picture read_picture(std::filesystem::path const& file, SizeCheck const& check = {});
 
 /// The same from a file that is in memory (an image embedded in a scene file); `name` is for messages.
-Picture read_picture(std::span<std::byte const> bytes, std::string const& name);
+Picture read_picture(std::span<std::byte const> bytes, std::string const& name, SizeCheck const& check = {});
 
 /// Reads a linear float picture (.hdr, .exr; 8-bit formats are sRGB-decoded). NaN, Inf and negatives become finite >=
 /// 0.

@@ -14,10 +14,8 @@ namespace {
 constexpr int side = WarpedBlock::side;
 constexpr std::size_t pixels = WarpedBlock::pixels;
 
-/// Share of an interpolation that must come from a layer's own samples for it to cover what lies behind it. At 1/2 an
-/// outline is midway between the last sample that hit and the first that missed, where it is on the average; with less
-/// everything is thicker than it is, the more so the more moments are held, since one that covers a pixel suffices.
-constexpr float firm = 0.5f;
+/// Share of an interpolation that must come from a layer's own samples for it to cover what lies behind it.
+constexpr float firm = 0.25f;
 /// Less than this is no cover at all.
 constexpr float faint = 1e-3f;
 /// Inverse depths that differ by this share belong to one surface.

@@ -15,6 +15,7 @@
 #include "server/options.h"
 #include "server/progress_bar.h"
 #include "server/render/framelet_renderer.h"
+#include "server/scene/visibility.h"
 #include "server/session/listener.h"
 #include "server/stream/event_log.h"
 
@@ -72,9 +73,13 @@ void serve(Options& options) {
         environment = Environment::load(*options.environment);
     }
     Progress const progress = make_progress_bar(options.quiet);
-    Scene const scene = import_scene(options.scene, progress);
+    Scene const scene = import_scene(options.scene, progress, options.import);
     for (std::string const& warning : scene.warnings) {
         spdlog::warn("{}", warning);
+    }
+    if (!has_anything_to_see(scene)) {
+        throw InputError("there is nothing to see in scene '" + options.scene.string() +
+                         "': it has no triangles, or none with an area");
     }
     std::vector<Index> const clips = choose_clips(scene, options.clips);
     RenderScene render_scene(scene, std::move(environment), progress);

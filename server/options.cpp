@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/error.h"
+#include "common/number_range.h"
 #include "protocol/token.h"
 
 namespace framelet {
@@ -28,11 +29,17 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
     Options options;
     std::string token_file;
     bool insecure = false;
+    std::uint64_t scene_megabytes = options.import.memory_bytes >> 20;
 
     CLI::App app("Renders a scene for remote viewers: every ray where their pictures gain most.", "framelet-server");
     app.set_version_flag("--version", "framelet-server " FRAMELET_VERSION);
     app.add_option("SCENE", options.scene, "Scene file: .gltf, .glb, .obj and what else the import library reads")
         ->required();
+    app.add_flag("--allow-outside", options.import.allow_outside,
+                 "Read files that the scene names outside its own folder as well");
+    app.add_option("--scene-memory", scene_megabytes, "Most memory for what is made of the scene file, MB")
+        ->check(CLI::Range(1, 1 << 20))
+        ->capture_default_str();
     app.add_option("--bind", options.server.bind, "Address to listen on, or a name: all addresses that it stands for")
         ->capture_default_str();
     app.add_option("--port", options.server.port, "Port to listen on; 0 picks a free one")->capture_default_str();
@@ -41,7 +48,7 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
         ->capture_default_str();
     app.add_option("--environment", options.environment, "Environment map (.hdr, .exr) that lights the scene");
     app.add_option("--exposure", options.exposure_ev, "Exposure in stops; default: chosen for the scene")
-        ->check(CLI::Range(-32.0f, 32.0f));
+        ->check(number_in(-32.0, 32.0));
     app.add_option("--clip", options.clips, "Animation clip to play, by name; may be given several times");
     app.add_flag("--paused", options.server.paused, "Start with the scene clock standing");
     app.add_option("--batch", options.server.loop.stream.batch_framelets,
@@ -49,7 +56,7 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
         ->check(CLI::Range(std::size_t(0), max_batch_framelets))
         ->capture_default_str();
     app.add_option("--bias", options.server.loop.stream.bias, "What to favour: -1 detail .. 1 freshness")
-        ->check(CLI::Range(-1.0, 1.0))
+        ->check(number_in(-1.0, 1.0))
         ->capture_default_str();
     app.add_option("--max-sessions", options.server.max_sessions, "Most viewers at a time")
         ->check(CLI::Range(1, 1024))
@@ -75,7 +82,7 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
         "Write what is planned for each viewer into this folder: a line of JSON for each batch, and for viewers "
         "that move nothing pictures of tiles, density, error and motion");
     app.add_option("--record-rate", options.record_rate, "Sets of such pictures a second, for each viewer")
-        ->check(CLI::Range(0.01, 1000.0))
+        ->check(number_in(0.01, 1000.0))
         ->capture_default_str();
     app.add_option("--record-events", options.record_events,
                    "Write to this file what comes from each viewer, and when, and what was answered: framelet-bench "
@@ -83,6 +90,7 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
     app.add_flag("--quiet", options.quiet, "Print warnings and errors only");
     try {
         app.parse(argc, argv);
+        options.import.memory_bytes = scene_megabytes << 20;
         if (!token_file.empty()) {
             options.server.token = read_token_file(token_file);
         }

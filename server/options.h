@@ -6,12 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "server/scene/scene_import.h"
 #include "server/session/server.h"
 
 namespace framelet {
 
 struct Options {
     std::filesystem::path scene;
+    ImportOptions import;
     std::optional<std::filesystem::path> environment;
     std::optional<float> exposure_ev; ///< stops; empty: from the scene
     std::vector<std::string> clips; ///< names; empty: all that fit together

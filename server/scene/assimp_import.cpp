@@ -7,21 +7,30 @@
 
 #include "common/error.h"
 #include "server/scene/assimp_parts.h"
+#include "server/scene/mesh_header.h"
 #include "server/scene/polygon.h"
 
 namespace framelet {
 namespace {
 
+/// What is made of a byte of a mesh file, roughly: six bytes of an OBJ, more of a binary PLY. Assimp takes memory
+/// without asking, so the file's size is all that there is to go by.
+constexpr std::uint64_t memory_per_file_byte = 8;
+
 /// Normals of a file without any are smooth across edges up to this angle.
 constexpr float crease_degrees = 66;
 
-/// Notes which files could not be opened: Assimp only mentions them in its log.
-class NotingFiles : public Assimp::DefaultIOSystem {
+/// Opens the scene file and what the folder permits. Notes which files could not be opened: Assimp only mentions them
+/// in its log.
+class PermittedFiles : public Assimp::DefaultIOSystem {
 public:
-    explicit NotingFiles(std::vector<std::string>& missing) : missing_(missing) {}
+    PermittedFiles(std::string scene_file, SceneFolder const& folder, std::vector<std::string>& missing)
+        : scene_file_(std::move(scene_file)), folder_(folder), missing_(missing) {}
+
+    bool Exists(char const* file) const override { return permits(file) && DefaultIOSystem::Exists(file); }
 
     Assimp::IOStream* Open(char const* file, char const* mode) override {
-        Assimp::IOStream* const stream = DefaultIOSystem::Open(file, mode);
+        Assimp::IOStream* const stream = permits(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
         if (!stream) {
             missing_.emplace_back(file);
         }
@@ -29,6 +38,10 @@ public:
     }
 
 private:
+    bool permits(char const* file) const { return file == scene_file_ || folder_.permits(file); }
+
+    std::string scene_file_;
+    SceneFolder const& folder_;
     std::vector<std::string>& missing_;
 };
 
@@ -107,7 +120,8 @@ Primitive import_assimp_primitive(aiMesh const& from) {
     return primitive;
 }
 
-Scene import_assimp(std::filesystem::path const& file, Progress const& progress) {
+Scene import_assimp(std::filesystem::path const& file, SceneFolder const& folder, ImportBudget& budget,
+                    Progress const& progress) {
     Scene scene;
     std::vector<std::string> missing;
     progress("reading", 0);
@@ -116,7 +130,9 @@ Scene import_assimp(std::filesystem::path const& file, Progress const& progress)
     if (extension.empty() || !importer.IsExtensionSupported(extension)) {
         throw InputError("the format '" + extension + "' is not known; .gltf, .glb and .obj always work");
     }
-    importer.SetIOHandler(new NotingFiles(missing)); // owned by the importer
+    check_mesh_header(file);
+    ImportBudget(budget).reserve(std::filesystem::file_size(file), memory_per_file_byte);
+    importer.SetIOHandler(new PermittedFiles(file.string(), folder, missing)); // owned by the importer
     importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, crease_degrees);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
     aiScene const* from = nullptr;
@@ -129,11 +145,16 @@ Scene import_assimp(std::filesystem::path const& file, Progress const& progress)
             from = importer.ApplyPostProcessing(aiProcess_GenSmoothNormals | aiProcess_JoinIdenticalVertices |
                                                 aiProcess_FlipUVs | aiProcess_TransformUVCoords);
         }
+    } catch (std::bad_alloc const&) {
+        throw;
     } catch (std::exception const& error) {
         throw InputError(error.what());
     }
     if (!from || !from->mRootNode) {
         std::string const why = importer.GetErrorString();
+        if (why.find("bad_alloc") != std::string::npos || why.find("bad_array_new_length") != std::string::npos) {
+            throw std::bad_alloc();
+        }
         throw InputError(why.empty() ? "it has no content" : why);
     }
     // Where an .obj names a material file that is missing, Assimp tries one with the scene's own name after it.
@@ -142,10 +163,12 @@ Scene import_assimp(std::filesystem::path const& file, Progress const& progress)
         if (name == fallback && missing.front() != fallback) {
             continue;
         }
-        scene.warnings.push_back("file '" + name + "' is missing; shown without it");
+        std::string const problem =
+            folder.permits(name) ? "file '" + name + "' is missing" : SceneFolder::refusal("file", name);
+        scene.warnings.push_back(problem + "; shown without it");
     }
     progress("reading", 1);
-    import_assimp_materials(*from, file.parent_path(), scene, progress);
+    import_assimp_materials(*from, folder, budget, scene, progress);
     import_assimp_nodes(*from, scene);
     return scene;
 }

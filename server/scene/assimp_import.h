@@ -2,10 +2,13 @@
 // In: a path. Out: a Scene, or an InputError without the file's name.
 #pragma once
 
+#include "server/scene/import_budget.h"
+#include "server/scene/scene_folder.h"
 #include "server/scene/scene_import.h"
 
 namespace framelet {
 
-Scene import_assimp(std::filesystem::path const& file, Progress const& progress);
+Scene import_assimp(std::filesystem::path const& file, SceneFolder const& folder, ImportBudget& budget,
+                    Progress const& progress);
 
 } // namespace framelet

@@ -11,20 +11,25 @@
 namespace framelet {
 namespace {
 
+std::string with_slashes(std::string name) {
+    std::replace(name.begin(), name.end(), '\\', '/');
+    return name;
+}
+
 /// Collects the images that materials name: each once, whatever the number of uses.
 struct Images {
     aiScene const& from;
-    std::filesystem::path folder;
+    SceneFolder const& folder;
+    ImportBudget& budget;
     std::vector<EncodedImage> encoded;
     std::map<std::string, Index> index_of;
 
     /// The file that a material names, which may be written for another system or another folder.
-    std::filesystem::path find_file(std::string name) const {
-        std::replace(name.begin(), name.end(), '\\', '/');
-        std::filesystem::path const path(name);
+    std::filesystem::path find_file(std::string const& name) const {
+        std::filesystem::path const path(with_slashes(name));
         std::error_code code;
-        for (std::filesystem::path const& candidate : {folder / path, folder / path.filename()}) {
-            if (std::filesystem::is_regular_file(candidate, code)) {
+        for (std::filesystem::path const& candidate : {folder.path() / path, folder.path() / path.filename()}) {
+            if (folder.permits(candidate) && std::filesystem::is_regular_file(candidate, code)) {
                 return candidate;
             }
         }
@@ -32,7 +37,8 @@ struct Images {
     }
 
     /// An embedded texture that is stored as texels.
-    static Picture make_picture(aiTexture const& texture) {
+    Picture make_picture(aiTexture const& texture) const {
+        budget.reserve(std::uint64_t(texture.mWidth) * texture.mHeight, 4);
         Picture picture(static_cast<int>(texture.mWidth), static_cast<int>(texture.mHeight));
         for (std::size_t i = 0; i < picture.rgba.size() / 4; ++i) {
             aiTexel const& texel = texture.pcData[i];
@@ -45,7 +51,7 @@ struct Images {
     Index add(std::string const& name) {
         auto const [found, added] = index_of.try_emplace(name, static_cast<Index>(encoded.size()));
         if (added) {
-            EncodedImage image{name, {}, {}, nullptr};
+            EncodedImage image{name, {}, {}, nullptr, {}};
             aiTexture const* const embedded = from.GetEmbeddedTexture(name.c_str());
             if (embedded && embedded->mHeight == 0) {
                 image.bytes =
@@ -55,6 +61,10 @@ struct Images {
                 image.decoded = std::make_shared<Picture const>(make_picture(*embedded));
             } else {
                 image.file = find_file(name);
+                std::string const portable = with_slashes(name);
+                if (image.file.empty() && !folder.permits(folder.path() / portable)) {
+                    image.problem = SceneFolder::refusal("image", portable);
+                }
             }
             encoded.push_back(std::move(image));
         }
@@ -186,16 +196,16 @@ void apply_opacity(Scene& scene, Material& material, TextureUse const& opacity,
 
 } // namespace
 
-void import_assimp_materials(aiScene const& from, std::filesystem::path const& folder, Scene& scene,
+void import_assimp_materials(aiScene const& from, SceneFolder const& folder, ImportBudget& budget, Scene& scene,
                              Progress const& progress) {
-    Images images{from, folder, {}, {}};
+    Images images{from, folder, budget, {}, {}};
     std::vector<TextureUse> opacity;
     for (unsigned i = 0; i < from.mNumMaterials; ++i) {
         MaterialReader reader{*from.mMaterials[i], images, scene};
         scene.materials.push_back(reader.read());
         opacity.push_back(reader.texture({aiTextureType_OPACITY}));
     }
-    scene.images = load_images(images.encoded, scene.warnings, progress);
+    scene.images = load_images(images.encoded, budget, scene.warnings, progress);
     std::map<std::pair<Index, Index>, Index> merged;
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         Material& material = scene.materials[i];

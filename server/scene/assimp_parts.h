@@ -2,6 +2,8 @@
 // In: a complete aiScene, triangulated. Out: parts of a Scene.
 #pragma once
 
+#include "server/scene/import_budget.h"
+#include "server/scene/scene_folder.h"
 #include "server/scene/scene_import.h"
 
 struct aiMesh;
@@ -10,7 +12,7 @@ struct aiScene;
 namespace framelet {
 
 /// Images, textures and materials, decoded.
-void import_assimp_materials(aiScene const& from, std::filesystem::path const& folder, Scene& scene,
+void import_assimp_materials(aiScene const& from, SceneFolder const& folder, ImportBudget& budget, Scene& scene,
                              Progress const& progress);
 
 /// A mesh's triangles; its points, lines and bones are left out.

@@ -7,7 +7,6 @@
 #include <tiny_gltf.h>
 
 #include "common/error.h"
-#include "server/scene/primitive_ops.h"
 
 namespace framelet {
 namespace {
@@ -180,32 +179,29 @@ tinygltf::Accessor const& GltfAccessors::find(int accessor) const {
 }
 
 std::size_t GltfAccessors::count(int accessor) const {
-    return find(accessor).count;
+    tinygltf::Accessor const& found = find(accessor);
+    if (found.bufferView >= 0 && found.count > view(found.bufferView).size()) {
+        fail(accessor_name(accessor), "reaches beyond its buffer view: " + std::to_string(found.count) + " elements");
+    }
+    if (found.bufferView < 0 && found.count > max_zero_elements) {
+        fail(accessor_name(accessor), "has " + std::to_string(found.count) + " elements but no buffer view");
+    }
+    return found.count;
 }
 
 int GltfAccessors::components(int accessor) const {
     return tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(find(accessor).type));
 }
 
-/// The count, once it is known that memory for that many may be allocated: the elements are in the file, or few.
+/// The count, once memory for that many may be allocated.
 std::size_t GltfAccessors::checked_count(int accessor, std::size_t components_wanted, std::size_t bytes_each) const {
-    tinygltf::Accessor const& found = find(accessor);
-    std::string const what = accessor_name(accessor);
     if (static_cast<std::size_t>(components(accessor)) != components_wanted) {
-        fail(what, "has " + std::to_string(components(accessor)) + " components where " +
-                       std::to_string(components_wanted) + " are needed");
+        fail(accessor_name(accessor), "has " + std::to_string(components(accessor)) + " components where " +
+                                          std::to_string(components_wanted) + " are needed");
     }
-    if (found.bufferView >= 0 && found.count > view(found.bufferView).size()) {
-        fail(what, "reaches beyond its buffer view: " + std::to_string(found.count) + " elements");
-    }
-    if (found.bufferView < 0 && found.count > max_zero_elements) {
-        fail(what, "has " + std::to_string(found.count) + " elements but no buffer view");
-    }
-    if (found.count > max_geometry_bytes / bytes_each ||
-        bytes_read_.fetch_add(found.count * bytes_each) + found.count * bytes_each > max_geometry_bytes) {
-        fail(what, "makes more than " + std::to_string(max_geometry_bytes >> 30) + " GiB of geometry");
-    }
-    return found.count;
+    std::size_t const elements = count(accessor);
+    budget_.reserve(elements, bytes_each);
+    return elements;
 }
 
 void GltfAccessors::read_floats(int accessor, float* out) const {

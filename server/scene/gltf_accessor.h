@@ -2,7 +2,6 @@
 // checked here before it is used. In: a model as tinygltf read it. Out: vectors of values, or an InputError.
 #pragma once
 
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "common/math.h"
+#include "server/scene/import_budget.h"
 
 namespace tinygltf {
 class Model;
@@ -20,12 +20,12 @@ namespace framelet {
 
 class GltfAccessors {
 public:
-    explicit GltfAccessors(tinygltf::Model const& model) : model_(model) {}
+    GltfAccessors(tinygltf::Model const& model, ImportBudget& budget) : model_(model), budget_(budget) {}
 
     /// Bytes of a buffer view.
     std::span<std::byte const> view(int buffer_view) const;
 
-    /// Number of elements; throws where there is no such accessor.
+    /// Number of elements; throws where there is no such accessor, or the file does not hold so many.
     std::size_t count(int accessor) const;
     /// Components of an element: 1 to 4, 9, 16.
     int components(int accessor) const;
@@ -50,7 +50,7 @@ private:
     void read_floats(int accessor, float* out) const;
 
     tinygltf::Model const& model_;
-    mutable std::atomic<std::uint64_t> bytes_read_{0};
+    ImportBudget& budget_;
 };
 
 /// An accessor that says nothing of its values (all are zero, or sparse) is taken for broken when it has more of them.

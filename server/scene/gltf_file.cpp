@@ -20,8 +20,13 @@ constexpr std::array<std::string_view, 7> known_extensions{
     "KHR_materials_unlit", "KHR_materials_transmission", "KHR_mesh_quantization",
     "EXT_texture_webp"};
 
+bool is_known_extension(std::string_view name) {
+    return std::find(known_extensions.begin(), known_extensions.end(), name) != known_extensions.end();
+}
+
 /// JSON nested deeper than this is refused: tinygltf goes through some of it recursively.
 constexpr int max_json_depth = 64;
+constexpr std::size_t longest_media_type = 40;
 /// tinygltf counts in 32 bits.
 constexpr std::uintmax_t max_file_bytes = 0xffffffffu;
 
@@ -95,41 +100,84 @@ std::string decode_uri(std::string const& uri) {
 
 /// What tinygltf's file callbacks need to know.
 struct FileAccess {
-    std::string folder;
-    std::map<std::string, std::size_t> buffer_sizes; ///< of buffer files, by path
+    SceneFolder const& folder;
+    ImportBudget& budget;
+    std::map<std::string, std::size_t> buffer_sizes = {}; ///< of buffer files, by path
+
+    std::string path_of(std::string const& uri) const { return folder.path().string() + "/" + decode_uri(uri); }
 };
 
-/// Checks the JSON's nesting and version, and notes how much of each buffer file is wanted: a file may be longer than
-/// the buffer it holds, which tinygltf takes for an error.
+using Json = nlohmann::json;
+
+/// The member, or null where there is none.
+Json const& member(Json const& object, char const* key) {
+    static Json const nothing;
+    return object.is_object() && object.contains(key) ? object[key] : nothing;
+}
+
+void check_required_extensions(Json const& names) {
+    for (Json const& name : names) {
+        if (name.is_string() && !is_known_extension(name.get_ref<std::string const&>())) {
+            throw InputError("it requires the extension " + name.get<std::string>() + ", which is not supported");
+        }
+    }
+}
+
+/// tinygltf does not say which accessor it is that has no buffer view where it wants one.
+void check_buffer_views(Json const& accessors, Json const& meshes) {
+    for (std::size_t i = 0; accessors.is_array() && i < accessors.size(); ++i) {
+        Json const& sparse = member(accessors[i], "sparse");
+        for (char const* part : {"indices", "values"}) {
+            if (sparse.is_object() && !member(member(sparse, part), "bufferView").is_number_integer()) {
+                throw InputError("accessor " + std::to_string(i) + " is sparse, but its " + part +
+                                 " have no buffer view");
+            }
+        }
+    }
+    for (Json const& mesh : meshes) {
+        for (Json const& primitive : member(mesh, "primitives")) {
+            Json const& indices = member(primitive, "indices");
+            if (indices.is_number_unsigned() && accessors.is_array() && indices.get<std::size_t>() < accessors.size() &&
+                !member(accessors[indices.get<std::size_t>()], "bufferView").is_number_integer()) {
+                throw InputError("accessor " + indices.dump() + " holds vertex indices, but has no buffer view");
+            }
+        }
+    }
+}
+
+/// Checks what tinygltf does not, or says less well: the JSON's nesting, its version, extensions and buffer views.
+/// Notes how much of each buffer file is wanted: a file may be longer than the buffer it holds, which tinygltf takes
+/// for an error.
 void inspect_json(std::string_view json, FileAccess& access) {
-    auto const keep = [](int depth, nlohmann::json::parse_event_t event, nlohmann::json& parsed) {
+    constexpr std::array<std::string_view, 5> kept{"buffers", "asset", "extensionsRequired", "accessors", "meshes"};
+    auto const keep = [&](int depth, Json::parse_event_t event, Json& parsed) {
         if (depth > max_json_depth) {
             throw InputError("its JSON is nested too deeply");
         }
-        return event != nlohmann::json::parse_event_t::key || depth != 1 || parsed == "buffers" || parsed == "asset";
+        return event != Json::parse_event_t::key || depth != 1 ||
+               std::find(kept.begin(), kept.end(), parsed.get_ref<std::string const&>()) != kept.end();
     };
-    nlohmann::json document;
+    Json document;
     try {
-        document = nlohmann::json::parse(json, keep);
-    } catch (nlohmann::json::exception const& error) {
+        document = Json::parse(json, keep);
+    } catch (Json::exception const& error) {
         std::string const why = error.what();
         throw InputError("its JSON is broken: " +
                          why.substr(why.find("] ") == std::string::npos ? 0 : why.find("] ") + 2));
     }
-    auto const member = [](nlohmann::json const& object, char const* key) {
-        return object.is_object() && object.contains(key) ? object[key] : nlohmann::json();
-    };
-    nlohmann::json const version = member(member(document, "asset"), "version");
+    Json const& version = member(member(document, "asset"), "version");
     if (!version.is_string() || version.get_ref<std::string const&>().substr(0, 2) != "2.") {
         throw InputError(version.is_string()
                              ? "it is glTF version " + version.get<std::string>() + "; only 2.x is supported"
                              : "it is not glTF: \"asset\": {\"version\"} is missing");
     }
-    for (nlohmann::json const& buffer : member(document, "buffers")) {
-        nlohmann::json const uri = member(buffer, "uri");
-        nlohmann::json const size = member(buffer, "byteLength");
+    check_required_extensions(member(document, "extensionsRequired"));
+    check_buffer_views(member(document, "accessors"), member(document, "meshes"));
+    for (Json const& buffer : member(document, "buffers")) {
+        Json const& uri = member(buffer, "uri");
+        Json const& size = member(buffer, "byteLength");
         if (uri.is_string() && size.is_number_unsigned()) {
-            std::size_t& wanted = access.buffer_sizes[access.folder + "/" + decode_uri(uri.get<std::string>())];
+            std::size_t& wanted = access.buffer_sizes[access.path_of(uri.get<std::string>())];
             wanted = std::max(wanted, size.get<std::size_t>());
         }
     }
@@ -138,8 +186,18 @@ void inspect_json(std::string_view json, FileAccess& access) {
 bool file_exists(std::string const& path, void* user) {
     // tinygltf also looks into the working directory, which has nothing to do with the scene.
     auto const& access = *static_cast<FileAccess const*>(user);
+    std::string const folder = access.folder.path().string() + "/";
+    if (!path.starts_with(folder)) {
+        return false;
+    }
+    if (!access.folder.permits(path)) {
+        if (access.buffer_sizes.contains(path)) {
+            throw InputError(SceneFolder::refusal("buffer", path.substr(folder.size())));
+        }
+        return false; // an image: `gltf_images` says so
+    }
     std::error_code code;
-    return path.starts_with(access.folder) && std::filesystem::is_regular_file(path, code);
+    return std::filesystem::is_regular_file(path, code);
 }
 
 std::string same_path(std::string const& path, void*) {
@@ -148,6 +206,8 @@ std::string same_path(std::string const& path, void*) {
 
 bool read_whole_file(std::vector<unsigned char>* out, std::string* error, std::string const& path, void* user) {
     auto const& access = *static_cast<FileAccess const*>(user);
+    std::error_code code;
+    access.budget.reserve(std::filesystem::file_size(path, code), 1); // one file may be named a thousand times
     try {
         *out = read_bytes(path);
     } catch (InputError const& problem) {
@@ -170,17 +230,9 @@ bool keep_encoded(tinygltf::Image* image, int, std::string*, std::string*, int, 
     return true;
 }
 
-void check_extensions(tinygltf::Model const& model, std::vector<std::string>& warnings) {
-    auto const known = [](std::string const& name) {
-        return std::find(known_extensions.begin(), known_extensions.end(), name) != known_extensions.end();
-    };
-    for (std::string const& name : model.extensionsRequired) {
-        if (!known(name)) {
-            throw InputError("it requires the extension " + name + ", which is not supported");
-        }
-    }
+void note_unknown_extensions(tinygltf::Model const& model, std::vector<std::string>& warnings) {
     for (std::string const& name : model.extensionsUsed) {
-        if (!known(name)) {
+        if (!is_known_extension(name)) {
             warnings.push_back("extension " + name + " is not supported and passed over");
         }
     }
@@ -188,10 +240,11 @@ void check_extensions(tinygltf::Model const& model, std::vector<std::string>& wa
 
 } // namespace
 
-std::unique_ptr<tinygltf::Model> read_gltf(std::filesystem::path const& file, std::vector<std::string>& warnings) {
+std::unique_ptr<tinygltf::Model> read_gltf(std::filesystem::path const& file, SceneFolder const& folder,
+                                           ImportBudget& budget, std::vector<std::string>& warnings) {
     std::vector<unsigned char> const bytes = read_bytes(file);
-    FileAccess access;
-    access.folder = std::filesystem::absolute(file).parent_path().string();
+    FileAccess access{folder, budget};
+    std::string const base = folder.path().string();
     std::string_view const json = find_json(bytes);
     inspect_json(json, access);
 
@@ -204,34 +257,42 @@ std::unique_ptr<tinygltf::Model> read_gltf(std::filesystem::path const& file, st
     auto const size = static_cast<unsigned>(bytes.size());
     bool loaded = false;
     try {
-        loaded = is_binary(bytes)
-                     ? loader.LoadBinaryFromMemory(model.get(), &error, &remarks, bytes.data(), size, access.folder)
-                     : loader.LoadASCIIFromString(model.get(), &error, &remarks, json.data(), size, access.folder);
+        loaded = is_binary(bytes) ? loader.LoadBinaryFromMemory(model.get(), &error, &remarks, bytes.data(), size, base)
+                                  : loader.LoadASCIIFromString(model.get(), &error, &remarks, json.data(), size, base);
     } catch (std::exception const& problem) {
         error = problem.what();
     }
     if (!loaded) {
         throw InputError(error.empty() ? "it is not valid glTF" : error);
     }
-    check_extensions(*model, warnings);
+    note_unknown_extensions(*model, warnings);
     return model;
 }
 
-std::vector<EncodedImage> gltf_images(tinygltf::Model const& model, GltfAccessors const& accessors) {
+std::vector<EncodedImage> gltf_images(tinygltf::Model const& model, GltfAccessors const& accessors,
+                                      SceneFolder const& folder) {
     std::vector<EncodedImage> images;
     for (std::size_t i = 0; i < model.images.size(); ++i) {
         tinygltf::Image const& image = model.images[i];
         bool const embedded = image.bufferView >= 0;
         std::span<std::byte const> const bytes =
             embedded ? accessors.view(image.bufferView) : std::as_bytes(std::span(image.image));
-        std::string name = image.uri.empty() ? image.name : decode_uri(image.uri);
+        bool const in_file = image.uri.empty() || image.uri.starts_with("data:");
+        std::string name = in_file ? image.name : decode_uri(image.uri);
         if (name.empty()) {
             name = std::to_string(i);
         }
         if (image.uri.empty()) { // OpenImageIO chooses the decoder by the name's ending
             name += image.mimeType == "image/jpeg" ? ".jpg" : image.mimeType == "image/webp" ? ".webp" : ".png";
         }
-        images.push_back({std::move(name), bytes, {}, nullptr});
+        std::string problem;
+        if (!in_file && bytes.empty() && !folder.permits(folder.path() / name)) {
+            problem = SceneFolder::refusal("image", name);
+        } else if (image.uri.starts_with("data:") && bytes.empty()) {
+            problem = "image '" + name + "' holds data of a kind that is not supported: " +
+                      image.uri.substr(0, std::min(image.uri.find_first_of(";,"), longest_media_type));
+        }
+        images.push_back({std::move(name), bytes, {}, nullptr, std::move(problem)});
     }
     return images;
 }

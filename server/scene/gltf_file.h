@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "server/scene/image_loading.h"
+#include "server/scene/import_budget.h"
+#include "server/scene/scene_folder.h"
 
 namespace tinygltf {
 class Model;
@@ -19,9 +21,11 @@ class GltfAccessors;
 
 /// Reads the file and the buffers and image files that it names. Missing images get a warning, all else throws.
 /// External images are in `Image::image`, still encoded. Refuses required extensions that the importer does not know.
-std::unique_ptr<tinygltf::Model> read_gltf(std::filesystem::path const& file, std::vector<std::string>& warnings);
+std::unique_ptr<tinygltf::Model> read_gltf(std::filesystem::path const& file, SceneFolder const& folder,
+                                           ImportBudget& budget, std::vector<std::string>& warnings);
 
 /// The model's images, still encoded; those that are missing have no bytes. The bytes live in `model`.
-std::vector<EncodedImage> gltf_images(tinygltf::Model const& model, GltfAccessors const& accessors);
+std::vector<EncodedImage> gltf_images(tinygltf::Model const& model, GltfAccessors const& accessors,
+                                      SceneFolder const& folder);
 
 } // namespace framelet

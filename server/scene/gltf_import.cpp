@@ -9,11 +9,12 @@
 
 namespace framelet {
 
-Scene import_gltf(std::filesystem::path const& file, Progress const& progress) {
+Scene import_gltf(std::filesystem::path const& file, SceneFolder const& folder, ImportBudget& budget,
+                  Progress const& progress) {
     Scene scene;
     progress("reading", 0);
-    auto const model = read_gltf(file, scene.warnings);
-    GltfAccessors const accessors(*model);
+    auto const model = read_gltf(file, folder, budget, scene.warnings);
+    GltfAccessors const accessors(*model, budget);
     progress("reading", 1);
 
     import_gltf_materials(*model, scene);
@@ -23,6 +24,10 @@ Scene import_gltf(std::filesystem::path const& file, Progress const& progress) {
     std::size_t const mesh_count = mapping.used_meshes.size();
     scene.meshes.resize(mesh_count);
     std::vector<std::vector<std::string>> warnings(mesh_count);
+    ImportBudget forecast = budget;
+    for (std::size_t const mesh : mapping.used_meshes) {
+        reserve_gltf_mesh(*model, accessors, mesh, forecast);
+    }
     tbb::parallel_for(std::size_t(0), mesh_count, [&](std::size_t i) {
         scene.meshes[i] = import_gltf_mesh(*model, accessors, mapping.used_meshes[i], warnings[i]);
     });
@@ -30,8 +35,8 @@ Scene import_gltf(std::filesystem::path const& file, Progress const& progress) {
         scene.warnings.insert(scene.warnings.end(), lines.begin(), lines.end());
     }
 
-    auto const images = gltf_images(*model, accessors);
-    scene.images = load_images(images, scene.warnings, progress);
+    auto const images = gltf_images(*model, accessors, folder);
+    scene.images = load_images(images, budget, scene.warnings, progress);
     if (!model->scenes.empty()) {
         scene.name = model->scenes[static_cast<std::size_t>(std::max(model->defaultScene, 0))].name;
     }

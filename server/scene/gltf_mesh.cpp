@@ -141,6 +141,31 @@ bool is_surface(int mode) {
 
 } // namespace
 
+void reserve_gltf_mesh(tinygltf::Model const& model, GltfAccessors const& accessors, std::size_t index,
+                       ImportBudget& budget) {
+    for (tinygltf::Primitive const& primitive : model.meshes[index].primitives) {
+        auto const position = primitive.attributes.find("POSITION");
+        if (!is_surface(primitive.mode) || position == primitive.attributes.end()) {
+            continue;
+        }
+        std::size_t vertex_bytes = 0;
+        auto const add = [&](std::map<std::string, int> const& attributes) {
+            for (auto const& [name, accessor] : attributes) {
+                vertex_bytes += static_cast<std::size_t>(std::max(accessors.components(accessor), 0)) * sizeof(float);
+            }
+        };
+        add(primitive.attributes);
+        std::for_each(primitive.targets.begin(), primitive.targets.end(), add);
+        std::size_t const vertices = accessors.count(position->second);
+        std::size_t const corners = primitive.indices >= 0 ? accessors.count(primitive.indices) : vertices;
+        budget.reserve(vertices, vertex_bytes);
+        budget.reserve(corners, sizeof(std::uint32_t));
+        if (!primitive.attributes.contains("NORMAL")) { // flat shading gives every corner its own vertex
+            budget.reserve(corners, vertex_bytes + sizeof(Vec3));
+        }
+    }
+}
+
 Mesh import_gltf_mesh(tinygltf::Model const& model, GltfAccessors const& accessors, std::size_t index,
                       std::vector<std::string>& warnings) {
     tinygltf::Mesh const& from = model.meshes[index];

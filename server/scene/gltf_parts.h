@@ -14,6 +14,7 @@ class Model;
 namespace framelet {
 
 class GltfAccessors;
+class ImportBudget;
 
 /// Textures and materials; image and texture indices are the file's.
 void import_gltf_materials(tinygltf::Model const& model, Scene& scene);
@@ -21,6 +22,11 @@ void import_gltf_materials(tinygltf::Model const& model, Scene& scene);
 /// Mesh `index` of the file. Material indices are the file's, `none` where a primitive has no material.
 Mesh import_gltf_mesh(tinygltf::Model const& model, GltfAccessors const& accessors, std::size_t index,
                       std::vector<std::string>& warnings);
+
+/// Reserves what `import_gltf_mesh` and flat shading make of mesh `index`, so that a file that asks for too much is
+/// refused before the first of it is made.
+void reserve_gltf_mesh(tinygltf::Model const& model, GltfAccessors const& accessors, std::size_t index,
+                       ImportBudget& budget);
 
 /// Where the file's nodes and meshes are in the scene; `none` for those that the scene does not use.
 struct GltfMapping {

@@ -1,6 +1,5 @@
 #include "server/scene/image_loading.h"
 
-#include <atomic>
 #include <mutex>
 
 #include <tbb/parallel_for.h>
@@ -25,11 +24,13 @@ std::vector<Index> new_indices(std::size_t count, auto const& keep) {
 
 } // namespace
 
-std::vector<std::shared_ptr<Picture const>> load_images(std::span<EncodedImage const> images,
+std::vector<std::shared_ptr<Picture const>> load_images(std::span<EncodedImage const> images, ImportBudget& budget,
                                                         std::vector<std::string>& warnings, Progress const& progress) {
     std::vector<std::shared_ptr<Picture const>> pictures(images.size());
     std::vector<std::string> problems(images.size());
-    std::atomic<std::uint64_t> bytes{0};
+    SizeCheck const reserve = [&](int width, int height) {
+        budget.reserve(static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height), 4);
+    };
     std::mutex report;
     std::size_t done = 0;
     tbb::parallel_for(std::size_t(0), images.size(), [&](std::size_t i) {
@@ -40,18 +41,15 @@ std::vector<std::shared_ptr<Picture const>> load_images(std::span<EncodedImage c
         }
         try {
             if (image.bytes.empty() && image.file.empty()) {
-                throw InputError("image '" + image.name + "' is missing");
+                throw InputError(image.problem.empty() ? "image '" + image.name + "' is missing" : image.problem);
             }
-            Picture picture = image.bytes.empty() ? read_picture(image.file) : read_picture(image.bytes, image.name);
-            if (bytes.fetch_add(picture.rgba.size()) + picture.rgba.size() > max_image_bytes) {
-                throw std::length_error("its images need more than " + std::to_string(max_image_bytes >> 30) +
-                                        " GiB once decoded");
-            }
-            pictures[i] = std::make_shared<Picture const>(std::move(picture));
+            pictures[i] =
+                std::make_shared<Picture const>(image.bytes.empty() ? read_picture(image.file, reserve)
+                                                                    : read_picture(image.bytes, image.name, reserve));
+        } catch (SceneTooLarge const&) {
+            throw;
         } catch (InputError const& error) {
             problems[i] = std::string(error.what()) + "; shown without it";
-        } catch (std::length_error const& error) {
-            throw InputError(error.what());
         }
         std::lock_guard const lock(report);
         ++done;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "server/scene/import_budget.h"
 #include "server/scene/scene_import.h"
 
 namespace framelet {
@@ -18,14 +19,13 @@ struct EncodedImage {
     std::span<std::byte const> bytes;
     std::filesystem::path file; ///< empty where there is no such file
     std::shared_ptr<Picture const> decoded = nullptr; ///< set where nothing is left to do
+    std::string problem = {}; ///< why there is nothing to decode, where that is known
 };
 
-/// Decodes all images. One that is missing or broken is null, with one line in `warnings` that names it. Decoding
-/// stops with an InputError where all together would need more than `max_image_bytes`.
-std::vector<std::shared_ptr<Picture const>> load_images(std::span<EncodedImage const> images,
+/// Decodes all images. One that is missing or broken is null, with one line in `warnings` that names it. Throws
+/// SceneTooLarge before one is decoded for which the budget has no room.
+std::vector<std::shared_ptr<Picture const>> load_images(std::span<EncodedImage const> images, ImportBudget& budget,
                                                         std::vector<std::string>& warnings, Progress const& progress);
-
-inline constexpr std::uint64_t max_image_bytes = std::uint64_t(4) << 30;
 
 /// Removes images that are null, the textures that use them, and the uses of those by materials.
 void drop_missing_images(Scene& scene);

@@ -15,9 +15,6 @@ Primitive gather_vertices(Primitive const& primitive, std::span<std::uint32_t co
 /// Memory that a vertex of the primitive takes, all attributes and morph targets together.
 std::size_t bytes_per_vertex(Primitive const& primitive);
 
-/// More geometry than this, bytes in memory, is taken for a broken file.
-inline constexpr std::uint64_t max_geometry_bytes = std::uint64_t(4) << 30;
-
 /// Removes the vertices that no triangle uses (files often let many primitives share one large vertex array).
 void drop_unused_vertices(Primitive& primitive);
 

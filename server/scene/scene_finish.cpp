@@ -56,26 +56,21 @@ void finish_materials(Scene& scene) {
     }
 }
 
-void finish_meshes(Scene& scene, Progress const& progress) {
+void finish_meshes(Scene& scene, ImportBudget& budget, Progress const& progress) {
     struct Job {
         std::size_t mesh, primitive;
         PrimitiveRepairs repairs;
     };
     std::vector<Job> jobs;
-    std::uint64_t split_bytes = 0;
     for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
         std::erase_if(scene.meshes[m].primitives, [](Primitive const& p) { return p.triangles.empty(); });
         for (std::size_t p = 0; p < scene.meshes[m].primitives.size(); ++p) {
             jobs.push_back({m, p, {}});
             Primitive const& primitive = scene.meshes[m].primitives[p];
             if (primitive.normals.empty()) { // flat shading gives every triangle its own vertices
-                split_bytes += primitive.triangles.size() * 3 * bytes_per_vertex(primitive);
+                budget.reserve(primitive.triangles.size() * 3, bytes_per_vertex(primitive) + sizeof(Vec3));
             }
         }
-    }
-    if (split_bytes > max_geometry_bytes) {
-        throw InputError("flat shading it makes more than " + std::to_string(max_geometry_bytes >> 30) +
-                         " GiB of geometry");
     }
     std::mutex report;
     std::size_t done = 0;
@@ -148,13 +143,10 @@ void check_placement(Scene const& scene) {
 
 } // namespace
 
-void finish_scene(Scene& scene, Progress const& progress) {
+void finish_scene(Scene& scene, ImportBudget& budget, Progress const& progress) {
     drop_missing_images(scene);
     finish_materials(scene);
-    finish_meshes(scene, progress);
-    if (std::all_of(scene.meshes.begin(), scene.meshes.end(), [](Mesh const& m) { return m.primitives.empty(); })) {
-        scene.warnings.push_back("it has no triangles: there is nothing to see");
-    }
+    finish_meshes(scene, budget, progress);
     finish_nodes(scene);
     finish_clips(scene);
     finish_lights(scene);

@@ -2,6 +2,7 @@
 // In: a Scene as an importer made it from a file. Out: what `import_scene` promises, or an InputError.
 #pragma once
 
+#include "server/scene/import_budget.h"
 #include "server/scene/scene_import.h"
 
 namespace framelet {
@@ -9,6 +10,6 @@ namespace framelet {
 /// Largest coordinate that a vertex, a node or a key may have, metres: products of several stay finite in a float.
 inline constexpr float max_coordinate = 1e9f;
 
-void finish_scene(Scene& scene, Progress const& progress);
+void finish_scene(Scene& scene, ImportBudget& budget, Progress const& progress);
 
 } // namespace framelet

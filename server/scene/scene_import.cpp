@@ -6,7 +6,9 @@
 #include "common/error.h"
 #include "server/scene/assimp_import.h"
 #include "server/scene/gltf_import.h"
+#include "server/scene/import_budget.h"
 #include "server/scene/scene_finish.h"
+#include "server/scene/scene_folder.h"
 
 namespace framelet {
 namespace {
@@ -22,13 +24,6 @@ std::string one_line(std::string text) {
         text += "...";
     }
     return text;
-}
-
-std::string lower_extension(std::filesystem::path const& file) {
-    std::string extension = file.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c | 32) : c; });
-    return extension;
 }
 
 void check_file(std::filesystem::path const& file) {
@@ -59,14 +54,23 @@ std::vector<std::string> condensed(std::vector<std::string> const& warnings) {
 
 } // namespace
 
-Scene import_scene(std::filesystem::path const& file, Progress const& progress) {
+std::string lower_extension(std::filesystem::path const& file) {
+    std::string extension = file.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c | 32) : c; });
+    return extension;
+}
+
+Scene import_scene(std::filesystem::path const& file, Progress const& progress, ImportOptions const& options) {
     Progress const report = progress ? progress : [](std::string_view, double) {};
     try {
         check_file(file);
         std::string const extension = lower_extension(file);
-        Scene scene =
-            extension == ".gltf" || extension == ".glb" ? import_gltf(file, report) : import_assimp(file, report);
-        finish_scene(scene, report);
+        ImportBudget budget(options.memory_bytes);
+        SceneFolder const folder(file, options.allow_outside);
+        bool const is_gltf = extension == ".gltf" || extension == ".glb";
+        Scene scene = is_gltf ? import_gltf(file, folder, budget, report) : import_assimp(file, folder, budget, report);
+        finish_scene(scene, budget, report);
         if (scene.name.empty()) {
             scene.name = file.stem().string();
         }

@@ -2,6 +2,7 @@
 // and spline keys, samplers, extensions), everything else through Assimp.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string_view>
@@ -13,8 +14,22 @@ namespace framelet {
 /// Told what is being done and how much of it, 0..1. Calls may come from any thread, one at a time.
 using Progress = std::function<void(std::string_view what, double fraction)>;
 
+/// What a scene file may ask for.
+struct ImportOptions {
+    /// Files that the scene names may lie outside its folder. A scene from elsewhere could read the server's disk
+    /// and show what it finds.
+    bool allow_outside = false;
+    /// Most bytes of what is made of the file: geometry, animation, pictures. A file of some KB can ask for any
+    /// number. 4 GiB is 64 pictures of 4096x4096 or a hundred million vertices, and leaves a machine of 16 GB the room
+    /// for what rendering makes of it once more.
+    std::uint64_t memory_bytes = std::uint64_t(4) << 30;
+};
+
 /// Throws InputError with one line that names the file where it cannot be loaded. The scene it returns is consistent:
 /// every index is in range, every attribute has the right length, every number is finite, skin weights sum to 1.
-Scene import_scene(std::filesystem::path const& file, Progress const& progress = {});
+Scene import_scene(std::filesystem::path const& file, Progress const& progress = {}, ImportOptions const& options = {});
+
+/// The file name's ending with its dot, in lower case.
+std::string lower_extension(std::filesystem::path const& file);
 
 } // namespace framelet

@@ -4,6 +4,7 @@
 
 #include "client/connection_arguments.h"
 #include "common/error.h"
+#include "common/number_range.h"
 #include "tests/evaluation/method.h"
 
 namespace framelet::bench {
@@ -26,13 +27,13 @@ void add_scene_options(CLI::App& verb, VerbOptions& options) {
         "--size", [&options](std::string const& text) { options.size = read_size(text); },
         "Size of the picture, WIDTHxHEIGHT or the side of a square, pixels");
     verb.add_option("--start", options.start, "Scene time from which on is measured (default: so that events are seen)")
-        ->check(CLI::Range(0.0, 1e6));
-    verb.add_option("--seconds", options.seconds, "Scene time that is measured")->check(CLI::Range(0.05, 600.0));
+        ->check(number_in(0.0, 1e6));
+    verb.add_option("--seconds", options.seconds, "Scene time that is measured")->check(number_in(0.05, 600.0));
 }
 
 void add_reference_options(CLI::App& verb, VerbOptions& options) {
     auto& study = options.study;
-    verb.add_option("--rate", options.rate, "Measurements a second")->check(CLI::Range(1.0, 1000.0));
+    verb.add_option("--rate", options.rate, "Measurements a second")->check(number_in(1.0, 1000.0));
     verb.add_option("--reference-samples", study.samples_per_side, "Samples along a side of a reference's pixel")
         ->check(CLI::Range(1, 16))
         ->capture_default_str();
@@ -45,7 +46,7 @@ void add_method_options(CLI::App& verb, VerbOptions& options) {
         ->delimiter(',')
         ->check(CLI::IsMember(method_names()));
     verb.add_option("--bias", run.bias, "The viewer's wish: -1 (spatial fidelity) .. 1 (temporal)")
-        ->check(CLI::Range(-1.0, 1.0))
+        ->check(number_in(-1.0, 1.0))
         ->capture_default_str();
     verb.add_option("--rivals-without", options.rivals_without,
                     "What the rivals do not do, of accumulation, ahead, spacing and margin")
@@ -57,7 +58,7 @@ void add_method_options(CLI::App& verb, VerbOptions& options) {
 void add_machine_options(CLI::App& verb, VerbOptions& options) {
     verb.add_option("--machine", options.study.run.frames_per_second,
                     "The server: samples a displayed pixel and second that it renders and encodes")
-        ->check(CLI::Range(0.5, 60.0))
+        ->check(number_in(0.5, 60.0))
         ->capture_default_str();
     verb.add_flag("--total", options.total, "The viewer's work is charged to the server's processors");
     add_link_options(verb, options.megabits, options.delay_ms);
@@ -67,10 +68,10 @@ void add_machine_options(CLI::App& verb, VerbOptions& options) {
 
 void add_link_options(CLI::App& verb, double& megabits, double& delay_ms) {
     verb.add_option("--bandwidth", megabits, "The link's rate, Mbit/s; 0: unlimited")
-        ->check(CLI::Range(0.0, 1e6))
+        ->check(number_in(0.0, 1e6))
         ->capture_default_str();
     verb.add_option("--delay", delay_ms, "The link's delay each way, ms")
-        ->check(CLI::Range(0.0, 10000.0))
+        ->check(number_in(0.0, 10000.0))
         ->capture_default_str();
 }
 
@@ -141,7 +142,7 @@ void add_table_options(CLI::App& verb, VerbOptions& options) {
 
 void add_compare_options(CLI::App& verb, VerbOptions& options) {
     verb.add_option("--turn", options.study.turn, "The camera turns back and forth, degrees a second")
-        ->check(CLI::Range(0.0, 3600.0));
+        ->check(number_in(0.0, 3600.0));
 }
 
 void add_estimator_options(CLI::App& verb, VerbOptions& options) {
@@ -160,10 +161,10 @@ void add_report_options(CLI::App& verb, VerbOptions& options) {
     verb.add_option("--documents", report.documents, "Folder for RESULTS.md and pictures/")->capture_default_str();
     verb.add_option("--machines", report.machines, "Servers, samples a displayed pixel and second")
         ->delimiter(',')
-        ->check(CLI::Range(0.5, 60.0));
+        ->check(number_in(0.5, 60.0));
     verb.add_option("--links", report.links, "Links, bits a displayed pixel and second")
         ->delimiter(',')
-        ->check(CLI::Range(0.01, 1e4));
+        ->check(number_in(0.01, 1e4));
     verb.add_option("--live-scenes", options.live_scenes, "Scenes of the real programs' runs")->delimiter(',');
     verb.add_option("--clock-scenes", options.clock_scenes, "Those that run on both clocks (default: the same)")
         ->delimiter(',');

@@ -305,6 +305,8 @@ TEST(Loopback, BadInputGetsOneLineAndTheRightExitCode) {
     TemporaryFolder folder;
     std::string const broken = folder.write("broken.gltf", "{ \"asset\": ");
     std::string const text = folder.write("notes.txt", "not a scene");
+    std::string const empty =
+        folder.write("empty.gltf", R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{}]})");
     Usage const cases[] = {
         {FRAMELET_SERVER, {}, 2, "SCENE"},
         {FRAMELET_SERVER, {scene_file, "--prot", "1"}, 2, "--prot"},
@@ -316,6 +318,20 @@ TEST(Loopback, BadInputGetsOneLineAndTheRightExitCode) {
         {FRAMELET_SERVER, {folder.path().string()}, 1, folder.path().filename().string()},
         {FRAMELET_SERVER, {scene_file, "--environment", text}, 1, "notes.txt"},
         {FRAMELET_SERVER, {scene_file, "--clip", "no such"}, 1, "no such"},
+        {FRAMELET_SERVER, {empty}, 1, "empty.gltf': it has no triangles"},
+        {FRAMELET_SERVER, {scene_file, "--exposure", "nan"}, 2, "--exposure"},
+        {FRAMELET_SERVER, {scene_file, "--exposure", "inf"}, 2, "--exposure"},
+        {FRAMELET_SERVER, {scene_file, "--bias", "nan"}, 2, "--bias"},
+        {FRAMELET_SERVER, {scene_file, "--record-rate", "nan"}, 2, "--record-rate"},
+        {FRAMELET_SERVER, {scene_file, "--scene-memory", "1"}, 1, "--scene-memory"},
+        {FRAMELET_SERVER, {scene_file, "--scene-memory", "0"}, 2, "--scene-memory"},
+        {FRAMELET_CLIENT, {"127.0.0.1:7070", "--exposure", "nan"}, 2, "--exposure"},
+        {FRAMELET_CLIENT, {"127.0.0.1:7070", "--exposure", "-inf"}, 2, "--exposure"},
+        {FRAMELET_CLIENT, {"127.0.0.1:7070", "--seek", "nan"}, 2, "--seek"},
+        {FRAMELET_CLIENT, {"127.0.0.1:7070", "--duration", "nan"}, 2, "--duration"},
+        {FRAMELET_CLIENT, {"127.0.0.1:7070", "--rate", "nan"}, 2, "--rate"},
+        {FRAMELET_CLIENT, {"127.0.0.1:7070", "--output-times", "nan"}, 2, "--output-times"},
+        {FRAMELET_CLIENT, {"127.0.0.1:7070", "--smooth=nan"}, 2, "--smooth"},
         {FRAMELET_CLIENT, {}, 2, "HOST:PORT"},
         {FRAMELET_CLIENT, {"nonsense"}, 2, "nonsense"},
         {FRAMELET_CLIENT, {"127.0.0.1:7070", "--size", "0x5"}, 2, "size"},

@@ -126,6 +126,40 @@ TEST(AssimpImport, OtherFormats) {
     EXPECT_EQ(ply.meshes.at(0).primitives.at(0).triangles.size(), 2u);
 }
 
+TEST(AssimpImport, HeadersThatPromiseMoreThanTheFileHolds) {
+    TemporaryFolder const folder;
+    auto const ply = [](std::string const& vertices, std::string const& faces) {
+        return "ply\nformat ascii 1.0\ncomment element vertex 9\nelement vertex " + vertices +
+               "\nproperty float x\nproperty float y\nproperty float z\nelement face " + faces +
+               "\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    };
+    EXPECT_NO_THROW(import_scene(folder.write("a.ply", ply("3", "1"))));
+    EXPECT_NO_THROW(import_scene(folder.write("a.off", "OFF\n# a comment\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")));
+    for (auto const& [name, text] :
+         std::vector<std::pair<std::string, std::string>>{{"b.ply", ply("4000000000", "1")},
+                                                          {"c.ply", ply("3", "4000000000")},
+                                                          {"d.ply", ply("99999999999999999999", "1")},
+                                                          {"b.off", "OFF\n400000000 1 0\n0 0 0\n"},
+                                                          {"c.off", "OFF 3 400000000 0\n0 0 0\n"},
+                                                          {"d.OFF", "OFF\n# a comment\n\n3\n400000000\n0\n0 0 0\n"}}) {
+        try {
+            import_scene(folder.write(name, text));
+            ADD_FAILURE() << "loaded: " << name;
+        } catch (InputError const& error) {
+            EXPECT_NE(std::string(error.what()).find("its header promises"), std::string::npos) << error.what();
+        }
+    }
+}
+
+TEST(AssimpImport, FilesTooLargeForTheBudgetAreNotRead) {
+    TemporaryFolder const folder;
+    auto const file = folder.write("a.obj", quad + "f 1 2 3\n" + std::string(1 << 20, '\n'));
+    ImportOptions options;
+    EXPECT_NO_THROW(import_scene(file, {}, options));
+    options.memory_bytes = 1 << 20;
+    EXPECT_THROW(import_scene(file, {}, options), InputError);
+}
+
 /// Assimp reads glTF too: what it makes of a file must be where our own importer puts it. (The camera's node is not
 /// moved and its picture square: of those, Assimp 5.2 makes something else in glTF only.)
 class AssimpAgainstGltf : public testing::Test {
@@ -156,8 +190,9 @@ protected:
             R"({"input":6,"output":7}],"channels":[{"sampler":0,"target":{"node":3,"path":"rotation"}}]}])");
         auto const file = folder.write("a.glb", text);
         expected = import_scene(file);
-        found = import_assimp(file, [](std::string_view, double) {});
-        finish_scene(found, [](std::string_view, double) {});
+        ImportBudget budget(ImportOptions{}.memory_bytes);
+        found = import_assimp(file, SceneFolder(file, false), budget, [](std::string_view, double) {});
+        finish_scene(found, budget, [](std::string_view, double) {});
     }
 
     TemporaryFolder folder;

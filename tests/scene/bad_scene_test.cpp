@@ -6,23 +6,24 @@
 #include <gtest/gtest.h>
 
 #include "common/error.h"
+#include "common/picture_writer.h"
 #include "gltf_writer.h"
 #include "server/scene/animation.h"
 
 namespace framelet {
 namespace {
 
-std::string import_error(std::filesystem::path const& file) {
+std::string import_error(std::filesystem::path const& file, ImportOptions const& options = {}) {
     try {
-        import_scene(file);
+        import_scene(file, {}, options);
     } catch (InputError const& error) {
         return error.what();
     }
     return "no error";
 }
 
-void expect_error(std::filesystem::path const& file, std::string const& part) {
-    std::string const error = import_error(file);
+void expect_error(std::filesystem::path const& file, std::string const& part, ImportOptions const& options = {}) {
+    std::string const error = import_error(file, options);
     EXPECT_NE(error.find(part), std::string::npos) << error;
     EXPECT_NE(error.find(file.filename().string()), std::string::npos) << "names the file: " << error;
     EXPECT_EQ(error.find('\n'), std::string::npos) << error;
@@ -178,7 +179,80 @@ TEST(BadScene, SmallFilesThatGrowWithoutBound) {
     }
     expect_error(folder.write("a.glb", writer.glb(one_mesh(R"("attributes":{"POSITION":0},"indices":1,"targets":[)" +
                                                            targets + "]"))),
-                 "GiB of geometry");
+                 "--scene-memory");
+}
+
+/// So that what is too much is little.
+ImportOptions with_megabytes(std::uint64_t megabytes) {
+    ImportOptions options;
+    options.memory_bytes = megabytes << 20;
+    return options;
+}
+
+TEST(BadScene, ZeroAccessorsAreCountedBeforeTheyAreMade) {
+    TemporaryFolder const folder;
+    GltfWriter writer = triangle_writer();
+    std::string primitives;
+    for (int i = 0; i < 20; ++i) {
+        int const zeros = writer.accessor(R"("componentType":5126,"count":16777215,"type":"VEC3")");
+        primitives += (i > 0 ? "," : "") + (R"({"attributes":{"POSITION":)" + std::to_string(zeros)) + "}}";
+    }
+    auto const file = folder.write(
+        "a.gltf",
+        writer.json(R"("nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}],"meshes":[{"primitives":[)" + primitives + "]}]"));
+    expect_error(file, "more than 4096 MB");
+    expect_error(file, "--scene-memory");
+    expect_error(file, "more than 1 MB", with_megabytes(1));
+}
+
+TEST(BadScene, PicturesAreCountedBeforeTheyAreDecoded) {
+    TemporaryFolder const folder;
+    write_png(folder.path() / "large.png", Picture(600, 600)); // 1.4 MB of pixels
+    std::string const text = triangle_writer().json(
+        one_mesh(R"("attributes":{"POSITION":0},"material":0)",
+                 R"(,"images":[{"uri":"large.png"},{"uri":"large.png"}],"textures":[{"source":0},{"source":1}],)"
+                 R"("materials":[{"normalTexture":{"index":0},"emissiveTexture":{"index":1}}])"));
+    auto const file = folder.write("a.gltf", text);
+    EXPECT_EQ(import_scene(file, {}, with_megabytes(3)).images.size(), 2u);
+    expect_error(file, "more than 2 MB", with_megabytes(2));
+    expect_error(file, "more than 1 MB", with_megabytes(1));
+    folder.write("a.mtl", "newmtl m\nmap_Kd large.png\n");
+    expect_error(folder.write("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n"),
+                 "more than 1 MB", with_megabytes(1));
+}
+
+TEST(BadScene, OneBufferFileNamedOften) {
+    TemporaryFolder const folder;
+    folder.write("a.bin", std::string(1 << 20, '\0'));
+    std::string const buffer = R"({"byteLength":1048576,"uri":"a.bin"})";
+    std::string const text = R"({"asset":{"version":"2.0"},"buffers":[)" + buffer + "," + buffer + "," + buffer + "]}";
+    expect_error(folder.write("a.gltf", text), "more than 2 MB", with_megabytes(2));
+}
+
+TEST(BadScene, MissingBufferViewsAreNamed) {
+    TemporaryFolder const folder;
+    auto const with_sparse = [&](std::string const& sparse) {
+        GltfWriter writer = triangle_writer();
+        int const view = writer.view(std::vector<float>{0, 3, 0});
+        std::string text = sparse;
+        text.replace(text.find('#'), 1, std::to_string(view));
+        writer.accessor(R"("componentType":5126,"count":3,"type":"VEC3","sparse":)" + text);
+        return folder.write("a.gltf", writer.json(one_mesh(R"("attributes":{"POSITION":1})")));
+    };
+    expect_error(with_sparse(R"({"count":1,"indices":{"componentType":5123},"values":{"bufferView":#}})"),
+                 "accessor 1 is sparse, but its indices have no buffer view");
+    expect_error(with_sparse(R"({"count":1,"values":{"bufferView":#}})"), "accessor 1 is sparse, but its indices");
+    expect_error(with_sparse(R"({"count":1,"indices":{"componentType":5123,"bufferView":#},"values":{}})"),
+                 "accessor 1 is sparse, but its values");
+    GltfWriter writer = triangle_writer();
+    writer.accessor(R"("componentType":5123,"count":3,"type":"SCALAR")");
+    std::string const primitive = R"("attributes":{"POSITION":0},"indices":1)";
+    expect_error(folder.write("b.gltf", writer.json(one_mesh(primitive))),
+                 "accessor 1 holds vertex indices, but has no buffer view");
+    expect_error(folder.write("c.gltf", writer.json(one_mesh(
+                                            primitive, R"(,"extensionsUsed":["KHR_draco_mesh_compression"],)"
+                                                       R"("extensionsRequired":["KHR_draco_mesh_compression"])"))),
+                 "requires the extension KHR_draco_mesh_compression");
 }
 
 /// A small file with most of what the importer knows, as binary glTF.

@@ -7,6 +7,7 @@
 
 #include "client/connection_arguments.h"
 #include "common/error.h"
+#include "common/number_range.h"
 #include "server/scene/scene_import.h"
 #include "server/stream/replay.h"
 #include "tests/evaluation/method.h"
@@ -21,8 +22,9 @@ namespace {
 void add_rival_options(CLI::App& verb, RivalParts& rivals) {
     rivals.spacing = 1;
     rivals.margin = 0;
-    verb.add_option("--spacing", rivals.spacing, "Pixels from sample to sample of whole frames");
-    verb.add_option("--margin", rivals.margin, "Around the viewport, of its sides");
+    verb.add_option("--spacing", rivals.spacing, "Pixels from sample to sample of whole frames")
+        ->check(number_in(0.01, 1000.0));
+    verb.add_option("--margin", rivals.margin, "Around the viewport, of its sides")->check(number_in(0.0, 10.0));
 }
 
 } // namespace
@@ -32,7 +34,7 @@ void add_live_options(CLI::App& verb, LiveVerbOptions& options) {
     verb.add_option("--camera", options.live.camera_file, "Camera file to fly by, as framelet-client takes it");
     verb.add_option("--size", options.size, "Size of the picture, WIDTHxHEIGHT")->capture_default_str();
     verb.add_option("--seconds", options.live.seconds, "How long each method runs")
-        ->check(CLI::Range(1.5, 3600.0))
+        ->check(number_in(1.5, 3600.0))
         ->capture_default_str();
     verb.add_option("--methods", options.live.methods, "Which methods")
         ->delimiter(',')
@@ -54,7 +56,7 @@ void add_live_options(CLI::App& verb, LiveVerbOptions& options) {
 void add_serve_options(CLI::App& verb, LiveVerbOptions& options) {
     verb.add_option("METHOD", options.serve.method)->required()->check(CLI::IsMember(method_names()));
     verb.add_option("SCENE", options.serve.scene)->required();
-    verb.add_option("--exposure", options.serve.exposure_ev, "Stops");
+    verb.add_option("--exposure", options.serve.exposure_ev, "Stops")->check(number_in(-32.0, 32.0));
     verb.add_option("--threads", options.serve.threads, "0: one a core");
     add_rival_options(verb, options.serve.rivals);
 }
@@ -65,12 +67,13 @@ void add_look_options(CLI::App& verb, LiveVerbOptions& options) {
     verb.add_option("SCENE", look.scene)->required();
     verb.add_option("SERVER", options.server, "HOST:PORT")->required();
     verb.add_option("--size", options.size, "Size of the picture, WIDTHxHEIGHT")->capture_default_str();
-    verb.add_option("--duration", look.duration, "Seconds");
-    verb.add_option("--rate", look.rate, "Display frames a second");
+    verb.add_option("--duration", look.duration, "Seconds")->check(number_in(0.0, 1e6));
+    verb.add_option("--rate", look.rate, "Display frames a second")->check(number_in(0.1, 1000.0));
     verb.add_option("--camera", look.camera_file, "Camera file");
     add_rival_options(verb, look.rivals);
     verb.add_option("--output", look.output, "Picture files")->required();
-    verb.add_option("--output-times", look.output_times, "Only the frames from these times of the scene on, seconds");
+    verb.add_option("--output-times", look.output_times, "Only the frames from these times of the scene on, seconds")
+        ->check(number_in(0.0, 1e6));
     verb.add_option("--frames", look.frames_file, "A line of JSON for each frame")->required();
 }
 

@@ -1,0 +1,31 @@
+// Which files a scene file may make us read: those in its own folder and below, wherever links lead.
+// In: a file that the scene names, as a path. Out: whether it may be read.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace framelet {
+
+class SceneFolder {
+public:
+    SceneFolder(std::filesystem::path const& scene_file, bool allow_outside);
+
+    /// Where names in the scene file start from; absolute.
+    std::filesystem::path const& path() const { return path_; }
+
+    /// False for what lies outside, there or not: a scene learns nothing of other folders.
+    bool permits(std::filesystem::path const& file) const;
+
+    /// Why a file that is not permitted is not read, for messages: "file 'name' lies ...".
+    static std::string refusal(char const* kind, std::string const& name) {
+        return std::string(kind) + " '" + name + "' lies outside the scene's folder (--allow-outside permits that)";
+    }
+
+private:
+    std::filesystem::path path_;
+    std::filesystem::path canonical_;
+    bool allow_outside_;
+};
+
+} // namespace framelet
