@@ -91,6 +91,12 @@ void interpolate(std::int32_t layer, Places const& places, SamplesAround const& 
     out.red = sum(0);
     out.green = sum(8);
     out.blue = sum(16);
+    WideInts const right = places.right_weight >= 0.5f;
+    WideInts const below = places.below_weight >= 0.5f;
+    WideInts const in_cell = (right | (places.left_weight >= 0.5f)) & (below | (places.above_weight >= 0.5f));
+    WideInts const nearest =
+        below ? (right ? samples.below_right : samples.below_left) : (right ? samples.above_right : samples.above_left);
+    out.is_firm = in_cell & ((nearest & layer_bits) == layer);
 }
 
 template <bool inside>

@@ -11,9 +11,10 @@
 namespace framelet {
 
 /// What a patch or a splat shows at each of some pixels, as `wide_column` and `wide_row` have them: sums of weights and
-/// weighted sums of squares of bytes.
+/// weighted sums of squares of bytes. It is firm, and hides what lies behind it, where the nearest sample is its own.
 struct Candidate {
     WideFloats red, green, blue, weight, inverse_depth;
+    WideInts is_firm;
 };
 
 /// The square of a byte, which stands for linear light.
@@ -27,8 +28,10 @@ using CandidateColumn = std::array<Candidate, static_cast<std::size_t>(FrameletC
 static_assert(FrameletCache::block_side % wide_columns == 0 && FrameletCache::block_side % wide_rows == 0);
 
 /// At the first `count` of them, the first pixel of the first of which lies (x, y) from the centre of the box's first
-/// pixel. Pixels outside of the box get no weight: those beside it, and where lanes have two rows those of the row
-/// above its first or below its last.
+/// pixel. Firm is what lies in the cell of an own sample, half a
+/// sample around it: an outline is midway between the last sample that hit and the first that missed, where it is on
+/// the average, and of framelets that meet one is firm. Pixels outside of the box get no weight: those beside it, and
+/// where lanes have two rows those of the row above its first or below its last.
 void sample_patch(WarpPatch const& patch, float x, float y, int count, CandidateColumn& out);
 
 /// False where all of them would get no weight, since none of the patch's samples is near: looks at `occupied`.

@@ -14,8 +14,8 @@ namespace {
 constexpr int side = WarpedBlock::side;
 constexpr std::size_t pixels = WarpedBlock::pixels;
 
-/// Share of an interpolation that must come from a layer's own samples for it to cover what lies behind it.
-constexpr float firm = 0.25f;
+/// Of a loose sample's tent: within half its spacing.
+constexpr float firm_tent = 0.25f;
 /// Less than this is no cover at all.
 constexpr float faint = 1e-3f;
 /// Inverse depths that differ by this share belong to one surface.
@@ -25,7 +25,7 @@ constexpr float same_surface = 0.01f;
 /// lies together.
 struct Layers {
     alignas(64) std::array<float, pixels> red, green, blue, weight, inverse_depth;
-    alignas(64) std::array<std::int32_t, pixels> group;
+    alignas(64) std::array<std::int32_t, pixels> group, is_firm;
 };
 
 /// Where a pixel lies in `Layers`.
@@ -43,8 +43,8 @@ bool merge(Candidate const& candidate, std::int32_t group, float tolerance, std:
     WideFloats const depth = candidate.inverse_depth;
     WideFloats const limit = tolerance + same_surface * depth;
     WideInts const shows = candidate.weight > faint;
-    WideInts const is_firm = candidate.weight >= firm;
-    WideInts const was_firm = weight >= firm;
+    WideInts const is_firm = shows & candidate.is_firm;
+    WideInts const was_firm = load_lanes<WideInts>(&layers.is_firm[first]);
     WideInts const joins = shows & (groups == group) & (depth - there <= limit) & (there - depth <= limit);
     WideInts const wins = shows & ((is_firm & ~was_firm) | (~(is_firm ^ was_firm) & (depth > there + limit)));
     WideInts const replaces = wins & ~joins;
@@ -58,6 +58,7 @@ bool merge(Candidate const& candidate, std::int32_t group, float tolerance, std:
     store_lanes(keep * weight + take * candidate.weight, &layers.weight[first]);
     store_lanes(replaces ? depth : there, &layers.inverse_depth[first]);
     store_lanes(replaces ? WideInts{} + group : groups, &layers.group[first]);
+    store_lanes(replaces ? is_firm : was_firm | (joins & is_firm), &layers.is_firm[first]);
     return any_lane(wins | joins);
 }
 
@@ -73,7 +74,7 @@ bool is_hidden(WarpPatch const& patch, float x, float y, int column, int first_r
     for (int i = 0; i < count; ++i) {
         std::size_t const at = place_of(column, first_row + i * wide_rows);
         WideFloats const hiding = (1 + rounding - same_surface) * depth - patch.tolerance;
-        shows |= (load_lanes<WideFloats>(&layers.weight[at]) < firm) |
+        shows |= ~load_lanes<WideInts>(&layers.is_firm[at]) |
                  (load_lanes<WideFloats>(&layers.inverse_depth[at]) < hiding) |
                  (load_lanes<WideInts>(&layers.group[at]) == patch.group);
         depth += static_cast<float>(wide_rows) * patch.inverse_depth_dy;
@@ -85,6 +86,7 @@ bool is_hidden(WarpPatch const& patch, float x, float y, int column, int first_r
 void fade(std::span<Candidate> candidates) {
     constexpr float share = 0.1f;
     for (Candidate& candidate : candidates) {
+        candidate.is_firm = WideInts{};
         for (WideFloats* const sum : {&candidate.red, &candidate.green, &candidate.blue, &candidate.weight}) {
             *sum *= share;
         }
@@ -148,7 +150,7 @@ WideFloats tent(WideFloats distance, float scale) {
 bool is_hidden(Splat const& splat, std::int32_t group, float x, float y, Layers const& layers) {
     auto const pixel = [](float at) { return static_cast<int>(std::clamp(at + 0.5f, 0.0f, side - 1.0f)); };
     std::size_t const at = place_of(pixel(x), pixel(y));
-    return layers.weight[at] >= firm && layers.group[at] != group &&
+    return layers.is_firm[at] != 0 && layers.group[at] != group &&
            layers.inverse_depth[at] >= (1 - same_surface) * splat.inverse_depth;
 }
 
@@ -177,6 +179,7 @@ bool paint_splat(Splat const& splat, std::int32_t group, int left, int top, Laye
             some.green = some.weight * square(green_of(splat.sample));
             some.blue = some.weight * square(blue_of(splat.sample));
             some.inverse_depth = zero + splat.inverse_depth;
+            some.is_firm = some.weight >= firm_tent;
             shows |= merge(some, group, 0, place_of(from, j), layers);
         }
     }
@@ -265,6 +268,7 @@ void paint_warped_block(std::span<PatchView const> patches, int column, int row,
     }
     layers.inverse_depth.fill(hole_depth);
     layers.group.fill(-1);
+    layers.is_firm.fill(0);
     int const left = column * side;
     int const top = row * side;
     constexpr std::size_t most_claims = 64;

@@ -50,6 +50,8 @@ TEST(JoinedWarp, WhatIsJoinedShowsAsEachFrameletAlone) {
         for (int kind = 0; kind < 3; ++kind) {
             std::size_t const batches = kind == 1 ? 5 : 1;
             double const rough = kind == 2 ? 4e-4 : 0;
+            // Of neighbours that are not joined only one shows where something farther was painted between them.
+            float const tolerance = kind == 0 ? 2 : 8;
             FrameletCache cache(plane);
             std::vector<Tile> const tiles = visible_tiles(plane, plane.pixel_depth() + levels);
             for (std::size_t k = 0; k < batches; ++k) {
@@ -94,7 +96,7 @@ TEST(JoinedWarp, WhatIsJoinedShowsAsEachFrameletAlone) {
                         bool same = std::abs(one.inverse_depth[i] - other.inverse_depth[i]) < 1e-3f;
                         for (std::size_t channel = 0; channel < 3; ++channel) {
                             same = same && std::abs(std::sqrt(one.squares[channel][i]) -
-                                                    std::sqrt(other.squares[channel][i])) < (rough > 0 ? 8 : 2);
+                                                    std::sqrt(other.squares[channel][i])) < tolerance;
                         }
                         different += same ? 0 : 1;
                     }
