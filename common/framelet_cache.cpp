@@ -110,6 +110,8 @@ bool FrameletCache::insert_one(DisplayFramelet const& framelet, FrameletShape co
     shape_bytes_ -= bytes_behind(cached->shape);
     hold(framelet, shape, 1 << std::max(framelet.tile.depth() - plane_.pixel_depth(), 0), cached->samples,
          cached->shape);
+    find_ends(static_cast<double>(plane_.tile_side(framelet.tile)) / cached->shape.side, cached->samples,
+              cached->shape);
     shape_bytes_ += bytes_behind(cached->shape);
     note_placed(*cached);
     return true;

@@ -105,6 +105,8 @@ void FrameletWarp::add(CachedFramelet const& framelet, unsigned parts, std::vect
         }
         WarpPatch patch = common;
         patch.layer = i;
+        patch.ends_before[0] = shape.layers[i].ends_before;
+        patch.has_ends = patch.ends_before[0] != 0;
         patch.place = framelet.tile.code * 4 + i;
         add_layer(framelet.view, shape.layers[i], shape.fading, framelet.moment.batch, patch, patches);
     }
@@ -132,6 +134,8 @@ void FrameletWarp::add(MergedLayer const& merged, std::vector<WarpPatch>& patche
     patch.group = group_of(slot_, merged.view, merged.first.depth());
     patch.batch = merged.newest_batch;
     patch.layer = merged.number;
+    patch.ends_before = merged.ends_before;
+    patch.has_ends = std::ranges::any_of(merged.ends_before, [](std::uint32_t bits) { return bits != 0; });
     patch.occupied = merged.occupied;
     patch.place = merged.first.code * 4 + merged.first_layer;
     rect_ = cache_.plane().tile_rect(merged.tile);

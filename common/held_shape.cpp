@@ -1,6 +1,7 @@
 #include "common/held_shape.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "common/color.h"
@@ -14,6 +15,9 @@ constexpr std::size_t side = framelet_side;
 
 /// Room for so many loose samples is kept for the next framelet of a place.
 constexpr std::size_t most_spare_loose = 16;
+
+/// Inverse depths that differ by more than this share are of different surfaces.
+constexpr float clearly = 0.02f;
 
 using Samples = std::array<PackedSample, framelet_samples>;
 
@@ -210,6 +214,45 @@ void hold(DisplayFramelet const& framelet, FrameletShape const* shape, int sampl
         held.layers[0].last_column = held.layers[0].last_row = last;
     } else {
         hold_boxes(samples_per_pixel > 1 ? held.reduced.data() : samples.data(), held);
+    }
+}
+
+void find_ends(double spacing, Samples const& samples, HeldShape& held) {
+    if (held.layer_count < 2) {
+        return;
+    }
+    PackedSample const* const grid = held.side == framelet_side ? samples.data() : held.reduced.data();
+    // For each two neighbours on different layers: on which one the nearer of them lies, and on which one the other.
+    std::array<std::array<int, max_layers>, max_layers> times{};
+    auto const compare = [&](int x, int y, int dx, int dy) {
+        std::uint32_t const one = layer_of(grid[y * held.side + x]);
+        std::uint32_t const other = layer_of(grid[(y + dy) * held.side + x + dx]);
+        if (one == other || one >= held.layer_count || other >= held.layer_count) {
+            return;
+        }
+        auto const depth_of = [&](Layer const& layer) {
+            return layer.at + layer.dx * static_cast<float>(spacing * (x + 0.5 * dx + 0.5)) +
+                   layer.dy * static_cast<float>(spacing * (y + 0.5 * dy + 0.5));
+        };
+        Layer const& a = held.layers[one].layer;
+        Layer const& b = held.layers[other].layer;
+        float const nearer = depth_of(a) - depth_of(b);
+        if (std::abs(nearer) > a.error + b.error + clearly * std::max(depth_of(a), depth_of(b))) {
+            ++(nearer > 0 ? times[one][other] : times[other][one]);
+        }
+    };
+    for (int y = 0; y < held.side; ++y) {
+        for (int x = 0; x + 1 < held.side; ++x) {
+            compare(x, y, 1, 0);
+            compare(y, x, 0, 1);
+        }
+    }
+    for (std::size_t i = 0; i < held.layer_count; ++i) {
+        for (std::size_t k = 0; k < held.layer_count; ++k) {
+            if (times[i][k] > times[k][i]) {
+                held.layers[i].ends_before |= static_cast<std::uint8_t>(1u << k);
+            }
+        }
     }
 }
 

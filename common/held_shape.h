@@ -28,11 +28,16 @@ constexpr std::uint32_t layer_of(PackedSample sample) {
     return sample >> 24;
 }
 
+/// A bit for each number that samples of a grid may have in place of a layer's.
+using LayerSet = std::array<std::uint32_t, 8>;
+
 /// A layer and the columns and rows of the moving grid between which its samples lie, last ones included; empty
 /// (`last_column` < `first_column`) where it has none.
 struct HeldLayer {
     Layer layer;
     std::int8_t first_column = 0, first_row = 0, last_column = -1, last_row = -1;
+    /// Bit k: beside its samples those of the framelet's layer k are clearly farther, so that it ends there.
+    std::uint8_t ends_before = 0;
 };
 
 /// A loose sample of the moving grid.
@@ -57,5 +62,8 @@ struct HeldShape {
 /// mean, in linear light, of those samples of a pixel that lie on the layer most of them lie on.
 void hold(DisplayFramelet const& framelet, FrameletShape const* shape, int samples_per_pixel,
           std::array<PackedSample, framelet_samples>& samples, HeldShape& held);
+
+/// Sets `ends_before` of the layers. `spacing`: of the moving grid, pixels.
+void find_ends(double spacing, std::array<PackedSample, framelet_samples> const& samples, HeldShape& held);
 
 } // namespace framelet

@@ -129,6 +129,23 @@ inline WideFloats root(WideFloats value) {
 }
 #endif
 
+/// For each lane one of eight, by its index.
+inline WideInts pick_of_eight(std::uint32_t const* eight, WideInts index) {
+#if defined(__AVX512F__)
+    __m512i const all = _mm512_castsi256_si512(_mm256_loadu_si256(reinterpret_cast<__m256i const*>(eight)));
+    return reinterpret_cast<WideInts>(_mm512_maskz_permutexvar_epi32(0xffff, reinterpret_cast<__m512i>(index), all));
+#elif defined(__AVX2__)
+    __m256i const all = _mm256_loadu_si256(reinterpret_cast<__m256i const*>(eight));
+    return reinterpret_cast<WideInts>(_mm256_permutevar8x32_epi32(all, reinterpret_cast<__m256i>(index)));
+#else
+    WideInts out;
+    for (int i = 0; i < wide_count; ++i) {
+        out[i] = static_cast<std::int32_t>(eight[index[i]]);
+    }
+    return out;
+#endif
+}
+
 /// True where a bit is set in any of them.
 inline bool any_lane(WideInts flags) {
 #ifdef __AVX512F__

@@ -139,6 +139,38 @@ void MergedSquare::keep(LayerJoining const& joining) {
             }
         }
     }
+    find_ends();
+}
+
+/// Of what is joined, from its parts; where of two layers each ends before the other somewhere, neither counts.
+void MergedSquare::find_ends() {
+    auto const has_ends = [](Child const& child) {
+        return child.framelet != nullptr &&
+               std::ranges::any_of(child.framelet->shape.layers, [](HeldLayer const& l) { return l.ends_before != 0; });
+    };
+    if (std::ranges::none_of(children_, has_ends)) {
+        return;
+    }
+    std::array<LayerSet, std::size_t{1} << 8> ends{};
+    for (Child const& child : children_) {
+        if (!has_ends(child)) {
+            continue;
+        }
+        for (std::size_t k = 0; k < max_layers; ++k) {
+            for (unsigned left = child.framelet->shape.layers[k].ends_before; left != 0; left &= left - 1) {
+                std::uint32_t const other = child.numbers[static_cast<std::size_t>(std::countr_zero(left))];
+                ends[child.numbers[k]][other / 32] |= 1u << other % 32;
+            }
+        }
+    }
+    for (MergedLayer& merged : merged_) {
+        for (MergedLayer const& other : merged_) {
+            if ((ends[merged.number][other.number / 32] >> other.number % 32 & 1) != 0 &&
+                (ends[other.number][merged.number / 32] >> merged.number % 32 & 1) == 0) {
+                merged.ends_before[other.number / 32] |= 1u << other.number % 32;
+            }
+        }
+    }
 }
 
 /// The smallest of framelet, four and square that has all of them.

@@ -29,6 +29,7 @@ struct MergedLayer {
     std::int32_t stride = 0; ///< from one of their rows to the next
     PackedSample const* grid = nullptr;
     std::uint32_t number = 0; ///< that its samples have in the grid, as it were a layer's
+    LayerSet ends_before{}; ///< as in `WarpPatch`
     std::uint64_t newest_batch = 0;
     FadingCode fading = 0; ///< the soonest
     std::uint64_t signature = 0; ///< differs where what is held differs
@@ -80,6 +81,7 @@ private:
     Tile tile_around(std::array<std::uint64_t, max_layers> const& parts) const;
     void set_tile(JoinedLayer const& joined, Tile tile, MergedLayer& out) const;
     std::uint64_t occupied_parts(std::array<std::uint64_t, max_layers> const& parts, Tile tile) const;
+    void find_ends();
     std::size_t offset_of(std::size_t place) const;
     void write(Child const& child, PackedSample* to) const;
     template <int side>

@@ -74,8 +74,16 @@ WideFloats squares_of(WideInts bytes) {
 
 constexpr auto layer_bits = static_cast<std::int32_t>(0xff000000u);
 
+/// Whether the layers of samples are in the set.
+WideInts contains(LayerSet const& set, WideInts samples) {
+    WideInts const layers = samples >> 24 & 255;
+    WideInts const bits = pick_of_eight(set.data(), layers >> 5) >> (layers & 31);
+    return (bits & 1) != 0;
+}
+
 /// `layer`: the bits of its samples.
-void interpolate(std::int32_t layer, Places const& places, SamplesAround const& samples, Candidate& out) {
+void interpolate(std::int32_t layer, WarpPatch const& patch, Places const& places, SamplesAround const& samples,
+                 Candidate& out) {
     auto const weight = [layer](WideInts sample, WideFloats product) {
         return (sample & layer_bits) == layer ? product : WideFloats{};
     };
@@ -97,6 +105,9 @@ void interpolate(std::int32_t layer, Places const& places, SamplesAround const& 
     WideInts const nearest =
         below ? (right ? samples.below_right : samples.below_left) : (right ? samples.above_right : samples.above_left);
     out.is_firm = in_cell & ((nearest & layer_bits) == layer);
+    if (patch.has_ends) {
+        out.ends = in_cell & contains(patch.ends_before, nearest);
+    }
 }
 
 template <bool inside>
@@ -127,7 +138,8 @@ void sample_column(WarpPatch const& patch, float x, float y, int count, Candidat
         leave_out(places[last - 1], row < static_cast<float>(patch.box.height() - (count - 1) * wide_rows));
     }
     for (std::size_t i = 0; i < last; ++i) {
-        interpolate(static_cast<std::int32_t>(patch.layer << 24), places[i], look_up(patch, places[i].corner), out[i]);
+        interpolate(static_cast<std::int32_t>(patch.layer << 24), patch, places[i], look_up(patch, places[i].corner),
+                    out[i]);
         out[i].inverse_depth = larger(depth, zero);
         depth += step * patch.inverse_depth_dy;
     }

@@ -15,6 +15,7 @@ namespace framelet {
 struct Candidate {
     WideFloats red, green, blue, weight, inverse_depth;
     WideInts is_firm;
+    WideInts ends; ///< the surface does not go as far as here: the nearest sample is farther. Only of patches with ends
 };
 
 /// The square of a byte, which stands for linear light.

@@ -26,6 +26,8 @@ constexpr float same_surface = 0.01f;
 struct Layers {
     alignas(64) std::array<float, pixels> red, green, blue, weight, inverse_depth;
     alignas(64) std::array<std::int32_t, pixels> group, is_firm;
+    /// Inverse depth of a surface that is known not to go as far as here; less than 0: of none.
+    alignas(64) std::array<float, pixels> ended;
 };
 
 /// Where a pixel lies in `Layers`.
@@ -34,16 +36,24 @@ constexpr std::size_t place_of(int x, int y) {
 }
 
 /// Lets candidates compete with what pixels have. Of two that cover firmly or both do not, the clearly nearer
-/// one wins; else the one that was there, which is the better one. Those of one group on one surface add up. True
+/// one wins; else the one that was there, which is the better one. Those of one group on one surface add up. Where
+/// better samples show that a surface has ended, others of it are not firm: else it would be as wide as all together
+/// say, and one that is wrong would suffice. True
 /// where one of the candidates shows.
-bool merge(Candidate const& candidate, std::int32_t group, float tolerance, std::size_t first, Layers& layers) {
+bool merge(Candidate const& candidate, std::int32_t group, float tolerance, std::size_t first, bool has_ends,
+           Layers& layers) {
     WideFloats const there = load_lanes<WideFloats>(&layers.inverse_depth[first]);
     WideFloats const weight = load_lanes<WideFloats>(&layers.weight[first]);
     WideInts const groups = load_lanes<WideInts>(&layers.group[first]);
     WideFloats const depth = candidate.inverse_depth;
     WideFloats const limit = tolerance + same_surface * depth;
     WideInts const shows = candidate.weight > faint;
-    WideInts const is_firm = shows & candidate.is_firm;
+    WideFloats const ended = load_lanes<WideFloats>(&layers.ended[first]);
+    WideInts const is_ended = (depth - ended <= limit) & (ended - depth <= limit);
+    WideInts const is_firm = shows & candidate.is_firm & ~is_ended;
+    if (has_ends) {
+        store_lanes(candidate.ends & (ended < 0) ? depth : ended, &layers.ended[first]);
+    }
     WideInts const was_firm = load_lanes<WideInts>(&layers.is_firm[first]);
     WideInts const joins = shows & (groups == group) & (depth - there <= limit) & (there - depth <= limit);
     WideInts const wins = shows & ((is_firm & ~was_firm) | (~(is_firm ^ was_firm) & (depth > there + limit)));
@@ -114,7 +124,7 @@ bool paint_layer(WarpPatch const& patch, int left, int top, Layers& layers) {
         }
         for (int i = 0; i < count; ++i) {
             shows |= merge(column[static_cast<std::size_t>(i)], patch.group, patch.tolerance,
-                           place_of(x, first_row + i * wide_rows), layers);
+                           place_of(x, first_row + i * wide_rows), patch.has_ends, layers);
         }
     }
     return shows;
@@ -180,7 +190,7 @@ bool paint_splat(Splat const& splat, std::int32_t group, int left, int top, Laye
             some.blue = some.weight * square(blue_of(splat.sample));
             some.inverse_depth = zero + splat.inverse_depth;
             some.is_firm = some.weight >= firm_tent;
-            shows |= merge(some, group, 0, place_of(from, j), layers);
+            shows |= merge(some, group, 0, place_of(from, j), false, layers);
         }
     }
     return shows;
@@ -269,6 +279,7 @@ void paint_warped_block(std::span<PatchView const> patches, int column, int row,
     layers.inverse_depth.fill(hole_depth);
     layers.group.fill(-1);
     layers.is_firm.fill(0);
+    layers.ended.fill(-1e30f);
     int const left = column * side;
     int const top = row * side;
     constexpr std::size_t most_claims = 64;

@@ -32,7 +32,8 @@ struct WarpedBlock {
 ///
 /// Where samples are coarser than pixels they are interpolated bilinearly (a tent of radius one sample), across
 /// framelets of the same view, time and spacing. A layer covers the cells of its samples enlarged by half a sample, so
-/// that neighbours overlap; but where the sum of its tents is less than 1/4 it covers only what nothing else does.
+/// that neighbours overlap; but where the nearest sample is another layer's it covers only what nothing else does, and
+/// where that one is farther, worse samples of the same surface do likewise.
 void paint_warped_block(std::span<PatchView const> patches, int column, int row, Viewport viewport, WarpedBlock& block);
 
 } // namespace framelet

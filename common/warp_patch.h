@@ -39,6 +39,8 @@ struct WarpPatch {
     std::int32_t side = 0; ///< of the grid
     std::int32_t stride = 0; ///< from one of its rows to the next
     std::uint32_t layer = 0; ///< number of its samples in the grid
+    LayerSet ends_before{}; ///< beside the samples of these it ends: they are farther
+    bool has_ends = false; ///< there are some
     /// Of 8x8 equal parts of the grid, in rows, those in which there may be samples of it.
     std::uint64_t occupied = ~std::uint64_t{0};
     std::int32_t group = 0; ///< its samples are interpolated with others' of the same

@@ -178,6 +178,7 @@ void WarpPlan::add_parts(MergedLayer const& merged, FrameletWarp& warp, Square& 
         if ((four.parts[0] & ~left[0]) == 0 && four.parts != merged.parts) {
             MergedLayer part = square.merged.merge(four);
             part.number = merged.number; // as its samples have
+            part.ends_before = merged.ends_before;
             left[0] &= add_joined(part, warp, square) ? ~four.parts[0] : ~std::uint64_t{0};
         }
     }

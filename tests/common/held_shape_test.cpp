@@ -91,5 +91,26 @@ TEST(HeldShape, NoShapeIsInfinitelyFar) {
     EXPECT_FALSE(held.moves);
 }
 
+/// Layer 1 is a board before layer 0; where both are at one depth neither ends.
+TEST(HeldShape, WhatIsNearerEndsBeforeWhatIsBehindIt) {
+    Mixed mixed;
+    mixed.shape.layers[0].at = 0.1f;
+    mixed.shape.layers[1].at = 0.2f;
+    std::array<PackedSample, framelet_samples> samples;
+    for (int const per_pixel : {1, 2}) {
+        HeldShape held;
+        hold(mixed.framelet, &mixed.shape, per_pixel, samples, held);
+        find_ends(1, samples, held);
+        EXPECT_EQ(held.layers[0].ends_before, 0);
+        EXPECT_EQ(held.layers[1].ends_before, 1);
+    }
+    mixed.shape.layers[0].dx = 0.1f / 8; // they meet between the halves
+    HeldShape held;
+    hold(mixed.framelet, &mixed.shape, 1, samples, held);
+    find_ends(1, samples, held);
+    EXPECT_EQ(held.layers[0].ends_before, 0);
+    EXPECT_EQ(held.layers[1].ends_before, 0);
+}
+
 } // namespace
 } // namespace framelet
