@@ -52,7 +52,8 @@ bool merge(Candidate const& candidate, std::int32_t group, float tolerance, std:
     WideInts const is_ended = (depth - ended <= limit) & (ended - depth <= limit);
     WideInts const is_firm = shows & candidate.is_firm & ~is_ended;
     if (has_ends) {
-        store_lanes(candidate.ends & (ended < 0) ? depth : ended, &layers.ended[first]);
+        WideInts const begins = candidate.ends & (ended < 0);
+        store_lanes(begins ? depth : ended, &layers.ended[first]);
     }
     WideInts const was_firm = load_lanes<WideInts>(&layers.is_firm[first]);
     WideInts const joins = shows & (groups == group) & (depth - there <= limit) & (there - depth <= limit);
