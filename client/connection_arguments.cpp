@@ -12,11 +12,14 @@ namespace framelet {
 CLI::Option* add_connection_options(CLI::App& app, ConnectionArguments& arguments) {
     app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
     CLI::Option* const server =
-        app.add_option("HOST:PORT", arguments.server, "Where framelet-server listens; [ADDRESS]:PORT for IPv6");
+        app.add_option("HOST:PORT", arguments.server,
+                       "Where framelet-server listens: HOST, HOST:PORT (else 7070) or [ADDRESS]:PORT for IPv6");
     app.add_option("--token-file", arguments.token_file, "File whose first line is the server's token");
     app.add_flag("--tls", arguments.tls, "Encrypt the connection and check the server's certificate");
     app.add_option("--tls-ca", arguments.authority_file,
                    "Certificates (PEM) to trust, as of a server that signed its own; implies --tls");
+    app.add_flag("--insecure", arguments.insecure,
+                 "Send the token to another machine without --tls: who is between can read it");
     return server;
 }
 
@@ -28,6 +31,7 @@ ConnectionOptions make_connection_options(ConnectionArguments const& arguments) 
     }
     out.tls = arguments.tls || !arguments.authority_file.empty();
     out.authority_file = arguments.authority_file;
+    out.insecure = arguments.insecure;
     return out;
 }
 

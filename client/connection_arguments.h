@@ -14,13 +14,14 @@ namespace framelet {
 
 /// What was written on the command line.
 struct ConnectionArguments {
-    std::string server; ///< HOST:PORT
+    std::string server; ///< HOST[:PORT]
     std::string token_file;
     bool tls = false;
+    bool insecure = false;
     std::string authority_file;
 };
 
-/// Adds HOST:PORT, --token-file, --tls and --tls-ca. The arguments must outlive the parsing.
+/// Adds HOST[:PORT], --token-file, --tls, --tls-ca and --insecure. The arguments must outlive the parsing.
 CLI::Option* add_connection_options(CLI::App& app, ConnectionArguments& arguments);
 
 /// Throws InputError.

@@ -15,24 +15,24 @@ std::string ServerAddress::text() const {
 ServerAddress parse_server_address(std::string const& text) {
     auto const fail = [&](char const* what) {
         return InputError("cannot use \"" + text + "\" as a server: " + what +
-                          ": write HOST:PORT, as in 127.0.0.1:7070");
+                          ": write HOST or HOST:PORT, as in 127.0.0.1:7070");
     };
     ServerAddress out;
-    std::string port;
+    std::string port = std::to_string(default_port);
     if (text.starts_with('[')) {
         std::size_t const end = text.find(']');
         if (end == std::string::npos || (end + 1 < text.size() && text[end + 1] != ':')) {
             throw fail("the bracket is not closed");
         }
         out.host = text.substr(1, end - 1);
-        port = text.substr(std::min(end + 2, text.size()));
+        port = end + 1 == text.size() ? port : text.substr(end + 2);
     } else {
         std::size_t const colon = text.find(':');
         if (colon != text.rfind(':')) {
             throw fail("an IPv6 address needs brackets around it");
         }
         out.host = text.substr(0, colon);
-        port = colon == std::string::npos ? "" : text.substr(colon + 1);
+        port = colon == std::string::npos ? port : text.substr(colon + 1);
     }
     auto const printable = [](char c) { return c > ' ' && c < 127; };
     if (out.host.empty() || out.host.size() > 253 || !std::all_of(out.host.begin(), out.host.end(), printable)) {

@@ -17,13 +17,14 @@ struct ServerAddress {
     std::string text() const;
 };
 
-/// Reads HOST:PORT or [IPV6]:PORT. Throws InputError.
+/// Reads HOST, HOST:PORT, [IPV6] or [IPV6]:PORT; without a port it is `default_port`. Throws InputError.
 ServerAddress parse_server_address(std::string const& text);
 
 struct ConnectionOptions {
     ServerAddress server;
     std::string token;
     bool tls = false;
+    bool insecure = false; ///< without TLS the token is sent to other machines too, which whoever is between can read
     std::string authority_file; ///< for TLS; empty: the system's certificate authorities
     double connect_seconds = 10; ///< until name, connection and handshake are done
     double silence_seconds = 5; ///< without a message after which the server is given up

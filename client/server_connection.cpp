@@ -25,6 +25,14 @@ std::string seconds_text(double seconds) {
     return out.str();
 }
 
+/// Of this machine itself.
+bool is_loopback(asio::ip::address const& address) {
+    if (address.is_v6() && address.to_v6().is_v4_mapped()) {
+        return asio::ip::make_address_v4(asio::ip::v4_mapped, address.to_v6()).is_loopback();
+    }
+    return address.is_loopback();
+}
+
 } // namespace
 
 struct ServerConnection::Impl {
@@ -88,15 +96,20 @@ struct ServerConnection::Impl {
     }
 
     void connect(asio::ip::tcp::resolver::results_type const& endpoints) {
-        asio::async_connect(socket, endpoints, [this](boost::system::error_code error, auto const&) {
-            if (error == asio::error::connection_refused) {
-                end("cannot connect to " + server + ": connection refused: is framelet-server running there?");
-            } else if (error) {
-                end("cannot connect to " + server + ": " + error.message());
-            } else if (!ended) {
-                shake_hands();
-            }
-        });
+        asio::async_connect(
+            socket, endpoints, [this](boost::system::error_code error, asio::ip::tcp::endpoint const& endpoint) {
+                if (error == asio::error::connection_refused) {
+                    end("cannot connect to " + server + ": connection refused: is framelet-server running there?");
+                } else if (error) {
+                    end("cannot connect to " + server + ": " + error.message());
+                } else if (!options.token.empty() && !options.tls && !options.insecure &&
+                           !is_loopback(endpoint.address())) {
+                    end("the token is not sent to " + server +
+                        " in clear: use --tls, or --insecure if you know that nobody can listen");
+                } else if (!ended) {
+                    shake_hands();
+                }
+            });
     }
 
     void shake_hands() {

@@ -14,11 +14,14 @@ TEST(ServerAddress, IsReadAsWritten) {
     EXPECT_EQ(parse_server_address("[::1]:65535"), (ServerAddress{"::1", 65535}));
     EXPECT_EQ(parse_server_address("[::1]:65535").text(), "[::1]:65535");
     EXPECT_EQ(parse_server_address("host:80").text(), "host:80");
+    EXPECT_EQ(parse_server_address("localhost"), (ServerAddress{"localhost", 7070}));
+    EXPECT_EQ(parse_server_address("[::1]"), (ServerAddress{"::1", 7070}));
 }
 
 TEST(ServerAddress, AnythingElseIsRefused) {
-    for (char const* const text : {"", ":", "host", "host:", ":7070", "host:0", "host:65536", "host:7070x", "host:-1",
-                                   "a b:7070", "::1:7070", "[::1", "[::1]", "[::1]x:7070", "[]:7070", "host:+5"}) {
+    for (char const* const text :
+         {"", ":", "host:", ":7070", "host:0", "host:65536", "host:7070x", "host:-1", "a b:7070", "::1:7070", "[::1",
+          "[::1]:", "[]", "[::1]x:7070", "[]:7070", "host:+5"}) {
         EXPECT_THROW(parse_server_address(text), InputError) << text;
     }
 }

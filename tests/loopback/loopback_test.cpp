@@ -333,7 +333,7 @@ TEST(Loopback, BadInputGetsOneLineAndTheRightExitCode) {
         {FRAMELET_CLIENT, {"127.0.0.1:7070", "--output-times", "nan"}, 2, "--output-times"},
         {FRAMELET_CLIENT, {"127.0.0.1:7070", "--smooth=nan"}, 2, "--smooth"},
         {FRAMELET_CLIENT, {}, 2, "HOST:PORT"},
-        {FRAMELET_CLIENT, {"nonsense"}, 2, "nonsense"},
+        {FRAMELET_CLIENT, {"nonsense:"}, 2, "nonsense"},
         {FRAMELET_CLIENT, {"127.0.0.1:7070", "--size", "0x5"}, 2, "size"},
         {FRAMELET_CLIENT, {"127.0.0.1:7070", "--camera", broken}, 1, "broken.gltf"},
     };

@@ -6,6 +6,7 @@
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ip/udp.hpp>
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -126,6 +127,29 @@ TEST(Unwelcome, RefusedConnectionsDoNotPileUp) {
     }
     EXPECT_LT(most, 100) << "16 that wait, 64 that are told why they end";
     EXPECT_EQ(connect_client(server), "");
+}
+
+/// An IPv4 address of this machine by which others reach it, or empty.
+std::string own_address() {
+    boost::asio::io_context io;
+    boost::asio::ip::udp::socket socket(io, boost::asio::ip::udp::v4());
+    boost::system::error_code error; // connecting a datagram socket sends nothing: it chooses the address
+    socket.connect({boost::asio::ip::make_address_v4("192.0.2.1"), 9}, error);
+    return error ? "" : socket.local_endpoint().address().to_string();
+}
+
+TEST(Unwelcome, TheTokenIsNotSentToOtherMachinesInClear) {
+    std::string const address = own_address();
+    if (address.empty()) {
+        GTEST_SKIP() << "this machine has no address but its own loopback";
+    }
+    TemporaryFolder folder;
+    std::string const token = folder.write("token", "0123456789abcdef0123456789abcdef\n");
+    ServerProcess server(scene_file, {"--bind", address, "--insecure", "--token-file", token, "--paused"});
+    std::string const refused = connect_client(server, {"--token-file", token});
+    EXPECT_NE(refused.find("--tls"), std::string::npos) << refused;
+    EXPECT_EQ(lines_in(refused), 1u) << refused;
+    EXPECT_EQ(connect_client(server, {"--token-file", token, "--insecure"}), "");
 }
 
 TEST(Unwelcome, GuessesOfTheTokenAreSlowAndLogged) {
