@@ -119,8 +119,13 @@ Camera CameraPath::at(double seconds) const {
     double const length = b.time - a.time;
     auto const t = static_cast<float>((seconds - a.time) / length);
     auto const piece = [&](auto member) {
-        float const share_a = static_cast<float>(length / (b.time - before_a.time));
-        float const share_b = static_cast<float>(length / (after_b.time - a.time));
+        if (a.*member == b.*member) {
+            return a.*member; // to the last bit, so that a picture of what stands still can be completed
+        }
+        bool const rests_before = &before_a != &a && before_a.*member == a.*member;
+        bool const rests_after = &after_b != &b && after_b.*member == b.*member;
+        float const share_a = rests_before ? 0.0f : static_cast<float>(length / (b.time - before_a.time));
+        float const share_b = rests_after ? 0.0f : static_cast<float>(length / (after_b.time - a.time));
         return hermite(a.*member, b.*member, (b.*member - before_a.*member) * share_a,
                        (after_b.*member - a.*member) * share_b, t);
     };

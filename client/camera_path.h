@@ -18,7 +18,8 @@ struct CameraKey {
 };
 
 /// One key stands still; several are passed in order of time on a smooth curve (a cubic through every key whose
-/// tangents are the chords of its neighbours), standing still before the first and after the last.
+/// tangents are the chords of its neighbours), standing still before the first, after the last and between two that are
+/// equal.
 struct CameraPath {
     int scene_camera = -1; ///< >= 0: a camera of the scene instead of keys
     std::vector<CameraKey> keys;

@@ -60,6 +60,22 @@ TEST(CameraPath, MovesWithoutJumpsInPlaceAndSpeed) {
     }
 }
 
+TEST(CameraPath, BetweenEqualKeysItStandsStill) {
+    CameraPath const path = parse_camera_path(R"({"keys":[
+        {"time":0,"position":[0,1,5],"target":[0,0,0]},
+        {"time":1,"position":[3,1,4],"target":[0,0,0]},
+        {"time":2,"position":[3,1,4],"target":[0,0,0]},
+        {"time":3,"position":[6,2,0],"target":[1,0,0]}]})",
+                                              "test");
+    for (double time = 1; time < 2; time += 0.01) {
+        EXPECT_EQ(path.at(time).position, path.at(1).position) << time;
+        EXPECT_EQ(path.at(time).orientation, path.at(1).orientation) << time;
+    }
+    for (double const time : {1.0, 2.0}) { // and comes there and leaves without a jump in its speed
+        EXPECT_LT(glm::distance(path.at(time - 1e-3).position, path.at(time + 1e-3).position), 1e-4f);
+    }
+}
+
 TEST(CameraPath, ACameraOfTheScene) {
     EXPECT_EQ(parse_camera_path(R"({"scene_camera": 2})", "test").scene_camera, 2);
 }
