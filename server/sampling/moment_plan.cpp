@@ -19,7 +19,7 @@ constexpr float most_error = 0.1f;
 /// their own pixels before a camera that stands.
 constexpr float interpolated_wear = 1;
 /// Prices outside are of no use: of a sample, squared error summed over pixels.
-constexpr float least_price = 2e-5f, most_price = 1e2f;
+constexpr float least_price = 5e-6f, most_price = 1e2f;
 
 constexpr float spacing_of(int level) {
     return level <= pixel_level ? static_cast<float>(1 << (pixel_level - level))
@@ -27,22 +27,35 @@ constexpr float spacing_of(int level) {
 }
 
 /// What samples so far apart, pixels, miss and make up, of the detail.
-constexpr float missed_share(float spacing) {
-    float const s = std::max(spacing, finest_shown_spacing);
+constexpr float missed_share(float s) {
     constexpr float alias = 4.0f / 9.0f;
     return s <= 1   ? s * s * s // the mean of 1 / s^2 samples, of what lies between them
            : s <= 2 ? 1 + (s - 1) * 2 * alias
                     : error_growth * s - 1;
 }
 
-/// The same of levels.
-constexpr std::array<float, sampling_levels> missed_shares = [] {
+/// The same of levels. `finest`: what is finer shows no better, pixels.
+constexpr std::array<float, sampling_levels> missed_shares(float finest) {
     std::array<float, sampling_levels> shares{};
     for (int level = 0; level < sampling_levels; ++level) {
-        shares[static_cast<std::size_t>(level)] = missed_share(spacing_of(level));
+        shares[static_cast<std::size_t>(level)] = missed_share(std::max(spacing_of(level), finest));
     }
     return shares;
-}();
+}
+
+/// Of what the viewer moves, and of samples that stay on their own pixels, which show the mean of all.
+constexpr std::array<float, sampling_levels> moved_shares = missed_shares(finest_shown_spacing),
+                                             standing_shares = missed_shares(0);
+
+/// Whether a cell is worth the finest samples: it will show the same for a second, as far as is known.
+bool stays(Mirror const& mirror, Cell const& cell) {
+    constexpr float most_fading = 0.25f;
+    if (!mirror.camera_stands() || !cell.is_shown() || !mirror.gives_way(cell) || cell.is_wrong || cell.stale > 0) {
+        return false;
+    }
+    Piece const& piece = mirror.piece_of(cell);
+    return !piece.moves && piece.change == 0 && piece.fading < most_fading;
+}
 
 } // namespace
 
@@ -147,6 +160,10 @@ void MomentPlan::add_gains(Mirror const& mirror, PlaceField const& field, std::u
             float worn = cell.is_shown() ? cell.worn : INFINITY;
             worn += cell.is_shown() && mirror.camera_stands() && mirror.is_moved(cell) ? interpolated_wear : 0;
             float stale = cell.stale;
+            bool const stands = stays(mirror, cell);
+            if (stands && worn <= finest_shown_spacing) {
+                worn = std::min(worn, mirror.piece_of(cell).spacing);
+            }
             if (had >= 0) {
                 covered = pixels;
                 worn = std::min(worn, spacing_of(had));
@@ -155,10 +172,11 @@ void MomentPlan::add_gains(Mirror const& mirror, PlaceField const& field, std::u
             // What comes is shown although it is worse, or only where it is better.
             float const least = cell.is_shown() && mirror.gives_way(cell) ? -most_error : 0.0f;
             float const now = covered > 0 ? spacing_error(detail, worn) + stale : 0;
+            std::array<float, sampling_levels> const& shares = stands ? standing_shares : moved_shares;
             leaf.stale += covered * stale;
             leaf.wrong += covered * now + (pixels - covered) * hole_error;
             for (std::size_t level = 0; level < leaf.gain.size(); ++level) {
-                float const then = std::min(detail * missed_shares[level], most_error);
+                float const then = std::min(detail * shares[level], most_error);
                 leaf.gain[level] +=
                     covered * std::max(now - then, least) + (pixels - covered) * std::max(hole_error - then, 0.0f);
             }

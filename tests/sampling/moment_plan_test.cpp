@@ -122,10 +122,12 @@ TEST(MomentPlan, WhatHasChangedIsRenderedCoarselyFirst) {
 TEST(MomentPlan, NothingIsPlannedTwiceAndInTheEndNothing) {
     Planner planner;
     std::set<Tile> rendered;
+    constexpr double share = 0.3;
+    constexpr int most_rounds = 1.5 * (1 + 4 + 16) / share; // of every level all
     int rounds = 0;
-    for (; rounds < 30; ++rounds) {
+    for (; rounds < most_rounds; ++rounds) {
         planner.mirror.look(view_at(0), no_motions);
-        planner.find(0.3 * viewport.width * viewport.height);
+        planner.find(share * viewport.width * viewport.height);
         if (planner.rated.empty()) {
             break;
         }
@@ -135,7 +137,33 @@ TEST(MomentPlan, NothingIsPlannedTwiceAndInTheEndNothing) {
         planner.render(view_at(0), half_busy);
     }
     EXPECT_GT(rounds, 3);
-    EXPECT_LT(rounds, 30);
+    EXPECT_LT(rounds, most_rounds);
+}
+
+TEST(MomentPlan, WhatStandsIsRefinedToTheFinestSamplesAndWhatMovesIsNot) {
+    constexpr double samples = 100.0 * viewport.width * viewport.height;
+    std::vector<Piece> const fine = render_pieces(plane, plane.pixel_depth() + 1, half_busy);
+    auto const deepest_after = [&](auto change, float x) {
+        Planner planner;
+        std::vector<Piece> pieces = fine;
+        for (Piece& piece : pieces) {
+            change(piece);
+        }
+        planner.mirror.add(view_at(0).rays, no_motions, pieces);
+        planner.mirror.look(view_at(x), no_motions);
+        planner.find(samples);
+        int deepest = 0;
+        for (Tile const tile : planner.tiles()) {
+            EXPECT_GE(plane.tile_rect(tile).left, x > 0 ? 0 : 120) << "the other half is flat";
+            deepest = std::max(deepest, tile.depth());
+        }
+        return deepest;
+    };
+    EXPECT_EQ(deepest_after([](Piece&) {}, 0), plane.max_depth());
+    EXPECT_EQ(deepest_after([](Piece& piece) { piece.moves = true; }, 0), 0);
+    EXPECT_EQ(deepest_after([](Piece& piece) { piece.change = 0.01f; }, 0), 0);
+    float const pixel = 10 * view_at(0).rays.direction_dx.x;
+    EXPECT_LT(deepest_after([](Piece&) {}, 20 * pixel), plane.max_depth());
 }
 
 TEST(MomentPlan, WhatComesIntoViewIsFirst) {
