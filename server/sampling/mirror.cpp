@@ -286,18 +286,22 @@ void Mirror::draw(Moment& moment, std::size_t first, BodyMotions const& motions)
                              [&](int column, int row, unsigned mask) { show(moment, i, mask, column, row); });
         }
         if (&moment == &moments_[base_] && moment.is_of_camera && !moment.pieces[i].moves) {
-            cover(moment.pieces[i]);
+            cover(moment, i);
         }
     }
 }
 
-/// Of a framelet of the base of which nothing moves: pieces of a square may leave gaps between each other, its samples
-/// do not.
-void Mirror::cover(Piece const& piece) {
-    PixelRect const part = part_of(piece, ImagePlane(viewport_));
+/// By a piece of a framelet of the base of which nothing moves: pieces of a square may leave gaps between each other,
+/// its samples do not.
+void Mirror::cover(Moment const& moment, std::size_t index) {
+    PixelRect const part = part_of(moment.pieces[index], ImagePlane(viewport_));
     for (int row = part.top / cell_side; row < std::min(part.bottom / cell_side, rows_); ++row) {
         for (int column = part.left / cell_side; column < std::min(part.right / cell_side, columns_); ++column) {
-            cells_[index_of(column, row)].covered = 0xffff;
+            Cell& cell = cells_[index_of(column, row)];
+            cell.covered = 0xffff;
+            if (!cell.is_shown() && moment.reprojected[index].is_in_picture()) {
+                put(moment, index, moment.reprojected[index].inverse_depth, 1, cell);
+            }
         }
     }
 }
@@ -316,14 +320,20 @@ void Mirror::show(Moment const& moment, std::size_t index, unsigned mask, int co
     float const w = std::max(reprojected.inverse_depth + glm::dot(reprojected.depth_slope, from), 0.0f);
     int const share = std::popcount(mask);
     if (is_better(moment, reprojected, w, share, cell)) {
-        cell.inverse_depth = w;
-        cell.worn = reprojected.worn;
-        cell.leads = reprojected.leads;
-        cell.detail = moment.pieces[index].detail / reprojected.scale;
-        cell.piece = static_cast<std::uint32_t>(index);
-        cell.moment = static_cast<std::uint8_t>(&moment - moments_.data());
-        cell.share = static_cast<std::uint8_t>(share);
+        put(moment, index, w, share, cell);
     }
+}
+
+/// A piece is what a cell shows.
+void Mirror::put(Moment const& moment, std::size_t index, float inverse_depth, int share, Cell& cell) const {
+    ReprojectedPiece const& reprojected = moment.reprojected[index];
+    cell.inverse_depth = inverse_depth;
+    cell.worn = reprojected.worn;
+    cell.leads = reprojected.leads;
+    cell.detail = moment.pieces[index].detail / reprojected.scale;
+    cell.piece = static_cast<std::uint32_t>(index);
+    cell.moment = static_cast<std::uint8_t>(&moment - moments_.data());
+    cell.share = static_cast<std::uint8_t>(share);
 }
 
 /// Than what a cell shows.
@@ -340,7 +350,7 @@ bool Mirror::is_better(Moment const& moment, ReprojectedPiece const& reprojected
     if (reprojected.leads != cell.leads) {
         return reprojected.leads;
     }
-    return reprojected.worn != cell.worn ? reprojected.worn < cell.worn : moment.number > moments_[cell.moment].number;
+    return reprojected.worn != cell.worn ? reprojected.worn < cell.worn : moment.number >= moments_[cell.moment].number;
 }
 
 } // namespace framelet

@@ -90,8 +90,9 @@ private:
     Moment& free_slot();
     PieceReprojection to_picture(Moment const& moment, BodyMotions const& motions) const;
     void draw(Moment& moment, std::size_t first, BodyMotions const& motions);
-    void cover(Piece const& piece);
+    void cover(Moment const& moment, std::size_t index);
     void show(Moment const& moment, std::size_t index, unsigned mask, int column, int row);
+    void put(Moment const& moment, std::size_t index, float inverse_depth, int share, Cell& cell) const;
     bool is_better(Moment const& moment, ReprojectedPiece const& reprojected, float inverse_depth, int share,
                    Cell const& cell) const;
     bool shows_loose(Moment const& moment) const;

@@ -109,17 +109,28 @@ void put_on(LooseSum const& sum, Piece& piece) {
     piece.is_loose = true;
 }
 
-/// Variance of each block of 2x2 samples.
+/// Of each block of 2x2 samples: half the mean squared difference of neighbours, those in the next blocks to the right
+/// and below among them, or what changes just between two blocks were no detail. As large as the variance of a block
+/// that something divides.
 std::array<float, framelet_samples / 4> details_of(std::span<float const, framelet_samples> luma) {
     std::array<float, framelet_samples / 4> details;
-    for (std::size_t block = 0; block < details.size(); ++block) {
-        auto const four = luma.subspan(4 * block, 4);
-        float const mean = 0.25f * (four[0] + four[1] + four[2] + four[3]);
-        float sum = 0;
-        for (float const value : four) {
-            sum += (value - mean) * (value - mean);
+    for (std::uint32_t block = 0; block < details.size(); ++block) {
+        float sum = 0, pairs = 0;
+        for (std::uint32_t i = 4 * block; i < 4 * block + 4; ++i) {
+            std::uint32_t const column = morton_x(i), row = morton_y(i);
+            auto const add = [&](std::uint32_t neighbour) {
+                float const difference = luma[neighbour] - luma[i];
+                sum += difference * difference;
+                pairs += 1;
+            };
+            if (column + 1 < framelet_side) {
+                add(morton_index(column + 1, row));
+            }
+            if (row + 1 < framelet_side) {
+                add(morton_index(column, row + 1));
+            }
         }
-        details[block] = 0.25f * sum;
+        details[block] = 0.5f * sum / pairs;
     }
     return details;
 }

@@ -71,6 +71,28 @@ TEST(Piece, KnowsTheSlopeOfWhatItShows) {
     }
 }
 
+TEST(Piece, AnEdgeIsDetailBetweenAnyTwoSamples) {
+    Tile const tile = make_tile(plane.pixel_depth(), 1, 1);
+    PixelRect const rect = plane.tile_rect(tile);
+    auto const detail_at = [&](int samples) {
+        auto const edge = static_cast<float>(rect.left + samples);
+        std::vector<Piece> pieces;
+        cut_pieces(render_tile(plane, tile,
+                               [&](float x, float) {
+                                   return Seen{10, x < edge ? 0.3f : 0.7f};
+                               }),
+                   plane, 0, pieces);
+        float detail = 0;
+        for (Piece const& piece : pieces) {
+            detail += piece.detail / static_cast<float>(pieces.size());
+        }
+        return detail;
+    };
+    for (int samples = 1; samples < framelet_side; ++samples) {
+        EXPECT_NEAR(detail_at(samples) / detail_at(5), 1, 0.4) << samples;
+    }
+}
+
 TEST(Piece, HostileDepthsGiveFiniteNumbers) {
     constexpr float nan = std::numeric_limits<float>::quiet_NaN();
     for (float const depth : {0.0f, -0.0f, -1.0f, INFINITY, -INFINITY, nan, 1e-45f, 3e38f}) {
