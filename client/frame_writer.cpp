@@ -62,7 +62,8 @@ fs::path FramePattern::path(std::uint64_t frame) const {
     return before_ + number + after_;
 }
 
-FrameWriter::FrameWriter(FramePattern pattern) : pattern_(std::move(pattern)) {
+FrameWriter::FrameWriter(FramePattern pattern, WhenWritten when)
+    : pattern_(std::move(pattern)), writes_(when == WhenWritten::at_once) {
     fs::path const folder = pattern_.path(0).parent_path();
     std::error_code error;
     if (!folder.empty() && !fs::is_directory(folder)) {
@@ -94,8 +95,10 @@ void FrameWriter::add(Picture const& picture, bool changed, bool taken) {
         frame.picture = picture;
     }
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [this] { return waiting_.size() < most_waiting || failure_; });
+    changed_.wait(lock, [this] { return !writes_ || waiting_.size() < most_waiting || failure_; });
     throw_if_failed();
+    kept_bytes_ += frame.picture ? frame.picture->rgba.size() : 0;
+    writes_ = writes_ || kept_bytes_ > most_kept_bytes;
     waiting_.push_back(std::move(frame));
     changed_.notify_all();
 }
@@ -104,7 +107,7 @@ void FrameWriter::stop() {
     if (thread_.joinable()) {
         {
             std::lock_guard const lock(mutex_);
-            stopping_ = true;
+            stopping_ = writes_ = true;
         }
         changed_.notify_all();
         thread_.join();
@@ -128,7 +131,7 @@ void FrameWriter::throw_if_failed() const {
 void FrameWriter::run() {
     std::unique_lock lock(mutex_);
     while (true) {
-        changed_.wait(lock, [this] { return stopping_ || !waiting_.empty(); });
+        changed_.wait(lock, [this] { return stopping_ || (writes_ && !waiting_.empty()); });
         if (waiting_.empty()) {
             return;
         }

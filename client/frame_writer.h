@@ -30,11 +30,17 @@ private:
     char fill_ = ' ';
 };
 
+enum class WhenWritten : std::uint8_t {
+    at_once,
+    /// As long as there is room for them: writing takes nothing from what is shown.
+    at_the_end,
+};
+
 /// Frames are numbered from 0. A numbered pattern gets a file for each frame, another one only the last.
 class FrameWriter {
 public:
     /// Makes the folder where there is none. Throws InputError where that fails.
-    explicit FrameWriter(FramePattern pattern);
+    explicit FrameWriter(FramePattern pattern, WhenWritten when = WhenWritten::at_once);
     ~FrameWriter();
     FrameWriter(FrameWriter const&) = delete;
     FrameWriter& operator=(FrameWriter const&) = delete;
@@ -55,6 +61,7 @@ private:
         std::optional<Picture> picture; ///< empty: as the one that was written before
     };
     static constexpr std::size_t most_waiting = 4;
+    static constexpr std::size_t most_kept_bytes = std::size_t{256} << 20;
 
     void run();
     void write(Frame const& frame);
@@ -71,6 +78,8 @@ private:
     mutable std::mutex mutex_; // guards what follows
     std::condition_variable changed_;
     std::deque<Frame> waiting_;
+    std::size_t kept_bytes_ = 0; ///< of pictures that wait until the end
+    bool writes_ = true; ///< what waits
     bool stopping_ = false;
     std::optional<std::string> failure_;
 

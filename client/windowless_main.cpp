@@ -175,7 +175,7 @@ int run(Options const& options, ConnectionOptions const& connection, Viewport vi
     std::optional<CameraPath> const path = read_camera(options);
     std::optional<FrameWriter> writer;
     if (pattern) {
-        writer.emplace(*pattern);
+        writer.emplace(*pattern, options.output_times.empty() ? WhenWritten::at_once : WhenWritten::at_the_end);
     }
     std::optional<FrameLog> log;
     if (!options.frames_file.empty()) {

@@ -81,6 +81,30 @@ TEST_F(FrameWriterTest, LeavesOutWhatIsNotTaken) {
     }
 }
 
+TEST_F(FrameWriterTest, WritesAtTheEndWhatThereIsRoomForUntilThen) {
+    FrameWriter kept(FramePattern((folder_ / "%d.ppm").string()), WhenWritten::at_the_end);
+    for (int i = 0; i < 20; ++i) {
+        kept.add(grey(static_cast<std::uint8_t>(i)), true);
+    }
+    EXPECT_TRUE(fs::is_empty(folder_));
+    EXPECT_EQ(kept.cpu_seconds(), 0);
+    kept.finish();
+    for (int i = 0; i < 20; ++i) {
+        EXPECT_EQ(read_picture(folder_ / (std::to_string(i) + ".ppm")).rgba[0], i);
+    }
+}
+
+TEST_F(FrameWriterTest, DoesNotKeepMoreThanThereIsRoomFor) {
+    FrameWriter kept(FramePattern((folder_ / "%d.ppm").string()), WhenWritten::at_the_end);
+    Picture const large(4096, 4096); // 64 MB
+    for (int i = 0; i < 12; ++i) { // the last ones wait until some of the first are written
+        kept.add(large, true);
+    }
+    EXPECT_TRUE(fs::exists(folder_ / "0.ppm"));
+    kept.finish();
+    EXPECT_TRUE(fs::exists(folder_ / "11.ppm"));
+}
+
 TEST(FrameChoice, TakesThreeFramesFromEachTimeOn) {
     FrameChoice all({});
     FrameChoice some({0.5, 0.2});
