@@ -97,8 +97,7 @@ void FrameWriter::add(Picture const& picture, bool changed, bool taken) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return !writes_ || waiting_.size() < most_waiting || failure_; });
     throw_if_failed();
-    kept_bytes_ += frame.picture ? frame.picture->rgba.size() : 0;
-    writes_ = writes_ || kept_bytes_ > most_kept_bytes;
+    writes_ = writes_ || waiting_.size() * picture.rgba.size() > most_kept_bytes;
     waiting_.push_back(std::move(frame));
     changed_.notify_all();
 }
@@ -107,7 +106,7 @@ void FrameWriter::stop() {
     if (thread_.joinable()) {
         {
             std::lock_guard const lock(mutex_);
-            stopping_ = writes_ = true;
+            stopping_ = true;
         }
         changed_.notify_all();
         thread_.join();

@@ -78,8 +78,7 @@ private:
     mutable std::mutex mutex_; // guards what follows
     std::condition_variable changed_;
     std::deque<Frame> waiting_;
-    std::size_t kept_bytes_ = 0; ///< of pictures that wait until the end
-    bool writes_ = true; ///< what waits
+    bool writes_; ///< what waits; else it is kept
     bool stopping_ = false;
     std::optional<std::string> failure_;
 

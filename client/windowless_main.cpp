@@ -231,7 +231,7 @@ int main(int argc, char** argv) {
                    "for the last frame");
     app.add_option("--output-times", options.output_times,
                    "With numbered files: only the three frames from each of these times of the scene on, seconds; the "
-                   "numbers stay")
+                   "numbers stay; written when the run is over")
         ->check(number_in(0.0, 1e6));
     app.add_option("--frames", options.frames_file,
                    "Write a line of JSON for each frame to this file: when it was shown, the scene's time, bytes, CPU");

@@ -336,7 +336,7 @@ void Mirror::put(Moment const& moment, std::size_t index, float inverse_depth, i
     cell.share = static_cast<std::uint8_t>(share);
 }
 
-/// Than what a cell shows.
+/// Than what a cell shows; of one moment, what came later.
 bool Mirror::is_better(Moment const& moment, ReprojectedPiece const& reprojected, float inverse_depth, int share,
                        Cell const& cell) const {
     if (share < least_share || cell.share < least_share) {

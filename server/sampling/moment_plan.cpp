@@ -47,9 +47,10 @@ constexpr std::array<float, sampling_levels> missed_shares(float finest) {
 constexpr std::array<float, sampling_levels> moved_shares = missed_shares(finest_shown_spacing),
                                              standing_shares = missed_shares(0);
 
-/// Whether a cell is worth the finest samples: it will show the same for a second, as far as is known.
+/// Whether a cell is worth the finest samples: as far as is known it will show the same for a second, in which they
+/// wear by less than what they are finer.
 bool stays(Mirror const& mirror, Cell const& cell) {
-    constexpr float most_fading = 0.25f;
+    constexpr float most_fading = 0.25f; // pixels a second
     if (!mirror.camera_stands() || !cell.is_shown() || !mirror.gives_way(cell) || cell.is_wrong || cell.stale > 0) {
         return false;
     }
@@ -57,11 +58,13 @@ bool stays(Mirror const& mirror, Cell const& cell) {
     return !piece.moves && piece.change == 0 && piece.fading < most_fading;
 }
 
-} // namespace
-
+/// Mean squared error of samples `spacing` pixels apart (worn), of a surface of such `detail` (see `Piece`): what is
+/// missing and what aliases, as `unresolved_error` has it where each band has half the energy of the coarser one.
 float spacing_error(float detail, float spacing) {
     return std::min(detail * missed_share(spacing), most_error);
 }
+
+} // namespace
 
 void MomentPlan::find(Mirror const& mirror, PlaceField const& field, MomentBudget const& budget,
                       std::vector<RatedPatch>& rated) {

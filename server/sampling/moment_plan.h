@@ -20,9 +20,6 @@ inline constexpr float hole_error = 0.03f;
 
 /// By how much the error of samples grows with their spacing, of the detail, for each pixel.
 inline constexpr float error_growth = 1 + 4.0f / 9;
-/// Mean squared error of samples `spacing` pixels apart (worn), of a surface of such `detail` (see `Piece`): what is
-/// missing and what aliases, as `unresolved_error` has it where each band has half the energy of the coarser one.
-float spacing_error(float detail, float spacing);
 
 struct MomentBudget {
     double samples = 0; ///< that the patches together may cost

@@ -97,12 +97,12 @@ TEST_F(FrameWriterTest, WritesAtTheEndWhatThereIsRoomForUntilThen) {
 TEST_F(FrameWriterTest, DoesNotKeepMoreThanThereIsRoomFor) {
     FrameWriter kept(FramePattern((folder_ / "%d.ppm").string()), WhenWritten::at_the_end);
     Picture const large(4096, 4096); // 64 MB
-    for (int i = 0; i < 12; ++i) { // the last ones wait until some of the first are written
+    for (int i = 0; i < 7; ++i) { // the last one waits until some of the first are written
         kept.add(large, true);
     }
     EXPECT_TRUE(fs::exists(folder_ / "0.ppm"));
     kept.finish();
-    EXPECT_TRUE(fs::exists(folder_ / "11.ppm"));
+    EXPECT_TRUE(fs::exists(folder_ / "6.ppm"));
 }
 
 TEST(FrameChoice, TakesThreeFramesFromEachTimeOn) {
