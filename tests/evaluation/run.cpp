@@ -175,11 +175,14 @@ double lead_seconds(RunParameters const& parameters) {
 }
 
 std::size_t reference_count(RunParameters const& parameters) {
-    return static_cast<std::size_t>(std::lround(parameters.seconds * parameters.reference_rate));
+    return parameters.reference_times.empty()
+               ? static_cast<std::size_t>(std::lround(parameters.seconds * parameters.reference_rate))
+               : parameters.reference_times.size();
 }
 
 double reference_time(RunParameters const& parameters, std::size_t index) {
-    return static_cast<double>(index) / parameters.reference_rate;
+    return parameters.reference_times.empty() ? static_cast<double>(index) / parameters.reference_rate
+                                              : parameters.reference_times[index];
 }
 
 SceneTime scene_time(RunParameters const& parameters, double now) {

@@ -23,6 +23,7 @@ struct RunParameters {
     double start = 0; ///< scene time at which the measured time begins, seconds
     double seconds = 1; ///< of scene time that are measured
     double reference_rate = 120; ///< measurements a second
+    std::vector<double> reference_times{}; ///< where there are any: seconds of the run, ascending, instead of that rate
     double frames_per_second = 10; ///< the machine: samples a displayed pixel and second that it renders and encodes
     LinkParameters link;
     Counting counting = Counting::server;

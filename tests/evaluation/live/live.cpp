@@ -262,8 +262,14 @@ json run_figures(LiveRun const& run) {
             {"photon_ms", photons.empty() ? json() : json(1e3 * percentile(photons, 0.5))}};
 }
 
+/// What became of one run.
+struct Measured {
+    json figures;
+    std::vector<ComparedMoment> moments;
+};
+
 /// Errors at some moments, spread over the run.
-json error_figures(BenchScene& scene, std::string const& method, LiveRun const& run, LiveOptions const& options) {
+Measured error_figures(BenchScene& scene, std::string const& method, LiveRun const& run, LiveOptions const& options) {
     std::vector<std::size_t> written;
     for (std::size_t i = 0; i < run.frames.size(); ++i) {
         if (std::filesystem::exists(run.picture_file(run.frames[i].number))) {
@@ -271,6 +277,7 @@ json error_figures(BenchScene& scene, std::string const& method, LiveRun const& 
         }
     }
     json figures{{"mse", 0.0}, {"ssim", 0.0}, {"flip", 0.0}, {"steadiness", 0.0}};
+    std::vector<ComparedMoment> moments;
     std::size_t const count = written.size() / FrameChoice::frames_at_once;
     for (std::size_t k = 0; k < count; ++k) {
         std::size_t const first = written[k * FrameChoice::frames_at_once];
@@ -291,28 +298,30 @@ json error_figures(BenchScene& scene, std::string const& method, LiveRun const& 
             write_beside_reference(options.charts / (scene.name + "-" + method + "-" + std::to_string(k) + ".png"),
                                    reference[1], std::span(shown).subspan(1, 1));
         }
+        moments.push_back({run.frames[first + 1].scene_time, std::move(reference[1])});
     }
     figures["psnr"] = psnr_from_mse(figures["mse"]);
-    return figures;
+    return {std::move(figures), std::move(moments)};
 }
 
 /// Of all choices that a rival has, each run by itself, the one that errs least.
-json best_run(BenchScene& scene, std::string const& method, LiveOptions const& options) {
-    std::vector<json> runs;
+Measured best_run(BenchScene& scene, std::string const& method, LiveOptions const& options) {
+    std::vector<Measured> runs;
     std::vector<double> errors;
     for (RivalParts const& choice : rival_choices(method, {})) {
         LiveRun run;
         run_programs(scene, method, choice, options, run);
-        json figures = run_figures(run);
-        figures.update(error_figures(scene, method, run, options));
+        Measured measured = error_figures(scene, method, run, options);
+        json& figures = measured.figures;
+        figures.update(run_figures(run));
         if (has_spacing(method)) {
             figures["spacing"] = choice.spacing;
             figures["margin"] = choice.margin;
         }
         errors.push_back(figures["mse"]);
-        runs.push_back(std::move(figures));
+        runs.push_back(std::move(measured));
     }
-    return runs[best_choice(errors)];
+    return std::move(runs[best_choice(errors)]);
 }
 
 /// A method, with the spacing that its frames had and an m for a margin.
@@ -355,12 +364,13 @@ json measure_live(BenchScene& scene, LiveOptions const& options) {
                              {"unsteady", "/steadiness", 9, 2, 1, true}});
     json methods;
     for (std::string const& method : options.methods) {
-        json& figures = methods[method] = best_run(scene, method, options);
+        Measured const measured = best_run(scene, method, options);
+        json& figures = methods[method] = measured.figures;
         json row = figures;
         row["title"] = row_title(method, figures);
         table.print(row);
         if (options.predicts && (method == "framelet" || method == "framelet-unwarped")) {
-            figures["virtual"] = predict_live(scene, method, options, figures);
+            figures["virtual"] = predict_live(scene, method, options, measured.figures, measured.moments);
             print_prediction(figures);
         }
     }

@@ -7,15 +7,14 @@
 #include <nlohmann/json.hpp>
 #include <tbb/global_control.h>
 
-#include "tests/evaluation/comparison.h"
+#include "tests/evaluation/measures/measures.h"
+#include "tests/evaluation/run.h"
 
 namespace framelet::bench {
 namespace {
 
 using nlohmann::json;
 
-/// Of the pictures' references, seconds: sessions that begin at about the same time share what is kept of them.
-constexpr double start_step = 0.1;
 /// A session goes by what it costs, and costs by how it goes.
 constexpr int calibrations = 3;
 
@@ -77,13 +76,16 @@ CostTable calibrated(BenchScene& scene, std::string const& method, RunParameters
 
 } // namespace
 
-json predict_live(BenchScene& scene, std::string const& method, LiveOptions const& options, json const& measured) {
+json predict_live(BenchScene& scene, std::string const& method, LiveOptions const& options, json const& measured,
+                  std::vector<ComparedMoment> const& moments) {
     RunParameters run;
     run.viewport = options.viewport;
-    run.start = start_step * std::round(measured["start_seconds"].get<double>() / start_step);
+    run.start = measured["start_seconds"];
     run.seconds = options.seconds;
     run.begins_empty = true;
-    run.reference_rate = options.moments / (options.seconds - build_up_seconds);
+    for (ComparedMoment const& moment : moments) {
+        run.reference_times.push_back(moment.time - run.start);
+    }
     run.link = options.link;
     CostTable costs = options.costs;
     for (int i = 0; i < calibrations; ++i) {
@@ -91,20 +93,14 @@ json predict_live(BenchScene& scene, std::string const& method, LiveOptions cons
         costs = calibrated(scene, method, run, costs, measured);
     }
     run = on_one_core(scene, run, costs);
-    Reference const reference(scene,
-                              {run.viewport, run.seconds, run.reference_rate, options.samples_per_side, run.start},
-                              default_reference_cache());
-    MethodRecord const record = record_method(scene, reference, method, run, 1, costs);
-    json figures = rates_of(record.run, run);
-    double mse = 0, count = 0;
-    for (std::size_t i = 0; i < record.measures.size(); ++i) {
-        if (reference_time(run, i) >= build_up_seconds) {
-            mse += record.measures[i].mse;
-            ++count;
-        }
-    }
-    figures["mse"] = mse / count;
-    figures["psnr"] = psnr_from_mse(mse / count);
+    double mse = 0;
+    auto const session = make_method(method, method_setup(run, 1, costs));
+    RunResult const result = run_method(scene, *session, run, 1, [&](std::size_t i, Picture const& shown, double) {
+        mse += mean_squared_error(shown, moments[i].reference) / static_cast<double>(moments.size());
+    });
+    json figures = rates_of(result, run);
+    figures["mse"] = mse;
+    figures["psnr"] = psnr_from_mse(mse);
     figures["costs"] = to_json(costs);
     return figures;
 }
