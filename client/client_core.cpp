@@ -24,6 +24,10 @@ double seconds_between(Clock::time_point from, Clock::time_point to) {
     return std::chrono::duration<double>(to - from).count();
 }
 
+Clock::duration clock_duration(double seconds) {
+    return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+}
+
 double ratio(double amount, std::uint64_t count) {
     return count == 0 ? 0 : amount / static_cast<double>(count);
 }
@@ -82,6 +86,7 @@ struct ClientCore::Impl {
     std::uint64_t last_batch = 0;
     Camera shown_camera;
     SceneTime shown_time = 0;
+    Clock::time_point shown_at; ///< when the last picture was to be seen; does not go back
     MakingTime making;
     bool is_smooth = false;
     Status status;
@@ -271,10 +276,10 @@ struct ClientCore::Impl {
     }
 
     /// Under the lock.
-    ClockState clock_now() const {
+    ClockState clock_at(Clock::time_point time) const {
         ClockState out = status.clock;
         if (out.playing) {
-            double const elapsed = seconds_between(status_time, Clock::now());
+            double const elapsed = seconds_between(status_time, time);
             out.time = std::clamp(out.time + elapsed * static_cast<double>(out.speed), 0.0, max_scene_time);
         }
         return out;
@@ -286,33 +291,29 @@ struct ClientCore::Impl {
                last_batch >= status.last_batch;
     }
 
-    /// Of what will be the present when the picture is made; not where the scene is to be late anyway.
+    /// Of what will be the present when the picture is seen.
     PictureRequest picture_request() const {
         std::lock_guard const lock(mutex);
-        ClockState clock = clock_now();
-        if (clock.playing && !is_smooth && picture_settings.scene_moves && picture_settings.reproject) {
-            clock.time += making.expected() * static_cast<double>(clock.speed);
-            clock.time = std::clamp(clock.time, 0.0, max_scene_time);
-        }
+        ClockState const clock = clock_at(shown_at);
         return {view.view.camera,
                 view.view.number,
                 view.scene_camera,
                 clock.time,
                 static_cast<double>(clock.speed),
-                seconds_between(start, Clock::now()),
+                seconds_between(start, shown_at),
                 is_settled()};
     }
 
     /// How old what the last picture, of the camera of this number, shows is; -1: nothing new. Under the lock.
-    double photon_seconds(std::uint64_t number, Clock::time_point now) {
-        ClockState const clock = clock_now();
+    double photon_seconds(std::uint64_t number, Clock::time_point seen) {
         if (view.scene_camera >= 0) {
+            ClockState const clock = clock_at(seen);
             bool const moves = clock.playing && clock.speed != 0 && picture_settings.scene_moves;
             return moves ? (clock.time - shown_time) / static_cast<double>(clock.speed) : -1;
         }
         double seconds = -1;
         while (!set_cameras.empty() && set_cameras.front().number <= number) {
-            seconds = set_cameras.front().number == number ? seconds_between(set_cameras.front().time, now) : seconds;
+            seconds = set_cameras.front().number == number ? seconds_between(set_cameras.front().time, seen) : seconds;
             set_cameras.pop_front();
         }
         return seconds;
@@ -383,7 +384,7 @@ void ClientCore::request_clock(ClockRequest const& request) {
     {
         std::lock_guard const lock(impl_->mutex);
         ClockState& clock = impl_->status.clock;
-        clock = impl_->clock_now();
+        clock = impl_->clock_at(Clock::now());
         impl_->status_time = Clock::now();
         clock.time = (request.set & ClockRequest::time) != 0 ? request.state.time : clock.time;
         clock.playing = (request.set & ClockRequest::playing) != 0 ? request.state.playing : clock.playing;
@@ -394,15 +395,18 @@ void ClientCore::request_clock(ClockRequest const& request) {
     impl_->connection->send(request);
 }
 
-bool ClientCore::update_picture(Picture& picture, std::vector<PixelRect>& changed) {
+bool ClientCore::update_picture(Picture& picture, std::vector<PixelRect>& changed, Clock::time_point shown_at) {
     Impl& core = *impl_;
     changed.clear();
+    Clock::time_point const called = Clock::now();
     {
         std::lock_guard const lock(core.mutex);
         core.send_waiting_view();
         if (core.view.view.number == 0) {
             return false;
         }
+        shown_at = std::max({shown_at, core.shown_at, called + clock_duration(core.making.expected())});
+        core.shown_at = shown_at;
     }
     Clock::time_point begun, made;
     bool drawn = false;
@@ -422,7 +426,7 @@ bool ClientCore::update_picture(Picture& picture, std::vector<PixelRect>& change
     std::lock_guard const lock(core.mutex);
     core.shown_camera = camera;
     core.shown_time = time;
-    core.statistics.photon_seconds = drawn ? core.photon_seconds(camera_number, Clock::now()) : -1;
+    core.statistics.photon_seconds = drawn ? core.photon_seconds(camera_number, std::max(shown_at, made)) : -1;
     if (!drawn) {
         return false;
     }
@@ -430,12 +434,17 @@ bool ClientCore::update_picture(Picture& picture, std::vector<PixelRect>& change
         core.statistics.pixels += static_cast<std::uint64_t>(rect.width()) * static_cast<std::uint64_t>(rect.height());
     }
     core.statistics.reconstruct_seconds += seconds_between(begun, made);
-    core.making.note(seconds_between(begun, made));
+    core.making.note(seconds_between(called, made));
     ++core.statistics.pictures;
     if (core.statistics.first_picture_seconds < 0 && core.first_camera_time) {
         core.statistics.first_picture_seconds = seconds_between(*core.first_camera_time, made);
     }
     return true;
+}
+
+double ClientCore::making_seconds() const {
+    std::lock_guard const lock(impl_->mutex);
+    return impl_->making.expected();
 }
 
 void ClientCore::draw_overlay(DrawnOver overlay, Picture& picture) const {
@@ -469,7 +478,7 @@ Status ClientCore::status() const {
 
 ClockState ClientCore::clock() const {
     std::lock_guard const lock(impl_->mutex);
-    return impl_->clock_now();
+    return impl_->clock_at(Clock::now());
 }
 
 Camera ClientCore::shown_camera() const {

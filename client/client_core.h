@@ -47,7 +47,7 @@ struct ClientStatistics {
     double server_samples_per_second = 0;
     bool converged = false;
     /// From when the camera of the last picture was set, or the moment that it shows was the present, until the picture
-    /// was ready; -1: it shows no new one.
+    /// was seen; -1: it shows no new one.
     double photon_seconds = -1;
     double lag_seconds = 0; ///< by which the scene is shown late, as asked for; 0: it is not
 
@@ -88,7 +88,11 @@ public:
     /// held is moved to where it belongs now (`ViewerSettings::reproject`). Call it for every display frame. True when
     /// it changed. `changed` gets the rectangles that may differ. While nothing has come for a new viewport, the
     /// picture stays as it is, in its old size. A picture that is not the one of the last call is written as a whole.
-    bool update_picture(Picture& picture, std::vector<PixelRect>& changed);
+    /// `shown_at`: when it will be seen, and what it is to be of; the past: as soon as it is ready.
+    bool update_picture(Picture& picture, std::vector<PixelRect>& changed,
+                        std::chrono::steady_clock::time_point shown_at = {});
+    /// What `update_picture` will take, most likely no longer.
+    double making_seconds() const;
 
     /// Draws over a copy of the picture that `update_picture` made: outlines of the framelets that are held, as
     /// `draw_outlines`, or how far its pixels are to be trusted, as `draw_confidence` (outlines as well, where nothing

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <utility>
 
+#include "client/display_pace.h"
 #include "common/error.h"
 #include "common/picture_writer.h"
 
@@ -87,6 +88,7 @@ int Viewer::run() {
             overlay_.draw(content);
             meter_.frame(seconds_now() - now);
             window_.present();
+            showing_.note(seconds_now() - made_);
             shown = std::move(content);
             // A little early: where the swap waits for the display, that sets the pace.
             next_frame = now + 0.9 / window_.refresh_rate();
@@ -98,7 +100,9 @@ int Viewer::run() {
 
 /// Uploads what has changed; true when something has.
 bool Viewer::update_shown_picture() {
-    bool const changed = core_->update_picture(picture_, changed_);
+    double const until_seen = core_->making_seconds() + showing_.expected();
+    bool const changed = core_->update_picture(picture_, changed_, Clock::now() + DisplayPace::duration(until_seen));
+    made_ = seconds_now();
     bool const toggled = std::exchange(overlay_toggled_, false) && !picture_.rgba.empty();
     if (!changed && !toggled) {
         return false;

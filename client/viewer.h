@@ -9,6 +9,7 @@
 
 #include "client/camera_controller.h"
 #include "client/client_core.h"
+#include "client/making_time.h"
 #include "client/overlay_text.h"
 #include "client/window.h"
 
@@ -58,6 +59,8 @@ private:
     std::future<std::unique_ptr<ClientCore>> reconnecting_;
 
     Picture picture_;
+    double made_ = 0; ///< when
+    MakingTime showing_; ///< from then until it is on the display
     std::vector<PixelRect> changed_;
     bool show_help_ = false;
     bool show_statistics_ = false;

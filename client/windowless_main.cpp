@@ -12,6 +12,7 @@
 #include "client/client_core.h"
 #include "client/connection_arguments.h"
 #include "client/display_arguments.h"
+#include "client/display_pace.h"
 #include "client/frame_choice.h"
 #include "client/frame_log.h"
 #include "client/frame_writer.h"
@@ -68,10 +69,6 @@ void end_on_signals() {
     }
 }
 
-std::chrono::nanoseconds nanoseconds(double seconds) {
-    return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(seconds));
-}
-
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
@@ -115,8 +112,8 @@ Picture bare_picture(Viewport viewport) {
 /// Shows frames until the time is over, the session has ended or, if wanted, all is there. Returns what it counted.
 RunFigures show(ClientCore& core, Options const& options, std::optional<CameraPath> const& path, Viewport viewport,
                 FrameWriter* writer, FrameLog* log) {
-    double const period =
-        1 / options.rate.value_or(writer != nullptr && options.output.find('%') != std::string::npos ? 10.0 : 60.0);
+    double const rate =
+        options.rate.value_or(writer != nullptr && options.output.find('%') != std::string::npos ? 10.0 : 60.0);
     double const duration = options.duration.value_or(options.until_converged ? 60 : 10);
     double const path_duration = path ? path->duration() : 0;
     RunFigures run;
@@ -127,8 +124,10 @@ RunFigures show(ClientCore& core, Options const& options, std::optional<CameraPa
     std::vector<PixelRect> changed;
     FrameChoice choice(options.output_times);
     Clock::time_point const start = Clock::now();
-    Clock::time_point next = start;
+    Clock::time_point const end = start + DisplayPace::duration(duration);
+    DisplayPace pace(start, rate);
     while (true) {
+        wait_until(core, std::min(pace.begin(core.making_seconds()), end));
         double const now = seconds_since(start);
         bool const done = options.until_converged && now >= path_duration && core.is_complete();
         Camera camera = core.welcome().start_camera;
@@ -138,7 +137,9 @@ RunFigures show(ClientCore& core, Options const& options, std::optional<CameraPa
         if (!done) {
             core.set_view(camera, viewport, path ? path->scene_camera : core.start_scene_camera());
         }
-        bool const news = core.update_picture(picture, changed);
+        Clock::time_point const shown_at = pace.show(Clock::now(), core.making_seconds());
+        bool const news = core.update_picture(picture, changed, shown_at);
+        wait_until(core, shown_at);
         if (log != nullptr) {
             double const writing = writer != nullptr ? writer->cpu_seconds() : 0;
             ClientStatistics const statistics = core.statistics();
@@ -158,15 +159,10 @@ RunFigures show(ClientCore& core, Options const& options, std::optional<CameraPa
         if (run.converged_seconds < 0 && (done || core.is_complete())) {
             run.converged_seconds = now;
         }
-        if (done || now >= duration || core.end_reason() || told_to_end != 0) {
+        if (done || Clock::now() >= end || core.end_reason() || told_to_end != 0) {
             return run;
         }
-        next += nanoseconds(period);
-        if (Clock::now() > next + nanoseconds(period)) {
-            ++run.late_frames;
-            next = Clock::now();
-        }
-        wait_until(core, std::min(next, start + nanoseconds(duration)));
+        run.late_frames += pace.note_shown(Clock::now()) ? 1 : 0;
     }
 }
 

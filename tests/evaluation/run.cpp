@@ -88,7 +88,7 @@ private:
         SceneTime const time = scene_time(parameters_, aim);
         StageSeconds const seconds =
             scaled(method_.present({1, camera_at(scene_, time), parameters_.viewport}, time).seconds);
-        free_ = begin + seconds.viewer();
+        free_ = std::max(begin + seconds.viewer(), aim);
         making_.note(seconds.viewer());
         spend(begin, seconds);
         note_shown(seconds.reconstruct > 0);

@@ -7,6 +7,7 @@
 
 #include <tbb/global_control.h>
 
+#include "client/display_pace.h"
 #include "client/frame_choice.h"
 #include "client/frame_log.h"
 #include "client/frame_writer.h"
@@ -24,10 +25,6 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_between(Clock::time_point from, Clock::time_point to) {
     return std::chrono::duration<double>(to - from).count();
-}
-
-Clock::duration duration_of(double seconds) {
-    return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
 }
 
 double unix_seconds() {
@@ -53,10 +50,9 @@ public:
         std::scoped_lock const lock(mutex_);
         return std::exchange(messages_, {});
     }
-    /// So many seconds from now.
-    SceneTime scene_time(double later = 0) const {
+    SceneTime scene_time(Clock::time_point then) const {
         std::scoped_lock const lock(mutex_);
-        double const elapsed = clock_.playing ? seconds_between(clock_read_, Clock::now()) + later : 0;
+        double const elapsed = clock_.playing ? seconds_between(clock_read_, then) : 0;
         return clock_.time + elapsed * static_cast<double>(clock_.speed);
     }
 
@@ -99,7 +95,7 @@ void look_at_method(LookOptions const& options) {
     setup.costs = options.costs;
     setup.rivals = options.rivals;
     auto const method = make_method(options.method, setup);
-    FrameWriter writer{FramePattern(options.output)};
+    FrameWriter writer{FramePattern(options.output), WhenWritten::at_the_end};
     FrameLog log(options.frames_file);
     Mailbox mailbox;
     std::uint64_t batches = 0, bytes = 0;
@@ -135,10 +131,13 @@ void look_at_method(LookOptions const& options) {
     Clock::time_point const start = Clock::now();
     NumberedView view{0, {}, options.viewport};
     Picture const* shown = &method->picture();
+    DisplayPace pace(start, options.rate);
     MakingTime making;
     for (std::uint64_t frame = 0; seconds_between(start, Clock::now()) < options.duration; ++frame) {
+        std::this_thread::sleep_until(pace.begin(making.expected()));
         Clock::time_point const begun = Clock::now();
-        SceneTime const time = mailbox.scene_time(making.expected()); // as in the client, when it will be ready
+        Clock::time_point const shown_at = pace.show(begun, making.expected());
+        SceneTime const time = mailbox.scene_time(shown_at);
         Camera const camera = scene_camera >= 0 ? camera_at(*scene, time)
                               : path            ? path->at(seconds_between(start, begun))
                                                 : scene->camera;
@@ -158,16 +157,17 @@ void look_at_method(LookOptions const& options) {
         making.note(seconds_between(begun, Clock::now()));
         changed = changed || presented.seconds.reconstruct > 0;
         shown = &method->picture();
+        std::this_thread::sleep_until(shown_at);
         double const photon = changed ? seconds_between(begun, Clock::now()) : -1;
         std::uint64_t received = 0;
         {
             std::scoped_lock const lock(mutex);
             received = bytes;
         }
-        log.add({frame, unix_seconds(), mailbox.scene_time(), changed, false, received,
+        log.add({frame, unix_seconds(), mailbox.scene_time(Clock::now()), changed, false, received,
                  cpu_seconds_of(CLOCK_PROCESS_CPUTIME_ID) - writer.cpu_seconds(), 0, photon, scene_camera, camera});
-        writer.add(*shown, true, choice.takes(mailbox.scene_time()));
-        std::this_thread::sleep_until(begun + duration_of(1 / options.rate));
+        writer.add(*shown, true, choice.takes(mailbox.scene_time(Clock::now())));
+        pace.note_shown(Clock::now());
     }
     writer.finish();
     std::scoped_lock const lock(mutex);
