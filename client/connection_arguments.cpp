@@ -14,7 +14,8 @@ CLI::Option* add_connection_options(CLI::App& app, ConnectionArguments& argument
     CLI::Option* const server =
         app.add_option("HOST:PORT", arguments.server,
                        "Where framelet-server listens: HOST, HOST:PORT (else 7070) or [ADDRESS]:PORT for IPv6");
-    app.add_option("--token-file", arguments.token_file, "File whose first line is the server's token");
+    app.add_option("--token-file", arguments.token_file,
+                   "File whose first line is the server's token; not needed on the same machine as the same user");
     app.add_flag("--tls", arguments.tls, "Encrypt the connection and check the server's certificate");
     app.add_option("--tls-ca", arguments.authority_file,
                    "Certificates (PEM) to trust, as of a server that signed its own; implies --tls");

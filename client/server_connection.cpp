@@ -9,6 +9,7 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include "common/error.h"
+#include "protocol/local_token.h"
 #include "protocol/stream_opening.h"
 
 namespace framelet {
@@ -107,12 +108,20 @@ struct ServerConnection::Impl {
                     end("the token is not sent to " + server +
                         " in clear: use --tls, or --insecure if you know that nobody can listen");
                 } else if (!ended) {
-                    shake_hands();
+                    shake_hands(token_for(endpoint));
                 }
             });
     }
 
-    void shake_hands() {
+    /// What the user gave, or what a server of the same user on this machine has left for its viewers.
+    std::string token_for(asio::ip::tcp::endpoint const& endpoint) const {
+        if (!options.token.empty() || !is_loopback(endpoint.address())) {
+            return options.token;
+        }
+        return read_local_token(ServerAddress{endpoint.address().to_string(), endpoint.port()}.text());
+    }
+
+    void shake_hands(std::string const& token) {
         stream = options.tls ? tls_client_stream(std::move(socket), tls, options.server.host)
                              : plain_stream(std::move(socket));
         FramedStream::Handlers events;
@@ -129,7 +138,7 @@ struct ServerConnection::Impl {
         };
         // The greeting is small; batches may be large, once we know who talks to us.
         stream->start(std::move(events), max_upstream_message_bytes);
-        stream->send(Hello{protocol_version, options.token, coding::all});
+        stream->send(Hello{protocol_version, token, coding::all});
     }
 
     void receive(Message message) {

@@ -1,16 +1,19 @@
 // framelet-server: loads a scene and serves it to viewers.
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <exception>
 #include <fstream>
 #include <iostream>
+#include <iterator>
 
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 #include <tbb/global_control.h>
 
 #include "common/error.h"
+#include "protocol/local_token.h"
 #include "protocol/stream_opening.h"
 #include "server/options.h"
 #include "server/progress_bar.h"
@@ -60,6 +63,12 @@ void check_files(Options const& options) {
 void serve(Options& options) {
     auto listener = std::make_unique<Listener>(options.server.bind, options.server.port);
     check_files(options);
+    std::optional<LocalToken> local_token;
+    if (options.local_token) {
+        std::vector<std::string> addresses;
+        std::ranges::transform(listener->endpoints(), std::back_inserter(addresses), text_of);
+        options.server.token = local_token.emplace(addresses).token();
+    }
     tbb::global_control const threads(
         tbb::global_control::max_allowed_parallelism,
         options.threads > 0 ? static_cast<std::size_t>(options.threads)

@@ -66,7 +66,9 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
                    "picture does not fit is refused")
         ->check(CLI::Range(1, 1 << 20))
         ->capture_default_str();
-    app.add_option("--token-file", token_file, "File whose first line a viewer has to know, at least 16 characters");
+    app.add_option("--token-file", token_file,
+                   "File whose first line a viewer has to know, at least 16 characters; without it viewers of the "
+                   "same user on this machine are let in, and find a token by themselves");
     app.add_flag_callback(
         "--make-token",
         [] {
@@ -76,7 +78,7 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
         "Print a token that nobody can guess, and exit");
     app.add_option("--tls-cert", options.server.tls_certificate, "Certificate chain (PEM): encrypt connections");
     app.add_option("--tls-key", options.server.tls_key, "Private key (PEM) of the certificate");
-    app.add_flag("--insecure", insecure, "Listen beyond this machine without token and TLS");
+    app.add_flag("--insecure", insecure, "Let everybody in, and listen beyond this machine without token and TLS");
     app.add_option(
         "--record", options.record,
         "Write what is planned for each viewer into this folder: a line of JSON for each batch, and for viewers "
@@ -95,6 +97,7 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
             options.server.token = read_token_file(token_file);
         }
         require_protection(options.server, insecure);
+        options.local_token = options.server.token.empty() && !insecure;
     } catch (CLI::CallForHelp const& help) {
         return app.exit(help);
     } catch (CLI::CallForVersion const& version) {

@@ -22,6 +22,7 @@ struct Options {
     std::filesystem::path record; ///< folder for what the server thought; empty: nothing is recorded
     double record_rate = 4; ///< sets of pictures a second and session
     std::filesystem::path record_events; ///< file for what came to the streams; empty: none
+    bool local_token = false; ///< viewers of this user on this machine get one by themselves, others none
     ServerOptions server;
 };
 

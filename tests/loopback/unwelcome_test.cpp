@@ -152,6 +152,31 @@ TEST(Unwelcome, TheTokenIsNotSentToOtherMachinesInClear) {
     EXPECT_EQ(connect_client(server, {"--token-file", token, "--insecure"}), "");
 }
 
+/// What the server at this port says to a viewer that knows no token; empty where it lets it in.
+std::string word_to_a_stranger(std::uint16_t port) {
+    RawViewer viewer(port);
+    bool const welcome = viewer.watch([](Message const& message) { return !std::holds_alternative<Failure>(message); });
+    return welcome ? "" : viewer.failure();
+}
+
+TEST(Unwelcome, OtherUsersOfThisMachineAreRefused) {
+    ServerProcess server(scene_file, {"--paused"});
+    EXPECT_NE(word_to_a_stranger(port_of(server)).find("token"), std::string::npos);
+    EXPECT_EQ(connect_client(server), "") << "of the same user, without any option";
+    ServerProcess open(scene_file, {"--paused", "--insecure"});
+    EXPECT_EQ(word_to_a_stranger(port_of(open)), "");
+    EXPECT_EQ(connect_client(open), "");
+}
+
+/// As in a container, or from a job of the system.
+TEST(Unwelcome, WithoutAnEnvironmentTheSameUserIsLetInToo) {
+    for (std::string const forget : {"unset XDG_RUNTIME_DIR XDG_STATE_HOME HOME; ", "HOME=/dev/null/none; "}) {
+        ServerProcess server = server_after(forget, {"--paused"});
+        EXPECT_NE(word_to_a_stranger(port_of(server)).find("token"), std::string::npos);
+        EXPECT_EQ(connect_client(server), "") << forget;
+    }
+}
+
 TEST(Unwelcome, GuessesOfTheTokenAreSlowAndLogged) {
     TemporaryFolder folder;
     std::string const token = folder.write("token", "0123456789abcdef0123456789abcdef\n");
@@ -199,7 +224,7 @@ TEST(Unwelcome, ALogThatNobodyReadsEndsNothing) {
 }
 
 TEST(Unwelcome, WhenTheTerminalIsGoneViewersHearOfIt) {
-    ServerProcess server(scene_file, {"--paused"});
+    ServerProcess server(scene_file, {"--paused", "--insecure"});
     RawViewer viewer(port_of(server));
     ASSERT_TRUE(viewer.watch([](Message const& message) { return std::holds_alternative<Welcome>(message); }));
     server.process().signal(SIGHUP);
