@@ -100,6 +100,8 @@ struct Welcome {
     std::vector<SceneCameraInfo> cameras;
     double animation_duration = 0; ///< seconds; 0: nothing moves
     ClockState clock;
+    std::uint64_t scene_identity = 0; ///< the same where it is the same scene, whatever the server; 0: not known
+    bool controls = true; ///< whether this viewer's clock requests count
 };
 
 /// How the samples of a batch are coded.
@@ -130,12 +132,14 @@ struct Status {
     bool converged = false; ///< nothing more will come until something changes
     double samples_per_second = 0; ///< rendered for this session
     std::uint32_t sessions = 0;
+    bool controls = true; ///< as in Welcome, by now
     bool operator==(Status const&) const = default;
 };
 
 /// The other side did something that cannot be served; the connection ends after it. Either direction.
 struct Failure {
     std::string text; ///< one line
+    bool again = false; ///< the same may go well a little later
     bool operator==(Failure const&) const = default;
 };
 

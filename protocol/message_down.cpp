@@ -52,7 +52,8 @@ Offset<wire::Welcome> write(Builder& builder, Welcome const& value) {
     auto const scene = write_text(builder, value.scene_name, max_name_bytes);
     auto const start = write(builder, value.start_camera);
     return wire::CreateWelcome(builder, value.version, server, scene, value.scene_bounds.empty() ? nullptr : &box,
-                               start, builder.CreateVector(cameras), value.animation_duration, &clock);
+                               start, builder.CreateVector(cameras), value.animation_duration, &clock,
+                               value.scene_identity, value.controls);
 }
 
 Welcome read(wire::Welcome const& wire) {
@@ -77,6 +78,8 @@ Welcome read(wire::Welcome const& wire) {
     }
     value.animation_duration = wire.animation_duration();
     value.clock = read(*wire.clock());
+    value.scene_identity = wire.scene_identity();
+    value.controls = wire.controls();
     return value;
 }
 
@@ -199,7 +202,7 @@ char const* problem(EncodedBatch const& value) {
 Offset<wire::Status> write(Builder& builder, Status const& value) {
     wire::Clock const clock = write(value.clock);
     return wire::CreateStatus(builder, &clock, value.last_batch, value.camera_number, value.converged,
-                              value.samples_per_second, value.sessions);
+                              value.samples_per_second, value.sessions, value.controls);
 }
 
 Status read(wire::Status const& wire) {
@@ -210,6 +213,7 @@ Status read(wire::Status const& wire) {
     value.converged = wire.converged();
     value.samples_per_second = wire.samples_per_second();
     value.sessions = wire.sessions();
+    value.controls = wire.controls();
     return value;
 }
 
@@ -221,11 +225,11 @@ char const* problem(Status const& value) {
 }
 
 Offset<wire::Failure> write(Builder& builder, Failure const& value) {
-    return wire::CreateFailure(builder, write_text(builder, value.text, max_failure_bytes));
+    return wire::CreateFailure(builder, write_text(builder, value.text, max_failure_bytes), value.again);
 }
 
 Failure read(wire::Failure const& wire) {
-    return {read_text(wire.text(), max_failure_bytes)};
+    return {read_text(wire.text(), max_failure_bytes), wire.again()};
 }
 
 char const* problem(Failure const&) {

@@ -27,7 +27,7 @@ void require_protection(ServerOptions const& server, bool insecure) {
 
 std::variant<Options, int> parse_options(int argc, char const* const* argv) {
     Options options;
-    std::string token_file;
+    std::string token_file, control_token_file;
     bool insecure = false;
     std::uint64_t scene_megabytes = options.import.memory_bytes >> 20;
 
@@ -69,6 +69,12 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
     app.add_option("--token-file", token_file,
                    "File whose first line a viewer has to know, at least 16 characters; without it viewers of the "
                    "same user on this machine are let in, and find a token by themselves");
+    CLI::Option* const control = app.add_option(
+        "--control-token-file", control_token_file,
+        "File with another such token: who knows it may play, pause and seek, the others watch (default: the viewer "
+        "that has been there longest may)");
+    app.add_flag("--shared-control", options.server.shared_control, "Every viewer may play, pause and seek, for all")
+        ->excludes(control);
     app.add_flag_callback(
         "--make-token",
         [] {
@@ -95,6 +101,9 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
         options.import.memory_bytes = scene_megabytes << 20;
         if (!token_file.empty()) {
             options.server.token = read_token_file(token_file);
+        }
+        if (!control_token_file.empty()) {
+            options.server.control_token = read_token_file(control_token_file);
         }
         require_protection(options.server, insecure);
         options.local_token = options.server.token.empty() && !insecure;

@@ -17,10 +17,12 @@
 #include "protocol/stream_opening.h"
 #include "protocol/token.h"
 #include "server/scene/animation.h"
+#include "server/scene/scene_identity.h"
 #include "server/session/clock_requests.h"
 #include "server/session/farewells.h"
 #include "server/session/listener.h"
 #include "server/session/log_limit.h"
+#include "server/session/scene_control.h"
 #include "server/session/session_memory.h"
 #include "server/session/source.h"
 #include "server/session/token_guesses.h"
@@ -50,7 +52,14 @@ Welcome make_welcome(Scene const& scene, std::vector<Index> const& clips) {
     welcome.start_camera =
         welcome.cameras.empty() ? default_camera(welcome.scene_bounds) : welcome.cameras.front().camera;
     welcome.animation_duration = animation_duration(scene, clips);
+    welcome.scene_identity = scene_identity(scene);
     return welcome;
+}
+
+ControlRule control_rule(ServerOptions const& options) {
+    return options.shared_control          ? ControlRule::everybody
+           : options.control_token.empty() ? ControlRule::first
+                                           : ControlRule::token;
 }
 
 } // namespace
@@ -70,6 +79,7 @@ struct Server::Impl {
     std::shared_ptr<asio::ssl::context> tls;
     Welcome const welcome;
     SceneClock clock;
+    SceneControl control;
     ClockRequests clock_requests; ///< for the io thread only, as all down to the sessions
     SessionMemory memory;
     WaitingRoom waiting;
@@ -94,7 +104,8 @@ struct Server::Impl {
     Impl(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene, ServerOptions const& given,
          std::unique_ptr<Listener> bound)
         : listener(std::move(bound)), options(given), welcome(make_welcome(scene, clips)),
-          clock(!given.paused, steady_clock::now()), memory(given.session_megabytes * 1'000'000),
+          clock(!given.paused, steady_clock::now()), control(control_rule(given)),
+          memory(given.session_megabytes * 1'000'000),
           loop(scene, std::move(clips), render_scene, clock, given.loop,
                {[this] { return open_sessions(); }, [this] { asio::post(io, [this] { send_status(); }); }}) {
         if (!options.tls_certificate.empty()) {
@@ -125,7 +136,7 @@ struct Server::Impl {
         if (auto const dropped = waiting.enter(id, source, std::generate_canonical<double, 32>(random))) {
             auto const session = connections.at(*dropped).session;
             session->start(); // it may have been delayed, and is told nothing before that
-            session->end("too many connections at a time have not said yet who they are: try again");
+            session->end("too many connections at a time have not said yet who they are: try again", true);
         }
         ::setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_USER_TIMEOUT, &user_timeout_ms, sizeof user_timeout_ms);
         Connection connection;
@@ -154,7 +165,11 @@ struct Server::Impl {
     Session::Events session_events(std::uint64_t id) {
         Session::Events events;
         events.admit = [this, id](Hello const& hello) { return admit(id, hello); };
-        events.clock_request = [this](ClockRequest const& request) { set_clock(request); };
+        events.clock_request = [this, id](ClockRequest const& request) {
+            if (control.controls(id)) {
+                set_clock(request);
+            }
+        };
         events.resize = [this, id](Viewport viewport, bool predicts) { return memory.reserve(id, viewport, predicts); };
         events.changed = [this] { loop.wake(); };
         events.ended = [this, id](std::string const& reason) { end_session(id, reason); };
@@ -168,7 +183,9 @@ struct Server::Impl {
                            ", the viewer version " + std::to_string(hello.version) +
                            ": install the same release on both"};
         }
-        if (!options.token.empty() && !same_token(hello.token, options.token)) {
+        bool const knows_control_token =
+            !options.control_token.empty() && same_token(hello.token, options.control_token);
+        if (!options.token.empty() && !knows_control_token && !same_token(hello.token, options.token)) {
             if (!hello.token.empty()) { // which would be no guess
                 note_wrong_token(connection.source);
             }
@@ -176,13 +193,16 @@ struct Server::Impl {
         }
         if (open_sessions().size() >= options.max_sessions) {
             return Failure{"the server has its " + std::to_string(options.max_sessions) +
-                           " viewers already: try later or raise --max-sessions"};
+                               " viewers already: try later or raise --max-sessions",
+                           true};
         }
         spdlog::info("viewer {} connects from {}", id, connection.session->peer());
         connection.admitted = true;
         waiting.leave(id);
+        control.enter(id, knows_control_token);
         Welcome answer = welcome;
         answer.clock = clock.state(steady_clock::now());
+        answer.controls = control.controls(id);
         return answer;
     }
 
@@ -226,8 +246,12 @@ struct Server::Impl {
             farewells.add(found->second.stream);
             waiting.leave(id);
             memory.release(id);
-            std::scoped_lock const lock(sessions_mutex);
-            connections.erase(found);
+            control.leave(id);
+            {
+                std::scoped_lock const lock(sessions_mutex);
+                connections.erase(found);
+            }
+            send_status(); // it may be another's turn to control
         });
         loop.wake();
     }
@@ -248,6 +272,7 @@ struct Server::Impl {
             status.converged = status.converged && !(status.clock.playing && welcome.animation_duration > 0);
             status.samples_per_second = loop.samples_per_second();
             status.sessions = static_cast<std::uint32_t>(sessions.size());
+            status.controls = control.controls(session->id());
             session->send(status);
         }
     }
@@ -261,7 +286,7 @@ struct Server::Impl {
             }
         }
         for (auto const& [session, reason] : overdue) {
-            session->end(reason);
+            session->end(reason, true);
         }
     }
 
@@ -283,7 +308,7 @@ struct Server::Impl {
         clock_timer.cancel();
         signals.cancel(ignored);
         for (auto const& [id, connection] : connections) {
-            connection.session->close("the server shuts down");
+            connection.session->close("the server shuts down", true);
             if (connection.start) {
                 connection.start->cancel();
             }

@@ -19,6 +19,8 @@ struct ServerOptions {
     std::string bind = "127.0.0.1"; ///< address, or a name: all that it stands for
     std::uint16_t port = 7070; ///< 0: any free one
     std::string token; ///< what a viewer has to say; empty: nothing
+    std::string control_token; ///< who says it is let in as well, and may set the scene's clock; empty: the first may
+    bool shared_control = false; ///< every viewer may
     std::string tls_certificate; ///< PEM file; empty: no TLS
     std::string tls_key; ///< PEM file
     std::size_t max_sessions = 8;

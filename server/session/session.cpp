@@ -30,17 +30,17 @@ void Session::start() {
     stream_->start(std::move(handlers), max_upstream_message_bytes);
 }
 
-void Session::close(std::string const& farewell) {
+void Session::close(std::string const& farewell, bool again) {
     {
         std::scoped_lock const lock(mutex_);
         open_ = false;
         ended_ = true;
     }
-    stream_->send(Failure{farewell});
+    stream_->send(Failure{farewell, again});
     stream_->close_after_sending();
 }
 
-void Session::end(std::string const& reason) {
+void Session::end(std::string const& reason, bool again) {
     {
         std::scoped_lock const lock(mutex_);
         if (std::exchange(ended_, true)) {
@@ -48,7 +48,7 @@ void Session::end(std::string const& reason) {
         }
         open_ = false;
     }
-    stream_->send(Failure{reason});
+    stream_->send(Failure{reason, again});
     stream_->close_after_sending();
     events_.ended(reason);
 }
@@ -230,7 +230,7 @@ void Session::receive_hello(Message const& message) {
         answer = events_.admit(*hello);
     }
     if (auto* const failure = std::get_if<Failure>(&answer)) {
-        close(failure->text);
+        close(failure->text, failure->again);
         events_.ended("refused: " + failure->text);
         return;
     }

@@ -43,14 +43,15 @@ public:
 
     /// Begins to read. Does nothing the second time.
     void start();
-    void close(std::string const& farewell);
+    /// `again`: the viewer may come back by itself.
+    void close(std::string const& farewell, bool again = false);
 
     std::uint64_t id() const { return id_; }
     std::string peer() const { return stream_->peer(); }
 
     // From any thread:
     /// The server cannot go on with this viewer, which is told the reason, one line, as is whoever waits for `ended`.
-    void end(std::string const& reason);
+    void end(std::string const& reason, bool again = false);
     bool is_open() const;
     /// What the viewer can read, as its Hello said.
     std::uint32_t codings() const;

@@ -75,6 +75,8 @@ public:
         }
         welcome.animation_duration = number(0, 1e6);
         welcome.clock = clock();
+        welcome.scene_identity = any64();
+        welcome.controls = coin();
         return welcome;
     }
 
@@ -144,9 +146,9 @@ public:
         case 7:
             return batch();
         case 8:
-            return Status{clock(), any64(), any64(), coin(), number(0, 1e12), any32()};
+            return Status{clock(), any64(), any64(), coin(), number(0, 1e12), any32(), coin()};
         default:
-            return Failure{text(4096)};
+            return Failure{text(4096), coin()};
         }
     }
 
@@ -171,7 +173,8 @@ inline bool same(Message const& left, Message const& right) {
         return a->version == b->version && a->server == b->server && a->scene_name == b->scene_name &&
                a->scene_bounds.lower == b->scene_bounds.lower && a->scene_bounds.upper == b->scene_bounds.upper &&
                a->start_camera == b->start_camera && a->cameras == b->cameras &&
-               a->animation_duration == b->animation_duration && a->clock == b->clock;
+               a->animation_duration == b->animation_duration && a->clock == b->clock &&
+               a->scene_identity == b->scene_identity && a->controls == b->controls;
     }
     return std::visit(
         [&](auto const& value) {

@@ -77,7 +77,9 @@ TEST_P(HostileViewer, CamerasAtTheirBoundsAreServed) {
 }
 
 TEST_P(HostileViewer, FloodsTheClock) {
-    RunningServer const server({}, moving_scene());
+    ServerOptions options;
+    options.shared_control = true;
+    RunningServer const server(options, moving_scene());
     RawViewer bystander(server.port());
     RawViewer hostile(server.port());
     bystander.send(camera_update(1));

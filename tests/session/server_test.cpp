@@ -10,6 +10,7 @@
 
 #include "common/error.h"
 #include "protocol/stream_opening.h"
+#include "raw_viewer.h"
 #include "running_server.h"
 
 namespace framelet {
@@ -203,7 +204,9 @@ TEST(Server, EndsTheSessionThatSpeaksOutOfTurn) {
 }
 
 TEST(Server, ClockRequestsReachEveryViewer) {
-    RunningServer const server;
+    ServerOptions options;
+    options.shared_control = true;
+    RunningServer const server(options);
     Conversation one(server.port()), two(server.port());
     std::jthread const other([&] {
         two.stream->send(Hello{});
@@ -221,6 +224,62 @@ TEST(Server, ClockRequestsReachEveryViewer) {
         return !(status && status->clock.time == 7 && !status->clock.playing);
     });
     EXPECT_TRUE(one.closed.empty()) << one.closed;
+}
+
+/// Says hello and looks at the scene; returns whether it controls it, as it is told.
+bool begin(RawViewer& viewer) {
+    bool controls = false;
+    EXPECT_TRUE(viewer.watch([&](Message const& message) {
+        auto const* const welcome = std::get_if<Welcome>(&message);
+        controls = welcome != nullptr && welcome->controls;
+        return welcome != nullptr;
+    }));
+    viewer.send(camera_update(1));
+    return controls;
+}
+
+ClockRequest stop_at(SceneTime time) {
+    return {ClockRequest::time | ClockRequest::playing, {time, false, 1}};
+}
+
+bool hears(RawViewer& viewer, std::function<bool(Status const&)> const& wanted) {
+    return viewer.watch([&](Message const& message) {
+        auto const* const status = std::get_if<Status>(&message);
+        return status != nullptr && wanted(*status);
+    });
+}
+
+TEST(Server, OnlyTheFirstViewerSetsTheClockAndThenTheNext) {
+    RunningServer const server;
+    std::optional<RawViewer> first(std::in_place, server.port());
+    EXPECT_TRUE(begin(*first));
+    RawViewer second(server.port());
+    EXPECT_FALSE(begin(second));
+    second.send(stop_at(9));
+    int statuses = 0;
+    EXPECT_TRUE(hears(second, [&](Status const& status) {
+        EXPECT_NE(status.clock.time, 9) << "one that watches has set the clock";
+        return ++statuses > 2;
+    }));
+    first->send(stop_at(7));
+    EXPECT_TRUE(hears(second, [](Status const& status) { return status.clock.time == 7 && !status.controls; }));
+    first.reset();
+    EXPECT_TRUE(hears(second, [](Status const& status) { return status.controls; }));
+    second.send(stop_at(9));
+    EXPECT_TRUE(hears(second, [](Status const& status) { return status.clock.time == 9; }));
+}
+
+TEST(Server, WhoKnowsTheTokenForItSetsTheClock) {
+    ServerOptions options;
+    options.token = "a token for all to see";
+    options.control_token = "a token for the few who may";
+    RunningServer const server(options);
+    RawViewer watching(server.port(), coding::all, options.token);
+    EXPECT_FALSE(begin(watching));
+    RawViewer controlling(server.port(), coding::all, options.control_token);
+    EXPECT_TRUE(begin(controlling));
+    controlling.send(stop_at(9));
+    EXPECT_TRUE(hears(watching, [](Status const& status) { return status.clock.time == 9 && !status.controls; }));
 }
 
 TEST(Server, AddressesThatCannotBeHadAreInputErrors) {
