@@ -61,12 +61,17 @@ struct ClientCore::Impl {
 
     std::function<void()> on_news;
     Clock::time_point const start = Clock::now();
-    BatchCodec codec; // the connection's thread only
-    HeldPicture held; // the same
+    std::optional<BatchCodec> codec{
+        std::in_place}; // the connection's thread only; of this session, as all that follows
+    std::optional<HeldPicture> held{std::in_place}; // the same
 
     /// Guards what pictures are made of. Whoever has it may take `mutex` as well, not the other way round.
     std::mutex picture_mutex;
-    std::optional<PictureMaker> maker;
+    std::unique_ptr<PictureMaker> maker; ///< null: nothing has come in this session
+    /// Of a session before, which is shown until this one has brought a whole picture. They are not mixed: the server
+    /// knows nothing of what is held of before, and would let it stay where it is wrong by now.
+    std::unique_ptr<PictureMaker> earlier;
+    SceneTime paused_time = 0; ///< which that one shows
     std::vector<Batch> taken; ///< scratch
 
     mutable std::mutex mutex; // guards all that follows, but the connection; never held for long
@@ -78,6 +83,7 @@ struct ClientCore::Impl {
     std::vector<SentTile> let_go; ///< scratch
     std::optional<CameraUpdate> waiting_view;
     CameraUpdate view; ///< the newest, sent or not
+    ViewerSettings viewer_settings;
     std::deque<SentCamera> sent_cameras;
     std::deque<SentCamera> set_cameras; ///< and not shown yet
     std::optional<Clock::time_point> first_camera_time;
@@ -91,6 +97,10 @@ struct ClientCore::Impl {
     bool is_smooth = false;
     Status status;
     Clock::time_point status_time = start;
+    Welcome welcome;
+    std::uint64_t scene_number = 1;
+    bool starts_clean = false; ///< the picture is of another scene
+    std::optional<std::string> interruption;
     std::optional<std::string> end_reason;
     ClientStatistics statistics;
 
@@ -104,20 +114,107 @@ struct ClientCore::Impl {
             {
                 std::lock_guard const lock(mutex);
                 end_reason = std::move(reason);
+                interruption.reset();
             }
             tell_news();
         };
+        handlers.on_interrupted = [this](std::string reason) { pause_session(std::move(reason)); };
+        handlers.on_reopened = [this](Welcome news_of_scene) { begin_session(std::move(news_of_scene)); };
         handlers.on_sent = [this] {
             std::lock_guard const lock(mutex);
             send_waiting_view();
         };
-        connection = std::make_unique<ServerConnection>(options, std::move(handlers));
+        auto opened = std::make_unique<ServerConnection>(options, std::move(handlers));
         std::lock_guard const lock(mutex);
-        shown_camera = connection->welcome().start_camera;
-        picture_settings.scene_moves = connection->welcome().animation_duration > 0;
-        if (status_time == start) { // no Status has come yet
-            status.clock = connection->welcome().clock;
+        connection = std::move(opened);
+        if (statistics.reconnections == 0) { // its thread has not been through all that already
+            welcome = connection->welcome();
+            shown_camera = welcome.start_camera;
+            picture_settings.scene_moves = welcome.animation_duration > 0;
+            if (status_time == start) { // no Status has come yet
+                note_clock(welcome);
+            }
         }
+    }
+
+    /// Under the lock.
+    void note_clock(Welcome const& greeting) {
+        status.clock = greeting.clock;
+        status.controls = greeting.controls;
+    }
+
+    Viewport wanted_viewport() const {
+        std::lock_guard const lock(mutex);
+        return view.view.viewport;
+    }
+
+    /// What has come is kept for the time without a session.
+    void pause_session(std::string reason) {
+        {
+            std::lock_guard const picture_lock(picture_mutex);
+            if (maker && maker->viewport() == wanted_viewport()) {
+                take_in();
+            }
+            if (maker && !maker->is_empty() && (!earlier || replaces_earlier())) {
+                earlier = std::move(maker);
+            }
+            maker.reset();
+            std::lock_guard const lock(mutex);
+            arrived.clear();
+            arrived_samples = 0;
+            interruption = std::move(reason);
+            status.clock = clock_at(Clock::now());
+            paused_time = status.clock.time;
+            status.clock.playing = false;
+            status.converged = false;
+            statistics.converged = false;
+            has_picture = false;
+        }
+        tell_news();
+    }
+
+    void begin_session(Welcome greeting) {
+        codec.emplace();
+        held.emplace();
+        {
+            std::lock_guard const picture_lock(picture_mutex);
+            std::lock_guard const lock(mutex);
+            if (greeting.scene_identity == 0 || greeting.scene_identity != welcome.scene_identity) {
+                earlier.reset();
+                starts_clean = true;
+                ++scene_number;
+            }
+            picture_settings.scene_moves = greeting.animation_duration > 0;
+            status = {};
+            note_clock(greeting);
+            status_time = Clock::now();
+            last_batch = 0;
+            sent_cameras.clear();
+            welcome = std::move(greeting);
+            interruption.reset();
+            ++statistics.reconnections;
+            if (connection) {
+                connection->send(viewer_settings);
+            }
+            if (view.view.number > 0) {
+                waiting_view = view;
+            }
+            send_waiting_view();
+        }
+        tell_news();
+    }
+
+    /// Under the picture's lock.
+    bool replaces_earlier() const {
+        return maker->viewport() == earlier->viewport() ? maker->coverage() >= 1 : !maker->is_empty();
+    }
+
+    /// Under the picture's lock.
+    PictureMaker& shown_maker() {
+        if (earlier && replaces_earlier()) {
+            earlier.reset();
+        }
+        return earlier ? *earlier : *maker;
     }
 
     void tell_news() {
@@ -133,7 +230,7 @@ struct ClientCore::Impl {
 
     /// One camera in the network's queue at most: a newer one replaces it while it waits. Under the lock.
     void send_waiting_view() {
-        if (!waiting_view || !connection || !connection->all_sent()) {
+        if (!waiting_view || interruption || !connection || !connection->all_sent()) {
             return;
         }
         Clock::time_point const now = Clock::now();
@@ -178,7 +275,7 @@ struct ClientCore::Impl {
                 spare_batches.pop_back();
             }
         }
-        codec.decode(encoded, &held, batch);
+        codec->decode(encoded, &*held, batch);
         Clock::time_point const decoded = Clock::now();
         Ack ack{batch.number, 0, 0};
         ack.received_us = static_cast<std::uint64_t>(
@@ -222,9 +319,12 @@ struct ClientCore::Impl {
             settings = picture_settings;
         }
         if (!maker || maker->viewport() != viewport) {
-            maker.emplace(viewport, settings);
+            maker = std::make_unique<PictureMaker>(viewport, settings);
         }
         maker->set(settings);
+        if (earlier) {
+            earlier->set(settings);
+        }
         Clock::time_point const before = Clock::now();
         std::uint64_t stale = 0;
         for (Batch const& batch : taken) {
@@ -267,7 +367,7 @@ struct ClientCore::Impl {
             statistics.coverage = coverage;
             statistics.cached_framelets = maker->pool().framelet_count();
         }
-        statistics.cached_bytes = maker->memory_bytes();
+        statistics.cached_bytes = maker->memory_bytes() + (earlier ? earlier->memory_bytes() : 0);
         statistics.lag_seconds = maker->is_smooth() ? picture_settings.lag_seconds : 0;
         is_smooth = maker->is_smooth();
         if (statistics.full_picture_seconds < 0 && first_camera_time && coverage >= 1) {
@@ -289,6 +389,12 @@ struct ClientCore::Impl {
     bool is_settled() const {
         return status.converged && view.view.number > 0 && status.camera_number == view.view.number &&
                last_batch >= status.last_batch;
+    }
+
+    /// True once after another scene has taken the place of the one that was shown.
+    bool is_clean_start() {
+        std::lock_guard const lock(mutex);
+        return std::exchange(starts_clean, false);
     }
 
     /// Of what will be the present when the picture is seen.
@@ -342,8 +448,14 @@ ClientCore::ClientCore(ConnectionOptions const& options, std::function<void()> o
 
 ClientCore::~ClientCore() = default;
 
-Welcome const& ClientCore::welcome() const {
-    return impl_->connection->welcome();
+Welcome ClientCore::welcome() const {
+    std::lock_guard const lock(impl_->mutex);
+    return impl_->welcome;
+}
+
+std::uint64_t ClientCore::scene_number() const {
+    std::lock_guard const lock(impl_->mutex);
+    return impl_->scene_number;
 }
 
 void ClientCore::set_view(Camera const& wanted, Viewport viewport, int scene_camera) {
@@ -369,6 +481,7 @@ void ClientCore::set_view(Camera const& wanted, Viewport viewport, int scene_cam
 void ClientCore::set_settings(ViewerSettings const& settings) {
     {
         std::lock_guard const lock(impl_->mutex);
+        impl_->viewer_settings = settings;
         impl_->picture_settings.reproject = settings.reproject;
     }
     impl_->connection->send(settings);
@@ -383,6 +496,9 @@ void ClientCore::set_smoothing(double lag_seconds) {
 void ClientCore::request_clock(ClockRequest const& request) {
     {
         std::lock_guard const lock(impl_->mutex);
+        if (impl_->interruption || !impl_->status.controls) {
+            return;
+        }
         ClockState& clock = impl_->status.clock;
         clock = impl_->clock_at(Clock::now());
         impl_->status_time = Clock::now();
@@ -417,11 +533,19 @@ bool ClientCore::update_picture(Picture& picture, std::vector<PixelRect>& change
         std::lock_guard const picture_lock(core.picture_mutex);
         core.take_in();
         begun = Clock::now();
-        drawn = core.maker->show(core.picture_request(), picture, changed);
+        PictureMaker& maker = core.shown_maker();
+        PictureRequest request = core.picture_request();
+        request.present = &maker == core.earlier.get() ? core.paused_time : request.present;
+        drawn = maker.show(request, picture, changed);
         made = Clock::now();
-        camera = core.maker->shown_camera();
-        time = core.maker->shown_time();
-        camera_number = core.maker->shown_camera_number();
+        camera = maker.shown_camera();
+        time = maker.shown_time();
+        camera_number = maker.shown_camera_number();
+        if (core.is_clean_start() && !drawn) {
+            picture = bare_picture(maker.viewport());
+            changed.assign(1, {0, 0, picture.width, picture.height});
+            return true;
+        }
     }
     std::lock_guard const lock(core.mutex);
     core.shown_camera = camera;
@@ -450,7 +574,7 @@ double ClientCore::making_seconds() const {
 void ClientCore::draw_overlay(DrawnOver overlay, Picture& picture) const {
     std::lock_guard const lock(impl_->picture_mutex);
     if (impl_->maker) {
-        impl_->maker->draw_over(overlay, picture);
+        impl_->shown_maker().draw_over(overlay, picture);
     }
 }
 
@@ -463,6 +587,16 @@ bool ClientCore::wait_for_news(std::chrono::nanoseconds at_most) {
 std::optional<std::string> ClientCore::end_reason() const {
     std::lock_guard const lock(impl_->mutex);
     return impl_->end_reason;
+}
+
+std::optional<std::string> ClientCore::interruption() const {
+    std::lock_guard const lock(impl_->mutex);
+    return impl_->interruption;
+}
+
+bool ClientCore::controls() const {
+    std::lock_guard const lock(impl_->mutex);
+    return impl_->status.controls;
 }
 
 bool ClientCore::is_complete() const {

@@ -1,5 +1,6 @@
 // The viewer without a window: holds the connection, takes in batches, and turns what it holds into a picture whenever
-// it is asked to. In: camera, settings, clock requests. Out: picture, status, statistics.
+// it is asked to, also while the server is gone. In: camera, settings, clock requests. Out: picture, status,
+// statistics.
 #pragma once
 
 #include <chrono>
@@ -50,6 +51,7 @@ struct ClientStatistics {
     /// was seen; -1: it shows no new one.
     double photon_seconds = -1;
     double lag_seconds = 0; ///< by which the scene is shown late, as asked for; 0: it is not
+    std::uint64_t reconnections = 0;
 
     double bytes_per_sample() const;
     double decode_ns_per_sample() const;
@@ -67,11 +69,11 @@ public:
     ClientCore(ClientCore const&) = delete;
     ClientCore& operator=(ClientCore const&) = delete;
 
-    Welcome const& welcome() const;
+    /// The newest session's.
+    Welcome welcome() const;
+    /// Counts up where a session is of another scene than the one before, of which nothing is held any more then.
+    std::uint64_t scene_number() const;
 
-    /// What a viewer looks through until the user moves: the scene's first camera, its animation included; -1 where the
-    /// scene has none (then `welcome().start_camera`).
-    int start_scene_camera() const { return welcome().cameras.empty() ? -1 : 0; }
     /// Asks for this view. Only the newest one is kept while the network is busy. `scene_camera` >= 0: through that
     /// camera of the scene. Call it at most once a display frame; a view that equals the last one costs nothing.
     void set_view(Camera const& camera, Viewport viewport, int scene_camera = -1);
@@ -81,7 +83,8 @@ public:
     /// `ViewerSettings::reproject` and where the scene never moves. Through a camera of the scene that camera is late
     /// too. While it is on, a second cache, two pictures and the batches of that time are held.
     void set_smoothing(double lag_seconds);
-    /// `clock` answers as if it were granted, until the server says how it is.
+    /// `clock` answers as if it were granted, until the server says how it is. Does nothing where `controls` is false
+    /// or the session is interrupted.
     void request_clock(ClockRequest const& request);
 
     /// Brings `picture` up to date with what has come, and with the newest camera and the present scene time: what is
@@ -102,8 +105,13 @@ public:
     /// Waits until something has come since the last call, or the time is over; true when something has.
     bool wait_for_news(std::chrono::nanoseconds at_most);
 
-    /// Why the session ended, one line; nothing while it is open.
+    /// Why the session ended for good, one line; nothing while it is open or another is tried for.
     std::optional<std::string> end_reason() const;
+    /// Why it was interrupted, one line; nothing while one is open. Meanwhile what is held is shown, the scene's clock
+    /// stands, and what is asked for is asked of the next session. With `ConnectionOptions::reconnect` only.
+    std::optional<std::string> interruption() const;
+    /// Whether this viewer may set the scene's clock, which another may have at its disposal.
+    bool controls() const;
     /// True when the server has nothing more to say about the newest view and all of it has arrived.
     bool is_complete() const;
     /// What the server said last.
@@ -118,5 +126,11 @@ private:
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };
+
+/// What a viewer looks through until the user moves: the scene's first camera, its animation included; -1 where the
+/// scene has none (then `Welcome::start_camera`).
+inline int start_scene_camera(Welcome const& welcome) {
+    return welcome.cameras.empty() ? -1 : 0;
+}
 
 } // namespace framelet

@@ -21,6 +21,8 @@ CLI::Option* add_connection_options(CLI::App& app, ConnectionArguments& argument
                    "Certificates (PEM) to trust, as of a server that signed its own; implies --tls");
     app.add_flag("--insecure", arguments.insecure,
                  "Send the token to another machine without --tls: who is between can read it");
+    app.add_flag("--no-reconnect", arguments.no_reconnect,
+                 "End when the session is cut off, instead of trying for another until the server is back");
     return server;
 }
 
@@ -33,6 +35,7 @@ ConnectionOptions make_connection_options(ConnectionArguments const& arguments) 
     out.tls = arguments.tls || !arguments.authority_file.empty();
     out.authority_file = arguments.authority_file;
     out.insecure = arguments.insecure;
+    out.reconnect = !arguments.no_reconnect;
     return out;
 }
 

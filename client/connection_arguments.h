@@ -18,10 +18,12 @@ struct ConnectionArguments {
     std::string token_file;
     bool tls = false;
     bool insecure = false;
+    bool no_reconnect = false;
     std::string authority_file;
 };
 
-/// Adds HOST[:PORT], --token-file, --tls, --tls-ca and --insecure. The arguments must outlive the parsing.
+/// Adds HOST[:PORT], --token-file, --tls, --tls-ca, --insecure and --no-reconnect. The arguments must outlive the
+/// parsing.
 CLI::Option* add_connection_options(CLI::App& app, ConnectionArguments& arguments);
 
 /// Throws InputError.

@@ -90,6 +90,9 @@ void Overlay::draw(OverlayContent const& content) {
         }
         ImGui::End();
     }
+    if (!content.sign.empty()) {
+        text_panel("sign", {0.5f, 0}, content.sign);
+    }
     if (!content.note.empty()) {
         text_panel("note", {0.5f, 1}, content.note);
     }

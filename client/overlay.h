@@ -15,11 +15,12 @@ using TextRows = std::vector<std::pair<std::string, std::string>>; ///< name and
 struct OverlayContent {
     TextRows help; ///< empty: not shown
     TextRows statistics; ///< empty: not shown
+    std::string sign; ///< small, at the upper edge; empty: none
     std::string note; ///< at the lower edge; empty: none
     std::string message; ///< in the middle; empty: none
 
     bool operator==(OverlayContent const&) const = default;
-    bool empty() const { return help.empty() && statistics.empty() && note.empty() && message.empty(); }
+    bool empty() const { return help.empty() && statistics.empty() && note.empty() && sign.empty() && message.empty(); }
 };
 
 class Overlay {

@@ -37,8 +37,8 @@ bool RateMeter::update(double now_seconds, std::uint64_t bytes) {
     return true;
 }
 
-TextRows help_rows() {
-    return {
+TextRows help_rows(bool controls) {
+    TextRows rows{
         {"left drag", "orbit"},
         {"middle or Shift+left drag", "pan"},
         {"wheel or right drag", "nearer, farther"},
@@ -46,10 +46,14 @@ TextRows help_rows() {
         {"R", "back to the first view"},
         {"1 .. 9", "camera of the scene"},
         {"0", "free camera from there"},
-        {"Space", "play, pause"},
-        {". and ,", "step by 1/30 s"},
-        {"Home", "animation to its start"},
-        {"+ and -", "animation speed"},
+    };
+    TextRows const clock_rows = controls ? TextRows{{"Space", "play, pause"},
+                                                    {". and ,", "step by 1/30 s"},
+                                                    {"Home", "animation to its start"},
+                                                    {"+ and -", "animation speed"}}
+                                         : TextRows{{"Space . , Home + -", watching_text}};
+    rows.insert(rows.end(), clock_rows.begin(), clock_rows.end());
+    TextRows const others{
         {"] and [", "brighter, darker"},
         {"F2 or Tab", "statistics"},
         {"F3", "outlines of framelets; how old pixels are; neither"},
@@ -60,6 +64,8 @@ TextRows help_rows() {
         {"F1", "this help"},
         {"Esc", "quit"},
     };
+    rows.insert(rows.end(), others.begin(), others.end());
+    return rows;
 }
 
 std::string clock_text(ClockState const& clock) {
@@ -73,7 +79,7 @@ std::string lag_text(double lag_seconds) {
     return "the scene " + fixed(lag_seconds * 1e3, 0, " ms late");
 }
 
-TextRows statistics_rows(ClientStatistics const& s, RateMeter const& meter, ClockState const& clock,
+TextRows statistics_rows(ClientStatistics const& s, RateMeter const& meter, ClockState const& clock, bool controls,
                          Viewport viewport) {
     return {
         {"picture", std::to_string(viewport.width) + "x" + std::to_string(viewport.height) + ", covered " +
@@ -90,7 +96,8 @@ TextRows statistics_rows(ClientStatistics const& s, RateMeter const& meter, Cloc
          fixed(s.decode_ns_per_sample(), 1, " ns/sample, ") + fixed(s.reconstruct_ns_per_pixel(), 1, " ns/pixel")},
         {"cache", std::to_string(s.cached_framelets) + " framelets, " +
                       fixed(static_cast<double>(s.cached_bytes) * 1e-6, 1, " MB")},
-        {"clock", clock_text(clock) + (s.lag_seconds > 0 ? "; " + lag_text(s.lag_seconds) : "")},
+        {"clock", clock_text(clock) + (s.lag_seconds > 0 ? "; " + lag_text(s.lag_seconds) : "") +
+                      (controls ? "" : std::string("; ") + watching_text)},
     };
 }
 

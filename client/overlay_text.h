@@ -30,9 +30,13 @@ private:
     double bytes_per_second_ = 0;
 };
 
-TextRows help_rows();
+/// What is said where another viewer has the scene's clock at its disposal.
+inline constexpr char const* watching_text = "another viewer controls the scene's clock";
+
+/// `controls`: the keys that set the scene's clock have an effect.
+TextRows help_rows(bool controls);
 TextRows statistics_rows(ClientStatistics const& statistics, RateMeter const& meter, ClockState const& clock,
-                         Viewport viewport);
+                         bool controls, Viewport viewport);
 /// "12.34 s, playing at 1x".
 std::string clock_text(ClockState const& clock);
 /// "the scene 100 ms late".

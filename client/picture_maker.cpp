@@ -9,6 +9,12 @@
 
 namespace framelet {
 
+Picture bare_picture(Viewport viewport) {
+    Picture out(viewport.width, viewport.height);
+    reconstruct_all(FrameletCache{ImagePlane(viewport)}, out);
+    return out;
+}
+
 PictureMaker::PictureMaker(Viewport viewport, PictureSettings const& settings)
     : settings_(settings), pool_(ImagePlane(viewport)) {
     start_smoothing();

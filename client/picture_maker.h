@@ -32,6 +32,9 @@ struct PictureRequest {
     bool is_settled = false; ///< all that belongs to a complete picture of this has been inserted
 };
 
+/// A picture of which nothing is known.
+Picture bare_picture(Viewport viewport);
+
 /// What drawing over the picture shows.
 enum class DrawnOver : std::uint8_t { nothing, outlines, confidence };
 

@@ -1,13 +1,18 @@
 #include "client/server_connection.h"
 
 #include <chrono>
+#include <concepts>
 #include <future>
+#include <mutex>
+#include <random>
 #include <sstream>
 #include <thread>
+#include <utility>
 
 #include <boost/asio/connect.hpp>
 #include <boost/asio/steady_timer.hpp>
 
+#include "client/back_off.h"
 #include "common/error.h"
 #include "protocol/local_token.h"
 #include "protocol/stream_opening.h"
@@ -26,6 +31,10 @@ std::string seconds_text(double seconds) {
     return out.str();
 }
 
+asio::steady_timer::duration duration_of(double seconds) {
+    return std::chrono::duration_cast<asio::steady_timer::duration>(std::chrono::duration<double>(seconds));
+}
+
 /// Of this machine itself.
 bool is_loopback(asio::ip::address const& address) {
     if (address.is_v6() && address.to_v6().is_v4_mapped()) {
@@ -37,68 +46,106 @@ bool is_loopback(asio::ip::address const& address) {
 } // namespace
 
 struct ServerConnection::Impl {
+    enum class Retry { later, never };
+
     ConnectionOptions options;
     Handlers handlers;
     std::string server; ///< for messages
     asio::io_context io;
     asio::ip::tcp::resolver resolver{io};
     asio::ip::tcp::socket socket{io};
-    asio::steady_timer deadline{io};
-    asio::steady_timer watch{io};
+    asio::steady_timer deadline{io}, watch{io}, pause{io};
     std::shared_ptr<asio::ssl::context> tls;
-    std::shared_ptr<FramedStream> stream;
     std::promise<void> opened;
-    Welcome welcome;
-    bool open = false; ///< Welcome has come
-    bool ended = false; ///< nothing is reported any more
+    Welcome welcome; ///< of the first session
+
+    mutable std::mutex stream_mutex;
+    std::shared_ptr<FramedStream> stream; ///< of the newest session that was opened
+
+    // Only for the connection's thread.
+    std::uint64_t attempt = 0;
+    std::shared_ptr<FramedStream> attempted; ///< of this attempt, once it is connected
+    bool open = false; ///< its Welcome has come
+    bool was_open = false; ///< that of an attempt has
     /// Counted in ticks of the watch and not by the clock, so that a machine that slept hears what arrived meanwhile.
     int silent_ticks = 0;
+    std::chrono::steady_clock::time_point opened_at;
+    BackOff back_off;
+    std::minstd_rand random{std::random_device{}()};
+
     std::thread thread;
 
     Impl(ConnectionOptions const& o, Handlers h) : options(o), handlers(std::move(h)), server(o.server.text()) {}
 
-    void end(std::string const& reason) {
-        if (ended) {
-            return;
-        }
-        ended = true;
+    /// A callback that is not heard any more when this attempt is over.
+    template <typename Callback>
+    auto heard(Callback callback) {
+        return [ this, callback = std::move(callback), number = attempt ]<typename... Arguments>(
+            Arguments && ... arguments) requires std::invocable<Callback const&, Arguments...> {
+            if (number == attempt) {
+                callback(std::forward<Arguments>(arguments)...);
+            }
+        };
+    }
+
+    /// The attempt, or the session that came of it, is over.
+    void end(std::string const& reason, Retry retry = Retry::later) {
+        ++attempt;
         resolver.cancel();
         deadline.cancel();
         watch.cancel();
         boost::system::error_code ignored;
         socket.close(ignored);
-        if (stream) {
-            stream->close();
+        if (attempted) {
+            attempted->close();
         }
-        if (open) {
+        bool const interrupted = std::exchange(open, false);
+        if (!was_open) {
+            opened.set_exception(std::make_exception_ptr(ConnectionError(reason)));
+        } else if (retry == Retry::never || !options.reconnect || !handlers.on_reopened) {
             handlers.on_lost(reason);
         } else {
-            opened.set_exception(std::make_exception_ptr(ConnectionError(reason)));
+            if (interrupted) {
+                handlers.on_interrupted(reason);
+            }
+            begin_later(interrupted);
         }
     }
 
+    void begin_later(bool interrupted) {
+        // Not where each session ends at once: such a server is not to be asked four times a second.
+        if (interrupted && std::chrono::steady_clock::now() - opened_at > duration_of(BackOff::most_seconds)) {
+            back_off.reset();
+        }
+        pause.expires_after(duration_of(back_off.next(std::generate_canonical<double, 32>(random))));
+        pause.async_wait(heard([this](boost::system::error_code error) {
+            if (!error) {
+                begin();
+            }
+        }));
+    }
+
     void begin() {
-        deadline.expires_after(std::chrono::duration_cast<asio::steady_timer::duration>(
-            std::chrono::duration<double>(options.connect_seconds)));
-        deadline.async_wait([this](boost::system::error_code error) {
+        deadline.expires_after(duration_of(options.connect_seconds));
+        deadline.async_wait(heard([this](boost::system::error_code error) {
             if (!error) {
                 end("cannot connect to " + server + ": no answer within " + seconds_text(options.connect_seconds) +
                     ": check the address, and whether a firewall is in the way");
             }
-        });
+        }));
         resolver.async_resolve(options.server.host, std::to_string(options.server.port),
-                               [this](boost::system::error_code error, auto const& endpoints) {
+                               heard([this](boost::system::error_code error, auto const& endpoints) {
                                    if (error) {
                                        end("cannot connect to " + server + ": there is no host of that name");
                                    } else {
                                        connect(endpoints);
                                    }
-                               });
+                               }));
     }
 
     void connect(asio::ip::tcp::resolver::results_type const& endpoints) {
         asio::async_connect(
-            socket, endpoints, [this](boost::system::error_code error, asio::ip::tcp::endpoint const& endpoint) {
+            socket, endpoints, heard([this](boost::system::error_code error, asio::ip::tcp::endpoint const& endpoint) {
                 if (error == asio::error::connection_refused) {
                     end("cannot connect to " + server + ": connection refused: is framelet-server running there?");
                 } else if (error) {
@@ -106,11 +153,12 @@ struct ServerConnection::Impl {
                 } else if (!options.token.empty() && !options.tls && !options.insecure &&
                            !is_loopback(endpoint.address())) {
                     end("the token is not sent to " + server +
-                        " in clear: use --tls, or --insecure if you know that nobody can listen");
-                } else if (!ended) {
+                            " in clear: use --tls, or --insecure if you know that nobody can listen",
+                        Retry::never);
+                } else {
                     shake_hands(token_for(endpoint));
                 }
-            });
+            }));
     }
 
     /// What the user gave, or what a server of the same user on this machine has left for its viewers.
@@ -122,43 +170,41 @@ struct ServerConnection::Impl {
     }
 
     void shake_hands(std::string const& token) {
-        stream = options.tls ? tls_client_stream(std::move(socket), tls, options.server.host)
-                             : plain_stream(std::move(socket));
+        attempted = options.tls ? tls_client_stream(std::move(socket), tls, options.server.host)
+                                : plain_stream(std::move(socket));
         FramedStream::Handlers events;
-        events.on_message = [this](Message message) { receive(std::move(message)); };
-        events.on_close = [this](std::string const& reason) {
+        events.on_message = heard([this](Message message) { receive(std::move(message)); });
+        events.on_close = heard([this](std::string const& reason) {
             end(open ? "the connection to the server at " + server + " ended: " + reason
                      : "cannot connect to " + server + ": it did not open a session: " + reason +
                            (options.tls ? "" : ": does it want --tls, or has it no room?"));
-        };
-        events.on_sent = [this](std::size_t) {
+        });
+        events.on_sent = heard([this](std::size_t) {
             if (open) {
                 handlers.on_sent();
             }
-        };
+        });
         // The greeting is small; batches may be large, once we know who talks to us.
-        stream->start(std::move(events), max_upstream_message_bytes);
-        stream->send(Hello{protocol_version, token, coding::all});
+        attempted->start(std::move(events), max_upstream_message_bytes);
+        attempted->send(Hello{protocol_version, token, coding::all});
     }
 
     void receive(Message message) {
         silent_ticks = 0;
-        if (ended) {
-            return;
-        }
         if (auto const* failure = std::get_if<Failure>(&message)) {
             end((open ? "the server at " + server + " ended the session: "
                       : "the server at " + server + " refused the connection: ") +
-                failure->text);
+                    failure->text,
+                failure->again ? Retry::later : Retry::never);
         } else if (auto* greeting = std::get_if<Welcome>(&message); greeting != nullptr && !open) {
             greet(std::move(*greeting));
         } else if (!open || greeting != nullptr) {
-            end("the server at " + server + " broke the protocol: a message out of turn");
+            end("the server at " + server + " broke the protocol: a message out of turn", Retry::never);
         } else {
             try {
                 handlers.on_message(std::move(message));
             } catch (ProtocolError const& error) {
-                end("the server at " + server + " broke the protocol: " + error.what());
+                end("the server at " + server + " broke the protocol: " + error.what(), Retry::never);
             }
         }
     }
@@ -166,22 +212,32 @@ struct ServerConnection::Impl {
     void greet(Welcome greeting) {
         if (greeting.version != protocol_version) {
             end("the server at " + server + " speaks version " + std::to_string(greeting.version) +
-                " of the protocol, this program version " + std::to_string(protocol_version) +
-                ": use programs of one release");
+                    " of the protocol, this program version " + std::to_string(protocol_version) +
+                    ": use programs of one release",
+                Retry::never);
             return;
         }
-        welcome = std::move(greeting);
         open = true;
+        opened_at = std::chrono::steady_clock::now();
         deadline.cancel();
-        stream->set_max_body(max_message_bytes);
+        attempted->set_max_body(max_message_bytes);
         watch_for_silence();
-        opened.set_value();
+        {
+            std::scoped_lock const lock(stream_mutex);
+            stream = attempted;
+        }
+        if (std::exchange(was_open, true)) {
+            handlers.on_reopened(std::move(greeting));
+        } else {
+            welcome = std::move(greeting);
+            opened.set_value();
+        }
     }
 
     void watch_for_silence() {
         watch.expires_after(tick);
-        watch.async_wait([this](boost::system::error_code error) {
-            if (error || ended) {
+        watch.async_wait(heard([this](boost::system::error_code error) {
+            if (error) {
                 return;
             }
             if (++silent_ticks * std::chrono::duration<double>(tick).count() > options.silence_seconds) {
@@ -189,7 +245,12 @@ struct ServerConnection::Impl {
             } else {
                 watch_for_silence();
             }
-        });
+        }));
+    }
+
+    std::shared_ptr<FramedStream> open_stream() const {
+        std::scoped_lock const lock(stream_mutex);
+        return stream;
     }
 };
 
@@ -213,8 +274,8 @@ ServerConnection::ServerConnection(ConnectionOptions const& options, Handlers ha
 ServerConnection::~ServerConnection() {
     impl_->io.stop();
     impl_->thread.join();
-    if (impl_->stream) {
-        impl_->stream->close();
+    if (impl_->attempted) {
+        impl_->attempted->close();
     }
 }
 
@@ -223,11 +284,11 @@ Welcome const& ServerConnection::welcome() const {
 }
 
 void ServerConnection::send(Message const& message) {
-    impl_->stream->send(message);
+    impl_->open_stream()->send(message);
 }
 
 bool ServerConnection::all_sent() const {
-    return impl_->stream->unsent_bytes() == 0;
+    return impl_->open_stream()->unsent_bytes() == 0;
 }
 
 } // namespace framelet

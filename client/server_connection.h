@@ -1,5 +1,6 @@
 // The connection to a server with its own thread: resolves, connects, shakes hands, delivers messages, notices when the
-// server is gone. In: where the server is. Out: Welcome, then messages; or one line that says why not.
+// server is gone, and comes back to it. In: where the server is. Out: Welcome, then messages; or one line that says why
+// not.
 #pragma once
 
 #include <functional>
@@ -16,8 +17,13 @@ public:
     /// Called from the connection's thread. What `on_message` throws as ProtocolError ends the connection.
     struct Handlers {
         std::function<void(Message)> on_message;
-        /// Once, when an open session ends for whatever reason but our own; one line.
+        /// Once, when an open session has ended for whatever reason but our own, and no other follows; one line.
         std::function<void(std::string reason)> on_lost;
+        /// An open session has ended, and another is tried for, for as long as nobody refuses it for good.
+        std::function<void(std::string reason)> on_interrupted;
+        /// Another session is open, of which nothing has been delivered or sent yet. Where this is empty, none is tried
+        /// for, whatever the options say.
+        std::function<void(Welcome)> on_reopened;
         /// Something that was queued has been sent.
         std::function<void()> on_sent;
     };
@@ -30,8 +36,9 @@ public:
     ServerConnection(ServerConnection const&) = delete;
     ServerConnection& operator=(ServerConnection const&) = delete;
 
+    /// Of the first session.
     Welcome const& welcome() const;
-    /// From any thread. Nothing happens once the connection has ended.
+    /// From any thread. Nothing happens while no session is open.
     void send(Message const& message);
     /// True when everything that was queued has been taken by the network. From any thread.
     bool all_sent() const;

@@ -56,6 +56,7 @@ std::string statistics_json(ClientStatistics const& s, RunFigures const& run) {
         {"lag_seconds", s.lag_seconds},
         {"server_samples_per_second", s.server_samples_per_second},
         {"converged", s.converged},
+        {"reconnections", s.reconnections},
     };
     return out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }

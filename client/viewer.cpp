@@ -43,17 +43,26 @@ double Viewer::seconds_now() const {
 }
 
 void Viewer::adopt(std::unique_ptr<ClientCore> core) {
+    bool const same_scene = core_ && core->welcome().scene_identity != 0 &&
+                            core->welcome().scene_identity == core_->welcome().scene_identity;
     core_ = std::move(core);
-    Welcome const& welcome = core_->welcome();
-    bool const same_scene = controller_ && scene_camera_ < static_cast<int>(welcome.cameras.size());
-    Camera const camera = same_scene ? controller_->camera() : welcome.start_camera;
-    controller_.emplace(welcome.start_camera, welcome.scene_bounds);
-    controller_->set_camera(camera);
-    scene_camera_ = same_scene ? scene_camera_ : core_->start_scene_camera();
     lost_.clear();
     meter_ = RateMeter();
     core_->set_settings(settings_);
     core_->set_smoothing(lag_seconds_);
+    if (same_scene) {
+        scene_number_ = core_->scene_number();
+    } else {
+        look_at_scene();
+    }
+}
+
+/// As one looks at a scene at first.
+void Viewer::look_at_scene() {
+    Welcome const welcome = core_->welcome();
+    scene_number_ = core_->scene_number();
+    controller_.emplace(welcome.start_camera, welcome.scene_bounds);
+    scene_camera_ = start_scene_camera(welcome);
     window_.set_title(welcome.scene_name + " - framelet-viewer");
 }
 
@@ -152,7 +161,7 @@ void Viewer::apply(Command command) {
                 });
             }
         } else if (command == Command::reset) {
-            scene_camera_ = core_->start_scene_camera();
+            scene_camera_ = start_scene_camera(core_->welcome());
             controller_->reset();
         }
         break;
@@ -218,6 +227,10 @@ void Viewer::apply(Command command) {
 }
 
 void Viewer::ask_clock(std::uint8_t fields, ClockState const& state) {
+    if (interrupted_ || !core_->controls()) {
+        say(interrupted_ ? "the server is gone: its clock cannot be set" : watching_text);
+        return;
+    }
     core_->request_clock({fields, state});
     say("clock " + clock_text(core_->clock()));
 }
@@ -230,7 +243,7 @@ void Viewer::step_clock(double seconds) {
 }
 
 void Viewer::choose_scene_camera(int number) {
-    auto const& cameras = core_->welcome().cameras;
+    std::vector<SceneCameraInfo> const cameras = core_->welcome().cameras;
     if (number >= static_cast<int>(cameras.size())) {
         say(cameras.empty() ? "the scene has no cameras of its own"
                             : "the scene has only " + std::to_string(cameras.size()) + " cameras");
@@ -301,22 +314,39 @@ void Viewer::watch_connection() {
             std::cerr << "framelet-viewer: " << lost_ << std::endl;
         }
     }
+    std::optional<std::string> const interruption = core_->interruption();
+    if (interruption && !interrupted_) {
+        std::cerr << "framelet-viewer: " << *interruption << "; trying to connect again" << std::endl;
+    }
+    interrupted_ = interruption.has_value();
+    if (core_->scene_number() != scene_number_) {
+        look_at_scene();
+    }
+    bool const controls = core_->controls();
+    if (controls != controlled_) {
+        say(controls ? "you control the scene's clock now" : watching_text);
+    }
+    controlled_ = controls;
 }
 
 OverlayContent Viewer::overlay_content() {
     OverlayContent out;
     if (show_help_) {
-        out.help = help_rows();
+        out.help = help_rows(core_->controls());
     }
     if (show_statistics_) {
         ClientStatistics const statistics = core_->statistics();
         if (meter_.update(seconds_now(), statistics.bytes) || statistics_.empty()) {
-            statistics_ = statistics_rows(statistics, meter_, core_->clock(), window_.framebuffer_size());
+            statistics_ =
+                statistics_rows(statistics, meter_, core_->clock(), core_->controls(), window_.framebuffer_size());
         }
         out.statistics = statistics_;
     }
     if (seconds_now() < note_until_) {
         out.note = note_;
+    }
+    if (interrupted_) {
+        out.sign = "no connection: trying again";
     }
     if (reconnecting_.valid()) {
         out.message = "connecting to " + connection_.server.text() + " ...";

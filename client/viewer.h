@@ -31,6 +31,7 @@ private:
     using Clock = std::chrono::steady_clock;
 
     void adopt(std::unique_ptr<ClientCore> core);
+    void look_at_scene();
     bool apply(WindowInput const& input, double seconds);
     void apply(Command command);
     void ask_clock(std::uint8_t fields, ClockState const& state);
@@ -50,6 +51,9 @@ private:
     ConnectionOptions connection_;
     Overlay overlay_;
     std::unique_ptr<ClientCore> core_;
+    std::uint64_t scene_number_ = 0; ///< of the core's; 0: none yet
+    bool interrupted_ = false; ///< the core tries for another session
+    bool controlled_ = true; ///< what `ClientCore::controls` said last
     std::optional<CameraController> controller_;
     int scene_camera_ = -1;
     ViewerSettings settings_;

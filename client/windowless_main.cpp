@@ -21,7 +21,6 @@
 #include "common/cpu_clock.h"
 #include "common/error.h"
 #include "common/number_range.h"
-#include "common/reconstruction.h"
 
 namespace framelet {
 
@@ -56,10 +55,13 @@ through the keys; {"scene_camera": 0} looks through a camera of the scene.
 Frames are compressed and written by a thread of their own while batches go on
 arriving; where it cannot keep up, frames are shown later, none is left out.
 
+Where the server is gone for a while, what is held goes on being shown, and the
+session goes on when it is back; see --no-reconnect.
+
 SIGINT (Ctrl-C) and SIGTERM end it as the end of --duration does.
 
-Exit code: 0 fine; 1 the server cannot be reached, vanished, or did not converge
-in time; 2 bad usage.)";
+Exit code: 0 fine; 1 the server cannot be reached, refused the client, was gone at
+the end, or did not converge in time; 2 bad usage.)";
 
 volatile std::sig_atomic_t told_to_end = 0;
 
@@ -91,6 +93,10 @@ void ask_clock(ClientCore& core, Options const& options) {
         request.set |= ClockRequest::time;
         request.state.time = *options.seek;
     }
+    if (request.set != 0 && !core.controls()) {
+        std::cerr << "framelet-client: another viewer controls the scene's clock: --play, --pause and --seek do nothing"
+                  << std::endl;
+    }
     if (request.set != 0) {
         core.request_clock(request);
     }
@@ -103,10 +109,15 @@ void wait_until(ClientCore& core, Clock::time_point time) {
     }
 }
 
-Picture bare_picture(Viewport viewport) {
-    Picture out(viewport.width, viewport.height);
-    reconstruct_all(FrameletCache{ImagePlane(viewport)}, out);
-    return out;
+/// Says on stderr that the session is interrupted or goes on, where that is news; returns which of them it is.
+bool tell_interruption(ClientCore const& core, bool interrupted) {
+    std::optional<std::string> const reason = core.interruption();
+    if (reason && !interrupted) {
+        std::cerr << "framelet-client: " << *reason << "; trying to connect again" << std::endl;
+    } else if (!reason && interrupted && !core.end_reason()) {
+        std::cerr << "framelet-client: connected again" << std::endl;
+    }
+    return reason.has_value();
 }
 
 /// Shows frames until the time is over, the session has ended or, if wanted, all is there. Returns what it counted.
@@ -117,7 +128,9 @@ RunFigures show(ClientCore& core, Options const& options, std::optional<CameraPa
     double const duration = options.duration.value_or(options.until_converged ? 60 : 10);
     double const path_duration = path ? path->duration() : 0;
     RunFigures run;
-    run.scene = core.welcome().scene_name;
+    Welcome welcome;
+    std::uint64_t scene_number = 0;
+    bool interrupted = false;
     run.viewport = viewport;
     Picture picture = bare_picture(viewport);
     Picture overlaid; //< and what is drawn over it
@@ -128,14 +141,20 @@ RunFigures show(ClientCore& core, Options const& options, std::optional<CameraPa
     DisplayPace pace(start, rate);
     while (true) {
         wait_until(core, std::min(pace.begin(core.making_seconds()), end));
+        if (core.scene_number() != scene_number) {
+            scene_number = core.scene_number();
+            welcome = core.welcome();
+            run.scene = welcome.scene_name;
+        }
+        interrupted = tell_interruption(core, interrupted);
         double const now = seconds_since(start);
         bool const done = options.until_converged && now >= path_duration && core.is_complete();
-        Camera camera = core.welcome().start_camera;
+        Camera camera = welcome.start_camera;
         if (path && path->scene_camera < 0) {
             camera = path->at(now);
         }
         if (!done) {
-            core.set_view(camera, viewport, path ? path->scene_camera : core.start_scene_camera());
+            core.set_view(camera, viewport, path ? path->scene_camera : start_scene_camera(welcome));
         }
         Clock::time_point const shown_at = pace.show(Clock::now(), core.making_seconds());
         bool const news = core.update_picture(picture, changed, shown_at);
@@ -145,7 +164,7 @@ RunFigures show(ClientCore& core, Options const& options, std::optional<CameraPa
             ClientStatistics const statistics = core.statistics();
             log->add({run.frames, unix_seconds(), core.clock().time, news, core.is_complete(), statistics.bytes,
                       cpu_seconds_of(CLOCK_PROCESS_CPUTIME_ID) - writing, statistics.samples, statistics.photon_seconds,
-                      path ? path->scene_camera : core.start_scene_camera(), camera});
+                      path ? path->scene_camera : start_scene_camera(welcome), camera});
         }
         ++run.frames;
         if (writer != nullptr) {
@@ -194,8 +213,10 @@ int run(Options const& options, ConnectionOptions const& connection, Viewport vi
     ClientStatistics const statistics = core.statistics();
     std::cout << (options.json ? statistics_json(statistics, figures) + "\n" : statistics_summary(statistics, figures))
               << std::flush;
-    if (std::optional<std::string> const reason = core.end_reason()) {
-        throw ConnectionError(*reason);
+    for (std::optional<std::string> const& reason : {core.end_reason(), core.interruption()}) {
+        if (reason) {
+            throw ConnectionError(*reason);
+        }
     }
     if (options.until_converged && figures.converged_seconds < 0) {
         throw ConnectionError("the picture was not complete when the time was over: give a longer --duration, or "

@@ -30,6 +30,7 @@ public:
         Welcome out;
         out.server = "fake";
         out.scene_name = "fake scene";
+        out.scene_identity = 7;
         return out;
     }
 
@@ -37,10 +38,13 @@ public:
         Welcome welcome = plain_welcome();
         /// Answered instead of Welcome, if not empty.
         std::string refusal;
+        bool refusal_again = false; ///< as in Failure
         /// Sent as they are instead of anything else, if not empty.
         std::string raw_bytes;
         /// Neither answers nor closes.
         bool mute = false;
+        /// What heartbeats say, but for what the server knows better.
+        Status status;
         /// Seconds between heartbeats; 0: none.
         double heartbeat_seconds = 0.2;
     };
@@ -92,6 +96,18 @@ public:
             }
             streams_.clear();
             raw_sockets_.clear();
+        });
+    }
+    /// Cuts every connection, and answers the next as this says, as a server does that is started anew.
+    void start_anew(Script script) {
+        boost::asio::post(io_, [this, script = std::move(script)] {
+            script_ = script;
+            last_batch_ = 0;
+            codec_ = BatchCodec();
+            for (auto const& stream : streams_) {
+                stream->close();
+            }
+            streams_.clear();
         });
     }
     /// Keeps the connections but says nothing any more.
@@ -163,7 +179,7 @@ private:
     void receive(FramedStream& stream, Message const& message) {
         if (std::holds_alternative<Hello>(message)) {
             if (!script_.refusal.empty()) {
-                stream.send(Failure{script_.refusal});
+                stream.send(Failure{script_.refusal, script_.refusal_again});
                 stream.close_after_sending();
             } else {
                 stream.send(script_.welcome);
@@ -174,7 +190,7 @@ private:
             std::lock_guard const lock(mutex_);
             received_.push_back(message);
             if (auto const* camera = std::get_if<CameraUpdate>(&message)) {
-                status_.camera_number = camera->view.number;
+                camera_number_ = camera->view.number;
             }
         }
         arrived_.notify_all();
@@ -187,10 +203,10 @@ private:
         if (script_.heartbeat_seconds <= 0) {
             return;
         }
-        Status status;
+        Status status = script_.status;
         {
             std::lock_guard const lock(mutex_);
-            status = status_;
+            status.camera_number = camera_number_;
         }
         status.last_batch = last_batch_;
         for (auto const& stream : streams_) {
@@ -216,7 +232,7 @@ private:
     std::mutex mutex_;
     std::condition_variable arrived_;
     std::vector<Message> received_;
-    Status status_;
+    std::uint64_t camera_number_ = 0;
     std::thread thread_;
 };
 

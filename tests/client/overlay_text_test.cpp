@@ -34,7 +34,7 @@ TEST(OverlayText, ClockAndStatisticsReadWell) {
     ClientStatistics statistics;
     statistics.samples = 1000;
     statistics.bytes = 250;
-    TextRows const rows = statistics_rows(statistics, RateMeter(), {}, {640, 360});
+    TextRows const rows = statistics_rows(statistics, RateMeter(), {}, true, {640, 360});
     auto const value = [&](std::string const& name) {
         for (auto const& [left, right] : rows) {
             if (left == name) {
@@ -48,8 +48,20 @@ TEST(OverlayText, ClockAndStatisticsReadWell) {
     EXPECT_EQ(value("round trip"), "not measured");
     EXPECT_EQ(value("clock"), "0.00 s, paused at 1x");
     statistics.lag_seconds = 0.1;
-    TextRows const late = statistics_rows(statistics, RateMeter(), {}, {640, 360});
+    TextRows const late = statistics_rows(statistics, RateMeter(), {}, true, {640, 360});
     EXPECT_EQ(late.back().second, "0.00 s, paused at 1x; the scene 100 ms late");
+}
+
+TEST(OverlayText, SaysThatAnotherControlsTheClock) {
+    auto const says_so = [](TextRows const& rows) {
+        return std::any_of(rows.begin(), rows.end(),
+                           [](auto const& row) { return row.second.find(watching_text) != std::string::npos; });
+    };
+    EXPECT_FALSE(says_so(help_rows(true)));
+    EXPECT_TRUE(says_so(help_rows(false)));
+    EXPECT_LT(help_rows(false).size(), help_rows(true).size());
+    EXPECT_FALSE(says_so(statistics_rows({}, RateMeter(), {}, true, {640, 360})));
+    EXPECT_TRUE(says_so(statistics_rows({}, RateMeter(), {}, false, {640, 360})));
 }
 
 } // namespace

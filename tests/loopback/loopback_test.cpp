@@ -1,6 +1,9 @@
 // The real server and the real windowless client as processes, over a loopback socket.
 #include <cmath>
 #include <csignal>
+#include <fstream>
+#include <iterator>
+#include <optional>
 #include <set>
 #include <thread>
 
@@ -114,9 +117,8 @@ private:
 class StreamingClient {
 public:
     StreamingClient(std::string const& address, std::string const& size)
-        : process_(FRAMELET_CLIENT,
-                   {address, "--size", size, "--duration", "100", "--output", (folder_.path() / "%05d.png").string()}) {
-    }
+        : process_(FRAMELET_CLIENT, {address, "--size", size, "--duration", "100", "--no-reconnect", "--output",
+                                     (folder_.path() / "%05d.png").string()}) {}
 
     /// Returns once it writes pictures, so its session is open.
     void wait_until_streaming() {
@@ -205,6 +207,55 @@ TEST(Loopback, ServerGoesOnWhenClientsVanish) {
     EXPECT_GE(psnr(client.finish(), direct_render(view.camera(), {64, 64}, 0)), 45);
     server.process().signal(SIGINT);
     EXPECT_EQ(server.process().wait(30s), 0) << server.process().errors();
+}
+
+TEST(Loopback, ClientsComeBackToAServerThatIsStartedAnew) {
+    TemporaryFolder folder;
+    std::string address, port = "0";
+    std::optional<Process> client;
+    for (std::string const& scene : {scene_file, scene_file, std::string(FRAMELET_SOURCE_DIR "/scenes/globe.glb")}) {
+        bool const is_first = !client;
+        ServerProcess server =
+            ServerProcess::of_program(FRAMELET_SERVER, {scene, "--port", port, "--paused", "--exposure", "0"});
+        address = server.address();
+        port = address.substr(address.rfind(':') + 1);
+        if (is_first) {
+            client.emplace(FRAMELET_CLIENT,
+                           std::vector<std::string>{address, "--size", "64x64", "--duration", "100", "--json",
+                                                    "--frames", (folder.path() / "frames").string()});
+        }
+        auto const complete_since = [&](std::size_t before) {
+            std::ifstream lines(folder.path() / "frames");
+            std::string const text{std::istreambuf_iterator<char>(lines), {}};
+            return text.find("\"complete\":true", before) != std::string::npos ? text.size() : 0;
+        };
+        std::size_t const before = is_first ? 0 : std::filesystem::file_size(folder.path() / "frames");
+        auto const deadline = std::chrono::steady_clock::now() + patience;
+        while (complete_since(before) == 0 && client->running() && std::chrono::steady_clock::now() < deadline) {
+            std::this_thread::sleep_for(50ms);
+        }
+        EXPECT_GT(complete_since(before), 0u) << scene << client->errors();
+        if (scene.ends_with("globe.glb")) {
+            client->signal(SIGTERM);
+            EXPECT_EQ(client->wait(30s), 0) << client->errors();
+        } else {
+            server.process().signal(is_first ? SIGKILL : SIGTERM);
+            server.process().wait(30s);
+            std::this_thread::sleep_for(500ms); // the client has noticed
+        }
+    }
+    auto const statistics = nlohmann::json::parse(client->output());
+    EXPECT_EQ(statistics.at("reconnections"), 2);
+    EXPECT_EQ(statistics.at("scene"), "globe") << client->errors();
+}
+
+TEST(Loopback, ClientSaysAtTheEndThatTheServerIsGone) {
+    auto server = std::make_unique<ServerProcess>(scene_file);
+    Process client(FRAMELET_CLIENT, {server->address(), "--size", "64x64", "--duration", "4"});
+    std::this_thread::sleep_for(2s);
+    server.reset();
+    EXPECT_EQ(client.wait(60s), 1);
+    EXPECT_NE(client.errors().find("trying to connect again"), std::string::npos) << client.errors();
 }
 
 TEST(Loopback, ClientSaysWhenTheServerVanishes) {
