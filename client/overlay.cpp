@@ -46,6 +46,33 @@ void text_panel(char const* name, ImVec2 anchor, std::string const& text) {
     ImGui::End();
 }
 
+void lay_out(OverlayContent const& content) {
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    ImGui::NewFrame();
+    if (!content.statistics.empty()) {
+        if (begin_panel("statistics", {0, 0})) {
+            table("statistics table", content.statistics);
+        }
+        ImGui::End();
+    }
+    if (!content.help.empty()) {
+        if (begin_panel("help", {1, 0})) {
+            table("help table", content.help);
+        }
+        ImGui::End();
+    }
+    if (!content.sign.empty()) {
+        text_panel("sign", {0.5f, 0}, content.sign);
+    }
+    if (!content.note.empty()) {
+        text_panel("note", {0.5f, 1}, content.note);
+    }
+    if (!content.message.empty()) {
+        text_panel("message", {0.5f, 0.5f}, content.message);
+    }
+}
+
 } // namespace
 
 Overlay::Overlay(GLFWwindow* window, float scale) {
@@ -72,35 +99,17 @@ Overlay::~Overlay() {
 }
 
 void Overlay::draw(OverlayContent const& content) {
-    if (content.empty()) {
-        return;
+    if (content != drawn_ && !content.empty()) {
+        // A panel that was not there before has no size yet, and its first frame does not show it.
+        lay_out(content);
+        ImGui::EndFrame();
     }
-    ImGui_ImplOpenGL3_NewFrame();
-    ImGui_ImplGlfw_NewFrame();
-    ImGui::NewFrame();
-    if (!content.statistics.empty()) {
-        if (begin_panel("statistics", {0, 0})) {
-            table("statistics table", content.statistics);
-        }
-        ImGui::End();
+    drawn_ = content;
+    if (!content.empty()) {
+        lay_out(content);
+        ImGui::Render();
+        ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
     }
-    if (!content.help.empty()) {
-        if (begin_panel("help", {1, 0})) {
-            table("help table", content.help);
-        }
-        ImGui::End();
-    }
-    if (!content.sign.empty()) {
-        text_panel("sign", {0.5f, 0}, content.sign);
-    }
-    if (!content.note.empty()) {
-        text_panel("note", {0.5f, 1}, content.note);
-    }
-    if (!content.message.empty()) {
-        text_panel("message", {0.5f, 0.5f}, content.message);
-    }
-    ImGui::Render();
-    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
 
 } // namespace framelet

@@ -33,6 +33,9 @@ public:
 
     /// Into the current framebuffer.
     void draw(OverlayContent const& content);
+
+private:
+    OverlayContent drawn_;
 };
 
 } // namespace framelet
