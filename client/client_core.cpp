@@ -35,8 +35,19 @@ double ratio(double amount, std::uint64_t count) {
 /// A batch's number, view, scene time and length prefix on the wire, about.
 constexpr std::size_t batch_header_bytes = 96;
 
-/// What waits for a painter that is busy, in samples: some 200 MB. Beyond that batches wait with it.
-constexpr std::size_t most_waiting_samples = 64u << 20;
+/// What waits for a painter that is busy, or for a window that is hidden. What would be more is taken in at once.
+constexpr std::size_t most_waiting_bytes = 256u << 20;
+
+std::size_t bytes_of(Batch const& batch) {
+    std::size_t bytes = sizeof batch + batch.framelets.size() * sizeof(DisplayFramelet);
+    for (FrameletShape const& shape : batch.shapes) {
+        bytes += sizeof shape + shape.loose_samples.size() * sizeof shape.loose_samples[0];
+    }
+    for (BodyTrack const& track : batch.tracks) {
+        bytes += sizeof track + track.keys.size() * sizeof(BodyPose);
+    }
+    return bytes + (batch.camera_track ? batch.camera_track->keys.size() * sizeof(BodyPose) : 0);
+}
 
 } // namespace
 
@@ -78,7 +89,6 @@ struct ClientCore::Impl {
     std::condition_variable news_arrived;
     bool news = false;
     std::vector<Batch> arrived; ///< and not in the maker yet, in order
-    std::size_t arrived_samples = 0;
     std::vector<Batch> spare_batches; ///< for their memory
     std::vector<SentTile> let_go; ///< scratch
     std::optional<CameraUpdate> waiting_view;
@@ -161,7 +171,7 @@ struct ClientCore::Impl {
             maker.reset();
             std::lock_guard const lock(mutex);
             arrived.clear();
-            arrived_samples = 0;
+            statistics.waiting_bytes = 0;
             interruption = std::move(reason);
             status.clock = clock_at(Clock::now());
             paused_time = status.clock.time;
@@ -296,10 +306,10 @@ struct ClientCore::Impl {
             last_batch = std::max(last_batch, batch.number);
             statistics.stale_batches += is_stale ? 1 : 0;
             if (!is_stale) {
-                arrived_samples += samples;
+                statistics.waiting_bytes += bytes_of(batch);
                 arrived.push_back(std::move(batch));
             }
-            is_full = arrived_samples > most_waiting_samples;
+            is_full = statistics.waiting_bytes > most_waiting_bytes;
         }
         if (is_full) {
             std::lock_guard const lock(picture_mutex);
@@ -314,7 +324,7 @@ struct ClientCore::Impl {
         {
             std::lock_guard const lock(mutex);
             taken.swap(arrived);
-            arrived_samples = 0;
+            statistics.waiting_bytes = 0;
             viewport = view.view.viewport;
             settings = picture_settings;
         }

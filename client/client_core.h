@@ -44,6 +44,7 @@ struct ClientStatistics {
     double coverage = 0; ///< of the viewport now, [0, 1]
     std::uint64_t cached_framelets = 0;
     std::uint64_t cached_bytes = 0;
+    std::uint64_t waiting_bytes = 0; ///< of batches that have been decoded, for the next picture
     std::uint64_t cameras_sent = 0;
     double server_samples_per_second = 0;
     bool converged = false;

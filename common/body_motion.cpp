@@ -1,6 +1,7 @@
 #include "common/body_motion.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -66,9 +67,17 @@ Motion motion_between(BodyTrack const& track, SceneTime from, SceneTime to) {
     return is_finite(out) ? out : Motion{};
 }
 
+std::size_t BodyMotions::kept_keys() const {
+    return std::min(kept_track_keys, most_kept_keys / std::bit_ceil(std::max<std::size_t>(tracks_.size(), 1)));
+}
+
 void BodyMotions::extend(BodyTrack const& track) {
+    std::size_t const kept_before = kept_keys();
     BodyTrack& known = tracks_[track.body];
     known.body = track.body;
+    if (kept_keys() < kept_before) {
+        drop_surplus();
+    }
     auto const end = known.first_key + static_cast<std::int64_t>(known.keys.size());
     if (track.first_key >= known.first_key && track.first_key <= end) {
         known.keys.resize(static_cast<std::size_t>(track.first_key - known.first_key));
@@ -76,11 +85,22 @@ void BodyMotions::extend(BodyTrack const& track) {
         known.keys.clear();
         known.first_key = track.first_key;
     }
-    known.keys.insert(known.keys.end(), track.keys.begin(), track.keys.end());
-    if (known.keys.size() > kept_track_keys) {
-        std::size_t const surplus = known.keys.size() - kept_track_keys;
-        known.keys.erase(known.keys.begin(), known.keys.begin() + static_cast<std::ptrdiff_t>(surplus));
-        known.first_key += static_cast<std::int64_t>(surplus);
+    // Nothing is taken that would not be kept: memory once taken for the keys of a body is not given back.
+    std::size_t const all = known.keys.size() + track.keys.size();
+    std::size_t const surplus = all - std::min(all, kept_keys());
+    auto const of_known = static_cast<std::ptrdiff_t>(std::min(surplus, known.keys.size()));
+    auto const of_new = static_cast<std::ptrdiff_t>(surplus) - of_known;
+    known.keys.erase(known.keys.begin(), known.keys.begin() + of_known);
+    known.keys.insert(known.keys.end(), track.keys.begin() + of_new, track.keys.end());
+    known.first_key += static_cast<std::int64_t>(surplus);
+}
+
+void BodyMotions::drop_surplus() {
+    for (auto& [body, track] : tracks_) {
+        std::size_t const surplus = track.keys.size() - std::min(track.keys.size(), kept_keys());
+        track.keys.erase(track.keys.begin(), track.keys.begin() + static_cast<std::ptrdiff_t>(surplus));
+        track.keys.shrink_to_fit();
+        track.first_key += static_cast<std::int64_t>(surplus);
     }
 }
 

@@ -16,6 +16,8 @@ inline constexpr SceneTime max_pose_extrapolation_seconds = 0.1;
 
 /// Keys that a viewer keeps of a body: half a minute.
 inline constexpr std::size_t kept_track_keys = 30 * body_keys_per_second;
+/// And of all bodies together, whoever says that there are so many: where they are more than a thousand, fewer of each.
+inline constexpr std::size_t most_kept_keys = std::size_t{1} << 21;
 
 /// World at one time to world at another: x -> linear * x + offset, metres.
 struct Motion {
@@ -37,8 +39,11 @@ Motion motion_between(BodyTrack const& track, SceneTime from, SceneTime to);
 class BodyMotions {
 public:
     /// Takes in keys of a body. They replace those of the same times and later; keys that neither overlap nor follow
-    /// what is known replace all of it. Of each body the last `kept_track_keys` are kept.
+    /// what is known replace all of it. Of each body the last `kept_keys` are kept.
     void extend(BodyTrack const& track);
+    /// `kept_track_keys`, or what share each body has of `most_kept_keys`. It shrinks where bodies double in number, so
+    /// that what is held is rarely gone through.
+    std::size_t kept_keys() const;
 
     /// None for bodies that have no track, `static_body` among them.
     Motion between(BodyNumber body, SceneTime from, SceneTime to) const;
@@ -46,6 +51,8 @@ public:
     BodyTrack const* find(BodyNumber body) const;
 
 private:
+    void drop_surplus();
+
     std::unordered_map<BodyNumber, BodyTrack> tracks_;
 };
 

@@ -269,6 +269,28 @@ TEST(ClientCore, ASmoothSceneIsShownLateAndArrives) {
     EXPECT_EQ(core.statistics().lag_seconds, 0);
 }
 
+/// As behind a window that is hidden.
+TEST(ClientCore, WhatWaitsForAPictureIsBounded) {
+    FakeServer server;
+    ClientCore core(options_for(server));
+    ImagePlane const plane(Viewport{32, 32});
+    core.set_view({}, plane.viewport());
+    Batch batch = make_batch(plane, 0, {});
+    for (BodyNumber body = 1; body <= 128; ++body) {
+        batch.tracks.push_back({body, 0, std::vector<BodyPose>(1024)});
+    }
+    constexpr std::uint64_t count = 60, bytes = 128 * 1024 * sizeof(BodyPose);
+    std::uint64_t most = 0;
+    for (std::uint64_t i = 1; i <= count; ++i) {
+        server.send(batch);
+        ASSERT_TRUE(wait_for(core, [&] { return core.statistics().batches == i; }));
+        most = std::max(most, core.statistics().waiting_bytes);
+    }
+    EXPECT_GT(most, 10 * bytes);
+    EXPECT_LT(most, count * bytes - bytes / 2);
+    EXPECT_LE(most, (256u << 20) + 2 * bytes);
+}
+
 TEST(ClientCore, SaysThatNobodyListens) {
     ConnectionOptions options;
     {

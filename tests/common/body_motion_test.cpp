@@ -86,5 +86,43 @@ TEST(BodyMotion, DegenerateTracksAreFinite) {
     EXPECT_EQ(pose_at({1, 5, {BodyPose{Vec3(1)}}}, 1).translation, Vec3(1));
 }
 
+/// Whatever a server says: a viewer's memory is its own.
+TEST(BodyMotion, TheKeysOfAllBodiesTogetherAreBounded) {
+    BodyMotions motions;
+    EXPECT_EQ(motions.kept_keys(), kept_track_keys);
+    constexpr int bodies = 65535, keys = 1024;
+    BodyTrack track = wheel(1, 0, keys);
+    for (std::int64_t round = 0; round < 2; ++round) {
+        track.first_key = round * keys;
+        for (int body = 1; body <= bodies; body += body < 3000 || round == 0 ? 1 : 100) {
+            track.body = static_cast<BodyNumber>(body);
+            motions.extend(track);
+        }
+    }
+    std::size_t held = 0, taken = 0;
+    for (int body = 1; body <= bodies; ++body) {
+        BodyTrack const* const known = motions.find(static_cast<BodyNumber>(body));
+        ASSERT_NE(known, nullptr);
+        held += known->keys.size();
+        taken += known->keys.capacity();
+    }
+    EXPECT_LE(held, most_kept_keys);
+    EXPECT_LE(taken, 2 * most_kept_keys);
+    EXPECT_EQ(motions.kept_keys(), 32u);
+    BodyTrack const* const newest = motions.find(1);
+    EXPECT_EQ(newest->first_key + static_cast<std::int64_t>(newest->keys.size()), 2 * keys) << "the last ones are kept";
+    EXPECT_EQ(newest->keys.back(), track.keys.back());
+}
+
+TEST(BodyMotion, AThousandBodiesKeepAllTheyWouldAlone) {
+    BodyMotions motions;
+    BodyTrack track = wheel(1, 0, 10);
+    for (int body = 1; body <= 1024; ++body) {
+        track.body = static_cast<BodyNumber>(body);
+        motions.extend(track);
+    }
+    EXPECT_EQ(motions.kept_keys(), kept_track_keys);
+}
+
 } // namespace
 } // namespace framelet
