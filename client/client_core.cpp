@@ -458,6 +458,10 @@ ClientCore::ClientCore(ConnectionOptions const& options, std::function<void()> o
 
 ClientCore::~ClientCore() = default;
 
+std::string const& ClientCore::notice() const {
+    return impl_->connection->notice();
+}
+
 Welcome ClientCore::welcome() const {
     std::lock_guard const lock(impl_->mutex);
     return impl_->welcome;

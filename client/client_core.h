@@ -70,6 +70,8 @@ public:
     ClientCore(ClientCore const&) = delete;
     ClientCore& operator=(ClientCore const&) = delete;
 
+    /// What the user should know of how the session was opened, one line; mostly empty.
+    std::string const& notice() const;
     /// The newest session's.
     Welcome welcome() const;
     /// Counts up where a session is of another scene than the one before, of which nothing is held any more then.

@@ -16,9 +16,12 @@ CLI::Option* add_connection_options(CLI::App& app, ConnectionArguments& argument
                        "Where framelet-server listens: HOST, HOST:PORT (else 7070) or [ADDRESS]:PORT for IPv6");
     app.add_option("--token-file", arguments.token_file,
                    "File whose first line is the server's token; not needed on the same machine as the same user");
-    app.add_flag("--tls", arguments.tls, "Encrypt the connection and check the server's certificate");
+    app.add_flag(
+        "--tls", arguments.tls,
+        "Encrypt the connection and check the server's certificate; where no authority vouches for it, that it is "
+        "the one of the first time");
     app.add_option("--tls-ca", arguments.authority_file,
-                   "Certificates (PEM) to trust, as of a server that signed its own; implies --tls");
+                   "Certificates (PEM) to trust, none but these, as of a server that signed its own; implies --tls");
     app.add_flag("--insecure", arguments.insecure,
                  "Send the token to another machine without --tls: who is between can read it");
     app.add_flag("--no-reconnect", arguments.no_reconnect,

@@ -14,6 +14,7 @@
 
 #include "client/back_off.h"
 #include "common/error.h"
+#include "protocol/known_servers.h"
 #include "protocol/local_token.h"
 #include "protocol/stream_opening.h"
 
@@ -58,6 +59,7 @@ struct ServerConnection::Impl {
     std::shared_ptr<asio::ssl::context> tls;
     std::promise<void> opened;
     Welcome welcome; ///< of the first session
+    std::string notice; ///< likewise
 
     mutable std::mutex stream_mutex;
     std::shared_ptr<FramedStream> stream; ///< of the newest session that was opened
@@ -65,6 +67,7 @@ struct ServerConnection::Impl {
     // Only for the connection's thread.
     std::uint64_t attempt = 0;
     std::shared_ptr<FramedStream> attempted; ///< of this attempt, once it is connected
+    std::string distrust; ///< why its certificate is refused; empty: it is not
     bool open = false; ///< its Welcome has come
     bool was_open = false; ///< that of an attempt has
     /// Counted in ticks of the watch and not by the clock, so that a machine that slept hears what arrived meanwhile.
@@ -175,6 +178,10 @@ struct ServerConnection::Impl {
         FramedStream::Handlers events;
         events.on_message = heard([this](Message message) { receive(std::move(message)); });
         events.on_close = heard([this](std::string const& reason) {
+            if (!distrust.empty()) {
+                end(distrust, Retry::never);
+                return;
+            }
             end(open ? "the connection to the server at " + server + " ended: " + reason
                      : "cannot connect to " + server + ": it did not open a session: " + reason +
                            (options.tls ? "" : ": does it want --tls, or has it no room?"));
@@ -187,6 +194,17 @@ struct ServerConnection::Impl {
         // The greeting is small; batches may be large, once we know who talks to us.
         attempted->start(std::move(events), max_upstream_message_bytes);
         attempted->send(Hello{protocol_version, token, coding::all});
+    }
+
+    /// In the handshake.
+    bool trusts(std::string const& fingerprint) {
+        CertificateVerdict verdict = judge_certificate(known_servers_file(), server, fingerprint);
+        if (!verdict.is_trusted) {
+            distrust = std::move(verdict.notice);
+        } else if (!was_open) {
+            notice = std::move(verdict.notice);
+        }
+        return verdict.is_trusted;
     }
 
     void receive(Message message) {
@@ -257,7 +275,11 @@ struct ServerConnection::Impl {
 ServerConnection::ServerConnection(ConnectionOptions const& options, Handlers handlers)
     : impl_(std::make_unique<Impl>(options, std::move(handlers))) {
     if (options.tls) {
-        impl_->tls = make_tls_client_context(options.authority_file);
+        CertificateJudge judge;
+        if (options.authority_file.empty()) { // a certificate that is named is the only one that is trusted
+            judge = [impl = impl_.get()](std::string const& fingerprint) { return impl->trusts(fingerprint); };
+        }
+        impl_->tls = make_tls_client_context(options.authority_file, std::move(judge));
     }
     std::future<void> opened = impl_->opened.get_future();
     asio::post(impl_->io, [impl = impl_.get()] { impl->begin(); });
@@ -281,6 +303,10 @@ ServerConnection::~ServerConnection() {
 
 Welcome const& ServerConnection::welcome() const {
     return impl_->welcome;
+}
+
+std::string const& ServerConnection::notice() const {
+    return impl_->notice;
 }
 
 void ServerConnection::send(Message const& message) {

@@ -38,6 +38,8 @@ public:
 
     /// Of the first session.
     Welcome const& welcome() const;
+    /// What the user should know of the certificate that it began with, one line; mostly empty.
+    std::string const& notice() const;
     /// From any thread. Nothing happens while no session is open.
     void send(Message const& message);
     /// True when everything that was queued has been taken by the network. From any thread.

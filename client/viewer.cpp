@@ -31,7 +31,7 @@ Viewer::Viewer(Window& window, ConnectionOptions connection, std::unique_ptr<Cli
       settings_(settings), lag_seconds_(lag_seconds),
       chosen_lag_seconds_(lag_seconds > 0 ? lag_seconds : usual_lag_seconds) {
     adopt(std::move(core));
-    say("F1: help");
+    say(core_->notice().empty() ? "F1: help" : core_->notice());
 }
 
 std::unique_ptr<ClientCore> Viewer::connect(ConnectionOptions const& connection) {
@@ -46,6 +46,9 @@ void Viewer::adopt(std::unique_ptr<ClientCore> core) {
     bool const same_scene = core_ && core->welcome().scene_identity != 0 &&
                             core->welcome().scene_identity == core_->welcome().scene_identity;
     core_ = std::move(core);
+    if (!core_->notice().empty()) {
+        std::cerr << "framelet-viewer: " << core_->notice() << std::endl;
+    }
     lost_.clear();
     meter_ = RateMeter();
     core_->set_settings(settings_);

@@ -198,6 +198,9 @@ int run(Options const& options, ConnectionOptions const& connection, Viewport vi
     }
     end_on_signals();
     ClientCore core(connection);
+    if (!core.notice().empty()) {
+        std::cerr << "framelet-client: " << core.notice() << std::endl;
+    }
     std::size_t const cameras = core.welcome().cameras.size();
     if (path && path->scene_camera >= static_cast<int>(cameras)) {
         throw InputError("the camera file asks for camera " + std::to_string(path->scene_camera) +

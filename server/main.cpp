@@ -118,6 +118,9 @@ void serve(Options& options) {
     for (std::string const& address : server.addresses()) {
         std::cout << "listening on " << address << std::endl;
     }
+    if (!options.server.tls_certificate.empty()) {
+        std::cout << "certificate SHA-256 " << certificate_fingerprint(options.server.tls_certificate) << std::endl;
+    }
     server.run(true);
 }
 

@@ -1,6 +1,7 @@
 // The real server and the real windowless client as processes, over a loopback socket.
 #include <cmath>
 #include <csignal>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <optional>
@@ -316,14 +317,21 @@ TEST(Loopback, TokenIsAsked) {
     }
 }
 
-TEST(Loopback, TlsProtectsAndIsChecked) {
-    TemporaryFolder folder;
-    std::string const key = (folder.path() / "key.pem").string();
-    std::string const certificate = (folder.path() / "cert.pem").string();
+/// For 127.0.0.1, signed with its own key; the files of both.
+std::pair<std::string, std::string> make_certificate(TemporaryFolder const& folder, std::string const& name) {
+    std::string const key = (folder.path() / (name + "-key.pem")).string();
+    std::string const certificate = (folder.path() / (name + "-cert.pem")).string();
     Process openssl("/usr/bin/openssl",
                     {"req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "1", "-keyout", key, "-out", certificate,
                      "-subj", "/CN=localhost", "-addext", "subjectAltName=IP:127.0.0.1"});
-    ASSERT_EQ(openssl.wait(60s), 0) << openssl.errors();
+    EXPECT_EQ(openssl.wait(60s), 0) << openssl.errors();
+    return {certificate, key};
+}
+
+TEST(Loopback, TlsProtectsAndIsChecked) {
+    TemporaryFolder folder;
+    auto const [certificate, key] = make_certificate(folder, "own");
+    auto const [other_certificate, other_key] = make_certificate(folder, "other");
     ServerProcess server(scene_file, {"--tls-cert", certificate, "--tls-key", key, "--paused"});
     auto const connect = [&](std::vector<std::string> more) {
         more.insert(more.begin(), {server.address(), "--size", "64x64", "--duration", "60", "--until-converged"});
@@ -331,8 +339,41 @@ TEST(Loopback, TlsProtectsAndIsChecked) {
         return client.wait(patience);
     };
     EXPECT_EQ(connect({"--tls", "--tls-ca", certificate}), 0);
-    EXPECT_EQ(connect({"--tls"}), 1) << "nobody vouches for the certificate";
+    EXPECT_EQ(connect({"--tls", "--tls-ca", other_certificate}), 1) << "nobody vouches for the certificate";
     EXPECT_EQ(connect({}), 1) << "plain text is not served";
+}
+
+TEST(Loopback, ACertificateThatNobodyVouchesForIsTrustedUntilItChanges) {
+    TemporaryFolder folder;
+    ASSERT_EQ(::setenv("XDG_STATE_HOME", folder.path().c_str(), 1), 0); // what is remembered goes with the test
+    auto const [certificate, key] = make_certificate(folder, "first");
+    auto const [other_certificate, other_key] = make_certificate(folder, "other");
+    std::string address;
+    auto const connect = [&] {
+        Process client(FRAMELET_CLIENT, {address, "--tls", "--size", "64x64", "--duration", "60", "--until-converged"});
+        int const code = client.wait(patience);
+        return std::pair{code, client.errors()};
+    };
+    {
+        ServerProcess server(scene_file, {"--tls-cert", certificate, "--tls-key", key, "--paused"});
+        address = server.address();
+        auto const [code, warning] = connect();
+        EXPECT_EQ(code, 0) << warning;
+        std::string const mark = "certificate SHA-256 ";
+        std::string const printed = server.process().output();
+        std::size_t const start = printed.find(mark);
+        ASSERT_NE(start, std::string::npos) << printed;
+        EXPECT_NE(warning.find(printed.substr(start + mark.size(), 95)), std::string::npos) << warning;
+        EXPECT_EQ(connect(), std::pair(0, std::string())) << "it is known by now";
+    }
+    ServerProcess const impostor = ServerProcess::of_program(
+        FRAMELET_SERVER, {scene_file, "--port", address.substr(address.rfind(':') + 1), "--tls-cert", other_certificate,
+                          "--tls-key", other_key, "--paused"});
+    auto const [code, errors] = connect();
+    EXPECT_EQ(code, 1);
+    EXPECT_NE(errors.find("known_servers"), std::string::npos) << errors;
+    EXPECT_EQ(std::count(errors.begin(), errors.end(), '\n'), 1) << errors;
+    ::unsetenv("XDG_STATE_HOME");
 }
 
 TEST(Loopback, ViewersBeyondTheLimitAreToldSo) {

@@ -1,0 +1,53 @@
+#include "protocol/known_servers.h"
+
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+namespace framelet {
+namespace {
+
+class KnownServers : public testing::Test {
+protected:
+    void TearDown() override { std::filesystem::remove(file_); }
+
+    std::filesystem::path const file_ =
+        std::filesystem::path(testing::TempDir()) /
+        (std::string("known_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+};
+
+TEST_F(KnownServers, ANewOneIsTrustedOnceWithANotice) {
+    CertificateVerdict const first = judge_certificate(file_, "one:7070", "AA:01");
+    EXPECT_TRUE(first.is_trusted);
+    EXPECT_NE(first.notice.find("AA:01"), std::string::npos) << first.notice;
+    CertificateVerdict const again = judge_certificate(file_, "one:7070", "AA:01");
+    EXPECT_TRUE(again.is_trusted);
+    EXPECT_EQ(again.notice, "");
+    EXPECT_EQ(std::filesystem::status(file_).permissions(), std::filesystem::perms(0600));
+}
+
+TEST_F(KnownServers, AnotherCertificateIsRefused) {
+    judge_certificate(file_, "one:7070", "AA:01");
+    judge_certificate(file_, "two:7070", "BB:02");
+    CertificateVerdict const changed = judge_certificate(file_, "one:7070", "BB:02");
+    EXPECT_FALSE(changed.is_trusted);
+    for (std::string const& word : {std::string("one:7070"), std::string("BB:02"), file_.string()}) {
+        EXPECT_NE(changed.notice.find(word), std::string::npos) << changed.notice;
+    }
+    EXPECT_TRUE(judge_certificate(file_, "one:7070", "AA:01").is_trusted) << "nothing has been forgotten";
+}
+
+TEST_F(KnownServers, OneThatAnAuthorityVouchedForStaysSo) {
+    EXPECT_TRUE(judge_certificate(file_, "one:7070", "").is_trusted);
+    EXPECT_FALSE(judge_certificate(file_, "one:7070", "AA:01").is_trusted);
+    EXPECT_TRUE(judge_certificate(file_, "one:7070", "").is_trusted);
+}
+
+TEST_F(KnownServers, WhatCannotBeRememberedIsNotTrusted) {
+    std::filesystem::create_directory(file_);
+    EXPECT_FALSE(judge_certificate(file_, "one:7070", "AA:01").is_trusted);
+    EXPECT_FALSE(judge_certificate("", "one:7070", "AA:01").is_trusted);
+}
+
+} // namespace
+} // namespace framelet
