@@ -18,7 +18,9 @@ int main(int argc, char** argv) {
 
     CLI::App app("Shows a scene that framelet-server renders. F1 in the window lists the keys.", "framelet-viewer");
     app.set_version_flag("--version", "framelet-viewer " FRAMELET_VERSION);
-    app.footer("\nExit code: 0 fine; 1 no display, or the server cannot be reached or has vanished; 2 bad usage.");
+    app.footer("\nWhere the server is gone for a while, what is held goes on being shown, and the\nsession goes on "
+               "when it is back; see --no-reconnect.\n\nExit code: 0 fine; 1 no display, or the server cannot be "
+               "reached, refused the\nviewer or has vanished; 2 bad usage.");
     add_connection_options(app, arguments)->capture_default_str();
     app.add_option("--size", size, "Size of the window in pixels")->capture_default_str();
     app.add_flag("--fullscreen", fullscreen, "Fill the screen");
