@@ -77,11 +77,6 @@ bool is_usable(WarpPatch const& patch) {
     return usable;
 }
 
-/// A shadow that goes over a surface, or what deforms.
-bool drifts(Layer const& layer) {
-    return layer.body == static_body && layer.velocity != Vec3(0);
-}
-
 } // namespace
 
 FrameletWarp::FrameletWarp(FrameletCache const& cache, std::size_t slot, Camera const& display, SceneTime time,
@@ -192,12 +187,12 @@ void FrameletWarp::rate(std::uint32_t view, FadingCode fading, Layer const& laye
     glm::dvec2 const middle = 0.5 * glm::dvec2(patch.box.left + patch.box.right, patch.box.top + patch.box.bottom);
     float const misplaced = is_still_ ? 0 : layer.error * z * parallax_at(middle);
     patch.worn = worn(view, fading, spacing, misplaced);
-    if (drifts(layer)) {
-        auto const age = static_cast<float>(time_ - cache_.views()[view].scene_time);
+    auto const age = static_cast<float>(time_ - cache_.views()[view].scene_time);
+    if (drifts(layer.body, layer.velocity)) {
         patch.group = drifting_group(patch.group);
         patch.worn *= leads(layer.body, layer.velocity, age) ? ahead_of_all : 1.0f;
     }
-    patch.hides = hides(spacing, misplaced);
+    patch.hides = hides(spacing, misplaced) && !is_adrift(layer.body, layer.velocity, age);
     if (is_astray(spacing, misplaced)) {
         patch.tolerance = static_cast<float>(largest); // nearer than nothing
     }

@@ -50,12 +50,23 @@ inline float worn_spacing(float spacing, float age, float rate) {
     return std::max(spacing, finest_shown_spacing) + rate * std::abs(age);
 }
 
-/// Whether what is carried so, and lies on a layer, shows before all that it comes over, however good that is: a shadow
-/// (or what deforms) was seen to go there. After so long (seconds of scene time) it must be better, as everything: it
-/// may have gone elsewhere.
+/// Whether what is carried so is a shadow that goes over a surface, or deforms.
+inline bool drifts(BodyNumber body, Vec3 const& velocity) {
+    return body == static_body && velocity != Vec3(0);
+}
+
+/// For so long (seconds of scene time) what drifts is about where it was seen to go.
+inline constexpr float leading_seconds = 0.2f;
+
+/// Whether what is carried so, and lies on a layer, shows before all that it comes over, however good that is.
 inline bool leads(BodyNumber body, Vec3 const& velocity, float age) {
-    constexpr float leading_seconds = 0.2f;
-    return body == static_body && velocity != Vec3(0) && std::abs(age) < leading_seconds;
+    return drifts(body, velocity) && std::abs(age) < leading_seconds;
+}
+
+/// Whether it may have gone elsewhere since: then it shows only where nothing else does, or scraps of old shadows would
+/// lie about wherever they are finer than the ground.
+inline bool is_adrift(BodyNumber body, Vec3 const& velocity, float age) {
+    return drifts(body, velocity) && !leads(body, velocity, age);
 }
 
 /// Steps of a worn spacing, of a float's mantissa: 1/4 within each octave.

@@ -11,7 +11,8 @@ namespace {
 
 /// A comparison over so many seconds counts as much as all that was known before.
 constexpr float trusted_seconds = 0.2f;
-/// What is seen in a mirror by a camera that moves.
+/// Of what is seen in a mirror by a camera that moves, and of what turns in the light: that is expected to change
+/// although it has hardly been seen to, since detail hides it.
 constexpr float restless_change = 0.02f;
 /// What is seen sooner again says little of how fast it changes.
 constexpr float least_seconds = 0.02f;
@@ -93,7 +94,8 @@ FadingCode learn_fading(Mirror const& mirror, std::span<Piece> pieces, SceneTime
     for (Piece& piece : pieces) {
         piece.change = comparable ? change_after(compare(mirror, piece, scene_time)) : 0;
         float expected = piece.change;
-        if (piece.reflects && !mirror.camera_stands()) {
+        bool const is_restless = (piece.reflects && !mirror.camera_stands()) || piece.body != static_body;
+        if (is_restless) {
             expected = std::max(expected, restless_change);
         }
         float const area = 4 * piece.half_side.x * piece.half_side.y;

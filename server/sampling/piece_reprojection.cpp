@@ -93,7 +93,7 @@ ReprojectedPiece reproject(Piece const& piece, BodyTransform const& body, Vec2 s
         misplaced = body.is_still && piece.velocity == Vec3(0)
                         ? 0
                         : tolerance * glm::length(Vec2(parallax) - parallax.z * reprojected.at);
-        if (!hides(spacing, misplaced)) { // it shows where nothing else does
+        if (!hides(spacing, misplaced) || is_adrift(piece.body, piece.velocity, age)) { // it shows where nothing does
             return {};
         }
     }
