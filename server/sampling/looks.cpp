@@ -11,8 +11,8 @@ namespace {
 
 /// A comparison over so many seconds counts as much as all that was known before.
 constexpr float trusted_seconds = 0.2f;
-/// Of what is seen in a mirror by a camera that moves, and of what turns in the light: that is expected to change
-/// although it has hardly been seen to, since detail hides it.
+/// Of outlines and of what is seen in a mirror before a camera that moves, and of what turns in the light: that is
+/// expected to change although it has hardly been seen to, since detail hides it.
 constexpr float restless_change = 0.02f;
 /// What is seen sooner again says little of how fast it changes.
 constexpr float least_seconds = 0.02f;
@@ -89,12 +89,14 @@ float change_after(Comparison const& comparison) {
 
 } // namespace
 
-FadingCode learn_fading(Mirror const& mirror, std::span<Piece> pieces, SceneTime scene_time, bool comparable) {
+FadingCode learn_fading(Mirror const& mirror, std::span<Piece> pieces, SceneTime scene_time, bool comparable,
+                        bool has_outline) {
     float change = 0, detail = 0;
     for (Piece& piece : pieces) {
         piece.change = comparable ? change_after(compare(mirror, piece, scene_time)) : 0;
         float expected = piece.change;
-        bool const is_restless = (piece.reflects && !mirror.camera_stands()) || piece.body != static_body;
+        bool const is_restless =
+            piece.body != static_body || (!mirror.camera_stands() && (piece.reflects || has_outline));
         if (is_restless) {
             expected = std::max(expected, restless_change);
         }

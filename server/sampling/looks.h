@@ -13,6 +13,7 @@ namespace framelet {
 /// Compares the pieces of a framelet, of the moment that `mirror` looks at, with what it shows there; sets their
 /// `change` and `fading`. Those of another moment (`comparable` false), and what has just come into view, are taken for
 /// what does not change: where that is wrong probes find it. Returns the code of their fading.
-FadingCode learn_fading(Mirror const& mirror, std::span<Piece> pieces, SceneTime scene_time, bool comparable);
+FadingCode learn_fading(Mirror const& mirror, std::span<Piece> pieces, SceneTime scene_time, bool comparable,
+                        bool has_outline = false);
 
 } // namespace framelet
