@@ -8,6 +8,7 @@
 #include <fstream>
 #include <optional>
 #include <sched.h>
+#include <span>
 #include <thread>
 
 #include <nlohmann/json.hpp>
@@ -286,6 +287,16 @@ struct Measured {
     std::vector<ComparedMoment> moments;
 };
 
+constexpr std::size_t shown_between = FrameChoice::frames_at_once / 2;
+
+/// Of the frames in a row from `first` on the one that was shown most nearly at the moment that it is of. On the
+/// virtual clock every one that is compared is: a millisecond of the operating system's decides where a car passes by.
+std::size_t most_punctual(std::vector<LiveFrame> const& frames, std::size_t first) {
+    auto const row = std::span(frames).subspan(first, FrameChoice::frames_at_once);
+    auto const off = [](LiveFrame const& frame) { return std::max(frame.photon_seconds, 0.0); };
+    return static_cast<std::size_t>(std::ranges::min_element(row, {}, off) - row.begin());
+}
+
 /// Errors at some moments, spread over the run. Where the virtual clock is compared with it there are many of them: how
 /// steady the error is, for which each takes three references, is not looked at then.
 Measured error_figures(BenchScene& scene, std::string const& method, LiveRun const& run, LiveOptions const& options) {
@@ -298,17 +309,17 @@ Measured error_figures(BenchScene& scene, std::string const& method, LiveRun con
     json figures{{"mse", 0.0}, {"ssim", 0.0}, {"flip", 0.0}, {"steadiness", 0.0}};
     std::vector<ComparedMoment> moments;
     std::size_t const count = written.size() / FrameChoice::frames_at_once;
-    constexpr std::size_t middle = FrameChoice::frames_at_once / 2;
     for (std::size_t k = 0; k < count; ++k) {
         std::size_t const first = written[k * FrameChoice::frames_at_once];
+        std::size_t const chosen = options.predicts ? most_punctual(run.frames, first) : shown_between;
         std::array<Picture, FrameChoice::frames_at_once> shown, reference;
         for (std::size_t i = 0; i < shown.size(); ++i) {
-            if (i == middle || !options.predicts) {
+            if (i == chosen || !options.predicts) {
                 shown[i] = run.picture(first + i);
                 reference[i] = reference_of(scene, run.frames[first + i], options);
             }
         }
-        Measures const measures = measure(shown[middle], reference[middle]);
+        Measures const measures = measure(shown[chosen], reference[chosen]);
         auto const add = [&](char const* name, double value) {
             figures[name] = figures[name].get<double>() + value / static_cast<double>(count);
         };
@@ -321,9 +332,9 @@ Measured error_figures(BenchScene& scene, std::string const& method, LiveRun con
         figures["moment_mse"].push_back(measures.mse);
         if (!options.charts.empty()) {
             write_beside_reference(options.charts / (scene.name + "-" + method + "-" + std::to_string(k) + ".png"),
-                                   reference[middle], std::span(shown).subspan(middle, 1));
+                                   reference[chosen], std::span(shown).subspan(chosen, 1));
         }
-        moments.push_back({run.frames[first + middle].scene_time, std::move(reference[middle])});
+        moments.push_back({run.frames[first + chosen].scene_time, std::move(reference[chosen])});
     }
     figures["psnr"] = psnr_from_mse(figures["mse"]);
     return {std::move(figures), std::move(moments)};
