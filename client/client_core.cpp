@@ -295,7 +295,8 @@ struct ClientCore::Impl {
         bool is_full = false;
         {
             std::lock_guard const lock(mutex);
-            statistics.bytes += encoded.payload.size() + encoded.tiles.size() * sizeof(Tile) + batch_header_bytes;
+            statistics.bytes += encoded.payload.size() + encoded.shapes.size() + encoded.tracks.size() +
+                                encoded.tiles.size() * sizeof(Tile) + batch_header_bytes;
             statistics.decode_seconds += seconds_between(received, decoded);
             std::size_t const samples = batch.framelets.size() * framelet_samples;
             bool const is_stale = batch.view.viewport != view.view.viewport;

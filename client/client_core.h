@@ -32,7 +32,7 @@ struct ClientStatistics {
     std::uint64_t stale_batches = 0; ///< for a viewport that is no longer current; not shown
     std::uint64_t framelets = 0;
     std::uint64_t samples = 0;
-    std::uint64_t bytes = 0; ///< of batches: samples, tiles and headers
+    std::uint64_t bytes = 0; ///< of batches: samples, shapes, tracks, tiles and headers
     std::uint64_t pixels = 0; ///< reconstructed
     double decode_seconds = 0;
     double insert_seconds = 0;

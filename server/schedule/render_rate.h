@@ -3,6 +3,9 @@
 
 namespace framelet {
 
+/// Of a renderer that has not been measured yet.
+inline constexpr double first_samples_per_second = 1e6;
+
 /// Running estimate; 0 until the first measurement.
 struct RenderRate {
     double samples_per_second = 0;

@@ -14,8 +14,6 @@
 namespace framelet {
 namespace {
 
-/// Samples a second of a renderer that has not been measured yet.
-constexpr double first_rate = 1e6;
 /// From so many threads on learning overlaps rendering. Its serial part would leave most of them idle; few are busy
 /// with its parallel part, which is cheaper while what was rendered is still in the caches.
 constexpr std::size_t many_threads = 5;
@@ -124,7 +122,7 @@ bool SessionLoop::give_turn(std::shared_ptr<Session> const& session, Viewer& vie
                             double share) {
     ViewerStream& stream = *viewer.stream;
     viewer.version = session->take_events(viewer.events);
-    double const rate = rate_.samples_per_second > 0 ? rate_.samples_per_second : first_rate;
+    double const rate = rate_.samples_per_second > 0 ? rate_.samples_per_second : first_samples_per_second;
     double const speed = clock.playing ? double{clock.speed} : 0;
     Turn const turn{seconds_of(std::chrono::steady_clock::now()), clock.time, speed, share * rate, plan_seconds_};
     EventLog* const log = options_.event_log;

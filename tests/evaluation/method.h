@@ -67,6 +67,7 @@ struct MethodSetup {
     std::size_t batch_framelets = 0; ///< most framelets of one batch; 0: what a cycle has time for
     FrameletParts parts{};
     RivalParts rivals{}; ///< what is left to choose is 1 and no margin
+    double clock_offset = 1000; ///< what a server's clock says at time 0 of the run, which begins before that
     SessionTimes* times = nullptr; ///< of framelet's own methods: gets what their stages take
 };
 

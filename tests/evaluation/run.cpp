@@ -11,8 +11,8 @@
 namespace framelet::bench {
 namespace {
 
-/// How often a server that has nothing to do looks again.
-constexpr double idle_seconds = 0.002;
+/// How often a server that has nothing to do looks again, as `SessionLoop` does.
+constexpr double idle_seconds = 0.005;
 /// Of a viewer's display, pictures a second.
 constexpr double display_rate = 60;
 
@@ -148,7 +148,7 @@ private:
 /// The scene's motion before the measured time.
 double running_lead_seconds(RunParameters const& parameters) {
     constexpr double enough = 0.5;
-    return std::clamp(parameters.start, 0.0, enough);
+    return std::clamp(parameters.start, 0.0, std::max(enough, parameters.fresh_lead));
 }
 
 } // namespace
@@ -165,13 +165,14 @@ MethodSetup method_setup(RunParameters const& parameters, double machine, CostTa
             parameters.batch_framelets,
             {},
             parameters.rivals,
+            parameters.clock_offset,
             parameters.times};
 }
 
 double lead_seconds(RunParameters const& parameters) {
-    return parameters.begins_empty ? 0
-                                   : std::max(0.5, 3 / parameters.frames_per_second) +
-                                         4 * parameters.link.delay_seconds + running_lead_seconds(parameters);
+    return parameters.fresh_lead > 0 ? parameters.fresh_lead
+                                     : std::max(0.5, 3 / parameters.frames_per_second) +
+                                           4 * parameters.link.delay_seconds + running_lead_seconds(parameters);
 }
 
 std::size_t reference_count(RunParameters const& parameters) {
@@ -222,6 +223,10 @@ RunResult run_method(BenchScene& scene, Method& method, RunParameters const& par
         DeliveredMessage message;
     };
     std::deque<Answer> answers;
+    auto const next_look = [&answers](double from) { // an answer wakes it
+        double const idle = from + idle_seconds;
+        return answers.empty() || answers.front().when <= from ? idle : std::min(idle, answers.front().when);
+    };
     std::vector<DeliveredMessage> delivered;
     NumberedView view{0, {}, parameters.viewport};
     while (now < parameters.seconds) {
@@ -238,7 +243,7 @@ RunResult run_method(BenchScene& scene, Method& method, RunParameters const& par
             answers.pop_front();
         }
         if (!method.has_room(now)) {
-            now = answers.empty() ? now + idle_seconds : std::min(now + idle_seconds, answers.front().when);
+            now = next_look(now);
             continue;
         }
         SceneTime const time = scene_time(parameters, now);
@@ -266,7 +271,7 @@ RunResult run_method(BenchScene& scene, Method& method, RunParameters const& par
         }
         now += machine * step.seconds.server();
         if (step.message.empty()) {
-            now = std::max(now + machine * step.later.server(), started + idle_seconds);
+            now = std::max(now + machine * step.later.server(), next_look(started));
             continue;
         }
         SimulatedLink::Delivery const delivery = link.send(now, step.message.size());

@@ -33,7 +33,8 @@ struct RunParameters {
     double scene_stops = INFINITY; ///< seconds of the run, from which on scene and camera stand still
     RivalParts rivals{}; ///< as in MethodSetup
     SessionTimes* times = nullptr; ///< likewise
-    bool begins_empty = false; ///< the viewer comes when the measured time begins
+    double clock_offset = MethodSetup{}.clock_offset; ///< likewise
+    double fresh_lead = 0; ///< > 0: the viewer comes so long before the measured time, and the scene runs already
 };
 
 /// What such a run tells its method, on a machine of this speed.

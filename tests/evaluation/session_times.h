@@ -2,6 +2,8 @@
 // is calibrated on sessions as they run, whose viewer holds several moments and whose caches are full of other things.
 #pragma once
 
+#include <cstdint>
+
 #include "tests/evaluation/cost_table.h"
 #include "tests/evaluation/stopwatch.h"
 
@@ -16,6 +18,9 @@ struct SessionTimes {
         double factor() const { return measured > 0 && charged > 0 ? measured / charged : 1; }
     };
     Stage plan, render, learn, encode, decode, insert, paint;
+    double looking =
+        0; ///< for something to do, where there was nothing, or nothing new to plan: the table has no entry
+    std::uint64_t samples = 0; ///< sent
 };
 
 /// Does the work, and notes how long it took where somebody wants to know.

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <optional>
 #include <sched.h>
+#include <span>
 #include <thread>
 
 #include <nlohmann/json.hpp>
@@ -134,6 +135,8 @@ struct LiveRun {
     test::TemporaryFolder folder;
     std::vector<LiveFrame> frames;
     double server_cores = 0; ///< that it used while both were at work
+    double server_seconds = 0; ///< that it used since the viewer came, until `watched_until`
+    double watched_until = 0; ///< Unix
 
     std::filesystem::path picture_file(std::uint64_t frame) const {
         char name[40];
@@ -184,6 +187,7 @@ void run_programs(BenchScene const& scene, std::string const& method, RivalParts
             joined(client_options,
                    {"--camera", run.folder.write("camera.json", json{{"scene_camera", scene.scene_camera}}.dump())});
     }
+    double const idle = cpu_of(server.process().pid());
     auto client = [&] {
         OnCore const core(core_if(options.pinned, 1));
         return test::Process(programs.client,
@@ -195,7 +199,10 @@ void run_programs(BenchScene const& scene, std::string const& method, RivalParts
     auto const begun = std::chrono::steady_clock::now();
     std::this_thread::sleep_for(std::chrono::duration<double>(options.seconds - build_up_seconds - 0.2));
     std::chrono::duration<double> const watched = std::chrono::steady_clock::now() - begun;
-    run.server_cores = (cpu_of(server.process().pid()) - before) / watched.count();
+    double const after = cpu_of(server.process().pid());
+    run.watched_until = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+    run.server_cores = (after - before) / watched.count();
+    run.server_seconds = after - idle;
     if (int const code = client.wait(patience); code != 0) {
         throw ConnectionError(method + ": the viewer ended with " + std::to_string(code) + ": " + client.errors());
     }
@@ -244,8 +251,15 @@ json run_figures(LiveRun const& run) {
     }
     double const steady_span = last.seconds - steady->seconds;
     auto const steady_pictures =
-        std::count_if(steady, run.frames.end(), [](auto const& frame) { return frame.changed; });
+        std::count_if(steady + 1, run.frames.end(), [](auto const& frame) { return frame.changed; });
     double const span = last.seconds - run.frames.front().seconds;
+    auto watched =
+        std::ranges::find_if(run.frames, [&run](LiveFrame const& frame) { return frame.seconds >= run.watched_until; });
+    watched = watched == run.frames.end() ? watched - 1 : watched;
+    /// The same for all processes: what the steady clock says when the system's says 0.
+    double const clock_offset = std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch() -
+                                                              std::chrono::system_clock::now().time_since_epoch())
+                                    .count();
     double const cores = std::max(1u, std::thread::hardware_concurrency());
     double const viewer = (last.cpu_seconds - run.frames.front().cpu_seconds) / span;
     return {{"pictures_per_second", changed / span},
@@ -257,9 +271,14 @@ json run_figures(LiveRun const& run) {
             {"samples_per_second", last.samples / span},
             {"kB_per_second", last.bytes / span / 1e3},
             {"start_seconds", run.frames.front().scene_time},
+            {"server_seconds_per_sample", run.server_seconds / std::max(watched->samples, 1.0)},
+            {"start_clock", run.frames.front().seconds + clock_offset},
             {"steady",
              {{"pictures_per_second", static_cast<double>(steady_pictures) / steady_span},
-              {"kB_per_second", (last.bytes - steady->bytes) / steady_span / 1e3}}},
+              {"kB_per_second", (last.bytes - steady->bytes) / steady_span / 1e3},
+              {"samples_per_second", (last.samples - steady->samples) / steady_span},
+              {"server_cores", run.server_cores},
+              {"viewer_cores", (last.cpu_seconds - steady->cpu_seconds) / steady_span}}},
             {"photon_ms", photons.empty() ? json() : json(1e3 * percentile(photons, 0.5))}};
 }
 
@@ -269,7 +288,18 @@ struct Measured {
     std::vector<ComparedMoment> moments;
 };
 
-/// Errors at some moments, spread over the run.
+constexpr std::size_t shown_between = FrameChoice::frames_at_once / 2;
+
+/// Of the frames in a row from `first` on the one that was shown most nearly at the moment that it is of. On the
+/// virtual clock every one that is compared is: a millisecond of the operating system's decides where a car passes by.
+std::size_t most_punctual(std::vector<LiveFrame> const& frames, std::size_t first) {
+    auto const row = std::span(frames).subspan(first, FrameChoice::frames_at_once);
+    auto const off = [](LiveFrame const& frame) { return std::max(frame.photon_seconds, 0.0); };
+    return static_cast<std::size_t>(std::ranges::min_element(row, {}, off) - row.begin());
+}
+
+/// Errors at some moments, spread over the run. Where the virtual clock is compared with it there are many of them: how
+/// steady the error is, for which each takes three references, is not looked at then.
 Measured error_figures(BenchScene& scene, std::string const& method, LiveRun const& run, LiveOptions const& options) {
     std::vector<std::size_t> written;
     for (std::size_t i = 0; i < run.frames.size(); ++i) {
@@ -282,24 +312,30 @@ Measured error_figures(BenchScene& scene, std::string const& method, LiveRun con
     std::size_t const count = written.size() / FrameChoice::frames_at_once;
     for (std::size_t k = 0; k < count; ++k) {
         std::size_t const first = written[k * FrameChoice::frames_at_once];
+        std::size_t const chosen = options.predicts ? most_punctual(run.frames, first) : shown_between;
         std::array<Picture, FrameChoice::frames_at_once> shown, reference;
         for (std::size_t i = 0; i < shown.size(); ++i) {
-            shown[i] = run.picture(first + i);
-            reference[i] = reference_of(scene, run.frames[first + i], options);
+            if (i == chosen || !options.predicts) {
+                shown[i] = run.picture(first + i);
+                reference[i] = reference_of(scene, run.frames[first + i], options);
+            }
         }
-        Measures const measures = measure(shown[1], reference[1]);
+        Measures const measures = measure(shown[chosen], reference[chosen]);
         auto const add = [&](char const* name, double value) {
             figures[name] = figures[name].get<double>() + value / static_cast<double>(count);
         };
         add("mse", measures.mse);
         add("ssim", measures.ssim);
         add("flip", measures.flip);
-        add("steadiness", unsteadiness(shown, reference));
+        if (!options.predicts) {
+            add("steadiness", unsteadiness(shown, reference));
+        }
+        figures["moment_mse"].push_back(measures.mse);
         if (!options.charts.empty()) {
             write_beside_reference(options.charts / (scene.name + "-" + method + "-" + std::to_string(k) + ".png"),
-                                   reference[1], std::span(shown).subspan(1, 1));
+                                   reference[chosen], std::span(shown).subspan(chosen, 1));
         }
-        moments.push_back({run.frames[first + 1].scene_time, std::move(reference[1])});
+        moments.push_back({run.frames[first + chosen].scene_time, std::move(reference[chosen])});
     }
     figures["psnr"] = psnr_from_mse(figures["mse"]);
     return {std::move(figures), std::move(moments)};
@@ -338,8 +374,8 @@ void print_prediction(json const& figures) {
         std::printf(
             "  %-16s %6.1f pictures/s  %7.0f kB/s  %6.2f dB  %5.2f Msamples/s  server %.2f  viewer %.2f cores\n", name,
             rates["pictures_per_second"].get<double>(), rates["kB_per_second"].get<double>(), of["psnr"].get<double>(),
-            of["samples_per_second"].get<double>() / 1e6, of["server_cores"].get<double>(),
-            of["viewer_cores"].get<double>());
+            rates["samples_per_second"].get<double>() / 1e6, rates["server_cores"].get<double>(),
+            rates["viewer_cores"].get<double>());
     };
     line("wall clock", figures["steady"], figures);
     line("virtual clock", figures["virtual"], figures["virtual"]);

@@ -25,16 +25,9 @@ RunParameters on_one_core(BenchScene& scene, RunParameters run, CostTable const&
     return run;
 }
 
-/// Rates of what is measured, in the time in which nothing is built up any more.
 json rates_of(RunResult const& run, RunParameters const& parameters) {
-    double const seconds = parameters.seconds - build_up_seconds;
-    double bytes = 0;
-    for (RunResult::Delivery const& delivery : run.deliveries) {
-        bytes += delivery.sent >= build_up_seconds ? delivery.bytes : 0;
-    }
-    auto const pictures = std::ranges::count_if(run.displayed, [](double when) { return when >= build_up_seconds; });
-    return {{"kB_per_second", 1e-3 * bytes / seconds},
-            {"pictures_per_second", static_cast<double>(pictures) / seconds},
+    return {{"kB_per_second", 1e-3 * static_cast<double>(run.bytes) / parameters.seconds},
+            {"pictures_per_second", static_cast<double>(run.displayed.size()) / parameters.seconds},
             {"samples_per_second", static_cast<double>(run.sent_samples) / parameters.seconds},
             {"server_cores", run.cpu.server() / parameters.seconds},
             {"viewer_cores", run.cpu.viewer() / parameters.seconds}};
@@ -44,18 +37,16 @@ double ratio(json const& figures, char const* amount, char const* count) {
     return figures[amount].get<double>() / std::max(figures[count].get<double>(), 1e-9);
 }
 
-/// What is measured in these stages becomes what the processes took of which they are the whole work: `processes` over
-/// `charged`, each for one of what they make.
-void fit(std::initializer_list<SessionTimes::Stage*> stages, double processes, double charged) {
-    double clocked_sum = 0, charged_sum = 0;
+double sum_of(std::initializer_list<SessionTimes::Stage*> stages, double SessionTimes::Stage::*seconds) {
+    double sum = 0;
     for (SessionTimes::Stage const* const stage : stages) {
-        clocked_sum += stage->measured;
-        charged_sum += stage->charged;
+        sum += stage->*seconds;
     }
-    if (clocked_sum > 0 && charged > 0) {
-        double const factor = processes / charged * charged_sum / clocked_sum;
-        std::ranges::for_each(stages, [factor](SessionTimes::Stage* stage) { stage->measured *= factor; });
-    }
+    return sum;
+}
+
+void scale(std::initializer_list<SessionTimes::Stage*> stages, double factor) {
+    std::ranges::for_each(stages, [factor](SessionTimes::Stage* stage) { stage->measured *= factor; });
 }
 
 /// The table for the machine as it was: how the stages share their time is clocked in a session like the measured one,
@@ -67,10 +58,15 @@ CostTable calibrated(BenchScene& scene, std::string const& method, RunParameters
     run.times = &times;
     auto const session = make_method(method, method_setup(run, 1, costs));
     json const figures = rates_of(run_method(scene, *session, run, 1, [](std::size_t, Picture const&, double) {}), run);
-    fit({&times.plan, &times.render, &times.learn, &times.encode},
-        ratio(measured, "server_cores", "samples_per_second"), ratio(figures, "server_cores", "samples_per_second"));
-    fit({&times.decode, &times.insert, &times.paint}, ratio(measured, "viewer_cores", "pictures_per_second"),
-        ratio(figures, "viewer_cores", "pictures_per_second"));
+    std::initializer_list<SessionTimes::Stage*> const server{&times.plan, &times.render, &times.learn, &times.encode};
+    std::initializer_list<SessionTimes::Stage*> const viewer{&times.decode, &times.insert, &times.paint};
+    // Of the whole session: where little is left to be rendered later, most of what a server takes is for looking.
+    double const clocked = sum_of(server, &SessionTimes::Stage::measured) + times.looking;
+    scale(server, measured["server_seconds_per_sample"].get<double>() * static_cast<double>(times.samples) / clocked);
+    // Later on a picture is made of more.
+    scale(viewer, ratio(measured["steady"], "viewer_cores", "pictures_per_second") /
+                      ratio(figures, "viewer_cores", "pictures_per_second") *
+                      sum_of(viewer, &SessionTimes::Stage::charged) / sum_of(viewer, &SessionTimes::Stage::measured));
     return bench::calibrated(costs, times);
 }
 
@@ -80,9 +76,10 @@ json predict_live(BenchScene& scene, std::string const& method, LiveOptions cons
                   std::vector<ComparedMoment> const& moments) {
     RunParameters run;
     run.viewport = options.viewport;
-    run.start = measured["start_seconds"];
-    run.seconds = options.seconds;
-    run.begins_empty = true;
+    run.start = measured["start_seconds"].get<double>() + build_up_seconds;
+    run.seconds = options.seconds - build_up_seconds;
+    run.clock_offset = measured["start_clock"].get<double>() + build_up_seconds;
+    run.fresh_lead = build_up_seconds;
     for (ComparedMoment const& moment : moments) {
         run.reference_times.push_back(moment.time - run.start);
     }
@@ -94,12 +91,16 @@ json predict_live(BenchScene& scene, std::string const& method, LiveOptions cons
     }
     run = on_one_core(scene, run, costs);
     double mse = 0;
+    json moment_mse = json::array();
     auto const session = make_method(method, method_setup(run, 1, costs));
     RunResult const result = run_method(scene, *session, run, 1, [&](std::size_t i, Picture const& shown, double) {
-        mse += mean_squared_error(shown, moments[i].reference) / static_cast<double>(moments.size());
+        double const error = mean_squared_error(shown, moments[i].reference);
+        moment_mse.push_back(error);
+        mse += error / static_cast<double>(moments.size());
     });
     json figures = rates_of(result, run);
     figures["mse"] = mse;
+    figures["moment_mse"] = std::move(moment_mse);
     figures["psnr"] = psnr_from_mse(mse);
     figures["costs"] = to_json(costs);
     return figures;

@@ -1,5 +1,6 @@
 // `framelet`: the project's own server and viewer, the very pipelines that the programs run, driven on the virtual
 // clock. `framelet-unwarped`: the same with the viewer's reprojection switched off.
+#include <algorithm>
 #include <deque>
 #include <utility>
 
@@ -16,7 +17,8 @@ class Framelets final : public Method {
 public:
     Framelets(MethodSetup const& setup, bool reprojects)
         : setup_(setup), reprojects_(reprojects && setup.parts.reprojection), plane_(setup.viewport),
-          viewer_(setup.viewport, setup.costs, {reprojects_, true}, setup.times), cells_((setup.viewport.width + cell - 1) / cell),
+          viewer_(setup.viewport, setup.costs, {reprojects_, true}, setup.times),
+          cells_((setup.viewport.width + cell - 1) / cell),
           times_(static_cast<std::size_t>(cells_) *
                  static_cast<std::size_t>((setup.viewport.height + cell - 1) / cell)) {}
 
@@ -24,15 +26,19 @@ public:
         begin(input);
         if (input.view.number != view_number_) {
             view_number_ = input.view.number;
-            stream_->take({input.now, CameraUpdate{input.view, followed_camera_}});
+            stream_->take({clock(input.now), CameraUpdate{input.view, followed_camera_}});
         }
         PosedScene& scene = *input.scene.posed;
         double const rate = rate_.samples_per_second > 0 ? rate_.samples_per_second : first_rate();
         ServerStep step;
         Step next{};
-        clocked(setup_.times, &SessionTimes::plan, [&] {
-            next = stream_->plan({input.now, input.time, 1, rate, setup_.machine * plan_seconds()}, scene);
+        double const planned = processor_seconds_of([&] {
+            next = stream_->plan({clock(input.now), input.time, 1, rate, setup_.machine * plan_seconds()}, scene);
         });
+        if (SessionTimes* const times = setup_.times; times != nullptr) {
+            bool const plans = next == Step::render && stream_->planned_figures().is_new_cycle;
+            (plans ? times->plan.measured : times->looking) += planned;
+        }
         if (next != Step::render) {
             return step;
         }
@@ -48,6 +54,9 @@ public:
         step.samples = figures.rays + figures.probes;
         step.sent_samples = figures.exact_samples + figures.lossy_samples;
         step.begun = input.now;
+        if (setup_.times != nullptr) {
+            setup_.times->samples += step.sent_samples;
+        }
         rate_ = update_render_rate(rate_, static_cast<double>(figures.rays),
                                    setup_.machine * (step.seconds.server() - planning)); // as in SessionLoop
         if (sends) {
@@ -57,14 +66,14 @@ public:
     }
 
     void sent(double now, double bytes) override {
-        stream_->take({now, BatchSent{stream_->last_batch(), static_cast<std::uint64_t>(bytes)}});
+        stream_->take({clock(now), BatchSent{stream_->last_batch(), static_cast<std::uint64_t>(bytes)}});
     }
     void answered(double now, double arrived) override {
         if (std::vector<SentTile>& framelets = let_go_.front(); !framelets.empty()) {
-            stream_->take({now, LetGo{std::move(framelets)}});
+            stream_->take({clock(now), LetGo{std::move(framelets)}});
         }
         let_go_.pop_front();
-        stream_->take({now, Ack{++answered_, static_cast<std::uint64_t>(1e6 * (arrived + clock_offset)), 0}});
+        stream_->take({clock(now), Ack{++answered_, static_cast<std::uint64_t>(1e6 * clock(arrived)), 0}});
     }
 
     ViewerStep consume(std::vector<std::byte> const& message) override {
@@ -104,8 +113,8 @@ public:
     Window window() const override { return {2 * FrameletStream::max_batches_in_flight, false}; }
 
 private:
-    /// The virtual clock begins below 0, where a viewer's clock never is.
-    static constexpr double clock_offset = 1000;
+    /// What the clocks of server and viewer say, which are never below 0.
+    double clock(double now) const { return now + setup_.clock_offset; }
 
     void begin(StepInput const& input) {
         if (stream_) {
@@ -120,7 +129,7 @@ private:
         options.follows_link = parts.link_budget;
         options.withholds = parts.withholding;
         stream_.emplace(options, parts.loss ? coding::all : coding::exact_colour | coding::shapes_and_tracks);
-        stream_->take({input.now, ViewerSettings{0, 0, reprojects_}});
+        stream_->take({clock(input.now), ViewerSettings{0, 0, reprojects_}});
         followed_camera_ = input.scene.followed_camera();
     }
 
@@ -147,9 +156,10 @@ private:
             return charged(setup_.times, stage, sum);
         };
         StageSeconds seconds;
-        seconds.render = charge(&SessionTimes::render, nanoseconds(figures.segments, costs.coherent_segment) +
-                                                           nanoseconds(figures.probe_segments, costs.incoherent_segment) +
-                                                           nanoseconds(figures.rays, costs.display_sample));
+        seconds.render =
+            charge(&SessionTimes::render, nanoseconds(figures.segments, costs.coherent_segment) +
+                                              nanoseconds(figures.probe_segments, costs.incoherent_segment) +
+                                              nanoseconds(figures.rays, costs.display_sample));
         seconds.response = charge(&SessionTimes::plan, planning) +
                            charge(&SessionTimes::learn, nanoseconds(figures.learnt_samples, costs.learn_sample) +
                                                             nanoseconds(figures.shaped_samples, costs.shape_sample));
@@ -159,8 +169,11 @@ private:
         return seconds;
     }
 
-    /// Before anything has been measured.
-    double first_rate() const { return setup_.frames_per_second * setup_.viewport.width * setup_.viewport.height; }
+    /// As in SessionLoop; machines that are slower are told how slow, as a run is too short to find it out.
+    double first_rate() const {
+        return std::min(first_samples_per_second,
+                        setup_.frames_per_second * setup_.viewport.width * setup_.viewport.height);
+    }
 
     /// Of the calibrated machine, for a cycle.
     double plan_seconds() const {

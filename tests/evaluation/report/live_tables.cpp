@@ -92,7 +92,7 @@ std::string clock_table(std::vector<json> const& clocks) {
     std::vector<std::string> scenes;
     std::map<std::string, std::string> rows;
     std::string sizes, line;
-    std::vector<double> errors, bytes, pictures;
+    std::vector<double> errors, bytes, pictures, shares;
     for (json const& run : clocks) {
         std::string const scene = run["scene"];
         json const& wall = run["methods"]["framelet"];
@@ -106,8 +106,8 @@ std::string clock_table(std::vector<json> const& clocks) {
         }
         std::string const size = printed("%dx%d", run["size"][0].get<int>(), run["size"][1].get<int>());
         if (sizes.find(size) == std::string::npos) {
-            sizes += " " + size + ": dB | virtual | kB/s | pictures |";
-            line += "---|---|---|---|";
+            sizes += " " + size + ": dB | virtual | kB/s | pictures | busy | unwarped |";
+            line += "---|---|---|---|---|---|";
         }
         double const difference = said["psnr"].get<double>() - wall["psnr"].get<double>();
         errors.push_back(std::abs(difference));
@@ -118,6 +118,9 @@ std::string clock_table(std::vector<json> const& clocks) {
         for (char const* const what : {"kB_per_second", "pictures_per_second"}) {
             rows[scene] += " " + bold_if(std::abs(ratio(what) - 1) > 0.1, printed("%.2f", ratio(what))) + " |";
         }
+        double const busy = wall["server_cores"], unwarped = run["methods"]["framelet-unwarped"]["server_cores"];
+        shares.push_back(std::abs(busy / std::max(unwarped, 1e-9) - 1));
+        rows[scene] += printed(" %.2f | ", busy) + bold_if(shares.back() > 0.05, printed("%.2f", unwarped)) + " |";
     }
     std::string text = "| scene |" + sizes + "\n|---|" + line + "\n";
     for (std::string const& scene : scenes) {
@@ -126,8 +129,9 @@ std::string clock_table(std::vector<json> const& clocks) {
     auto const within = [](std::vector<double> const& values, double bound) {
         return std::ranges::count_if(values, [bound](double value) { return value <= bound; });
     };
-    return text + printed("\nWithin 0.5 dB: %zd of %zu; within 10%%: bytes %zd, pictures %zd.\n", within(errors, 0.5),
-                          errors.size(), within(bytes, 0.1), within(pictures, 0.1));
+    return text +
+           printed("\nWithin 0.5 dB: %zd of %zu; within 10%%: bytes %zd, pictures %zd; equally busy within 5%%: %zd.\n",
+                   within(errors, 0.5), errors.size(), within(bytes, 0.1), within(pictures, 0.1), within(shares, 0.05));
 }
 
 } // namespace framelet::bench
