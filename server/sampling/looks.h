@@ -12,7 +12,9 @@ namespace framelet {
 
 /// Compares the pieces of a framelet, of the moment that `mirror` looks at, with what it shows there; sets their
 /// `change` and `fading`. Those of another moment (`comparable` false), and what has just come into view, are taken for
-/// what does not change: where that is wrong probes find it. Returns the code of their fading.
+/// what does not change: where that is wrong probes find it. `has_outline`: the framelet shows more than one surface;
+/// then it is expected to change before a camera that moves, as what turns or reflects is. Returns the code of their
+/// fading.
 FadingCode learn_fading(Mirror const& mirror, std::span<Piece> pieces, SceneTime scene_time, bool comparable,
                         bool has_outline = false);
 

@@ -97,5 +97,30 @@ TEST(DriftingShadow, IsNotBelievedForLongAgainstWhatWasSeenSince) {
     EXPECT_LE(got.shadow.share(), 0.001);
 }
 
+/// What was rendered of the ground is two pixels a sample, of the shadow one.
+TEST(DriftingShadow, LeavesNoScrapsOnWhatIsCoarser) {
+    AnalyticScene const scene = shaded_floor();
+    AnalyticScene lit = scene;
+    lit.quads.pop_back();
+    ImagePlane const plane(viewport);
+    Camera aside = front();
+    aside.position.x += 0.02f;
+    FrameletPool pool(plane);
+    pool.insert(batch_at(scene, 1, front(), 0));
+    std::vector<Tile> coarse;
+    for (std::uint32_t index = 0; index < 1u << (2 * (plane.pixel_depth() - 1)); ++index) {
+        Tile const tile{(1u << (2 * (plane.pixel_depth() - 1))) + index};
+        if (plane.is_visible(tile)) {
+            coarse.push_back(tile);
+        }
+    }
+    pool.insert(lit.batch(plane, 2, aside, 0.05, coarse));
+    Agreement const young = compare(scene, 0, 0.1, show(pool, front(), 0.1));
+    EXPECT_GE(young.shadow.share(), 0.98) << "it leads for a while";
+    Agreement const old = compare(scene, 0, 0.4, show(pool, front(), 0.4));
+    EXPECT_GT(old.shadow.pixels, 500);
+    EXPECT_LE(old.shadow.share(), 0.001);
+}
+
 } // namespace
 } // namespace framelet

@@ -39,7 +39,7 @@ struct GoingBy {
                 std::vector<Piece> pieces;
                 cut_pieces(one, plane, seconds * moment, pieces);
                 codes[row][column] =
-                    learn_fading(mirror, pieces, seconds * moment, mirror.looks_at(view()) && moment > 0);
+                    learn_fading(mirror, pieces, seconds * moment, mirror.looks_at(view()) && moment > 0, has_outlines);
                 all.insert(all.end(), pieces.begin(), pieces.end());
             }
         }
@@ -48,6 +48,7 @@ struct GoingBy {
     }
 
     int moment = 0;
+    bool has_outlines = false;
     Mirror mirror{viewport};
     FadingCode codes[8][8] = {};
 };
@@ -66,6 +67,24 @@ TEST(Looks, WhatOnlyTheCameraMovesPastDoesNotFade) {
             EXPECT_LT(fading_rate(wall.codes[row][column]), 0.2f) << column << ' ' << row;
         }
     }
+}
+
+TEST(Looks, OutlinesFadeBeforeACameraThatMoves) {
+    GoingBy past, before;
+    before.has_outlines = true;
+    for (int i = 0; i < 4; ++i) {
+        for (GoingBy* const wall : {&past, &before}) {
+            wall->step([](float x, float y, double) { return texture(x, y); });
+        }
+    }
+    EXPECT_GT(fading_rate(before.codes[2][3]), 5 * fading_rate(past.codes[2][3]));
+    before.mirror.look({before.view().rays, 1}, no_motions);
+    std::vector<Piece> pieces(1);
+    pieces[0].half_side = Vec2(8);
+    pieces[0].detail = 0.01f;
+    EXPECT_GT(learn_fading(before.mirror, pieces, 1, false, true), 0);
+    pieces[0].body = 3; // turns in the light, outlines or not
+    EXPECT_GT(learn_fading(before.mirror, pieces, 1, false), 0);
 }
 
 TEST(Looks, AShadowFadesWhatItPasses) {
