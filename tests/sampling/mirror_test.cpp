@@ -79,6 +79,23 @@ TEST(Mirror, AShadowShowsForAWhileBeforeWhatItComesOver) {
     EXPECT_NEAR(summary_of(mirror).worn, 1, 1e-3);
 }
 
+TEST(Mirror, AnOldShadowDoesNotShowBeforeWhatIsCoarser) {
+    Mirror mirror(viewport);
+    mirror.look(view_at(Vec3(0)), no_motions);
+    mirror.add(view_at(Vec3(0)).rays, no_motions, render_pieces(plane, plane.pixel_depth() - 1, wall));
+    std::vector<Piece> shadow = render_pieces(plane, plane.pixel_depth(), wall, 1, 2);
+    for (Piece& piece : shadow) {
+        piece.velocity = Vec3(0.01f, 0, 0);
+        piece.moves = true;
+    }
+    mirror.look(view_at(Vec3(0), 1), no_motions);
+    mirror.add(view_at(Vec3(0)).rays, no_motions, shadow);
+    mirror.look(view_at(Vec3(0), 1.1), no_motions);
+    EXPECT_NEAR(summary_of(mirror).worn, 1, 1e-3);
+    mirror.look(view_at(Vec3(0), 1.3), no_motions);
+    EXPECT_NEAR(summary_of(mirror).worn, 2, 1e-3);
+}
+
 TEST(Mirror, ACameraThatGoesSidewaysUncoversItsEdge) {
     Mirror mirror(viewport);
     mirror.look(view_at(Vec3(0)), no_motions);
