@@ -10,8 +10,9 @@
 namespace framelet {
 namespace {
 
-/// The samples of so many seconds are planned together: what they cannot do at their price can wait.
-constexpr double planned_seconds = 0.2;
+/// The samples of so many seconds are planned together: what they cannot do at their price can wait. Before a camera
+/// that moves they are fewer: what waits is elsewhere soon, and coarse everywhere is better than fine somewhere.
+constexpr double planned_seconds = 0.2, planned_seconds_in_motion = 0.06;
 /// A plan shows so many seconds late, besides what it takes to render.
 constexpr double plan_overhead = 0.05;
 /// A scene time that jumps by more than this over what has passed has been set.
@@ -240,7 +241,9 @@ void AdaptiveRefresh::plan_moment(RefreshInput const& input, double samples, Ref
                    probe_cost * static_cast<double>(plan.probes.size());
     }
     find_costs(input);
-    MomentBudget const budget{std::max(planned, samples), input.limits, costs_, input.moment->begun,
+    double const together =
+        input.samples_per_second * (moments_.mirror().camera_stands() ? planned_seconds : planned_seconds_in_motion);
+    MomentBudget const budget{std::max(together, samples), input.limits, costs_, input.moment->begun,
                               input.samples_per_second * plan_overhead};
     moments_.plan(field_, budget, rated_);
     append_rated(input, samples);
