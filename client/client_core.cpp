@@ -72,9 +72,9 @@ struct ClientCore::Impl {
 
     std::function<void()> on_news;
     Clock::time_point const start = Clock::now();
-    std::optional<BatchCodec> codec{
-        std::in_place}; // the connection's thread only; of this session, as all that follows
-    std::optional<HeldPicture> held{std::in_place}; // the same
+    // The connection's thread only; of this session, as all that follows.
+    std::optional<BatchCodec> codec{std::in_place};
+    std::optional<HeldPicture> held{std::in_place};
 
     /// Guards what pictures are made of. Whoever has it may take `mutex` as well, not the other way round.
     std::mutex picture_mutex;

@@ -1,6 +1,7 @@
 // How fast what surfaces look like changes where they are: a shadow passes, a light goes out. In: what a mirror shows
-// of a moment, and new pieces of the very same surfaces. Out: how soon the new ones fade. Motion, of the camera and of
-// bodies, is no change: the mirror has moved what it holds.
+// of a moment, and new pieces of the very same surfaces. Out: how soon the new ones fade. Motion is no change,
+// the mirror has moved what it holds; but some change is expected of what turns, and of outlines and reflections before
+// a camera that moves.
 #pragma once
 
 #include <cstdint>
@@ -16,6 +17,6 @@ namespace framelet {
 /// then it is expected to change before a camera that moves, as what turns or reflects is. Returns the code of their
 /// fading.
 FadingCode learn_fading(Mirror const& mirror, std::span<Piece> pieces, SceneTime scene_time, bool comparable,
-                        bool has_outline = false);
+                        bool has_outline);
 
 } // namespace framelet

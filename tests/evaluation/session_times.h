@@ -18,8 +18,8 @@ struct SessionTimes {
         double factor() const { return measured > 0 && charged > 0 ? measured / charged : 1; }
     };
     Stage plan, render, learn, encode, decode, insert, paint;
-    double looking =
-        0; ///< for something to do, where there was nothing, or nothing new to plan: the table has no entry
+    /// Seconds for finding something to do where there was nothing, or nothing new to plan: the table has no entry.
+    double looking = 0;
     std::uint64_t samples = 0; ///< sent
 };
 

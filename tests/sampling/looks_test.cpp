@@ -84,7 +84,7 @@ TEST(Looks, OutlinesFadeBeforeACameraThatMoves) {
     pieces[0].detail = 0.01f;
     EXPECT_GT(learn_fading(before.mirror, pieces, 1, false, true), 0);
     pieces[0].body = 3; // turns in the light, outlines or not
-    EXPECT_GT(learn_fading(before.mirror, pieces, 1, false), 0);
+    EXPECT_GT(learn_fading(before.mirror, pieces, 1, false, false), 0);
 }
 
 TEST(Looks, AShadowFadesWhatItPasses) {

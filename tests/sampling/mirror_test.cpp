@@ -62,11 +62,9 @@ TEST(Mirror, WhatStandsHasNoHolesBetweenItsLayers) {
     }
 }
 
-TEST(Mirror, AShadowShowsForAWhileBeforeWhatItComesOver) {
-    Mirror mirror(viewport);
-    mirror.look(view_at(Vec3(0)), no_motions);
-    mirror.add(view_at(Vec3(0)).rays, no_motions, render_pieces(plane, plane.pixel_depth(), wall));
-    std::vector<Piece> shadow = render_pieces(plane, plane.pixel_depth() - 1, wall, 1, 2);
+/// One that was seen to go over all of the wall at second 1; the mirror then looks at what is to be seen at 1.1.
+void add_shadow(Mirror& mirror, int depth) {
+    std::vector<Piece> shadow = render_pieces(plane, depth, wall, 1, 2);
     for (Piece& piece : shadow) {
         piece.velocity = Vec3(0.01f, 0, 0);
         piece.moves = true;
@@ -74,6 +72,13 @@ TEST(Mirror, AShadowShowsForAWhileBeforeWhatItComesOver) {
     mirror.look(view_at(Vec3(0), 1), no_motions);
     mirror.add(view_at(Vec3(0)).rays, no_motions, shadow);
     mirror.look(view_at(Vec3(0), 1.1), no_motions);
+}
+
+TEST(Mirror, AShadowShowsForAWhileBeforeWhatItComesOver) {
+    Mirror mirror(viewport);
+    mirror.look(view_at(Vec3(0)), no_motions);
+    mirror.add(view_at(Vec3(0)).rays, no_motions, render_pieces(plane, plane.pixel_depth(), wall));
+    add_shadow(mirror, plane.pixel_depth() - 1);
     EXPECT_NEAR(summary_of(mirror).worn, 2, 1e-3);
     mirror.look(view_at(Vec3(0), 1.3), no_motions); // it may have gone elsewhere by now
     EXPECT_NEAR(summary_of(mirror).worn, 1, 1e-3);
@@ -83,14 +88,7 @@ TEST(Mirror, AnOldShadowDoesNotShowBeforeWhatIsCoarser) {
     Mirror mirror(viewport);
     mirror.look(view_at(Vec3(0)), no_motions);
     mirror.add(view_at(Vec3(0)).rays, no_motions, render_pieces(plane, plane.pixel_depth() - 1, wall));
-    std::vector<Piece> shadow = render_pieces(plane, plane.pixel_depth(), wall, 1, 2);
-    for (Piece& piece : shadow) {
-        piece.velocity = Vec3(0.01f, 0, 0);
-        piece.moves = true;
-    }
-    mirror.look(view_at(Vec3(0), 1), no_motions);
-    mirror.add(view_at(Vec3(0)).rays, no_motions, shadow);
-    mirror.look(view_at(Vec3(0), 1.1), no_motions);
+    add_shadow(mirror, plane.pixel_depth());
     EXPECT_NEAR(summary_of(mirror).worn, 1, 1e-3);
     mirror.look(view_at(Vec3(0), 1.3), no_motions);
     EXPECT_NEAR(summary_of(mirror).worn, 2, 1e-3);
