@@ -276,6 +276,7 @@ bool FrameletWarp::place_still(HeldLayer const& held, WarpPatch& patch) const {
     plane.inverse_depth =
         glm::dvec3(held.layer.dx, held.layer.dy, held.layer.at - held.layer.dx * corner.x - held.layer.dy * corner.y);
     patch.is_still = true;
+    patch.group = still_group(patch.group);
     set_maps(plane, patch);
     patch.tolerance = held.layer.error;
     return true;
@@ -346,6 +347,7 @@ void FrameletWarp::add_splats(CachedFramelet const& framelet, WarpPatch& patch, 
         bottom = std::max(bottom, y + spacing);
     }
     patch.is_still = still;
+    patch.group = still ? still_group(patch.group) : patch.group;
     patch.box = {static_cast<int>(std::max(std::floor(left), 0.0)), static_cast<int>(std::max(std::floor(top), 0.0)),
                  std::min(static_cast<int>(std::ceil(right)), viewport.width),
                  std::min(static_cast<int>(std::ceil(bottom)), viewport.height)};

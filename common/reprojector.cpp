@@ -10,6 +10,7 @@
 #include "common/block_flags.h"
 #include "common/error.h"
 #include "common/lanes.h"
+#include "common/pixel_filter.h"
 #include "common/reconstruction.h"
 #include "common/reprojection.h"
 
@@ -130,6 +131,7 @@ void copy_rows(void const* block, Viewport viewport, int left, int top, void* pl
     }
 }
 
+/// With `moved_alpha` where what shows was moved.
 void write_colors(WarpedBlock const& block, int left, int top, Picture& picture) {
     alignas(64) std::array<std::uint32_t, WarpedBlock::pixels> colors;
     for (std::size_t i = 0; i < WarpedBlock::pixels; i += wide_count) {
@@ -137,7 +139,9 @@ void write_colors(WarpedBlock const& block, int left, int top, Picture& picture)
             WideFloats const value = root(load_lanes<WideFloats>(&block.squares[channel][i])) + 0.5f;
             return reinterpret_cast<WideWords>(__builtin_convertvector(value, WideInts));
         };
-        store_lanes(picture_pixels(bytes(0), bytes(1), bytes(2)), &colors[i]);
+        WideInts const is_still = load_lanes<WideInts>(&block.group[i]) << 2 < 0; // the bit of `still_group`
+        WideWords const color = picture_pixels(bytes(0), bytes(1), bytes(2));
+        store_lanes(is_still ? color : color & ~picture_pixel(0, 0, 0), &colors[i]);
     }
     copy_rows(colors.data(), {picture.width, picture.height}, left, top, picture.rgba.data());
 }
@@ -179,6 +183,9 @@ void Reprojector::start_moving(Viewport viewport, std::size_t blocks) {
     }
     replanned_.assign(blocks, is_new ? 1 : 0);
     auto const pixels = static_cast<std::size_t>(viewport.width) * static_cast<std::size_t>(viewport.height);
+    if (unfiltered_.width != viewport.width || unfiltered_.height != viewport.height) {
+        unfiltered_ = Picture(viewport.width, viewport.height);
+    }
     inverse_depth_.resize(pixels);
     block_means_.resize(blocks);
     painted_.resize(blocks);
@@ -228,7 +235,7 @@ void Reprojector::show(FrameletPool const& pool, std::span<PixelRect const> chan
         auto index = static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_);
         for (int column = 0; column < columns_; ++column, ++index) {
             if (replanned_[index] != 0 || (blocks_[index].slots & noted_slots_) != 0) {
-                painted |= update_block(pool, camera, scene_time, motions, column, row, patches, picture);
+                painted |= update_block(pool, camera, scene_time, motions, column, row, patches);
             }
         }
         if (painted) {
@@ -236,7 +243,7 @@ void Reprojector::show(FrameletPool const& pool, std::span<PixelRect const> chan
         }
     });
     if (any) {
-        count_blocks(picture, pool.slot_count());
+        count_blocks(pool.slot_count());
     }
     double const kept = 1 - hole_share_;
     FrameletCache const* const fullest = kept < least_kept ? &fullest_of(pool) : nullptr; // coverage takes a while
@@ -244,7 +251,8 @@ void Reprojector::show(FrameletPool const& pool, std::span<PixelRect const> chan
         show_cut(*fullest, picture, repainted);
     } else {
         if (any) {
-            fill(picture);
+            fill();
+            filter(picture);
         }
         take_flagged(painted_, columns_, viewport, repainted);
     }
@@ -260,8 +268,7 @@ void Reprojector::show_cut(FrameletCache const& moment, Picture& picture, std::v
 }
 
 bool Reprojector::update_block(FrameletPool const& pool, Camera const& camera, SceneTime scene_time,
-                               BodyMotions const& motions, int column, int row, std::vector<PatchView>& patches,
-                               Picture& picture) {
+                               BodyMotions const& motions, int column, int row, std::vector<PatchView>& patches) {
     auto const index =
         static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
     FrameletCache const& newest = pool.newest();
@@ -296,9 +303,9 @@ bool Reprojector::update_block(FrameletPool const& pool, Camera const& camera, S
         for (float& inverse_depth : block.inverse_depth) {
             inverse_depth = std::max(inverse_depth, 0.0f);
         }
-        reconstruct_block(newest, column, row, picture);
+        reconstruct_block(newest, column, row, unfiltered_);
     } else {
-        write_colors(block, left, top, picture);
+        write_colors(block, left, top, unfiltered_);
     }
     write_plane(block.inverse_depth, left, top, viewport, inverse_depth_);
     block_means_[index] = far_mean(block);
@@ -315,7 +322,7 @@ bool Reprojector::add_shown(std::size_t slot, std::vector<Tile>& tiles) const {
     return true;
 }
 
-void Reprojector::count_blocks(Picture const& picture, std::size_t slots) {
+void Reprojector::count_blocks(std::size_t slots) {
     std::int64_t holes = 0;
     shown_blocks_.assign(slots, 0);
     for (BlockState const& block : blocks_) {
@@ -324,7 +331,17 @@ void Reprojector::count_blocks(Picture const& picture, std::size_t slots) {
             shown_blocks_[i] += block.slots >> i & 1;
         }
     }
-    hole_share_ = static_cast<double>(holes) / (static_cast<double>(picture.width) * picture.height);
+    hole_share_ = static_cast<double>(holes) / static_cast<double>(inverse_depth_.size());
+}
+
+template <class Work>
+void Reprojector::for_each_block(Work const& work) {
+    tbb::parallel_for(0, rows_, [&](int row) {
+        for (int column = 0; column < columns_; ++column) {
+            work(column, row,
+                 static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column));
+        }
+    });
 }
 
 bool Reprojector::is_beside_hole(int column, int row) const {
@@ -340,33 +357,45 @@ bool Reprojector::is_beside_hole(int column, int row) const {
 }
 
 /// Holes depend on all that surrounds them, so all of them are filled again.
-void Reprojector::fill(Picture& picture) {
+void Reprojector::fill() {
     if (hole_share_ == 0) {
         return;
     }
-    int const columns = columns_;
-    means_.make(block_means_, columns, rows_);
+    means_.make(block_means_, columns_, rows_);
     cells_.resize(blocks_.size());
-    auto const for_each_block = [&](auto const& work) {
-        tbb::parallel_for(0, rows_, [&](int row) {
-            for (int column = 0; column < columns; ++column) {
-                work(column, row,
-                     static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
-                         static_cast<std::size_t>(column));
-            }
-        });
-    };
     for_each_block([&](int column, int row, std::size_t index) {
         if (is_beside_hole(column, row)) {
-            cells_[index] = far_cells(inverse_depth_, picture, column, row);
+            cells_[index] = far_cells(inverse_depth_, unfiltered_, column, row);
         }
     });
     for_each_block([&](int column, int row, std::size_t index) {
         if (blocks_[index].holes > 0) {
-            fill_holes(means_, cells_, inverse_depth_, column, row, picture);
+            fill_holes(means_, cells_, inverse_depth_, column, row, unfiltered_);
             painted_[index] = 1;
         }
     });
+}
+
+/// A block's pixels depend on those beside it: all that lie beside a painted one are written anew.
+void Reprojector::filter(Picture& picture) {
+    filtered_.assign(painted_.size(), 0);
+    for_each_block([&](int column, int row, std::size_t index) {
+        auto const is_painted = [&](int x, int y) {
+            return x >= 0 && x < columns_ && y >= 0 && y < rows_ &&
+                   painted_[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) +
+                            static_cast<std::size_t>(x)] != 0;
+        };
+        if (is_painted(column, row) || is_painted(column - 1, row) || is_painted(column + 1, row) ||
+            is_painted(column, row - 1) || is_painted(column, row + 1)) {
+            int const left = column * side;
+            int const top = row * side;
+            filter_pixels(unfiltered_,
+                          {left, top, std::min(left + side, picture.width), std::min(top + side, picture.height)},
+                          picture);
+            filtered_[index] = 1;
+        }
+    });
+    painted_.swap(filtered_);
 }
 
 } // namespace framelet

@@ -60,11 +60,14 @@ private:
     void flag_replanned(FrameletPool const& pool);
     /// True when it had to be painted.
     bool update_block(FrameletPool const& pool, Camera const& camera, SceneTime scene_time, BodyMotions const& motions,
-                      int column, int row, std::vector<PatchView>& patches, Picture& picture);
+                      int column, int row, std::vector<PatchView>& patches);
     void show_cut(FrameletCache const& moment, Picture& picture, std::vector<PixelRect>& repainted);
-    void count_blocks(Picture const& picture, std::size_t slots);
+    void count_blocks(std::size_t slots);
+    template <class Work>
+    void for_each_block(Work const& work);
     bool is_beside_hole(int column, int row) const;
-    void fill(Picture& picture);
+    void fill();
+    void filter(Picture& picture);
 
     bool has_shown_ = false;
     bool is_exact_ = false;
@@ -79,6 +82,8 @@ private:
     std::vector<BlockState> blocks_;
     std::vector<FarMean> block_means_;
     std::vector<std::uint8_t> painted_; ///< a flag for each block
+    std::vector<std::uint8_t> filtered_; ///< scratch, likewise
+    Picture unfiltered_; ///< what was painted: the last picture is this, filtered. Not kept up while that is exact
     std::vector<std::uint32_t> shown_blocks_;
     FarMeans means_;
     std::vector<FarCells> cells_; ///< of blocks with holes and those beside them

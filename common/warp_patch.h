@@ -16,8 +16,15 @@ constexpr std::int32_t group_of(std::size_t slot, std::uint32_t view, int depth)
 constexpr std::int32_t drifting_group(std::int32_t group) {
     return group | 1 << 30;
 }
+/// Samples that lie on their own pixels, which those that have moved do not.
+constexpr std::int32_t still_group(std::int32_t group) {
+    return group | 1 << 29;
+}
+constexpr bool is_still_group(std::int32_t group) {
+    return (group >> 29 & 1) != 0;
+}
 constexpr std::size_t slot_of_group(std::int32_t group) {
-    return static_cast<std::uint32_t>(group) >> 24 & 0x3fu;
+    return static_cast<std::uint32_t>(group) >> 24 & 0x1fu;
 }
 constexpr std::uint32_t view_of_group(std::int32_t group) {
     return static_cast<std::uint32_t>(group) >> 4 & 0xfffffu;
