@@ -13,7 +13,7 @@
 namespace framelet {
 
 /// Finer than this nothing shows any better, pixels.
-inline constexpr float finest_shown_spacing = 0.5f;
+inline constexpr float finest_shown_spacing = 1.0f;
 
 /// Samples that are farther apart than the coarsest framelet's, pixels, say too little of where their surface ends to
 /// hide anything; the plane of a few that is seen from its side now may not even be one.
