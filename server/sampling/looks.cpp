@@ -13,7 +13,7 @@ namespace {
 constexpr float trusted_seconds = 0.2f;
 /// Of outlines and of what is seen in a mirror before a camera that moves, and of what turns in the light: that is
 /// expected to change although it has hardly been seen to, since detail hides it.
-constexpr float restless_change = 0.02f;
+constexpr float restless_change = 0.005f;
 /// What is seen sooner again says little of how fast it changes.
 constexpr float least_seconds = 0.02f;
 /// Beyond twice what is expected by chance it is a change.
