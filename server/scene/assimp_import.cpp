@@ -7,14 +7,15 @@
 
 #include "common/error.h"
 #include "server/scene/assimp_parts.h"
+#include "server/scene/memory_limit.h"
 #include "server/scene/mesh_header.h"
 #include "server/scene/polygon.h"
 
 namespace framelet {
 namespace {
 
-/// What is made of a byte of a mesh file, roughly: six bytes of an OBJ, more of a binary PLY. Assimp takes memory
-/// without asking, so the file's size is all that there is to go by.
+/// What is made of a byte of a mesh file, roughly: six bytes of an OBJ, more of a binary PLY. What cannot fit is so
+/// refused before it is read.
 constexpr std::uint64_t memory_per_file_byte = 8;
 
 /// Normals of a file without any are smooth across edges up to this angle.
@@ -137,6 +138,7 @@ Scene import_assimp(std::filesystem::path const& file, SceneFolder const& folder
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
     aiScene const* from = nullptr;
     try {
+        MemoryLimit const limit(budget.left()); // Assimp takes memory without asking
         from = importer.ReadFile(file.string(), aiProcess_ValidateDataStructure);
         if (from) {
             for (unsigned m = 0; m < from->mNumMeshes; ++m) {
@@ -146,14 +148,14 @@ Scene import_assimp(std::filesystem::path const& file, SceneFolder const& folder
                                                 aiProcess_FlipUVs | aiProcess_TransformUVCoords);
         }
     } catch (std::bad_alloc const&) {
-        throw;
+        throw budget.too_large();
     } catch (std::exception const& error) {
         throw InputError(error.what());
     }
     if (!from || !from->mRootNode) {
         std::string const why = importer.GetErrorString();
         if (why.find("bad_alloc") != std::string::npos || why.find("bad_array_new_length") != std::string::npos) {
-            throw std::bad_alloc();
+            throw budget.too_large();
         }
         throw InputError(why.empty() ? "it has no content" : why);
     }

@@ -1,6 +1,7 @@
 // What a scene may take once it is decoded. Sizes are reserved here before memory is taken for them, by any thread.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <string>
@@ -25,9 +26,15 @@ public:
     void reserve(std::uint64_t count, std::uint64_t bytes_each) {
         bool const fits = bytes_each == 0 || count <= bytes_ / bytes_each;
         if (!fits || taken_.fetch_add(count * bytes_each) + count * bytes_each > bytes_) {
-            throw SceneTooLarge("it takes more than " + std::to_string(bytes_ >> 20) +
-                                " MB of memory once it is decoded; --scene-memory allows more");
+            throw too_large();
         }
+    }
+
+    std::uint64_t left() const { return bytes_ - std::min(bytes_, taken_.load()); }
+
+    SceneTooLarge too_large() const {
+        return SceneTooLarge("it takes more than " + std::to_string(bytes_ >> 20) +
+                             " MB of memory once it is decoded; --scene-memory allows more");
     }
 
 private:

@@ -128,6 +128,36 @@ void write_planes(std::filesystem::path const& folder, Batch const& batch, HeldP
           content);
 }
 
+std::vector<std::uint8_t> bytes_of(std::string const& text) {
+    return {text.begin(), text.end()};
+}
+
+void write_files(std::filesystem::path const& folder) {
+    write(folder / "camera" / "still",
+          bytes_of(R"({"position":[9,4,12],"target":[0,1,0],"up":[0,1,0],"fov_degrees":50})"));
+    write(folder / "camera" / "path", bytes_of(R"({"keys":[{"time":0,"position":[9,4,12],"target":[0,1,0]},
+        {"time":2,"position":[-6,3,-10],"target":[0,1,0]}]})"));
+    write(folder / "camera" / "scene", bytes_of(R"({"scene_camera":0})"));
+    std::string const gltf = R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+        "meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],"materials":[{"alphaMode":"MASK"}],
+        "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],
+        "bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36,"uri":
+        "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})";
+    write(folder / "scene" / "gltf", bytes_of(std::string(1, '\0') + gltf));
+    std::string const padded = gltf + std::string((4 - gltf.size() % 4) % 4, ' ');
+    auto const number = [](std::size_t value) {
+        std::string out;
+        for (int shift = 0; shift < 32; shift += 8) {
+            out.push_back(static_cast<char>(value >> shift));
+        }
+        return out;
+    };
+    write(folder / "scene" / "glb",
+          bytes_of("\1glTF" + number(2) + number(20 + padded.size()) + number(padded.size()) + "JSON" + padded));
+    write(folder / "scene" / "obj", bytes_of("\2o a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nusemtl m\nf 1/1/1 "
+                                             "2/1/1 3/1/1\nf 1//1 2//1 3//1\n"));
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -161,6 +191,7 @@ int main(int argc, char** argv) {
             write(folder / "shapes" / std::to_string(count), content);
         }
     }
+    write_files(folder);
     int number = 0;
     SceneCameraInfo const camera{"camera", {}};
     for (Message const& message :

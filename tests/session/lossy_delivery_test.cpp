@@ -15,6 +15,8 @@
 #include "server/scene/scene_import.h"
 #include "server/session/server.h"
 #include "tests/evaluation/codecs/link_emulator.h"
+#include "tests/session/raw_viewer.h"
+#include "tests/session/running_server.h"
 
 namespace framelet {
 namespace {
@@ -107,6 +109,32 @@ TEST_P(LossyDelivery, ConvergesToTheExactPicture) {
         EXPECT_EQ(lossy.picture.rgba, exact.picture.rgba);
     }
     server.stop();
+}
+
+/// What has been sent waits out the stalls, and whoever is cut off amid a message starts anew.
+TEST(BadLink, StallsRateStepsAndCutsAmidAMessageEndInTheExactPicture) {
+    ServerOptions options;
+    options.paused = true;
+    RunningServer const server(options, import_scene(FRAMELET_SOURCE_DIR "/scenes/vehicle_chase.glb"));
+    Shown const exact = watch(server.port(), coding::exact_colour);
+    ASSERT_TRUE(exact.converged);
+    bench::LinkParameters const bad{.bits_per_second = 2e6,
+                                    .delay_seconds = 0.005,
+                                    .jitter_seconds = 0.01,
+                                    .stalls = {{0.1, 0.4}, {0.8, 0.3}},
+                                    .rate_steps = {{0.6, 0.3e6}, {1.2, 4e6}}};
+    for (int cuts = 0; cuts < 5; ++cuts) {
+        bench::LinkEmulator const link(server.port(), bad);
+        RawViewer viewer(link.port());
+        viewer.send(CameraUpdate{{1, Camera{}, {1280, 720}}, -1});
+        ASSERT_TRUE(viewer.receive()) << "it is welcome";
+        // The first batches of so large a picture are on their way until after the first stall.
+        std::this_thread::sleep_for(std::chrono::milliseconds(20 + 60 * cuts));
+    }
+    bench::LinkEmulator const link(server.port(), bad);
+    Shown const shown = watch(link.port(), coding::exact_colour | coding::haar_colour | coding::predicted_colour);
+    EXPECT_TRUE(shown.converged);
+    EXPECT_EQ(shown.picture.rgba, exact.picture.rgba);
 }
 
 } // namespace

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
-#include <fstream>
 #include <optional>
 #include <sched.h>
 #include <span>
@@ -16,13 +15,13 @@
 
 #include "client/camera_path.h"
 #include "client/frame_choice.h"
-#include "common/cpu_clock.h"
 #include "common/error.h"
 #include "common/image_io.h"
 #include "server/render/framelet_renderer.h"
 #include "tests/evaluation/charts/picture_sheet.h"
 #include "tests/evaluation/codecs/link_emulator.h"
 #include "tests/evaluation/figure_table.h"
+#include "tests/evaluation/live/live_frames.h"
 #include "tests/evaluation/live/prediction.h"
 #include "tests/evaluation/measures/measures.h"
 #include "tests/evaluation/rival_choice.h"
@@ -35,45 +34,6 @@ using namespace std::chrono_literals;
 using nlohmann::json;
 
 constexpr auto patience = 120s; ///< for a client that still writes its last pictures
-
-struct LiveFrame {
-    std::uint64_t number = 0;
-    double seconds = 0; ///< Unix
-    SceneTime scene_time = 0; ///< that was to be shown
-    bool changed = false;
-    double bytes = 0, samples = 0, cpu_seconds = 0, photon_seconds = -1;
-    Camera camera; ///< that was to be shown, unless the scene's was
-    int scene_camera = -1;
-};
-
-LiveFrame parse_frame(json const& line) {
-    LiveFrame frame{line["frame"],
-                    line["unix_seconds"],
-                    line["scene_seconds"],
-                    line["changed"],
-                    line["bytes"],
-                    line["samples"],
-                    line["cpu_seconds"],
-                    line["photon_seconds"],
-                    {},
-                    0};
-    json const& position = line["position"];
-    json const& turn = line["orientation"];
-    frame.camera.position = {position[0], position[1], position[2]};
-    frame.camera.orientation = Quat(turn[0], turn[1], turn[2], turn[3]);
-    frame.camera.vertical_extent = line["vertical_extent"];
-    frame.scene_camera = line["scene_camera"];
-    return frame;
-}
-
-std::vector<LiveFrame> read_frames(std::filesystem::path const& file) {
-    std::vector<LiveFrame> frames;
-    std::ifstream stream(file);
-    for (std::string line; std::getline(stream, line) && !stream.eof();) {
-        frames.push_back(parse_frame(json::parse(line)));
-    }
-    return frames;
-}
 
 /// The real programs for the project's own methods, this program's for the others: it serves and shows any method.
 struct Programs {
@@ -123,11 +83,6 @@ private:
 
 std::optional<std::size_t> core_if(bool pinned, std::size_t core) {
     return pinned ? std::optional(core) : std::nullopt;
-}
-
-double cpu_of(pid_t pid) {
-    clockid_t clock{};
-    return clock_getcpuclockid(pid, &clock) == 0 ? cpu_seconds_of(clock) : 0;
 }
 
 /// What one run left behind, its pictures included.
@@ -217,15 +172,6 @@ Picture reference_of(BenchScene& scene, LiveFrame const& frame, LiveOptions cons
     Camera const camera =
         frame.scene_camera >= 0 ? scene.posed->camera(frame.scene_camera, frame.scene_time) : frame.camera;
     return render_picture(*scene.render_scene, camera, options.viewport, scene.exposure, options.samples_per_side);
-}
-
-double percentile(std::vector<double> values, double share) {
-    if (values.empty()) {
-        return 0;
-    }
-    auto const at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
 }
 
 /// Rates and costs of the run; pictures are not looked at.

@@ -50,6 +50,11 @@ void add_live_options(CLI::App& verb, LiveVerbOptions& options) {
         ->capture_default_str();
     verb.add_flag("--virtual", options.live.predicts,
                   "Also what the virtual clock says of framelet's methods; needs --pinned");
+    CLI::Option* const viewers =
+        verb.add_option("--viewers", options.crowd.viewers, "So many viewers at once of framelet alone; no errors")
+            ->check(CLI::Range(1, 1000));
+    verb.add_flag("--stalled", options.crowd.stalled, "The same once more beside a viewer that reads nothing")
+        ->needs(viewers);
     verb.add_option("--charts", options.live.charts, "Write what was shown beside its reference into this folder");
 }
 
@@ -93,7 +98,13 @@ json answer_live(LiveVerbOptions& options, std::vector<std::filesystem::path> co
     live.link.bits_per_second = 1e6 * options.megabits;
     live.link.delay_seconds = 1e-3 * options.delay_ms;
     json runs = json::array();
+    options.crowd.viewport = live.viewport;
+    options.crowd.seconds = live.seconds;
     for (std::filesystem::path const& file : options.scenes.empty() ? bundled : options.scenes) {
+        if (options.crowd.viewers > 0) {
+            runs.push_back(measure_crowd(*load_bench_scene(file), options.crowd));
+            continue;
+        }
         runs.push_back(measure_live(*load_bench_scene(file), live));
     }
     return runs;

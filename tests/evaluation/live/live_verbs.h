@@ -7,6 +7,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "tests/evaluation/live/crowd.h"
 #include "tests/evaluation/live/live.h"
 #include "tests/evaluation/live/serve.h"
 
@@ -21,6 +22,7 @@ struct LiveVerbOptions {
     std::string size = "1280x720";
     double megabits = 0, delay_ms = 0;
     LiveOptions live;
+    CrowdOptions crowd;
     ServeOptions serve;
     LookOptions look;
     std::string server; ///< HOST:PORT, of `look`

@@ -1,0 +1,21 @@
+// Many viewers of one server at once, as real programs: what each of them gets, and what one that has stopped reading
+// costs the others.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "tests/evaluation/bench_scene.h"
+
+namespace framelet::bench {
+
+struct CrowdOptions {
+    int viewers = 0; ///< 0: `live` is of one viewer and of pictures
+    bool stalled = false; ///< a second run with one more that reads nothing
+    Viewport viewport{1280, 720};
+    double seconds = 4;
+};
+
+/// Prints a row a viewer and one of all, and returns the figures. Throws ConnectionError where a program fails.
+nlohmann::json measure_crowd(BenchScene const& scene, CrowdOptions const& options);
+
+} // namespace framelet::bench
