@@ -43,7 +43,7 @@ TEST(Mirror, AStillPictureShowsWhatItWasSent) {
             Summary const summary = summary_of(mirror);
             EXPECT_EQ(summary.holes, 0);
             EXPECT_FLOAT_EQ(static_cast<float>(summary.worn),
-                            std::max(plane.sample_spacing(make_tile(depth, 0, 0)), 0.5f));
+                            std::max(plane.sample_spacing(make_tile(depth, 0, 0)), finest_shown_spacing));
             mirror.look(view_at(Vec3(0)), no_motions);
         }
     }
@@ -114,7 +114,7 @@ TEST(Mirror, WhatComesNearerGetsCoarser) {
     EXPECT_NEAR(summary.worn, 2, 1e-3);
     mirror.look(view_at(Vec3(0, 0, 10)), no_motions); // and back to 20
     EXPECT_NEAR(summary_of(mirror).holes, 0.75, 0.03);
-    EXPECT_NEAR(summary_of(mirror).worn, 0.5, 1e-3);
+    EXPECT_NEAR(summary_of(mirror).worn, finest_shown_spacing, 1e-3);
 }
 
 TEST(Mirror, WhatMayBeFarOffItsPlaceIsAHole) {
