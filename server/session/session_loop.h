@@ -59,7 +59,8 @@ private:
     struct Pipeline;
 
     bool give_turns(Sessions const& sessions, WallTime now);
-    bool give_turn(std::shared_ptr<Session> const& session, Viewer& viewer, ClockState const& clock, double share);
+    bool give_turn(std::shared_ptr<Session> const& session, Viewer& viewer, ClockState const& clock);
+    std::size_t sharers(Viewer const& served) const;
     Viewer& viewer_of(Session const& session);
     void note_rate(TurnFigures const& figures, double seconds);
     void start_finishing();
