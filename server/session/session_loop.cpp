@@ -96,6 +96,7 @@ bool SessionLoop::give_turns(Sessions const& sessions, WallTime now) {
     forget_ended(sessions);
     ClockState const clock = clock_.state(now);
     waits_for_room_ = false;
+    round_ = {};
     bool worked = false;
     for (auto const& session : sessions) {
         bool const served = contain(*session, [&] { worked |= give_turn(session, viewer_of(*session), clock); });
@@ -103,6 +104,8 @@ bool SessionLoop::give_turns(Sessions const& sessions, WallTime now) {
             drop_rendered(*session);
         }
     }
+    rate_ = update_render_rate(rate_, round_.samples, round_.seconds);
+    samples_per_second_ = rate_.samples_per_second;
     return worked;
 }
 
@@ -133,8 +136,8 @@ bool SessionLoop::give_turn(std::shared_ptr<Session> const& session, Viewer& vie
     double const rate = rate_.samples_per_second > 0 ? rate_.samples_per_second : first_samples_per_second;
     double const speed = clock.playing ? double{clock.speed} : 0;
     WallTime const now = std::chrono::steady_clock::now();
-    double const share = 1 / static_cast<double>(sharers(viewer));
-    Turn const turn{seconds_of(now), clock.time, speed, share * rate, plan_seconds_};
+    auto const among = static_cast<double>(sharers(viewer)); // a cycle is as long as all their planning asks for
+    Turn const turn{seconds_of(now), clock.time, speed, rate / among, among * plan_seconds_};
     EventLog* const log = options_.event_log;
     for (StreamEvent const& event : viewer.events) {
         stream.take(event);
@@ -195,11 +198,12 @@ bool SessionLoop::give_turn(std::shared_ptr<Session> const& session, Viewer& vie
     return true;
 }
 
-/// Planning left out: it takes as long for few samples, which would then seem to be dear.
+/// Planning left out: it takes as long for few samples, which would then seem to be dear. So would those of one
+/// viewer's small batch that was interrupted: what a round rendered counts together.
 void SessionLoop::note_rate(TurnFigures const& figures, double seconds) {
     if (figures.rays > 0) {
-        rate_ = update_render_rate(rate_, static_cast<double>(figures.rays), seconds);
-        samples_per_second_ = rate_.samples_per_second;
+        round_.samples += static_cast<double>(figures.rays);
+        round_.seconds += seconds;
     }
 }
 

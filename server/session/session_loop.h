@@ -77,6 +77,9 @@ private:
 
     std::map<std::uint64_t, std::unique_ptr<Viewer>> viewers_; ///< by session
     RenderRate rate_;
+    struct {
+        double samples = 0, seconds = 0;
+    } round_; ///< what was rendered in it, and how long that took
     double plan_seconds_ = 0; ///< what planning a cycle takes
     bool waits_for_room_ = false; ///< a viewer, in this round
     std::unique_ptr<Pipeline> pipeline_;

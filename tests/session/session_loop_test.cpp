@@ -67,7 +67,7 @@ public:
     /// Waits until the viewer's share of the time is one of so many; false where that never comes.
     bool shares_among(std::size_t viewer, int sharers) const {
         auto const end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-        while (scripts_[viewer].samples_per_second != first_samples_per_second * (1.0 / sharers)) {
+        while (scripts_[viewer].samples_per_second != first_samples_per_second / sharers) {
             if (std::chrono::steady_clock::now() > end) {
                 return false;
             }
