@@ -17,6 +17,8 @@ namespace {
 /// From so many threads on learning overlaps rendering. Its serial part would leave most of them idle; few are busy
 /// with its parallel part, which is cheaper while what was rendered is still in the caches.
 constexpr std::size_t many_threads = 5;
+/// A viewer that took nothing in its turns for so long leaves its share of the time to the others.
+constexpr std::chrono::milliseconds sharing_time{250};
 
 std::size_t thread_count() {
     return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
@@ -32,6 +34,7 @@ struct SessionLoop::Viewer {
     std::unique_ptr<ViewerStream> stream;
     std::vector<StreamEvent> events; ///< scratch
     std::uint64_t version = 0; ///< of what the viewer asks for
+    std::optional<WallTime> rendered; ///< when something was, last; nothing: it needs no share of the time
 };
 
 /// The batch that was rendered last is finished while the next one renders.
@@ -93,15 +96,24 @@ bool SessionLoop::give_turns(Sessions const& sessions, WallTime now) {
     forget_ended(sessions);
     ClockState const clock = clock_.state(now);
     waits_for_room_ = false;
-    double const share = sessions.empty() ? 1 : 1 / static_cast<double>(sessions.size());
+    round_ = {};
     bool worked = false;
     for (auto const& session : sessions) {
-        bool const served = contain(*session, [&] { worked |= give_turn(session, viewer_of(*session), clock, share); });
+        bool const served = contain(*session, [&] { worked |= give_turn(session, viewer_of(*session), clock); });
         if (!served) {
             drop_rendered(*session);
         }
     }
+    rate_ = update_render_rate(rate_, round_.samples, round_.seconds);
+    samples_per_second_ = rate_.samples_per_second;
     return worked;
+}
+
+/// Among how many the time is shared when it is this one's turn: those that can take none at present, because they have
+/// all or read nothing, are not among them.
+std::size_t SessionLoop::sharers(Viewer const& served) const {
+    return static_cast<std::size_t>(std::ranges::count_if(
+        viewers_, [&served](auto const& entry) { return entry.second.get() == &served || entry.second->rendered; }));
 }
 
 SessionLoop::Viewer& SessionLoop::viewer_of(Session const& session) {
@@ -118,13 +130,14 @@ SessionLoop::Viewer& SessionLoop::viewer_of(Session const& session) {
     return *viewer;
 }
 
-bool SessionLoop::give_turn(std::shared_ptr<Session> const& session, Viewer& viewer, ClockState const& clock,
-                            double share) {
+bool SessionLoop::give_turn(std::shared_ptr<Session> const& session, Viewer& viewer, ClockState const& clock) {
     ViewerStream& stream = *viewer.stream;
     viewer.version = session->take_events(viewer.events);
     double const rate = rate_.samples_per_second > 0 ? rate_.samples_per_second : first_samples_per_second;
     double const speed = clock.playing ? double{clock.speed} : 0;
-    Turn const turn{seconds_of(std::chrono::steady_clock::now()), clock.time, speed, share * rate, plan_seconds_};
+    WallTime const now = std::chrono::steady_clock::now();
+    auto const among = static_cast<double>(sharers(viewer)); // a cycle is as long as all their planning asks for
+    Turn const turn{seconds_of(now), clock.time, speed, rate / among, among * plan_seconds_};
     EventLog* const log = options_.event_log;
     for (StreamEvent const& event : viewer.events) {
         stream.take(event);
@@ -136,6 +149,11 @@ bool SessionLoop::give_turn(std::shared_ptr<Session> const& session, Viewer& vie
     Step const step = stream.plan(turn, scene_);
     if (log != nullptr) {
         log->add_turn(session->id(), turn, step);
+    }
+    if (step == Step::render) {
+        viewer.rendered = now;
+    } else if (viewer.rendered && now - *viewer.rendered >= sharing_time) {
+        viewer.rendered.reset();
     }
     if (step != Step::render) {
         waits_for_room_ = waits_for_room_ || step == Step::wait;
@@ -180,11 +198,12 @@ bool SessionLoop::give_turn(std::shared_ptr<Session> const& session, Viewer& vie
     return true;
 }
 
-/// Planning left out: it takes as long for few samples, which would then seem to be dear.
+/// Planning left out: it takes as long for few samples, which would then seem to be dear. So would those of one
+/// viewer's small batch that was interrupted: what a round rendered counts together.
 void SessionLoop::note_rate(TurnFigures const& figures, double seconds) {
     if (figures.rays > 0) {
-        rate_ = update_render_rate(rate_, static_cast<double>(figures.rays), seconds);
-        samples_per_second_ = rate_.samples_per_second;
+        round_.samples += static_cast<double>(figures.rays);
+        round_.seconds += seconds;
     }
 }
 

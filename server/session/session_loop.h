@@ -59,7 +59,8 @@ private:
     struct Pipeline;
 
     bool give_turns(Sessions const& sessions, WallTime now);
-    bool give_turn(std::shared_ptr<Session> const& session, Viewer& viewer, ClockState const& clock, double share);
+    bool give_turn(std::shared_ptr<Session> const& session, Viewer& viewer, ClockState const& clock);
+    std::size_t sharers(Viewer const& served) const;
     Viewer& viewer_of(Session const& session);
     void note_rate(TurnFigures const& figures, double seconds);
     void start_finishing();
@@ -76,6 +77,9 @@ private:
 
     std::map<std::uint64_t, std::unique_ptr<Viewer>> viewers_; ///< by session
     RenderRate rate_;
+    struct {
+        double samples = 0, seconds = 0;
+    } round_; ///< what was rendered in it, and how long that took
     double plan_seconds_ = 0; ///< what planning a cycle takes
     bool waits_for_room_ = false; ///< a viewer, in this round
     std::unique_ptr<Pipeline> pipeline_;

@@ -23,7 +23,7 @@ struct Turn {
     SceneTime present = 0; ///< what the scene's clock says
     double clock_speed = 0; ///< of the scene's clock, scene seconds a second; 0 while it is paused
     double samples_per_second = 0; ///< that the renderer has for this viewer
-    double plan_seconds = 0; ///< what planning a cycle takes
+    double plan_seconds = 0; ///< what planning a cycle takes, for all viewers that share the time
     bool operator==(Turn const&) const = default;
 };
 

@@ -1,0 +1,116 @@
+// How the loop shares its time among viewers, by what their streams are told: streams that render nothing, so that the
+// renderer is never measured and what it is taken for is known.
+#include "server/session/session_loop.h"
+
+#include <atomic>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "fake_stream.h"
+#include "server/scene/animation.h"
+#include "triangle_scenes.h"
+
+namespace framelet {
+namespace {
+
+/// What a test says of a stream, and what that was told.
+struct Script {
+    std::atomic<bool> takes_more = true; ///< there is something to render, and room for it
+    std::atomic<double> samples_per_second = 0; ///< in its last turn
+};
+
+class ScriptedStream final : public ViewerStream {
+public:
+    explicit ScriptedStream(Script& script) : script_(script) {}
+
+    void take(StreamEvent const&) override {}
+    Step plan(Turn const& turn, PosedScene&) override {
+        script_.samples_per_second = turn.samples_per_second;
+        return script_.takes_more ? Step::render : Step::wait;
+    }
+    SceneTime moment() const override { return 0; }
+    void render(PosedScene const&) override {}
+    bool learn(PosedScene const&) override { return false; }
+    EncodedBatch encode() override { return {}; }
+    bool is_complete() const override { return false; }
+    std::uint64_t last_batch() const override { return 0; }
+    TurnFigures const& planned_figures() const override { return figures_; }
+    TurnFigures const& learnt_figures() const override { return figures_; }
+
+private:
+    Script& script_;
+    TurnFigures const figures_;
+};
+
+/// A loop with so many viewers.
+class RunningLoop {
+public:
+    explicit RunningLoop(std::size_t viewers) : scripts_(viewers) {
+        for (std::size_t i = 0; i < viewers; ++i) {
+            sessions_.push_back(open_session(i));
+        }
+        LoopOptions options;
+        options.make_stream = [this, next = std::size_t{0}](StreamOptions const&, std::uint32_t) mutable {
+            return std::make_unique<ScriptedStream>(scripts_[next++]); // in the order of the sessions
+        };
+        loop_ = std::make_unique<SessionLoop>(scene_, std::vector<Index>{}, render_scene_, clock_, std::move(options),
+                                              SessionLoop::Events{[this] { return sessions_; }, [] {}});
+        thread_ = std::thread([this] { loop_->run(); });
+    }
+    ~RunningLoop() {
+        loop_->stop();
+        thread_.join();
+    }
+
+    void set_takes_more(std::size_t viewer, bool takes_more) { scripts_[viewer].takes_more = takes_more; }
+    /// Waits until the viewer's share of the time is one of so many; false where that never comes.
+    bool shares_among(std::size_t viewer, int sharers) const {
+        auto const end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+        while (scripts_[viewer].samples_per_second != first_samples_per_second / sharers) {
+            if (std::chrono::steady_clock::now() > end) {
+                return false;
+            }
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        return true;
+    }
+
+private:
+    static std::shared_ptr<Session> open_session(std::size_t index) {
+        auto const stream = std::make_shared<FakeStream>();
+        Session::Events events;
+        events.admit = [](Hello const&) { return Welcome{}; };
+        events.changed = [] {};
+        events.ended = [](std::string const&) {};
+        auto session = std::make_shared<Session>(index + 1, stream, std::move(events));
+        session->start();
+        stream->bring(Hello{protocol_version, {}, coding::all});
+        return session;
+    }
+
+    Scene const scene_ = triangle_scene();
+    RenderScene render_scene_{scene_, std::nullopt};
+    SceneClock clock_{false, std::chrono::steady_clock::now()};
+    std::vector<Script> scripts_;
+    SessionLoop::Sessions sessions_;
+    std::unique_ptr<SessionLoop> loop_;
+    std::thread thread_;
+};
+
+TEST(SessionLoop, TimeIsSharedAmongThoseThatUseIt) {
+    RunningLoop loop(3);
+    EXPECT_TRUE(loop.shares_among(0, 3));
+    loop.set_takes_more(1, false);
+    EXPECT_TRUE(loop.shares_among(0, 2)) << "what one cannot use goes to the others";
+    EXPECT_TRUE(loop.shares_among(2, 2));
+    EXPECT_TRUE(loop.shares_among(1, 3)) << "once it can it is one of three";
+    loop.set_takes_more(2, false);
+    EXPECT_TRUE(loop.shares_among(0, 1));
+    loop.set_takes_more(1, true);
+    loop.set_takes_more(2, true);
+    EXPECT_TRUE(loop.shares_among(0, 3));
+}
+
+} // namespace
+} // namespace framelet
