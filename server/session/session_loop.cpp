@@ -96,7 +96,6 @@ bool SessionLoop::give_turns(Sessions const& sessions, WallTime now) {
     forget_ended(sessions);
     ClockState const clock = clock_.state(now);
     waits_for_room_ = false;
-    round_ = {};
     bool worked = false;
     for (auto const& session : sessions) {
         bool const served = contain(*session, [&] { worked |= give_turn(session, viewer_of(*session), clock); });
@@ -105,6 +104,7 @@ bool SessionLoop::give_turns(Sessions const& sessions, WallTime now) {
         }
     }
     rate_ = update_render_rate(rate_, round_.samples, round_.seconds);
+    round_ = {};
     samples_per_second_ = rate_.samples_per_second;
     return worked;
 }

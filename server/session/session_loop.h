@@ -79,7 +79,7 @@ private:
     RenderRate rate_;
     struct {
         double samples = 0, seconds = 0;
-    } round_; ///< what was rendered in it, and how long that took
+    } round_; ///< what was rendered since the rate was learnt last, and how long that took
     double plan_seconds_ = 0; ///< what planning a cycle takes
     bool waits_for_room_ = false; ///< a viewer, in this round
     std::unique_ptr<Pipeline> pipeline_;
