@@ -175,7 +175,7 @@ TEST(AdaptiveRefresh, OfAMovingCameraTheViewerKeepsWhatDoesNotChange) {
         synthetic.camera_speed = 1e-4f;
         synthetic.input.samples_per_second *= 8; // the moments that a viewer holds have all of it
         synthetic.input.motions = &motions;
-        EXPECT_GT(busy_share(synthetic, 1), 0.1);
+        EXPECT_GT(busy_share(synthetic, 1), 0.05) << "a sample a pixel: finer ones show no better while it moves";
         EXPECT_LT(busy_share(synthetic, 3), 0.02) << "its clock runs, and nothing changes";
         synthetic.stop();
         EXPECT_LT(synthetic.finish(30), 30);
