@@ -11,11 +11,11 @@ namespace framelet {
 /// Differences of green bytes up to this are none of an outline: what a surface shows stays sharp.
 inline constexpr int flat_contrast = 26;
 
-/// Alpha of a pixel that `filter_pixels` is to leave as it is, and of one that it filters.
+/// Alpha of a pixel that `filter_pixels` is to leave as it is (filled holes too), and of one that it filters.
 inline constexpr std::uint8_t exact_alpha = 255, moved_alpha = 0;
 
-/// Writes `rect` of `filtered` from `picture`, which has its size. Pixels with `exact_alpha` stay as they are, and those
-/// that differ from none of the four beside them by more than `flat_contrast`. The others become, in linear light
+/// Writes `rect` of `filtered` from `picture`, which has its size. Pixels with `exact_alpha` stay as they are, and
+/// those that differ from none of the four beside them by more than `flat_contrast`. The others become, in linear light
 /// (squares of bytes stand for it), half of themselves and an eighth of each of the four; beyond the border the pixel
 /// is repeated. `rect` lies in the picture. Alpha becomes 255.
 void filter_pixels(Picture const& picture, PixelRect const& rect, Picture& filtered);

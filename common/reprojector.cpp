@@ -139,7 +139,7 @@ void write_colors(WarpedBlock const& block, int left, int top, Picture& picture)
             WideFloats const value = root(load_lanes<WideFloats>(&block.squares[channel][i])) + 0.5f;
             return reinterpret_cast<WideWords>(__builtin_convertvector(value, WideInts));
         };
-        WideInts const is_still = load_lanes<WideInts>(&block.group[i]) << 2 < 0; // the bit of `still_group`
+        WideInts const is_still = (load_lanes<WideInts>(&block.group[i]) & still_bit) != 0; // holes, too
         WideWords const color = picture_pixels(bytes(0), bytes(1), bytes(2));
         store_lanes(is_still ? color : color & ~picture_pixel(0, 0, 0), &colors[i]);
     }

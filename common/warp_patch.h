@@ -16,12 +16,10 @@ constexpr std::int32_t group_of(std::size_t slot, std::uint32_t view, int depth)
 constexpr std::int32_t drifting_group(std::int32_t group) {
     return group | 1 << 30;
 }
-/// Samples that lie on their own pixels, which those that have moved do not.
+/// Set in the group of samples that lie on their own pixels, which those that have moved do not.
+inline constexpr std::int32_t still_bit = 1 << 29;
 constexpr std::int32_t still_group(std::int32_t group) {
-    return group | 1 << 29;
-}
-constexpr bool is_still_group(std::int32_t group) {
-    return (group >> 29 & 1) != 0;
+    return group | still_bit;
 }
 constexpr std::size_t slot_of_group(std::int32_t group) {
     return static_cast<std::uint32_t>(group) >> 24 & 0x1fu;
