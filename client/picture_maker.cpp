@@ -44,15 +44,15 @@ void PictureMaker::insert(Batch const& batch) {
     }
     batch_view_ = batch.view;
     batch_time_ = batch.scene_time;
-    if (settings_.reproject && pool_.begins_moment(batch)) {
-        let_go();
-    }
-    pool_.insert(batch, settings_.reproject);
-    if (smoother_) {
-        smoother_->insert(batch);
-    }
     for (BodyTrack const& track : batch.tracks) {
         motions_.extend(track);
+    }
+    if (settings_.reproject && pool_.begins_moment(batch, motions_)) {
+        let_go();
+    }
+    pool_.insert(batch, motions_, settings_.reproject);
+    if (smoother_) {
+        smoother_->insert(batch, motions_);
     }
     if (batch.camera_track) {
         cameras_.extend(*batch.camera_track);

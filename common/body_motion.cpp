@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include <glm/gtc/quaternion.hpp>
@@ -11,6 +12,13 @@
 namespace framelet {
 
 namespace {
+
+/// Where a time is among the keys, clamped to where poses still change.
+double key_at(BodyTrack const& track, SceneTime time) {
+    auto const last = static_cast<double>(track.keys.size() - 1);
+    return std::clamp(time * body_keys_per_second - static_cast<double>(track.first_key), 0.0,
+                      last + max_pose_extrapolation_seconds * body_keys_per_second);
+}
 
 /// Linear part and offset of world from body.
 Motion placement(BodyPose const& pose) {
@@ -36,8 +44,7 @@ BodyPose pose_at(BodyTrack const& track, SceneTime time) {
         return {};
     }
     auto const last = static_cast<double>(track.keys.size() - 1);
-    double const place = std::clamp(time * body_keys_per_second - static_cast<double>(track.first_key), 0.0,
-                                    last + max_pose_extrapolation_seconds * body_keys_per_second);
+    double const place = key_at(track, time);
     double const before = std::floor(std::min(place, std::max(last - 1, 0.0)));
     auto const index = static_cast<std::size_t>(before);
     BodyPose const& a = track.keys[index];
@@ -112,6 +119,29 @@ BodyTrack const* BodyMotions::find(BodyNumber body) const {
 Motion BodyMotions::between(BodyNumber body, SceneTime from, SceneTime to) const {
     BodyTrack const* const track = find(body);
     return track == nullptr ? Motion{} : motion_between(*track, from, to);
+}
+
+bool BodyMotions::rests(BodyNumber body, SceneTime from, SceneTime to) const {
+    BodyTrack const* const track = find(body);
+    if (track == nullptr || track->keys.size() < 2) {
+        return true;
+    }
+    std::size_t const last = track->keys.size() - 1;
+    // After the last key a body goes on as between the last two.
+    auto const first_key = std::min(static_cast<std::size_t>(key_at(*track, from)), last - 1);
+    auto const end_key = std::min(static_cast<std::size_t>(std::ceil(key_at(*track, to))), last);
+    auto const keys = std::span(track->keys).subspan(first_key, end_key - first_key + 1);
+    return std::ranges::all_of(keys, [&](BodyPose const& pose) { return pose == keys.front(); });
+}
+
+bool is_at_rest(FrameletShape const& shape, SceneTime scene_time, BodyMotions const& motions) {
+    auto const rests = [&](auto const& one) {
+        return one.velocity == Vec3(0) &&
+               (one.body == static_body ||
+                motions.rests(one.body, scene_time - resting_seconds, scene_time + resting_seconds));
+    };
+    return std::all_of(shape.layers.begin(), shape.layers.begin() + shape.layer_count, rests) &&
+           std::ranges::all_of(shape.loose_samples, rests);
 }
 
 } // namespace framelet

@@ -7,6 +7,7 @@
 
 #include "common/body_track.h"
 #include "common/framelet.h"
+#include "common/framelet_shape.h"
 
 namespace framelet {
 
@@ -47,6 +48,8 @@ public:
 
     /// None for bodies that have no track, `static_body` among them.
     Motion between(BodyNumber body, SceneTime from, SceneTime to) const;
+    /// True only where `between` is none for any two times from `from` to `to`.
+    bool rests(BodyNumber body, SceneTime from, SceneTime to) const;
     /// Null where nothing is known of it.
     BodyTrack const* find(BodyNumber body) const;
 
@@ -55,5 +58,11 @@ private:
 
     std::unordered_map<BodyNumber, BodyTrack> tracks_;
 };
+
+/// What rests for so long before and after it was rendered, seconds of scene time, is held as what stands.
+inline constexpr SceneTime resting_seconds = 0.2;
+
+/// Whether nothing in it moves about the time when it was rendered: all that is on bodies rests, nothing deforms.
+bool is_at_rest(FrameletShape const& shape, SceneTime scene_time, BodyMotions const& motions);
 
 } // namespace framelet

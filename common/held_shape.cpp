@@ -179,6 +179,15 @@ void hold_boxes(PackedSample const* grid, HeldShape& held) {
 
 } // namespace
 
+bool is_in_place(HeldShape const& held, SceneTime from, SceneTime to, BodyMotions const& motions) {
+    auto const is_there = [&](auto const& one) {
+        return one.velocity == Vec3(0) && (one.body == static_body || motions.between(one.body, from, to) == Motion{});
+    };
+    return std::all_of(held.layers.begin(), held.layers.begin() + held.layer_count,
+                       [&](HeldLayer const& layer) { return is_there(layer.layer); }) &&
+           std::ranges::all_of(held.loose, [&](HeldLoose const& loose) { return is_there(loose.sample); });
+}
+
 void hold(DisplayFramelet const& framelet, FrameletShape const* shape, int samples_per_pixel, Samples& samples,
           HeldShape& held) {
     FRAMELET_CHECK(shape == nullptr || shape->layer_count <= max_layers);

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/body_motion.h"
 #include "common/framelet.h"
 #include "common/framelet_shape.h"
 
@@ -56,6 +57,9 @@ struct HeldShape {
     std::array<PackedSample, framelet_samples / 4> reduced; ///< the moving grid in rows where `side` is not 16
     std::array<HeldLayer, max_layers> layers;
 };
+
+/// Whether all that it shows, rendered at `from`, is in the same place at `to`.
+bool is_in_place(HeldShape const& held, SceneTime from, SceneTime to, BodyMotions const& motions);
 
 /// Fills `samples` (in rows) and `held`, whose memory is used again. No shape: all is infinitely far. The tile has
 /// `samples_per_pixel` samples along a pixel's side (1 if it is no finer than pixels); the moving grid then has the

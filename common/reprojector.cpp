@@ -39,21 +39,9 @@ bool is_all_in_place(FrameletCache const& cache, Camera const& camera, SceneTime
 /// Also true where bodies that could move have come to rest.
 bool is_in_place(CachedFramelet const& framelet, HeldView const& view, Camera const& camera, SceneTime scene_time,
                  BodyMotions const& motions) {
-    if (is_in_place(view, framelet.shape.moves, camera, scene_time)) {
-        return true;
-    }
-    if (!is_in_place(view, false, camera, scene_time)) {
-        return false;
-    }
-    auto const rests = [&](BodyNumber body, Vec3 const& velocity) {
-        return velocity == Vec3(0) &&
-               (body == static_body || motions.between(body, view.scene_time, scene_time) == Motion{});
-    };
-    HeldShape const& shape = framelet.shape;
-    return std::all_of(shape.layers.begin(), shape.layers.begin() + shape.layer_count,
-                       [&](HeldLayer const& held) { return rests(held.layer.body, held.layer.velocity); }) &&
-           std::ranges::all_of(shape.loose,
-                               [&](HeldLoose const& loose) { return rests(loose.sample.body, loose.sample.velocity); });
+    return is_in_place(view, framelet.shape.moves, camera, scene_time) ||
+           (is_in_place(view, false, camera, scene_time) &&
+            is_in_place(framelet.shape, view.scene_time, scene_time, motions));
 }
 
 /// True when the block is covered and all framelets of its place are in place.

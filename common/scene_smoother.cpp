@@ -51,7 +51,7 @@ void SceneSmoother::start_picture() {
     std::ranges::fill(equal_, std::uint8_t{0});
 }
 
-void SceneSmoother::insert(Batch const& batch) {
+void SceneSmoother::insert(Batch const& batch, BodyMotions const& motions) {
     if (batch.framelets.empty()) {
         return;
     }
@@ -60,12 +60,12 @@ void SceneSmoother::insert(Batch const& batch) {
     waiting_.back().tracks.clear();
     while (waiting_framelets_ > most_waiting(viewport_)) {
         waiting_framelets_ -= waiting_.front().framelets.size();
-        older_pool_.insert(waiting_.front());
+        older_pool_.insert(waiting_.front(), motions);
         waiting_.pop_front();
     }
 }
 
-void SceneSmoother::take_due(SceneTime scene_time) {
+void SceneSmoother::take_due(SceneTime scene_time, BodyMotions const& motions) {
     bool const set_back = scene_time < shown_time_ - correction_seconds;
     shown_time_ = scene_time;
     std::erase_if(waiting_, [&](Batch const& batch) {
@@ -73,7 +73,7 @@ void SceneSmoother::take_due(SceneTime scene_time) {
             return false;
         }
         waiting_framelets_ -= batch.framelets.size();
-        older_pool_.insert(batch);
+        older_pool_.insert(batch, motions);
         return true;
     });
     older_pool_.take_let_go(let_go_);
@@ -135,7 +135,7 @@ void SceneSmoother::show(FrameletPool const& newest, std::span<PixelRect const> 
                          std::vector<PixelRect>& repainted) {
     FRAMELET_CHECK(newest.plane().viewport() == viewport_);
     FRAMELET_CHECK(picture.width == viewport_.width && picture.height == viewport_.height);
-    take_due(scene_time);
+    take_due(scene_time, motions);
     newer_.reprojector.show(newest, changed, camera, scene_time, motions, newer_.picture, newer_.repainted);
     mark(newer_.repainted, dirty_);
     update_times(newest, changed, newer_);

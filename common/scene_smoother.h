@@ -20,8 +20,8 @@ class SceneSmoother {
 public:
     explicit SceneSmoother(ImagePlane plane);
 
-    /// Takes what the cache that `show` is given has taken, or is about to take.
-    void insert(Batch const& batch);
+    /// Takes what the cache that `show` is given has taken, or is about to take, with the same motions.
+    void insert(Batch const& batch, BodyMotions const& motions);
     /// As `FrameletPool::settle`, once all that came is shown.
     void settle();
 
@@ -54,7 +54,7 @@ private:
         MixSource source() const;
     };
 
-    void take_due(SceneTime scene_time);
+    void take_due(SceneTime scene_time, BodyMotions const& motions);
     void update_times(FrameletPool const& pool, std::span<PixelRect const> changed, Side& shown) const;
     void mark(std::vector<PixelRect> const& rects, std::vector<std::uint8_t>& flags) const;
     void mix_block(std::size_t index, Picture& picture);

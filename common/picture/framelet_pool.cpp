@@ -9,8 +9,13 @@ namespace framelet {
 
 namespace {
 
-bool moves(Batch const& batch) {
-    return std::ranges::any_of(batch.shapes, &FrameletShape::moves);
+bool moves(FrameletShape const& shape, SceneTime scene_time, BodyMotions const& motions) {
+    return shape.moves() && !is_at_rest(shape, scene_time, motions);
+}
+
+bool moves(Batch const& batch, BodyMotions const& motions) {
+    return std::ranges::any_of(batch.shapes,
+                               [&](FrameletShape const& shape) { return moves(shape, batch.scene_time, motions); });
 }
 
 } // namespace
@@ -26,9 +31,9 @@ bool FrameletPool::begins_base(Batch const& batch) const {
                              is_reprojectable(slot.camera));
 }
 
-bool FrameletPool::begins_moment(Batch const& batch) const {
-    return begins_base(batch) ||
-           (moving_slot(batch.scene_time) == slots_.size() && is_reprojectable(batch.view.camera) && moves(batch));
+bool FrameletPool::begins_moment(Batch const& batch, BodyMotions const& motions) const {
+    return begins_base(batch) || (moving_slot(batch.scene_time) == slots_.size() &&
+                                  is_reprojectable(batch.view.camera) && moves(batch, motions));
 }
 
 bool FrameletPool::has_moving() const {
@@ -48,42 +53,44 @@ bool FrameletPool::is_tried(std::size_t slot) const {
     return slot != base_ && slots_[slot].begun + untried_moments <= moments_;
 }
 
-std::size_t FrameletPool::insert(Batch const& batch, bool begins_moments) {
+std::size_t FrameletPool::insert(Batch const& batch, BodyMotions const& motions, bool begins_moments) {
     if (moments_ == 0 || (begins_moments && begins_base(batch))) {
         base_ = begin_slot(batch);
     }
     Slot& base = slots_[base_];
     base.camera = batch.view.camera;
     bool const splits = begins_moments && base.scene_time != batch.scene_time && is_reprojectable(base.camera);
-    return splits && moves(batch) ? insert_moving(batch) : base.cache->insert(batch);
+    return splits && moves(batch, motions) ? insert_moving(batch, motions) : base.cache->insert(batch);
 }
 
 /// What moves into the slot of its time, the rest into the base.
-std::size_t FrameletPool::insert_moving(Batch const& batch) {
+std::size_t FrameletPool::insert_moving(Batch const& batch, BodyMotions const& motions) {
     stands_.clear();
     moves_.clear();
     for (FrameletShape const& shape : batch.shapes) {
-        bool const moves = shape.moves();
-        moves_.push_back(moves ? 1 : 0);
-        stands_.push_back(moves ? 0 : 1);
+        bool const is_moving = moves(shape, batch.scene_time, motions);
+        moves_.push_back(is_moving ? 1 : 0);
+        stands_.push_back(is_moving ? 0 : 1);
     }
     std::size_t slot = moving_slot(batch.scene_time);
     if (slot == slots_.size()) {
         slot = begin_slot(batch);
         if (moments_ == slots_[base_].begun + most_moments) {
-            let_go_of_moving();
+            let_go_of_moving(batch.scene_time, motions);
         }
     }
     return slots_[base_].cache->insert(batch, stands_) + slots_[slot].cache->insert(batch, moves_);
 }
 
 /// Of the base, since it is as old by now as what moved in other slots gets; what deforms goes astray with time.
-void FrameletPool::let_go_of_moving() {
+void FrameletPool::let_go_of_moving(SceneTime now, BodyMotions const& motions) {
     FrameletCache& base = *slots_[base_].cache;
     std::vector<Tile> kept;
     for (std::size_t i = 0; i < base.slot_count(); ++i) {
         CachedFramelet const* const framelet = base.at_slot(i);
-        if (framelet != nullptr && !framelet->shape.moves) {
+        if (framelet != nullptr &&
+            (!framelet->shape.moves ||
+             is_in_place(framelet->shape, base.views()[framelet->view].scene_time, now, motions))) {
             kept.push_back(framelet->tile);
         }
     }

@@ -1,7 +1,7 @@
 // What a viewer holds that moves its samples: the framelets of several moments. Each camera has a cache, its base, for
-// what stands; what moves before a camera that stands has a cache for each scene time. What is held stays until
-// something better has come, wherever it lies in the picture by then. In: batches in the order in which they were sent.
-// Out: caches, from all of which a picture is made.
+// what stands or rests; what moves before a camera that stands has a cache for each scene time. What is held stays
+// until something better has come, wherever it lies in the picture by then. In: batches in the order in which they were
+// sent. Out: caches, from all of which a picture is made.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "common/body_motion.h"
 #include "common/framelet_cache.h"
 
 namespace framelet {
@@ -29,13 +30,14 @@ public:
 
     ImagePlane const& plane() const { return plane_; }
 
-    /// As `FrameletCache::insert`. `begins_moments`: where its camera is another than the last batch's, and where
-    /// something moves before the same one, which samples that are not to be moved make no use of: then the newest of a
-    /// place are held, whatever their cameras and times.
-    std::size_t insert(Batch const& batch, bool begins_moments = true);
+    /// As `FrameletCache::insert`. `motions`: of bodies about the batch's scene time; what is at rest by them is held
+    /// with what stands, where it takes the place of what shows the same. `begins_moments`: where its camera is another
+    /// than the last batch's, and where something moves before the same one, which samples that are not to be moved
+    /// make no use of: then the newest of a place are held, whatever their cameras and times.
+    std::size_t insert(Batch const& batch, BodyMotions const& motions, bool begins_moments = true);
 
     /// True where `insert` would begin a moment.
-    bool begins_moment(Batch const& batch) const;
+    bool begins_moment(Batch const& batch, BodyMotions const& motions) const;
 
     /// All of the newest camera is of one moment by now: the newest of each place are held in its base, as if all its
     /// batches had been inserted there.
@@ -83,8 +85,8 @@ private:
     std::size_t moving_slot(SceneTime scene_time) const;
     std::size_t free_slot();
     std::size_t begin_slot(Batch const& batch);
-    std::size_t insert_moving(Batch const& batch);
-    void let_go_of_moving();
+    std::size_t insert_moving(Batch const& batch, BodyMotions const& motions);
+    void let_go_of_moving(SceneTime now, BodyMotions const& motions);
 
     ImagePlane plane_;
     std::vector<Slot> slots_;

@@ -96,7 +96,7 @@ FadingCode learn_fading(Mirror const& mirror, std::span<Piece> pieces, SceneTime
         piece.change = comparable ? change_after(compare(mirror, piece, scene_time)) : 0;
         float expected = piece.change;
         bool const is_restless =
-            piece.body != static_body || (!mirror.camera_stands() && (piece.reflects || has_outline));
+            (piece.body != static_body && !piece.rests) || (!mirror.camera_stands() && (piece.reflects || has_outline));
         if (is_restless) {
             expected = std::max(expected, restless_change);
         }

@@ -132,7 +132,7 @@ void Mirror::add(ViewRays const& rays, BodyMotions const& motions, std::span<Pie
     standing_.clear();
     moving_.clear();
     for (Piece const& piece : pieces) {
-        bool const stands = !piece.moves || moments_[base_].scene_time == scene_time;
+        bool const stands = !piece.moves || piece.rests || moments_[base_].scene_time == scene_time;
         (stands ? standing_ : moving_).push_back(piece);
     }
     add_to(moments_[base_], motions, standing_);
@@ -285,14 +285,26 @@ void Mirror::draw(Moment& moment, std::size_t first, BodyMotions const& motions)
             for_each_covered(piece.at - piece.half_side, piece.at + piece.half_side, columns_, rows_,
                              [&](int column, int row, unsigned mask) { show(moment, i, mask, column, row); });
         }
-        if (&moment == &moments_[base_] && moment.is_of_camera && !moment.pieces[i].moves) {
+    }
+    if (&moment == &moments_[base_] && moment.is_of_camera) {
+        cover_from(moment, first);
+    }
+}
+
+/// By the framelets of the base that are where they were rendered: pieces of a square may leave gaps between each
+/// other, its samples do not.
+void Mirror::cover_from(Moment const& moment, std::size_t first) {
+    for (std::size_t end = first; first < moment.pieces.size(); first = end) {
+        bool is_still = true;
+        for (; end < moment.pieces.size() && moment.pieces[end].of == moment.pieces[first].of; ++end) {
+            is_still = is_still && (!moment.pieces[end].moves || moment.reprojected[end].is_still);
+        }
+        for (std::size_t i = first; is_still && i < end; ++i) {
             cover(moment, i);
         }
     }
 }
 
-/// By a piece of a framelet of the base of which nothing moves: pieces of a square may leave gaps between each other,
-/// its samples do not.
 void Mirror::cover(Moment const& moment, std::size_t index) {
     PixelRect const part = part_of(moment.pieces[index], ImagePlane(viewport_));
     for (int row = part.top / cell_side; row < std::min(part.bottom / cell_side, rows_); ++row) {

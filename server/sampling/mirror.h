@@ -90,6 +90,7 @@ private:
     Moment& free_slot();
     PieceReprojection to_picture(Moment const& moment, BodyMotions const& motions) const;
     void draw(Moment& moment, std::size_t first, BodyMotions const& motions);
+    void cover_from(Moment const& moment, std::size_t first);
     void cover(Moment const& moment, std::size_t index);
     void show(Moment const& moment, std::size_t index, unsigned mask, int column, int row);
     void put(Moment const& moment, std::size_t index, float inverse_depth, int share, Cell& cell) const;

@@ -55,7 +55,7 @@ bool stays(Mirror const& mirror, Cell const& cell) {
         return false;
     }
     Piece const& piece = mirror.piece_of(cell);
-    return !piece.moves && piece.change == 0 && piece.fading < most_fading;
+    return (!piece.moves || piece.rests) && piece.change == 0 && piece.fading < most_fading;
 }
 
 /// Mean squared error of samples `spacing` pixels apart (worn), of a surface of such `detail` (see `Piece`): what is

@@ -74,7 +74,10 @@ void MomentRefresh::note_sent(RenderedMoment const& moment, std::uint64_t batch,
         if (sent[i] != 0) {
             std::size_t const first = pieces_.size();
             cut_pieces(rendered[i], framelets[i], *shape, plane, moment.scene_time, batch, pieces_);
-            shape->fading = learn_fading(mirror_, std::span(pieces_).subspan(first), moment.scene_time, comparable,
+            std::span<Piece> const pieces = std::span(pieces_).subspan(first);
+            bool const rests = is_at_rest(*shape, moment.scene_time, *moment.motions);
+            std::ranges::for_each(pieces, [&](Piece& piece) { piece.rests = rests; });
+            shape->fading = learn_fading(mirror_, pieces, moment.scene_time, comparable,
                                          shape->layer_count > 1 || !shape->loose_samples.empty());
             ++shape;
         }

@@ -29,7 +29,8 @@ struct Piece {
     Vec3 velocity{0}; ///< of what deforms, metres a second in the world at its scene time
     BodyNumber body = static_body;
     bool is_loose = false; ///< its samples lie on no layer
-    bool moves = false; ///< something of its framelet does
+    bool moves = false; ///< something of its framelet may, being on a body or deforming
+    bool rests = false; ///< nothing of it does about its scene time: the viewer holds it with what stands
     bool is_replaced = false; ///< a newer framelet lies in its place: it is held no longer
     bool reflects = false; ///< shows a reflection somewhere, which moves otherwise than the surface
     SentTile of; ///< the framelet that it is part of

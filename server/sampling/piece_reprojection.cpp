@@ -87,12 +87,11 @@ ReprojectedPiece reproject(Piece const& piece, BodyTransform const& body, Vec2 s
     float const tolerance = share * piece.error;
     float spacing = piece.spacing;
     float misplaced = 0;
+    reprojected.is_still = body.is_still && piece.velocity == Vec3(0);
     if (!piece.is_loose) { // as the viewer rates them
         float const squares = glm::dot(right, right) + glm::dot(down, down);
         spacing *= std::sqrt(0.5f * (squares + std::sqrt(std::max(squares * squares - 4 * area * area, 0.0f))));
-        misplaced = body.is_still && piece.velocity == Vec3(0)
-                        ? 0
-                        : tolerance * glm::length(Vec2(parallax) - parallax.z * reprojected.at);
+        misplaced = reprojected.is_still ? 0 : tolerance * glm::length(Vec2(parallax) - parallax.z * reprojected.at);
         if (!hides(spacing, misplaced) || is_adrift(piece.body, piece.velocity, age)) { // it shows where nothing does
             return {};
         }

@@ -32,6 +32,7 @@ struct ReprojectedPiece {
     float scale = 1; ///< how much larger it is than it was rendered
     float worn = 0; ///< spacing, pixels
     bool leads = false; ///< a shadow that shows before what it comes over
+    bool is_still = false; ///< its pixels are where they were rendered
 
     bool is_in_picture() const { return inverse_depth >= 0; }
 };

@@ -1,5 +1,7 @@
 #include "common/body_motion.h"
 
+#include <random>
+
 #include <gtest/gtest.h>
 
 #include <glm/geometric.hpp>
@@ -76,6 +78,54 @@ TEST(BodyMotion, RestIsExactlyNoMotion) {
     EXPECT_EQ(motions.between(8, 0, 1), Motion{});
     EXPECT_EQ(motions.between(7, 0.5, 0.5), Motion{});
     EXPECT_NE(motions.between(7, 0.25, 0.5), Motion{});
+}
+
+TEST(BodyMotion, WhatRestsIsAtOnePlaceAllTheTime) {
+    // Poses that are few, so that rest and coming back to where it was are both common.
+    std::mt19937 random(5);
+    std::uniform_int_distribution<int> pose(0, 5), keys(0, 8);
+    std::uniform_int_distribution<int> half_key(-6, 28);
+    int resting = 0, came_back = 0;
+    for (int round = 0; round < 20000; ++round) {
+        BodyTrack track{7, 0, {}};
+        for (int i = keys(random); i > 0; --i) {
+            track.keys.push_back({Vec3(pose(random) == 0 ? 1.0f : 0.0f, 0, 0), {1, 0, 0, 0}, Vec3(1)});
+        }
+        BodyMotions motions;
+        motions.extend(track);
+        auto const [from, to] =
+            std::minmax({0.5 * half_key(random) * key_seconds, 0.5 * half_key(random) * key_seconds});
+        bool moves = false;
+        for (int i = 0; i <= 40; ++i) {
+            moves = moves || motions.between(7, from, std::min(from + (to - from) * i / 40, to)) != Motion{};
+        }
+        bool const rests = motions.rests(7, from, to);
+        EXPECT_FALSE(rests && moves) << from << ' ' << to;
+        resting += rests ? 1 : 0;
+        came_back += moves && motions.between(7, from, to) == Motion{} ? 1 : 0;
+    }
+    EXPECT_GT(resting, 2000);
+    EXPECT_GT(came_back, 500);
+    EXPECT_TRUE(BodyMotions{}.rests(7, 0, 1)) << "nothing is known of it, and nothing moves it";
+}
+
+TEST(BodyMotion, WhatDeformsOrIsOnABodyThatMovesIsNotAtRest) {
+    BodyMotions motions;
+    BodyTrack track{7, 0, std::vector<BodyPose>(60)};
+    for (std::size_t i = 40; i < 60; ++i) {
+        track.keys[i].translation.x = static_cast<float>(i) - 39;
+    }
+    motions.extend(track);
+    FrameletShape shape;
+    EXPECT_TRUE(is_at_rest(shape, 0, motions));
+    shape.layer_count = 1;
+    shape.layers[0].body = 7;
+    shape.layers[1].velocity.x = 1; // is none of its layers
+    EXPECT_TRUE(is_at_rest(shape, 0.3, motions));
+    EXPECT_FALSE(is_at_rest(shape, 39 * key_seconds - 0.9 * resting_seconds, motions)) << "it soon will move";
+    EXPECT_FALSE(is_at_rest(shape, 0.8, motions));
+    shape.loose_samples.push_back({1, static_body, Vec3(0, 1, 0)});
+    EXPECT_FALSE(is_at_rest(shape, 0.3, motions));
 }
 
 TEST(BodyMotion, DegenerateTracksAreFinite) {

@@ -35,7 +35,7 @@ TEST(Confidence, OfTwoTheOneThatShows) {
     ImagePlane const plane(viewport);
     FrameletPool pool = filled(room(), front(), 0, 1);
     Tile const tile = make_tile(plane.pixel_depth(), 4, 5);
-    pool.insert(room().batch(plane, 2, front(), 2, {tile}));
+    pool.insert(room().batch(plane, 2, front(), 2, {tile}), {});
     std::vector<PixelConfidence> const found = confidence(pool, front(), 2.25);
     PixelRect const rect = plane.tile_rect(tile);
     for (int y = 0; y < viewport.height; ++y) {
@@ -66,7 +66,7 @@ TEST(Confidence, IsOfEachMomentThatShows) {
     std::vector<Tile> left = visible_tiles(plane, plane.pixel_depth());
     std::erase_if(left, [&](Tile tile) { return plane.tile_rect(tile).left >= viewport.width / 2; });
     FrameletPool pool = filled(room(), front(), 0, 1);
-    pool.insert(room().batch(plane, 2, turned, 2, left));
+    pool.insert(room().batch(plane, 2, turned, 2, left), {});
     Shown const shown = show(pool, turned, 2);
     std::vector<PixelConfidence> const found = confidence(pool, turned, 2);
     auto const is_older = [](PixelConfidence const& pixel) { return pixel.seconds == 1; };

@@ -61,7 +61,7 @@ Agreement compare(AnalyticScene const& scene, SceneTime from, SceneTime to, Show
 TEST(DriftingShadow, GoesOverWhatIsLitAndStaysDark) {
     AnalyticScene const scene = shaded_floor();
     FrameletPool pool((ImagePlane(viewport)));
-    pool.insert(batch_at(scene, 1, front(), 0));
+    pool.insert(batch_at(scene, 1, front(), 0), scene.motions);
     for (double const time : {0.0, 0.05, 0.1, 0.15}) {
         Agreement const got = compare(scene, 0, time, show(pool, front(), time));
         EXPECT_GT(got.shadow.pixels, 500);
@@ -78,8 +78,9 @@ TEST(DriftingShadow, GoesOverWhatWasSeenLitSince) {
     Camera aside = front();
     aside.position.x += 0.02f;
     FrameletPool pool(plane);
-    pool.insert(batch_at(scene, 1, front(), 0));
-    pool.insert(lit.batch(plane, 2, aside, 0.05, {make_tile(plane.pixel_depth(), 11, 7)})); // where it goes
+    pool.insert(batch_at(scene, 1, front(), 0), scene.motions);
+    pool.insert(lit.batch(plane, 2, aside, 0.05, {make_tile(plane.pixel_depth(), 11, 7)}),
+                lit.motions); // where it goes
     Agreement const got = compare(scene, 0, 0.15, show(pool, front(), 0.15));
     EXPECT_GE(got.shadow.share(), 0.999);
 }
@@ -91,8 +92,8 @@ TEST(DriftingShadow, IsNotBelievedForLongAgainstWhatWasSeenSince) {
     Camera aside = front();
     aside.position.x += 0.02f;
     FrameletPool pool((ImagePlane(viewport)));
-    pool.insert(batch_at(scene, 1, front(), 0));
-    pool.insert(batch_at(lit, 2, aside, 0.2));
+    pool.insert(batch_at(scene, 1, front(), 0), scene.motions);
+    pool.insert(batch_at(lit, 2, aside, 0.2), lit.motions);
     Agreement const got = compare(scene, 0, 0.4, show(pool, front(), 0.4));
     EXPECT_GT(got.shadow.pixels, 500);
     EXPECT_LE(got.shadow.share(), 0.001);
@@ -123,7 +124,7 @@ std::pair<int, int> hiding_patches(FrameletCache const& cache, SceneTime time) {
 TEST(DriftingShadow, HidesNothingOnceItMayBeElsewhere) {
     AnalyticScene const scene = shaded_floor();
     FrameletPool pool((ImagePlane(viewport)));
-    pool.insert(batch_at(scene, 1, front(), 0));
+    pool.insert(batch_at(scene, 1, front(), 0), scene.motions);
     auto const [young, all] = hiding_patches(pool.newest(), 0.1);
     EXPECT_GT(all, 0);
     EXPECT_EQ(young, all);

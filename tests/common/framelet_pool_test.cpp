@@ -34,9 +34,9 @@ std::set<std::uint64_t> cameras(FrameletPool const& pool) {
 
 TEST(FrameletPool, AnotherCameraBeginsAMomentAndTakesNothingAway) {
     FrameletPool pool(plane);
-    pool.insert(seen_from(1, 1, place));
-    pool.insert(seen_from(1, 2, place)); // takes the place of the first
-    pool.insert(seen_from(2, 3, place));
+    pool.insert(seen_from(1, 1, place), {});
+    pool.insert(seen_from(1, 2, place), {}); // takes the place of the first
+    pool.insert(seen_from(2, 3, place), {});
     EXPECT_EQ(pool.framelet_count(), 2U);
     EXPECT_EQ(cameras(pool), (std::set<std::uint64_t>{1, 2}));
     EXPECT_EQ(pool.newest().framelet_count(), 1U);
@@ -46,7 +46,7 @@ TEST(FrameletPool, AnotherCameraBeginsAMomentAndTakesNothingAway) {
 TEST(FrameletPool, WithoutMomentsTheNewestOfAPlaceIsHeld) {
     FrameletPool pool(plane);
     for (std::uint64_t camera = 1; camera < 30; ++camera) {
-        pool.insert(seen_from(camera, camera, place), false);
+        pool.insert(seen_from(camera, camera, place), {}, false);
         EXPECT_EQ(pool.framelet_count(), 1U);
         EXPECT_EQ(cameras(pool), (std::set<std::uint64_t>{camera}));
     }
@@ -57,7 +57,7 @@ TEST(FrameletPool, WhatIsNotToBeMovedSharesACache) {
     for (std::uint64_t camera = 1; camera < 5; ++camera) {
         Batch batch = seen_from(camera, camera, place);
         batch.view.camera.projection = Projection::orthographic;
-        pool.insert(batch);
+        pool.insert(batch, {});
         EXPECT_EQ(pool.framelet_count(), 1U);
     }
 }
@@ -65,13 +65,13 @@ TEST(FrameletPool, WhatIsNotToBeMovedSharesACache) {
 TEST(FrameletPool, TheMomentGoesOfWhichLeastShows) {
     FrameletPool pool(plane);
     for (std::uint64_t camera = 1; camera <= FrameletPool::most_moments; ++camera) {
-        pool.insert(seen_from(camera, camera, place));
+        pool.insert(seen_from(camera, camera, place), {});
     }
     EXPECT_EQ(pool.framelet_count(), FrameletPool::most_moments);
     std::vector<std::uint32_t> shown(pool.slot_count(), 7);
     shown[2] = 1;
     pool.note_shown(shown);
-    pool.insert(seen_from(100, 100, place));
+    pool.insert(seen_from(100, 100, place), {});
     EXPECT_EQ(pool.slot_count(), FrameletPool::most_moments);
     EXPECT_FALSE(cameras(pool).contains(3));
     EXPECT_TRUE(cameras(pool).contains(1));
@@ -80,7 +80,7 @@ TEST(FrameletPool, TheMomentGoesOfWhichLeastShows) {
     EXPECT_EQ(gone, (std::vector<SentTile>{{3, place}}));
     pool.take_let_go(gone);
     EXPECT_TRUE(gone.empty()) << "said once";
-    pool.insert(seen_from(101, 101, place)); // the oldest of those of which as little shows
+    pool.insert(seen_from(101, 101, place), {}); // the oldest of those of which as little shows
     EXPECT_FALSE(cameras(pool).contains(1));
     EXPECT_TRUE(cameras(pool).contains(100)) << "what has hardly been shown stays";
 }
@@ -93,7 +93,7 @@ TEST(FrameletPool, MemoryIsBoundedHoweverManyCamerasThereAre) {
         for (Tile const tile : visible_tiles(plane, plane.max_depth())) {
             batch.framelets.push_back(constant_framelet(plane, tile, 1));
         }
-        pool.insert(batch);
+        pool.insert(batch, {});
         if (camera == 2 * FrameletPool::most_moments) {
             most = pool.memory_bytes();
         }

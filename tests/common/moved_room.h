@@ -44,7 +44,8 @@ inline FrameletPool filled(AnalyticScene const& scene, Camera const& camera, int
                            bool all_loose = false) {
     ImagePlane const plane(viewport);
     FrameletPool pool(plane);
-    pool.insert(scene.batch(plane, 1, camera, time, visible_tiles(plane, plane.pixel_depth() + levels), all_loose));
+    pool.insert(scene.batch(plane, 1, camera, time, visible_tiles(plane, plane.pixel_depth() + levels), all_loose),
+                scene.motions);
     return pool;
 }
 

@@ -43,7 +43,7 @@ FrameletPool hold_picture(Picture const& picture, Camera const& camera) {
     shape.layers[0].at = inverse_depth;
     batch.shapes.assign(batch.framelets.size(), shape);
     FrameletPool pool(plane);
-    pool.insert(batch);
+    pool.insert(batch, {});
     return pool;
 }
 

@@ -121,10 +121,10 @@ TEST(ReprojectorMotion, OnePlaneHasNoCracksWhateverTheTiles) {
     FrameletPool pool(plane);
     std::uint64_t number = 0;
     for (Tile const tile : visible_tiles(plane, plane.min_depth())) {
-        pool.insert(scene.batch(plane, ++number, front(), 0, {tile}));
+        pool.insert(scene.batch(plane, ++number, front(), 0, {tile}), scene.motions);
     }
     for (int i = 0; i < 300; ++i) {
-        pool.insert(scene.batch(plane, ++number, front(), 0, {random_tile(plane, random)}));
+        pool.insert(scene.batch(plane, ++number, front(), 0, {random_tile(plane, random)}), scene.motions);
     }
     Camera const nearer = look_at(Vec3(1, 1, 2), Vec3(0.5f, 1.2f, 0), Vec3(0.1f, 1, 0), 0.5f);
     Shown const shown = show(pool, nearer, 0);
@@ -218,7 +218,7 @@ TEST(ReprojectorMotion, NewerWinsOnOneSurfaceNearerWinsElse) {
     ImagePlane const plane(viewport);
     FrameletPool pool(plane);
     std::vector<Tile> const all = visible_tiles(plane, plane.pixel_depth());
-    pool.insert(old_scene.batch(plane, 1, front(), 0, all));
+    pool.insert(old_scene.batch(plane, 1, front(), 0, all), old_scene.motions);
     std::vector<Tile> left; // of places beside those that show the board
     for (Tile const tile : all) {
         if (tile.column() < 5) {
@@ -227,7 +227,7 @@ TEST(ReprojectorMotion, NewerWinsOnOneSurfaceNearerWinsElse) {
     }
     Camera aside = front();
     aside.position.x -= 0.5f;
-    pool.insert(new_scene.batch(plane, 2, aside, 0, left));
+    pool.insert(new_scene.batch(plane, 2, aside, 0, left), new_scene.motions);
     Camera display = front();
     display.position.x -= 0.1f;
     Shown const shown = show(pool, display, 0);
@@ -256,11 +256,12 @@ TEST(ReprojectorMotion, WhatMayBeFarOffItsPlaceShowsBeforeNothing) {
             }
         }
         FrameletPool pool(plane);
-        pool.insert(batch);
+        pool.insert(batch, scene.motions);
         EXPECT_EQ(show(pool, display, 0).picture.row(90)[4 * 163], 200) << "there is nothing else";
         Camera aside = front();
         aside.position.x -= 0.5f;
-        pool.insert(bare.batch(plane, 2, aside, 0, coarse)); // the board is not seen from there, as it were
+        pool.insert(bare.batch(plane, 2, aside, 0, coarse),
+                    bare.motions); // the board is not seen from there, as it were
         EXPECT_EQ(show(pool, display, 0).picture.row(90)[4 * 163], is_sure ? 200 : 50);
     }
 }
@@ -280,7 +281,7 @@ TEST(ReprojectorMotion, StrangeCamerasAndShapesGiveNumbers) {
             }
         }
         FrameletPool pool(plane);
-        pool.insert(batch);
+        pool.insert(batch, scene.motions);
         Camera camera =
             look_at(3.0f * Vec3(normal(random), normal(random), normal(random)),
                     Vec3(normal(random), normal(random), normal(random)), Vec3(0, 1, 0), round % 4 == 0 ? 3.0f : 0.8f);

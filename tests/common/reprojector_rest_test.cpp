@@ -31,7 +31,7 @@ TEST(ReprojectorRest, StillPictureIsReconstruct) {
                 tiles.push_back(tile);
             }
         }
-        pool.insert(scene.batch(plane, number, front(), 0.1 * static_cast<double>(number), tiles));
+        pool.insert(scene.batch(plane, number, front(), 0.1 * static_cast<double>(number), tiles), scene.motions);
         pool.newest().take_changed(changed);
         reprojector.show(pool, changed, front(), 7, {}, picture, repainted);
         reconstruct_all(pool.newest(), expected);
@@ -107,7 +107,7 @@ TEST(ReprojectorRest, IncrementalEqualsWholeAndThreadsMakeNoDifference) {
         for (FrameletShape& shape : batch.shapes) {
             shape.fading = fading_code(number % 3 == 0 ? 0.0f : std::exp2(static_cast<float>(random() % 8)));
         }
-        pool.insert(batch);
+        pool.insert(batch, scene.motions);
         if (number % 5 == 0) {
             camera.position += Vec3(0.05f, 0.02f, -0.1f);
         }
@@ -174,7 +174,7 @@ TEST(ReprojectorRest, NoShapeLeavesWhatIsNotANumber) {
             }
         }
         FrameletPool pool(plane);
-        pool.insert(batch);
+        pool.insert(batch, scene.motions);
         Shown const shown = show(pool, round % 3 == 0 ? front() : aside, 0.1);
         for (std::size_t i = 0; i < shown.inverse_depth.size(); ++i) {
             ASSERT_TRUE(std::isfinite(shown.inverse_depth[i]));

@@ -21,8 +21,8 @@ struct Viewer {
     std::vector<PixelRect> repainted;
 
     void insert(Batch const& batch) {
-        pool.insert(batch);
-        smoother.insert(batch);
+        pool.insert(batch, motions);
+        smoother.insert(batch, motions);
     }
     Picture const& show(SceneTime time, SceneTime lag = 1, Camera const& camera = front()) {
         std::vector<PixelRect> changed;
@@ -105,7 +105,7 @@ TEST(SceneSmoother, BodiesShowOnceAndNotTwice) {
     viewer.insert(scene.batch(viewer.plane, 2, front(), 0.4, tiles));
     Picture const& got = viewer.show(0.3);
     FrameletPool exact(viewer.plane);
-    exact.insert(scene.batch(viewer.plane, 1, front(), 0.3, tiles));
+    exact.insert(scene.batch(viewer.plane, 1, front(), 0.3, tiles), scene.motions);
     Picture const wanted = show(exact, front(), 0.3, scene.motions).picture;
     Picture const early = show(filled(scene, front(), 0, 0.2), front(), 0.2, scene.motions).picture;
     auto const error = [&](Picture const& picture) {
@@ -180,7 +180,7 @@ TEST(SceneSmoother, WhatWaitsIsBounded) {
     Viewer viewer;
     std::vector<std::size_t> bytes;
     for (std::uint64_t number = 1; number <= 10; ++number) {
-        viewer.smoother.insert(grey(viewer.plane, number, 1e6, 10, 2)); // as many framelets as a pool can hold
+        viewer.smoother.insert(grey(viewer.plane, number, 1e6, 10, 2), {}); // as many framelets as a pool can hold
         bytes.push_back(viewer.smoother.memory_bytes());
     }
     EXPECT_EQ(bytes.back(), bytes[2]);

@@ -54,11 +54,11 @@ TEST(StandingCamera, ABodyIsHeldWhenItsOldPlaceIsRenderedAgain) {
     AnalyticScene const scene = moving_room();
     std::vector<Tile> const before = board_tiles(scene, 0.5);
     FrameletPool pool(plane);
-    pool.insert(rendered(scene, 1, 0, all_tiles));
-    EXPECT_TRUE(pool.begins_moment(rendered(scene, 2, 0.5, before)));
-    pool.insert(rendered(scene, 2, 0.5, before));
-    EXPECT_FALSE(pool.begins_moment(rendered(scene, 3, 0.5, before)));
-    pool.insert(rendered(scene, 3, 1, before)); // most of it is in the open by now
+    pool.insert(rendered(scene, 1, 0, all_tiles), scene.motions);
+    EXPECT_TRUE(pool.begins_moment(rendered(scene, 2, 0.5, before), scene.motions));
+    pool.insert(rendered(scene, 2, 0.5, before), scene.motions);
+    EXPECT_FALSE(pool.begins_moment(rendered(scene, 3, 0.5, before), scene.motions));
+    pool.insert(rendered(scene, 3, 1, before), scene.motions); // most of it is in the open by now
     EXPECT_EQ(held_of(pool, 2), before.size());
     EXPECT_GT(pool.newest().framelet_count(), 0U);
 
@@ -83,14 +83,15 @@ TEST(StandingCamera, WhatABodyCoversForAWhileIsHeld) {
     AnalyticScene const scene = moving_room();
     std::vector<Tile> const covered = board_tiles(scene, 1.9);
     FrameletPool pool(plane);
-    pool.insert(rendered(scene, 1, 0, all_tiles));
-    pool.insert(rendered(scene, 2, 1.9, board_tiles(scene, 0))); // the wall behind where it began
+    pool.insert(rendered(scene, 1, 0, all_tiles), scene.motions);
+    pool.insert(rendered(scene, 2, 1.9, board_tiles(scene, 0)), scene.motions); // the wall behind where it began
     std::size_t const held = held_of(pool, 1);
     EXPECT_EQ(held_of(pool, 1) + held_of(pool, 2), all_tiles.size());
-    pool.insert(rendered(scene, 3, 1.9, covered));
+    pool.insert(rendered(scene, 3, 1.9, covered), scene.motions);
     EXPECT_EQ(held_of(pool, 1), held);
     for (std::uint64_t i = 0; i < 3 * FrameletPool::most_moments; ++i) { // whatever comes and goes
-        pool.insert(rendered(scene, 4 + i, 1.9 + 0.01 * static_cast<double>(i + 1), {covered[covered.size() / 2]}));
+        pool.insert(rendered(scene, 4 + i, 1.9 + 0.01 * static_cast<double>(i + 1), {covered[covered.size() / 2]}),
+                    scene.motions);
     }
     EXPECT_EQ(held_of(pool, 1), held);
     EXPECT_EQ(pool.slot_count(), FrameletPool::most_moments);
@@ -100,12 +101,12 @@ TEST(StandingCamera, WhatABodyCoversForAWhileIsHeld) {
 TEST(StandingCamera, WhatMovedWhenTheBaseBeganGoesAsOtherMomentsDo) {
     AnalyticScene const scene = moving_room();
     FrameletPool pool(plane);
-    pool.insert(rendered(scene, 1, 0, all_tiles));
+    pool.insert(rendered(scene, 1, 0, all_tiles), scene.motions);
     std::vector<Tile> const moving = board_tiles(scene, 0);
     std::vector<SentTile> gone;
     for (std::uint64_t i = 1; i <= FrameletPool::most_moments; ++i) {
         EXPECT_TRUE(gone.empty());
-        pool.insert(rendered(scene, 1 + i, 0.005 * static_cast<double>(i), {moving.front()}));
+        pool.insert(rendered(scene, 1 + i, 0.005 * static_cast<double>(i), {moving.front()}), scene.motions);
         pool.take_let_go(gone);
     }
     EXPECT_EQ(std::ranges::count(gone, 1U, &SentTile::batch), static_cast<std::ptrdiff_t>(moving.size()));
@@ -115,8 +116,8 @@ TEST(StandingCamera, WhatMovedWhenTheBaseBeganGoesAsOtherMomentsDo) {
 TEST(StandingCamera, BlocksThatNothingElseTouchesAreExact) {
     AnalyticScene const scene = moving_room();
     FrameletPool pool(plane);
-    pool.insert(rendered(scene, 1, 0, all_tiles));
-    pool.insert(rendered(scene, 2, 1, all_tiles));
+    pool.insert(rendered(scene, 1, 0, all_tiles), scene.motions);
+    pool.insert(rendered(scene, 2, 1, all_tiles), scene.motions);
     Picture exact(viewport.width, viewport.height);
     FrameletCache cache(plane);
     cache.insert(rendered(scene, 2, 1, all_tiles));
@@ -127,6 +128,69 @@ TEST(StandingCamera, BlocksThatNothingElseTouchesAreExact) {
     }
 }
 
+/// As `moving_room`, but the board sets out after three seconds.
+AnalyticScene resting_room() {
+    AnalyticScene scene = moving_room();
+    BodyTrack track{5, 0, {}};
+    for (int i = 0; i <= 5 * body_keys_per_second; ++i) {
+        float const time = static_cast<float>(i) / body_keys_per_second;
+        track.keys.push_back({Vec3(std::max(time - 3, 0.0f), 0, 0), {1, 0, 0, 0}, Vec3(1)});
+    }
+    scene.motions.extend(track);
+    return scene;
+}
+
+TEST(StandingCamera, WhatRestsIsHeldAsWhatStands) {
+    AnalyticScene const scene = resting_room();
+    std::vector<Tile> const board = board_tiles(scene, 0);
+    FrameletPool pool(plane);
+    pool.insert(rendered(scene, 1, 0, all_tiles), scene.motions);
+    Batch const again = rendered(scene, 2, 1, board);
+    EXPECT_FALSE(pool.begins_moment(again, scene.motions));
+    pool.insert(again, scene.motions);
+    EXPECT_EQ(held_of(pool, 1), all_tiles.size() - board.size()) << "the newer takes the place of the older";
+    EXPECT_FALSE(pool.has_moving());
+    Picture exact(viewport.width, viewport.height);
+    reconstruct_all(pool.newest(), exact);
+    EXPECT_EQ(show(pool, front(), 2.5, scene.motions).picture, exact);
+
+    Batch const setting_out = rendered(scene, 3, 2.9, {board.front()});
+    EXPECT_TRUE(pool.begins_moment(setting_out, scene.motions)) << "it will move before the next may have come";
+    pool.insert(setting_out, scene.motions);
+    EXPECT_EQ(held_of(pool, 2), board.size());
+    EXPECT_NE(show(pool, front(), 3.5, scene.motions).picture, exact);
+}
+
+TEST(StandingCamera, WhatRestsStaysHoweverManyMomentsCome) {
+    AnalyticScene scene = resting_room();
+    Quad other = scene.quads[2];
+    other.corner.x -= 1.5f;
+    other.body = 6;
+    scene.quads.push_back(other);
+    BodyTrack track{6, 0, {}};
+    for (int i = 0; i <= 5 * body_keys_per_second; ++i) {
+        track.keys.push_back({Vec3(0, 0.1f * static_cast<float>(i) / body_keys_per_second, 0), {1, 0, 0, 0}, Vec3(1)});
+    }
+    scene.motions.extend(track);
+    Batch const first = rendered(scene, 1, 0, all_tiles);
+    std::size_t still = 0;
+    Tile moving;
+    for (std::size_t i = 0; i < first.framelets.size(); ++i) {
+        if (is_at_rest(first.shapes[i], 0, scene.motions)) {
+            ++still;
+        } else {
+            moving = first.framelets[i].tile;
+        }
+    }
+    EXPECT_LT(still, all_tiles.size());
+    FrameletPool pool(plane);
+    pool.insert(first, scene.motions);
+    for (std::uint64_t i = 1; i <= 2 * FrameletPool::most_moments; ++i) {
+        pool.insert(rendered(scene, 1 + i, 0.005 * static_cast<double>(i), {moving}), scene.motions);
+    }
+    EXPECT_EQ(held_of(pool, 1), still);
+}
+
 /// The picture of a settled pool is that of a cache that took everything.
 TEST(StandingCamera, SettledItIsAsIfAllHadBeenTakenByOneCache) {
     AnalyticScene const scene = moving_room();
@@ -134,7 +198,7 @@ TEST(StandingCamera, SettledItIsAsIfAllHadBeenTakenByOneCache) {
     FrameletPool pool(plane);
     FrameletCache cache(plane);
     auto const insert = [&](Batch const& batch) {
-        pool.insert(batch);
+        pool.insert(batch, scene.motions);
         cache.insert(batch);
     };
     std::uint64_t number = 0;
@@ -190,8 +254,8 @@ TEST(StandingCamera, ThePlaceOfAnEarlierCameraIsKeptWhenAPictureSettles) {
     Batch aside = rendered(scene, 1, 0, all_tiles);
     aside.view.number = 2;
     aside.view.camera.position.x += 1;
-    pool.insert(aside);
-    pool.insert(rendered(scene, 2, 0.5, all_tiles));
+    pool.insert(aside, scene.motions);
+    pool.insert(rendered(scene, 2, 0.5, all_tiles), scene.motions);
     pool.settle();
     EXPECT_EQ(held_of(pool, 1), all_tiles.size());
 }

@@ -21,7 +21,8 @@ TEST(WarpBlock, WhatCoversIsAsWideAsItIs) {
                 scene.quads.push_back({{-16, -8, -3}, {32, 0, 0}, {0, 16, 0}, waves(12, 6)});
                 FrameletPool pool(plane);
                 Camera const aside = look_at(Vec3(0.8f, 1.5f, 6), Vec3(0.8f, 1, 0), Vec3(0, 1, 0), 0.8f);
-                pool.insert(scene.batch(plane, 1, aside, 0, visible_tiles(plane, plane.pixel_depth() + levels)));
+                pool.insert(scene.batch(plane, 1, aside, 0, visible_tiles(plane, plane.pixel_depth() + levels)),
+                            scene.motions);
                 for (int i = 0; i < 4; ++i) {
                     scene.quads.push_back(
                         {{-1.2 + 0.6 * i + 0.013 * trial, -1, 1}, {0.2, 0, 0}, {0.3, 4, 0}, waves(2, 2)});
@@ -30,7 +31,8 @@ TEST(WarpBlock, WhatCoversIsAsWideAsItIs) {
                     Camera camera = front();
                     camera.position.x += 0.1f * static_cast<float>(i);
                     pool.insert(scene.batch(plane, static_cast<std::uint64_t>(2 + i), camera, 0,
-                                            visible_tiles(plane, plane.pixel_depth() + levels)));
+                                            visible_tiles(plane, plane.pixel_depth() + levels)),
+                                scene.motions);
                 }
                 Shown const shown = show(pool, display, 0);
                 std::vector<Quad> const placed = scene.at_time(0);

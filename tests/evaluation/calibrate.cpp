@@ -172,7 +172,7 @@ void calibrate_reprojection(BenchScene const& scene, ImagePlane const& plane, in
     costs.shape_sample = cost(rounds, static_cast<double>(rendered.size() * framelet_samples),
                               [&] { feed.fit(rendered, all, rays, plane, 0, batch.shapes); });
     FrameletPool pool(plane);
-    pool.insert(batch);
+    pool.insert(batch, {});
     Picture picture(viewport.width, viewport.height);
     std::vector<PixelRect> changed, repainted;
     pool.newest().take_changed(changed);

@@ -85,6 +85,8 @@ TEST(Looks, OutlinesFadeBeforeACameraThatMoves) {
     EXPECT_GT(learn_fading(before.mirror, pieces, 1, false, true), 0);
     pieces[0].body = 3; // turns in the light, outlines or not
     EXPECT_GT(learn_fading(before.mirror, pieces, 1, false, false), 0);
+    pieces[0].rests = true;
+    EXPECT_EQ(learn_fading(before.mirror, pieces, 1, false, false), 0);
 }
 
 TEST(Looks, AShadowFadesWhatItPasses) {

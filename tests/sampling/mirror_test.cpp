@@ -274,6 +274,35 @@ TEST(Mirror, ABodyBeforeAStandingCameraIsHeldAndSoIsWhatItCovers) {
     EXPECT_TRUE(mirror.gives_way(mirror.cell(1, 1)));
 }
 
+TEST(Mirror, WhatRestsGivesWayAndLeavesAHoleWhenItSetsOut) {
+    BodyMotions motions = sliding();
+    BodyTrack track{1, 0, {}};
+    for (int key = 0; key <= 4 * body_keys_per_second; ++key) {
+        float const time = std::max(static_cast<float>(key) / body_keys_per_second - 2, 0.0f);
+        track.keys.push_back({Vec3(time * 32 * 2.5f * pixel_size(), 0, 0), {1, 0, 0, 0}, Vec3(1)});
+    }
+    motions.extend(track);
+    auto const resting = [&](SceneTime time, std::uint64_t batch) {
+        std::vector<Piece> pieces = render_pieces(plane, plane.pixel_depth(), slid(0), time, batch);
+        std::ranges::for_each(pieces, [](Piece& piece) { piece.rests = true; });
+        return pieces;
+    };
+    Mirror mirror(viewport);
+    mirror.look(view_at(Vec3(0), 0), motions);
+    mirror.add(view_at(Vec3(0)).rays, motions, resting(0, 1));
+    mirror.look(view_at(Vec3(0), 1), motions);
+    EXPECT_TRUE(mirror.gives_way(mirror.cell(10, 10)));
+    EXPECT_EQ(summary_of(mirror).holes, 0);
+    mirror.add(view_at(Vec3(0)).rays, motions, resting(1, 2));
+    EXPECT_EQ(mirror.moment_count(), 1U);
+    mirror.look(view_at(Vec3(0), 1.5), motions);
+    EXPECT_EQ(mirror.piece_of(mirror.cell(10, 10)).of.batch, 2U);
+    EXPECT_EQ(square_cells(mirror, 0), 64);
+    mirror.look(view_at(Vec3(0), 3), motions);
+    EXPECT_EQ(square_cells(mirror, 1), 64);
+    EXPECT_EQ(mirror.cell(6, 10).covered, 0) << "nothing is held of the wall that it stood before";
+}
+
 TEST(Mirror, KeepsFewMoments) {
     Mirror mirror(viewport);
     for (int i = 0; i < 100; ++i) {
