@@ -32,6 +32,7 @@ struct Framelet {
     std::vector<Vec3> velocity;
     /// Bit i: sample i shows a mirror reflection, which moves otherwise than the surface that it is seen in.
     std::bitset<framelet_samples> reflects;
+    bool is_supersampled = false; ///< each sample is the mean of four rays
 };
 
 /// The same samples as the viewer needs them: tone-mapped, sRGB-encoded, in Morton order.

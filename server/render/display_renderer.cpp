@@ -1,5 +1,9 @@
 #include "server/render/display_renderer.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+
 #include "common/color.h"
 #include "common/error.h"
 
@@ -13,6 +17,42 @@ void move_geometry(Framelet& from, Framelet& to) {
     to.body.swap(from.body);
     to.velocity.swap(from.velocity);
     to.reflects = from.reflects;
+    to.is_supersampled = false;
+}
+
+/// Inverse depths that differ by less than this share of the greater one are of one surface.
+constexpr float same_surface = 0.05f;
+
+/// What most of four rays hit.
+struct Majority {
+    std::size_t ray = 0; ///< one of them
+    float depth = 0; ///< at the middle of those
+};
+
+Majority majority_of(Framelet const& child, std::size_t first) {
+    std::array<float, four_rays> inverse_depth;
+    for (std::size_t i = 0; i < four_rays; ++i) {
+        inverse_depth[i] = 1 / child.depth[first + i];
+    }
+    Majority best;
+    int most = 0;
+    for (std::size_t i = 0; i < four_rays; ++i) {
+        int count = 0;
+        float sum = 0;
+        for (std::size_t k = 0; k < four_rays; ++k) {
+            bool const same_body = child.body.empty() || child.body[first + i] == child.body[first + k];
+            float const nearer = std::max(inverse_depth[i], inverse_depth[k]);
+            if (same_body && std::abs(inverse_depth[i] - inverse_depth[k]) <= same_surface * nearer) {
+                ++count;
+                sum += inverse_depth[k];
+            }
+        }
+        if (count > most) {
+            most = count;
+            best = {first + i, static_cast<float>(count) / sum};
+        }
+    }
+    return best;
 }
 
 } // namespace
@@ -38,13 +78,14 @@ void merge_child(Framelet const& child, float exposure, Framelet& geometry, Disp
         display.red[to] = srgb_byte_from_linear(light.r);
         display.green[to] = srgb_byte_from_linear(light.g);
         display.blue[to] = srgb_byte_from_linear(light.b);
-        geometry.depth[to] = child.depth[from];
-        geometry.reflects[to] = child.reflects[from];
+        Majority const majority = majority_of(child, from);
+        geometry.depth[to] = majority.depth;
+        geometry.reflects[to] = child.reflects[majority.ray];
         if (!child.body.empty()) {
-            geometry.body[to] = child.body[from];
+            geometry.body[to] = child.body[majority.ray];
         }
         if (!child.velocity.empty()) {
-            geometry.velocity[to] = child.velocity[from];
+            geometry.velocity[to] = child.velocity[majority.ray];
         }
     }
 }
@@ -63,6 +104,7 @@ std::uint32_t render_display(RenderScene const& scene, ViewRays const& rays, Ima
     geometry.body.clear();
     geometry.velocity.clear();
     geometry.reflects.reset();
+    geometry.is_supersampled = true;
     std::uint32_t segments = 0;
     for (std::uint32_t quadrant = 0; quadrant < four_rays; ++quadrant) {
         segments += render_framelet(scene, rays, plane, tile.child(quadrant), 0, scratch);

@@ -9,9 +9,9 @@
 namespace framelet {
 
 /// A quarter of the samples of the tile that `child` is a child of: each the mean of four of the child's, in the
-/// display's light, as the viewer averages samples over a pixel. Depth and what goes with it are those of the first of
-/// the four. `geometry` and `display` are of that tile; body and velocity grow when there are some. Finite for finite
-/// radiance.
+/// display's light, as the viewer averages samples over a pixel. Depth and what goes with it are those of the surface
+/// that most of the four show, in the middle of what they show of it. `geometry` and `display` are of that tile; body
+/// and velocity grow when there are some. Finite for finite radiance.
 void merge_child(Framelet const& child, float exposure, Framelet& geometry, DisplayFramelet& display);
 
 /// One framelet on the calling thread, at the places of seed 0. `geometry` gets all but the radiance; `scratch` is

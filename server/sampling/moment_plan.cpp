@@ -47,6 +47,15 @@ constexpr std::array<float, sampling_levels> missed_shares(float finest) {
 constexpr std::array<float, sampling_levels> moved_shares = missed_shares(finest_shown_spacing),
                                              standing_shares = missed_shares(0);
 
+/// Means of four rays are as good as samples so many times closer to each other: by the mean's definition where they
+/// stay on their own pixels, by measurement once moved, where they blur and wear out before they have repaid four rays.
+constexpr float standing_supersampled = 0.5f, moved_supersampled = 0.95f;
+
+/// Whether what shows of a piece are means of rays; of samples finer than pixels the viewer moves their means.
+bool shows_means(Piece const& piece, bool stands) {
+    return piece.is_supersampled || (!stands && piece.spacing < 1);
+}
+
 /// Whether a cell is worth the finest samples: as far as is known it will show the same for a second, in which they
 /// wear by less than what they are finer.
 bool stays(Mirror const& mirror, Cell const& cell) {
@@ -139,7 +148,7 @@ void MomentPlan::add_gains(Mirror const& mirror, PlaceField const& field, std::u
     // What is on its way, or has been rendered of this moment, the viewer has whatever the mirror makes of it.
     int had = place.taken.level;
     if (place.rendered >= budget.moment_begun) {
-        had = std::max(had, place.level);
+        had = std::max(had, place.level + (place.supersampled >= budget.moment_begun ? 1 : 0));
     }
     PixelRect const rect = field.rect_of(index);
     int const last_column = std::min(rect.right / cell_side, mirror.columns());
@@ -164,9 +173,11 @@ void MomentPlan::add_gains(Mirror const& mirror, PlaceField const& field, std::u
             worn += cell.is_shown() && mirror.camera_stands() && mirror.is_moved(cell) ? interpolated_wear : 0;
             float stale = cell.stale;
             bool const stands = stays(mirror, cell);
+            float const supersampled = stands ? standing_supersampled : moved_supersampled;
             if (stands && worn <= finest_shown_spacing) {
                 worn = std::min(worn, mirror.piece_of(cell).spacing);
             }
+            worn *= cell.is_shown() && shows_means(mirror.piece_of(cell), stands) ? supersampled : 1;
             if (had >= 0) {
                 covered = pixels;
                 worn = std::min(worn, spacing_of(had));
@@ -178,11 +189,14 @@ void MomentPlan::add_gains(Mirror const& mirror, PlaceField const& field, std::u
             std::array<float, sampling_levels> const& shares = stands ? standing_shares : moved_shares;
             leaf.stale += covered * stale;
             leaf.wrong += covered * now + (pixels - covered) * hole_error;
+            auto const gain = [&](float share) {
+                float const then = std::min(detail * share, most_error);
+                return covered * std::max(now - then, least) + (pixels - covered) * std::max(hole_error - then, 0.0f);
+            };
             for (std::size_t level = 0; level < leaf.gain.size(); ++level) {
-                float const then = std::min(detail * shares[level], most_error);
-                leaf.gain[level] +=
-                    covered * std::max(now - then, least) + (pixels - covered) * std::max(hole_error - then, 0.0f);
+                leaf.gain[level] += gain(shares[level]);
             }
+            leaf.supersampled_gain += gain(missed_share(supersampled));
         }
     }
     for (int level = field.least_level(); level < sampling_levels; ++level) {
@@ -190,6 +204,8 @@ void MomentPlan::add_gains(Mirror const& mirror, PlaceField const& field, std::u
         float const factor = budget.costs.empty() ? 1.0f : budget.costs[index][l];
         leaf.cost[l] = samples_per_pixel(level) * field.pixels_of(index) * factor;
     }
+    bool const link_limited = !budget.costs.empty(); // then a sample costs what its bytes do
+    leaf.supersampled_cost = leaf.cost[pixel_level] * (link_limited ? 1 : four_rays);
 }
 
 /// Gains of tiles that are larger than a place.
@@ -226,16 +242,25 @@ double MomentPlan::solve(PlaceField const& field, MomentBudget const& budget, fl
     for (std::uint32_t const index : field.visible()) {
         Leaf& leaf = leaves_[index];
         leaf.level = -1;
+        leaf.is_supersampled = false;
         float best = 0;
+        float spent = 0;
         for (int level = first; level <= budget.limits.most_level; ++level) {
             auto const l = static_cast<std::size_t>(level);
             float const value = leaf.gain[l] - price * leaf.cost[l];
             if (value > best) {
                 best = value;
                 leaf.level = level;
+                spent = leaf.cost[l];
             }
         }
-        float const spent = leaf.level >= 0 ? leaf.cost[static_cast<std::size_t>(leaf.level)] : 0;
+        float const supersampled = leaf.supersampled_gain - price * leaf.supersampled_cost;
+        if (supersampled > best && first <= pixel_level && pixel_level <= budget.limits.most_level) {
+            best = supersampled;
+            leaf.level = pixel_level;
+            leaf.is_supersampled = true;
+            spent = leaf.supersampled_cost;
+        }
         if (deepest > 0) {
             nodes_[deepest - 1][index >> 2].best += best;
             nodes_[deepest - 1][index >> 2].spent += spent;
@@ -267,22 +292,24 @@ double MomentPlan::solve(PlaceField const& field, MomentBudget const& budget, fl
 void MomentPlan::collect(PlaceField const& field, int depth, std::uint32_t index,
                          std::vector<RatedPatch>& rated) const {
     Tile const tile{(1u << (2 * depth)) + index};
-    auto const rate = [&](int tile_depth, float gain, float cost) {
+    auto const rate = [&](int tile_depth, float gain, float cost, int rays_per_sample) {
         Patch const patch{tile, tile_depth};
-        rated.push_back({patch, framelet_samples * tile_count(patch), static_cast<double>(cost),
-                         static_cast<double>(gain) / static_cast<double>(cost)});
+        rated.push_back({patch, framelet_samples * tile_count(patch) * rays_per_sample, static_cast<double>(cost),
+                         static_cast<double>(gain) / static_cast<double>(cost), rays_per_sample});
     };
     if (depth == field.depth()) {
         Leaf const& leaf = leaves_[index];
-        if (leaf.level >= 0) {
+        if (leaf.is_supersampled) {
+            rate(field.depth_of(pixel_level), leaf.supersampled_gain, leaf.supersampled_cost, four_rays);
+        } else if (leaf.level >= 0) {
             auto const l = static_cast<std::size_t>(leaf.level);
-            rate(field.depth_of(leaf.level), leaf.gain[l], leaf.cost[l]);
+            rate(field.depth_of(leaf.level), leaf.gain[l], leaf.cost[l], single_ray);
         }
         return;
     }
     Node const& node = nodes_[static_cast<std::size_t>(depth)][index];
     if (node.whole) {
-        rate(depth, node.gain, node.cost);
+        rate(depth, node.gain, node.cost, single_ray);
     } else if (node.best > 0) {
         for (std::uint32_t child = 0; child < 4; ++child) {
             collect(field, depth + 1, 4 * index + child, rated);

@@ -48,8 +48,10 @@ private:
     };
     struct Leaf {
         LevelGains gain{}, cost{};
+        float supersampled_gain = 0, supersampled_cost = 0; ///< of a sample of four rays a pixel
         float stale = 0, wrong = 0; ///< squared error summed over pixels: by changed looks, all of it
         int level = -1; ///< best; -1: none
+        bool is_supersampled = false; ///< that is best
     };
 
     void find_gains(Mirror const& mirror, PlaceField const& field, MomentBudget const& budget);

@@ -180,6 +180,7 @@ void cut_pieces(Framelet const& rendered, DisplayFramelet const& shown, Framelet
                 pieces.back().scene_time = scene_time;
                 pieces.back().of = {batch, shown.tile};
                 pieces.back().moves = moves;
+                pieces.back().is_supersampled = rendered.is_supersampled;
                 put(pieces.back());
             }
         };

@@ -32,6 +32,7 @@ struct Piece {
     bool moves = false; ///< something of its framelet may, being on a body or deforming
     bool rests = false; ///< nothing of it does about its scene time: the viewer holds it with what stands
     bool is_replaced = false; ///< a newer framelet lies in its place: it is held no longer
+    bool is_supersampled = false; ///< its samples are means of four rays each
     bool reflects = false; ///< shows a reflection somewhere, which moves otherwise than the surface
     SentTile of; ///< the framelet that it is part of
 };

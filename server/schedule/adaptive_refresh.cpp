@@ -76,7 +76,7 @@ void AdaptiveRefresh::advance(RefreshInput const& input) {
 bool AdaptiveRefresh::goes_on(RefreshInput const& input, bool mirrored) const {
     double const seconds = input.now - planned_;
     return next_ < cycle_.size() && seconds < static_cast<double>(input.cycle_seconds) &&
-           (rays_per_sample_ == single_ray || same_picture(*seen_, input.state)) &&
+           (mirrored || next_ < first_supersampled_ || same_picture(*seen_, input.state)) &&
            (!mirrored || moments_.is_planned(input.moment->begun)) &&
            seen_->view.viewport == input.state.view.viewport && !is_cut(*seen_, input.state, seconds);
 }
@@ -105,15 +105,13 @@ void AdaptiveRefresh::plan(RefreshInput const& input, RefreshPlan& plan) {
     }
     strayed_ = strayed_ || !same_picture(*seen_, moment.state);
     plan.still_since = strayed_ ? input.now : still_since_;
-    plan.rays_per_sample = rays_per_sample_;
-    take_batch(batch_limit(input, still_) / static_cast<std::size_t>(rays_per_sample_), plan);
+    take_batch(batch_limit(input, still_), plan);
 }
 
 void AdaptiveRefresh::plan_cycle(RefreshInput const& input, RefreshPlan& plan) {
     planned_ = input.now;
     cycle_.clear();
-    rays_per_sample_ = single_ray;
-    next_ = 0;
+    next_ = first_supersampled_ = 0;
     ++cycle_count_;
     cycle_seconds_ = static_cast<double>(input.cycle_seconds);
     cycle_budget_ = input.samples_per_second * cycle_seconds_;
@@ -132,9 +130,9 @@ void AdaptiveRefresh::plan_cycle(RefreshInput const& input, RefreshPlan& plan) {
         input.moment ? select_refinement(field_, samples, unresolved_, cycle_)
                      : select_completion(field_, still_since_, scene_moves_, samples, cycle_);
     }
+    first_supersampled_ = cycle_.size();
     if (cycle_.empty() && !scene_moves_) {
         select_supersampling(field_, still_since_, samples, unresolved_, cycle_);
-        rays_per_sample_ = cycle_.empty() ? single_ray : four_rays;
     }
 }
 
@@ -151,11 +149,14 @@ double AdaptiveRefresh::plan_inspections(RefreshInput const& input) {
     return tiles * framelet_samples;
 }
 
-/// The next patches of the cycle, as many as a batch may hold, at least one; in order of their places, since neighbours
-/// are coded in fewer bytes beside each other.
+/// The next patches of the cycle of as many rays a sample, as many as a batch may hold, at least one; in order of their
+/// places, since neighbours are coded in fewer bytes beside each other.
 void AdaptiveRefresh::take_batch(std::size_t most_framelets, RefreshPlan& plan) {
+    bool const single = next_ < first_supersampled_ || next_ == cycle_.size();
+    plan.rays_per_sample = single ? single_ray : four_rays;
+    most_framelets /= static_cast<std::size_t>(plan.rays_per_sample);
     std::size_t tiles = 0;
-    for (; next_ < cycle_.size(); ++next_) {
+    for (std::size_t const end = single ? first_supersampled_ : cycle_.size(); next_ < end; ++next_) {
         plan.tiles.clear();
         append_tiles(field_.plane(), cycle_[next_], plan.tiles);
         if (tiles > 0 && tiles + plan.tiles.size() > most_framelets) {
@@ -171,7 +172,7 @@ void AdaptiveRefresh::take_batch(std::size_t most_framelets, RefreshPlan& plan) 
         std::size_t const before = plan.tiles.size();
         append_tiles(field_.plane(), patch, plan.tiles);
         plan.tile_counts.push_back(plan.tiles.size() - before);
-        take(field_, patch, plan.now);
+        take(field_, patch, plan.now, plan.rays_per_sample);
     }
 }
 
@@ -225,9 +226,16 @@ void AdaptiveRefresh::append_rated(RefreshInput const& input, double samples) {
         mean_bits_ *= mean_cost(rated_, 0.2f);
     }
     std::size_t const inspections = cycle_.size();
-    for (RatedPatch const& entry : rated_) {
-        append_new(entry.patch, inspections, cycle_);
-    }
+    auto const append = [&](int rays_per_sample) {
+        for (RatedPatch const& entry : rated_) {
+            if (entry.rays_per_sample == rays_per_sample) {
+                append_new(entry.patch, inspections, cycle_);
+            }
+        }
+    };
+    append(single_ray);
+    first_supersampled_ = cycle_.size();
+    append(four_rays);
 }
 
 /// Where what the viewer holds shows the moment worst.
@@ -271,14 +279,15 @@ std::vector<std::uint8_t> const& AdaptiveRefresh::learn(RefreshPlan const& plan,
         send_.assign(framelets.size(), 0);
         return send_;
     }
-    if (plan.rays_per_sample != single_ray) {
+    if (plan.checks && plan.checks->probe_spacing > 0) {
+        moments_.note_looks(plan.moment, plan.probes, probe_luma, plan.checks->probe_spacing);
+    }
+    bool const supersampled = plan.rays_per_sample != single_ray;
+    if (supersampled && !plan.is_mirrored) {
         learn_supersampled(field_, plan);
         release(field_, plan.patches, plan.now);
         send_.assign(framelets.size(), 1);
         return send_;
-    }
-    if (plan.checks && plan.checks->probe_spacing > 0) {
-        moments_.note_looks(plan.moment, plan.probes, probe_luma, plan.checks->probe_spacing);
     }
     std::size_t probe = 0;
     for (std::uint32_t const index : plan.probed) {
@@ -286,11 +295,15 @@ std::vector<std::uint8_t> const& AdaptiveRefresh::learn(RefreshPlan const& plan,
         learn_probes(place, probe_luma.subspan(probe, place.probe_count), plan.now);
         probe += place.probe_count;
     }
-    examine_batch(field_, plan, framelets, rendered, history_, findings_);
+    examine_batch(field_, plan, framelets, rendered, supersampled ? no_history_ : history_, findings_);
     learn_batch(field_, plan, findings_, send_);
     release(field_, plan.patches, plan.now);
-    for (LumaHistory::Entry const& entry : findings_.entries) {
-        history_.store(entry);
+    if (supersampled) {
+        learn_supersampled(field_, plan);
+    } else {
+        for (LumaHistory::Entry const& entry : findings_.entries) {
+            history_.store(entry);
+        }
     }
     if (plan.is_mirrored) { // it does not hold the same where it is needed, or this would not have been planned
         std::ranges::fill(send_, std::uint8_t{1});

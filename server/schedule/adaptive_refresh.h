@@ -53,12 +53,12 @@ public:
     Choices const& choices() const { return choices_; }
     float price() const { return price_; }
     /// The cycle that was planned last: how many there have been, its tiling, the patches to render, the samples
-    /// that it has time for (by what they cost), the rays that each is made of, and its length.
+    /// that it has time for (by what they cost), from which patch on each sample is made of four rays, and its length.
     std::uint64_t cycle_count() const { return cycle_count_; }
     std::vector<Patch> const& cut() const { return cut_; }
     std::vector<Patch> const& cycle() const { return cycle_; }
     double cycle_budget() const { return cycle_budget_; }
-    int rays_per_sample() const { return rays_per_sample_; }
+    std::size_t first_supersampled() const { return first_supersampled_; }
     double cycle_seconds() const { return cycle_seconds_; }
 
 private:
@@ -81,6 +81,7 @@ private:
     bool still_ = false; ///< what is to be seen is what the last plan was for
     PlaceField field_;
     LumaHistory history_;
+    LumaHistory const no_history_; ///< what means of four rays are compared with: to single rays they seem changed
     std::vector<LevelCosts> costs_; ///< of samples, by place; none where all cost the same
     /// Of a sample planned lately, as estimated. It begins below what pictures have, so that a slow link is not filled
     /// with the first of them (measured).
@@ -92,7 +93,7 @@ private:
     double cycle_budget_ = 0; ///< samples
     double cycle_seconds_ = 0;
     std::vector<Patch> cycle_; ///< patches of the cycle
-    int rays_per_sample_ = single_ray; ///< of the cycle
+    std::size_t first_supersampled_ = 0; ///< of these: from here on each sample is made of four rays
     std::size_t next_ = 0; ///< of these
     std::vector<std::uint8_t> send_;
     MomentRefresh moments_;

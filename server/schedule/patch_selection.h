@@ -4,15 +4,17 @@
 
 #include <vector>
 
+#include "common/rays_per_sample.h"
 #include "server/schedule/price.h"
 
 namespace framelet {
 
 struct RatedPatch {
     Patch patch;
-    double samples = 0;
+    double samples = 0; ///< rays that they take
     double cost = 0; ///< of them: as many where all cost the same
     double urgency = 0; ///< error that waiting costs, summed over pixels, for each sample's cost; above 0: due
+    int rays_per_sample = single_ray;
 };
 
 /// Replaces `rated` by every patch of the cut, with its urgency; a patch that would put something coarser over what is

@@ -121,10 +121,14 @@ void drift_on(PlaceField& field, ViewRays const& from, ViewRays const& to, bool 
     }
 }
 
-void take(PlaceField& field, Patch const& patch, double now) {
+int shown_level(PlaceField const& field, Patch const& patch, int rays_per_sample) {
+    return std::min(field.level_of(patch.depth) + (rays_per_sample == single_ray ? 0 : 1), sampling_levels - 1);
+}
+
+void take(PlaceField& field, Patch const& patch, double now, int rays_per_sample) {
     PlaceField::Range const range = field.range_of(patch.node);
     for (std::uint32_t i = range.first; i < range.last; ++i) {
-        field[i].taken = {field.level_of(patch.depth), 0, now};
+        field[i].taken = {shown_level(field, patch, rays_per_sample), 0, now};
         field[i].asked = now;
     }
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/probe.h"
+#include "common/rays_per_sample.h"
 #include "server/response/place_model.h"
 #include "server/response/sampling_choice.h"
 #include "server/schedule/density_tiling.h"
@@ -98,8 +99,11 @@ inline constexpr float bare_error = 0.25f;
 /// move as well. A place drifts as it was found to, more where the camera has become faster, less where slower; as much
 /// as what it shows is carried away, or as what comes there instead.
 void drift_on(PlaceField& field, ViewRays const& from, ViewRays const& to, bool moving, float seconds);
-/// A patch has been taken to be rendered.
-void take(PlaceField& field, Patch const& patch, double now);
+/// What a patch shows with so many rays a sample: means of four are as good as samples of the next level.
+int shown_level(PlaceField const& field, Patch const& patch, int rays_per_sample);
+
+/// A patch has been taken to be rendered, with so many rays a sample.
+void take(PlaceField& field, Patch const& patch, double now, int rays_per_sample);
 /// What of these was taken at `when`, and not later again, is taken no longer.
 void release(PlaceField& field, std::span<Patch const> patches, double when);
 /// Nothing that is held is true any more (a cut, another exposure).

@@ -211,6 +211,7 @@ bool learn_patch(PlaceField& field, Patch const& patch, std::span<PlaceFindings 
         if (!known || place.level == level) { // where it is known, what is held is the very picture of then
             place.level = level;
             place.rendered = now;
+            place.supersampled = never;
         }
     }
     return !known;

@@ -67,13 +67,13 @@ void BatchWork::describe_shapes(PosedScene const& scene, ViewerKnowledge& viewer
     Viewport const viewport = order.state.view.viewport;
     viewer.shapes.fit(rendered_, needed_, make_view_rays(order.state.view.camera, viewport), ImagePlane(viewport),
                       order.plan.moment_begun, batch_.shapes);
-    if (!order.again) {
-        viewer.refresh.note_sent(order.plan, batch_.number, display_, rendered_, needed_, batch_.shapes);
-    }
     viewer.shapes.track(scene.scene(), scene.clips(), scene.render_scene().bodies(), order.scene_camera,
                         order.state.scene_time, batch_.tracks, batch_.camera_track);
     for (BodyTrack const& track : batch_.tracks) {
         viewer.motions.extend(track);
+    }
+    if (!order.again) { // by the tracks that the viewer has with it
+        viewer.refresh.note_sent(order.plan, batch_.number, display_, rendered_, needed_, batch_.shapes);
     }
 }
 

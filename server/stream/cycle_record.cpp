@@ -9,11 +9,14 @@ void describe(AdaptiveRefresh const& refresh, CycleRecord& record) {
     record.cycle = refresh.cycle_count();
     record.price = static_cast<double>(refresh.price());
     record.budget = refresh.cycle_budget();
+    record.samples_planned = 0;
     std::vector<Tile> tiles;
-    for (Patch const& patch : refresh.cycle()) {
-        append_tiles(field.plane(), patch, tiles);
+    for (std::size_t i = 0; i < refresh.cycle().size(); ++i) {
+        tiles.clear();
+        append_tiles(field.plane(), refresh.cycle()[i], tiles);
+        auto const rays = static_cast<std::size_t>(i < refresh.first_supersampled() ? single_ray : four_rays);
+        record.samples_planned += tiles.size() * framelet_samples * rays;
     }
-    record.samples_planned = tiles.size() * framelet_samples * static_cast<std::size_t>(refresh.rays_per_sample());
     record.places_by_level.fill(0);
     double error = 0;
     double pixels = 0;

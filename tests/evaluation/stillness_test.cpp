@@ -33,7 +33,8 @@ TEST_F(Stillness, ThePictureBecomesTheReferenceAndNothingMoreIsSent) {
     ASSERT_EQ(rows.size(), 2u);
     for (auto const& row : rows) {
         EXPECT_GE(row["final_psnr"], 40) << row["scene"];
-        EXPECT_LE(row["most_fall_db"], 0.5) << row["scene"];
+        // Means of four rays, moved, give way to single ones in their places, which alias more.
+        EXPECT_LE(row["most_fall_db"], 1) << row["scene"];
         EXPECT_GT(row["bytes"], 0);
         EXPECT_LT(row["last_sent_seconds"], options.run.seconds - 1);
         EXPECT_EQ(row["last_second_bytes"], 0);

@@ -95,6 +95,36 @@ TEST(MergeChild, BodiesAndMotionComeAlong) {
     }
 }
 
+TEST(MergeChild, TheSurfaceIsWhatMostRaysShow) {
+    constexpr float far = std::numeric_limits<float>::infinity();
+    // Depths and bodies of four rays; which surface is shown, and the mean inverse depth of what is seen of it.
+    struct Case {
+        std::array<float, 4> depth;
+        std::array<BodyNumber, 4> body;
+        BodyNumber shown;
+        float wanted;
+    };
+    for (Case const& one : {Case{{5, 9, 9.1f, 9.2f}, {}, 0, 3 / (1 / 9.0f + 1 / 9.1f + 1 / 9.2f)},
+                            Case{{5, 5, 5, 5}, {0, 3, 3, 3}, 3, 5}, Case{{far, far, 2, far}, {0, 0, 7, 0}, 0, far},
+                            Case{{far, 2, 2.02f, far}, {0, 7, 7, 0}, 0, far}, // as many of each: the first
+                            Case{{1, 2, 4, 8}, {}, 0, 1}}) {
+        Framelet geometry;
+        DisplayFramelet display;
+        geometry.tile = display.tile = parent;
+        Framelet child = make_child(0, [](float, float) { return 0.5f; });
+        child.body.resize(framelet_samples);
+        for (std::size_t i = 0; i < framelet_samples; ++i) {
+            child.depth[i] = one.depth[i % 4];
+            child.body[i] = one.body[i % 4];
+        }
+        merge_child(child, 1, geometry, display);
+        for (std::size_t i = 0; i < framelet_samples / 4; ++i) {
+            ASSERT_EQ(geometry.body[i], one.shown);
+            ASSERT_NEAR(1 / geometry.depth[i], 1 / one.wanted, 1e-6f);
+        }
+    }
+}
+
 /// Leaves with holes of less than a pixel.
 Scene fine_scene() {
     Scene scene;

@@ -166,6 +166,29 @@ TEST(MomentPlan, WhatStandsIsRefinedToTheFinestSamplesAndWhatMovesIsNot) {
     EXPECT_LT(deepest_after([](Piece&) {}, 20 * pixel), plane.max_depth());
 }
 
+TEST(MomentPlan, SamplesThatAreLeftOverBecomeMeansOfFourRays) {
+    float const pixel = 10 * view_at(0).rays.direction_dx.x;
+    auto const planned = [&](double samples, bool supersampled) {
+        Planner planner;
+        std::vector<Piece> pieces = render_pieces(plane, plane.pixel_depth(), half_busy);
+        std::ranges::for_each(pieces, [&](Piece& piece) { piece.is_supersampled = supersampled; });
+        planner.mirror.add(view_at(0).rays, no_motions, pieces);
+        planner.mirror.look(view_at(-pixel), no_motions); // nearly all is in view still, moved
+        planner.find(samples);
+        double rays = 0;
+        for (RatedPatch const& entry : planner.rated) {
+            EXPECT_LE(entry.patch.depth, plane.pixel_depth());
+            EXPECT_EQ(entry.samples, framelet_samples * tile_count(entry.patch) * entry.rays_per_sample);
+            rays += entry.rays_per_sample == four_rays ? entry.samples : 0;
+        }
+        return rays;
+    };
+    constexpr double pixels = viewport.width * viewport.height;
+    EXPECT_EQ(planned(0.02 * pixels, false), 0) << "what comes into view is first";
+    EXPECT_GT(planned(4 * pixels, false), pixels) << "half of them are of detail";
+    EXPECT_LT(planned(4 * pixels, true), 0.5 * pixels) << "they are held";
+}
+
 TEST(MomentPlan, WhatComesIntoViewIsFirst) {
     Planner planner;
     planner.mirror.look(view_at(0), no_motions);

@@ -159,11 +159,12 @@ TEST(AdaptiveRefresh, AMomentIsHardlyEverRenderedTwice) {
     }
 }
 
-/// Samples rendered in so many seconds, as a share of those that there was time for.
+/// Rays for samples in so many seconds, as a share of those that there was time for.
 double busy_share(SyntheticRefresh& synthetic, double seconds) {
-    std::size_t tiles = 0;
-    synthetic.run(seconds, [&] { tiles += synthetic.tiles.size(); });
-    return static_cast<double>(tiles * framelet_samples) / (seconds * synthetic.input.samples_per_second);
+    std::size_t rays = 0;
+    synthetic.run(seconds,
+                  [&] { rays += synthetic.tiles.size() * static_cast<std::size_t>(synthetic.rays_per_sample); });
+    return static_cast<double>(rays * framelet_samples) / (seconds * synthetic.input.samples_per_second);
 }
 
 TEST(AdaptiveRefresh, OfAMovingCameraTheViewerKeepsWhatDoesNotChange) {
@@ -175,7 +176,7 @@ TEST(AdaptiveRefresh, OfAMovingCameraTheViewerKeepsWhatDoesNotChange) {
         synthetic.camera_speed = 1e-4f;
         synthetic.input.samples_per_second *= 8; // the moments that a viewer holds have all of it
         synthetic.input.motions = &motions;
-        EXPECT_GT(busy_share(synthetic, 1), 0.05) << "a sample a pixel: finer ones show no better while it moves";
+        EXPECT_GT(busy_share(synthetic, 1), 0.05) << "a sample a pixel, of four rays where that shows";
         EXPECT_LT(busy_share(synthetic, 3), 0.02) << "its clock runs, and nothing changes";
         synthetic.stop();
         EXPECT_LT(synthetic.finish(30), 30);
@@ -183,20 +184,20 @@ TEST(AdaptiveRefresh, OfAMovingCameraTheViewerKeepsWhatDoesNotChange) {
     }
 }
 
-TEST(AdaptiveRefresh, OfAMomentNoTileIsRenderedTwice) {
+TEST(AdaptiveRefresh, OfAMomentNoTileIsRenderedTwiceWithAsManyRays) {
     BodyMotions const motions;
     SyntheticRefresh synthetic(small, moving_texture);
     synthetic.moment_length = 0.1;
     synthetic.camera_speed = 1e-4f;
     synthetic.input.motions = &motions;
-    std::map<Tile, double> rendered; // and of which moment last
+    std::map<Tile, std::pair<double, int>> rendered; // of which moment last, with how many rays a sample
     std::size_t tiles = 0;
     synthetic.run(3, [&] {
         for (Tile const tile : synthetic.tiles) {
-            double const moment = synthetic.input.moment->begun;
-            auto const [entry, is_new] = rendered.try_emplace(tile, moment);
-            EXPECT_TRUE(is_new || entry->second < moment);
-            entry->second = moment;
+            std::pair const now(synthetic.input.moment->begun, synthetic.rays_per_sample);
+            auto const [entry, is_new] = rendered.try_emplace(tile, now);
+            EXPECT_TRUE(is_new || entry->second < now) << "but with more rays";
+            entry->second = now;
             ++tiles;
         }
     });
@@ -294,7 +295,23 @@ TEST(AdaptiveRefresh, WhatTheFinestSamplesDoNotResolveGetsFourRaysASample) {
     }
 }
 
-TEST(AdaptiveRefresh, WhileAnythingMovesThereIsOneRayASample) {
+TEST(AdaptiveRefresh, WhileAnythingMovesFourRaysAreForWhatTheViewerMoves) {
+    BodyMotions const motions;
+    auto const most_rays = [&](double samples_per_second) {
+        SyntheticRefresh synthetic(small, half_dust);
+        synthetic.moment_length = 0.1;
+        synthetic.camera_speed = 1e-4f;
+        synthetic.input.motions = &motions;
+        synthetic.input.samples_per_second = samples_per_second;
+        int most = single_ray;
+        synthetic.run(2, [&] { most = std::max(most, synthetic.rays_per_sample); });
+        return most;
+    };
+    EXPECT_EQ(most_rays(5e3), single_ray) << "a sample a pixel comes first";
+    EXPECT_EQ(most_rays(4e6), four_rays);
+}
+
+TEST(AdaptiveRefresh, WhileAnythingMovesThereIsOneRayASampleOfWhatIsNotMoved) {
     SyntheticRefresh synthetic(small, half_dust);
     synthetic.input.samples_per_second = 4e6; // more than there is use for
     int most = single_ray;

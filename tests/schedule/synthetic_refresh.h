@@ -170,6 +170,7 @@ private:
             }
             framelet.green = framelet.blue = framelet.red;
             rendered_[t].depth.fill(10);
+            rendered_[t].is_supersampled = plan.rays_per_sample != single_ray;
         }
         luma_.clear();
         for (Probe const& probe : plan.probes) {
