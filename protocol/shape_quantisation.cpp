@@ -36,7 +36,7 @@ UnitCode unit_above(double value) {
 }
 
 LayerCode quantise(Layer const& layer, int side_bits) {
-    constexpr double error_units = 16, plane_units = 1 << 12;
+    constexpr double error_units = 16, plane_units = 1 << 10;
     double const side = std::ldexp(1.0, side_bits);
     double const at = layer.at, dx = layer.dx, dy = layer.dy, error = layer.error;
     double const magnitude = std::abs(at) + side * (std::abs(dx) + std::abs(dy));

@@ -26,8 +26,8 @@ struct LayerCode {
 /// `side_bits`: the tile's side is 2^side_bits pixels. The decoded plane is within 3/2 units of the layer anywhere on
 /// the tile, and its error is the layer's and the distance between the two planes, rounded up: whatever is within the
 /// layer's error of the layer is within the decoded error of the decoded plane. The unit is at most the larger of an
-/// eighth of the layer's error and 2^-11 of its largest inverse depth: what moves by 128 pixels because the camera
-/// moves is shown a tenth of a pixel off at most, mostly a third of that.
+/// eighth of the layer's error and 2^-9 of its largest inverse depth: what moves by 32 pixels because the camera moves
+/// is shown a tenth of a pixel off at most, mostly a third of that.
 LayerCode quantise(Layer const& layer, int side_bits);
 /// Without body and velocity.
 Layer dequantise(LayerCode const& code, int side_bits);

@@ -11,6 +11,8 @@ namespace {
 constexpr int compression_level = 1;
 /// Shorter repetitions, bytes, are left to the entropy stage: in differences of neighbours they are chance.
 constexpr int least_match = 7;
+/// Parts that are fewer bytes together share their tables: to write some for each takes more than these save.
+constexpr std::size_t few_bytes = 10'000;
 constexpr std::size_t length_bytes = 4;
 /// First bytes of a zstd frame (RFC 8878); other kinds of frames that the library knows are not part of the format.
 constexpr std::array<std::uint8_t, 4> zstd_magic{0x28, 0xb5, 0x2f, 0xfd};
@@ -99,11 +101,12 @@ std::size_t FrameCodec::compress(std::span<std::span<std::uint8_t const> const> 
     }
     ZSTD_CCtx_reset(compressor_.get(), ZSTD_reset_session_only);
     ZSTD_CCtx_setPledgedSrcSize(compressor_.get(), size);
+    ZSTD_EndDirective const between = size < few_bytes ? ZSTD_e_continue : ZSTD_e_flush;
     ZSTD_outBuffer to{out.data(), out.size(), 0};
     for (std::size_t i = 0; i < parts.size(); ++i) {
         ZSTD_inBuffer from{parts[i].data(), parts[i].size(), 0};
         std::size_t const left =
-            ZSTD_compressStream2(compressor_.get(), &to, &from, i + 1 < parts.size() ? ZSTD_e_flush : ZSTD_e_end);
+            ZSTD_compressStream2(compressor_.get(), &to, &from, i + 1 == parts.size() ? ZSTD_e_end : between);
         FRAMELET_CHECK(left == 0);
     }
     return to.pos;

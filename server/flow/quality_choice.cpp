@@ -21,10 +21,14 @@ constexpr double step_seconds = 0.03;
 
 } // namespace
 
-std::uint8_t QualityChoice::choose(LinkState const& link, double samples_per_second, double now) {
-    if (now - changed_ < step_seconds) {
-        return quality_;
+std::uint8_t QualityChoice::choose(LinkState const& link, double samples_per_second, double now, bool moves) {
+    if (now - changed_ >= step_seconds) {
+        follow(link, samples_per_second, now);
     }
+    return moves ? std::max(quality_, moving_loss) : quality_;
+}
+
+void QualityChoice::follow(LinkState const& link, double samples_per_second, double now) {
     double const wanted = samples_per_second * link.bytes_per_sample / (link_share * link.bytes_per_second);
     std::uint8_t const before = quality_;
     if (wanted > too_much) {
@@ -36,7 +40,6 @@ std::uint8_t QualityChoice::choose(LinkState const& link, double samples_per_sec
         quality_ = 0;
     }
     changed_ = quality_ == before ? changed_ : now;
-    return quality_;
 }
 
 double bounded_rate(LinkState const& link, double samples_per_second) {

@@ -125,7 +125,8 @@ Step FrameletStream::plan_batch(Turn const& turn, ViewState const& present, Pose
     order.state = wanted.moment ? wanted.moment->state : present;
     order.present = present;
     order.scene_camera = moving_camera(scene);
-    order.quality = takes_loss() ? choice_.choose(link, rendered, turn.now) : std::uint8_t{exact_quality};
+    order.quality = takes_loss() ? choice_.choose(link, rendered, turn.now, wanted.moment.has_value())
+                                 : std::uint8_t{exact_quality};
     order.takes_shapes = takes_shapes();
     order.withholds = options_.withholds;
     order.still = still;

@@ -20,14 +20,14 @@ struct Outcome {
     int changes = 0; ///< in the second half
 };
 
-Outcome outcome_of(double bytes_per_second, double samples_per_second) {
+Outcome outcome_of(double bytes_per_second, double samples_per_second, bool moves = false) {
     QualityChoice choice;
     LinkState link;
     link.bytes_per_second = bytes_per_second;
     link.bytes_per_sample = bytes_of(0);
     Outcome outcome;
     for (int i = 0; i < 400; ++i) {
-        std::uint8_t const quality = choice.choose(link, samples_per_second, 100 + 0.01 * i);
+        std::uint8_t const quality = choice.choose(link, samples_per_second, 100 + 0.01 * i, moves);
         outcome.changes += i >= 200 && quality != outcome.quality ? 1 : 0;
         outcome.quality = quality;
         link.bytes_per_sample += 0.2 * (bytes_of(quality) - link.bytes_per_sample);
@@ -38,6 +38,16 @@ Outcome outcome_of(double bytes_per_second, double samples_per_second) {
 TEST(QualityChoice, ExactWhereTheLinkTakesIt) {
     EXPECT_EQ(outcome_of(std::numeric_limits<double>::infinity(), 1e7).quality, 0);
     EXPECT_EQ(outcome_of(2e6, 1e6).quality, 0);
+}
+
+TEST(QualityChoice, WithALossWhileSomethingMoves) {
+    constexpr double endless = std::numeric_limits<double>::infinity();
+    EXPECT_EQ(outcome_of(endless, 1e7, true).quality, moving_loss);
+    EXPECT_EQ(outcome_of(0.3e6, 1e6, true).quality, outcome_of(0.3e6, 1e6).quality) << "a narrow link asks for more";
+    QualityChoice choice;
+    LinkState link{.bytes_per_second = endless, .bytes_per_sample = 1};
+    EXPECT_EQ(choice.choose(link, 1e7, 1, true), moving_loss);
+    EXPECT_EQ(choice.choose(link, 1e7, 1, false), 0) << "exact as soon as it stands";
 }
 
 TEST(QualityChoice, CoarserTheSlowerTheLinkAndSteady) {
@@ -54,16 +64,16 @@ TEST(QualityChoice, CoarserTheSlowerTheLinkAndSteady) {
 TEST(QualityChoice, StepsAreSmallAndItComesBack) {
     QualityChoice choice;
     LinkState link{.bytes_per_second = 1e5, .bytes_per_sample = 1};
-    int quality = choice.choose(link, 1e6, 1);
+    int quality = choice.choose(link, 1e6, 1, false);
     for (int i = 1; i < 100; ++i) {
-        int const next = choice.choose(link, 1e6, 1 + 0.001 * i);
+        int const next = choice.choose(link, 1e6, 1 + 0.001 * i, false);
         EXPECT_LE(std::abs(next - quality), 2);
         quality = next;
     }
     EXPECT_LT(quality, most_loss) << "in a tenth of a second";
     link.bytes_per_second = 1e8;
     for (int i = 0; i < 100; ++i) {
-        quality = choice.choose(link, 1e6, 2 + 0.01 * i);
+        quality = choice.choose(link, 1e6, 2 + 0.01 * i, false);
     }
     EXPECT_EQ(quality, 0);
 }
