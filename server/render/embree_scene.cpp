@@ -187,7 +187,7 @@ bool valid_lanes(RayPacket const& rays, LaneMask active, int first, int* valid) 
     for (int i = 0; i < count; ++i) {
         int const lane = first + i;
         bool const wanted = (active >> lane & 1) != 0;
-        valid[i] = wanted & traceable(rays.origin.get(lane)) & traceable(rays.direction.get(lane)) ? -1 : 0;
+        valid[i] = -(int{wanted} & int{traceable(rays.origin.get(lane))} & int{traceable(rays.direction.get(lane))});
     }
     return true;
 }
