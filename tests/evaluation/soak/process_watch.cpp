@@ -42,7 +42,7 @@ Trend trend_of(std::span<double const> times, std::span<double const> values) {
         products += (times[i] - time) * (values[i] - value);
     }
     FRAMELET_CHECK(squares > 0);
-    Trend trend{products / squares, 0, value};
+    Trend trend{products / squares, 0, value, times.size()};
     double residuals = 0;
     for (std::size_t i = 0; i < times.size(); ++i) {
         double const off = values[i] - value - trend.slope * (times[i] - time);
@@ -53,7 +53,10 @@ Trend trend_of(std::span<double const> times, std::span<double const> values) {
 }
 
 bool grows(Trend const& trend, double span, double share) {
-    return trend.slope > 3 * trend.slope_error && trend.slope * span > share * trend.mean;
+    // The quantile of Student's t, to some percent from four degrees of freedom on: 7.17, 4.14 with ten, 3.09 with many.
+    double const freedom = static_cast<double>(trend.points) - 2;
+    double const most_by_chance = 3.09 + 9.2 / freedom + 28 / (freedom * freedom);
+    return trend.slope > most_by_chance * trend.slope_error && trend.slope * span > share * trend.mean;
 }
 
 } // namespace framelet::bench

@@ -21,13 +21,15 @@ struct Trend {
     double slope = 0;
     double slope_error = 0; ///< its standard error, from how far the points are off the line
     double mean = 0;
+    std::size_t points = 0;
 };
 
 /// At least three points, not all at one time.
 Trend trend_of(std::span<double const> times, std::span<double const> values);
 
-/// Over `span` it rises by more than three standard errors, and by more than `share` of the mean: what an allocator
-/// keeps goes up and down by some of that for reasons of its own.
+/// It rises as points about a level line do by chance in one of a thousand cases (Student's t, one side), and over
+/// `span` by more than `share` of the mean: what an allocator keeps goes up and down by some of that for reasons of its
+/// own.
 bool grows(Trend const& trend, double span, double share);
 
 } // namespace framelet::bench

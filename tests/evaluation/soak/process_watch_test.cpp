@@ -55,6 +55,9 @@ TEST(Trend, GrowthIsToldFromNoise) {
     EXPECT_FALSE(grows(trend_of(times, still), 100, 0.02));
     EXPECT_TRUE(grows(trend_of(times, leaking), 100, 0.02));
     EXPECT_FALSE(grows(trend_of(times, leaking), 100, 0.2)) << "it is a tenth";
+    std::vector<double> const few_times{0, 10, 20, 30, 40, 50}, few{100, 103, 101, 105, 104, 108};
+    EXPECT_GT(trend_of(few_times, few).slope, 3 * trend_of(few_times, few).slope_error);
+    EXPECT_FALSE(grows(trend_of(few_times, few), 50, 0.02)) << "as few points do by chance";
     for (double& value : leaking) {
         value = -value;
     }
