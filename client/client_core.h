@@ -94,7 +94,8 @@ public:
     /// held is moved to where it belongs now (`ViewerSettings::reproject`). Call it for every display frame. True when
     /// it changed. `changed` gets the rectangles that may differ. While nothing has come for a new viewport, the
     /// picture stays as it is, in its old size. A picture that is not the one of the last call is written as a whole.
-    /// `shown_at`: when it will be seen, and what it is to be of; the past: as soon as it is ready.
+    /// `shown_at`: when it will be seen, and what it is to be of; the past: as soon as it is ready. Throws
+    /// std::bad_alloc where memory is missing for it: nothing more is to be asked of the core then.
     bool update_picture(Picture& picture, std::vector<PixelRect>& changed,
                         std::chrono::steady_clock::time_point shown_at = {});
     /// What `update_picture` will take, most likely no longer.

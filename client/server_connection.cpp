@@ -4,6 +4,7 @@
 #include <concepts>
 #include <future>
 #include <mutex>
+#include <new>
 #include <random>
 #include <sstream>
 #include <thread>
@@ -76,6 +77,9 @@ struct ServerConnection::Impl {
     BackOff back_off;
     std::minstd_rand random{std::random_device{}()};
 
+    bool is_over = false; ///< for good
+    bool is_to_tell_interruption = false;
+
     std::thread thread;
 
     Impl(ConnectionOptions const& o, Handlers h) : options(o), handlers(std::move(h)), server(o.server.text()) {}
@@ -93,6 +97,9 @@ struct ServerConnection::Impl {
 
     /// The attempt, or the session that came of it, is over.
     void end(std::string const& reason, Retry retry = Retry::later) {
+        if (is_over) {
+            return;
+        }
         ++attempt;
         resolver.cancel();
         deadline.cancel();
@@ -102,16 +109,38 @@ struct ServerConnection::Impl {
         if (attempted) {
             attempted->close();
         }
-        bool const interrupted = std::exchange(open, false);
+        // What follows may want memory that is missing, and is then done once more.
+        is_to_tell_interruption = std::exchange(open, false) || is_to_tell_interruption;
         if (!was_open) {
-            opened.set_exception(std::make_exception_ptr(ConnectionError(reason)));
+            auto const error = std::make_exception_ptr(ConnectionError(reason));
+            is_over = true;
+            opened.set_exception(error);
         } else if (retry == Retry::never || !options.reconnect || !handlers.on_reopened) {
             handlers.on_lost(reason);
+            is_over = true;
         } else {
+            bool const interrupted = is_to_tell_interruption;
             if (interrupted) {
                 handlers.on_interrupted(reason);
+                is_to_tell_interruption = false;
             }
             begin_later(interrupted);
+        }
+    }
+
+    /// Until there is nothing more to do or it is stopped. Where memory is missing the session ends.
+    void run() {
+        for (bool is_to_end = false;;) {
+            try {
+                if (std::exchange(is_to_end, false)) {
+                    end("no memory left for what comes from the server at " + server);
+                }
+                io.run();
+                return;
+            } catch (std::bad_alloc const&) {
+                is_to_end = true;
+                std::this_thread::sleep_for(std::chrono::milliseconds(5));
+            }
         }
     }
 
@@ -283,7 +312,7 @@ ServerConnection::ServerConnection(ConnectionOptions const& options, Handlers ha
     }
     std::future<void> opened = impl_->opened.get_future();
     asio::post(impl_->io, [impl = impl_.get()] { impl->begin(); });
-    impl_->thread = std::thread([impl = impl_.get()] { impl->io.run(); });
+    impl_->thread = std::thread([impl = impl_.get()] { impl->run(); });
     try {
         opened.get();
     } catch (...) {

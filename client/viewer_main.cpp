@@ -7,6 +7,7 @@
 #include "client/display_arguments.h"
 #include "client/viewer.h"
 #include "common/error.h"
+#include "common/program_failure.h"
 
 int main(int argc, char** argv) {
     using namespace framelet;
@@ -46,7 +47,7 @@ int main(int argc, char** argv) {
         }
         return viewer.run();
     } catch (std::exception const& error) {
-        std::cerr << "framelet-viewer: " << error.what() << "\n";
+        std::cerr << "framelet-viewer: " << failure_text(error) << "\n";
         return 1;
     }
 }

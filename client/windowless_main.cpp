@@ -21,6 +21,7 @@
 #include "common/cpu_clock.h"
 #include "common/error.h"
 #include "common/number_range.h"
+#include "common/program_failure.h"
 
 namespace framelet {
 
@@ -288,7 +289,7 @@ int main(int argc, char** argv) {
     try {
         return run(options, connection, viewport, pattern);
     } catch (std::exception const& error) {
-        std::cerr << "framelet-client: " << error.what() << "\n";
+        std::cerr << "framelet-client: " << failure_text(error) << "\n";
         return 1;
     }
 }

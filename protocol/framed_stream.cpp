@@ -114,7 +114,11 @@ public:
         } catch (UnsendableMessage const& error) {
             give_up(std::string("this side has a message that cannot be sent: ") + error.what());
         } catch (std::bad_alloc const&) {
-            give_up("this side has no memory left for what it has to send");
+            try {
+                give_up("this side has no memory left for what it has to send");
+            } catch (std::bad_alloc const&) {
+                giving_up_ = true; // the other side notices by the silence
+            }
         }
         return 0;
     }
@@ -125,7 +129,9 @@ public:
 
     void close_after_sending() override {
         take_handlers();
-        asio::post(executor_, [self = self()] { self->begin_ending(); }); // behind the messages sent before
+        asio::post(executor_, [self = self()] {
+            self->contain([&] { self->begin_ending(); });
+        }); // behind the messages sent before
     }
 
     void close() override {
@@ -133,11 +139,56 @@ public:
         asio::dispatch(executor_, [self = self()] { self->finish(); });
     }
 
+    bool is_stuck() const override {
+        return open_ && !finished_ && ((awaited_reads_ == 0 && !peer_done_) || (awaited_writes_ == 0 && writing_));
+    }
+
     std::string peer() const override {
         return peer_;
     }
 
 private:
+    /// Goes with a handler, and counts it for as long as it exists. One whose operation is of several steps is lost
+    /// where memory is missing for one of them, without having been called.
+    class Awaited {
+    public:
+        Awaited(std::shared_ptr<Connection> connection, int Connection::*count)
+            : connection_(std::move(connection)), count_(count) {
+            ++(connection_.get()->*count_);
+        }
+        Awaited(Awaited&&) noexcept = default;
+        ~Awaited() {
+            if (connection_) {
+                --(connection_.get()->*count_);
+            }
+        }
+        Connection* operator->() const { return connection_.get(); }
+
+    private:
+        std::shared_ptr<Connection> connection_; ///< null: it has been moved from
+        int Connection::*count_;
+    };
+    Awaited reading() {
+        return {self(), &Connection::awaited_reads_};
+    }
+    Awaited writing() {
+        return {self(), &Connection::awaited_writes_};
+    }
+
+    /// Where memory is missing for the next step, this connection ends, and no other.
+    template <typename Work>
+    void contain(Work const& work) {
+        try {
+            work();
+        } catch (std::bad_alloc const&) {
+            finish();
+            try {
+                tell("no memory left"); // short enough to need none
+            } catch (std::bad_alloc const&) { // whoever was to be told finds it ended
+            }
+        }
+    }
+
     std::shared_ptr<Connection> self() {
         return std::static_pointer_cast<Connection>(shared_from_this());
     }
@@ -158,17 +209,21 @@ private:
     void handshake() {
         handshake_timer_.expires_after(handshake_time);
         handshake_timer_.async_wait([self = self()](Error error) {
-            if (!error && !self->open_) {
-                self->lose("TLS handshake timed out");
-            }
+            self->contain([&] {
+                if (!error && !self->open_) {
+                    self->lose("TLS handshake timed out");
+                }
+            });
         });
         stream_.async_handshake(role_, [self = self()](Error error) {
             self->handshake_timer_.cancel();
-            if (error) {
-                self->lose(handshake_reason(error, self->stream_.native_handle()));
-            } else {
-                self->open();
-            }
+            self->contain([&] {
+                if (error) {
+                    self->lose(handshake_reason(error, self->stream_.native_handle()));
+                } else {
+                    self->open();
+                }
+            });
         });
     }
 
@@ -188,17 +243,24 @@ private:
             discard();
             return;
         }
-        asio::async_read(stream_, asio::buffer(prefix_), [self = self()](Error error, std::size_t size) {
-            if (error) {
-                self->reading_failed(error, size > 0);
-                return;
-            }
-            std::size_t length = 0;
-            for (std::size_t i = 0; i < prefix_bytes; ++i) {
-                length |= std::size_t{self->prefix_[i]} << (8 * i);
-            }
-            self->read_body(length);
+        asio::async_read(stream_, asio::buffer(prefix_), [self = reading()](Error error, std::size_t size) {
+            self->contain([&] {
+                if (error) {
+                    self->reading_failed(error, size > 0);
+                } else {
+                    self->read_body(self->body_size());
+                }
+            });
         });
+    }
+
+    /// As the prefix says.
+    std::size_t body_size() const {
+        std::size_t size = 0;
+        for (std::size_t i = 0; i < prefix_bytes; ++i) {
+            size |= std::size_t{prefix_[i]} << (8 * i);
+        }
+        return size;
     }
 
     void read_body(std::size_t length) {
@@ -215,12 +277,14 @@ private:
             body_.resize(length);
         }
         asio::async_read(stream_, asio::buffer(body_.data(), length),
-                         [self = self(), length](Error error, std::size_t) {
-                             if (error) {
-                                 self->reading_failed(error, true);
-                             } else {
-                                 self->deliver(ByteView(self->body_.data(), length));
-                             }
+                         [self = reading(), length](Error error, std::size_t) {
+                             self->contain([&] {
+                                 if (error) {
+                                     self->reading_failed(error, true);
+                                 } else {
+                                     self->deliver(ByteView(self->body_.data(), length));
+                                 }
+                             });
                          });
     }
 
@@ -250,12 +314,14 @@ private:
             return;
         }
         body_.resize(std::max<std::size_t>(body_.size(), 4096));
-        stream_.async_read_some(asio::buffer(body_), [self = self()](Error error, std::size_t) {
-            if (error) {
-                self->reading_failed(error, false);
-            } else {
-                self->discard();
-            }
+        stream_.async_read_some(asio::buffer(body_), [self = reading()](Error error, std::size_t) {
+            self->contain([&] {
+                if (error) {
+                    self->reading_failed(error, false);
+                } else {
+                    self->discard();
+                }
+            });
         });
     }
 
@@ -281,7 +347,7 @@ private:
         bool const newest_counts = std::holds_alternative<Status>(message);
         outbox_.announce(size);
         asio::post(executor_, [self = self(), bytes = std::move(bytes), newest_counts]() mutable {
-            self->enqueue(std::move(bytes), newest_counts);
+            self->contain([&] { self->enqueue(std::move(bytes), newest_counts); });
         });
         return size;
     }
@@ -307,7 +373,9 @@ private:
             writing_ = true;
             ByteView const rest = outbox_.rest();
             stream_.async_write_some(asio::buffer(rest.data(), rest.size()),
-                                     [self = self()](Error error, std::size_t size) { self->wrote(error, size); });
+                                     [self = writing()](Error error, std::size_t size) {
+                                         self->contain([&] { self->wrote(error, size); });
+                                     });
         } else if (ending_) {
             say_goodbye();
         }
@@ -339,9 +407,11 @@ private:
         outbox_.release();
         ending_timer_.expires_after(ending_time);
         ending_timer_.async_wait([self = self(), error](Error aborted) {
-            if (!aborted) {
-                self->lose(stream_reason(error, false));
-            }
+            self->contain([&] {
+                if (!aborted) {
+                    self->lose(stream_reason(error, false));
+                }
+            });
         });
     }
 
@@ -362,8 +432,10 @@ private:
                 return;
             }
             self->outbox_.drop_waiting(); // the peer would not get to the reason within the time that is left
-            self->send_failure(reason);
-            self->tell(reason);
+            self->contain([&] {
+                self->send_failure(reason);
+                self->tell(reason);
+            });
         });
     }
 
@@ -445,6 +517,7 @@ private:
     Outbox outbox_;
 
     // Only for the io_context's thread.
+    int awaited_reads_ = 0, awaited_writes_ = 0; ///< handlers that are still to be called
     std::size_t max_body_ = 0;
     std::array<std::uint8_t, prefix_bytes> prefix_{};
     Bytes body_; ///< room for the largest message so far

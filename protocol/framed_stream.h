@@ -46,6 +46,9 @@ public:
     virtual void close_after_sending() = 0;
     /// Ends at once. From any thread.
     virtual void close() = 0;
+    /// Where memory was missing for the next step of reading or writing, so that neither goes on and nobody is told.
+    /// Only between callbacks.
+    virtual bool is_stuck() const { return false; }
     /// Address and port of the other side, as they were at the beginning. From any thread.
     virtual std::string peer() const = 0;
 };

@@ -27,10 +27,21 @@ std::optional<std::string> find(std::filesystem::path const& file, std::string c
     return std::nullopt;
 }
 
+/// As editors leave it that end no last line.
+bool ends_amid_a_line(std::filesystem::path const& file) {
+    std::ifstream bytes(file, std::ios::binary | std::ios::ate);
+    if (!bytes || bytes.tellg() <= 0) {
+        return false;
+    }
+    bytes.seekg(-1, std::ios::end);
+    return bytes.get() != '\n';
+}
+
 /// False where it could not be written.
 bool add(std::filesystem::path const& file, std::string const& server, std::string const& known) {
     int const descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
-    std::string const line = server + " " + known + "\n"; // at once: other viewers may add theirs
+    std::string const line = (ends_amid_a_line(file) ? "\n" : "") + server + " " + known + "\n";
+    // At once: other viewers may add theirs.
     bool const written =
         descriptor >= 0 && ::write(descriptor, line.data(), line.size()) == static_cast<ssize_t>(line.size());
     ::close(descriptor);

@@ -130,7 +130,7 @@ struct Status {
     std::uint64_t last_batch = 0; ///< the newest batch of this session
     std::uint64_t camera_number = 0; ///< the newest camera that arrived
     bool converged = false; ///< nothing more will come until something changes
-    double samples_per_second = 0; ///< rendered for this session
+    double samples_per_second = 0; ///< rendered for all sessions together
     std::uint32_t sessions = 0;
     bool controls = true; ///< as in Welcome, by now
     bool operator==(Status const&) const = default;

@@ -13,6 +13,7 @@
 #include <tbb/global_control.h>
 
 #include "common/error.h"
+#include "common/program_failure.h"
 #include "protocol/local_token.h"
 #include "protocol/stream_opening.h"
 #include "server/options.h"
@@ -141,7 +142,7 @@ int main(int argc, char** argv) {
         framelet::serve(options);
         return 0;
     } catch (std::exception const& error) {
-        std::cerr << "framelet-server: " << error.what() << '\n';
+        std::cerr << "framelet-server: " << framelet::failure_text(error) << '\n';
         return 1;
     }
 }

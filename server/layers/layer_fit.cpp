@@ -144,8 +144,8 @@ void Fitter::make_groups() {
 /// Samples of the group that are on no layer yet.
 void Fitter::set_candidates(std::size_t group) {
     for (std::size_t i = 0; i < framelet_samples; ++i) {
-        bool const is_one = (group_of_[i] == group) & (layer_of_[i] == FrameletShape::loose);
-        candidates_.value[i] = is_one ? 1.0f : 0.0f;
+        bool const is_group = group_of_[i] == group, is_free = layer_of_[i] == FrameletShape::loose;
+        candidates_.value[i] = static_cast<float>(int{is_group} & int{is_free});
     }
 }
 

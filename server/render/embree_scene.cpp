@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
+#include <new>
 #include <type_traits>
 
 #if __has_include(<embree4/rtcore.h>)
@@ -186,7 +187,7 @@ bool valid_lanes(RayPacket const& rays, LaneMask active, int first, int* valid) 
     for (int i = 0; i < count; ++i) {
         int const lane = first + i;
         bool const wanted = (active >> lane & 1) != 0;
-        valid[i] = wanted & traceable(rays.origin.get(lane)) & traceable(rays.direction.get(lane)) ? -1 : 0;
+        valid[i] = -(int{wanted} & int{traceable(rays.origin.get(lane))} & int{traceable(rays.direction.get(lane))});
     }
     return true;
 }
@@ -326,8 +327,18 @@ struct EmbreeScene::Handles {
     /// instances takes milliseconds, tracing a second small one nanoseconds.
     Level still, moving;
     bool settled = false; ///< committed once: what is placed again from now on moves
+    bool broken = false; ///< memory was missing: Embree may have left half of something, and is not asked again
 
     Level& level_of(Placed const& instance) { return instance.moves ? moving : still; }
+
+    /// After what takes memory; before it as well, so that nothing follows what has failed.
+    void throw_failure() {
+        RTCError const error = rtcGetDeviceError(device);
+        broken = broken || error == RTC_ERROR_OUT_OF_MEMORY || error == RTC_ERROR_UNKNOWN;
+        if (broken) {
+            throw std::bad_alloc();
+        }
+    }
 };
 
 EmbreeScene::EmbreeScene() : handles_(std::make_unique<Handles>()) {
@@ -370,6 +381,7 @@ std::uint32_t EmbreeScene::add_mesh(std::span<Geometry> geometries, bool deformi
         }
         void* const vertices = rtcSetNewGeometryBuffer(handle, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                                        sizeof(Vec3), source.positions.size());
+        handles_->throw_failure();
         FRAMELET_CHECK(vertices != nullptr);
         std::memcpy(vertices, source.positions.data(), source.positions.size() * sizeof(Vec3));
         geometry.positions = {static_cast<Vec3*>(vertices), source.positions.size()};
@@ -390,17 +402,20 @@ std::uint32_t EmbreeScene::add_mesh(std::span<Geometry> geometries, bool deformi
         rtcAttachGeometryByID(mesh.scene, handle, static_cast<unsigned>(i));
     }
     rtcCommitScene(mesh.scene);
+    handles_->throw_failure();
     handles_->meshes.push_back(std::move(mesh));
     return static_cast<std::uint32_t>(handles_->meshes.size() - 1);
 }
 
 void EmbreeScene::refit_mesh(std::uint32_t mesh) {
+    handles_->throw_failure();
     Handle const& handle = handles_->meshes[mesh];
     for (RTCGeometry const geometry : handle.geometries) {
         rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0);
         rtcCommitGeometry(geometry);
     }
     rtcCommitScene(handle.scene);
+    handles_->throw_failure();
     // The instances' boxes follow only when they are committed as well.
 }
 
@@ -417,6 +432,7 @@ std::uint32_t EmbreeScene::add_instance(std::uint32_t mesh) {
 }
 
 void EmbreeScene::place_instance(std::uint32_t instance, Mat3 const& linear, Vec3 const& translation, bool present) {
+    handles_->throw_failure();
     Handles::Placed& placed = handles_->instances[instance];
     RTCGeometry const handle = placed.geometry;
     if (handles_->settled && !placed.moves && handles_->instances.size() > few_instances) {
@@ -436,12 +452,15 @@ void EmbreeScene::place_instance(std::uint32_t instance, Mat3 const& linear, Vec
         rtcEnableGeometry(handle);
     }
     rtcCommitGeometry(handle);
+    handles_->throw_failure();
 }
 
 void EmbreeScene::commit() {
+    handles_->throw_failure();
     for (Handles::Level* level : {&handles_->still, &handles_->moving}) {
         if (level->changed) {
             rtcCommitScene(level->scene);
+            handles_->throw_failure();
             level->changed = false;
         }
     }

@@ -19,6 +19,9 @@ public:
     /// Builds a BVH over the geometries, which must stay where they are. Fills their `positions` from their source and
     /// thereby moves them into the BVH's memory. `deforming`: built so that it can be refitted.
     std::uint32_t add_mesh(std::span<Geometry> geometries, bool deforming);
+    // All that builds or places throws std::bad_alloc where memory is missing, and from then on each time: Embree does
+    // not say what it has left undone.
+
     /// Follows `positions` that were written anew.
     void refit_mesh(std::uint32_t mesh);
     /// Instances are numbered from 0 in the order in which they are added. Until it is placed an instance is not there.

@@ -133,6 +133,7 @@ void RenderScene::place_all() {
     }
     prepared_->bvh.commit();
     update_lights();
+    is_placed_ = true;
 }
 
 void RenderScene::place(Placement const& placement) {
@@ -184,12 +185,14 @@ void RenderScene::set_pose(ScenePose const& pose) {
     FlushDenormals const flush;
     std::vector<Placement const*> move, reshape;
     for (Placement const& placement : placements_) {
-        if (reshaped(placement, pose)) {
+        bool const deforms = placement.skin || placement.morphs;
+        if (reshaped(placement, pose) || (!is_placed_ && deforms)) {
             reshape.push_back(&placement);
-        } else if (moved(placement, pose)) {
+        } else if (moved(placement, pose) || !is_placed_) {
             move.push_back(&placement);
         }
     }
+    is_placed_ = false;
     pose_ = pose;
     update_lights();
     for (Placement const* placement : reshape) {
@@ -203,6 +206,7 @@ void RenderScene::set_pose(ScenePose const& pose) {
         prepared_->bvh.commit();
     }
     update_velocities();
+    is_placed_ = true;
 }
 
 void RenderScene::update_lights() {

@@ -26,7 +26,8 @@ public:
     RenderScene& operator=(RenderScene const&) = delete;
 
     /// Moves instances, refits what deforms. Costs nothing but a comparison for what does not move. Not while anything
-    /// renders. `pose` must be of this scene.
+    /// renders. `pose` must be of this scene. Where it throws, because memory has run out, the scene is not to be
+    /// rendered before a pose has been set, which then moves everything.
     void set_pose(ScenePose const& pose);
 
     /// From now on framelets say which bodies carry their samples and how fast those move that no body carries, while
@@ -62,6 +63,7 @@ private:
     std::vector<Placement> placements_;
     std::vector<MeshVertices> deformed_; ///< normals and tangents of deforming meshes live here
     ScenePose pose_;
+    bool is_placed_ = false; ///< everything stands as `pose_` says
     std::vector<Index> clips_;
     SceneBodies bodies_;
     std::vector<std::vector<std::vector<Vec3>>> velocities_; ///< by deforming mesh, primitive and vertex

@@ -17,13 +17,25 @@ inline std::string failure_line(std::exception const& error) {
     return std::string("the server cannot go on with this viewer's picture: ") + error.what();
 }
 
+/// Where there is no memory to say why. The server finds it ended.
+inline void end_in_need(Session& session) {
+    try {
+        session.end("no memory left"); // short enough to need none
+    } catch (std::bad_alloc const&) {
+    }
+}
+
 template <typename Work>
 bool contain(Session& session, Work const& work) {
     try {
         work();
         return true;
     } catch (std::exception const& error) {
-        session.end(failure_line(error));
+        try {
+            session.end(failure_line(error));
+        } catch (std::bad_alloc const&) {
+            end_in_need(session);
+        }
         return false;
     }
 }

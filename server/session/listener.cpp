@@ -114,18 +114,31 @@ void Listener::listen() {
 
 void Listener::accept(std::function<void(tcp::socket)> take) {
     take_ = std::move(take);
+    accept_again();
+}
+
+void Listener::accept_again() {
     for (Door& door : doors_) {
-        accept_at(door);
+        if (!door.waits && door.acceptor.is_open()) {
+            accept_at(door);
+        }
     }
 }
 
 void Listener::accept_at(Door& door) {
     door.acceptor.async_accept([this, &door](Error error, tcp::socket socket) {
+        door.waits = false;
         if (!door.acceptor.is_open()) {
             return;
         }
         if (!error) {
-            take_(std::move(socket));
+            try {
+                take_(std::move(socket));
+            } catch (std::bad_alloc const&) { // that connection is closed
+                error = boost::system::errc::make_error_code(boost::system::errc::not_enough_memory);
+            }
+        }
+        if (!error) {
             accept_at(door);
             return;
         }
@@ -134,11 +147,14 @@ void Listener::accept_at(Door& door) {
         }
         door.again.expires_after(pause);
         door.again.async_wait([this, &door](Error) {
+            door.waits = false;
             if (door.acceptor.is_open()) {
                 accept_at(door);
             }
         });
+        door.waits = true;
     });
+    door.waits = true;
 }
 
 void Listener::close() {

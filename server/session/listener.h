@@ -37,6 +37,8 @@ public:
     void listen();
     /// Hands over each that connects, from `io`'s thread, until `close`.
     void accept(std::function<void(boost::asio::ip::tcp::socket)> take);
+    /// Where memory was missing for going on with that, goes on.
+    void accept_again();
     void close();
 
     /// With the real port; at least one.
@@ -48,6 +50,7 @@ private:
     struct Door {
         boost::asio::ip::tcp::acceptor acceptor;
         boost::asio::steady_timer again;
+        bool waits = false; ///< for a connection, or for the pause to be over
     };
 
     void bind(std::vector<boost::asio::ip::address> const& addresses, std::uint16_t port, std::string const& place);

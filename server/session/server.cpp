@@ -3,8 +3,10 @@
 #include <csignal>
 #include <map>
 #include <mutex>
+#include <new>
 #include <random>
 #include <thread>
+#include <utility>
 
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/signal_set.hpp>
@@ -84,7 +86,7 @@ struct Server::Impl {
     SessionMemory memory;
     WaitingRoom waiting;
     TokenGuesses guesses;
-    LogLimit wrong_tokens, turned_away; ///< for what the log says of them
+    LogLimit wrong_tokens, turned_away, without_memory; ///< for what the log says of them
     std::minstd_rand random{std::random_device{}()};
     Farewells farewells;
 
@@ -94,10 +96,13 @@ struct Server::Impl {
         std::string source;
         std::unique_ptr<asio::steady_timer> start; ///< null: at once
         bool admitted = false;
+        bool was_ended = false; ///< at the last heartbeat, and is here all the same
     };
     mutable std::mutex sessions_mutex;
     std::map<std::uint64_t, Connection> connections; ///< changed on the io thread only
     std::uint64_t next_id = 1;
+    bool beats = false; ///< the next heartbeat is on its way
+    bool ends = false; ///< and then none is
 
     SessionLoop loop;
 
@@ -107,7 +112,7 @@ struct Server::Impl {
           clock(!given.paused, steady_clock::now()), control(control_rule(given)),
           memory(given.session_megabytes * 1'000'000),
           loop(scene, std::move(clips), render_scene, clock, given.loop,
-               {[this] { return open_sessions(); }, [this] { asio::post(io, [this] { send_status(); }); }}) {
+               {[this] { return open_sessions(); }, [this] { post_status(); }}) {
         if (!options.tls_certificate.empty()) {
             tls = make_tls_server_context(options.tls_certificate, options.tls_key);
         }
@@ -125,6 +130,15 @@ struct Server::Impl {
         return open;
     }
 
+    /// From any thread.
+    void post_status() {
+        try {
+            asio::post(io, [this] { send_status(); });
+        } catch (std::bad_alloc const&) { // the next heartbeat says the same
+        }
+    }
+
+    /// Throws std::bad_alloc, and then nothing is left of the connection.
     void add_connection(tcp::socket socket) {
         boost::system::error_code error;
         auto const endpoint = socket.remote_endpoint(error);
@@ -132,6 +146,18 @@ struct Server::Impl {
             return; // it is gone already
         }
         std::uint64_t const id = next_id++;
+        try {
+            add_connection(id, std::move(socket), endpoint);
+        } catch (std::bad_alloc const&) {
+            if (auto const found = connections.find(id); found != connections.end()) {
+                found->second.stream->close(); // it may have begun to read
+            }
+            forget(id);
+            throw;
+        }
+    }
+
+    void add_connection(std::uint64_t id, tcp::socket socket, tcp::endpoint const& endpoint) {
         std::string const source = source_of(endpoint.address());
         if (auto const dropped = waiting.enter(id, source, std::generate_canonical<double, 32>(random))) {
             auto const session = connections.at(*dropped).session;
@@ -215,13 +241,18 @@ struct Server::Impl {
     }
 
     void set_clock(ClockRequest const& request) {
-        if (clock_requests.add(request)) {
+        if (!clock_requests.add(request)) {
+            return;
+        }
+        try {
             clock_timer.expires_at(clock_requests.due());
             clock_timer.async_wait([this](boost::system::error_code error) {
                 if (!error) {
                     apply_clock_requests();
                 }
             });
+        } catch (std::bad_alloc const&) {
+            apply_clock_requests(); // nobody would come for them later
         }
     }
 
@@ -237,23 +268,29 @@ struct Server::Impl {
 
     void end_session(std::uint64_t id, std::string const& reason) {
         // Later: the session is still on the stack.
-        asio::post(io, [this, id, reason] {
-            auto const found = connections.find(id);
-            if (found == connections.end()) {
-                return; // two threads ended it at once
-            }
-            log_end(id, found->second, reason);
-            farewells.add(found->second.stream);
-            waiting.leave(id);
-            memory.release(id);
-            control.leave(id);
-            {
-                std::scoped_lock const lock(sessions_mutex);
-                connections.erase(found);
-            }
-            send_status(); // it may be another's turn to control
-        });
+        asio::post(io, [this, id, reason] { remove(id, reason); });
         loop.wake();
+    }
+
+    void remove(std::uint64_t id, std::string const& reason) {
+        auto const found = connections.find(id);
+        if (found == connections.end()) {
+            return; // two threads ended it at once
+        }
+        log_end(id, found->second, reason);
+        auto const stream = found->second.stream;
+        forget(id);
+        farewells.add(stream);
+        send_status(); // it may be another's turn to control
+    }
+
+    /// Gives back all that it had. Takes no memory for that.
+    void forget(std::uint64_t id) {
+        waiting.leave(id);
+        memory.release(id);
+        control.leave(id);
+        std::scoped_lock const lock(sessions_mutex);
+        connections.erase(id);
     }
 
     void log_end(std::uint64_t id, Connection const& connection, std::string const& reason) {
@@ -290,19 +327,78 @@ struct Server::Impl {
         }
     }
 
+    /// Those that ended when there was no memory for all that belongs to it.
+    void drop_remains() {
+        std::vector<std::uint64_t> remains;
+        for (auto& [id, connection] : connections) {
+            if (connection.was_ended) {
+                remains.push_back(id);
+            }
+            connection.was_ended = connection.session->has_ended();
+        }
+        for (std::uint64_t const id : remains) {
+            connections.at(id).stream->close();
+            remove(id, "no memory left");
+        }
+    }
+
+    void drop_stuck_connections() {
+        std::vector<std::shared_ptr<Session>> stuck;
+        for (auto const& [id, connection] : connections) {
+            if (connection.session->is_stuck()) {
+                stuck.push_back(connection.session);
+            }
+        }
+        for (auto const& session : stuck) {
+            session->end("the server has no memory left", true);
+        }
+    }
+
     void beat() {
+        if (ends) {
+            return;
+        }
         timer.expires_after(heartbeat);
         timer.async_wait([this](boost::system::error_code error) {
+            beats = false;
             if (!error) {
+                drop_stuck_connections();
+                drop_remains();
                 drop_overdue_connections();
                 send_status();
                 beat();
             }
         });
+        beats = true;
+    }
+
+    /// Until everything is closed. Memory that is missing for something that is no session's own is missing for a
+    /// moment, and what has not been done for that is done then.
+    void run_io() {
+        for (bool is_to_recover = false;;) {
+            try {
+                if (std::exchange(is_to_recover, false)) {
+                    listener->accept_again();
+                    if (!beats) {
+                        beat();
+                    }
+                    drop_stuck_connections();
+                }
+                io.run();
+                return;
+            } catch (std::bad_alloc const&) {
+                is_to_recover = true;
+                if (auto const more = without_memory.next(steady_clock::now())) {
+                    spdlog::warn("no memory left for a moment{}", *more);
+                }
+                std::this_thread::sleep_for(std::chrono::milliseconds(5));
+            }
+        }
     }
 
     void shut_down() {
         boost::system::error_code ignored;
+        ends = true;
         listener->close();
         timer.cancel();
         clock_timer.cancel();
@@ -356,7 +452,7 @@ void Server::run(bool handle_signals) {
     impl_->beat();
     std::jthread const loop([this] { impl_->loop.run(); });
     try {
-        impl_->io.run(); // returns when everything is closed
+        impl_->run_io();
     } catch (...) {
         impl_->loop.stop();
         throw;

@@ -58,6 +58,11 @@ bool Session::is_open() const {
     return open_;
 }
 
+bool Session::has_ended() const {
+    std::scoped_lock const lock(mutex_);
+    return ended_;
+}
+
 std::uint32_t Session::codings() const {
     std::scoped_lock const lock(mutex_);
     return codings_;

@@ -53,6 +53,9 @@ public:
     /// The server cannot go on with this viewer, which is told the reason, one line, as is whoever waits for `ended`.
     void end(std::string const& reason, bool again = false);
     bool is_open() const;
+    bool has_ended() const;
+    /// As of its stream.
+    bool is_stuck() const { return stream_->is_stuck(); }
     /// What the viewer can read, as its Hello said.
     std::uint32_t codings() const;
     /// Replaces `events` by those that have come since the last call, in their order; of cameras, settings and changes

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <new>
+#include <thread>
 #include <utility>
 
 #include <tbb/global_control.h>
@@ -19,6 +21,7 @@ namespace {
 constexpr std::size_t many_threads = 5;
 /// A viewer that took nothing in its turns for so long leaves its share of the time to the others.
 constexpr std::chrono::milliseconds sharing_time{250};
+constexpr std::chrono::milliseconds short_pause{5};
 
 std::size_t thread_count() {
     return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
@@ -73,21 +76,30 @@ void SessionLoop::run() {
             }
             wake_ = false;
         }
-        Sessions const sessions = events_.open_sessions();
-        bool const rendered = give_turns(sessions, std::chrono::steady_clock::now());
-        if (rendered || finish_rendered()) {
-            continue;
+        try {
+            serve_once();
+        } catch (std::bad_alloc const&) { // it was for none of the sessions, which are all served later
+            std::this_thread::sleep_for(short_pause);
         }
-        // Nothing to do until a viewer or the clock says so. While the clock runs every display frame is worth a look.
-        bool const playing =
-            scene_.is_animated() && clock_.state(std::chrono::steady_clock::now()).playing && !sessions.empty();
-        std::unique_lock lock(mutex_);
-        auto const woken = [this] { return wake_ || stop_; };
-        if (playing || waits_for_room_) { // the link's time passes without a word from it
-            woken_.wait_for(lock, std::chrono::milliseconds(5), woken);
-        } else {
-            woken_.wait(lock, woken);
-        }
+    }
+}
+
+/// A turn for each, and where there was nothing to do in them a wait.
+void SessionLoop::serve_once() {
+    Sessions const sessions = events_.open_sessions();
+    bool const rendered = give_turns(sessions, std::chrono::steady_clock::now());
+    if (rendered || finish_rendered()) {
+        return;
+    }
+    // Nothing to do until a viewer or the clock says so. While the clock runs every display frame is worth a look.
+    bool const playing =
+        scene_.is_animated() && clock_.state(std::chrono::steady_clock::now()).playing && !sessions.empty();
+    std::unique_lock lock(mutex_);
+    auto const woken = [this] { return wake_ || stop_; };
+    if (playing || waits_for_room_) { // the link's time passes without a word from it
+        woken_.wait_for(lock, short_pause, woken);
+    } else {
+        woken_.wait(lock, woken);
     }
 }
 

@@ -58,6 +58,7 @@ private:
     struct Viewer;
     struct Pipeline;
 
+    void serve_once();
     bool give_turns(Sessions const& sessions, WallTime now);
     bool give_turn(std::shared_ptr<Session> const& session, Viewer& viewer, ClockState const& clock);
     std::size_t sharers(Viewer const& served) const;

@@ -30,7 +30,9 @@ ScenePose const& PosedScene::pose_of(SceneTime time) {
 
 void PosedScene::pose(SceneTime time) {
     if (rendered_ != time) {
-        render_scene_.set_pose(pose_of(time));
+        ScenePose const& wanted = pose_of(time);
+        rendered_.reset(); // for when it fails half way
+        render_scene_.set_pose(wanted);
         rendered_ = time;
     }
 }

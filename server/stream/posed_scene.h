@@ -2,6 +2,7 @@
 // rendered. A resource: posing moves the renderer's scene.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -36,7 +37,7 @@ private:
     bool const animated_;
     std::vector<bool> moving_cameras_;
     ScenePose pose_; ///< evaluated last
-    SceneTime rendered_ = 0;
+    std::optional<SceneTime> rendered_ = 0; ///< as which it is to be rendered; nothing: not before it is posed
 };
 
 } // namespace framelet

@@ -53,6 +53,8 @@ void add_live_verbs(CLI::App& app, VerbOptions& options, LiveVerbOptions& live, 
     };
     add("live", "The real programs as a person runs them, every method: pictures a second, errors, costs",
         add_live_options, [&] { return answer_live(live, bundled_scenes(), options.costs_file); });
+    add("soak", "A server in bad weather for long: whether pictures stay exact, and nothing is lost (else exit code 1)",
+        add_soak_options, [&] { return answer_soak(live, scene_file("vehicle_chase")); });
     add("replay", "A recorded session through the same pipeline: whether the same bytes come out", add_replay_options,
         [&] { return answer_replay(live); });
     add("serve", "Serves a method to `look`, for `live`", add_serve_options, [&] {

@@ -158,6 +158,42 @@ void write_files(std::filesystem::path const& folder) {
                                              "2/1/1 3/1/1\nf 1//1 2//1 3//1\n"));
 }
 
+/// Of a viewer after its hello, which answers what comes as long as it is in order; between them turns without a word.
+void write_session(std::filesystem::path const& folder, std::string const& name, std::vector<Message> const& messages) {
+    std::vector<std::uint8_t> bytes;
+    for (Message const& message : messages) {
+        std::vector<std::uint8_t> body;
+        append(body, encode_message(message));
+        bytes.push_back(static_cast<std::uint8_t>(body.size()));
+        bytes.push_back(static_cast<std::uint8_t>(body.size() >> 8));
+        bytes.insert(bytes.end(), body.begin(), body.end());
+        bytes.insert(bytes.end(), {0, 0, 0, 0});
+    }
+    write(folder / "session" / name, bytes);
+}
+
+void write_sessions(std::filesystem::path const& folder) {
+    auto const camera = [](std::uint64_t number, Viewport viewport) {
+        Camera seen;
+        seen.position.x = 0.1f * static_cast<float>(number);
+        return CameraUpdate{{number, seen, viewport}, -1};
+    };
+    ClockRequest clock;
+    clock.set = ClockRequest::time | ClockRequest::playing | ClockRequest::speed;
+    clock.state = {0.5, true, -2};
+    write_session(folder, "looks", {camera(1, {64, 48}), Ack{1, 1000, 100}, camera(2, {64, 48}), Ack{2, 20'000, 100}});
+    write_session(folder, "resizes", {camera(1, {64, 48}), camera(2, {33, 17}), Ack{1, 1000, 100}, camera(3, {120, 90})});
+    write_session(folder, "lets_go", {camera(1, {64, 48}), Ack{1, 1000, 100}, LetGo{{{1, Tile{1}}, {1, Tile{5}}}}, clock});
+    write_session(folder, "wants", {ViewerSettings{1, 0.5f, true}, camera(1, {64, 48}), ViewerSettings{-1, 0, false},
+                                    clock, Ack{1, 0, 0}, Ack{2, 0, 0}, camera(2, {64, 48}), Failure{"enough"}});
+}
+
+void write_secrets(std::filesystem::path const& folder) {
+    write(folder / "token" / "token", bytes_of(std::string(1, '\0') + " 0123456789abcdef0123456789abcdef \r\nmore\n"));
+    write(folder / "token" / "known", bytes_of("\1a.example:7070 AA:BB\nrender.example:7071 authorities\n"));
+    write(folder / "token" / "changed", bytes_of("\1render.example:7070 AA:CC\n"));
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -192,6 +228,8 @@ int main(int argc, char** argv) {
         }
     }
     write_files(folder);
+    write_sessions(folder);
+    write_secrets(folder);
     int number = 0;
     SceneCameraInfo const camera{"camera", {}};
     for (Message const& message :

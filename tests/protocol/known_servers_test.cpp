@@ -43,6 +43,14 @@ TEST_F(KnownServers, OneThatAnAuthorityVouchedForStaysSo) {
     EXPECT_TRUE(judge_certificate(file_, "one:7070", "").is_trusted);
 }
 
+/// As editors leave it that end no last line.
+TEST_F(KnownServers, AFileWhoseLastLineHasNoEndIsAddedTo) {
+    std::ofstream(file_) << "one:7070 AA:01";
+    EXPECT_TRUE(judge_certificate(file_, "two:7070", "BB:02").is_trusted);
+    EXPECT_FALSE(judge_certificate(file_, "two:7070", "CC:03").is_trusted) << "it has been remembered";
+    EXPECT_EQ(judge_certificate(file_, "one:7070", "AA:01").notice, "");
+}
+
 TEST_F(KnownServers, WhatCannotBeRememberedIsNotTrusted) {
     std::filesystem::create_directory(file_);
     EXPECT_FALSE(judge_certificate(file_, "one:7070", "AA:01").is_trusted);

@@ -17,6 +17,8 @@ public:
     std::string peer() const override { return "nobody"; }
 
     void bring(Message const& message) { handlers_.on_message(message); }
+    /// What the callbacks hold is released, as when a connection has ended.
+    void forget_handlers() { handlers_ = {}; }
 
     bool is_closed = false;
 

@@ -26,16 +26,14 @@ public:
     }
 
     /// Does nothing where the server has ended the connection.
-    void send(Bytes const& body) {
-        Bytes frame(4);
-        for (std::size_t i = 0; i < frame.size(); ++i) {
-            frame[i] = static_cast<std::byte>(body.size() >> (8 * i));
-        }
-        frame.insert(frame.end(), body.begin(), body.end());
-        boost::system::error_code ignored;
-        boost::asio::write(socket_, boost::asio::buffer(frame), ignored);
-    }
+    void send(Bytes const& body) { write(frame_of(body)); }
     void send(Message const& message) { send(encode_message(message)); }
+    /// No more than the first half of it.
+    void send_half(Message const& message) {
+        Bytes frame = frame_of(encode_message(message));
+        frame.resize(frame.size() / 2);
+        write(frame);
+    }
 
     /// Nothing once the connection has ended, or where nothing comes.
     std::optional<Message> receive() {
@@ -74,6 +72,20 @@ public:
     }
 
 private:
+    static Bytes frame_of(Bytes const& body) {
+        Bytes frame(4);
+        for (std::size_t i = 0; i < frame.size(); ++i) {
+            frame[i] = static_cast<std::byte>(body.size() >> (8 * i));
+        }
+        frame.insert(frame.end(), body.begin(), body.end());
+        return frame;
+    }
+
+    void write(Bytes const& bytes) {
+        boost::system::error_code ignored;
+        boost::asio::write(socket_, boost::asio::buffer(bytes), ignored);
+    }
+
     /// By the system's own call: Asio's takes a timeout for a reason to wait on.
     bool read(void* to, std::size_t size) {
         return ::recv(socket_.native_handle(), to, size, MSG_WAITALL) == static_cast<ssize_t>(size);

@@ -242,6 +242,10 @@ struct LinkEmulator::Proxy {
 
     void close() {
         acceptor.close();
+        cut();
+    }
+
+    void cut() {
         for (auto const& known : connections) {
             if (SharedConnection const connection = known.lock()) {
                 connection->close();
@@ -260,6 +264,10 @@ LinkEmulator::LinkEmulator(std::uint16_t target_port, LinkParameters const& link
 LinkEmulator::~LinkEmulator() {
     asio::post(proxy_->io, [this] { proxy_->close(); });
     proxy_->thread.join(); // every coroutine ends first, so that none outlives what it refers to
+}
+
+void LinkEmulator::cut() {
+    asio::post(proxy_->io, [this] { proxy_->cut(); });
 }
 
 std::uint16_t LinkEmulator::port() const {

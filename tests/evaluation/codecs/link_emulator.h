@@ -22,6 +22,9 @@ public:
     ~LinkEmulator();
 
     std::uint16_t port() const;
+    /// Ends every connection where it is, amid whatever is on its way; whoever comes next is let through. From any
+    /// thread.
+    void cut();
 
 private:
     struct Proxy;

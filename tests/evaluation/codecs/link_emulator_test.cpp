@@ -212,6 +212,27 @@ TEST(LinkEmulator, EndsWithBytesOnTheirWay) {
     EXPECT_LT(seconds_since(start), 10);
 }
 
+TEST(LinkEmulator, ACutEndsWhoIsThereAndLetsTheNextOneThrough) {
+    std::string const word = "welcome";
+    asio::io_context io;
+    tcp::acceptor acceptor(io, {asio::ip::address_v4::loopback(), 0});
+    LinkEmulator emulator(acceptor.local_endpoint().port(), {});
+    for (int i = 0; i < 3; ++i) {
+        Client client(emulator.port());
+        tcp::socket served = acceptor.accept();
+        asio::write(served, asio::buffer(word));
+        Bytes came(word.size());
+        asio::read(client.socket, asio::buffer(came)); // before that it might not be a connection yet
+        EXPECT_EQ(std::string(came.begin(), came.end()), word);
+        emulator.cut();
+        EXPECT_TRUE(client.read_all().empty());
+        error_code ended;
+        unsigned char byte = 0;
+        asio::read(served, asio::buffer(&byte, 1), ended);
+        EXPECT_TRUE(ended);
+    }
+}
+
 TEST(LinkEmulator, RefusesWhatNoLinkIs) {
     LinkParameters link;
     link.delay_seconds = -1;

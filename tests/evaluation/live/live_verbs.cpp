@@ -86,6 +86,19 @@ void add_replay_options(CLI::App& verb, LiveVerbOptions& options) {
     verb.add_option("RECORDING", options.recording, "What framelet-server --record-events wrote")->required();
 }
 
+void add_soak_options(CLI::App& verb, LiveVerbOptions& options) {
+    SoakOptions& soak = options.soak;
+    verb.add_option("--scenes,--scene", options.scenes, "Scene files, which share the time (default: vehicle_chase)");
+    verb.add_option("--seconds", soak.seconds, "How long all of it takes")
+        ->check(number_in(1.0, 1e6))
+        ->capture_default_str();
+    verb.add_option("--viewers", soak.viewers, "Viewers that stay")->check(CLI::Range(1, 100))->capture_default_str();
+    verb.add_option("--storm", soak.storm_seconds, "How long each storm takes, seconds")
+        ->check(number_in(0.1, 3600.0))
+        ->capture_default_str();
+    verb.add_option("--seed", soak.seed, "Of what happens when")->capture_default_str();
+}
+
 json answer_live(LiveVerbOptions& options, std::vector<std::filesystem::path> const& bundled,
                  std::filesystem::path const& costs_file) {
     LiveOptions& live = options.live;
@@ -148,6 +161,25 @@ json answer_replay(LiveVerbOptions& options) {
     std::printf("byte-identical\n");
     return {{"scene", served.scene},  {"turns", figures.turns},     {"batches", figures.batches},
             {"bytes", figures.bytes}, {"seconds", figures.seconds}, {"identical", true}};
+}
+
+json answer_soak(LiveVerbOptions& options, std::filesystem::path const& usual) {
+    std::vector<std::filesystem::path> scenes = options.scenes;
+    if (scenes.empty()) {
+        scenes.push_back(usual);
+    }
+    SoakOptions soak = options.soak;
+    soak.seconds /= static_cast<double>(scenes.size());
+    json runs = json::array();
+    std::size_t failures = 0;
+    for (std::filesystem::path const& file : scenes) {
+        runs.push_back(run_soak(*load_bench_scene(file), soak));
+        failures += runs.back()["failures"].size();
+    }
+    if (failures > 0) {
+        throw ConnectionError(std::to_string(failures) + " failures, see above");
+    }
+    return runs;
 }
 
 } // namespace framelet::bench

@@ -1,4 +1,4 @@
-// The verbs of real programs: `live`, what its processes run (`serve`, `look`), and `replay`.
+// The verbs of real programs: `live`, what its processes run (`serve`, `look`), `soak`, and `replay`.
 #pragma once
 
 #include <filesystem>
@@ -10,6 +10,7 @@
 #include "tests/evaluation/live/crowd.h"
 #include "tests/evaluation/live/live.h"
 #include "tests/evaluation/live/serve.h"
+#include "tests/evaluation/soak/soak.h"
 
 namespace CLI {
 class App;
@@ -27,6 +28,7 @@ struct LiveVerbOptions {
     LookOptions look;
     std::string server; ///< HOST:PORT, of `look`
     std::filesystem::path recording;
+    SoakOptions soak;
 };
 
 // The options must outlive the parsing.
@@ -35,6 +37,7 @@ void add_live_options(CLI::App& verb, LiveVerbOptions& options);
 void add_serve_options(CLI::App& verb, LiveVerbOptions& options);
 void add_look_options(CLI::App& verb, LiveVerbOptions& options);
 void add_replay_options(CLI::App& verb, LiveVerbOptions& options);
+void add_soak_options(CLI::App& verb, LiveVerbOptions& options);
 
 nlohmann::json answer_live(LiveVerbOptions& options, std::vector<std::filesystem::path> const& bundled,
                            std::filesystem::path const& costs_file);
@@ -42,5 +45,7 @@ nlohmann::json answer_serve(LiveVerbOptions& options, std::filesystem::path cons
 nlohmann::json answer_look(LiveVerbOptions& options, std::filesystem::path const& costs_file);
 /// Throws InputError where the replayed bytes are others than the recorded ones.
 nlohmann::json answer_replay(LiveVerbOptions& options);
+/// `usual`: the scene where none is named. Several share the time. Throws ConnectionError where something has failed.
+nlohmann::json answer_soak(LiveVerbOptions& options, std::filesystem::path const& usual);
 
 } // namespace framelet::bench

@@ -1,0 +1,41 @@
+// A short one: that a healthy server comes through, and that what is looked at is.
+#include "tests/evaluation/soak/soak.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace framelet::bench {
+namespace {
+
+TEST(Soak, AServerComesThroughABitOfIt) {
+    auto const scene = load_bench_scene(FRAMELET_SOURCE_DIR "/scenes/vehicle_chase.glb");
+    SoakOptions options;
+    options.viewers = 3;
+    options.seconds = 6;
+    options.storm_seconds = 2;
+    nlohmann::json const figures = run_soak(*scene, options);
+    EXPECT_TRUE(figures["failures"].empty()) << figures["failures"];
+    ASSERT_FALSE(figures["rounds"].empty());
+    int events = 0;
+    for (auto const& round : figures["rounds"]) {
+        events += round["events"].get<int>();
+        EXPECT_EQ(round["exact"], options.viewers);
+        EXPECT_GT(round["resident_bytes"], 10e6);
+        EXPECT_GT(round["descriptors"], options.viewers);
+    }
+    EXPECT_GT(events, 0);
+}
+
+/// The server has another scene than the one that the reference is rendered of.
+TEST(Soak, SaysWhereAPictureIsNotWhatItShouldBe) {
+    auto const scene = load_bench_scene(FRAMELET_SOURCE_DIR "/scenes/vehicle_chase.glb");
+    scene->file = FRAMELET_SOURCE_DIR "/scenes/globe.glb";
+    SoakOptions options;
+    options.viewers = 1;
+    options.seconds = 1;
+    options.storm_seconds = 0.5;
+    EXPECT_FALSE(run_soak(*scene, options)["failures"].empty());
+}
+
+} // namespace
+} // namespace framelet::bench

@@ -1,0 +1,101 @@
+// Memory that runs out anywhere in a viewer: a call throws, or the session ends and another begins, or nothing is missed;
+// what goes on comes to the exact picture.
+#include <gtest/gtest.h>
+
+#include "client/client_core.h"
+#include "common/error.h"
+#include "common/program_failure.h"
+#include "tests/faults/failing_allocations.h"
+#include "tests/loopback/process.h"
+
+namespace framelet::test {
+namespace {
+
+constexpr Viewport viewport{96, 64};
+
+ConnectionOptions options_of(std::string const& address) {
+    ConnectionOptions options;
+    options.server = parse_server_address(address);
+    options.reconnect = true;
+    return options;
+}
+
+/// Until the picture is complete; false where that does not come.
+bool come_to_rest(ClientCore& core, Picture& picture) {
+    std::vector<PixelRect> changed;
+    auto const deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    while (std::chrono::steady_clock::now() < deadline) {
+        bool const complete = core.is_complete();
+        core.update_picture(picture, changed);
+        if (complete) {
+            return true;
+        }
+        core.wait_for_news(std::chrono::milliseconds(20));
+    }
+    return false;
+}
+
+enum class Outcome { complete, thrown, not_complete };
+
+/// Connects, looks somewhere, then elsewhere. The core is gone afterwards, whatever has happened.
+Outcome look(ConnectionOptions const& options, Picture& picture) {
+    try {
+        ClientCore core(options);
+        core.set_view(core.welcome().start_camera, {64, 48});
+        std::vector<PixelRect> changed;
+        for (int i = 0; i < 3; ++i) {
+            core.wait_for_news(std::chrono::milliseconds(50));
+            core.update_picture(picture, changed);
+        }
+        core.set_view(core.welcome().start_camera, viewport);
+        return come_to_rest(core, picture) ? Outcome::complete : Outcome::not_complete;
+    } catch (std::bad_alloc const&) {
+        return Outcome::thrown;
+    } catch (ConnectionError const&) {
+        return Outcome::thrown;
+    }
+}
+
+TEST(ClientAllocation, FailsAndIsSaidOrMadeUpFor) {
+    ServerProcess const server(FRAMELET_SOURCE_DIR "/scenes/vehicle_chase.glb",
+                               {"--paused", "--exposure", "0", "--insecure"});
+    ConnectionOptions const options = options_of(server.address());
+    Picture exact;
+    ASSERT_EQ(look(options, exact), Outcome::complete);
+    std::uint64_t allocations = 0;
+    {
+        FailingAllocation const counts(UINT64_MAX);
+        Picture again;
+        ASSERT_EQ(look(options, again), Outcome::complete);
+        ASSERT_EQ(again, exact);
+        allocations = counts.count();
+    }
+    std::int64_t const live = live_allocations();
+    int complete = 0, thrown = 0;
+    for (std::uint64_t const number : sampled_allocations(allocations, 60)) {
+        Picture picture;
+        Outcome outcome{};
+        {
+            FailingAllocation const fails(number);
+            outcome = look(options, picture);
+        }
+        ASSERT_NE(outcome, Outcome::not_complete) << "after allocation " << number << " failed";
+        if (outcome == Outcome::complete) {
+            EXPECT_EQ(picture, exact) << "after allocation " << number << " failed";
+            ++complete;
+        } else {
+            ++thrown;
+        }
+    }
+    EXPECT_GT(complete, 1) << "it comes back by itself after some";
+    EXPECT_GT(thrown, 1) << "some were the painter's";
+    EXPECT_LT(live_allocations() - live, thrown / 2) << "what has failed gives back what it had";
+}
+
+TEST(ClientAllocation, ProgramsSayWhatIsMissing) {
+    EXPECT_NE(std::string(failure_text(std::bad_alloc())).find("memory"), std::string::npos);
+    EXPECT_STREQ(failure_text(ConnectionError("gone")), "gone");
+}
+
+} // namespace
+} // namespace framelet::test

@@ -1,0 +1,62 @@
+// What users keep of secrets: files of tokens and of known servers, whatever is in them. Input: one byte, what the file
+// is; its content.
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <unistd.h>
+
+#include "common/error.h"
+#include "protocol/known_servers.h"
+#include "protocol/message.h"
+#include "protocol/token.h"
+
+namespace {
+
+using namespace framelet;
+
+/// What is read is a token that can be sent, and lets in nobody who knows less or other than it.
+void read_token(std::filesystem::path const& file) {
+    std::string const token = read_token_file(file);
+    FRAMELET_CHECK(token.size() >= min_token_bytes);
+    Message const sent = decode_message(encode_message(Hello{protocol_version, token}));
+    FRAMELET_CHECK(same_token(std::get<Hello>(sent).token, token));
+    FRAMELET_CHECK(!same_token(token.substr(1), token) && !same_token(token + token.back(), token));
+    for (std::size_t i = 0; i < token.size(); ++i) {
+        std::string other = token;
+        other[i] = static_cast<char>(other[i] ^ 1);
+        FRAMELET_CHECK(!same_token(other, token));
+    }
+}
+
+/// A server is trusted with one certificate alone from the first time on, whatever else the file says.
+void judge(std::filesystem::path const& file) {
+    std::string const server = "render.example:7070";
+    if (judge_certificate(file, server, "AA:BB").is_trusted) {
+        CertificateVerdict const again = judge_certificate(file, server, "AA:BB");
+        FRAMELET_CHECK(again.is_trusted && again.notice.empty());
+        FRAMELET_CHECK(!judge_certificate(file, server, "AA:BC").is_trusted);
+    }
+}
+
+} // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size) {
+    if (size < 1) {
+        return 0;
+    }
+    static std::filesystem::path const file =
+        std::filesystem::temp_directory_path() / ("framelet-fuzz-token-" + std::to_string(::getpid()));
+    std::ofstream(file, std::ios::binary)
+        .write(reinterpret_cast<char const*>(data + 1), static_cast<std::streamsize>(size - 1));
+    try {
+        if (data[0] % 2 == 0) {
+            read_token(file);
+        } else {
+            judge(file);
+        }
+    } catch (InputError const&) {
+    }
+    std::filesystem::remove(file);
+    return 0;
+}
