@@ -12,8 +12,8 @@ namespace framelet {
 /// The coarsest quality that is chosen: its loss, about 32 dB, is what sampling leaves of a picture that moves anyway.
 inline constexpr std::uint8_t most_loss = 24;
 /// The finest quality of what is rendered while anything moves, however wide the link: it is replaced within moments,
-/// and exact samples of it take 3.5 times the bytes for 0.1 dB of the picture that is shown.
-inline constexpr std::uint8_t moving_loss = 6;
+/// and exact samples of it take 2.5 times the bytes for 0.2 dB of the picture that is shown.
+inline constexpr std::uint8_t moving_loss = 3;
 
 /// Goes step by step, so that one odd measurement does not show.
 class QualityChoice {

@@ -57,7 +57,8 @@ Majority majority_of(Framelet const& child, std::size_t first) {
 
 } // namespace
 
-void merge_child(Framelet const& child, float exposure, Framelet& geometry, DisplayFramelet& display) {
+void merge_child(Framelet const& child, float exposure, bool will_be_moved, Framelet& geometry,
+                 DisplayFramelet& display) {
     constexpr std::size_t quarter = framelet_samples / four_rays;
     FRAMELET_CHECK(geometry.tile == child.tile.parent() && display.tile == geometry.tile);
     if (!child.body.empty()) {
@@ -70,15 +71,20 @@ void merge_child(Framelet const& child, float exposure, Framelet& geometry, Disp
     for (std::size_t i = 0; i < quarter; ++i) {
         std::size_t const from = i * four_rays;
         std::size_t const to = first + i;
+        Majority const majority = majority_of(child, from);
+        bool const keeps_bodies_out = will_be_moved && !child.body.empty() && child.body[majority.ray] == static_body;
         Vec3 light(0);
+        int count = 0;
         for (std::size_t ray = from; ray < from + four_rays; ++ray) {
-            light += tone_map(Vec3(child.red[ray], child.green[ray], child.blue[ray]) * exposure);
+            if (!keeps_bodies_out || child.body[ray] == static_body) {
+                light += tone_map(Vec3(child.red[ray], child.green[ray], child.blue[ray]) * exposure);
+                ++count;
+            }
         }
-        light *= 1.0f / four_rays;
+        light *= 1.0f / static_cast<float>(count);
         display.red[to] = srgb_byte_from_linear(light.r);
         display.green[to] = srgb_byte_from_linear(light.g);
         display.blue[to] = srgb_byte_from_linear(light.b);
-        Majority const majority = majority_of(child, from);
         geometry.depth[to] = majority.depth;
         geometry.reflects[to] = child.reflects[majority.ray];
         if (!child.body.empty()) {
@@ -91,8 +97,8 @@ void merge_child(Framelet const& child, float exposure, Framelet& geometry, Disp
 }
 
 std::uint32_t render_display(RenderScene const& scene, ViewRays const& rays, ImagePlane const& plane, Tile tile,
-                             float exposure, int rays_per_sample, Framelet& scratch, Framelet& geometry,
-                             DisplayFramelet& display) {
+                             float exposure, int rays_per_sample, bool will_be_moved, Framelet& scratch,
+                             Framelet& geometry, DisplayFramelet& display) {
     FRAMELET_CHECK(rays_per_sample == single_ray || rays_per_sample == four_rays);
     if (rays_per_sample == single_ray) {
         std::uint32_t const segments = render_framelet(scene, rays, plane, tile, 0, scratch);
@@ -108,7 +114,7 @@ std::uint32_t render_display(RenderScene const& scene, ViewRays const& rays, Ima
     std::uint32_t segments = 0;
     for (std::uint32_t quadrant = 0; quadrant < four_rays; ++quadrant) {
         segments += render_framelet(scene, rays, plane, tile.child(quadrant), 0, scratch);
-        merge_child(scratch, exposure, geometry, display);
+        merge_child(scratch, exposure, will_be_moved, geometry, display);
     }
     return segments;
 }

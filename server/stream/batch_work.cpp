@@ -22,7 +22,8 @@ void BatchWork::render(PosedScene const& scene) {
     std::atomic<std::uint64_t> segments = 0;
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
         segments.fetch_add(render_display(scene.render_scene(), rays, plane, order.plan.tiles[i], order.state.exposure,
-                                          order.plan.rays_per_sample, fresh_.local(), rendered_[i], display_[i]),
+                                          order.plan.rays_per_sample, order.plan.is_mirrored, fresh_.local(),
+                                          rendered_[i], display_[i]),
                            std::memory_order_relaxed);
     });
     if (order.plan.checks) {

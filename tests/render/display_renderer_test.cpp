@@ -30,7 +30,7 @@ template <class Radiance>
 void merge_children(Radiance&& radiance, Framelet& geometry, DisplayFramelet& display) {
     geometry.tile = display.tile = parent;
     for (std::uint32_t quadrant = 0; quadrant < 4; ++quadrant) {
-        merge_child(make_child(quadrant, radiance), 2, geometry, display);
+        merge_child(make_child(quadrant, radiance), 2, false, geometry, display);
     }
 }
 
@@ -83,7 +83,7 @@ TEST(MergeChild, BodiesAndMotionComeAlong) {
             child.velocity.assign(framelet_samples, Vec3(1, 2, 3));
             child.reflects.set();
         }
-        merge_child(child, 1, geometry, display);
+        merge_child(child, 1, false, geometry, display);
     }
     ASSERT_EQ(geometry.body.size(), framelet_samples);
     ASSERT_EQ(geometry.velocity.size(), framelet_samples);
@@ -117,10 +117,32 @@ TEST(MergeChild, TheSurfaceIsWhatMostRaysShow) {
             child.depth[i] = one.depth[i % 4];
             child.body[i] = one.body[i % 4];
         }
-        merge_child(child, 1, geometry, display);
+        merge_child(child, 1, false, geometry, display);
         for (std::size_t i = 0; i < framelet_samples / 4; ++i) {
             ASSERT_EQ(geometry.body[i], one.shown);
             ASSERT_NEAR(1 / geometry.depth[i], 1 / one.wanted, 1e-6f);
+        }
+    }
+}
+
+TEST(MergeChild, WhatNeverMovesGetsNoLightOfBodiesWhereTheyWillHaveGone) {
+    for (BodyNumber const most : {static_body, BodyNumber{7}}) { // what three of four rays show
+        for (bool const will_be_moved : {false, true}) {
+            Framelet geometry;
+            DisplayFramelet display;
+            geometry.tile = display.tile = parent;
+            Framelet child = make_child(0, [](float, float) { return 0.0f; });
+            child.body.resize(framelet_samples);
+            for (std::size_t i = 0; i < framelet_samples; ++i) {
+                child.body[i] = (i % 4 == 2) != (most == static_body) ? static_body : BodyNumber{7};
+                child.red[i] = child.green[i] = child.blue[i] = child.body[i] == static_body ? 0.0f : 1e6f;
+            }
+            merge_child(child, 1, will_be_moved, geometry, display);
+            float const share = most == static_body ? (will_be_moved ? 0.0f : 0.25f) : 0.75f;
+            for (std::size_t i = 0; i < framelet_samples / 4; ++i) {
+                ASSERT_EQ(geometry.body[i], most);
+                ASSERT_NEAR(display.green[i], srgb_byte_from_linear(share), 1);
+            }
         }
     }
 }
@@ -159,7 +181,7 @@ TEST(DisplayRenderer, FourRaysASampleAverageToTheDirectPictureOf64APixel) {
                 make_tile(plane.max_depth(), static_cast<std::uint32_t>(x / 4), static_cast<std::uint32_t>(y / 4));
             auto const error = [&](int rays_per_sample) {
                 std::uint32_t const segments =
-                    render_display(ready, rays, plane, tile, 1.5f, rays_per_sample, scratch, geometry, display);
+                    render_display(ready, rays, plane, tile, 1.5f, rays_per_sample, false, scratch, geometry, display);
                 EXPECT_GE(segments, static_cast<std::uint32_t>(framelet_samples * rays_per_sample));
                 EXPECT_EQ(display.tile, tile);
                 EXPECT_EQ(geometry.tile, tile);
