@@ -305,9 +305,6 @@ std::vector<std::uint8_t> const& AdaptiveRefresh::learn(RefreshPlan const& plan,
             history_.store(entry);
         }
     }
-    if (plan.is_mirrored) { // it does not hold the same where it is needed, or this would not have been planned
-        std::ranges::fill(send_, std::uint8_t{1});
-    }
     return send_;
 }
 

@@ -49,7 +49,8 @@ void learn_batch(PlaceField& field, RefreshPlan const& plan, BatchFindings const
         Patch const& patch = plan.patches[i];
         auto const places =
             std::span(findings.places).subspan(findings.firsts[i].second, field.range_of(patch.node).size());
-        bool const is_needed = learn_patch(field, patch, places, findings.same_since[i], plan.still_since, plan.now);
+        bool const is_needed =
+            learn_patch(field, patch, places, findings.same_since[i], plan.still_since, plan.now, !plan.is_mirrored);
         needed.insert(needed.end(), plan.tile_counts[i], is_needed ? 1 : 0);
     }
 }

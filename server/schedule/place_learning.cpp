@@ -169,13 +169,13 @@ double examine_patch(PlaceField const& field, Patch const& patch, std::span<Disp
 }
 
 bool learn_patch(PlaceField& field, Patch const& patch, std::span<PlaceFindings const> places, double same_since,
-                 double still_since, double now) {
+                 double still_since, double now, bool withholds) {
     int const level = field.level_of(patch.depth);
     PlaceField::Range const range = field.range_of(patch.node);
     FRAMELET_CHECK(places.size() == range.last - range.first);
     // The viewer has it, or better, and either has had it since before it looked the same, or what it got later is of a
     // place that has not changed meanwhile: nothing to send.
-    bool known = same_since > never;
+    bool known = withholds && same_since > never;
     for (std::uint32_t i = range.first; i < range.last; ++i) {
         Place const& place = field[i];
         bool const goes_on = std::min(place.rendered, std::max(place.changed, place.doubted)) <= same_since;

@@ -35,9 +35,10 @@ double examine_patch(PlaceField const& field, Patch const& patch, std::span<Disp
 
 /// Takes the findings of a patch that was rendered at `now` into account. `same_since`: what `examine_patch` returned;
 /// `still_since`: when anything that is to be seen moved last.
-/// Returns whether the viewer needs the patch: false where it holds the very same.
+/// Returns whether the viewer needs the patch: false where it holds the very same and `withholds`, since what the
+/// viewer moves takes the place of what it holds there, finer or not.
 bool learn_patch(PlaceField& field, Patch const& patch, std::span<PlaceFindings const> places, double same_since,
-                 double still_since, double now);
+                 double still_since, double now, bool withholds);
 
 /// Drift since a rendering of it that was planned at `now`, which may have been a while ago.
 float drift_since(Place const& place, double now);

@@ -71,7 +71,8 @@ public:
           port_(static_cast<std::uint16_t>(std::stoi(server_port(server_)))), strangers_(port_),
           first_descriptors_(holdings().descriptors) {
         for (int i = 0; i < options.viewers; ++i) {
-            // Links keep their own time; what they do goes on until the last calm has had all the time that it may take.
+            // Links keep their own time; what they do goes on until the last calm has had all the time that it may
+            // take.
             viewers_.push_back(std::make_unique<SoakViewer>(port_, link_of(i, options.seconds + 2 * patience)));
         }
     }
@@ -204,6 +205,21 @@ private:
         return true;
     }
 
+    /// In words.
+    static std::string difference(Picture const& one, Picture const& other) {
+        if (one.rgba.size() != other.rgba.size()) {
+            return "another size";
+        }
+        std::size_t count = 0;
+        int most = 0;
+        for (std::size_t i = 0; i < one.rgba.size(); ++i) {
+            int const bytes = std::abs(int{one.rgba[i]} - int{other.rgba[i]});
+            count += bytes > 0 ? 1 : 0;
+            most = std::max(most, bytes);
+        }
+        return std::to_string(count) + " bytes differ, by " + std::to_string(most) + " at most";
+    }
+
     /// How many viewers show exactly what they should.
     std::size_t count_exact(SceneTime moment) {
         std::size_t exact = 0;
@@ -211,7 +227,8 @@ private:
             bool const equal = viewers_[i]->picture() == reference(i, moment);
             exact += equal ? 1 : 0;
             if (!equal) {
-                fail("the picture of viewer " + std::to_string(i) + " is not the reference");
+                fail("the picture of viewer " + std::to_string(i) +
+                     " is not the reference: " + difference(viewers_[i]->picture(), reference(i, moment)));
             }
         }
         return exact;
@@ -231,9 +248,8 @@ private:
         }
         reference = fresh.picture();
         pose_at(scene_, moment);
-        double const psnr = psnr_from_mse(
-            mean_squared_error(reference, render_picture(*scene_.render_scene, view.camera, view.viewport,
-                                                         scene_.exposure, 8)));
+        double const psnr = psnr_from_mse(mean_squared_error(
+            reference, render_picture(*scene_.render_scene, view.camera, view.viewport, scene_.exposure, 8)));
         if (psnr < least_psnr) {
             fail("the reference of viewer " + std::to_string(viewer) + " is " + std::to_string(psnr) +
                  " dB off the direct render");
