@@ -50,6 +50,8 @@ constexpr std::array<float, sampling_levels> moved_shares = missed_shares(finest
 /// Means of four rays are as good as samples so many times closer to each other: by the mean's definition where they
 /// stay on their own pixels, by measurement once moved, where they blur and wear out before they have repaid four rays.
 constexpr float standing_supersampled = 0.5f, moved_supersampled = 0.95f;
+constexpr float standing_supersampled_share = missed_share(standing_supersampled),
+                moved_supersampled_share = missed_share(moved_supersampled);
 
 /// Whether what shows of a piece are means of rays; of samples finer than pixels the viewer moves their means.
 bool shows_means(Piece const& piece, bool stands) {
@@ -196,7 +198,7 @@ void MomentPlan::add_gains(Mirror const& mirror, PlaceField const& field, std::u
             for (std::size_t level = 0; level < leaf.gain.size(); ++level) {
                 leaf.gain[level] += gain(shares[level]);
             }
-            leaf.supersampled_gain += gain(missed_share(supersampled));
+            leaf.supersampled_gain += gain(stands ? standing_supersampled_share : moved_supersampled_share);
         }
     }
     for (int level = field.least_level(); level < sampling_levels; ++level) {

@@ -18,7 +18,8 @@ struct BatchFindings {
     std::vector<double> same_since; ///< of the patches, as `examine_patch` says
 };
 
-/// Replaces `findings` by what the framelets of a plan say, of all patches in parallel. Of one ray for each sample.
+/// Replaces `findings` by what the framelets of a plan say, of all patches in parallel. `history`: none
+/// where samples are means of four rays, since beside single ones they would seem to have changed.
 void examine_batch(PlaceField const& field, RefreshPlan const& plan, std::span<DisplayFramelet const> framelets,
                    std::span<Framelet const> rendered, LumaHistory const& history, BatchFindings& findings);
 
@@ -26,8 +27,7 @@ void examine_batch(PlaceField const& field, RefreshPlan const& plan, std::span<D
 void learn_batch(PlaceField& field, RefreshPlan const& plan, BatchFindings const& findings,
                  std::vector<std::uint8_t>& needed);
 
-/// Of a plan with more rays for each sample nothing is learnt of the picture: compared with single rays it would seem
-/// to have changed.
+/// The viewer holds what a plan shows with four rays a sample. At rest that is all that is learnt of it.
 void learn_supersampled(PlaceField& field, RefreshPlan const& plan);
 
 } // namespace framelet
