@@ -29,7 +29,7 @@ void SceneClock::apply(ClockRequest const& request, WallTime now) {
 ClockState SceneClock::advanced(WallTime now) const {
     ClockState state = at_mark_;
     if (state.playing) {
-        double const elapsed = std::chrono::duration<double>(now - mark_).count();
+        double const elapsed = std::chrono::duration<double>(std::max(now, mark_) - mark_).count();
         state.time = std::clamp(state.time + static_cast<double>(state.speed) * elapsed, 0.0, max_scene_time);
     }
     return state;

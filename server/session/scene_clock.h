@@ -16,6 +16,7 @@ class SceneClock {
 public:
     SceneClock(bool playing, WallTime now);
 
+    /// What was set last begins when it was set, for those who ask of a moment before that, too.
     ClockState state(WallTime now) const;
     /// Takes the fields that the request sets.
     void apply(ClockRequest const& request, WallTime now);

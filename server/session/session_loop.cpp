@@ -106,11 +106,10 @@ void SessionLoop::serve_once() {
 /// One turn for each; true when something was rendered or learnt.
 bool SessionLoop::give_turns(Sessions const& sessions, WallTime now) {
     forget_ended(sessions);
-    ClockState const clock = clock_.state(now);
     waits_for_room_ = false;
     bool worked = false;
     for (auto const& session : sessions) {
-        bool const served = contain(*session, [&] { worked |= give_turn(session, viewer_of(*session), clock); });
+        bool const served = contain(*session, [&] { worked |= give_turn(session, viewer_of(*session), now); });
         if (!served) {
             drop_rendered(*session);
         }
@@ -142,9 +141,11 @@ SessionLoop::Viewer& SessionLoop::viewer_of(Session const& session) {
     return *viewer;
 }
 
-bool SessionLoop::give_turn(std::shared_ptr<Session> const& session, Viewer& viewer, ClockState const& clock) {
+bool SessionLoop::give_turn(std::shared_ptr<Session> const& session, Viewer& viewer, WallTime round_began) {
     ViewerStream& stream = *viewer.stream;
     viewer.version = session->take_events(viewer.events);
+    // Not before: what is complete would be so at the time that was, and be reported of the one that was set meanwhile.
+    ClockState const clock = clock_.state(round_began);
     double const rate = rate_.samples_per_second > 0 ? rate_.samples_per_second : first_samples_per_second;
     double const speed = clock.playing ? double{clock.speed} : 0;
     WallTime const now = std::chrono::steady_clock::now();

@@ -60,7 +60,7 @@ private:
 
     void serve_once();
     bool give_turns(Sessions const& sessions, WallTime now);
-    bool give_turn(std::shared_ptr<Session> const& session, Viewer& viewer, ClockState const& clock);
+    bool give_turn(std::shared_ptr<Session> const& session, Viewer& viewer, WallTime round_began);
     std::size_t sharers(Viewer const& served) const;
     Viewer& viewer_of(Session const& session);
     void note_rate(TurnFigures const& figures, double seconds);

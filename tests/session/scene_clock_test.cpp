@@ -18,6 +18,7 @@ TEST(SceneClock, RunsStandsAndSeeks) {
 
     clock.apply({ClockRequest::time | ClockRequest::playing | ClockRequest::speed, {5, true, 2}}, start + 10s);
     EXPECT_DOUBLE_EQ(clock.state(start + 13s).time, 11);
+    EXPECT_DOUBLE_EQ(clock.state(start + 9s).time, 5) << "for who asks late of a moment before";
 }
 
 TEST(SceneClock, StaysInRange) {

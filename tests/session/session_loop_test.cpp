@@ -3,6 +3,7 @@
 #include "server/session/session_loop.h"
 
 #include <atomic>
+#include <functional>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -18,14 +19,21 @@ namespace {
 struct Script {
     std::atomic<bool> takes_more = true; ///< there is something to render, and room for it
     std::atomic<double> samples_per_second = 0; ///< in its last turn
+    std::atomic<double> time_after_change = -1; ///< of the scene, in its first turn that knows the clock was set
 };
 
 class ScriptedStream final : public ViewerStream {
 public:
-    explicit ScriptedStream(Script& script) : script_(script) {}
+    ScriptedStream(Script& script, std::function<void()> on_plan) : script_(script), on_plan_(std::move(on_plan)) {}
 
-    void take(StreamEvent const&) override {}
+    void take(StreamEvent const& event) override {
+        clock_changed_ = clock_changed_ || std::holds_alternative<ClockChanged>(event.what);
+    }
     Step plan(Turn const& turn, PosedScene&) override {
+        if (std::exchange(clock_changed_, false)) {
+            script_.time_after_change = turn.present;
+        }
+        on_plan_();
         script_.samples_per_second = turn.samples_per_second;
         return script_.takes_more ? Step::render : Step::wait;
     }
@@ -40,7 +48,9 @@ public:
 
 private:
     Script& script_;
+    std::function<void()> const on_plan_;
     TurnFigures const figures_;
+    bool clock_changed_ = false;
 };
 
 /// A loop with so many viewers.
@@ -52,7 +62,8 @@ public:
         }
         LoopOptions options;
         options.make_stream = [this, next = std::size_t{0}](StreamOptions const&, std::uint32_t) mutable {
-            return std::make_unique<ScriptedStream>(scripts_[next++]); // in the order of the sessions
+            std::size_t const viewer = next++; // in the order of the sessions
+            return std::make_unique<ScriptedStream>(scripts_[viewer], [this, viewer] { plan_of(viewer); });
         };
         loop_ = std::make_unique<SessionLoop>(scene_, std::vector<Index>{}, render_scene_, clock_, std::move(options),
                                               SessionLoop::Events{[this] { return sessions_; }, [] {}});
@@ -64,6 +75,15 @@ public:
     }
 
     void set_takes_more(std::size_t viewer, bool takes_more) { scripts_[viewer].takes_more = takes_more; }
+    /// The scene's time when the second viewer hears that the clock was set, which is in the first one's turn.
+    double time_after_setting(SceneTime time) {
+        set_time_ = time;
+        auto const end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+        while (scripts_[1].time_after_change < 0 && std::chrono::steady_clock::now() < end) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        return scripts_[1].time_after_change;
+    }
     /// Waits until the viewer's share of the time is one of so many; false where that never comes.
     bool shares_among(std::size_t viewer, int sharers) const {
         auto const end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
@@ -89,9 +109,17 @@ private:
         return session;
     }
 
+    void plan_of(std::size_t viewer) {
+        if (double const time = viewer == 0 ? set_time_.exchange(-1) : -1; time >= 0) {
+            clock_.apply({ClockRequest::time, {time, false, 1}}, std::chrono::steady_clock::now());
+            sessions_[1]->note_clock_change();
+        }
+    }
+
     Scene const scene_ = triangle_scene();
     RenderScene render_scene_{scene_, std::nullopt};
     SceneClock clock_{false, std::chrono::steady_clock::now()};
+    std::atomic<double> set_time_ = -1;
     std::vector<Script> scripts_;
     SessionLoop::Sessions sessions_;
     std::unique_ptr<SessionLoop> loop_;
@@ -110,6 +138,12 @@ TEST(SessionLoop, TimeIsSharedAmongThoseThatUseIt) {
     loop.set_takes_more(1, true);
     loop.set_takes_more(2, true);
     EXPECT_TRUE(loop.shares_among(0, 3));
+}
+
+TEST(SessionLoop, WhoKnowsThatTheClockWasSetIsServedByWhatItWasSetTo) {
+    RunningLoop loop(2);
+    EXPECT_EQ(loop.time_after_setting(7), 7)
+        << "else what is complete would be reported of a time that it does not show";
 }
 
 } // namespace
