@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "client/making_time.h"
-#include "client/picture_maker.h"
 #include "client/server_connection.h"
+#include "client/session_pictures.h"
 #include "common/error.h"
 #include "protocol/batch_codec.h"
 
@@ -78,11 +78,7 @@ struct ClientCore::Impl {
 
     /// Guards what pictures are made of. Whoever has it may take `mutex` as well, not the other way round.
     std::mutex picture_mutex;
-    std::unique_ptr<PictureMaker> maker; ///< null: nothing has come in this session
-    /// Of a session before, which is shown until this one has brought a whole picture. They are not mixed: the server
-    /// knows nothing of what is held of before, and would let it stay where it is wrong by now.
-    std::unique_ptr<PictureMaker> earlier;
-    SceneTime paused_time = 0; ///< which that one shows
+    SessionPictures pictures;
     std::vector<Batch> taken; ///< scratch
 
     mutable std::mutex mutex; // guards all that follows, but the connection; never held for long
@@ -153,28 +149,24 @@ struct ClientCore::Impl {
         status.controls = greeting.controls;
     }
 
-    Viewport wanted_viewport() const {
+    NumberedView wanted_view() const {
         std::lock_guard const lock(mutex);
-        return view.view.viewport;
+        return view.view;
     }
 
     /// What has come is kept for the time without a session.
     void pause_session(std::string reason) {
         {
             std::lock_guard const picture_lock(picture_mutex);
-            if (maker && maker->viewport() == wanted_viewport()) {
+            if (pictures.is_for(wanted_view())) {
                 take_in();
             }
-            if (maker && !maker->is_empty() && (!earlier || replaces_earlier())) {
-                earlier = std::move(maker);
-            }
-            maker.reset();
             std::lock_guard const lock(mutex);
             arrived.clear();
             statistics.waiting_bytes = 0;
             interruption = std::move(reason);
             status.clock = clock_at(Clock::now());
-            paused_time = status.clock.time;
+            pictures.pause(status.clock.time);
             status.clock.playing = false;
             status.converged = false;
             statistics.converged = false;
@@ -190,7 +182,7 @@ struct ClientCore::Impl {
             std::lock_guard const picture_lock(picture_mutex);
             std::lock_guard const lock(mutex);
             if (greeting.scene_identity == 0 || greeting.scene_identity != welcome.scene_identity) {
-                earlier.reset();
+                pictures.forget_earlier();
                 starts_clean = true;
                 ++scene_number;
             }
@@ -212,19 +204,6 @@ struct ClientCore::Impl {
             send_waiting_view();
         }
         tell_news();
-    }
-
-    /// Under the picture's lock.
-    bool replaces_earlier() const {
-        return maker->viewport() == earlier->viewport() ? maker->coverage() >= 1 : !maker->is_empty();
-    }
-
-    /// Under the picture's lock.
-    PictureMaker& shown_maker() {
-        if (earlier && replaces_earlier()) {
-            earlier.reset();
-        }
-        return earlier ? *earlier : *maker;
     }
 
     void tell_news() {
@@ -271,6 +250,11 @@ struct ClientCore::Impl {
         tell_news();
     }
 
+    /// Under the lock.
+    bool is_wanted(Batch const& batch) const {
+        return batch.view.held_since == view.view.held_since && batch.view.viewport == view.view.viewport;
+    }
+
     void receive_batch(EncodedBatch const& encoded) {
         Clock::time_point const received = Clock::now();
         Batch batch;
@@ -299,7 +283,7 @@ struct ClientCore::Impl {
                                 encoded.tiles.size() * sizeof(Tile) + batch_header_bytes;
             statistics.decode_seconds += seconds_between(received, decoded);
             std::size_t const samples = batch.framelets.size() * framelet_samples;
-            bool const is_stale = batch.view.viewport != view.view.viewport;
+            bool const is_stale = !is_wanted(batch);
             ++statistics.batches;
             statistics.framelets += batch.framelets.size();
             statistics.samples += samples;
@@ -320,39 +304,30 @@ struct ClientCore::Impl {
 
     /// Puts all that has arrived into what pictures are made of. Under the picture's lock, and not the other one.
     void take_in() {
-        Viewport viewport;
+        NumberedView wanted;
         PictureSettings settings;
+        std::uint64_t stale = 0;
         {
             std::lock_guard const lock(mutex);
             taken.swap(arrived);
+            stale = std::erase_if(taken, [this](Batch const& batch) { return !is_wanted(batch); });
             statistics.waiting_bytes = 0;
-            viewport = view.view.viewport;
+            wanted = view.view;
             settings = picture_settings;
         }
-        if (!maker || maker->viewport() != viewport) {
-            maker = std::make_unique<PictureMaker>(viewport, settings);
-        }
-        maker->set(settings);
-        if (earlier) {
-            earlier->set(settings);
-        }
+        PictureMaker& maker = pictures.prepare(wanted, settings);
         Clock::time_point const before = Clock::now();
-        std::uint64_t stale = 0;
         for (Batch const& batch : taken) {
-            if (batch.view.viewport == viewport) {
-                maker->insert(batch);
-            } else {
-                ++stale;
-            }
+            maker.insert(batch);
         }
-        tell_let_go();
+        tell_let_go(maker);
         Clock::time_point const after = Clock::now();
-        double const coverage = taken.empty() ? -1 : maker->coverage();
+        double const coverage = taken.empty() ? -1 : maker.coverage();
         std::lock_guard const lock(mutex);
         statistics.stale_batches += stale;
         statistics.insert_seconds += seconds_between(before, after);
-        has_picture = !maker->is_empty();
-        note_held(coverage, after);
+        has_picture = !maker.is_empty();
+        note_held(maker, coverage, after);
         constexpr std::size_t most_spares = 4;
         while (!taken.empty() && spare_batches.size() < most_spares) {
             spare_batches.push_back(std::move(taken.back()));
@@ -362,8 +337,8 @@ struct ClientCore::Impl {
     }
 
     /// Under the picture's lock.
-    void tell_let_go() {
-        maker->take_let_go(let_go);
+    void tell_let_go(PictureMaker& maker) {
+        maker.take_let_go(let_go);
         std::ranges::sort(let_go);
         for (std::size_t first = 0; first < let_go.size(); first += max_let_go) {
             std::size_t const end = std::min(first + max_let_go, let_go.size());
@@ -373,14 +348,14 @@ struct ClientCore::Impl {
     }
 
     /// Under the lock. `coverage` < 0: nothing has come.
-    void note_held(double coverage, Clock::time_point now) {
+    void note_held(PictureMaker const& maker, double coverage, Clock::time_point now) {
         if (coverage >= 0) {
             statistics.coverage = coverage;
-            statistics.cached_framelets = maker->pool().framelet_count();
+            statistics.cached_framelets = maker.pool().framelet_count();
         }
-        statistics.cached_bytes = maker->memory_bytes() + (earlier ? earlier->memory_bytes() : 0);
-        statistics.lag_seconds = maker->is_smooth() ? picture_settings.lag_seconds : 0;
-        is_smooth = maker->is_smooth();
+        statistics.cached_bytes = pictures.memory_bytes();
+        statistics.lag_seconds = maker.is_smooth() ? picture_settings.lag_seconds : 0;
+        is_smooth = maker.is_smooth();
         if (statistics.full_picture_seconds < 0 && first_camera_time && coverage >= 1) {
             statistics.full_picture_seconds = seconds_between(*first_camera_time, now);
         }
@@ -482,8 +457,10 @@ void ClientCore::set_view(Camera const& wanted, Viewport viewport, int scene_cam
         impl_->send_waiting_view();
         return;
     }
-    impl_->has_picture = impl_->has_picture && view.view.viewport == viewport;
-    view = {{view.view.number + 1, camera, viewport}, scene_camera};
+    bool const is_held = view.view.number > 0 && view.view.viewport == viewport;
+    impl_->has_picture = impl_->has_picture && is_held;
+    std::uint64_t const number = view.view.number + 1;
+    view = {{number, camera, viewport, is_held ? view.view.held_since : number}, scene_camera};
     impl_->statistics.converged = false;
     impl_->set_cameras.push_back({view.view.number, Clock::now()});
     if (impl_->set_cameras.size() > Impl::most_sent_cameras) {
@@ -548,11 +525,9 @@ bool ClientCore::update_picture(Picture& picture, std::vector<PixelRect>& change
         std::lock_guard const picture_lock(core.picture_mutex);
         core.take_in();
         begun = Clock::now();
-        PictureMaker& maker = core.shown_maker();
-        PictureRequest request = core.picture_request();
-        request.present = &maker == core.earlier.get() ? core.paused_time : request.present;
-        drawn = maker.show(request, picture, changed);
+        drawn = core.pictures.show(core.picture_request(), picture, changed);
         made = Clock::now();
+        PictureMaker const& maker = core.pictures.shown();
         camera = maker.shown_camera();
         time = maker.shown_time();
         camera_number = maker.shown_camera_number();
@@ -588,8 +563,8 @@ double ClientCore::making_seconds() const {
 
 void ClientCore::draw_overlay(DrawnOver overlay, Picture& picture) const {
     std::lock_guard const lock(impl_->picture_mutex);
-    if (impl_->maker) {
-        impl_->shown_maker().draw_over(overlay, picture);
+    if (impl_->pictures.current() != nullptr) {
+        impl_->pictures.shown().draw_over(overlay, picture);
     }
 }
 

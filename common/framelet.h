@@ -48,6 +48,9 @@ struct NumberedView {
     std::uint64_t number = 0;
     Camera camera;
     Viewport viewport;
+    /// The number of the view since which the viewer holds what it was sent: another viewport begins with nothing, and
+    /// so does the same one once more, whoever of the two has never heard of the one between.
+    std::uint64_t held_since = 0;
 
     bool operator==(NumberedView const&) const = default;
 };

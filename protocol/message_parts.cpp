@@ -56,11 +56,12 @@ char const* problem(Camera const& value) {
 Offset<wire::View> write(Builder& builder, NumberedView const& value) {
     wire::Viewport const viewport(static_cast<std::uint16_t>(value.viewport.width),
                                   static_cast<std::uint16_t>(value.viewport.height));
-    return wire::CreateView(builder, value.number, write(builder, value.camera), &viewport);
+    return wire::CreateView(builder, value.number, write(builder, value.camera), &viewport, value.held_since);
 }
 
 NumberedView read(wire::View const& wire) {
-    return {wire.number(), read(*wire.camera()), {wire.viewport()->width(), wire.viewport()->height()}};
+    return {
+        wire.number(), read(*wire.camera()), {wire.viewport()->width(), wire.viewport()->height()}, wire.held_since()};
 }
 
 char const* problem(NumberedView const& value) {

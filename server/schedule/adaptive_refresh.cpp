@@ -33,6 +33,12 @@ float mean_cost(std::span<RatedPatch const> rated, float share) {
     return samples > 0 ? 1 + share * (static_cast<float>(cost / samples) - 1) : 1.0f;
 }
 
+/// What means of four rays are compared with: to single rays they seem changed.
+LumaHistory const& no_history() {
+    static LumaHistory const empty(1);
+    return empty;
+}
+
 } // namespace
 
 bool AdaptiveRefresh::is_complete(ViewState const& state) const {
@@ -295,7 +301,7 @@ std::vector<std::uint8_t> const& AdaptiveRefresh::learn(RefreshPlan const& plan,
         learn_probes(place, probe_luma.subspan(probe, place.probe_count), plan.now);
         probe += place.probe_count;
     }
-    examine_batch(field_, plan, framelets, rendered, supersampled ? no_history_ : history_, findings_);
+    examine_batch(field_, plan, framelets, rendered, supersampled ? no_history() : history_, findings_);
     learn_batch(field_, plan, findings_, send_);
     release(field_, plan.patches, plan.now);
     if (supersampled) {

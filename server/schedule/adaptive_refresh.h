@@ -81,7 +81,6 @@ private:
     bool still_ = false; ///< what is to be seen is what the last plan was for
     PlaceField field_;
     LumaHistory history_;
-    LumaHistory const no_history_; ///< what means of four rays are compared with: to single rays they seem changed
     std::vector<LevelCosts> costs_; ///< of samples, by place; none where all cost the same
     /// Of a sample planned lately, as estimated. It begins below what pictures have, so that a slow link is not filled
     /// with the first of them (measured).

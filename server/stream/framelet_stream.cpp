@@ -15,6 +15,9 @@ FrameletStream::FrameletStream(StreamOptions const& options, std::uint32_t codin
 void FrameletStream::take(StreamEvent const& event) {
     if (auto const* const camera = std::get_if<CameraUpdate>(&event.what)) {
         if (!camera_ || camera->view.number > camera_->view.number) { // else a newer one is here already
+            if (camera_ && camera->view.held_since != camera_->view.held_since) {
+                forget_viewer();
+            }
             camera_ = *camera;
             if (camera->scene_camera < 0) {
                 forecast_.add(camera->view.camera, event.seconds);
@@ -38,6 +41,15 @@ void FrameletStream::take(StreamEvent const& event) {
     } else {
         moments_.forget();
     }
+}
+
+/// It holds nothing and knows of nothing.
+void FrameletStream::forget_viewer() {
+    std::uint64_t const batches = viewer_.batches;
+    viewer_ = {};
+    viewer_.batches = batches;
+    complete_ = false;
+    moments_.forget();
 }
 
 ViewState FrameletStream::state_at(SceneTime clock, PosedScene& scene) const {
@@ -180,6 +192,10 @@ void FrameletStream::render(PosedScene const& scene) {
 bool FrameletStream::learn(PosedScene const& scene) {
     learnt_ = earlier_ != nullptr ? std::exchange(earlier_, nullptr) : std::exchange(planned_, nullptr);
     FRAMELET_CHECK(learnt_ != nullptr);
+    if (learnt_->order.state.view.held_since != camera_->view.held_since) {
+        complete_ = false;
+        return false; // the viewer would not take it
+    }
     bool const sends = learnt_->learn(scene, viewer_);
     if (sends) {
         link_.begin(static_cast<double>(learnt_->batch().framelets.size() * framelet_samples));

@@ -61,6 +61,7 @@ private:
     Step plan_batch(Turn const& turn, ViewState const& present, PosedScene& scene);
     void plan_exactly(ViewState const& present, PosedScene const& scene);
     BatchWork& free_work();
+    void forget_viewer();
     void set_planned(BatchWork& work);
 
     StreamOptions const options_;

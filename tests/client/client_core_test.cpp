@@ -227,10 +227,40 @@ TEST(ClientCore, ANewViewportKeepsTheOldPictureUntilItsOwnContentComes) {
     server.send(constant_batch(small, small.pixel_depth(), 11, 1));
     ASSERT_TRUE(wait_for(core, [&] { return core.statistics().stale_batches == 1; }));
     EXPECT_FALSE(core.update_picture(picture, changed));
-    server.send(constant_batch(large, large.pixel_depth(), 20, 2));
+    Batch batch = constant_batch(large, large.pixel_depth(), 20, 2);
+    batch.view.held_since = 2;
+    server.send(batch);
     ASSERT_TRUE(wait_for(core, [&] { return core.update_picture(picture, changed); }));
     EXPECT_EQ(picture.width, 64);
     EXPECT_EQ(picture.row(39)[4 * 63], 20);
+}
+
+TEST(ClientCore, TheSameViewportOnceMoreBeginsWithNothingHeld) {
+    FakeServer server;
+    ClientCore core(options_for(server));
+    ImagePlane const plane(Viewport{32, 32});
+    Picture picture;
+    std::vector<PixelRect> changed;
+    core.set_view({}, plane.viewport());
+    server.send(constant_batch(plane, plane.pixel_depth(), 10, 1));
+    ASSERT_TRUE(wait_for(core, [&] { return core.update_picture(picture, changed); }));
+    core.set_view({}, {64, 40});
+    core.set_view({}, plane.viewport()); // the one between may never be sent
+    EXPECT_FALSE(core.update_picture(picture, changed)) << "nothing is held";
+    server.send(constant_batch(plane, plane.pixel_depth(), 11, 1));
+    ASSERT_TRUE(wait_for(core, [&] { return core.statistics().stale_batches == 1; }));
+    EXPECT_FALSE(core.update_picture(picture, changed)) << "it was on its way from before";
+    ASSERT_TRUE(server.wait_for([](std::vector<Message> const& messages) {
+        return std::ranges::any_of(messages, [](Message const& message) {
+            auto const* const camera = std::get_if<CameraUpdate>(&message);
+            return camera != nullptr && camera->view.held_since == 3;
+        });
+    }));
+    Batch batch = constant_batch(plane, plane.pixel_depth(), 12, 3);
+    batch.view.held_since = 3;
+    server.send(batch);
+    ASSERT_TRUE(wait_for(core, [&] { return core.update_picture(picture, changed); }));
+    EXPECT_EQ(picture.row(31)[4 * 31], 12);
 }
 
 TEST(ClientCore, ASmoothSceneIsShownLateAndArrives) {

@@ -38,6 +38,7 @@ inline Batch make_batch(ImagePlane const& plane, std::uint64_t number, std::vect
     Batch out;
     out.number = number;
     out.view.number = 1;
+    out.view.held_since = 1;
     out.view.viewport = plane.viewport();
     out.framelets = std::move(framelets);
     return out;

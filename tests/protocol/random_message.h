@@ -57,7 +57,7 @@ public:
     Viewport viewport() {
         return {static_cast<int>(number(1, max_viewport_side)), static_cast<int>(number(1, max_viewport_side))};
     }
-    NumberedView view() { return {any64(), camera(), viewport()}; }
+    NumberedView view() { return {any64(), camera(), viewport(), any64()}; }
     ClockState clock() { return {number(0, 1e9), coin(), small(-16, 16)}; }
 
     Welcome welcome() {

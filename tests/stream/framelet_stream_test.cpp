@@ -61,5 +61,45 @@ TEST(FrameletStream, AMomentIsOfTheCameraWithWhichItIsShownLast) {
     EXPECT_NEAR(rendered_ahead(10), 2 * moment_seconds, 1e-4) << "no more than another moment";
 }
 
+/// Framelets of all batches until nothing is left to do. All must be for a viewer that begins with this view.
+std::size_t sent_until_complete(Served& served, std::uint64_t held_since) {
+    std::size_t framelets = 0;
+    for (double now = 1; !served.stream.is_complete() && now < 100; now += 0.01) {
+        if (served.plan(now, 0.5, 0) != Step::render) {
+            continue;
+        }
+        served.stream.render(served.posed);
+        if (served.stream.learn(served.posed)) {
+            EXPECT_EQ(served.stream.learnt_batch().view.held_since, held_since);
+            framelets += served.stream.learnt_batch().framelets.size();
+            std::uint64_t const batch = served.stream.encode().number;
+            served.stream.take({now, BatchSent{batch, 100}});
+            served.stream.take({now, Ack{batch, 0, 0}});
+        }
+    }
+    EXPECT_TRUE(served.stream.is_complete());
+    return framelets;
+}
+
+TEST(FrameletStream, AViewerThatHasBegunAnewIsSentAllOfItOnceMore) {
+    Served served;
+    served.stream.take({0, CameraUpdate{{1, {}, {64, 48}, 1}, -1}});
+    std::size_t const all = sent_until_complete(served, 1);
+    ASSERT_GT(all, 0u);
+    served.stream.take({50, CameraUpdate{{2, {}, {64, 48}, 1}, -1}});
+    ASSERT_EQ(served.plan(50, 0.5, 0), Step::nothing) << "it has all";
+
+    served.stream.take({50, CameraUpdate{{3, {}, {32, 32}, 3}, -1}});
+    served.stream.take({50, CameraUpdate{{4, {}, {64, 48}, 4}, -1}});
+    EXPECT_EQ(sent_until_complete(served, 4), all);
+
+    served.stream.take({50, CameraUpdate{{9, {}, {64, 48}, 9}, -1}}); // of those between nobody has heard
+    ASSERT_EQ(served.plan(200, 0.5, 0), Step::render);
+    served.stream.render(served.posed);
+    served.stream.take({50, CameraUpdate{{11, {}, {64, 48}, 11}, -1}});
+    EXPECT_FALSE(served.stream.learn(served.posed)) << "the viewer would not take that";
+    EXPECT_EQ(sent_until_complete(served, 11), all);
+}
+
 } // namespace
 } // namespace framelet

@@ -1,0 +1,106 @@
+#include "client/session_pictures.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/common/synthetic_framelets.h"
+
+namespace framelet {
+namespace {
+
+ImagePlane const plane(Viewport{100, 60});
+
+/// All framelets of the finest tiles in columns left of this one have one value.
+Batch left_of(int column, std::uint8_t value) {
+    Batch batch = make_batch(plane, 1, {});
+    for (Tile const tile : visible_tiles(plane, plane.pixel_depth())) {
+        if (plane.tile_rect(tile).left < column) {
+            batch.framelets.push_back(constant_framelet(plane, tile, value));
+        }
+    }
+    return batch;
+}
+
+struct Shown {
+    SessionPictures pictures;
+    NumberedView view{1, {}, plane.viewport(), 1};
+    PictureRequest request;
+    Picture picture;
+    std::vector<PixelRect> changed;
+
+    std::uint64_t batches = 0;
+
+    void insert(Batch batch) {
+        batch.number = ++batches;
+        pictures.prepare(view, {}).insert(batch);
+    }
+    int at(int x) {
+        pictures.prepare(view, {});
+        pictures.show(request, picture, changed);
+        return picture.row(30)[4 * x];
+    }
+};
+
+TEST(SessionPictures, TheEarlierIsShownUntilTheNewHasNoMoreHoles) {
+    Shown shown;
+    shown.insert(left_of(100, 50));
+    EXPECT_EQ(shown.at(90), 50);
+    shown.pictures.pause(0);
+    EXPECT_EQ(shown.at(90), 50) << "nothing has come yet";
+    shown.insert(left_of(64, 70));
+    EXPECT_EQ(shown.at(10), 50) << "they are not mixed";
+    shown.insert(left_of(100, 80));
+    EXPECT_EQ(shown.at(10), 80);
+    EXPECT_EQ(shown.at(90), 80);
+}
+
+TEST(SessionPictures, APictureThatLacksNoMoreThanTheEarlierTakesItsPlace) {
+    Shown shown;
+    shown.insert(left_of(64, 50));
+    EXPECT_EQ(shown.at(10), 50);
+    shown.pictures.pause(0);
+    shown.insert(left_of(32, 70));
+    EXPECT_EQ(shown.at(10), 50);
+    shown.insert(left_of(64, 80));
+    EXPECT_EQ(shown.at(10), 80);
+}
+
+TEST(SessionPictures, ACompletePictureTakesTheEarliersPlaceHoweverMuchItCovers) {
+    Shown shown;
+    shown.insert(left_of(100, 50));
+    EXPECT_EQ(shown.at(10), 50);
+    shown.pictures.pause(0);
+    shown.insert(left_of(64, 70));
+    shown.request.is_settled = true;
+    EXPECT_EQ(shown.at(10), 70);
+}
+
+TEST(SessionPictures, ManyInterruptionsKeepTheLastPictureThatWasShown) {
+    Shown shown;
+    shown.insert(left_of(100, 50));
+    EXPECT_EQ(shown.at(10), 50);
+    shown.pictures.pause(0);
+    shown.insert(left_of(64, 70));
+    EXPECT_EQ(shown.at(10), 50);
+    shown.pictures.pause(0);
+    EXPECT_EQ(shown.at(90), 50);
+    EXPECT_EQ(shown.at(10), 50);
+    shown.insert(left_of(100, 80));
+    EXPECT_EQ(shown.at(10), 80);
+}
+
+TEST(SessionPictures, OfAnotherSizeTheFirstThatComesIsShown) {
+    Shown shown;
+    shown.insert(left_of(100, 50));
+    EXPECT_EQ(shown.at(10), 50);
+    shown.pictures.pause(0);
+    shown.view = {2, {}, {64, 60}, 2};
+    EXPECT_EQ(shown.at(10), 50);
+    EXPECT_EQ(shown.picture.width, 100);
+    ImagePlane const narrow(shown.view.viewport);
+    shown.insert(make_batch(narrow, 1, {constant_framelet(narrow, make_tile(narrow.pixel_depth(), 0, 1), 70)}));
+    EXPECT_EQ(shown.at(10), 70);
+    EXPECT_EQ(shown.picture.width, 64);
+}
+
+} // namespace
+} // namespace framelet
