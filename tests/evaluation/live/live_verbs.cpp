@@ -96,6 +96,12 @@ void add_soak_options(CLI::App& verb, LiveVerbOptions& options) {
     verb.add_option("--storm", soak.storm_seconds, "How long each storm takes, seconds")
         ->check(number_in(0.1, 3600.0))
         ->capture_default_str();
+    verb.add_option("--events", soak.events, "What happens in storms, as a multiple of the usual; 0: viewers only fly")
+        ->check(number_in(0.0, 100.0))
+        ->capture_default_str();
+    verb.add_option("--camera", options.live.camera_file, "Camera file to fly by, there and back, in storms");
+    verb.add_option("--size", options.soak_size, "Size of pictures until an event resizes them, WIDTHxHEIGHT")
+        ->capture_default_str();
     verb.add_option("--seed", soak.seed, "Of what happens when")->capture_default_str();
 }
 
@@ -170,6 +176,13 @@ json answer_soak(LiveVerbOptions& options, std::filesystem::path const& usual) {
     }
     SoakOptions soak = options.soak;
     soak.seconds /= static_cast<double>(scenes.size());
+    soak.viewport = parse_size(options.soak_size);
+    if (!options.live.camera_file.empty()) {
+        soak.flight = read_camera_path(options.live.camera_file);
+        if (!(soak.flight->duration() > 0)) {
+            throw InputError(options.live.camera_file.string() + ": there is nothing to fly by in it: it has one key");
+        }
+    }
     json runs = json::array();
     std::size_t failures = 0;
     for (std::filesystem::path const& file : scenes) {

@@ -29,6 +29,7 @@ struct LiveVerbOptions {
     std::string server; ///< HOST:PORT, of `look`
     std::filesystem::path recording;
     SoakOptions soak;
+    std::string soak_size = "320x180";
 };
 
 // The options must outlive the parsing.

@@ -73,7 +73,8 @@ public:
         for (int i = 0; i < options.viewers; ++i) {
             // Links keep their own time; what they do goes on until the last calm has had all the time that it may
             // take.
-            viewers_.push_back(std::make_unique<SoakViewer>(port_, link_of(i, options.seconds + 2 * patience)));
+            viewers_.push_back(
+                std::make_unique<SoakViewer>(port_, link_of(i, options.seconds + 2 * patience), options.viewport));
         }
     }
 
@@ -97,7 +98,8 @@ public:
             }
         }
         json figures{{"scene", scene_.name}, {"seed", options_.seed}, {"viewers", options_.viewers}};
-        figures["memory"] = judge_memory(rounds);
+        figures["memory"] = judge_memory(rounds, "the server's", "resident_bytes", true);
+        figures["viewers_memory"] = judge_memory(rounds, "the viewers'", "viewers_bytes", options_.events == 0);
         figures["rounds"] = std::move(rounds);
         end();
         figures["failures"] = failures_;
@@ -143,6 +145,8 @@ private:
         StormParameters parameters;
         parameters.viewers = options_.viewers;
         parameters.seconds = options_.storm_seconds;
+        parameters.viewer_events_per_second *= options_.events;
+        parameters.visits_per_second *= options_.events;
         parameters.seed = seed;
         std::vector<StormMoment> const coming = make_storm(parameters);
         double const began = seconds();
@@ -160,7 +164,7 @@ private:
             }
             strangers_.pass_time(now);
             for (auto const& viewer : viewers_) {
-                viewer->move(seconds());
+                viewer->move(seconds(), options_.flight);
             }
             most_resident = std::max(most_resident, holdings().resident_bytes);
             std::this_thread::sleep_for(step);
@@ -174,6 +178,10 @@ private:
 
     StillView view_of(std::size_t viewer, SceneTime moment) const {
         auto const number = static_cast<int>(viewer);
+        if (options_.flight) {
+            return {options_.flight->at(options_.flight->duration() * (number + 1) / (options_.viewers + 1)),
+                    options_.viewport, moment};
+        }
         CameraTurn const turn{5, 80};
         return {turned(viewers_.front()->start_camera(), turn, number), {160 + 17 * number, 90 + 9 * number}, moment};
     }
@@ -241,7 +249,7 @@ private:
             return reference;
         }
         StillView const view = view_of(viewer, moment);
-        SoakViewer fresh(port_, {});
+        SoakViewer fresh(port_, {}, view.viewport);
         double const began = seconds();
         while (!fresh.come_to_rest(view) && seconds() - began < patience) {
             std::this_thread::sleep_for(step);
@@ -268,12 +276,14 @@ private:
         }
     }
 
-    json judge_memory(json const& rounds) {
+    /// Over the second half's calms. `key`: of a round. What viewers hold depends on the sizes that events give them,
+    /// and is judged where there are none.
+    json judge_memory(json const& rounds, char const* whose, char const* key, bool is_judged) {
         std::vector<double> times, bytes;
         for (json const& round : rounds) {
             if (round["seconds"] > 0.5 * seconds()) {
                 times.push_back(round["seconds"]);
-                bytes.push_back(round["resident_bytes"]);
+                bytes.push_back(round[key]);
             }
         }
         if (times.size() < 3) {
@@ -281,10 +291,10 @@ private:
         }
         Trend const trend = trend_of(times, bytes);
         double const span = times.back() - times.front();
-        std::printf("%s: the server's memory goes by %+.2f MB an hour, standard error %.2f, of %.1f MB\n",
-                    scene_.name.c_str(), 3600e-6 * trend.slope, 3600e-6 * trend.slope_error, 1e-6 * trend.mean);
-        if (grows(trend, span, memory_noise)) {
-            fail("the server's memory has grown by " + std::to_string(1e-6 * trend.slope * span) +
+        std::printf("%s: %s memory goes by %+.2f MB an hour, standard error %.2f, of %.1f MB\n", scene_.name.c_str(),
+                    whose, 3600e-6 * trend.slope, 3600e-6 * trend.slope_error, 1e-6 * trend.mean);
+        if (is_judged && grows(trend, span, memory_noise)) {
+            fail(std::string(whose) + " memory has grown by " + std::to_string(1e-6 * trend.slope * span) +
                  " MB in the second half");
         }
         return {{"bytes_per_second", trend.slope},

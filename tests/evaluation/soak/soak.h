@@ -4,9 +4,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "client/camera_path.h"
 #include "tests/evaluation/bench_scene.h"
 
 namespace framelet::bench {
@@ -15,6 +17,10 @@ struct SoakOptions {
     int viewers = 8; ///< that stay
     double seconds = 3600;
     double storm_seconds = 6; ///< of each round; its calm takes as long as the pictures do
+    double events = 1; ///< in storms, as a multiple of the usual; 0: viewers only fly
+    Viewport viewport{320, 180}; ///< of viewers until an event resizes them
+    /// What viewers fly by in storms, there and back; empty: they look around from where the scene is seen first.
+    std::optional<CameraPath> flight;
     std::uint64_t seed = 1;
 };
 
@@ -23,7 +29,8 @@ struct SoakOptions {
 /// - in each calm: whether every viewer's picture is complete within two minutes, and equal to that of a viewer who
 ///   came for it over a link without limit, which is a direct render's but for what its samples are quantised to;
 ///   whether the server's descriptors are those of its viewers and no more;
-/// - over the second half's calms: whether the server's resident memory grows (`grows`);
+/// - over the second half's calms: whether the server's resident memory grows (`grows`), and, where viewers only fly,
+///   theirs;
 /// - at the end: whether without viewers it has the descriptors that it had at first, and ends without an error.
 nlohmann::json run_soak(BenchScene& scene, SoakOptions const& options);
 

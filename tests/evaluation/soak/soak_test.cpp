@@ -26,6 +26,24 @@ TEST(Soak, AServerComesThroughABitOfIt) {
     EXPECT_GT(events, 0);
 }
 
+TEST(Soak, ViewersThatOnlyFlyComeToRestWhereTheyPassed) {
+    auto const scene = load_bench_scene(FRAMELET_SOURCE_DIR "/scenes/vehicle_chase.glb");
+    SoakOptions options;
+    options.viewers = 2;
+    options.seconds = 3;
+    options.storm_seconds = 1.5;
+    options.events = 0;
+    options.viewport = {120, 80};
+    options.flight = parse_camera_path(R"({"keys": [{"time": 0, "position": [0, 2, 0], "target": [0, 1, -9]},
+                                       {"time": 1, "position": [5, 3, 0], "target": [0, 1, -9]}]})",
+                                       "flight");
+    nlohmann::json const figures = run_soak(*scene, options);
+    EXPECT_TRUE(figures["failures"].empty()) << figures["failures"];
+    ASSERT_FALSE(figures["rounds"].empty());
+    EXPECT_EQ(figures["rounds"][0]["events"], 0);
+    EXPECT_EQ(figures["rounds"][0]["exact"], 2);
+}
+
 /// The server has another scene than the one that the reference is rendered of.
 TEST(Soak, SaysWhereAPictureIsNotWhatItShouldBe) {
     auto const scene = load_bench_scene(FRAMELET_SOURCE_DIR "/scenes/vehicle_chase.glb");

@@ -1,14 +1,14 @@
 #include "tests/evaluation/soak/soak_viewer.h"
 
 #include <array>
+#include <cmath>
 
 #include "tests/evaluation/camera_turn.h"
 
 namespace framelet::bench {
 namespace {
 
-constexpr std::array<Viewport, 6> sizes{
-    Viewport{64, 48}, {160, 90}, {131, 97}, {320, 180}, {480, 270}, {640, 360}};
+constexpr std::array<Viewport, 6> sizes{Viewport{64, 48}, {160, 90}, {131, 97}, {320, 180}, {480, 270}, {640, 360}};
 constexpr CameraTurn look_around{40, 50};
 constexpr std::chrono::milliseconds clock_patience{500}; ///< until the scene's clock is asked for once more
 
@@ -33,8 +33,8 @@ ClockRequest clock_request(double chance) {
 
 } // namespace
 
-SoakViewer::SoakViewer(std::uint16_t server_port, LinkParameters const& link)
-    : link_(server_port, link), core_(options_of(link_.port())) {}
+SoakViewer::SoakViewer(std::uint16_t server_port, LinkParameters const& link, Viewport viewport)
+    : link_(server_port, link), core_(options_of(link_.port())), viewport_(viewport) {}
 
 void SoakViewer::take(StormMoment const& moment) {
     switch (moment.event) {
@@ -56,8 +56,9 @@ void SoakViewer::take(StormMoment const& moment) {
     }
 }
 
-void SoakViewer::move(double now) {
-    core_.set_view(turned(start_camera(), look_around, now), viewport_);
+void SoakViewer::move(double now, std::optional<CameraPath> const& flight) {
+    double const there_and_back = flight ? std::abs(std::remainder(now, 2 * flight->duration())) : 0;
+    core_.set_view(flight ? flight->at(there_and_back) : turned(start_camera(), look_around, now), viewport_);
     core_.update_picture(picture_, changed_);
 }
 

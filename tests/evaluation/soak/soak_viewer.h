@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "client/camera_path.h"
 #include "client/client_core.h"
 #include "tests/evaluation/codecs/link_emulator.h"
 #include "tests/evaluation/soak/storm.h"
@@ -21,12 +23,13 @@ struct StillView {
 class SoakViewer {
 public:
     /// Connects to the server at this port. Throws ConnectionError where that is refused.
-    SoakViewer(std::uint16_t server_port, LinkParameters const& link);
+    SoakViewer(std::uint16_t server_port, LinkParameters const& link, Viewport viewport);
 
     /// One of the events that happen to viewers.
     void take(StormMoment const& moment);
-    /// Looks around, and makes a picture of what is there. `now`: seconds.
-    void move(double now);
+    /// Flies there and back, or looks around where there is no flight, and makes a picture of what is there. `now`:
+    /// seconds.
+    void move(double now, std::optional<CameraPath> const& flight);
     /// Asks for this view and no other from here on, for the usual settings, and, where it may, for that time; makes a
     /// picture. True once the picture is complete.
     bool come_to_rest(StillView const& view);
@@ -40,7 +43,7 @@ public:
 private:
     LinkEmulator link_;
     ClientCore core_;
-    Viewport viewport_{320, 180};
+    Viewport viewport_;
     ViewerSettings settings_;
     Picture picture_;
     std::vector<PixelRect> changed_; ///< scratch
