@@ -1,4 +1,4 @@
-// From the depths and bodies of a framelet's samples to the few planes they lie on (ALGORITHMS section 7).
+// From the depths and bodies of a framelet's samples to the few planes they lie on (docs/ALGORITHM.md).
 // In: a framelet, how far off a layer may be. Out: its shape. The inverse of the view depth of a plane is affine on the
 // image plane of a perspective camera.
 #pragma once

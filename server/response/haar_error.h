@@ -9,7 +9,7 @@ namespace framelet {
 /// Spatial coefficients of the previous framelet of a place, octave after octave.
 using HaarHistory = ErrorHistory;
 
-/// Templates of `estimate_haar`, from `framelet-bench fit`.
+/// Templates of `estimate_haar`, fitted to errors of rendered pictures.
 inline constexpr RateTemplates haar_templates{{-16.5f, 5.25f}, {-11.75f, -3.125f}};
 
 /// Error of each block (004 section 5.3.4).

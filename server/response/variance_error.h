@@ -9,7 +9,7 @@ namespace framelet {
 /// Samples of the previous framelet of a place.
 using VarianceHistory = ErrorHistory;
 
-/// Templates of `estimate_variance`, from `framelet-bench fit`.
+/// Templates of `estimate_variance`, fitted to errors of rendered pictures.
 inline constexpr RateTemplates variance_templates{{-11.25f, 0.0f}, {-11.0f, -4.125f}};
 
 /// Error of each block, called as `estimate_haar` is: in space from the variance of its samples (004 eq. 5.5), in time

@@ -1,4 +1,4 @@
-// What a perfect viewer would show: the scene at many times, many samples a pixel (ALGORITHMS: stratified, box filter),
+// What a perfect viewer would show: the scene at many times, many samples a pixel (stratified, box filter),
 // kept on disk as PNG files, since it takes long. In: scene, size, times. Out: a picture for each time.
 #pragma once
 

@@ -39,7 +39,7 @@ void expect_covered_once(ImagePlane const& plane, std::vector<Tile> const& tiles
         << plane.viewport().width << "x" << plane.viewport().height;
 }
 
-/// ALGORITHMS section 1: tile 4, two levels down, is [64, 80).
+/// Tile 4, two levels down, is [64, 80).
 TEST(DensityTiling, APatchIsAnInterval) {
     ImagePlane const plane({256, 256});
     std::vector<Tile> tiles;
