@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "common/block_flags.h"
 #include "common/error.h"
@@ -20,7 +21,22 @@ std::size_t bytes_behind(HeldShape const& shape) {
 
 } // namespace
 
-FrameletCache::FrameletCache(ImagePlane plane) : plane_(plane) {
+std::unique_ptr<FrameletRoom::Chunk> FrameletRoom::take() {
+    if (spare_.empty()) {
+        return std::make_unique<Chunk>();
+    }
+    std::unique_ptr<Chunk> chunk = std::move(spare_.back());
+    spare_.pop_back();
+    return chunk;
+}
+
+void FrameletRoom::give(std::unique_ptr<Chunk> chunk) {
+    if (spare_.size() < most_spare_) {
+        spare_.push_back(std::move(chunk));
+    }
+}
+
+FrameletCache::FrameletCache(ImagePlane plane, FrameletRoom* room) : plane_(plane), room_(room) {
     Viewport const viewport = plane.viewport();
     std::size_t nodes = 0;
     std::size_t squares = 0;
@@ -230,7 +246,7 @@ std::int32_t FrameletCache::take_slot() {
     if (free_slots_.empty()) {
         constexpr std::size_t size = std::tuple_size_v<Chunk>;
         auto const first = static_cast<std::int32_t>(chunks_.size() * size);
-        chunks_.push_back(std::make_unique<Chunk>());
+        chunks_.push_back(room_ != nullptr ? room_->take() : std::make_unique<Chunk>());
         free_slots_.reserve(chunks_.size() * size);
         slot_tiles_.resize(chunks_.size() * size, no_tile);
         for (auto slot = first + static_cast<std::int32_t>(size) - 1; slot >= first; --slot) {
@@ -304,6 +320,18 @@ void FrameletCache::clear() {
             release(static_cast<std::int32_t>(slot));
         }
     }
+    for (std::unique_ptr<Chunk>& chunk : chunks_) {
+        for (CachedFramelet& framelet : *chunk) {
+            framelet.shape.loose = std::vector<HeldLoose>();
+        }
+        if (room_ != nullptr) {
+            room_->give(std::move(chunk));
+        }
+    }
+    chunks_.clear();
+    slot_tiles_.clear();
+    free_slots_.clear();
+    shape_bytes_ = 0;
     std::ranges::fill(nodes_, Node{});
     views_.clear();
     count_ = 0;

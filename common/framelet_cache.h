@@ -58,6 +58,26 @@ struct SquareVersions {
 /// Code 0 names no tile.
 inline constexpr Tile no_tile{0};
 
+/// Room for framelets that the caches of one viewer hand on to each other: each would keep what it needed at most
+/// otherwise, a picture at rest many times what a moment of a moving one does.
+class FrameletRoom {
+public:
+    using Chunk = std::array<CachedFramelet, 64>;
+
+    /// `most_spare`: chunks that wait for their next use; what is beyond goes back to the system.
+    explicit FrameletRoom(std::size_t most_spare) : most_spare_(most_spare) {}
+
+    std::unique_ptr<Chunk> take();
+    /// Nothing must be in place in it.
+    void give(std::unique_ptr<Chunk> chunk);
+    /// Of the spare ones.
+    std::size_t memory_bytes() const { return spare_.size() * sizeof(Chunk); }
+
+private:
+    std::size_t most_spare_;
+    std::vector<std::unique_ptr<Chunk>> spare_;
+};
+
 /// The newest framelets of one viewport. A place shows the framelet of the highest batch number that covers it; of two
 /// of the same batch, the finer one. A framelet of which nothing shows leaves its place, so that at most one framelet
 /// for each 4x4 pixels of the viewport is in place. Cameras make no difference to that: places are those of each
@@ -70,19 +90,20 @@ class FrameletCache {
 public:
     static constexpr int block_side = framelet_side;
 
-    explicit FrameletCache(ImagePlane plane);
+    /// `room`: must outlive the cache; null: it shares none.
+    explicit FrameletCache(ImagePlane plane, FrameletRoom* room = nullptr);
 
     ImagePlane const& plane() const { return plane_; }
 
     /// Takes what the batch brings that is newer than what is held; returns how many of its framelets were taken. The
     /// batch's viewport must be the cache's and every tile one that the plane accepts. Work is proportional to the
-    /// batch; nothing is allocated unless more framelets are held than ever before. Where there are flags, only those
-    /// framelets whose flag is not 0 count.
+    /// batch; nothing is allocated unless more framelets are held than ever since the last `clear`. Where there are
+    /// flags, only those framelets whose flag is not 0 count.
     std::size_t insert(Batch const& batch, std::span<std::uint8_t const> chosen = {});
     /// As if what another cache of this plane holds had been inserted. Appends what of it is not taken.
     void take(FrameletCache const& other, std::vector<SentTile>& left);
 
-    /// Nothing is held any more.
+    /// Nothing is held any more; the room goes to who needs it.
     void clear();
     /// Nothing but these is; appends what was.
     void keep(std::span<Tile const> tiles, std::vector<SentTile>& gone);
@@ -155,7 +176,7 @@ private:
         std::size_t square_columns = 0;
         std::size_t first_square = 0;
     };
-    using Chunk = std::array<CachedFramelet, 64>;
+    using Chunk = FrameletRoom::Chunk;
 
     Level const& level(int depth) const { return levels_[static_cast<std::size_t>(depth - plane_.min_depth())]; }
     Node const& node(int depth, int column, int row) const {
@@ -191,6 +212,7 @@ private:
     double covered_area(int depth, int column, int row) const;
 
     ImagePlane plane_;
+    FrameletRoom* room_;
     std::vector<Level> levels_;
     std::vector<Node> nodes_;
     std::vector<std::unique_ptr<Chunk>> chunks_;

@@ -4,6 +4,7 @@
 // it is kept as long as what is held stays.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -61,6 +62,10 @@ public:
     /// What is held of that depth below the square, by place (as in `SquareLayers`); empty where nothing ever was. This
     /// and what follows is valid until the next update.
     std::span<Child const> children() const { return children_; }
+    /// True where nothing is held of it now.
+    bool is_empty() const {
+        return std::ranges::all_of(children_, [](Child const& child) { return child.framelet == nullptr; });
+    }
     /// Each layer is part of one of these.
     std::span<MergedLayer const> merged() const { return merged_; }
     /// Four framelets each, which are part of one of these.

@@ -76,6 +76,14 @@ void WarpPlan::Square::clear() {
     places.clear();
 }
 
+void WarpPlan::Square::give_back_room() {
+    merged = {};
+    patches = std::vector<WarpPatch>();
+    splats = std::vector<Splat>();
+    places = std::vector<std::uint64_t>();
+    shows = std::vector<std::uint8_t>();
+}
+
 void WarpPlan::make(FrameletCache const& cache, std::size_t slot, bool loose, Camera const& display,
                     SceneTime display_time, BodyMotions const& motions) {
     set_size(cache.plane().viewport());
@@ -101,6 +109,11 @@ void WarpPlan::make(FrameletCache const& cache, std::size_t slot, bool loose, Ca
         plan(square, loose, warp);
         known_[index].lasts = warp.lasts();
         known_[index].is_empty = square.patches.empty();
+        // What is finer than pixels is held where the camera rests, of one moment after the other: else each would keep
+        // the room for it.
+        if (square.depth > cache.plane().pixel_depth() && square.merged.is_empty()) {
+            square.give_back_room();
+        }
     });
     if (!replanned_.empty() || first_entry_.empty()) {
         occupied_.clear();

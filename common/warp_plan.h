@@ -57,6 +57,8 @@ private:
         std::vector<std::uint8_t> shows; ///< of patches: whether something of it showed when blocks were painted
 
         void clear();
+        /// Of a square of which nothing is held.
+        void give_back_room();
         /// Patches that have been added since the last call are of these.
         void note_places(std::uint64_t some) { places.resize(patches.size(), some); }
     };

@@ -18,10 +18,19 @@ bool moves(Batch const& batch, BodyMotions const& motions) {
                                [&](FrameletShape const& shape) { return moves(shape, batch.scene_time, motions); });
 }
 
+/// For a sample a pixel, twice: about what a moment brings while things move, and what is let go of meanwhile.
+std::size_t chunks_of_two_pictures(ImagePlane const& plane) {
+    Viewport const viewport = plane.viewport();
+    auto const framelets =
+        static_cast<std::size_t>(viewport.width) * static_cast<std::size_t>(viewport.height) / framelet_samples;
+    return 2 * (framelets / std::tuple_size_v<FrameletRoom::Chunk> + 1);
+}
+
 } // namespace
 
-FrameletPool::FrameletPool(ImagePlane plane) : plane_(plane) {
-    slots_.push_back({std::make_unique<FrameletCache>(plane), {}});
+FrameletPool::FrameletPool(ImagePlane plane)
+    : plane_(plane), room_(std::make_unique<FrameletRoom>(chunks_of_two_pictures(plane))) {
+    slots_.push_back({std::make_unique<FrameletCache>(plane, room_.get()), {}});
 }
 
 /// Samples that cannot be moved share a cache with those of any camera.
@@ -133,7 +142,7 @@ std::size_t FrameletPool::free_slot() {
         return static_cast<std::size_t>(free - slots_.begin());
     }
     if (slots_.size() < most_moments) {
-        slots_.push_back({std::make_unique<FrameletCache>(plane_), {}});
+        slots_.push_back({std::make_unique<FrameletCache>(plane_, room_.get()), {}});
         return slots_.size() - 1;
     }
     auto const rank = [this](Slot const& slot) {
@@ -179,7 +188,7 @@ std::size_t FrameletPool::framelet_count() const {
 }
 
 std::size_t FrameletPool::memory_bytes() const {
-    std::size_t bytes = 0;
+    std::size_t bytes = room_->memory_bytes();
     for (Slot const& slot : slots_) {
         bytes += slot.cache->memory_bytes();
     }

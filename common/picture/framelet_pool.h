@@ -89,6 +89,7 @@ private:
     void let_go_of_moving(SceneTime now, BodyMotions const& motions);
 
     ImagePlane plane_;
+    std::unique_ptr<FrameletRoom> room_; ///< of all of them
     std::vector<Slot> slots_;
     std::size_t base_ = 0;
     std::uint64_t moments_ = 0;

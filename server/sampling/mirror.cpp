@@ -184,9 +184,7 @@ void Mirror::settle_now() {
             newest = moment.number;
             base.scene_time = moment.scene_time;
         }
-        moment.pieces.clear();
-        moment.reprojected.clear();
-        moment.number = 0;
+        empty(moment);
     }
     base.number = newest;
     replace(base, base.pieces);
@@ -202,11 +200,20 @@ Mirror::Moment& Mirror::free_slot() {
         for (Cell& cell : cells_) {
             cell = cell.is_shown() && &moments_[cell.moment] == &free ? Cell{} : cell;
         }
-        free.number = 0;
-        free.pieces.clear();
-        free.reprojected.clear();
+        empty(free);
     }
     return free;
+}
+
+/// A picture at rest has many times the pieces that one has while things move: not every moment keeps room for that.
+void Mirror::empty(Moment& moment) {
+    moment.number = 0;
+    moment.pieces.clear();
+    moment.reprojected.clear();
+    if (moment.pieces.capacity() > cells_.size()) {
+        moment.pieces.shrink_to_fit();
+        moment.reprojected.shrink_to_fit();
+    }
 }
 
 /// What a viewer holds of one moment is the newest at each place: what is older than these goes.

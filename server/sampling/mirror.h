@@ -84,6 +84,7 @@ private:
     void add_to(Moment& moment, BodyMotions const& motions, std::span<Piece const> pieces);
     bool belongs_to_base(Moment const& moment) const { return moment.number > moments_[base_].number; }
     void settle_now();
+    void empty(Moment& moment);
     void begin_base(ViewRays const& rays, SceneTime scene_time);
     Moment& slot_of_moving(SceneTime scene_time);
     Moment& begin_slot(ViewRays const& rays, SceneTime scene_time);
