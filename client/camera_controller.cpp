@@ -14,6 +14,7 @@ constexpr float pi = std::numbers::pi_v<float>;
 /// How near to straight up or down the view may tip.
 constexpr float steepest = 0.499f * pi;
 constexpr float dolly_step = 0.9f;
+constexpr float halfway_steps = 6.5788f; ///< of `dolly`: 0.9 to this power is a half
 constexpr float fast_factor = 4;
 /// Up to this size a scene is crossed in the same time; larger ones are travelled faster, but by the square root only:
 /// what one goes past in a landscape is still as large as a house. Metres.
@@ -40,11 +41,12 @@ void CameraController::set_camera(Camera const& camera) {
     Vec3 const center =
         scene_.empty() || size_ >= largest_scene ? camera.position + camera.forward() * size_ : scene_.center();
     float const along = glm::dot(center - camera.position, camera.forward());
-    distance_ = along > 1e-3f * size_ ? along : reach_ / 4;
+    float distance = along > 1e-3f * size_ ? along : reach_ / 4;
     Vec3 const place = camera.position;
     if (glm::clamp(place, scene_.lower, scene_.upper) == place) {
-        distance_ = std::min(distance_, reach_ / 10); // amid the scene one looks at what is near
+        distance = std::min(distance, reach_ / 10); // amid the scene one looks at what is near
     }
+    pivot_ = Vec3(0, 0, -distance);
 }
 
 void CameraController::go_to(Vec3 position) {
@@ -66,7 +68,7 @@ void CameraController::orbit(Vec2 pixels, Viewport viewport) {
     Vec3 const center = pivot();
     Vec2 const angle = pixels * (pi / static_cast<float>(viewport.height));
     turn(-angle.x, -angle.y);
-    go_to(center - camera_.forward() * distance_);
+    go_to(center - camera_.orientation * pivot_);
 }
 
 void CameraController::look(Vec2 pixels, Viewport viewport) {
@@ -77,7 +79,7 @@ void CameraController::look(Vec2 pixels, Viewport viewport) {
 
 void CameraController::pan(Vec2 pixels, Viewport viewport) {
     float const height = camera_.projection == Projection::perspective
-                             ? 2 * std::tan(0.5f * camera_.vertical_extent) * distance_
+                             ? 2 * std::tan(0.5f * camera_.vertical_extent) * -pivot_.z
                              : camera_.vertical_extent;
     Vec2 const metres = pixels * (height / static_cast<float>(viewport.height));
     go_to(camera_.position + camera_.up() * metres.y - camera_.right() * metres.x);
@@ -90,8 +92,50 @@ void CameraController::dolly(float steps) {
         return;
     }
     Vec3 const center = pivot();
-    distance_ = std::clamp(distance_ * scale, 1e-5f * size_, 1e3f * size_);
-    go_to(center - camera_.forward() * distance_);
+    float const distance = glm::length(pivot_);
+    pivot_ *= std::clamp(distance * scale, 1e-5f * size_, 1e3f * size_) / distance;
+    go_to(center - camera_.orientation * pivot_);
+}
+
+void CameraController::set_pivot(Vec3 point) {
+    Vec3 const place = glm::conjugate(camera_.orientation) * (point - camera_.position);
+    float const distance = glm::length(place);
+    if (place.z < -1e-5f * size_ && distance <= 1e3f * size_) { // false of what is no number, too
+        pivot_ = place;
+    }
+}
+
+void CameraController::focus(Vec3 point) {
+    set_pivot(point);
+    Vec3 const target = pivot();
+    float const distance = glm::length(pivot_);
+    camera_.orientation = look_at(camera_.position, target, Vec3(0, 1, 0), 1).orientation;
+    pivot_ = Vec3(0, 0, -distance);
+    dolly(halfway_steps);
+    go_to(target - camera_.orientation * pivot_);
+}
+
+void CameraController::fit(Viewport viewport) {
+    if (scene_.empty() || size_ >= largest_scene) {
+        return;
+    }
+    float const aspect = static_cast<float>(viewport.width) / static_cast<float>(viewport.height);
+    bool const is_perspective = camera_.projection == Projection::perspective;
+    float const slope = is_perspective ? std::tan(0.5f * camera_.vertical_extent) : 0;
+    float distance = 0; // from the centre, such that every corner is within the picture
+    float height = 0; // of a picture that has them all, seen from infinitely far
+    for (int i = 0; i < 8; ++i) {
+        Vec3 const side = Vec3(i & 1, i >> 1 & 1, i >> 2) - 0.5f;
+        Vec3 const corner = glm::conjugate(camera_.orientation) * (side * scene_.size());
+        float const half = std::max(std::abs(corner.x) / aspect, std::abs(corner.y));
+        distance = std::max(distance, corner.z + (is_perspective ? half / slope : size_));
+        height = std::max(height, 2 * half);
+    }
+    if (!is_perspective) {
+        camera_.vertical_extent = height;
+    }
+    pivot_ = Vec3(0, 0, -distance);
+    go_to(scene_.center() - camera_.orientation * pivot_);
 }
 
 void CameraController::fly(FlyInput const& input, double seconds) {

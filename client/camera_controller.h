@@ -1,5 +1,5 @@
-// What the hands do to the camera: orbit, pan, dolly, fly. In: pointer movement in pixels, held keys and seconds. Out:
-// a camera. Works alike for scenes of a few centimetres and of kilometres, and at any frame rate.
+// What the hands do to the camera: orbit, pan, dolly, fly, focus. In: pointer movement in pixels, held keys and
+// seconds. Out: a camera. Works alike for scenes of a few centimetres and of kilometres, and at any frame rate.
 #pragma once
 
 #include "common/camera.h"
@@ -20,24 +20,32 @@ public:
     CameraController(Camera const& home, Bounds const& scene);
 
     Camera const& camera() const { return camera_; }
-    /// Goes on from another camera; it looks at the point of its axis that is nearest to the scene's centre, or amid
-    /// the scene at one close by.
+    /// Goes on from another camera; its pivot is the point of its axis that is nearest to the scene's centre, or amid
+    /// the scene one close by.
     void set_camera(Camera const& camera);
     void reset() { set_camera(home_); }
 
-    /// Around the point looked at: the picture's whole height is half a turn. World up stays up.
+    /// What the hands turn, drag and near from now on; not where it lies behind the camera or beyond all measure.
+    void set_pivot(Vec3 point);
+    /// Turns to a point, goes half of the way there, and has it for its pivot. World up becomes up.
+    void focus(Vec3 point);
+    /// Backs off, or nears, until all of the scene is in the picture, seen from the same direction.
+    void fit(Viewport viewport);
+
+    /// Around the pivot, which stays where it is in the picture: the picture's whole height is half a turn. World up
+    /// stays up.
     void orbit(Vec2 pixels, Viewport viewport);
-    /// Across the picture: what lies at the point looked at follows the pointer.
+    /// Across the picture: what lies as deep as the pivot follows the pointer.
     void pan(Vec2 pixels, Viewport viewport);
-    /// Towards (positive) or away from the point looked at: a step is a tenth of the way; never through it.
+    /// Towards (positive) or away from the pivot, which stays where it is in the picture: a step is a tenth of the way;
+    /// never through it.
     void dolly(float steps);
     /// Through the scene: an eighth of its diagonal a second, in large scenes less (2 km: 30 m/s).
     void fly(FlyInput const& input, double seconds);
     /// Turns the head in place: the picture's whole height is the vertical field of view.
     void look(Vec2 pixels, Viewport viewport);
 
-    /// The point looked at.
-    Vec3 pivot() const { return camera_.position + camera_.forward() * distance_; }
+    Vec3 pivot() const { return camera_.position + camera_.orientation * pivot_; }
 
 private:
     void turn(float yaw, float pitch);
@@ -48,7 +56,7 @@ private:
     float size_; ///< the scene's diagonal, metres
     float reach_; ///< how far one goes in a few seconds, metres
     Camera camera_;
-    float distance_ = 1; ///< to the point looked at, metres
+    Vec3 pivot_{0, 0, -1}; ///< in camera space: it goes with the camera
 };
 
 } // namespace framelet

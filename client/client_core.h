@@ -106,6 +106,10 @@ public:
     /// is moved; while the scene is smoothed, of what came last). A picture of another size stays as it is.
     void draw_overlay(DrawnOver overlay, Picture& picture) const;
 
+    /// The point of the world that this place of the last picture shows, pixel coordinates; nothing where that is not
+    /// known, or infinitely far. Takes about as long as a picture.
+    std::optional<Vec3> point_at(Vec2 place) const;
+
     /// Waits until something has come since the last call, or the time is over; true when something has.
     bool wait_for_news(std::chrono::nanoseconds at_most);
 

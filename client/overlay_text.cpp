@@ -39,9 +39,11 @@ bool RateMeter::update(double now_seconds, std::uint64_t bytes) {
 
 TextRows help_rows(bool controls) {
     TextRows rows{
-        {"left drag", "orbit"},
+        {"left drag", "orbit around what is under the pointer"},
         {"middle or Shift+left drag", "pan"},
         {"wheel or right drag", "nearer, farther"},
+        {"double click", "look at that point, from half as far"},
+        {"F", "the whole scene"},
         {"W A S D, Q E", "fly; down, up (Shift: faster)"},
         {"R", "back to the first view"},
         {"1 .. 9", "camera of the scene"},

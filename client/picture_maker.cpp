@@ -6,6 +6,7 @@
 #include "client/framelet_outlines.h"
 #include "common/camera_track.h"
 #include "common/reconstruction.h"
+#include "common/shown_point.h"
 
 namespace framelet {
 
@@ -145,6 +146,10 @@ void PictureMaker::draw_over(DrawnOver what, Picture& picture) const {
     std::vector<PixelConfidence> confidence;
     find_confidence(pool_, shown_camera_, shown_time_, motions_, confidence);
     draw_confidence(confidence, picture);
+}
+
+std::optional<Vec3> PictureMaker::point_at(Vec2 place) const {
+    return find_shown_point(pool_, shown_camera_, shown_time_, motions_, place);
 }
 
 double PictureMaker::coverage() const {

@@ -59,6 +59,8 @@ public:
     bool show(PictureRequest const& request, Picture& picture, std::vector<PixelRect>& changed);
     /// Draws over a copy of the picture that was shown last.
     void draw_over(DrawnOver what, Picture& picture) const;
+    /// The point of the world that this place of it shows, as `find_shown_point`.
+    std::optional<Vec3> point_at(Vec2 place) const;
 
     /// What the last picture shows; before there is one, what the newest batch was seen from.
     Camera const& shown_camera() const { return shown_camera_; }

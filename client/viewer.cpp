@@ -136,8 +136,12 @@ bool Viewer::apply(WindowInput const& input, double seconds) {
     for (Command const command : input.commands) {
         apply(command);
     }
+    take_pivot(input);
     if (input.moved_camera()) {
         leave_scene_camera();
+        if (std::optional<Vec3> const point = std::exchange(grabbed_, std::nullopt)) {
+            controller_->set_pivot(*point);
+        }
         Viewport const viewport = window_.framebuffer_size();
         controller_->orbit(input.orbit, viewport);
         controller_->pan(input.pan, viewport);
@@ -145,6 +149,24 @@ bool Viewer::apply(WindowInput const& input, double seconds) {
         controller_->fly(input.fly, seconds);
     }
     return input.fly.moving();
+}
+
+/// What lies under the pointer is what the hands take hold of; where that is not known the pivot stays.
+void Viewer::take_pivot(WindowInput const& input) {
+    std::optional<Vec2> const place = input.focused ? input.focused : input.grabbed;
+    if (!place) {
+        return;
+    }
+    grabbed_ = core_->point_at(*place);
+    if (!input.focused) {
+        return;
+    }
+    if (std::optional<Vec3> const point = std::exchange(grabbed_, std::nullopt)) {
+        leave_scene_camera();
+        controller_->focus(*point);
+    } else {
+        say("nothing is there to look at");
+    }
 }
 
 void Viewer::apply(Command command) {
@@ -193,6 +215,10 @@ void Viewer::apply(Command command) {
         break;
     case Command::darker:
         change_exposure(-exposure_step);
+        break;
+    case Command::fit_scene:
+        leave_scene_camera();
+        controller_->fit(window_.framebuffer_size());
         break;
     case Command::free_camera:
         leave_scene_camera();

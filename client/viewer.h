@@ -33,6 +33,7 @@ private:
     void adopt(std::unique_ptr<ClientCore> core);
     void look_at_scene();
     bool apply(WindowInput const& input, double seconds);
+    void take_pivot(WindowInput const& input);
     void apply(Command command);
     void ask_clock(std::uint8_t fields, ClockState const& state);
     void step_clock(double seconds);
@@ -56,6 +57,7 @@ private:
     bool controlled_ = true; ///< what `ClientCore::controls` said last
     std::optional<CameraController> controller_;
     int scene_camera_ = -1;
+    std::optional<Vec3> grabbed_; ///< what the hands have taken hold of, until the camera moves
     ViewerSettings settings_;
     double lag_seconds_; ///< 0: the scene is not smoothed
     double const chosen_lag_seconds_; ///< when it is

@@ -7,6 +7,7 @@
 #include <epoxy/gl.h>
 
 #include <GLFW/glfw3.h>
+#include <glm/geometric.hpp>
 
 #include "client/picture_texture.h"
 #include "common/error.h"
@@ -22,19 +23,34 @@ struct KeyMeaning {
 };
 
 constexpr KeyMeaning meanings[] = {
-    {GLFW_KEY_ESCAPE, Command::quit, false},           {GLFW_KEY_R, Command::reset, false},
-    {GLFW_KEY_ENTER, Command::reconnect, false},       {GLFW_KEY_KP_ENTER, Command::reconnect, false},
-    {GLFW_KEY_SPACE, Command::play_or_pause, false},   {GLFW_KEY_PERIOD, Command::step_forward, true},
-    {GLFW_KEY_COMMA, Command::step_back, true},        {GLFW_KEY_HOME, Command::seek_start, false},
-    {GLFW_KEY_EQUAL, Command::faster, false},          {GLFW_KEY_KP_ADD, Command::faster, false},
-    {GLFW_KEY_MINUS, Command::slower, false},          {GLFW_KEY_KP_SUBTRACT, Command::slower, false},
-    {GLFW_KEY_RIGHT_BRACKET, Command::brighter, true}, {GLFW_KEY_LEFT_BRACKET, Command::darker, true},
-    {GLFW_KEY_0, Command::free_camera, false},         {GLFW_KEY_F11, Command::toggle_fullscreen, false},
-    {GLFW_KEY_F1, Command::toggle_help, false},        {GLFW_KEY_F2, Command::toggle_statistics, false},
-    {GLFW_KEY_TAB, Command::toggle_statistics, false}, {GLFW_KEY_F12, Command::screenshot, false},
-    {GLFW_KEY_F3, Command::next_overlay, false},       {GLFW_KEY_F4, Command::toggle_reprojection, false},
+    {GLFW_KEY_ESCAPE, Command::quit, false},
+    {GLFW_KEY_R, Command::reset, false},
+    {GLFW_KEY_ENTER, Command::reconnect, false},
+    {GLFW_KEY_KP_ENTER, Command::reconnect, false},
+    {GLFW_KEY_SPACE, Command::play_or_pause, false},
+    {GLFW_KEY_PERIOD, Command::step_forward, true},
+    {GLFW_KEY_COMMA, Command::step_back, true},
+    {GLFW_KEY_HOME, Command::seek_start, false},
+    {GLFW_KEY_EQUAL, Command::faster, false},
+    {GLFW_KEY_KP_ADD, Command::faster, false},
+    {GLFW_KEY_MINUS, Command::slower, false},
+    {GLFW_KEY_KP_SUBTRACT, Command::slower, false},
+    {GLFW_KEY_RIGHT_BRACKET, Command::brighter, true},
+    {GLFW_KEY_LEFT_BRACKET, Command::darker, true},
+    {GLFW_KEY_0, Command::free_camera, false},
+    {GLFW_KEY_F, Command::fit_scene, false},
+    {GLFW_KEY_F11, Command::toggle_fullscreen, false},
+    {GLFW_KEY_F1, Command::toggle_help, false},
+    {GLFW_KEY_F2, Command::toggle_statistics, false},
+    {GLFW_KEY_TAB, Command::toggle_statistics, false},
+    {GLFW_KEY_F12, Command::screenshot, false},
+    {GLFW_KEY_F3, Command::next_overlay, false},
+    {GLFW_KEY_F4, Command::toggle_reprojection, false},
     {GLFW_KEY_F5, Command::toggle_smoothing, false},
 };
+
+constexpr double double_click_seconds = 0.4;
+constexpr float double_click_pixels = 6;
 
 std::string last_glfw_error() {
     char const* text = nullptr;
@@ -62,7 +78,10 @@ struct Window::Impl {
     GLFWwindow* window = nullptr;
     std::optional<PictureTexture> texture;
     WindowInput input;
-    Vec2 cursor{0, 0};
+    Vec2 cursor{0, 0}; ///< pixels of the framebuffer
+    bool zooms = false; ///< the wheel has turned since the pointer moved
+    Vec2 click{0, 0}; ///< where the left button was pressed last
+    double click_time = -1; ///< and when; < 0: what comes next is no double click
     Viewport size;
     struct {
         int x = 0, y = 0, width = 0, height = 0;
@@ -99,13 +118,22 @@ struct Window::Impl {
         }
     }
 
-    void cursor_moved(Vec2 place) {
+    /// Pixels of the framebuffer.
+    Vec2 pointer() const {
+        double x = 0;
+        double y = 0;
+        glfwGetCursorPos(window, &x, &y);
         int width = 1;
         int height = 1;
         glfwGetWindowSize(window, &width, &height);
-        float const scale = static_cast<float>(size.width) / static_cast<float>(std::max(width, 1));
-        Vec2 const way = (place - cursor) * scale;
+        return Vec2(x, y) * (static_cast<float>(size.width) / static_cast<float>(std::max(width, 1)));
+    }
+
+    void cursor_moved() {
+        Vec2 const place = pointer();
+        Vec2 const way = place - cursor;
         cursor = place;
+        zooms = false;
         if (button(GLFW_MOUSE_BUTTON_MIDDLE) || (button(GLFW_MOUSE_BUTTON_LEFT) && shift())) {
             input.pan += way;
         } else if (button(GLFW_MOUSE_BUTTON_LEFT)) {
@@ -114,6 +142,28 @@ struct Window::Impl {
             constexpr float steps_per_height = 30;
             input.dolly += -way.y * steps_per_height / static_cast<float>(size.height);
         }
+    }
+
+    void pressed(int number) {
+        cursor = pointer(); // a drag starts here
+        zooms = false;
+        double const now = glfwGetTime();
+        bool const left = number == GLFW_MOUSE_BUTTON_LEFT;
+        if (left && now - click_time < double_click_seconds && glm::distance(cursor, click) < double_click_pixels) {
+            input.focused = cursor;
+            click_time = -1;
+            return;
+        }
+        input.grabbed = cursor;
+        click = cursor;
+        click_time = left ? now : -1;
+    }
+
+    void scrolled(float steps) {
+        if (!std::exchange(zooms, true)) {
+            input.grabbed = cursor = pointer();
+        }
+        input.dolly += steps;
     }
 
     void read_size() {
@@ -139,17 +189,13 @@ struct Window::Impl {
         glfwSetWindowUserPointer(window, this);
         glfwSetKeyCallback(window,
                            [](GLFWwindow* w, int key, int, int action, int mods) { of(w).key(key, action, mods); });
-        glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) {
-            of(w).cursor_moved({static_cast<float>(x), static_cast<float>(y)});
+        glfwSetCursorPosCallback(window, [](GLFWwindow* w, double, double) { of(w).cursor_moved(); });
+        glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int number, int action, int) {
+            if (action == GLFW_PRESS) {
+                of(w).pressed(number);
+            }
         });
-        glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int, int, int) {
-            double x = 0;
-            double y = 0;
-            glfwGetCursorPos(w, &x, &y);
-            of(w).cursor = {static_cast<float>(x), static_cast<float>(y)}; // a drag starts here
-        });
-        glfwSetScrollCallback(window,
-                              [](GLFWwindow* w, double, double y) { of(w).input.dolly += static_cast<float>(y); });
+        glfwSetScrollCallback(window, [](GLFWwindow* w, double, double y) { of(w).scrolled(static_cast<float>(y)); });
         glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { of(w).read_size(); });
         glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { of(w).input.redraw = true; });
         glfwSetWindowCloseCallback(window, [](GLFWwindow* w) { of(w).input.commands.push_back(Command::quit); });

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,6 +30,7 @@ enum class Command {
     brighter,
     darker,
     free_camera,
+    fit_scene,
     toggle_fullscreen,
     toggle_help,
     toggle_statistics,
@@ -45,6 +47,8 @@ struct WindowInput {
     Vec2 orbit{0, 0}; ///< dragged, pixels of the framebuffer, x right, y down
     Vec2 pan{0, 0};
     float dolly = 0; ///< steps, positive: nearer
+    std::optional<Vec2> grabbed; ///< where a drag has begun, or the wheel has turned first; pixels of the framebuffer
+    std::optional<Vec2> focused; ///< likewise: where a double click was
     FlyInput fly; ///< held now
     bool redraw = false; ///< exposed or resized
 

@@ -5,8 +5,7 @@
 
 #include <tbb/parallel_for.h>
 
-#include "common/warp_block.h"
-#include "common/warp_plan.h"
+#include "common/pool_plan.h"
 
 namespace framelet {
 
@@ -28,21 +27,10 @@ void find_confidence(FrameletPool const& pool, Camera const& camera, SceneTime s
                      std::vector<PixelConfidence>& out) {
     Viewport const viewport = pool.plane().viewport();
     out.assign(static_cast<std::size_t>(viewport.width) * static_cast<std::size_t>(viewport.height), {});
-    std::vector<WarpPlan> plans(pool.slot_count());
-    for (std::size_t i = 0; i < plans.size(); ++i) {
-        plans[i].make(pool.slot(i), i, pool.is_recent(i), camera, scene_time, motions);
-    }
-    int const columns = plans[0].columns();
+    PoolPlan plan(pool, camera, scene_time, motions);
     auto const find_in = [&](int column, int row, std::vector<PatchView>& patches) {
         WarpedBlock block;
-        patches.clear();
-        for (WarpPlan& plan : plans) {
-            plan.add_block(static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
-                               static_cast<std::size_t>(column),
-                           patches);
-        }
-        order(patches);
-        paint_warped_block(patches, column, row, viewport, block);
+        plan.paint(column, row, patches, block);
         int const left = column * side;
         int const top = row * side;
         for (int y = 0; y < std::min(side, viewport.height - top); ++y) {
@@ -55,9 +43,9 @@ void find_confidence(FrameletPool const& pool, Camera const& camera, SceneTime s
             }
         }
     };
-    tbb::parallel_for(0, plans[0].rows(), [&](int row) {
+    tbb::parallel_for(0, plan.rows(), [&](int row) {
         std::vector<PatchView> patches;
-        for (int column = 0; column < columns; ++column) {
+        for (int column = 0; column < plan.columns(); ++column) {
             find_in(column, row, patches);
         }
     });

@@ -92,6 +92,85 @@ TEST_P(CameraControllerOfSize, FlyingIsIndependentOfTheFrameRateAndScalesWithThe
     EXPECT_LT(glm::distance(once.camera().position, often.camera().position), 1e-4f * size);
 }
 
+/// In camera space.
+Vec3 seen_from(Camera const& camera, Vec3 point) {
+    return glm::conjugate(camera.orientation) * (point - camera.position);
+}
+
+TEST_P(CameraControllerOfSize, WhatTheHandsTurnAndNearStaysUnderThePointer) {
+    float const size = GetParam();
+    Stage const stage(size);
+    CameraController controller(stage.home, stage.scene);
+    Vec3 const point = Vec3(0.2f, -0.1f, 0.3f) * size;
+    Vec3 const seen = seen_from(stage.home, point);
+    controller.set_pivot(point);
+    EXPECT_EQ(controller.camera(), stage.home);
+    for (int i = 0; i < 100; ++i) {
+        controller.orbit({7, i % 60 < 30 ? 9 : -9}, viewport);
+        ASSERT_LT(glm::distance(seen_from(controller.camera(), point), seen), 1e-3f * size);
+        ASSERT_NEAR(controller.camera().right().y, 0, 1e-3f);
+    }
+    EXPECT_GT(glm::distance(controller.camera().position, stage.home.position), 0.1f * size);
+    controller.dolly(3);
+    EXPECT_LT(glm::distance(seen_from(controller.camera(), point), 0.729f * seen), 1e-3f * size);
+}
+
+TEST_P(CameraControllerOfSize, WhatNoPivotCanBeIsNone) {
+    float const size = GetParam();
+    Stage const stage(size);
+    CameraController controller(stage.home, stage.scene);
+    Vec3 const before = controller.pivot();
+    controller.set_pivot(stage.home.position - stage.home.forward() * size); // behind
+    controller.set_pivot(stage.home.position + stage.home.forward() * (1e5f * size));
+    controller.set_pivot(Vec3(NAN));
+    EXPECT_EQ(controller.pivot(), before);
+}
+
+TEST_P(CameraControllerOfSize, FocusTurnsToThePointAndGoesHalfOfTheWay) {
+    float const size = GetParam();
+    Stage const stage(size);
+    CameraController controller(stage.home, stage.scene);
+    Vec3 const point = Vec3(0.2f, -0.1f, 0.3f) * size;
+    controller.focus(point);
+    Camera const& camera = controller.camera();
+    float const distance = glm::distance(stage.home.position, point);
+    EXPECT_LT(glm::distance(seen_from(camera, point), Vec3(0, 0, -0.5f * distance)), 1e-3f * size);
+    EXPECT_LT(glm::distance(controller.pivot(), point), 1e-3f * size);
+    EXPECT_NEAR(camera.right().y, 0, 1e-3f);
+    for (int i = 0; i < 100; ++i) {
+        controller.focus(point);
+        ASSERT_TRUE(is_valid(camera));
+    }
+}
+
+TEST_P(CameraControllerOfSize, FitShowsAllOfTheSceneAndNoMoreThanThat) {
+    Stage const stage(GetParam());
+    for (Projection const projection : {Projection::perspective, Projection::orthographic}) {
+        Camera home = stage.home;
+        home.projection = projection;
+        CameraController controller(home, stage.scene);
+        controller.fly({{1, 1, -1}, true}, 3);
+        for (Viewport const size : {viewport, Viewport{200, 600}}) {
+            controller.fit(size);
+            Camera const& camera = controller.camera();
+            EXPECT_EQ(camera.orientation, home.orientation);
+            float const aspect = static_cast<float>(size.width) / static_cast<float>(size.height);
+            float farthest_out = 0; // 1: the picture's edge
+            for (int i = 0; i < 8; ++i) {
+                Vec3 const side(i & 1, i >> 1 & 1, i >> 2);
+                Vec3 const corner = seen_from(camera, stage.scene.lower + side * stage.scene.size());
+                EXPECT_LT(corner.z, 0);
+                float const edge = projection == Projection::perspective
+                                       ? -corner.z * std::tan(0.5f * camera.vertical_extent)
+                                       : 0.5f * camera.vertical_extent;
+                farthest_out =
+                    std::max({farthest_out, std::abs(corner.y) / edge, std::abs(corner.x) / (edge * aspect)});
+            }
+            EXPECT_NEAR(farthest_out, 1, 1e-3f);
+        }
+    }
+}
+
 TEST(CameraController, AmidALandscapeTheViewTurnsAroundSomethingNear) {
     Stage const stage(2000);
     Camera const street = look_at({50, 2, 100}, {60, 1, 100}, {0, 1, 0}, 0.8f);
