@@ -51,16 +51,18 @@ TextRows help_rows(bool controls) {
     };
     TextRows const clock_rows = controls ? TextRows{{"Space", "play, pause"},
                                                     {". and ,", "step by 1/30 s"},
+                                                    {"Right and Left", "forward, back by 1 s"},
                                                     {"Home", "animation to its start"},
                                                     {"+ and -", "animation speed"}}
-                                         : TextRows{{"Space . , Home + -", watching_text}};
+                                         : TextRows{{"Space . , Left Right Home + -", watching_text}};
     rows.insert(rows.end(), clock_rows.begin(), clock_rows.end());
     TextRows const others{
-        {"] and [", "brighter, darker"},
+        {"] and [", "brighter, darker by 1/4 EV"},
         {"F2 or Tab", "statistics"},
         {"F3", "outlines of framelets; how old pixels are; neither"},
         {"F4", "move what is held to where it is now, or not"},
         {"F5", "smooth motion, the scene a little late, or not"},
+        {"F6", "the time line at the lower edge, or not"},
         {"F11 or Alt+Enter", "full screen"},
         {"F12", "screenshot (PNG, in the current folder)"},
         {"F1", "this help"},

@@ -19,6 +19,7 @@ namespace {
 constexpr double clock_step = 1.0 / 30;
 constexpr float exposure_step = 0.25f;
 constexpr float largest_exposure = 16;
+constexpr double seek_step = 1;
 constexpr double note_seconds = 2;
 /// How often to look around while nothing happens: figures on the overlay, a note to take away.
 constexpr double idle_seconds = 0.25;
@@ -75,6 +76,7 @@ int Viewer::run() {
     bool moving = false;
     bool pending = true; // there may be something to show in the next display frame
     bool redraw = true;
+    int overlay_frames = 0; ///< to be drawn for its sake
     OverlayContent shown;
     while (!quit_) {
         bool const hidden = window_.is_iconified();
@@ -83,6 +85,8 @@ int Viewer::run() {
         moving = apply(input, moving ? now - last_look : 0);
         last_look = now;
         redraw = redraw || input.redraw;
+        // What the mouse presses is seen in one frame, what it releases in the next, and what came of it in a third.
+        overlay_frames = input.touched_overlay ? 3 : overlay_frames;
         watch_connection();
         if (lost_.empty()) {
             core_->set_view(controller_->camera(), window_.framebuffer_size(), scene_camera_);
@@ -93,11 +97,13 @@ int Viewer::run() {
         }
         redraw = update_shown_picture() || redraw;
         OverlayContent content = overlay_content();
-        redraw = redraw || moving || content != shown;
+        redraw = redraw || moving || overlay_frames > 0 || content != shown;
         pending = redraw;
         if (redraw) {
             window_.draw_picture();
-            overlay_.draw(content);
+            OverlayActions const asked = overlay_.draw(content);
+            window_.set_overlay_area(overlay_.mouse_area());
+            apply(asked);
             meter_.frame(seconds_now() - now);
             window_.present();
             showing_.note(seconds_now() - made_);
@@ -105,6 +111,7 @@ int Viewer::run() {
             // A little early: where the swap waits for the display, that sets the pace.
             next_frame = now + 0.9 / window_.refresh_rate();
             redraw = false;
+            overlay_frames = std::max(overlay_frames - 1, 0);
         }
     }
     return lost_.empty() ? 0 : 1;
@@ -169,6 +176,17 @@ void Viewer::take_pivot(WindowInput const& input) {
     }
 }
 
+void Viewer::apply(OverlayActions const& asked) {
+    for (Command const command : asked.commands) {
+        apply(command);
+    }
+    if (asked.seek) {
+        ClockState clock = core_->clock();
+        clock.time = *asked.seek;
+        ask_clock(ClockRequest::time, clock);
+    }
+}
+
 void Viewer::apply(Command command) {
     ClockState clock = core_->clock();
     switch (command) {
@@ -204,6 +222,12 @@ void Viewer::apply(Command command) {
         clock.time = 0;
         ask_clock(ClockRequest::time, clock);
         break;
+    case Command::seek_forward:
+    case Command::seek_back:
+        clock.time =
+            std::clamp(clock.time + (command == Command::seek_forward ? seek_step : -seek_step), 0.0, max_scene_time);
+        ask_clock(ClockRequest::time, clock);
+        break;
     case Command::faster:
     case Command::slower:
         clock.speed =
@@ -233,6 +257,9 @@ void Viewer::apply(Command command) {
         show_statistics_ = !show_statistics_;
         statistics_.clear();
         break;
+    case Command::toggle_time_line:
+        show_time_line_ = !show_time_line_;
+        break;
     case Command::next_overlay:
         drawn_over_ = drawn_over_ == DrawnOver::nothing    ? DrawnOver::outlines
                       : drawn_over_ == DrawnOver::outlines ? DrawnOver::confidence
@@ -255,9 +282,15 @@ void Viewer::apply(Command command) {
     }
 }
 
+/// Empty: it is ours to set.
+std::string Viewer::clock_fixed_because() const {
+    bool const is_gone = interrupted_ || !lost_.empty();
+    return is_gone ? "the server is gone: its clock cannot be set" : core_->controls() ? "" : watching_text;
+}
+
 void Viewer::ask_clock(std::uint8_t fields, ClockState const& state) {
-    if (interrupted_ || !core_->controls()) {
-        say(interrupted_ ? "the server is gone: its clock cannot be set" : watching_text);
+    if (std::string reason = clock_fixed_because(); !reason.empty()) {
+        say(std::move(reason));
         return;
     }
     core_->request_clock({fields, state});
@@ -370,6 +403,10 @@ OverlayContent Viewer::overlay_content() {
                 statistics_rows(statistics, meter_, core_->clock(), core_->controls(), window_.framebuffer_size());
         }
         out.statistics = statistics_;
+    }
+    if (show_time_line_) {
+        out.time_line = {core_->clock(), core_->welcome().animation_duration, clock_fixed_because(),
+                         settings_.exposure_ev};
     }
     if (seconds_now() < note_until_) {
         out.note = note_;

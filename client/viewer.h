@@ -10,6 +10,7 @@
 #include "client/camera_controller.h"
 #include "client/client_core.h"
 #include "client/making_time.h"
+#include "client/overlay.h"
 #include "client/overlay_text.h"
 #include "client/window.h"
 
@@ -33,8 +34,10 @@ private:
     void adopt(std::unique_ptr<ClientCore> core);
     void look_at_scene();
     bool apply(WindowInput const& input, double seconds);
+    void apply(OverlayActions const& asked);
     void take_pivot(WindowInput const& input);
     void apply(Command command);
+    std::string clock_fixed_because() const;
     void ask_clock(std::uint8_t fields, ClockState const& state);
     void step_clock(double seconds);
     void choose_scene_camera(int number);
@@ -70,6 +73,7 @@ private:
     std::vector<PixelRect> changed_;
     bool show_help_ = false;
     bool show_statistics_ = false;
+    bool show_time_line_ = true;
     DrawnOver drawn_over_ = DrawnOver::nothing;
     bool overlay_toggled_ = false; ///< since the picture was uploaded
     Picture overlaid_; ///< the picture and what is drawn over it, if anything

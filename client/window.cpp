@@ -47,6 +47,9 @@ constexpr KeyMeaning meanings[] = {
     {GLFW_KEY_F3, Command::next_overlay, false},
     {GLFW_KEY_F4, Command::toggle_reprojection, false},
     {GLFW_KEY_F5, Command::toggle_smoothing, false},
+    {GLFW_KEY_F6, Command::toggle_time_line, false},
+    {GLFW_KEY_RIGHT, Command::seek_forward, true},
+    {GLFW_KEY_LEFT, Command::seek_back, true},
 };
 
 constexpr double double_click_seconds = 0.4;
@@ -82,6 +85,8 @@ struct Window::Impl {
     bool zooms = false; ///< the wheel has turned since the pointer moved
     Vec2 click{0, 0}; ///< where the left button was pressed last
     double click_time = -1; ///< and when; < 0: what comes next is no double click
+    PixelRect overlay{}; ///< its area
+    bool overlay_drag = false; ///< a button was pressed there
     Viewport size;
     struct {
         int x = 0, y = 0, width = 0, height = 0;
@@ -134,6 +139,10 @@ struct Window::Impl {
         Vec2 const way = place - cursor;
         cursor = place;
         zooms = false;
+        touch_overlay(is_over_overlay(place - way));
+        if (overlay_drag) {
+            return;
+        }
         if (button(GLFW_MOUSE_BUTTON_MIDDLE) || (button(GLFW_MOUSE_BUTTON_LEFT) && shift())) {
             input.pan += way;
         } else if (button(GLFW_MOUSE_BUTTON_LEFT)) {
@@ -144,8 +153,29 @@ struct Window::Impl {
         }
     }
 
+    bool is_over_overlay(Vec2 place) const {
+        return place.x >= static_cast<float>(overlay.left) && place.x < static_cast<float>(overlay.right) &&
+               place.y >= static_cast<float>(overlay.top) && place.y < static_cast<float>(overlay.bottom);
+    }
+    void touch_overlay(bool was_there = false) {
+        input.touched_overlay = input.touched_overlay || overlay_drag || was_there || is_over_overlay(cursor);
+    }
+    bool any_button() const {
+        return button(GLFW_MOUSE_BUTTON_LEFT) || button(GLFW_MOUSE_BUTTON_RIGHT) || button(GLFW_MOUSE_BUTTON_MIDDLE);
+    }
+
+    void released() {
+        touch_overlay();
+        overlay_drag = overlay_drag && any_button();
+    }
+
     void pressed(int number) {
         cursor = pointer(); // a drag starts here
+        overlay_drag = overlay_drag || is_over_overlay(cursor);
+        touch_overlay();
+        if (overlay_drag) {
+            return;
+        }
         zooms = false;
         double const now = glfwGetTime();
         bool const left = number == GLFW_MOUSE_BUTTON_LEFT;
@@ -160,8 +190,12 @@ struct Window::Impl {
     }
 
     void scrolled(float steps) {
+        cursor = pointer();
+        if (is_over_overlay(cursor)) {
+            return;
+        }
         if (!std::exchange(zooms, true)) {
-            input.grabbed = cursor = pointer();
+            input.grabbed = cursor;
         }
         input.dolly += steps;
     }
@@ -191,9 +225,7 @@ struct Window::Impl {
                            [](GLFWwindow* w, int key, int, int action, int mods) { of(w).key(key, action, mods); });
         glfwSetCursorPosCallback(window, [](GLFWwindow* w, double, double) { of(w).cursor_moved(); });
         glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int number, int action, int) {
-            if (action == GLFW_PRESS) {
-                of(w).pressed(number);
-            }
+            action == GLFW_PRESS ? of(w).pressed(number) : of(w).released();
         });
         glfwSetScrollCallback(window, [](GLFWwindow* w, double, double y) { of(w).scrolled(static_cast<float>(y)); });
         glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { of(w).read_size(); });
@@ -292,6 +324,10 @@ void Window::draw_picture() {
 
 void Window::present() {
     glfwSwapBuffers(impl_->window);
+}
+
+void Window::set_overlay_area(PixelRect const& area) {
+    impl_->overlay = area;
 }
 
 GLFWwindow* Window::handle() const {

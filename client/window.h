@@ -9,37 +9,13 @@
 #include <vector>
 
 #include "client/camera_controller.h"
+#include "client/command.h"
 #include "common/image.h"
 #include "common/tile.h"
 
 struct GLFWwindow;
 
 namespace framelet {
-
-/// What a key stands for.
-enum class Command {
-    quit,
-    reset,
-    reconnect,
-    play_or_pause,
-    step_forward,
-    step_back,
-    seek_start,
-    faster,
-    slower,
-    brighter,
-    darker,
-    free_camera,
-    fit_scene,
-    toggle_fullscreen,
-    toggle_help,
-    toggle_statistics,
-    next_overlay,
-    toggle_reprojection,
-    toggle_smoothing,
-    screenshot,
-    scene_camera, ///< the first; `scene_camera` + n is the n-th more, up to 8 more
-};
 
 /// What happened since the last look.
 struct WindowInput {
@@ -51,6 +27,7 @@ struct WindowInput {
     std::optional<Vec2> focused; ///< likewise: where a double click was
     FlyInput fly; ///< held now
     bool redraw = false; ///< exposed or resized
+    bool touched_overlay = false; ///< the pointer did something in its area, or has left it
 
     bool moved_camera() const { return orbit != Vec2(0, 0) || pan != Vec2(0, 0) || dolly != 0 || fly.moving(); }
 };
@@ -85,6 +62,9 @@ public:
     /// Shows what was drawn.
     void present();
 
+    /// Pixels of the framebuffer in which the mouse is the overlay's and not the camera's; a drag belongs to where it
+    /// began.
+    void set_overlay_area(PixelRect const& area);
     /// For the overlay's backend.
     GLFWwindow* handle() const;
 
