@@ -112,7 +112,8 @@ struct ServerConnection::Impl {
         // What follows may want memory that is missing, and is then done once more.
         is_to_tell_interruption = std::exchange(open, false) || is_to_tell_interruption;
         if (!was_open) {
-            auto const error = std::make_exception_ptr(ConnectionError(reason));
+            auto const error = retry == Retry::never ? std::make_exception_ptr(ConnectionRefusal(reason))
+                                                     : std::make_exception_ptr(ConnectionError(reason));
             is_over = true;
             opened.set_exception(error);
         } else if (retry == Retry::never || !options.reconnect || !handlers.on_reopened) {

@@ -28,8 +28,8 @@ public:
         std::function<void()> on_sent;
     };
 
-    /// Blocks until the session is open. Throws ConnectionError where it cannot be opened, InputError for a certificate
-    /// authority file that cannot be used.
+    /// Blocks until the session is open. Throws ConnectionError where it cannot be opened, as ConnectionRefusal where
+    /// trying again would not help, InputError for a certificate authority file that cannot be used.
     ServerConnection(ConnectionOptions const& options, Handlers handlers);
     /// Ends the session. No handler is called afterwards. Not to be called from a handler.
     ~ServerConnection();

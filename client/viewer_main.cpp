@@ -1,10 +1,13 @@
 // framelet-viewer: a window on a scene that framelet-server renders.
 #include <iostream>
+#include <memory>
+#include <utility>
 
 #include <CLI/App.hpp>
 
 #include "client/connection_arguments.h"
 #include "client/display_arguments.h"
+#include "client/first_connection.h"
 #include "client/viewer.h"
 #include "common/error.h"
 #include "common/program_failure.h"
@@ -19,9 +22,10 @@ int main(int argc, char** argv) {
 
     CLI::App app("Shows a scene that framelet-server renders. F1 in the window lists the keys.", "framelet-viewer");
     app.set_version_flag("--version", "framelet-viewer " FRAMELET_VERSION);
-    app.footer("\nWhere the server is gone for a while, what is held goes on being shown, and the\nsession goes on "
-               "when it is back; see --no-reconnect.\n\nExit code: 0 fine; 1 no display, or the server cannot be "
-               "reached, refused the\nviewer or has vanished; 2 bad usage.");
+    app.footer("\nWhere the server is not there yet the window waits for it. Where it is gone for a\nwhile, what is "
+               "held goes on being shown, and the session goes on when it is back;\nsee --no-reconnect.\n\nExit code: "
+               "0 fine; 1 no display, or the server cannot be reached, refused the\nviewer or has vanished; 2 bad "
+               "usage.");
     add_connection_options(app, arguments)->capture_default_str();
     app.add_option("--size", size, "Size of the window in pixels")->capture_default_str();
     app.add_flag("--fullscreen", fullscreen, "Fill the screen");
@@ -40,12 +44,16 @@ int main(int argc, char** argv) {
     }
     try {
         Window window("framelet-viewer", viewport);
-        Viewer viewer(window, connection, Viewer::connect(connection), display.settings(), display.lag_seconds());
+        std::unique_ptr<ClientCore> core = connection.reconnect ? nullptr : Viewer::connect(connection);
         window.show();
         if (fullscreen) {
             window.toggle_fullscreen();
         }
-        return viewer.run();
+        core = core ? std::move(core) : wait_for_server(window, connection);
+        if (!core) {
+            return 1;
+        }
+        return Viewer(window, connection, std::move(core), display.settings(), display.lag_seconds()).run();
     } catch (std::exception const& error) {
         std::cerr << "framelet-viewer: " << failure_text(error) << "\n";
         return 1;

@@ -29,6 +29,11 @@ struct ConnectionError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// It could not be made, and would not another time: the server is there and refuses this viewer.
+struct ConnectionRefusal : ConnectionError {
+    using ConnectionError::ConnectionError;
+};
+
 } // namespace framelet
 
 /// Aborts with the place and the condition where an invariant of ours does not hold. Stays on in release builds.

@@ -364,6 +364,24 @@ TEST(ClientCore, RefusesAnotherProtocolVersion) {
     EXPECT_TRUE(one_line_with(text, {server.address().text(), "77", "version"})) << text;
 }
 
+TEST(ClientCore, TellsARefusalFromAServerThatIsNotThereYet) {
+    FakeServer::Script script;
+    script.refusal = "wrong token: ask whoever runs the server";
+    ConnectionOptions options;
+    {
+        FakeServer server(script);
+        options = options_for(server);
+        EXPECT_THROW(ClientCore{options}, ConnectionRefusal);
+    }
+    try {
+        ClientCore const core(options);
+        FAIL() << "nobody listens";
+    } catch (ConnectionRefusal const& error) {
+        FAIL() << error.what();
+    } catch (ConnectionError const&) {
+    }
+}
+
 TEST(ClientCore, SendsItsTokenFirst) {
     FakeServer server;
     ConnectionOptions options = options_for(server);
