@@ -51,7 +51,7 @@ std::unique_ptr<ClientCore> wait_for_server(Window& window, ConnectionOptions co
                 next_attempt = Clock::now() + std::chrono::duration_cast<Clock::duration>(pause);
             }
         }
-        if (redraw && !window.is_iconified()) {
+        if (redraw && !window.is_hidden()) {
             window.draw_picture();
             overlay.draw(content);
             window.present();

@@ -79,7 +79,12 @@ int Viewer::run() {
     int overlay_frames = 0; ///< to be drawn for its sake
     OverlayContent shown;
     while (!quit_) {
-        bool const hidden = window_.is_iconified();
+        bool const hidden = window_.is_hidden();
+        if (hidden != settings_.paused) {
+            settings_.paused = hidden;
+            core_->set_settings(settings_);
+            redraw = true;
+        }
         WindowInput const input = window_.wait(pending && !hidden ? next_frame - seconds_now() : idle_seconds);
         double const now = seconds_now();
         moving = apply(input, moving ? now - last_look : 0);

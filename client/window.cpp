@@ -272,8 +272,9 @@ double Window::refresh_rate() const {
     return mode == nullptr || mode->refreshRate <= 0 ? 60 : mode->refreshRate;
 }
 
-bool Window::is_iconified() const {
-    return glfwGetWindowAttrib(impl_->window, GLFW_ICONIFIED) != 0;
+bool Window::is_hidden() const {
+    return glfwGetWindowAttrib(impl_->window, GLFW_ICONIFIED) != 0 ||
+           glfwGetWindowAttrib(impl_->window, GLFW_VISIBLE) == 0;
 }
 
 void Window::set_title(std::string const& title) {

@@ -45,7 +45,8 @@ public:
     /// Pixels of the framebuffer for one unit of text size.
     float content_scale() const;
     double refresh_rate() const;
-    bool is_iconified() const;
+    /// Iconified, or on no screen at all: nobody sees what is drawn. A window that others cover is not told of it.
+    bool is_hidden() const;
     void set_title(std::string const& title);
     void show();
     void toggle_fullscreen();

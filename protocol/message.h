@@ -54,6 +54,8 @@ struct ViewerSettings {
     /// Whether it moves samples to where they are seen later; false: it shows them where they were rendered, and has no
     /// use for shapes.
     bool reproject = true;
+    /// Nobody sees its picture: it wants nothing until it says otherwise.
+    bool paused = false;
     bool operator==(ViewerSettings const&) const = default;
 };
 

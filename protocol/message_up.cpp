@@ -34,11 +34,11 @@ char const* problem(CameraUpdate const& value) {
 }
 
 Offset<wire::ViewerSettings> write(Builder& builder, ViewerSettings const& value) {
-    return wire::CreateViewerSettings(builder, value.exposure_ev, value.bias, value.reproject);
+    return wire::CreateViewerSettings(builder, value.exposure_ev, value.bias, value.reproject, value.paused);
 }
 
 ViewerSettings read(wire::ViewerSettings const& wire) {
-    return {wire.exposure_ev(), wire.bias(), wire.reproject()};
+    return {wire.exposure_ev(), wire.bias(), wire.reproject(), wire.paused()};
 }
 
 char const* problem(ViewerSettings const& value) {

@@ -76,6 +76,10 @@ Step FrameletStream::plan(Turn const& turn, PosedScene& scene) {
     if (!camera_) {
         return Step::nothing;
     }
+    if (settings_.paused) {
+        complete_ = false; // what it would see by now is not known
+        return planned_ != nullptr ? Step::finish : Step::nothing;
+    }
     ViewState const present = state_at(turn.present, scene);
     if (viewer_.refresh.is_complete(present)) {
         if (planned_ != nullptr) {

@@ -93,6 +93,19 @@ TEST(Message, LetGoNamesFrameletsByBatchAndTile) {
               max_upstream_message_bytes);
 }
 
+TEST(Message, SettingsSayWhetherAnybodyLooks) {
+    for (bool const paused : {false, true}) {
+        ViewerSettings const settings{1, 0.5f, false, paused};
+        EXPECT_TRUE(same(decode_message(encode_message(settings)), settings));
+    }
+    // As a viewer says it that knows nothing of pausing.
+    Bytes const golden =
+        from_hex("10000000 46524d4c 08000e00 07000800 08000000 00000003 10000000 00000a00 10000800 0c000700"
+                 " 0a000000 00000000 0000803f 0000003f");
+    EXPECT_EQ(to_hex(encode_message(ViewerSettings{1, 0.5f, false})), to_hex(golden));
+    EXPECT_TRUE(same(decode_message(golden), ViewerSettings{1, 0.5f, false, false}));
+}
+
 TEST(Message, TextIsMadeOneLine) {
     auto const failure = std::get<Failure>(decode_message(encode_message(Failure{"two\nlines \x1b[31m \xff"})));
     EXPECT_EQ(failure.text, "two?lines ?[31m ?");

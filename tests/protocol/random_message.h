@@ -134,7 +134,7 @@ public:
         case 1:
             return CameraUpdate{view(), static_cast<int>(number(-1, 4095))};
         case 2:
-            return ViewerSettings{small(-16, 16), small(-1, 1), coin()};
+            return ViewerSettings{small(-16, 16), small(-1, 1), coin(), coin()};
         case 3:
             return ClockRequest{static_cast<std::uint8_t>(integer(0, 7)), clock()};
         case 4:

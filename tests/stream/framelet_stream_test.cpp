@@ -101,5 +101,38 @@ TEST(FrameletStream, AViewerThatHasBegunAnewIsSentAllOfItOnceMore) {
     EXPECT_EQ(sent_until_complete(served, 11), all);
 }
 
+TEST(FrameletStream, NothingIsPlannedForAViewerThatIsPaused) {
+    ViewerSettings const seen{0, 0, true, false};
+    ViewerSettings const paused{0, 0, true, true};
+    Served served;
+    served.look({}, 1, 1);
+    ASSERT_EQ(served.plan(1, 0.1, 1), Step::render);
+    served.stream.render(served.posed);
+    served.stream.take({1, paused});
+    EXPECT_EQ(served.plan(1, 0.1, 1), Step::finish) << "what is rendered is sent";
+    ASSERT_TRUE(served.stream.learn(served.posed));
+    std::uint64_t const batch = served.stream.encode().number;
+    served.stream.take({1, BatchSent{batch, 100}});
+    served.stream.take({1, Ack{batch, 0, 0}});
+    for (double now = 1; now < 3; now += 0.05) {
+        ASSERT_EQ(served.plan(now, now, 1), Step::nothing);
+        ASSERT_FALSE(served.stream.is_complete());
+    }
+    served.stream.take({3, seen});
+    EXPECT_EQ(served.plan(3, 3, 1), Step::render);
+}
+
+TEST(FrameletStream, WhatIsCompleteIsSoAgainAfterAPauseInWhichNothingMoved) {
+    Served served;
+    served.stream.take({0, CameraUpdate{{1, {}, {64, 48}, 1}, -1}});
+    ASSERT_GT(sent_until_complete(served, 1), 0u);
+    served.stream.take({101, ViewerSettings{0, 0, true, true}});
+    EXPECT_EQ(served.plan(101, 0.5, 0), Step::nothing);
+    EXPECT_FALSE(served.stream.is_complete());
+    served.stream.take({102, ViewerSettings{0, 0, true, false}});
+    EXPECT_EQ(served.plan(102, 0.5, 0), Step::nothing) << "it has all";
+    EXPECT_TRUE(served.stream.is_complete());
+}
+
 } // namespace
 } // namespace framelet
