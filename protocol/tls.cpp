@@ -1,6 +1,8 @@
 #include "protocol/tls.h"
 
 #include <array>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <utility>
 
@@ -24,10 +26,30 @@ std::shared_ptr<ssl::context> make_context(ssl::context::method method) {
     return context;
 }
 
-void require(boost::system::error_code const& error, std::string const& what, std::string const& file) {
-    if (error) {
-        throw InputError(what + " '" + file + "' cannot be used: " + error.message());
+/// True where a line of the file, as "-----BEGIN RSA PRIVATE KEY-----", says that a thing of this kind follows.
+bool holds(std::string const& file, std::string const& kind) {
+    std::ifstream lines(file);
+    std::string const end = kind + "-----";
+    for (std::string line; std::getline(lines, line);) {
+        line.erase(line.find_last_not_of(" \r") + 1);
+        if (line.starts_with("-----BEGIN ") && line.ends_with(end)) {
+            return true;
+        }
     }
+    return false;
+}
+
+void require(boost::system::error_code const& error, std::string const& what, std::string const& file) {
+    if (!error) {
+        return;
+    }
+    bool const wants_key = what == "TLS key";
+    bool const swapped = std::filesystem::is_regular_file(file) &&
+                         holds(file, wants_key ? "CERTIFICATE" : "PRIVATE KEY") &&
+                         !holds(file, wants_key ? "PRIVATE KEY" : "CERTIFICATE");
+    std::string const mistaken = wants_key ? "it is a certificate, not a private key: give the key here"
+                                           : "it is a private key, not a certificate: give the certificate here";
+    throw InputError(what + " '" + file + "' cannot be used: " + (swapped ? mistaken : error.message()));
 }
 
 std::string fingerprint_of(X509 const* certificate) {
