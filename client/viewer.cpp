@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "client/display_pace.h"
+#include "common/counted.h"
 #include "common/error.h"
 #include "common/picture_writer.h"
 
@@ -313,7 +314,7 @@ void Viewer::choose_scene_camera(int number) {
     std::vector<SceneCameraInfo> const cameras = core_->welcome().cameras;
     if (number >= static_cast<int>(cameras.size())) {
         say(cameras.empty() ? "the scene has no cameras of its own"
-                            : "the scene has only " + std::to_string(cameras.size()) + " cameras");
+                            : "the scene has only " + counted(cameras.size(), "camera"));
         return;
     }
     scene_camera_ = number;

@@ -124,6 +124,24 @@ std::vector<Index> default_clips(Scene const& scene) {
     return clips;
 }
 
+std::vector<Index> clips_named(Scene const& scene, std::span<std::string const> names) {
+    std::vector<Index> chosen;
+    for (std::string const& name : names) {
+        Index found = none;
+        std::string known;
+        for (std::size_t i = 0; i < scene.clips.size(); ++i) {
+            found = scene.clips[i].name == name ? static_cast<Index>(i) : found;
+            known += (i > 0 ? ", " : "") + scene.clips[i].name;
+        }
+        if (found == none) {
+            throw InputError("the scene has no clip '" + name +
+                             "': " + (known.empty() ? "nothing in it is animated" : "its clips are " + known));
+        }
+        chosen.push_back(found);
+    }
+    return chosen;
+}
+
 ScenePose evaluate_pose(Scene const& scene, std::span<Index const> clips, SceneTime time) {
     ScenePose pose;
     pose.time = time;

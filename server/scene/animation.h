@@ -25,6 +25,9 @@ Transform transform_of(Mat4 const& matrix);
 /// The clips that play together: the first one, and every later one that moves nothing an earlier one moves.
 std::vector<Index> default_clips(Scene const& scene);
 
+/// The clips of these names. Throws InputError that lists the names there are.
+std::vector<Index> clips_named(Scene const& scene, std::span<std::string const> names);
+
 /// Evaluates the clips at `time`; each loops with its own duration. Rotations are interpolated along the shorter arc.
 ScenePose evaluate_pose(Scene const& scene, std::span<Index const> clips, SceneTime time);
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "common/counted.h"
 #include "common/error.h"
 #include "server/scene/animation.h"
 #include "server/scene/finish_parts.h"
@@ -35,15 +36,15 @@ bool finish_channel(Scene& scene, AnimationClip const& clip, AnimationChannel& c
         throw InputError(what + " has keys that are not numbers");
     }
     if (std::size_t const dropped = drop_repeated_keys(channel)) {
-        scene.warnings.push_back(what + ": " + std::to_string(dropped) +
-                                 " keys whose time does not increase are dropped");
+        scene.warnings.push_back(what + ": " + counted(dropped, "key") +
+                                 " dropped, with a time that does not increase");
     }
     if (channel.property == AnimatedProperty::morph_weights) {
         std::size_t const targets =
             node.mesh == none ? 0 : scene.meshes[static_cast<std::size_t>(node.mesh)].morph_weights.size();
         if (targets != static_cast<std::size_t>(channel.components)) {
-            scene.warnings.push_back(what + " has " + std::to_string(channel.components) + " weights for " +
-                                     std::to_string(targets) + " morph targets; passed over");
+            scene.warnings.push_back(what + " has " + counted(static_cast<std::size_t>(channel.components), "weight") +
+                                     " for " + counted(targets, "morph target") + "; passed over");
             return false;
         }
     } else if (node.matrix) {

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 #include <tiny_gltf.h>
 
+#include "server/scene/animation.h"
 #include "server/scene/gltf_accessor.h"
 #include "server/scene/gltf_file.h"
 #include "server/scene/gltf_parts.h"
@@ -10,7 +11,7 @@
 namespace framelet {
 
 Scene import_gltf(std::filesystem::path const& file, SceneFolder const& folder, ImportBudget& budget,
-                  Progress const& progress) {
+                  std::span<std::string const> needed_clips, Progress const& progress) {
     Scene scene;
     progress("reading", 0);
     auto const model = read_gltf(file, folder, budget, scene.warnings);
@@ -20,6 +21,7 @@ Scene import_gltf(std::filesystem::path const& file, SceneFolder const& folder, 
     import_gltf_materials(*model, scene);
     GltfMapping const mapping = import_gltf_nodes(*model, accessors, scene);
     import_gltf_animations(*model, accessors, mapping.node, scene);
+    clips_named(scene, needed_clips);
 
     std::size_t const mesh_count = mapping.used_meshes.size();
     scene.meshes.resize(mesh_count);

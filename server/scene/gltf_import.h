@@ -9,6 +9,6 @@
 namespace framelet {
 
 Scene import_gltf(std::filesystem::path const& file, SceneFolder const& folder, ImportBudget& budget,
-                  Progress const& progress);
+                  std::span<std::string const> needed_clips, Progress const& progress);
 
 } // namespace framelet

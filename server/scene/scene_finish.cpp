@@ -5,6 +5,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include "common/counted.h"
 #include "common/error.h"
 #include "server/scene/animation.h"
 #include "server/scene/finish_parts.h"
@@ -93,11 +94,12 @@ void finish_meshes(Scene& scene, ImportBudget& budget, Progress const& progress)
         other += job.repairs.other;
     }
     if (normals > 0) {
-        scene.warnings.push_back(std::to_string(normals) + " unusable normals were taken from the triangles");
+        scene.warnings.push_back(counted(normals, "unusable normal") + " taken from the triangles");
     }
     if (other > 0) {
-        scene.warnings.push_back(std::to_string(other) +
-                                 " texture coordinates, colours or morph offsets are not numbers and left out");
+        scene.warnings.push_back(counted(other, "texture coordinate, colour or morph offset",
+                                         "texture coordinates, colours and morph offsets") +
+                                 " left out for not being numbers");
     }
 }
 

@@ -69,7 +69,8 @@ Scene import_scene(std::filesystem::path const& file, Progress const& progress, 
         ImportBudget budget(options.memory_bytes);
         SceneFolder const folder(file, options.allow_outside);
         bool const is_gltf = extension == ".gltf" || extension == ".glb";
-        Scene scene = is_gltf ? import_gltf(file, folder, budget, report) : import_assimp(file, folder, budget, report);
+        Scene scene = is_gltf ? import_gltf(file, folder, budget, options.clips, report)
+                              : import_assimp(file, folder, budget, report);
         finish_scene(scene, budget, report);
         if (scene.name.empty()) {
             scene.name = file.stem().string();

@@ -23,6 +23,9 @@ struct ImportOptions {
     /// number. 4 GiB is 64 pictures of 4096x4096 or a hundred million vertices, and leaves a machine of 16 GB the room
     /// for what rendering makes of it once more.
     std::uint64_t memory_bytes = std::uint64_t(4) << 30;
+    /// Animation clips, by name, that the scene must have. A glTF file is refused without them before its meshes and
+    /// pictures are read.
+    std::vector<std::string> clips;
 };
 
 /// Throws InputError with one line that names the file where it cannot be loaded. The scene it returns is consistent:

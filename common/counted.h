@@ -1,0 +1,19 @@
+// Numbers of things in sentences for people.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+namespace framelet {
+
+/// "1 camera", "2 cameras", "0 cameras"; digits in groups of three, as in "1,234,567 triangles". Of a word whose plural
+/// is more than an s, `plural` is that.
+inline std::string counted(std::size_t number, std::string const& word, std::string const& plural = "") {
+    std::string digits = std::to_string(number);
+    for (std::size_t i = digits.size(); i > 3; i -= 3) {
+        digits.insert(i - 3, ",");
+    }
+    return digits + " " + (number == 1 ? word : plural.empty() ? word + "s" : plural);
+}
+
+} // namespace framelet
