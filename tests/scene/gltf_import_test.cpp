@@ -246,6 +246,26 @@ TEST(GltfImport, ProgressIsToldFromStartToEnd) {
     EXPECT_EQ(told.back(), std::pair(std::string("meshes"), 1.0));
 }
 
+TEST(GltfImport, AClipThatIsMissingIsFoundOutBeforeMeshesAreRead) {
+    TemporaryFolder const folder;
+    GltfWriter writer;
+    writer.array(triangle_positions, "VEC3");
+    std::string const file = folder.write("a.gltf", writer.json(one_mesh(R"("attributes":{"POSITION":7})")));
+    ImportOptions options;
+    auto const complaint = [&] {
+        try {
+            import_scene(file, {}, options);
+            return std::string();
+        } catch (InputError const& error) {
+            return std::string(error.what());
+        }
+    };
+    EXPECT_NE(complaint(), "") << "there is no accessor 7";
+    EXPECT_EQ(complaint().find("clip"), std::string::npos) << complaint();
+    options.clips = {"walk"};
+    EXPECT_NE(complaint().find("no clip 'walk'"), std::string::npos) << complaint();
+}
+
 TEST(GltfImport, BinaryAndLongerBufferFile) {
     TemporaryFolder const folder;
     GltfWriter writer;
