@@ -3,12 +3,9 @@
 
 #include <string>
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
-
 #include "client/server_address.h"
 #include "common/camera.h"
+#include "common/command_line.h"
 
 namespace framelet {
 
@@ -26,15 +23,13 @@ struct ConnectionArguments {
 /// parsing.
 CLI::Option* add_connection_options(CLI::App& app, ConnectionArguments& arguments);
 
-/// Throws InputError.
+/// All but the token. Throws InputError.
 ConnectionOptions make_connection_options(ConnectionArguments const& arguments);
+
+/// From --token-file; empty without one. Throws InputError.
+std::string read_token(ConnectionArguments const& arguments);
 
 /// Reads WIDTHxHEIGHT. Throws InputError.
 Viewport parse_size(std::string const& text);
-
-/// The exit code of a command line that is not to be run: 0 after --help and --version, else 2 and one line on stderr.
-int exit_usage(CLI::App const& app, CLI::ParseError const& error);
-/// The same for a value that cannot be used.
-int exit_usage(CLI::App const& app, std::string const& text);
 
 } // namespace framelet

@@ -1,10 +1,7 @@
 // The part of the command line that both programs share: how the scene is to look.
 #pragma once
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
-
+#include "common/command_line.h"
 #include "protocol/message.h"
 
 namespace framelet {

@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/counted.h"
+
 namespace framelet {
 
 namespace {
@@ -48,6 +50,7 @@ std::string statistics_json(ClientStatistics const& s, RunFigures const& run) {
         {"full_picture_seconds", reached(s.full_picture_seconds)},
         {"converged_seconds", reached(run.converged_seconds)},
         {"round_trip_seconds", reached(s.round_trip_seconds)},
+        {"motion_to_photon_seconds", reached(run.photon_seconds)},
         {"least_round_trip_seconds", reached(s.least_round_trip_seconds)},
         {"cameras_sent", s.cameras_sent},
         {"coverage", s.coverage},
@@ -62,23 +65,31 @@ std::string statistics_json(ClientStatistics const& s, RunFigures const& run) {
 }
 
 std::string statistics_summary(ClientStatistics const& s, RunFigures const& run) {
-    double const megabits = s.seconds > 0 ? static_cast<double>(s.bytes) * 8e-6 / s.seconds : 0;
+    double const seconds = s.seconds > 0 ? s.seconds : 1;
     std::ostringstream out;
     out << std::fixed << std::setprecision(1);
     out << run.scene << ", " << run.viewport.width << "x" << run.viewport.height << ", " << s.seconds << " s\n"
-        << "  received   " << s.batches << " batches, " << s.framelets << " framelets, "
-        << static_cast<double>(s.samples) * 1e-6 << " Msamples, " << static_cast<double>(s.bytes) * 1e-6 << " MB ("
-        << megabits << " Mbit/s, " << std::setprecision(2) << s.bytes_per_sample() << " B/sample)\n"
-        << std::setprecision(1) << "  picture    first after " << milliseconds(s.first_picture_seconds)
-        << ", full after " << milliseconds(s.full_picture_seconds) << ", complete after "
-        << milliseconds(run.converged_seconds) << "; covered " << s.coverage * 100 << "%\n"
-        << "  frames     " << run.frames << " shown, " << run.late_frames << " late, " << s.pictures << " changed\n"
-        << "  round trip " << milliseconds(s.round_trip_seconds) << " (least "
-        << milliseconds(s.least_round_trip_seconds) << ") from camera to picture\n"
-        << "  cost       decode " << s.decode_ns_per_sample() << " ns/sample, reconstruct "
-        << s.reconstruct_ns_per_pixel() << " ns/pixel, cache " << static_cast<double>(s.cached_bytes) * 1e-6 << " MB\n"
-        << "  server     " << s.server_samples_per_second * 1e-6 << " Msamples/s"
-        << (s.converged ? ", converged\n" : "\n");
+        << "  pictures          " << static_cast<double>(s.pictures) / seconds << " a second, the first after "
+        << milliseconds(s.first_picture_seconds) << "\n"
+        << "  network           " << static_cast<double>(s.bytes) * 8e-6 / seconds << " Mbit/s, "
+        << static_cast<double>(s.bytes) * 1e-6 << " MB\n"
+        << "  motion to photon  "
+        << (run.photon_seconds < 0 ? "not measured: nothing moved" : milliseconds(run.photon_seconds)) << "\n"
+        << "  done              " << s.coverage * 100 << "% of the picture, "
+        << (run.converged_seconds < 0 ? "not yet as good as it gets"
+                                      : "as good as it gets after " + milliseconds(run.converged_seconds))
+        << "\ndetails\n"
+        << "  frames            " << run.frames << " shown, " << run.late_frames << " late, " << s.pictures
+        << " changed; whole after " << milliseconds(s.full_picture_seconds) << "\n"
+        << "  round trip        " << milliseconds(s.round_trip_seconds) << ", least "
+        << milliseconds(s.least_round_trip_seconds) << "\n"
+        << "  received          " << counted(s.batches, "batch", "batches") << ", " << counted(s.framelets, "framelet")
+        << ", " << static_cast<double>(s.samples) * 1e-6 << " million samples, " << std::setprecision(2)
+        << s.bytes_per_sample() << " bytes/sample\n"
+        << std::setprecision(1) << "  cost              decode " << s.decode_ns_per_sample()
+        << " ns/sample, reconstruct " << s.reconstruct_ns_per_pixel() << " ns/pixel, cache "
+        << static_cast<double>(s.cached_bytes) * 1e-6 << " MB\n"
+        << "  server            " << s.server_samples_per_second * 1e-6 << " million samples/s\n";
     return out.str();
 }
 

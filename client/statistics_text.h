@@ -13,12 +13,13 @@ struct RunFigures {
     Viewport viewport;
     std::uint64_t frames = 0; ///< display frames
     std::uint64_t late_frames = 0; ///< shown more than one frame's time too late
+    double photon_seconds = -1; ///< motion to photon, median of the pictures that show something newer; -1: none did
     double converged_seconds = -1; ///< from the start until everything had arrived; -1: not seen
 };
 
 /// One JSON object, indented.
 std::string statistics_json(ClientStatistics const& statistics, RunFigures const& run);
-/// A few lines for people.
+/// A few lines for people, and below them those for who looks into what it costs.
 std::string statistics_summary(ClientStatistics const& statistics, RunFigures const& run);
 
 } // namespace framelet

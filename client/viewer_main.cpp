@@ -3,8 +3,6 @@
 #include <memory>
 #include <utility>
 
-#include <CLI/App.hpp>
-
 #include "client/connection_arguments.h"
 #include "client/display_arguments.h"
 #include "client/first_connection.h"
@@ -21,20 +19,21 @@ int main(int argc, char** argv) {
     DisplayArguments display;
 
     CLI::App app("Shows a scene that framelet-server renders. F1 in the window lists the keys.", "framelet-viewer");
-    app.set_version_flag("--version", "framelet-viewer " FRAMELET_VERSION);
-    app.footer("\nWhere the server is not there yet the window waits for it. Where it is gone for a\nwhile, what is "
-               "held goes on being shown, and the session goes on when it is back;\nsee --no-reconnect.\n\nExit code: "
-               "0 fine; 1 no display, or the server cannot be reached, refused the\nviewer or has vanished; 2 bad "
-               "usage.");
+    prepare_command_line(app);
+    app.footer("Where the server is not there yet the window waits for it. Where it is gone for a while, what is\nheld "
+               "goes on being shown, and the session goes on when it is back; see --no-reconnect.\n\nExit codes:\n  0  "
+               "fine\n  1  no display, a file cannot be used, or the server cannot be reached, refused the viewer or "
+               "has\n     vanished\n  2  bad usage");
     add_connection_options(app, arguments)->capture_default_str();
-    app.add_option("--size", size, "Size of the window in pixels")->capture_default_str();
+    app.option_defaults()->group("Window");
+    app.add_option("--size", size, "Size of the window in pixels")->type_name("WIDTHxHEIGHT")->capture_default_str();
     app.add_flag("--fullscreen", fullscreen, "Fill the screen");
     add_display_options(app, display);
 
     Viewport viewport;
     ConnectionOptions connection;
     try {
-        app.parse(argc, argv);
+        parse_command_line(app, argc, argv);
         viewport = parse_size(size);
         connection = make_connection_options(arguments);
     } catch (CLI::ParseError const& error) {
@@ -43,6 +42,7 @@ int main(int argc, char** argv) {
         return exit_usage(app, error.what());
     }
     try {
+        connection.token = read_token(arguments);
         Window window("framelet-viewer", viewport);
         std::unique_ptr<ClientCore> core = connection.reconnect ? nullptr : Viewer::connect(connection);
         window.show();

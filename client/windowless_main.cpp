@@ -1,12 +1,10 @@
 // framelet-client: looks at a served scene without a window, writes what a person would have seen and what it measured.
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <csignal>
 #include <iostream>
-#include <map>
 #include <optional>
-
-#include <CLI/App.hpp>
 
 #include "client/camera_path.h"
 #include "client/client_core.h"
@@ -47,8 +45,7 @@ struct Options {
     std::optional<double> seek;
 };
 
-constexpr char const* footer = R"(
-The camera file is JSON: {"position": [x,y,z], "target": [x,y,z], "up": [0,1,0],
+constexpr char const* footer = R"(The camera file is JSON: {"position": [x,y,z], "target": [x,y,z], "up": [0,1,0],
 "fov_degrees": 45} stands still ("up" and "fov_degrees" may be left out);
 {"keys": [{"time": seconds, "position": ..., "target": ...}, ...]} flies smoothly
 through the keys; {"scene_camera": 0} looks through a camera of the scene.
@@ -61,8 +58,24 @@ session goes on when it is back; see --no-reconnect.
 
 SIGINT (Ctrl-C) and SIGTERM end it as the end of --duration does.
 
-Exit code: 0 fine; 1 the server cannot be reached, refused the client, was gone at
-the end, or did not converge in time; 2 bad usage.)";
+Exit codes:
+  0  fine
+  1  a file cannot be used, the server cannot be reached, refused the client or was gone at the
+     end, or the picture did not converge in time
+  2  bad usage)";
+
+/// The number of the kind in place of its name, which is what CLI11 reads an enumeration from.
+CLI::Validator overlay_kind() {
+    return {[](std::string& input) {
+                bool const outlines = input == "outlines";
+                if (!outlines && input != "confidence") {
+                    return "'" + input + "' is neither outlines nor confidence";
+                }
+                input = std::to_string(static_cast<int>(outlines ? DrawnOver::outlines : DrawnOver::confidence));
+                return std::string();
+            },
+            "outlines or confidence"};
+}
 
 volatile std::sig_atomic_t told_to_end = 0;
 
@@ -121,6 +134,16 @@ bool tell_interruption(ClientCore const& core, bool interrupted) {
     return reason.has_value();
 }
 
+/// -1 of nothing.
+double median(std::vector<double> values) {
+    if (values.empty()) {
+        return -1;
+    }
+    auto const middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
 /// Shows frames until the time is over, the session has ended or, if wanted, all is there. Returns what it counted.
 RunFigures show(ClientCore& core, Options const& options, std::optional<CameraPath> const& path, Viewport viewport,
                 FrameWriter* writer, FrameLog* log) {
@@ -136,6 +159,7 @@ RunFigures show(ClientCore& core, Options const& options, std::optional<CameraPa
     Picture picture = bare_picture(viewport);
     Picture overlaid; //< and what is drawn over it
     std::vector<PixelRect> changed;
+    std::vector<double> photon_seconds;
     FrameChoice choice(options.output_times);
     Clock::time_point const start = Clock::now();
     Clock::time_point const end = start + DisplayPace::duration(duration);
@@ -160,9 +184,12 @@ RunFigures show(ClientCore& core, Options const& options, std::optional<CameraPa
         Clock::time_point const shown_at = pace.show(Clock::now(), core.making_seconds());
         bool const news = core.update_picture(picture, changed, shown_at);
         wait_until(core, shown_at);
+        ClientStatistics const statistics = core.statistics();
+        if (news && statistics.photon_seconds >= 0) {
+            photon_seconds.push_back(statistics.photon_seconds);
+        }
         if (log != nullptr) {
             double const writing = writer != nullptr ? writer->cpu_seconds() : 0;
-            ClientStatistics const statistics = core.statistics();
             log->add({run.frames, unix_seconds(), core.clock().time, news, core.is_complete(), statistics.bytes,
                       cpu_seconds_of(CLOCK_PROCESS_CPUTIME_ID) - writing, statistics.samples, statistics.photon_seconds,
                       path ? path->scene_camera : start_scene_camera(welcome), camera});
@@ -180,6 +207,7 @@ RunFigures show(ClientCore& core, Options const& options, std::optional<CameraPa
             run.converged_seconds = now;
         }
         if (done || Clock::now() >= end || core.end_reason() || told_to_end != 0) {
+            run.photon_seconds = median(std::move(photon_seconds));
             return run;
         }
         run.late_frames += pace.note_shown(Clock::now()) ? 1 : 0;
@@ -238,44 +266,58 @@ int main(int argc, char** argv) {
     Options options;
     CLI::App app("Looks at a scene that framelet-server renders, without a window: writes pictures and statistics.",
                  "framelet-client");
-    app.set_version_flag("--version", "framelet-client " FRAMELET_VERSION);
+    prepare_command_line(app);
     app.footer(footer);
     add_connection_options(app, options.connection)->required();
-    app.add_option("--size", options.size, "Size of the picture in pixels")->capture_default_str();
-    app.add_option("--duration", options.duration, "Seconds after which to end (default 10; with --until-converged 60)")
+    app.option_defaults()->group("Run");
+    app.add_option("--size", options.size, "Size of the picture in pixels")
+        ->type_name("WIDTHxHEIGHT")
+        ->capture_default_str();
+    app.add_option("--duration", options.duration, "Seconds after which to end")
+        ->type_name("SECONDS")
+        ->default_str("10, with --until-converged 60")
         ->check(number_in(0.0, 1e6));
-    app.add_option("--camera", options.camera_file, "Camera file, see below (default: the scene's own view)");
-    app.add_option("--rate", options.rate, "Display frames a second (default 60; with numbered files 10)")
-        ->check(number_in(0.1, 1000.0));
-    app.add_option("--output", options.output,
-                   "Picture file for each frame, as in frames/%04d.png (or .ppm: larger, quicker); without a number: "
-                   "for the last frame");
-    app.add_option("--output-times", options.output_times,
-                   "With numbered files: only the three frames from each of these times of the scene on, seconds; the "
-                   "numbers stay; written when the run is over")
-        ->check(number_in(0.0, 1e6));
-    app.add_option("--frames", options.frames_file,
-                   "Write a line of JSON for each frame to this file: when it was shown, the scene's time, bytes, CPU");
-    std::map<std::string, DrawnOver> const overlays{{"outlines", DrawnOver::outlines},
-                                                    {"confidence", DrawnOver::confidence}};
-    app.add_flag("--overlay{outlines}", options.overlay,
-                 "Draw into the pictures the outlines of the framelets that are held, fresh ones bright, or "
-                 "(--overlay=confidence) how old and how coarse each pixel is and which are made up")
-        ->transform(CLI::CheckedTransformer(overlays));
-    app.add_flag("--json", options.json, "Print the statistics as JSON");
+    app.add_option("--camera", options.camera_file, "Camera file, see below")
+        ->type_name("FILE")
+        ->default_str("the scene's own view");
     app.add_flag("--until-converged", options.until_converged,
                  "End once the picture is as good as it gets; exit code 1 where that takes longer than --duration");
+    app.option_defaults()->group("What is written");
+    app.add_option("--output", options.output,
+                   "Picture file for each frame, as in frames/%04d.png (or .ppm: larger, quicker); without a number: "
+                   "for the last frame")
+        ->type_name("FILE");
+    app.add_option("--rate", options.rate, "Display frames a second")
+        ->type_name("HZ")
+        ->default_str("60, with numbered files 10")
+        ->check(number_in(0.1, 1000.0));
+    app.add_option("--output-times", options.output_times,
+                   "With numbered files: only the three frames from each of these times of the scene on; the numbers "
+                   "stay; written when the run is over")
+        ->type_name("SECONDS...")
+        ->check(number_in(0.0, 1e6));
+    app.add_option("--frames", options.frames_file,
+                   "Write a line of JSON for each frame to this file: when it was shown, the scene's time, bytes, CPU")
+        ->type_name("FILE");
+    app.add_flag("--json", options.json, "Print the statistics as JSON");
     add_display_options(app, options.display);
+    app.add_flag("--overlay{outlines}", options.overlay,
+                 "Draw into the pictures the outlines of the framelets that are held, fresh ones bright, or with "
+                 "KIND confidence how old and how coarse each pixel is and which are made up")
+        ->option_text("KIND")
+        ->transform(overlay_kind());
+    app.option_defaults()->group("The scene's clock");
     CLI::Option* const play = app.add_flag("--play", options.play, "Let the scene's clock run");
     app.add_flag("--pause", options.pause, "Stop the scene's clock")->excludes(play);
     app.add_option("--seek", options.seek, "Set the scene's clock to this second")
+        ->type_name("SECONDS")
         ->check(number_in(0.0, max_scene_time));
 
     Viewport viewport;
     ConnectionOptions connection;
     std::optional<FramePattern> pattern;
     try {
-        app.parse(argc, argv);
+        parse_command_line(app, argc, argv);
         viewport = parse_size(options.size);
         connection = make_connection_options(options.connection);
         if (!options.output.empty()) {
@@ -287,6 +329,7 @@ int main(int argc, char** argv) {
         return exit_usage(app, error.what());
     }
     try {
+        connection.token = read_token(options.connection);
         return run(options, connection, viewport, pattern);
     } catch (std::exception const& error) {
         std::cerr << "framelet-client: " << failure_text(error) << "\n";

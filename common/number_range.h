@@ -3,21 +3,26 @@
 
 #include <sstream>
 #include <string>
+#include <type_traits>
 
 #include <CLI/Validators.hpp>
 
 namespace framelet {
 
-/// A number of [low, high]; neither NaN nor, so, infinite.
-inline CLI::Validator number_in(double low, double high) {
+/// A number of [low, high]; neither NaN nor, so, infinite. Whole where the bounds are of a whole type.
+template <typename T>
+CLI::Validator number_in(T low, T high) {
     std::ostringstream range;
-    range << "[" << low << " - " << high << "]";
+    range.precision(10);
+    range << low << " to " << high;
     return {[low, high, text = range.str()](std::string& input) {
-                double value = 0;
+                T value{};
                 bool const good = CLI::detail::lexical_cast(input, value) && value >= low && value <= high;
-                return good ? std::string() : "Value " + input + " is not a number in " + text;
+                char const* const kind =
+                    std::is_integral_v<T> ? "' is not a whole number from " : "' is not a number from ";
+                return good ? std::string() : "'" + input + kind + text;
             },
-            "NUMBER in " + range.str()};
+            range.str()};
 }
 
 } // namespace framelet

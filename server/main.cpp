@@ -12,10 +12,12 @@
 #include <spdlog/spdlog.h>
 #include <tbb/global_control.h>
 
+#include "common/counted.h"
 #include "common/error.h"
 #include "common/program_failure.h"
 #include "protocol/local_token.h"
 #include "protocol/stream_opening.h"
+#include "protocol/token.h"
 #include "server/options.h"
 #include "server/progress_bar.h"
 #include "server/render/framelet_renderer.h"
@@ -26,32 +28,29 @@
 namespace framelet {
 namespace {
 
-/// The clips of these names; throws InputError that lists the names there are.
-std::vector<Index> choose_clips(Scene const& scene, std::vector<std::string> const& names) {
-    if (names.empty()) {
-        return default_clips(scene);
-    }
-    std::vector<Index> chosen;
-    for (std::string const& name : names) {
-        Index found = none;
-        std::string known;
-        for (std::size_t i = 0; i < scene.clips.size(); ++i) {
-            found = scene.clips[i].name == name ? static_cast<Index>(i) : found;
-            known += (i > 0 ? ", " : "") + scene.clips[i].name;
+/// Those of a mesh count for each node that shows it.
+std::size_t count_triangles(Scene const& scene) {
+    std::size_t count = 0;
+    for (Node const& node : scene.nodes) {
+        if (node.mesh != none) {
+            for (Primitive const& primitive : scene.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
+                count += primitive.triangles.size();
+            }
         }
-        if (found == none) {
-            throw InputError("the scene has no clip '" + name +
-                             "': " + (known.empty() ? "nothing in it is animated" : "its clips are " + known));
-        }
-        chosen.push_back(found);
     }
-    return chosen;
+    return count;
 }
 
-/// Throws InputError where these files are of no use; to find that out only when they are needed could take as long as
-/// the scene does.
-void check_files(Options const& options) {
-    ServerOptions const& server = options.server;
+/// Reads the tokens. Throws InputError where a file is of no use; to find that out only when it is needed could take as
+/// long as the scene does.
+void read_files(Options& options) {
+    ServerOptions& server = options.server;
+    if (!options.token_file.empty()) {
+        server.token = read_token_file(options.token_file);
+    }
+    if (!options.control_token_file.empty()) {
+        server.control_token = read_token_file(options.control_token_file);
+    }
     if (!server.tls_certificate.empty()) {
         make_tls_server_context(server.tls_certificate, server.tls_key);
     }
@@ -63,7 +62,7 @@ void check_files(Options const& options) {
 
 void serve(Options& options) {
     auto listener = std::make_unique<Listener>(options.server.bind, options.server.port);
-    check_files(options);
+    read_files(options);
     std::optional<LocalToken> local_token;
     if (options.local_token) {
         std::vector<std::string> addresses;
@@ -91,7 +90,8 @@ void serve(Options& options) {
         throw InputError("there is nothing to see in scene '" + options.scene.string() +
                          "': it has no triangles, or none with an area");
     }
-    std::vector<Index> const clips = choose_clips(scene, options.clips);
+    std::vector<Index> const clips =
+        options.import.clips.empty() ? default_clips(scene) : clips_named(scene, options.import.clips);
     RenderScene render_scene(scene, std::move(environment), progress);
     ScenePose const pose = evaluate_pose(scene, clips, 0);
     render_scene.set_pose(pose);
@@ -100,8 +100,9 @@ void serve(Options& options) {
         scene.cameras.empty() ? default_camera(scene_bounds(scene, pose)) : scene_camera(scene, pose, 0);
     options.server.loop.stream.exposure =
         options.exposure_ev ? std::exp2(*options.exposure_ev) : auto_exposure(render_scene, start);
-    spdlog::info("{}: {} nodes, {} clips, {} lights, {} cameras; exposure {:+.1f} stops", scene.name,
-                 scene.nodes.size(), scene.clips.size(), scene.lights.size(), scene.cameras.size(),
+    spdlog::info("{}: {}, {}, {}, {}, {}; exposure {:+.1f} stops", scene.name, counted(scene.nodes.size(), "node"),
+                 counted(count_triangles(scene), "triangle"), counted(scene.clips.size(), "clip"),
+                 counted(scene.lights.size(), "light"), counted(scene.cameras.size(), "camera"),
                  std::log2(options.server.loop.stream.exposure));
 
     options.server.loop.recorder = recorder ? &*recorder : nullptr;

@@ -16,12 +16,12 @@ struct Options {
     ImportOptions import;
     std::optional<std::filesystem::path> environment;
     std::optional<float> exposure_ev; ///< stops; empty: from the scene
-    std::vector<std::string> clips; ///< names; empty: all that fit together
     int threads = 0; ///< 0: all cores
     bool quiet = false;
     std::filesystem::path record; ///< folder for what the server thought; empty: nothing is recorded
     double record_rate = 4; ///< sets of pictures a second and session
     std::filesystem::path record_events; ///< file for what came to the streams; empty: none
+    std::filesystem::path token_file, control_token_file; ///< empty: none
     bool local_token = false; ///< viewers of this user on this machine get one by themselves, others none
     ServerOptions server;
 };

@@ -76,6 +76,17 @@ TEST(CameraPath, BetweenEqualKeysItStandsStill) {
     }
 }
 
+TEST(CameraPath, WhereTheLastKeysAreEqualItHasCome) {
+    CameraPath const path = parse_camera_path(R"({"keys":[
+        {"time":0,"position":[0,1,5],"target":[0,0,0]},
+        {"time":1,"position":[3,1,4],"target":[0,0,0]},
+        {"time":5,"position":[3,1,4],"target":[0,0,0]}]})",
+                                              "test");
+    for (double time = 1; time < 6; time += 0.01) {
+        EXPECT_EQ(path.at(time), path.at(5)) << time;
+    }
+}
+
 TEST(CameraPath, ACameraOfTheScene) {
     EXPECT_EQ(parse_camera_path(R"({"scene_camera": 2})", "test").scene_camera, 2);
 }

@@ -28,6 +28,25 @@ TEST(StatisticsText, JsonHoldsTheFiguresAndNullForWhatWasNotReached) {
     EXPECT_TRUE(json.at("scene").get<std::string>().starts_with("a \"scene\""));
 }
 
+TEST(StatisticsText, WhatPeopleAskForStandsBeforeTheDetails) {
+    ClientStatistics statistics;
+    statistics.seconds = 2;
+    statistics.pictures = 60;
+    statistics.bytes = 1000000;
+    statistics.batches = 1;
+    statistics.coverage = 0.5;
+    RunFigures run;
+    run.photon_seconds = 0.042;
+    std::string const text = statistics_summary(statistics, run);
+    std::string const people = text.substr(0, text.find("\ndetails\n"));
+    for (char const* const part : {"30.0 a second", "4.0 Mbit/s", "42 ms", "50.0% of the picture, not yet"}) {
+        EXPECT_NE(people.find(part), std::string::npos) << part << " in\n" << text;
+    }
+    EXPECT_EQ(people.find("ns/"), std::string::npos) << text;
+    EXPECT_NE(text.find("1 batch, "), std::string::npos) << text;
+    EXPECT_DOUBLE_EQ(nlohmann::json::parse(statistics_json(statistics, run)).at("motion_to_photon_seconds"), 0.042);
+}
+
 TEST(StatisticsText, NothingReceivedIsNoDivisionByZero) {
     std::string const text = statistics_summary({}, {});
     EXPECT_EQ(text.find("nan"), std::string::npos) << text;

@@ -393,6 +393,14 @@ struct Usage {
     std::string says;
 };
 
+TEST(Loopback, LoadingIsOneLineOfALog) {
+    ServerProcess server(scene_file);
+    std::string const log = server.process().errors();
+    EXPECT_EQ(log.find('\r'), std::string::npos) << log;
+    EXPECT_EQ(std::count(log.begin(), log.end(), '\n'), 1) << log;
+    EXPECT_NE(log.find(" triangles, "), std::string::npos) << log;
+}
+
 TEST(Loopback, BadInputGetsOneLineAndTheRightExitCode) {
     TemporaryFolder folder;
     std::string const broken = folder.write("broken.gltf", "{ \"asset\": ");
@@ -402,7 +410,7 @@ TEST(Loopback, BadInputGetsOneLineAndTheRightExitCode) {
     Usage const cases[] = {
         {FRAMELET_SERVER, {}, 2, "SCENE"},
         {FRAMELET_SERVER, {scene_file, "--prot", "1"}, 2, "--prot"},
-        {FRAMELET_SERVER, {scene_file, "--port", "70000"}, 2, "port"},
+        {FRAMELET_SERVER, {scene_file, "--port", "70000"}, 2, "from 0 to 65535"},
         {FRAMELET_SERVER, {scene_file, "--bind", "0.0.0.0", "--port", "0"}, 2, "--token-file"},
         {FRAMELET_SERVER, {"/nonexistent/scene.glb"}, 1, "/nonexistent/scene.glb"},
         {FRAMELET_SERVER, {broken}, 1, "broken.gltf"},
@@ -424,7 +432,12 @@ TEST(Loopback, BadInputGetsOneLineAndTheRightExitCode) {
         {FRAMELET_CLIENT, {"127.0.0.1:7070", "--rate", "nan"}, 2, "--rate"},
         {FRAMELET_CLIENT, {"127.0.0.1:7070", "--output-times", "nan"}, 2, "--output-times"},
         {FRAMELET_CLIENT, {"127.0.0.1:7070", "--smooth=nan"}, 2, "--smooth"},
-        {FRAMELET_CLIENT, {}, 2, "HOST:PORT"},
+        {FRAMELET_CLIENT, {}, 2, "HOST[:PORT]"},
+        {FRAMELET_CLIENT, {"127.0.0.1:7070", "--smooth", "5000"}, 2, "from 0 to 1000"},
+        {FRAMELET_CLIENT, {"127.0.0.1:7070", "--overlay", "foo"}, 2, "outlines nor confidence"},
+        {FRAMELET_CLIENT, {"127.0.0.1:7070", "--overlay=foo"}, 2, "outlines nor confidence"},
+        {FRAMELET_CLIENT, {"127.0.0.1:7070", "--token-file", "/nonexistent/token"}, 1, "/nonexistent/token"},
+        {FRAMELET_SERVER, {scene_file, "--port", "0", "--token-file", "/nonexistent/token"}, 1, "/nonexistent/token"},
         {FRAMELET_CLIENT, {"nonsense:"}, 2, "nonsense"},
         {FRAMELET_CLIENT, {"127.0.0.1:7070", "--size", "0x5"}, 2, "size"},
         {FRAMELET_CLIENT, {"127.0.0.1:7070", "--camera", broken}, 1, "broken.gltf"},
@@ -437,6 +450,18 @@ TEST(Loopback, BadInputGetsOneLineAndTheRightExitCode) {
         ASSERT_NE(last, std::string::npos) << errors;
         EXPECT_NE(errors.find(usage.says, last), std::string::npos) << errors;
         EXPECT_EQ(std::count(errors.begin() + static_cast<std::ptrdiff_t>(last), errors.end(), '\n'), 1) << errors;
+    }
+    // What is no part of the scene is found out before the scene is looked at.
+    ServerProcess const other(scene_file);
+    std::string const port = other.address().substr(other.address().rfind(':') + 1);
+    std::vector<std::vector<std::string>> const early{{"--port", port},
+                                                      {"--port", "0", "--environment", text},
+                                                      {"--port", "0", "--tls-cert", text, "--tls-key", text}};
+    for (std::vector<std::string> arguments : early) {
+        arguments.insert(arguments.begin(), "/nonexistent/scene.glb");
+        Process process(FRAMELET_SERVER, arguments);
+        EXPECT_EQ(process.wait(60s), 1);
+        EXPECT_EQ(process.errors().find("scene.glb"), std::string::npos) << process.errors();
     }
     for (auto const* program : {FRAMELET_SERVER, FRAMELET_CLIENT}) {
         for (auto const* option : {"--help", "--version"}) {

@@ -1,0 +1,100 @@
+#include "common/command_line.h"
+
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include "common/counted.h"
+#include "common/number_range.h"
+
+namespace framelet {
+namespace {
+
+struct Line {
+    CLI::App app{"Does something.", "program"};
+    std::string host;
+    double lag = 0;
+    int port = 7;
+    bool plain = false;
+
+    explicit Line(bool needs_host = true) {
+        prepare_command_line(app);
+        app.option_defaults()->group("Places");
+        app.add_option("HOST[:PORT]", host, "Where to look")->required(needs_host);
+        app.add_option("--port", port, "A port of which much is to be said, so much that it takes more than one line")
+            ->check(number_in(0, 65535))
+            ->capture_default_str();
+        app.option_defaults()->group("Looks");
+        CLI::Option* const other = app.add_flag("--plain", plain, "Nothing of that");
+        app.add_flag("--lag{100}", lag, "Late")->option_text("MS")->check(number_in(0.0, 1000.0))->excludes(other);
+    }
+
+    void read(std::vector<char const*> words) {
+        words.insert(words.begin(), "program");
+        parse_command_line(app, static_cast<int>(words.size()), words.data());
+    }
+
+    std::string complaint(std::vector<char const*> const& words) {
+        try {
+            read(words);
+            return "";
+        } catch (CLI::ParseError const& error) {
+            return error.what();
+        }
+    }
+};
+
+TEST(CommandLine, AnOptionalValueIsTakenInBothSpellings) {
+    struct Case {
+        std::vector<char const*> words;
+        double lag;
+    };
+    for (Case const& one : {Case{{"here"}, 0}, Case{{"here", "--lag"}, 100}, Case{{"here", "--lag=50"}, 50},
+                            Case{{"here", "--lag", "50"}, 50}, Case{{"--lag", "50", "here"}, 50},
+                            Case{{"--lag", "here"}, 100}, Case{{"--port", "8", "--lag", "here", "--port", "9"}, 100}}) {
+        Line line;
+        line.app.get_option("--port")->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+        EXPECT_EQ(line.complaint(one.words), "");
+        EXPECT_EQ(line.lag, one.lag);
+        EXPECT_EQ(line.host, "here");
+    }
+    Line line(false);
+    line.read({"--lag", "50"});
+    EXPECT_EQ(line.lag, 50);
+    EXPECT_EQ(line.host, "");
+}
+
+TEST(CommandLine, AValueThatCannotBeIsNamedWithThoseThatCan) {
+    EXPECT_EQ(Line().complaint({"here", "--lag", "5000"}), "--lag: '5000' is not a number from 0 to 1000");
+    EXPECT_EQ(Line().complaint({"here", "--lag", "much"}), "--lag: 'much' is not a number from 0 to 1000");
+    EXPECT_EQ(Line().complaint({"here", "--lag=nan"}), "--lag: 'nan' is not a number from 0 to 1000");
+    for (std::string const port : {"99999", "-1", "1.5", "x"}) {
+        EXPECT_EQ(Line().complaint({"here", "--port", port.c_str()}),
+                  "--port: '" + port + "' is not a whole number from 0 to 65535");
+    }
+    EXPECT_EQ(Line().complaint({}), "HOST[:PORT] is required");
+}
+
+TEST(CommandLine, HelpHasGroupsAndDefaultsAndFitsTheScreen) {
+    Line const line;
+    std::istringstream help(line.app.help());
+    for (std::string text; std::getline(help, text);) {
+        EXPECT_LE(text.size(), help_columns) << text;
+    }
+    for (char const* const part : {"\nPlaces:\n  --port NUMBER ", "(0 to 65535; default: 7)\n", "\nLooks:\n  --plain ",
+                                   "\n  --lag [MS]                  Late (0 to 1000; not with --plain)\n",
+                                   "Usage: program [OPTIONS] HOST[:PORT]\n"}) {
+        EXPECT_NE(help.str().find(part), std::string::npos) << part << " in\n" << help.str();
+    }
+}
+
+TEST(Counted, OneIsNoPlural) {
+    EXPECT_EQ(counted(1, "camera"), "1 camera");
+    EXPECT_EQ(counted(0, "camera"), "0 cameras");
+    EXPECT_EQ(counted(2, "batch", "batches"), "2 batches");
+    EXPECT_EQ(counted(999, "triangle"), "999 triangles");
+    EXPECT_EQ(counted(1234567, "triangle"), "1,234,567 triangles");
+}
+
+} // namespace
+} // namespace framelet
