@@ -117,6 +117,7 @@ void Mirror::erase_forgotten() {
         if (moment.pieces.empty() && &moment != &moments_[base_]) {
             moment.number = 0;
         }
+        give_back_room(moment);
     }
     forgotten_.clear();
 }
@@ -205,13 +206,18 @@ Mirror::Moment& Mirror::free_slot() {
     return free;
 }
 
-/// A picture at rest has many times the pieces that one has while things move: not every moment keeps room for that.
 void Mirror::empty(Moment& moment) {
     moment.number = 0;
     moment.pieces.clear();
     moment.reprojected.clear();
-    if (moment.pieces.capacity() > cells_.size()) {
+    give_back_room(moment);
+}
+
+/// A picture at rest has many times the pieces that one has while things move: not every moment keeps room for that.
+void Mirror::give_back_room(Moment& moment) {
+    if (moment.pieces.capacity() > std::max(cells_.size(), 4 * moment.pieces.size())) {
         moment.pieces.shrink_to_fit();
+        moment.reprojected.resize(std::min(moment.reprojected.size(), moment.pieces.size()));
         moment.reprojected.shrink_to_fit();
     }
 }

@@ -85,6 +85,7 @@ private:
     bool belongs_to_base(Moment const& moment) const { return moment.number > moments_[base_].number; }
     void settle_now();
     void empty(Moment& moment);
+    void give_back_room(Moment& moment);
     void begin_base(ViewRays const& rays, SceneTime scene_time);
     Moment& slot_of_moving(SceneTime scene_time);
     Moment& begin_slot(ViewRays const& rays, SceneTime scene_time);

@@ -101,5 +101,32 @@ TEST(FrameletPool, MemoryIsBoundedHoweverManyCamerasThereAre) {
     EXPECT_LE(pool.memory_bytes(), most);
 }
 
+TEST(FrameletPool, RoomForAPictureAtRestIsNotKeptByEachMoment) {
+    ImagePlane const large({256, 256});
+    std::uint64_t camera = 0;
+    FrameletPool pool(large);
+    auto const look = [&](int depth) {
+        std::vector<DisplayFramelet> framelets;
+        for (Tile const tile : visible_tiles(large, depth)) {
+            framelets.push_back(constant_framelet(large, tile, 1));
+        }
+        Batch batch = make_batch(large, ++camera, std::move(framelets));
+        batch.view.number = camera;
+        batch.view.camera.position.x = static_cast<float>(camera);
+        pool.insert(batch, {});
+    };
+    look(large.max_depth());
+    std::size_t const at_rest = pool.memory_bytes();
+    for (int stop = 0; stop < 20; ++stop) {
+        for (std::size_t moment = 0; moment < FrameletPool::most_moments; ++moment) {
+            look(large.min_depth());
+        }
+        look(large.max_depth());
+    }
+    std::size_t const moments =
+        FrameletPool::most_moments * (FrameletCache(large).memory_bytes() + sizeof(FrameletRoom::Chunk));
+    EXPECT_LE(pool.memory_bytes(), at_rest + 2 * moments);
+}
+
 } // namespace
 } // namespace framelet
