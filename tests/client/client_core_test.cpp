@@ -515,7 +515,7 @@ TEST(ClientCore, ComesBackAndShowsMeanwhileWhatItHolds) {
 TEST(ClientCore, WhatIsHeldStaysUntilThereIsAWholePicture) {
     Returning viewer;
     viewer.server.start_anew({});
-    ASSERT_TRUE(viewer.is_interrupted() && viewer.is_back());
+    ASSERT_TRUE(viewer.is_back());
     Batch part =
         make_batch(viewer.plane, 0, {constant_framelet(viewer.plane, make_tile(viewer.plane.pixel_depth(), 0, 0), 90)});
     part.view.number = 1;
@@ -534,7 +534,7 @@ TEST(ClientCore, AnotherSceneStartsClean) {
     other.welcome.scene_identity = 8;
     other.welcome.scene_name = "another scene";
     viewer.server.start_anew(other);
-    ASSERT_TRUE(viewer.is_interrupted() && viewer.is_back());
+    ASSERT_TRUE(viewer.is_back());
     EXPECT_EQ(viewer.core->welcome().scene_name, "another scene");
     EXPECT_EQ(viewer.core->scene_number(), 2u);
     EXPECT_TRUE(viewer.update());
