@@ -18,7 +18,7 @@ namespace framelet {
 using Bytes = std::vector<std::byte>;
 using ByteView = std::span<std::byte const>;
 
-inline constexpr std::uint16_t protocol_version = 3;
+inline constexpr std::uint16_t protocol_version = 4;
 
 // --- upstream
 // ---------------------------------------------------------------------------------------------------------
