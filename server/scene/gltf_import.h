@@ -2,6 +2,10 @@
 // In: a path. Out: a Scene, or an InputError without the file's name.
 #pragma once
 
+#include <filesystem>
+#include <span>
+#include <string>
+
 #include "server/scene/import_budget.h"
 #include "server/scene/scene_folder.h"
 #include "server/scene/scene_import.h"
