@@ -78,6 +78,17 @@ void AdaptiveRefresh::advance(RefreshInput const& input) {
     advanced_ = input.now;
 }
 
+/// After samples that were not moved, whose cameras make no difference to where the viewer holds them, a base begins
+/// as well.
+void AdaptiveRefresh::note_base(Camera const& camera, bool moves_samples, double now) {
+    if (!moves_samples) {
+        base_camera_.reset();
+    } else if (base_camera_ != camera) {
+        base_camera_ = camera;
+        base_begun_ = now;
+    }
+}
+
 /// True while the last cycle's plan still holds.
 bool AdaptiveRefresh::goes_on(RefreshInput const& input, bool mirrored) const {
     double const seconds = input.now - planned_;
@@ -102,6 +113,8 @@ void AdaptiveRefresh::plan(RefreshInput const& input, RefreshPlan& plan) {
     plan.moment_begun = moment.begun;
     plan.moment = {make_view_rays(view.camera, view.viewport), moment.state.scene_time,
                    is_reprojectable(view.camera) ? input.motions : nullptr};
+    note_base(view.camera, plan.moment.motions != nullptr, input.now);
+    plan.base_begun = base_begun_;
     plan.is_mirrored = input.moment && plan.moment.motions != nullptr;
     still_ = !input.moment && is_still(input.state);
     plan.is_new_cycle = !goes_on(input, plan.is_mirrored);

@@ -64,6 +64,7 @@ public:
 private:
     bool goes_on(RefreshInput const& input, bool mirrored) const;
     void advance(RefreshInput const& input);
+    void note_base(Camera const& camera, bool moves_samples, double now);
     void plan_cycle(RefreshInput const& input, RefreshPlan& plan);
     double plan_inspections(RefreshInput const& input);
     void find_costs(RefreshInput const& input);
@@ -77,6 +78,8 @@ private:
     double advanced_ = 0; ///< the time that the field stands for
     double still_since_ = 0; ///< when what is to be seen changed last
     bool strayed_ = false; ///< something was rendered for another state than `seen_` since
+    std::optional<Camera> base_camera_; ///< of the last plan, where the viewer moves its samples
+    double base_begun_ = never; ///< when the first plan of that camera was made since there was another one
     bool scene_moves_ = false;
     bool still_ = false; ///< what is to be seen is what the last plan was for
     PlaceField field_;

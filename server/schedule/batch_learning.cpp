@@ -36,9 +36,10 @@ void examine_batch(PlaceField const& field, RefreshPlan const& plan, std::span<D
             examine_patch(field, patch, framelets.subspan(tile, count), of_patch, {plan.now, plan.moment_begun},
                           plan.moment, history, std::span(findings.entries).subspan(tile, count),
                           std::span(findings.places).subspan(place, field.range_of(patch.node).size()));
-        // The same picture may be of a body that has moved, and that the viewer has moved away.
+        // The same picture may be of a body that has moved, or from before the camera has, and the viewer has moved it
+        // away.
         bool const moved = plan.moment.motions != nullptr && std::ranges::any_of(of_patch, shows_motion);
-        findings.same_since[i] = moved ? never : same_since;
+        findings.same_since[i] = moved || same_since < plan.base_begun ? never : same_since;
     });
 }
 

@@ -45,6 +45,9 @@ std::size_t batch_limit(RefreshInput const& input, bool still);
 struct RefreshPlan {
     double now = 0; ///< when
     double still_since = 0; ///< when anything moved last
+    /// Since when a viewer that moves its samples has seen this camera and no other: what it was sent before, it has
+    /// moved away. `never`: it shows all where it was rendered.
+    double base_begun = never;
     Viewport viewport;
     double moment_begun = 0; ///< when what is rendered was the present
     RenderedMoment moment; ///< whose motions must live until it is learnt

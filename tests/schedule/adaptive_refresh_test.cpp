@@ -364,6 +364,38 @@ TEST(AdaptiveRefresh, WhatIsUnchangedIsNotSentAgain) {
     }
 }
 
+/// A viewer that moves its samples has moved away what it got before the camera went elsewhere.
+TEST(AdaptiveRefresh, AfterACameraHasReturnedAViewerThatMovesSamplesIsSentAllOfThem) {
+    BodyMotions const motions;
+    for (bool const moves_samples : {true, false}) {
+        SyntheticRefresh synthetic({64, 64}, texture);
+        synthetic.running = false;
+        synthetic.input.motions = moves_samples ? &motions : nullptr;
+        synthetic.input.batch_framelets = 8;
+        auto& camera = synthetic.input.state.view.camera;
+        ASSERT_LT(synthetic.finish(60), 60);
+        camera.position.x = 0.01f;
+        ASSERT_TRUE(synthetic.step()); // rendered there
+        camera.position.x = 0;
+        ASSERT_TRUE(synthetic.step()); // and learnt
+        std::set<Tile> sent;
+        while (synthetic.step()) {
+            for (DisplayFramelet const& framelet : synthetic.sent) {
+                sent.insert(framelet.tile);
+            }
+        }
+        ImagePlane const plane({64, 64});
+        std::size_t const all = uniform_tile_count(plane, plane.max_depth());
+        std::size_t const finest = static_cast<std::size_t>(
+            std::ranges::count(sent, plane.max_depth(), [](Tile tile) { return tile.depth(); }));
+        if (moves_samples) {
+            EXPECT_EQ(finest, all);
+        } else {
+            EXPECT_LT(finest, all / 2) << "it shows them where they were rendered";
+        }
+    }
+}
+
 /// A line a third of a pixel wide, between the samples of every level from one a pixel upwards but not of all of its
 /// length: it is slanted.
 TEST(AdaptiveRefresh, FindsAHairInWhatWasFlat) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "common/picture/framelet_pool.h"
 #include "tests/session/triangle_scenes.h"
 
 namespace framelet {
@@ -99,6 +100,52 @@ TEST(FrameletStream, AViewerThatHasBegunAnewIsSentAllOfItOnceMore) {
     served.stream.take({50, CameraUpdate{{11, {}, {64, 48}, 11}, -1}});
     EXPECT_FALSE(served.stream.learn(served.posed)) << "the viewer would not take that";
     EXPECT_EQ(sent_until_complete(served, 11), all);
+}
+
+/// Whatever was rendered of other cameras meanwhile, and however little of it.
+TEST(FrameletStream, AViewerHoldsAllOfAPictureAtRestForItsCamera) {
+    for (int const batches_away : {0, 1, 2, 5}) {
+        Served served;
+        FrameletPool pool{ImagePlane({64, 48})};
+        BodyMotions motions;
+        double now = 1;
+        auto const serve = [&](double present) {
+            now += 0.02;
+            if (served.plan(now, present, 0) != Step::render) {
+                return false;
+            }
+            served.stream.render(served.posed);
+            if (served.stream.learn(served.posed)) {
+                Batch const& batch = served.stream.learnt_batch();
+                for (BodyTrack const& track : batch.tracks) {
+                    motions.extend(track);
+                }
+                pool.insert(batch, motions);
+                std::uint64_t const number = served.stream.encode().number;
+                served.stream.take({now, BatchSent{number, 100}});
+                served.stream.take({now, Ack{number, 0, 0}});
+            }
+            return true;
+        };
+        auto const come_to_rest = [&](std::uint64_t number, double present) {
+            served.look({}, number, now);
+            serve(present);
+            for (int i = 0; i < 1000 && !served.stream.is_complete(); ++i) {
+                serve(present);
+            }
+            ASSERT_TRUE(served.stream.is_complete());
+            pool.settle();
+            EXPECT_EQ(pool.newest().coverage(), 1) << batches_away << " batches away";
+        };
+        come_to_rest(1, 0.5);
+        Camera away;
+        away.position.x = 0.5f;
+        served.look(away, 2, now);
+        for (int batch = 0; batch < batches_away;) {
+            batch += serve(0.5) ? 1 : 0;
+        }
+        come_to_rest(3, 1.5);
+    }
 }
 
 TEST(FrameletStream, NothingIsPlannedForAViewerThatIsPaused) {
