@@ -27,6 +27,11 @@ void SessionPictures::pause(SceneTime present) {
     paused_ = present;
 }
 
+void SessionPictures::forget_earlier() {
+    earlier_.reset();
+    unseen_ = {};
+}
+
 bool SessionPictures::replaces_earlier(PictureRequest const& request) {
     if (current_->viewport() != earlier_->viewport()) {
         return !current_->is_empty();
@@ -38,8 +43,7 @@ bool SessionPictures::replaces_earlier(PictureRequest const& request) {
 bool SessionPictures::show(PictureRequest const& request, Picture& picture, std::vector<PixelRect>& changed) {
     FRAMELET_CHECK(current_ != nullptr);
     if (earlier_ && replaces_earlier(request)) {
-        earlier_.reset();
-        unseen_ = {};
+        forget_earlier();
     }
     if (!earlier_) {
         return current_->show(request, picture, changed);

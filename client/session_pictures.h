@@ -22,7 +22,7 @@ public:
     /// This session has ended: what it showed is shown on, at this time of the scene.
     void pause(SceneTime present);
     /// What is held of the session before is of another scene.
-    void forget_earlier() { earlier_.reset(); }
+    void forget_earlier();
 
     /// As `PictureMaker::show`. The session before shows its own until this one's picture has no more holes, or is
     /// complete: that is seen by making both. After `prepare`.

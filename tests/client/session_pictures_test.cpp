@@ -33,6 +33,12 @@ struct Shown {
         batch.number = ++batches;
         pictures.prepare(view, {}).insert(batch);
     }
+    /// Another session begins, after one of which this was shown.
+    void begin_after(Batch const& batch) {
+        insert(batch);
+        EXPECT_EQ(at(10), batch.framelets[0].red[0]);
+        pictures.pause(0);
+    }
     int at(int x) {
         pictures.prepare(view, {});
         pictures.show(request, picture, changed);
@@ -55,9 +61,7 @@ TEST(SessionPictures, TheEarlierIsShownUntilTheNewHasNoMoreHoles) {
 
 TEST(SessionPictures, APictureThatLacksNoMoreThanTheEarlierTakesItsPlace) {
     Shown shown;
-    shown.insert(left_of(64, 50));
-    EXPECT_EQ(shown.at(10), 50);
-    shown.pictures.pause(0);
+    shown.begin_after(left_of(64, 50));
     shown.insert(left_of(32, 70));
     EXPECT_EQ(shown.at(10), 50);
     shown.insert(left_of(64, 80));
@@ -66,9 +70,7 @@ TEST(SessionPictures, APictureThatLacksNoMoreThanTheEarlierTakesItsPlace) {
 
 TEST(SessionPictures, ACompletePictureTakesTheEarliersPlaceHoweverMuchItCovers) {
     Shown shown;
-    shown.insert(left_of(100, 50));
-    EXPECT_EQ(shown.at(10), 50);
-    shown.pictures.pause(0);
+    shown.begin_after(left_of(100, 50));
     shown.insert(left_of(64, 70));
     shown.request.is_settled = true;
     EXPECT_EQ(shown.at(10), 70);
@@ -76,9 +78,7 @@ TEST(SessionPictures, ACompletePictureTakesTheEarliersPlaceHoweverMuchItCovers) 
 
 TEST(SessionPictures, ManyInterruptionsKeepTheLastPictureThatWasShown) {
     Shown shown;
-    shown.insert(left_of(100, 50));
-    EXPECT_EQ(shown.at(10), 50);
-    shown.pictures.pause(0);
+    shown.begin_after(left_of(100, 50));
     shown.insert(left_of(64, 70));
     EXPECT_EQ(shown.at(10), 50);
     shown.pictures.pause(0);
@@ -88,11 +88,19 @@ TEST(SessionPictures, ManyInterruptionsKeepTheLastPictureThatWasShown) {
     EXPECT_EQ(shown.at(10), 80);
 }
 
+TEST(SessionPictures, OfAnEarlierThatIsForgottenNothingIsKept) {
+    Shown shown;
+    shown.begin_after(left_of(100, 50));
+    shown.insert(left_of(64, 70));
+    EXPECT_EQ(shown.at(10), 50);
+    shown.pictures.forget_earlier();
+    EXPECT_EQ(shown.pictures.memory_bytes(), shown.pictures.current()->memory_bytes());
+    EXPECT_EQ(shown.at(10), 70);
+}
+
 TEST(SessionPictures, OfAnotherSizeTheFirstThatComesIsShown) {
     Shown shown;
-    shown.insert(left_of(100, 50));
-    EXPECT_EQ(shown.at(10), 50);
-    shown.pictures.pause(0);
+    shown.begin_after(left_of(100, 50));
     shown.view = {2, {}, {64, 60}, 2};
     EXPECT_EQ(shown.at(10), 50);
     EXPECT_EQ(shown.picture.width, 100);
