@@ -21,6 +21,7 @@ public:
         double moment = 0; ///< when what it shows was the present, on the same clock
         std::uint64_t content = 0; ///< hash of the samples' colours: equal ones mean equal pictures
         std::array<std::uint16_t, framelet_samples> luma{}; ///< [0, luma_steps], in Morton order
+        bool moves = false; ///< it shows what a viewer that moves its samples moves on
     };
 
     static constexpr std::size_t default_entries = 8192;

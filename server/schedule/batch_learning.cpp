@@ -1,19 +1,8 @@
 #include "server/schedule/batch_learning.h"
 
-#include <algorithm>
-
 #include <tbb/parallel_for.h>
 
 namespace framelet {
-namespace {
-
-bool shows_motion(Framelet const& framelet) {
-    return std::ranges::any_of(framelet.body, [](BodyNumber body) { return body != static_body; }) ||
-           std::ranges::any_of(framelet.velocity, [](Vec3 const& velocity) { return velocity != Vec3(0); });
-}
-
-} // namespace
-
 void examine_batch(PlaceField const& field, RefreshPlan const& plan, std::span<DisplayFramelet const> framelets,
                    std::span<Framelet const> rendered, LumaHistory const& history, BatchFindings& findings) {
     findings.firsts.clear();
@@ -31,15 +20,11 @@ void examine_batch(PlaceField const& field, RefreshPlan const& plan, std::span<D
         Patch const& patch = plan.patches[i];
         auto const [tile, place] = findings.firsts[i];
         std::size_t const count = plan.tile_counts[i];
-        auto const of_patch = rendered.subspan(tile, count);
-        double const same_since =
-            examine_patch(field, patch, framelets.subspan(tile, count), of_patch, {plan.now, plan.moment_begun},
-                          plan.moment, history, std::span(findings.entries).subspan(tile, count),
+        findings.same_since[i] =
+            examine_patch(field, patch, framelets.subspan(tile, count), rendered.subspan(tile, count),
+                          {plan.now, plan.moment_begun, plan.base_begun}, plan.moment, history,
+                          std::span(findings.entries).subspan(tile, count),
                           std::span(findings.places).subspan(place, field.range_of(patch.node).size()));
-        // The same picture may be of a body that has moved, or from before the camera has, and the viewer has moved it
-        // away.
-        bool const moved = plan.moment.motions != nullptr && std::ranges::any_of(of_patch, shows_motion);
-        findings.same_since[i] = moved || same_since < plan.base_begun ? never : same_since;
     });
 }
 

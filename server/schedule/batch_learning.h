@@ -15,7 +15,7 @@ struct BatchFindings {
     std::vector<std::pair<std::size_t, std::size_t>> firsts; ///< first tile and first place of each patch
     std::vector<LumaHistory::Entry> entries; ///< of the framelets
     std::vector<PlaceFindings> places; ///< of the patches
-    std::vector<double> same_since; ///< of the patches, as `examine_patch` says, if the viewer has not moved it away
+    std::vector<double> same_since; ///< of the patches, as `examine_patch` says
 };
 
 /// Replaces `findings` by what the framelets of a plan say, of all patches in parallel. `history`: none

@@ -96,6 +96,11 @@ float probed_error(std::span<float const> luma, Before&& before) {
     return luma.empty() ? 0 : sum / weights;
 }
 
+bool shows_motion(Framelet const& framelet) {
+    return std::ranges::any_of(framelet.body, [](BodyNumber body) { return body != static_body; }) ||
+           std::ranges::any_of(framelet.velocity, [](Vec3 const& velocity) { return velocity != Vec3(0); });
+}
+
 bool is_change(Observation const& seen) {
     constexpr float noise = 1e-6f; // a quarter of a display step, squared
     float change = seen.mean_change;
@@ -130,6 +135,7 @@ double examine_patch(PlaceField const& field, Patch const& patch, std::span<Disp
     for (std::size_t f = 0; f < framelets.size(); ++f) {
         LumaHistory::Entry& entry = entries[f];
         fill_entry(entry, framelets[f], times.now, times.moment);
+        entry.moves = moment.motions != nullptr && shows_motion(rendered[f]);
         for (std::size_t i = 0; i < luma.size(); ++i) {
             luma[i] = luma_at(entry, i);
         }
@@ -146,7 +152,8 @@ double examine_patch(PlaceField const& field, Patch const& patch, std::span<Disp
             difference = std::span<float const, framelet_samples>(change);
             seconds = static_cast<float>(entry.moment - before->moment);
         }
-        bool const same = before != nullptr && before->content == entry.content;
+        bool const in_place = before != nullptr && before->time >= times.base && !before->moves && !entry.moves;
+        bool const same = in_place && before->content == entry.content;
         same_since = std::min(same_since, same ? before->time : never);
         std::size_t const wanted =
             (f + 1) * probes_per_place / framelets.size() - f * probes_per_place / framelets.size();

@@ -20,14 +20,16 @@ struct PlaceFindings {
     float meeting_speed = 0; ///< of bodies, pixels a second
 };
 
-/// When something was rendered, and when what it shows was the present; seconds, steady.
+/// When something was rendered, and when what it shows was the present; seconds, steady. `base`: as `base_begun` of the
+/// plan.
 struct RenderedTimes {
-    double now = 0, moment = 0;
+    double now = 0, moment = 0, base = never;
 };
 
 /// Of one patch. `framelets`: of its tiles, all the visible ones; `rendered`: the same with depth. Fills `entries` (a
-/// framelet each) and `places` (a place of the patch each). Returns since when all of it is what `history` remembers;
-/// `never` where it is not.
+/// framelet each) and `places` (a place of the patch each). Returns since when all of it is what `history` remembers
+/// and the viewer shows in its place: the same picture may be of a body that has moved, or from before the camera has,
+/// and the viewer has moved it away. `never` where it is not.
 double examine_patch(PlaceField const& field, Patch const& patch, std::span<DisplayFramelet const> framelets,
                      std::span<Framelet const> rendered, RenderedTimes times, RenderedMoment const& moment,
                      LumaHistory const& history, std::span<LumaHistory::Entry> entries,

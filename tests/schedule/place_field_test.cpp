@@ -115,6 +115,21 @@ TEST(PlaceField, WhatIsSentThoughItIsTheSameIsWhatTheViewerHolds) {
     EXPECT_TRUE(learner.learn(fine, 4, still)) << "or it would never be fine again";
 }
 
+/// In the dark, say.
+TEST(PlaceField, WhatLooksAsABodyDidThatHasGoneIsSent) {
+    BodyMotions const motions;
+    for (bool const moves : {false, true}) {
+        Learner learner({64, 64});
+        learner.moment = {make_view_rays(Camera{}, {64, 64}), 0, moves ? &motions : nullptr};
+        learner.bodies.assign(framelet_samples, 7);
+        EXPECT_TRUE(learner.learn(learner.patch(5), 1, still));
+        EXPECT_EQ(learner.learn(learner.patch(5), 2, still), moves) << "where it is now the viewer does not have it";
+        learner.bodies.assign(framelet_samples, static_body);
+        EXPECT_EQ(learner.learn(learner.patch(5), 3, still), moves) << "the viewer has moved it away";
+        EXPECT_FALSE(learner.learn(learner.patch(5), 4, still));
+    }
+}
+
 TEST(PlaceField, WhatIsAsItWasBeforeTheLastChangeIsSent) {
     auto const other = [](float x, float y) { return 1 - still(x, y); };
     Learner learner({64, 64});
