@@ -30,7 +30,7 @@ TEST(Soak, ViewersThatOnlyFlyComeToRestWhereTheyPassed) {
     auto const scene = load_bench_scene(FRAMELET_SOURCE_DIR "/scenes/vehicle_chase.glb");
     SoakOptions options;
     options.viewers = 2;
-    options.seconds = 1; // one round
+    options.seconds = 3;
     options.storm_seconds = 1.5;
     options.events = 0;
     options.viewport = {120, 80};
