@@ -17,7 +17,8 @@ Picture bare_picture(Viewport viewport) {
 }
 
 PictureMaker::PictureMaker(Viewport viewport, PictureSettings const& settings)
-    : settings_(settings), pool_(ImagePlane(viewport)) {
+    : settings_(settings), pool_(ImagePlane(viewport), settings.moments), motions_(settings.knows_rest),
+      reprojector_(settings.parts) {
     start_smoothing();
 }
 
@@ -105,7 +106,7 @@ bool PictureMaker::show(PictureRequest const& request, Picture& picture, std::ve
     pool_.newest().take_changed(changed);
     if (whole) {
         picture = Picture(size.width, size.height);
-        reprojector_ = Reprojector();
+        reprojector_ = Reprojector(settings_.parts);
         if (smoother_) {
             smoother_->start_picture();
         }

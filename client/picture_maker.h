@@ -18,6 +18,10 @@ struct PictureSettings {
     bool reproject = true; ///< what is held is moved to where it is now; else it is shown where it was rendered
     bool scene_moves = true;
     double lag_seconds = 0; ///< > 0: the scene, not the camera, is shown so late, and between what is held
+    // The evaluation leaves parts out, to see what each is worth; those of the first settings stay.
+    std::size_t moments = FrameletPool::most_moments; ///< that are held
+    bool knows_rest = true; ///< what rests is held as what stands
+    ReprojectorParts parts{}; ///< of moving
     bool operator==(PictureSettings const&) const = default;
 };
 

@@ -126,6 +126,9 @@ bool BodyMotions::rests(BodyNumber body, SceneTime from, SceneTime to) const {
     if (track == nullptr || track->keys.size() < 2) {
         return true;
     }
+    if (!knows_rest_) {
+        return false;
+    }
     std::size_t const last = track->keys.size() - 1;
     // After the last key a body goes on as between the last two.
     auto const first_key = std::min(static_cast<std::size_t>(key_at(*track, from)), last - 1);

@@ -39,6 +39,10 @@ Motion motion_between(BodyTrack const& track, SceneTime from, SceneTime to);
 /// The tracks of all bodies that a viewer knows.
 class BodyMotions {
 public:
+    BodyMotions() = default;
+    /// `knows_rest`: else whatever has a track is taken to move, always.
+    explicit BodyMotions(bool knows_rest) : knows_rest_(knows_rest) {}
+
     /// Takes in keys of a body. They replace those of the same times and later; keys that neither overlap nor follow
     /// what is known replace all of it. Of each body the last `kept_keys` are kept.
     void extend(BodyTrack const& track);
@@ -56,6 +60,7 @@ public:
 private:
     void drop_surplus();
 
+    bool knows_rest_ = true;
     std::unordered_map<BodyNumber, BodyTrack> tracks_;
 };
 

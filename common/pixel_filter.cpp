@@ -31,22 +31,22 @@ Words filtered_channel(Words middle, std::array<Words, 4> const& beside, int shi
 }
 
 /// Where the picture has no outline to smooth: green, of which most of brightness consists, hardly differs.
-WideInts is_flat(Words middle, std::array<Words, 4> const& beside) {
+WideInts is_flat(Words middle, std::array<Words, 4> const& beside, int contrast) {
     constexpr int green = std::endian::native == std::endian::little ? 8 : 16;
     auto const value = [](Words pixels) { return reinterpret_cast<WideInts>(channel_of(pixels, green)); };
     WideInts flat = WideInts{} - 1;
     for (Words const pixels : beside) {
         WideInts const difference = value(pixels) - value(middle);
-        flat &= (difference <= flat_contrast) & (difference >= -flat_contrast);
+        flat &= (difference <= contrast) & (difference >= -contrast);
     }
     return flat;
 }
 
-Words filtered_pixels(Words middle, std::array<Words, 4> const& beside) {
+Words filtered_pixels(Words middle, std::array<Words, 4> const& beside, int contrast) {
     constexpr int alpha = std::endian::native == std::endian::little ? 24 : 0;
     constexpr std::uint32_t opaque = 255u << alpha;
     WideInts const is_kept =
-        is_flat(middle, beside) | (reinterpret_cast<WideInts>(channel_of(middle, alpha)) == exact_alpha);
+        is_flat(middle, beside, contrast) | (reinterpret_cast<WideInts>(channel_of(middle, alpha)) == exact_alpha);
     if (!any_lane(~is_kept)) {
         return middle | opaque;
     }
@@ -73,7 +73,7 @@ Words load_pixels(std::uint8_t const* row, int x, int width) {
 
 } // namespace
 
-void filter_pixels(Picture const& picture, PixelRect const& rect, Picture& filtered) {
+void filter_pixels(Picture const& picture, PixelRect const& rect, Picture& filtered, int contrast) {
     int const width = picture.width;
     for (int y = rect.top; y < rect.bottom; ++y) {
         std::uint8_t const* const row = picture.row(y);
@@ -82,7 +82,8 @@ void filter_pixels(Picture const& picture, PixelRect const& rect, Picture& filte
         for (int x = rect.left; x < rect.right; x += wide_count) {
             Words const out = filtered_pixels(load_pixels(row, x, width),
                                               {load_pixels(row, x - 1, width), load_pixels(row, x + 1, width),
-                                               load_pixels(above, x, width), load_pixels(below, x, width)});
+                                               load_pixels(above, x, width), load_pixels(below, x, width)},
+                                              contrast);
             std::memcpy(filtered.row(y) + 4 * x, &out,
                         4 * static_cast<std::size_t>(std::min(wide_count, rect.right - x)));
         }

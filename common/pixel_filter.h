@@ -15,9 +15,9 @@ inline constexpr int flat_contrast = 26;
 inline constexpr std::uint8_t exact_alpha = 255, moved_alpha = 0;
 
 /// Writes `rect` of `filtered` from `picture`, which has its size. Pixels with `exact_alpha` stay as they are, and
-/// those that differ from none of the four beside them by more than `flat_contrast`. The others become, in linear light
+/// those that differ from none of the four beside them by more than `contrast`. The others become, in linear light
 /// (squares of bytes stand for it), half of themselves and an eighth of each of the four; beyond the border the pixel
-/// is repeated. `rect` lies in the picture. Alpha becomes 255.
-void filter_pixels(Picture const& picture, PixelRect const& rect, Picture& filtered);
+/// is repeated. `rect` lies in the picture. Alpha becomes 255. With a contrast of 255 nothing is filtered.
+void filter_pixels(Picture const& picture, PixelRect const& rect, Picture& filtered, int contrast = flat_contrast);
 
 } // namespace framelet

@@ -234,7 +234,8 @@ void Reprojector::show(FrameletPool const& pool, std::span<PixelRect const> chan
         count_blocks(pool.slot_count());
     }
     double const kept = 1 - hole_share_;
-    FrameletCache const* const fullest = kept < least_kept ? &fullest_of(pool) : nullptr; // coverage takes a while
+    FrameletCache const* const fullest =
+        parts_.keeps_cuts && kept < least_kept ? &fullest_of(pool) : nullptr; // coverage takes a while
     if (fullest != nullptr && kept < least_kept * fullest->coverage()) {
         show_cut(*fullest, picture, repainted);
     } else {
@@ -379,7 +380,7 @@ void Reprojector::filter(Picture& picture) {
             int const top = row * side;
             filter_pixels(unfiltered_,
                           {left, top, std::min(left + side, picture.width), std::min(top + side, picture.height)},
-                          picture);
+                          picture, parts_.flat_contrast);
             filtered_[index] = 1;
         }
     });

@@ -1,5 +1,6 @@
-// The picture from any camera at any scene time, from what is held (002, 003; one homography a layer, docs/ALGORITHM.md). In:
-// cache, what changed in it, camera, time, motions of bodies. Out: the picture, and which parts of it changed.
+// The picture from any camera at any scene time, from what is held (002, 003; one homography a layer,
+// docs/ALGORITHM.md). In: cache, what changed in it, camera, time, motions of bodies. Out: the picture, and which parts
+// of it changed.
 #pragma once
 
 #include <cstdint>
@@ -10,15 +11,25 @@
 #include "common/hole_fill.h"
 #include "common/image.h"
 #include "common/picture/framelet_pool.h"
+#include "common/pixel_filter.h"
 #include "common/warp_block.h"
 #include "common/warp_plan.h"
 
 namespace framelet {
 
+/// What is done beside moving. The evaluation leaves parts out, to see what each is worth.
+struct ReprojectorParts {
+    int flat_contrast = framelet::flat_contrast; ///< as `filter_pixels` has it; 255: no outline is filtered
+    bool keeps_cuts = true; ///< where nearly nothing would show all stays where it was rendered
+    bool operator==(ReprojectorParts const&) const = default;
+};
+
 /// Moves pictures. Keeps what it needs to know next time which blocks stay as they are; what it shows is a function of
 /// its arguments only, whatever it showed before and however many threads there are.
 class Reprojector {
 public:
+    explicit Reprojector(ReprojectorParts const& parts = {}) : parts_(parts) {}
+
     /// Writes to `picture`, which has the viewport's size and, from the second call on, holds what the last one wrote.
     /// `changed` is what `take_changed` of the pool's newest cache gives: all that changed since the last call.
     /// `repainted` becomes the rectangles that may differ from the last call's, ordered as `take_changed` orders them.
@@ -69,6 +80,7 @@ private:
     void fill();
     void filter(Picture& picture);
 
+    ReprojectorParts parts_;
     bool has_shown_ = false;
     bool is_exact_ = false;
     double hole_share_ = 0;

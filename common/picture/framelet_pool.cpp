@@ -28,8 +28,8 @@ std::size_t chunks_of_two_pictures(ImagePlane const& plane) {
 
 } // namespace
 
-FrameletPool::FrameletPool(ImagePlane plane)
-    : plane_(plane), room_(std::make_unique<FrameletRoom>(chunks_of_two_pictures(plane))) {
+FrameletPool::FrameletPool(ImagePlane plane, std::size_t most)
+    : plane_(plane), most_(most), room_(std::make_unique<FrameletRoom>(chunks_of_two_pictures(plane))) {
     slots_.push_back({std::make_unique<FrameletCache>(plane, room_.get()), {}});
 }
 
@@ -84,7 +84,7 @@ std::size_t FrameletPool::insert_moving(Batch const& batch, BodyMotions const& m
     std::size_t slot = moving_slot(batch.scene_time);
     if (slot == slots_.size()) {
         slot = begin_slot(batch);
-        if (moments_ == slots_[base_].begun + most_moments) {
+        if (moments_ == slots_[base_].begun + most_) {
             let_go_of_moving(batch.scene_time, motions);
         }
     }
@@ -141,7 +141,7 @@ std::size_t FrameletPool::free_slot() {
     if (free != slots_.end()) {
         return static_cast<std::size_t>(free - slots_.begin());
     }
-    if (slots_.size() < most_moments) {
+    if (slots_.size() < most_) {
         slots_.push_back({std::make_unique<FrameletCache>(plane_, room_.get()), {}});
         return slots_.size() - 1;
     }

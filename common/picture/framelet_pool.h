@@ -26,7 +26,8 @@ public:
     /// Of what lies on no plane only so many moments show: what more of them would cost to paint shows hardly.
     static constexpr std::uint64_t recent_moments = 3;
 
-    explicit FrameletPool(ImagePlane plane);
+    /// `most`: moments that are held, at least `untried_moments` and the base.
+    explicit FrameletPool(ImagePlane plane, std::size_t most = most_moments);
 
     ImagePlane const& plane() const { return plane_; }
 
@@ -89,6 +90,7 @@ private:
     void let_go_of_moving(SceneTime now, BodyMotions const& motions);
 
     ImagePlane plane_;
+    std::size_t most_;
     std::unique_ptr<FrameletRoom> room_; ///< of all of them
     std::vector<Slot> slots_;
     std::size_t base_ = 0;

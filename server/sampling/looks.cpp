@@ -90,14 +90,14 @@ float change_after(Comparison const& comparison) {
 } // namespace
 
 FadingCode learn_fading(Mirror const& mirror, std::span<Piece> pieces, SceneTime scene_time, bool comparable,
-                        bool has_outline) {
+                        bool has_outline, bool expects_change) {
     float change = 0, detail = 0;
     for (Piece& piece : pieces) {
         piece.change = comparable ? change_after(compare(mirror, piece, scene_time)) : 0;
         float expected = piece.change;
         bool const is_restless =
             (piece.body != static_body && !piece.rests) || (!mirror.camera_stands() && (piece.reflects || has_outline));
-        if (is_restless) {
+        if (is_restless && expects_change) {
             expected = std::max(expected, restless_change);
         }
         float const area = 4 * piece.half_side.x * piece.half_side.y;

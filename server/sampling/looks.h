@@ -14,9 +14,9 @@ namespace framelet {
 /// Compares the pieces of a framelet, of the moment that `mirror` looks at, with what it shows there; sets their
 /// `change` and `fading`. Those of another moment (`comparable` false), and what has just come into view, are taken for
 /// what does not change: where that is wrong probes find it. `has_outline`: the framelet shows more than one surface;
-/// then it is expected to change before a camera that moves, as what turns or reflects is. Returns the code of their
-/// fading.
+/// then it is expected to change before a camera that moves, as what turns or reflects is; unless nothing is expected
+/// that was not seen. Returns the code of their fading.
 FadingCode learn_fading(Mirror const& mirror, std::span<Piece> pieces, SceneTime scene_time, bool comparable,
-                        bool has_outline);
+                        bool has_outline, bool expects_change = true);
 
 } // namespace framelet

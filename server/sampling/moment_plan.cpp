@@ -97,7 +97,7 @@ void MomentPlan::find(Mirror const& mirror, PlaceField const& field, MomentBudge
             solve(field, budget, low);
         }
     }
-    if (stale_ > 0.5f * wrong_) {
+    if (budget.limits.coarse_first && stale_ > 0.5f * wrong_) {
         choose_horizon(field, budget);
     }
     collect(field, 0, 0, rated);
@@ -257,7 +257,8 @@ double MomentPlan::solve(PlaceField const& field, MomentBudget const& budget, fl
             }
         }
         float const supersampled = leaf.supersampled_gain - price * leaf.supersampled_cost;
-        if (supersampled > best && first <= pixel_level && pixel_level <= budget.limits.most_level) {
+        if (supersampled > best && budget.limits.most_rays >= four_rays && first <= pixel_level &&
+            pixel_level <= budget.limits.most_level) {
             best = supersampled;
             leaf.level = pixel_level;
             leaf.is_supersampled = true;

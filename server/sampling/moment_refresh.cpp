@@ -22,19 +22,23 @@ MirrorView view_of(RenderedMoment const& moment) {
 
 } // namespace
 
-MomentChecks MomentRefresh::look(RenderedMoment const& moment, double begun, double samples, double probe_samples,
-                                 std::vector<Probe>& probes) {
-    constexpr double visibility_share = 0.02;
+double MomentChecks::cost(Viewport viewport) const {
+    return visibility ? visibility_cost * visibility->columns(viewport) * visibility->rows(viewport) : 0;
+}
+
+MomentChecks MomentRefresh::look(RenderedMoment const& moment, double begun, double visibility_samples,
+                                 double probe_samples, std::vector<Probe>& probes) {
     constexpr int most_visibility_spacing = 16, least_probe_spacing = 16, most_probe_spacing = 64;
     Viewport const viewport = mirror_.viewport();
     looked_ = begun;
     ++looks_taken_;
     mirror_.look(view_of(moment), *moment.motions);
     MomentChecks checks;
-    checks.visibility = cell_grid(
-        cell_side,
-        grid_spacing(viewport, cell_side, most_visibility_spacing, visibility_cost, visibility_share * samples),
-        looks_taken_);
+    if (visibility_samples > 0) {
+        checks.visibility = cell_grid(
+            cell_side, grid_spacing(viewport, cell_side, most_visibility_spacing, visibility_cost, visibility_samples),
+            looks_taken_);
+    }
     if (probe_samples > 0) {
         checks.probe_spacing =
             grid_spacing(viewport, least_probe_spacing, most_probe_spacing, probe_cost, probe_samples);
@@ -64,7 +68,8 @@ void MomentRefresh::note_looks(RenderedMoment const& moment, std::span<Probe con
 
 void MomentRefresh::note_sent(RenderedMoment const& moment, std::uint64_t batch,
                               std::span<DisplayFramelet const> framelets, std::span<Framelet const> rendered,
-                              std::span<std::uint8_t const> sent, std::span<FrameletShape> shapes, bool compares) {
+                              std::span<std::uint8_t const> sent, std::span<FrameletShape> shapes, bool compares,
+                              bool expects_change) {
     FRAMELET_CHECK(framelets.size() == sent.size() && rendered.size() == sent.size());
     bool const comparable = compares && mirror_.looks_at(view_of(moment));
     ImagePlane const plane(mirror_.viewport());
@@ -78,7 +83,7 @@ void MomentRefresh::note_sent(RenderedMoment const& moment, std::uint64_t batch,
             bool const rests = is_at_rest(*shape, moment.scene_time, *moment.motions);
             std::ranges::for_each(pieces, [&](Piece& piece) { piece.rests = rests; });
             shape->fading = learn_fading(mirror_, pieces, moment.scene_time, comparable,
-                                         shape->layer_count > 1 || !shape->loose_samples.empty());
+                                         shape->layer_count > 1 || !shape->loose_samples.empty(), expects_change);
             ++shape;
         }
     }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -20,8 +21,11 @@ inline constexpr double visibility_cost = 0.25, probe_cost = 2;
 
 /// Where what a moment really shows is compared with what the viewer would show of it.
 struct MomentChecks {
-    PlaceGrid visibility;
+    std::optional<PlaceGrid> visibility; ///< none: nowhere
     int probe_spacing = 0; ///< pixels from one probe to the next; 0: none
+
+    /// Samples, without the probes.
+    double cost(Viewport viewport) const;
 };
 
 class MomentRefresh {
@@ -33,9 +37,9 @@ public:
     bool is_planned(double moment_begun) const { return looked_ == moment_begun && !is_checked_; }
     bool looks_at(double moment_begun) const { return looked_ == moment_begun; }
 
-    /// Finds what the viewer shows of a moment that begins. Appends to `probes` where its looks are to be checked, for
-    /// at most so many samples (0: not at all). `samples`: of which checks take a share.
-    MomentChecks look(RenderedMoment const& moment, double begun, double samples, double probe_samples,
+    /// Finds what the viewer shows of a moment that begins, and where that is to be checked, by rays and by probes, for
+    /// about so many samples each (0: not at all). Appends to `probes`.
+    MomentChecks look(RenderedMoment const& moment, double begun, double visibility_samples, double probe_samples,
                       std::vector<Probe>& probes);
     /// Replaces `rated` by where what the viewer holds shows the moment worst: see `MomentPlan`.
     void plan(PlaceField const& field, MomentBudget const& budget, std::vector<RatedPatch>& rated);
@@ -48,9 +52,10 @@ public:
 
     /// The viewer gets those framelets for which `sent` is not 0, in a batch of this number, with these shapes, in
     /// order; sets how soon what they show fades. `compares`: what shows of the moment tells how its looks change.
+    /// `expects_change`: as of `learn_fading`.
     void note_sent(RenderedMoment const& moment, std::uint64_t batch, std::span<DisplayFramelet const> framelets,
                    std::span<Framelet const> rendered, std::span<std::uint8_t const> sent,
-                   std::span<FrameletShape> shapes, bool compares);
+                   std::span<FrameletShape> shapes, bool compares, bool expects_change = true);
     /// The viewer no longer holds these.
     void forget(std::span<SentTile const> framelets) { mirror_.forget(framelets); }
     /// The viewer is told that it holds all of the picture.

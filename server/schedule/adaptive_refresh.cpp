@@ -115,7 +115,8 @@ void AdaptiveRefresh::plan(RefreshInput const& input, RefreshPlan& plan) {
                    is_reprojectable(view.camera) ? input.motions : nullptr};
     note_base(view.camera, plan.moment.motions != nullptr, input.now);
     plan.base_begun = base_begun_;
-    plan.is_mirrored = input.moment && plan.moment.motions != nullptr;
+    plan.limits = input.limits;
+    plan.is_mirrored = input.moment && plan.moment.motions != nullptr && input.limits.mirrors;
     still_ = !input.moment && is_still(input.state);
     plan.is_new_cycle = !goes_on(input, plan.is_mirrored);
     if (plan.is_new_cycle) {
@@ -261,17 +262,15 @@ void AdaptiveRefresh::append_rated(RefreshInput const& input, double samples) {
 void AdaptiveRefresh::plan_moment(RefreshInput const& input, double samples, RefreshPlan& plan) {
     double const planned = input.samples_per_second * planned_seconds;
     if (!moments_.looks_at(input.moment->begun)) {
-        plan.checks = moments_.look(plan.moment, input.moment->begun, planned,
+        plan.checks = moments_.look(plan.moment, input.moment->begun, input.limits.visibility_share * planned,
                                     scene_moves_ ? input.limits.probe_share * planned : 0, plan.probes);
-        samples -= visibility_cost * plan.checks->visibility.columns(plan.viewport) *
-                       plan.checks->visibility.rows(plan.viewport) +
-                   probe_cost * static_cast<double>(plan.probes.size());
+        samples -= plan.checks->cost(plan.viewport) + probe_cost * static_cast<double>(plan.probes.size());
     }
     find_costs(input);
     double const together =
         input.samples_per_second * (moments_.mirror().camera_stands() ? planned_seconds : planned_seconds_in_motion);
-    MomentBudget const budget{std::max(together, samples), input.limits, costs_, input.moment->begun,
-                              input.samples_per_second * plan_overhead};
+    MomentBudget const budget{input.limits.plans_together ? std::max(together, samples) : samples, input.limits, costs_,
+                              input.moment->begun, input.samples_per_second * plan_overhead};
     moments_.plan(field_, budget, rated_);
     append_rated(input, samples);
 }
@@ -331,13 +330,14 @@ void AdaptiveRefresh::note_sent(RefreshPlan const& plan, std::uint64_t batch,
                                 std::span<DisplayFramelet const> framelets, std::span<Framelet const> rendered,
                                 std::span<std::uint8_t const> sent, std::span<FrameletShape> shapes) {
     if (plan.moment.motions != nullptr && plan.viewport == field_.plane().viewport()) {
-        moments_.note_sent(plan.moment, batch, framelets, rendered, sent, shapes, plan.is_mirrored);
+        moments_.note_sent(plan.moment, batch, framelets, rendered, sent, shapes,
+                           plan.is_mirrored && plan.limits.learns_looks, plan.limits.expects_change);
     }
 }
 
 void AdaptiveRefresh::note_visibility(RefreshPlan const& plan, std::span<float const> inverse_depth) {
     if (plan.viewport == field_.plane().viewport()) {
-        moments_.note_visibility(plan.moment, plan.checks->visibility, inverse_depth);
+        moments_.note_visibility(plan.moment, *plan.checks->visibility, inverse_depth);
     }
 }
 

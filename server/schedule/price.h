@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "common/rays_per_sample.h"
 #include "server/schedule/place_field.h"
 
 namespace framelet {
@@ -17,6 +18,14 @@ struct ResponseLimits {
     float least_price = 1e-12f, most_price = 1e3f;
     double inspection_share = 0.05; ///< of the samples, for looking at all of the picture now and then
     double probe_share = 0.08; ///< likewise, while the scene moves, for looking at a few samples of what seems to stand
+    // Of moments, for a viewer that moves what it holds:
+    bool mirrors = true; ///< what the viewer shows says what is rendered; else what the places were last
+    double visibility_share = 0.02; ///< of the samples, for rays that are not shaded
+    bool learns_looks = true; ///< how fast they change; else only what is expected to change fades
+    bool expects_change = true; ///< of what turns, of outlines and of reflections, though none was seen
+    bool plans_together = true; ///< the samples of several cycles; else of each on its own
+    bool coarse_first = true; ///< where much is stale
+    int most_rays = four_rays; ///< of a sample
 };
 
 struct Budget {

@@ -53,6 +53,7 @@ struct RefreshPlan {
     RenderedMoment moment; ///< whose motions must live until it is learnt
     bool is_new_cycle = false; ///< worked out anew, not what the last one left
     bool is_mirrored = false; ///< of a held moment, by what the viewer will see of it
+    ResponseLimits limits{}; ///< by which it was made
     std::vector<Patch> patches;
     std::vector<std::size_t> tile_counts; ///< of each patch
     std::vector<Tile> tiles; ///< of the patches, in order

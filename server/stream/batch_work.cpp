@@ -26,9 +26,9 @@ void BatchWork::render(PosedScene const& scene) {
                                           rendered_[i], display_[i]),
                            std::memory_order_relaxed);
     });
-    if (order.plan.checks) {
+    if (order.plan.checks && order.plan.checks->visibility) {
         segments +=
-            render_visibility(scene.render_scene(), rays, view.viewport, order.plan.checks->visibility, visibility_);
+            render_visibility(scene.render_scene(), rays, view.viewport, *order.plan.checks->visibility, visibility_);
     }
     figures.segments = segments;
     figures.probe_segments =
@@ -36,7 +36,7 @@ void BatchWork::render(PosedScene const& scene) {
 }
 
 bool BatchWork::learn(PosedScene const& scene, ViewerKnowledge& viewer) {
-    if (order.plan.checks) {
+    if (order.plan.checks && order.plan.checks->visibility) {
         viewer.refresh.note_visibility(order.plan, visibility_);
     }
     if (order.again) {

@@ -10,7 +10,9 @@
 namespace framelet {
 
 FrameletStream::FrameletStream(StreamOptions const& options, std::uint32_t codings)
-    : options_(options), codings_(codings) {}
+    : options_(options), codings_(codings), moments_(options.moment_seconds) {
+    viewer_.motions = BodyMotions(options_.knows_rest);
+}
 
 void FrameletStream::take(StreamEvent const& event) {
     if (auto const* const camera = std::get_if<CameraUpdate>(&event.what)) {
@@ -47,6 +49,7 @@ void FrameletStream::take(StreamEvent const& event) {
 void FrameletStream::forget_viewer() {
     std::uint64_t const batches = viewer_.batches;
     viewer_ = {};
+    viewer_.motions = BodyMotions(options_.knows_rest);
     viewer_.batches = batches;
     complete_ = false;
     moments_.forget();
@@ -106,14 +109,15 @@ Step FrameletStream::plan(Turn const& turn, PosedScene& scene) {
 std::optional<HeldMoment> FrameletStream::moment_at(Turn const& turn, ViewState const& present, PosedScene& scene) {
     if (moments_.observe(present, turn.now, takes_shapes())) {
         double const batch_seconds = 0.5 * cycle_length(false, turn.plan_seconds);
-        double const ahead =
-            std::min(turn.plan_seconds + batch_seconds + link_.state().delivery_seconds, moment_seconds);
+        double const lead = turn.plan_seconds + batch_seconds + link_.state().delivery_seconds;
+        double const until_end = options_.looks_ahead ? options_.moment_seconds : 0;
+        double const ahead = until_end + (options_.camera_leads ? std::min(lead, options_.moment_seconds) : 0);
         auto const scene_time = [&](double seconds) {
             return std::clamp(turn.present + turn.clock_speed * seconds, 0.0, max_scene_time);
         };
-        ViewState state = state_at(scene_time(moment_seconds), scene);
-        state.view.camera = camera_->scene_camera < 0 ? forecast_.at(turn.now, moment_seconds + ahead)
-                                                      : state_at(scene_time(moment_seconds + ahead), scene).view.camera;
+        ViewState state = state_at(scene_time(until_end), scene);
+        state.view.camera =
+            camera_->scene_camera < 0 ? forecast_.at(turn.now, ahead) : state_at(scene_time(ahead), scene).view.camera;
         moments_.begin(state, turn.now);
     }
     return moments_.held();
@@ -128,7 +132,7 @@ Step FrameletStream::plan_batch(Turn const& turn, ViewState const& present, Pose
     bool const still = !wanted.moment && viewer_.refresh.is_still(present);
     wanted.now = turn.now;
     wanted.samples_per_second = options_.follows_link ? bounded_rate(link, rendered) : rendered;
-    wanted.rendered_per_second = rendered;
+    wanted.rendered_per_second = options_.prices_bytes ? rendered : wanted.samples_per_second;
     wanted.cycle_seconds = cycle_length(still, turn.plan_seconds);
     wanted.delivery_seconds = static_cast<float>(link.delivery_seconds);
     wanted.bias = std::clamp(static_cast<float>(options_.bias) + settings_.bias, -1.0f, 1.0f);

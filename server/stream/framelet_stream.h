@@ -21,6 +21,11 @@ struct StreamOptions {
     ResponseLimits limits{};
     bool follows_link = true; ///< rate and batches are bounded by what the link carries
     bool withholds = true; ///< what the viewer has already is not sent again
+    bool prices_bytes = true; ///< where the link is scarce samples cost by the bytes that they take
+    double moment_seconds = framelet::moment_seconds; ///< that a moment lasts
+    bool looks_ahead = true; ///< a moment is of when it ends, not of when it begins
+    bool camera_leads = true; ///< its camera is ahead of that by what its first batch takes until it is shown
+    bool knows_rest = true; ///< what rests is held as what stands
 };
 
 class FrameletStream final : public ViewerStream {

@@ -9,7 +9,7 @@ bool MomentChoice::goes_on(ViewState const& present, double now) const {
         return false;
     }
     ViewState const& held = held_->state;
-    return std::floor(now / moment_seconds) == std::floor(held_->begun / moment_seconds) &&
+    return std::floor(now / seconds_) == std::floor(held_->begun / seconds_) &&
            held.view.viewport == present.view.viewport &&
            held.view.camera.projection == present.view.camera.projection && held.exposure == present.exposure;
 }

@@ -15,6 +15,8 @@ inline constexpr double rest_seconds = 0.05;
 
 class MomentChoice {
 public:
+    explicit MomentChoice(double seconds = moment_seconds) : seconds_(seconds) {}
+
     /// Takes in what is to be seen at present. True when another moment is to `begin` now: the last one has lasted long
     /// enough, the picture has another size, projection or exposure, or something begins to move. Never at rest, nor
     /// for a viewer that moves nothing. `now`: seconds, steady.
@@ -28,6 +30,7 @@ public:
 private:
     bool goes_on(ViewState const& present, double now) const;
 
+    double seconds_; ///< that a moment lasts
     std::optional<HeldMoment> held_;
     std::optional<ViewState> last_; ///< present
     double changed_ = 0; ///< when that was last another one, seconds

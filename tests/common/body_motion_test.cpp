@@ -110,18 +110,20 @@ TEST(BodyMotion, WhatRestsIsAtOnePlaceAllTheTime) {
 }
 
 TEST(BodyMotion, WhatDeformsOrIsOnABodyThatMovesIsNotAtRest) {
-    BodyMotions motions;
+    BodyMotions motions, of_no_rest(false);
     BodyTrack track{7, 0, std::vector<BodyPose>(60)};
     for (std::size_t i = 40; i < 60; ++i) {
         track.keys[i].translation.x = static_cast<float>(i) - 39;
     }
     motions.extend(track);
+    of_no_rest.extend(track);
     FrameletShape shape;
     EXPECT_TRUE(is_at_rest(shape, 0, motions));
     shape.layer_count = 1;
     shape.layers[0].body = 7;
     shape.layers[1].velocity.x = 1; // is none of its layers
     EXPECT_TRUE(is_at_rest(shape, 0.3, motions));
+    EXPECT_FALSE(is_at_rest(shape, 0.3, of_no_rest));
     EXPECT_FALSE(is_at_rest(shape, 39 * key_seconds - 0.9 * resting_seconds, motions)) << "it soon will move";
     EXPECT_FALSE(is_at_rest(shape, 0.8, motions));
     shape.loose_samples.push_back({1, static_body, Vec3(0, 1, 0)});

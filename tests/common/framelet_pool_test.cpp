@@ -85,6 +85,15 @@ TEST(FrameletPool, TheMomentGoesOfWhichLeastShows) {
     EXPECT_TRUE(cameras(pool).contains(100)) << "what has hardly been shown stays";
 }
 
+TEST(FrameletPool, HoldsAsManyMomentsAsItIsTold) {
+    FrameletPool pool(plane, 4);
+    for (std::uint64_t camera = 1; camera <= 9; ++camera) {
+        pool.insert(seen_from(camera, camera, place), {});
+    }
+    EXPECT_EQ(pool.slot_count(), 4U);
+    EXPECT_TRUE(cameras(pool).contains(9));
+}
+
 TEST(FrameletPool, MemoryIsBoundedHoweverManyCamerasThereAre) {
     FrameletPool pool(plane);
     std::size_t most = 0;

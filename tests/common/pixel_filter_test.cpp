@@ -68,6 +68,17 @@ TEST(PixelFilter, IsWhatItSays) {
 }
 
 /// A line becomes wider, and as much darker.
+TEST(PixelFilter, NoContrastIsGreaterThanABytes) {
+    Picture const picture = random_picture(33, 9, 1);
+    Picture filtered(picture.width, picture.height);
+    filter_pixels(picture, {0, 0, picture.width, picture.height}, filtered, 255);
+    Picture expected = picture;
+    for (std::size_t i = 3; i < expected.rgba.size(); i += 4) {
+        expected.rgba[i] = 255;
+    }
+    EXPECT_EQ(filtered, expected);
+}
+
 TEST(PixelFilter, KeepsTheLight) {
     Picture picture(48, 4);
     for (int y = 0; y < picture.height; ++y) {

@@ -81,6 +81,19 @@ TEST(ReprojectorRest, AfterACutWhatIsHeldStaysWhereItIs) {
     }
 }
 
+TEST(ReprojectorRest, ACutIsMovedWhereThatIsWished) {
+    FrameletPool const pool = filled(room(), front(), 0);
+    Camera away = front();
+    away.orientation = glm::angleAxis(3.0f, Vec3(0, 1, 0)) * away.orientation;
+    Reprojector kept, moved({.keeps_cuts = false});
+    Picture of_kept(viewport.width, viewport.height), of_moved = of_kept;
+    std::vector<PixelRect> repainted;
+    kept.show(pool, {}, away, 0, {}, of_kept, repainted);
+    moved.show(pool, {}, away, 0, {}, of_moved, repainted);
+    EXPECT_EQ(moved.hole_share(), 1);
+    EXPECT_NE(of_moved, of_kept);
+}
+
 /// Cameras and contents that change now and then: what is kept from the last picture is right, whatever the threads.
 TEST(ReprojectorRest, IncrementalEqualsWholeAndThreadsMakeNoDifference) {
     ImagePlane const plane(viewport);

@@ -83,6 +83,7 @@ TEST(Looks, OutlinesFadeBeforeACameraThatMoves) {
     pieces[0].half_side = Vec2(8);
     pieces[0].detail = 0.01f;
     EXPECT_GT(learn_fading(before.mirror, pieces, 1, false, true), 0);
+    EXPECT_EQ(learn_fading(before.mirror, pieces, 1, false, true, false), 0) << "nothing is expected";
     pieces[0].body = 3; // turns in the light, outlines or not
     EXPECT_GT(learn_fading(before.mirror, pieces, 1, false, false), 0);
     pieces[0].rests = true;

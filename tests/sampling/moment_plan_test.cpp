@@ -117,6 +117,13 @@ TEST(MomentPlan, WhatHasChangedIsRenderedCoarselyFirst) {
         pixels += static_cast<std::size_t>(rect.width() * rect.height());
     }
     EXPECT_GT(static_cast<double>(pixels), 0.9 * samples) << "all of it";
+    planner.plan.find(planner.mirror, planner.field, {samples, {.coarse_first = false}, {}, 0, 0.25 * samples},
+                      planner.rated);
+    double finely = 0;
+    for (RatedPatch const& entry : planner.rated) {
+        finely += entry.cost;
+    }
+    EXPECT_GT(finely, 2 * cost) << "unless that is not wished";
 }
 
 TEST(MomentPlan, NothingIsPlannedTwiceAndInTheEndNothing) {

@@ -297,8 +297,9 @@ TEST(AdaptiveRefresh, WhatTheFinestSamplesDoNotResolveGetsFourRaysASample) {
 
 TEST(AdaptiveRefresh, WhileAnythingMovesFourRaysAreForWhatTheViewerMoves) {
     BodyMotions const motions;
-    auto const most_rays = [&](double samples_per_second) {
+    auto const most_rays = [&](double samples_per_second, int limit) {
         SyntheticRefresh synthetic(small, half_dust);
+        synthetic.input.limits.most_rays = limit;
         synthetic.moment_length = 0.1;
         synthetic.camera_speed = 1e-4f;
         synthetic.input.motions = &motions;
@@ -307,8 +308,9 @@ TEST(AdaptiveRefresh, WhileAnythingMovesFourRaysAreForWhatTheViewerMoves) {
         synthetic.run(2, [&] { most = std::max(most, synthetic.rays_per_sample); });
         return most;
     };
-    EXPECT_EQ(most_rays(5e3), single_ray) << "a sample a pixel comes first";
-    EXPECT_EQ(most_rays(4e6), four_rays);
+    EXPECT_EQ(most_rays(5e3, four_rays), single_ray) << "a sample a pixel comes first";
+    EXPECT_EQ(most_rays(4e6, four_rays), four_rays);
+    EXPECT_EQ(most_rays(4e6, single_ray), single_ray);
 }
 
 TEST(AdaptiveRefresh, WhileAnythingMovesThereIsOneRayASampleOfWhatIsNotMoved) {

@@ -12,9 +12,11 @@ struct Served {
     Scene scene = moving_scene();
     RenderScene render_scene{scene, std::nullopt};
     PosedScene posed{scene, {0}, render_scene};
-    FrameletStream stream{StreamOptions{}, coding::all};
+    FrameletStream stream;
 
-    Served() { stream.take({0, ViewerSettings{0, 0, true}}); }
+    explicit Served(StreamOptions const& options = {}) : stream(options, coding::all) {
+        stream.take({0, ViewerSettings{0, 0, true}});
+    }
     void look(Camera const& camera, std::uint64_t number, double now) {
         stream.take({now, CameraUpdate{{number, camera, {64, 48}}, -1}});
     }
@@ -37,8 +39,8 @@ TEST(FrameletStream, AMomentIsOfTheTimeAtWhichItEnds) {
 }
 
 /// Where a camera is that goes 1 m a second when the first moment begins that it is rendered for.
-float rendered_ahead(double plan_seconds) {
-    Served served;
+float rendered_ahead(double plan_seconds, StreamOptions const& options = {}) {
+    Served served(options);
     double now = 0;
     std::uint64_t number = 0;
     for (; number < 10; now = static_cast<double>(number) / 60) {
@@ -60,6 +62,8 @@ TEST(FrameletStream, AMomentIsOfTheCameraWithWhichItIsShownLast) {
     double const slow = moment_seconds + 0.01 + 0.5 * cycle_length(false, 0.01);
     EXPECT_NEAR(rendered_ahead(0.01), slow, 1e-4);
     EXPECT_NEAR(rendered_ahead(10), 2 * moment_seconds, 1e-4) << "no more than another moment";
+    EXPECT_NEAR(rendered_ahead(0, {.camera_leads = false}), moment_seconds, 1e-4);
+    EXPECT_NEAR(rendered_ahead(0, {.looks_ahead = false, .camera_leads = false}), 0, 1e-4);
 }
 
 /// Framelets of all batches until nothing is left to do. All must be for a viewer that begins with this view.
