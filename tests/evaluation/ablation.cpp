@@ -1,13 +1,16 @@
 #include "tests/evaluation/ablation.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
+#include "server/stream/moment_choice.h"
 #include "tests/evaluation/figure_table.h"
 #include "tests/evaluation/measures/measures.h"
 
@@ -16,7 +19,11 @@ namespace {
 
 using nlohmann::json;
 
-LinkParameters const narrow{.bits_per_second = 5e6, .delay_seconds = 0.02};
+LinkParameters const usual_link{.bits_per_second = 5e6, .delay_seconds = 0.02};
+
+/// Moments change at multiples of `moment_seconds` of the server's clock, and what is rendered when follows from where
+/// those lie: a run is made with as many places of theirs, evenly apart, and the mean of their errors is taken.
+constexpr std::size_t phases = 4;
 
 struct Part {
     char const* name;
@@ -32,31 +39,92 @@ constexpr Part parts[] = {
     {"inspections", &FrameletParts::inspections},
     {"withholding", &FrameletParts::withholding},
     {"reprojection", &FrameletParts::reprojection},
+    {"few moments", &FrameletParts::few_moments},
+    {"look ahead", &FrameletParts::look_ahead},
+    {"camera lead", &FrameletParts::camera_lead},
+    {"mirror", &FrameletParts::mirror},
+    {"visibility", &FrameletParts::visibility},
+    {"planned together", &FrameletParts::planned_together},
+    {"coarse first", &FrameletParts::coarse_first},
+    {"four rays", &FrameletParts::four_rays},
+    {"looks", &FrameletParts::looks},
+    {"restlessness", &FrameletParts::restlessness},
+    {"rest", &FrameletParts::rest},
+    {"held moments", &FrameletParts::held_moments},
+    {"outline filter", &FrameletParts::outline_filter},
+    {"kept cuts", &FrameletParts::kept_cuts},
+    {"loss", &FrameletParts::loss},
+    {"predictions", &FrameletParts::predictions},
     {"link budget", &FrameletParts::link_budget, true},
-    {"loss", &FrameletParts::loss, true},
+    {"byte prices", &FrameletParts::byte_prices, true},
 };
 
-json run_without(Part const& part, Subject const& subject, CostTable const& costs) {
+/// Mean errors of each phase, and what all of them together cost.
+struct PartRun {
+    std::array<double, phases> mse{};
+    double flip = 0, bytes = 0;
+    StageSeconds cpu;
+};
+
+/// FLIP takes longer than the run: it is of every so many pictures.
+constexpr std::size_t flip_every = 4;
+
+PartRun run_without(Part const& part, Subject const& subject, CostTable const& costs) {
     RunParameters const& parameters = subject.run;
-    MethodSetup setup = method_setup(parameters, subject.machine, costs);
-    if (part.left_out != nullptr) {
-        setup.parts.*part.left_out = false;
+    auto const pictures = static_cast<double>(reference_count(parameters));
+    PartRun sum;
+    std::vector<double> flip;
+    for (std::size_t phase = 0; phase < phases; ++phase) {
+        MethodSetup setup = method_setup(parameters, subject.machine, costs);
+        setup.clock_offset += moment_seconds * static_cast<double>(phase) / phases;
+        if (part.left_out != nullptr) {
+            setup.parts.*part.left_out = false;
+        }
+        auto const method = make_method("framelet", setup);
+        auto const compare = [&](std::size_t index, Picture const& shown, double) {
+            Picture const& reference = subject.reference.picture(index);
+            sum.mse[phase] += mean_squared_error(shown, reference) / pictures;
+            if (index % flip_every == 0) {
+                flip.push_back(mean_flip(shown, reference));
+            }
+        };
+        RunResult const run = run_method(*subject.scene, *method, parameters, subject.machine, compare);
+        sum.bytes += static_cast<double>(run.bytes);
+        for (double StageSeconds::*const stage : {&StageSeconds::render, &StageSeconds::response, &StageSeconds::encode,
+                                                  &StageSeconds::decode, &StageSeconds::reconstruct}) {
+            sum.cpu.*stage += run.cpu.*stage;
+        }
     }
-    auto const method = make_method("framelet", setup);
-    double mse = 0;
-    auto const count = static_cast<double>(reference_count(parameters));
-    RunResult const run = run_method(*subject.scene, *method, parameters, subject.machine,
-                                     [&](std::size_t index, Picture const& shown, double) {
-                                         mse += mean_squared_error(shown, subject.reference.picture(index)) / count;
-                                     });
+    sum.flip = std::accumulate(flip.begin(), flip.end(), 0.0) / static_cast<double>(flip.size());
+    return sum;
+}
+
+double mean_of(std::array<double, phases> const& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / phases;
+}
+
+/// Of the mean of errors as a multiple of the whole's, phase by phase.
+double standard_error(std::array<double, phases> const& mse, std::array<double, phases> const& whole) {
+    double const ratio = mean_of(mse) / mean_of(whole);
+    double squares = 0;
+    for (std::size_t i = 0; i < phases; ++i) {
+        double const off = (mse[i] - ratio * whole[i]) / mean_of(whole);
+        squares += off * off;
+    }
+    return std::sqrt(squares / (phases * (phases - 1)));
+}
+
+json row_of(Part const& part, PartRun const& run, Subject const& subject) {
+    double const seconds = phases * subject.run.seconds;
     return {{"scene", subject.scene->name},
-            {"link", parameters.link.bits_per_second > 0 ? "link" : "free"},
+            {"link", subject.run.link.bits_per_second > 0 ? "link" : "free"},
             {"part", part.name},
-            {"mse", mse},
-            {"bytes_per_second", static_cast<double>(run.bytes) / parameters.seconds},
-            {"server_seconds", run.cpu.server() / parameters.seconds},
-            {"response_seconds", run.cpu.response / parameters.seconds},
-            {"viewer_seconds", run.cpu.viewer() / parameters.seconds}};
+            {"mse", mean_of(run.mse)},
+            {"flip", run.flip},
+            {"bytes_per_second", run.bytes / seconds},
+            {"server_seconds", run.cpu.server() / seconds},
+            {"response_seconds", run.cpu.response / seconds},
+            {"viewer_seconds", run.cpu.viewer() / seconds}};
 }
 
 /// Of two errors or costs; both nothing: 1.
@@ -65,40 +133,75 @@ double ratio_of(double value, double whole) {
     return std::max(value, least) / std::max(whole, least);
 }
 
-/// Of each part over all runs: least, geometric mean and greatest ratio of errors.
-void print_summary(json const& rows) {
-    std::printf("\n");
-    FigureTable const table(
-        {{"without", "/part", -14}, {"least", "/least", 8}, {"mean", "/mean", 8}, {"greatest", "/greatest", 8}});
+/// What tells bundled scenes apart: vehicle_chase is `chase`.
+std::string short_name(std::string const& scene) {
+    std::size_t const from = scene.rfind('_');
+    return (from == std::string::npos ? scene : scene.substr(from + 1)).substr(0, 8);
+}
+
+/// Ratios of errors of each part by scene; least, geometric mean and greatest.
+void print_summary(json const& rows, std::string const& link) {
+    std::vector<std::string> scenes, titles, figures;
+    for (json const& row : rows) {
+        std::string const scene = row["scene"];
+        if (scenes.empty() || scenes.back() != scene) {
+            scenes.push_back(scene);
+            titles.push_back(short_name(scene));
+            figures.push_back("/" + scene);
+        }
+    }
+    std::vector<Column> columns{{"without", "/part", -16}};
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+        columns.push_back({titles[i].c_str(), figures[i].c_str(), 8});
+    }
+    columns.insert(columns.end(), {{"least", "/least", 7}, {"mean", "/mean", 7}, {"greatest", "/greatest", 8}});
+    std::printf("\nx mse, %s\n", link == "free" ? "no limit" : "over the link");
+    FigureTable const table(columns);
     for (Part const& part : parts) {
+        json line{{"part", part.name}};
         double least = INFINITY, greatest = 0, sum = 0, count = 0;
         for (json const& row : rows) {
-            if (row["part"] == part.name) {
+            if (row["part"] == part.name && row["link"] == link) {
                 double const ratio = row["ratio"]["mse"];
+                line[row["scene"].get<std::string>()] = ratio;
                 least = std::min(least, ratio);
                 greatest = std::max(greatest, ratio);
                 sum += std::log(ratio);
                 ++count;
             }
         }
-        table.print({{"part", part.name}, {"least", least}, {"mean", std::exp(sum / count)}, {"greatest", greatest}});
+        if (count > 0) {
+            line.update({{"least", least}, {"mean", std::exp(sum / count)}, {"greatest", greatest}});
+            table.print(line);
+        }
     }
 }
 
+bool is_chosen(Part const& part, std::vector<std::string> const& without) {
+    return part.left_out == nullptr || without.empty() || std::ranges::find(without, part.name) != without.end();
+}
+
 /// A row for the whole, and one without each part that does something there.
-void measure_run(Subject const& subject, StudyOptions const& study, FigureTable const& table, json& rows) {
+void measure_run(Subject const& subject, StudyOptions const& study, std::vector<std::string> const& without,
+                 FigureTable const& table, json& rows) {
     bool const limited = subject.run.link.bits_per_second > 0;
+    PartRun whole;
     json of_whole;
     for (Part const& part : parts) {
-        if (!limited && part.on_link_only) {
+        if ((!limited && part.on_link_only) || !is_chosen(part, without)) {
             continue;
         }
-        json row = run_without(part, subject, study.costs);
-        of_whole = part.left_out == nullptr ? row : of_whole;
+        PartRun const run = run_without(part, subject, study.costs);
+        json row = row_of(part, run, subject);
+        if (part.left_out == nullptr) {
+            whole = run;
+            of_whole = row;
+        }
         for (char const* const figure :
-             {"mse", "bytes_per_second", "server_seconds", "response_seconds", "viewer_seconds"}) {
+             {"mse", "flip", "bytes_per_second", "server_seconds", "response_seconds", "viewer_seconds"}) {
             row["ratio"][figure] = ratio_of(row[figure], of_whole[figure]);
         }
+        row["ratio"]["standard_error"] = standard_error(run.mse, whole.mse);
         table.print(row);
         rows.push_back(std::move(row));
     }
@@ -106,31 +209,46 @@ void measure_run(Subject const& subject, StudyOptions const& study, FigureTable 
 
 } // namespace
 
-json measure_ablation(StudyOptions const& study) {
+std::vector<std::string> ablation_parts() {
+    std::vector<std::string> names;
+    for (Part const& part : parts) {
+        if (part.left_out != nullptr) {
+            names.emplace_back(part.name);
+        }
+    }
+    return names;
+}
+
+json measure_ablation(StudyOptions const& study, std::vector<std::string> const& without) {
     FigureTable const table({{"scene", "/scene", -17},
                              {"link", "/link", -4},
-                             {"without", "/part", -14},
+                             {"without", "/part", -16},
                              {"mse", "/mse", 9, 2, 1, true},
                              {"kB/s", "/bytes_per_second", 8, 0, 1e-3},
                              {"server", "/server_seconds", 7, 3},
                              {"viewer", "/viewer_seconds", 7, 3},
                              {"x mse", "/ratio/mse", 7},
+                             {"+-", "/ratio/standard_error", 5},
+                             {"x flip", "/ratio/flip", 7},
                              {"x bytes", "/ratio/bytes_per_second", 7},
                              {"x server", "/ratio/server_seconds", 8},
                              {"x viewer", "/ratio/viewer_seconds", 8}});
+    LinkParameters const limited = study.run.link.bits_per_second > 0 ? study.run.link : usual_link;
     json rows = json::array();
     for (std::filesystem::path const& file : study.scenes) {
         Subject subject = prepare(file, study);
-        for (LinkParameters const& link : {LinkParameters{}, narrow}) {
+        for (LinkParameters const& link : {LinkParameters{}, limited}) {
             subject.run.link = link;
-            measure_run(subject, study, table, rows);
+            measure_run(subject, study, without, table, rows);
         }
     }
-    print_summary(rows);
+    print_summary(rows, "free");
+    print_summary(rows, "link");
     return {{"viewport", {study.run.viewport.width, study.run.viewport.height}},
             {"seconds", study.run.seconds},
             {"samples_per_pixel_and_second", study.run.frames_per_second},
-            {"link", {{"bits_per_second", narrow.bits_per_second}, {"delay_seconds", narrow.delay_seconds}}},
+            {"link", {{"bits_per_second", limited.bits_per_second}, {"delay_seconds", limited.delay_seconds}}},
+            {"phases", phases},
             {"rows", rows}};
 }
 

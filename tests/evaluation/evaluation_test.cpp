@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/error.h"
+#include "tests/evaluation/ablation.h"
 #include "tests/evaluation/methods/kd_leaves.h"
 #include "tests/evaluation/small_run.h"
 
@@ -109,6 +110,26 @@ TEST_F(Evaluation, CodedFramesFollowTheLinkDown) {
     EXPECT_LT(narrow_age, age + 0.12) << "a queue would hold its frames up for seconds";
     EXPECT_LT(narrow_bytes, bytes / 2);
     EXPECT_GT(static_cast<double>(narrow_bytes), 0.6 * 2.5 * 0.25e6 / 8) << "the link is used";
+}
+
+TEST_F(Evaluation, PartsAreLeftOutOneAtATime) {
+    StudyOptions options = study(small_run({64, 48}, 20));
+    options.scenes = {bundled("vehicle_chase")};
+    nlohmann::json const figures = measure_ablation(options, {"reprojection", "kept cuts", "byte prices"});
+    std::vector<std::string> rows;
+    for (nlohmann::json const& row : figures["rows"]) {
+        rows.push_back(row["link"].get<std::string>() + ' ' + row["part"].get<std::string>());
+        if (row["part"] == "whole") {
+            EXPECT_EQ(row["ratio"]["mse"], 1);
+            EXPECT_EQ(row["ratio"]["standard_error"], 0);
+        } else if (row["part"] == "reprojection") {
+            EXPECT_GT(row["ratio"]["mse"], 1.5) << "of what all others are parts of";
+        } else if (row["part"] == "kept cuts") {
+            EXPECT_EQ(row["ratio"]["mse"], 1) << "there is none";
+        }
+    }
+    EXPECT_EQ(rows, (std::vector<std::string>{"free whole", "free reprojection", "free kept cuts", "link whole",
+                                              "link reprojection", "link kept cuts", "link byte prices"}));
 }
 
 TEST_F(Evaluation, ReferencesAreKeptAndMadeAgainWhenTheyAreWrong) {

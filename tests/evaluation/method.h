@@ -41,6 +41,24 @@ struct FrameletParts {
     bool loss = true; ///< where the link asks for it
     bool withholding = true; ///< of what the viewer has already
     bool reprojection = true; ///< by the viewer
+    bool byte_prices = true; ///< samples cost by the bytes that they take, where the link is scarce
+    bool predictions = true; ///< of colour, from what the viewer holds
+    // What the server does for a viewer that moves what it holds.
+    bool few_moments = true; ///< else every cycle is of another one
+    bool look_ahead = true; ///< a moment is of when it ends, and not of when it begins
+    bool camera_lead = true; ///< its camera is ahead of that
+    bool mirror = true; ///< what the viewer shows says what is rendered, and not the field
+    bool visibility = true; ///< of what the mirror does not know, by rays that are not shaded
+    bool planned_together = true; ///< samples of several cycles
+    bool coarse_first = true; ///< after a change of light
+    bool four_rays = true; ///< a sample, while anything moves
+    bool looks = true; ///< how fast they change is learnt
+    bool restlessness = true; ///< what turns, outlines and reflections are expected to change
+    // What the viewer does that moves what it holds.
+    bool rest = true; ///< of bodies: they are held as what stands, by the server's knowledge too
+    bool held_moments = true; ///< 16, and not 4
+    bool outline_filter = true;
+    bool kept_cuts = true; ///< where nearly nothing of what is held would show it is shown as it was
 };
 
 /// What the rivals do to be at their best. Each part can be left out.

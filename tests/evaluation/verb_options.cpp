@@ -5,6 +5,7 @@
 #include "client/connection_arguments.h"
 #include "common/error.h"
 #include "common/number_range.h"
+#include "tests/evaluation/ablation.h"
 #include "tests/evaluation/method.h"
 
 namespace framelet::bench {
@@ -143,6 +144,13 @@ void add_table_options(CLI::App& verb, VerbOptions& options) {
 void add_compare_options(CLI::App& verb, VerbOptions& options) {
     verb.add_option("--turn", options.study.turn, "The camera turns back and forth, degrees a second")
         ->check(number_in(0.0, 3600.0));
+}
+
+void add_ablation_options(CLI::App& verb, VerbOptions& options) {
+    add_compare_options(verb, options);
+    verb.add_option("--without", options.without, "Which parts are left out in turn (default: each)")
+        ->delimiter(',')
+        ->check(CLI::IsMember(ablation_parts()));
 }
 
 void add_estimator_options(CLI::App& verb, VerbOptions& options) {

@@ -45,6 +45,7 @@ struct VerbOptions {
 
     // Of one verb each.
     std::vector<int> table_runs;
+    std::vector<std::string> without; ///< parts that the ablation leaves out
     ObservationOptions observation; ///< of the estimators
     ReportOptions report;
     std::vector<std::string> live_scenes, clock_scenes; ///< files or names, of the report
@@ -74,6 +75,7 @@ void add_link_options(CLI::App& verb, double& megabits, double& delay_ms);
 void add_study_options(CLI::App& verb, VerbOptions& options);
 
 void add_compare_options(CLI::App& verb, VerbOptions& options);
+void add_ablation_options(CLI::App& verb, VerbOptions& options);
 void add_table_options(CLI::App& verb, VerbOptions& options);
 void add_estimator_options(CLI::App& verb, VerbOptions& options);
 void add_report_options(CLI::App& verb, VerbOptions& options);

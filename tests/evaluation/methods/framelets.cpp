@@ -17,7 +17,7 @@ class Framelets final : public Method {
 public:
     Framelets(MethodSetup const& setup, bool reprojects)
         : setup_(setup), reprojects_(reprojects && setup.parts.reprojection), plane_(setup.viewport),
-          viewer_(setup.viewport, setup.costs, {reprojects_, true}, setup.times),
+          viewer_(setup.viewport, setup.costs, picture_settings(reprojects_, setup.parts), setup.times),
           cells_((setup.viewport.width + cell - 1) / cell),
           times_(static_cast<std::size_t>(cells_) *
                  static_cast<std::size_t>((setup.viewport.height + cell - 1) / cell)) {}
@@ -128,9 +128,29 @@ private:
         options.limits = limits_of(parts);
         options.follows_link = parts.link_budget;
         options.withholds = parts.withholding;
-        stream_.emplace(options, parts.loss ? coding::all : coding::exact_colour | coding::shapes_and_tracks);
+        options.prices_bytes = parts.byte_prices;
+        options.moment_seconds = parts.few_moments ? options.moment_seconds : double{least_cycle_seconds};
+        options.looks_ahead = parts.look_ahead;
+        options.camera_leads = parts.camera_lead;
+        options.knows_rest = parts.rest;
+        stream_.emplace(options, codings_of(parts));
         stream_->take({clock(input.now), ViewerSettings{0, 0, reprojects_}});
         followed_camera_ = input.scene.followed_camera();
+    }
+
+    static std::uint32_t codings_of(FrameletParts const& parts) {
+        std::uint32_t const without_loss = coding::exact_colour | coding::shapes_and_tracks;
+        return !parts.loss ? without_loss : parts.predictions ? coding::all : without_loss | coding::haar_colour;
+    }
+
+    static PictureSettings picture_settings(bool reprojects, FrameletParts const& parts) {
+        PictureSettings settings;
+        settings.reproject = reprojects;
+        settings.moments = parts.held_moments ? settings.moments : FrameletPool::untried_moments + 1;
+        settings.knows_rest = parts.rest;
+        settings.parts.flat_contrast = parts.outline_filter ? flat_contrast : 255;
+        settings.parts.keeps_cuts = parts.kept_cuts;
+        return settings;
     }
 
     static ResponseLimits limits_of(FrameletParts const& parts) {
@@ -143,6 +163,13 @@ private:
         }
         limits.probe_share = parts.probes ? limits.probe_share : 0;
         limits.inspection_share = parts.inspections ? limits.inspection_share : 0;
+        limits.mirrors = parts.mirror;
+        limits.visibility_share = parts.visibility ? limits.visibility_share : 0;
+        limits.plans_together = parts.planned_together;
+        limits.coarse_first = parts.coarse_first;
+        limits.most_rays = parts.four_rays ? four_rays : single_ray;
+        limits.learns_looks = parts.looks;
+        limits.expects_change = parts.restlessness;
         return limits;
     }
 
