@@ -21,6 +21,14 @@ constexpr double step_seconds = 0.03;
 
 } // namespace
 
+void SentShare::add(double rays, double sent_samples) {
+    if (!(rays > 0)) {
+        return;
+    }
+    constexpr double memory_rays = 5e5; // a tenth of a second of two cores
+    value_ += (1 - std::exp(-rays / memory_rays)) * (sent_samples / rays - value_);
+}
+
 std::uint8_t QualityChoice::choose(LinkState const& link, double samples_per_second, double now, bool moves) {
     if (now - changed_ >= step_seconds) {
         follow(link, samples_per_second, now);

@@ -15,6 +15,17 @@ inline constexpr std::uint8_t most_loss = 24;
 /// and exact samples of it take 2.5 times the bytes for 0.2 dB of the picture that is shown.
 inline constexpr std::uint8_t moving_loss = 3;
 
+/// How many samples are sent for each ray that is rendered, lately: fewer where rays go into probes, into several a
+/// sample, and into what the viewer has already.
+class SentShare {
+public:
+    void add(double rays, double sent_samples);
+    double value() const { return value_; }
+
+private:
+    double value_ = 1;
+};
+
 /// Goes step by step, so that one odd measurement does not show.
 class QualityChoice {
 public:

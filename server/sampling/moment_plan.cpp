@@ -206,8 +206,8 @@ void MomentPlan::add_gains(Mirror const& mirror, PlaceField const& field, std::u
         float const factor = budget.costs.empty() ? 1.0f : budget.costs[index][l];
         leaf.cost[l] = samples_per_pixel(level) * field.pixels_of(index) * factor;
     }
-    bool const link_limited = !budget.costs.empty(); // then a sample costs what its bytes do
-    leaf.supersampled_cost = leaf.cost[pixel_level] * (link_limited ? 1 : four_rays);
+    // Rays are cheaper than samples as far as the link leaves time for them.
+    leaf.supersampled_cost = leaf.cost[pixel_level] * std::max(1.0f, four_rays / budget.rays);
 }
 
 /// Gains of tiles that are larger than a place.

@@ -27,6 +27,7 @@ struct MomentBudget {
     std::span<LevelCosts const> costs{}; ///< as of `Budget`
     double moment_begun = 0; ///< what has been rendered since then is of this moment
     double overhead = 0; ///< samples that a plan costs besides, be it short or long
+    float rays = 1; ///< that there is time for, for each of `samples`: more than 1 where the link is what is scarce
 };
 
 class MomentPlan {

@@ -269,8 +269,12 @@ void AdaptiveRefresh::plan_moment(RefreshInput const& input, double samples, Ref
     find_costs(input);
     double const together =
         input.samples_per_second * (moments_.mirror().camera_stands() ? planned_seconds : planned_seconds_in_motion);
-    MomentBudget const budget{input.limits.plans_together ? std::max(together, samples) : samples, input.limits, costs_,
-                              input.moment->begun, input.samples_per_second * plan_overhead};
+    MomentBudget const budget{input.limits.plans_together ? std::max(together, samples) : samples,
+                              input.limits,
+                              costs_,
+                              input.moment->begun,
+                              input.samples_per_second * plan_overhead,
+                              static_cast<float>(std::max(1.0, input.rendered_per_second / input.samples_per_second))};
     moments_.plan(field_, budget, rated_);
     append_rated(input, samples);
 }

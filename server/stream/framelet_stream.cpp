@@ -145,8 +145,10 @@ Step FrameletStream::plan_batch(Turn const& turn, ViewState const& present, Pose
     order.state = wanted.moment ? wanted.moment->state : present;
     order.present = present;
     order.scene_camera = moving_camera(scene);
-    order.quality = takes_loss() ? choice_.choose(link, rendered, turn.now, wanted.moment.has_value())
-                                 : std::uint8_t{exact_quality};
+    order.quality = exact_quality;
+    if (takes_loss()) {
+        order.quality = choice_.choose(link, sent_share_.value() * rendered, turn.now, wanted.moment.has_value());
+    }
     order.takes_shapes = takes_shapes();
     order.withholds = options_.withholds;
     order.still = still;
@@ -205,9 +207,12 @@ bool FrameletStream::learn(PosedScene const& scene) {
         return false; // the viewer would not take it
     }
     bool const sends = learnt_->learn(scene, viewer_);
+    auto const samples = sends ? static_cast<double>(learnt_->batch().framelets.size() * framelet_samples) : 0.0;
     if (sends) {
-        link_.begin(static_cast<double>(learnt_->batch().framelets.size() * framelet_samples));
+        link_.begin(samples);
     }
+    TurnFigures const& figures = learnt_->figures;
+    sent_share_.add(static_cast<double>(figures.rays) + probe_cost * static_cast<double>(figures.probes), samples);
     complete_ = viewer_.lossy.empty() && viewer_.refresh.is_complete(learnt_->order.present);
     return sends;
 }

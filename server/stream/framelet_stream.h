@@ -76,6 +76,7 @@ private:
     std::uint64_t acknowledged_ = 0;
     LinkEstimate link_;
     QualityChoice choice_;
+    SentShare sent_share_;
     CameraForecast forecast_; ///< of a camera that is the viewer's own
     MomentChoice moments_;
     ViewerKnowledge viewer_;

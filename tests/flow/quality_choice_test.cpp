@@ -35,6 +35,21 @@ Outcome outcome_of(double bytes_per_second, double samples_per_second, bool move
     return outcome;
 }
 
+TEST(SentShare, IsThatOfTheLastRays) {
+    SentShare share;
+    EXPECT_EQ(share.value(), 1) << "all, until more is known";
+    share.add(0, 0);
+    EXPECT_EQ(share.value(), 1);
+    for (int i = 0; i < 100; ++i) {
+        share.add(1e5, 0.25e5);
+        EXPECT_GE(share.value(), 0.25);
+        EXPECT_LE(share.value(), 1);
+    }
+    EXPECT_NEAR(share.value(), 0.25, 1e-6);
+    share.add(1e9, 0);
+    EXPECT_NEAR(share.value(), 0, 1e-6) << "all of it was held";
+}
+
 TEST(QualityChoice, ExactWhereTheLinkTakesIt) {
     EXPECT_EQ(outcome_of(std::numeric_limits<double>::infinity(), 1e7).quality, 0);
     EXPECT_EQ(outcome_of(2e6, 1e6).quality, 0);

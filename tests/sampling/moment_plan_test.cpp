@@ -196,6 +196,29 @@ TEST(MomentPlan, SamplesThatAreLeftOverBecomeMeansOfFourRays) {
     EXPECT_LT(planned(4 * pixels, true), 0.5 * pixels) << "they are held";
 }
 
+/// A link that is scarce by a little leaves hardly a ray over: what it carries would not be rendered at all.
+TEST(MomentPlan, RaysAreAsCheapAsTheLinkLeavesTimeForThem) {
+    float const pixel = 10 * view_at(0).rays.direction_dx.x;
+    constexpr double samples = viewport.width * viewport.height;
+    constexpr double beyond_edges = 256.0 * 160 / samples; // tiles of 32 pixels reach over them, and cost nothing there
+    double before = -1;
+    for (float const rays : {1.0f, 1.1f, 2.0f, 4.0f, 100.0f}) {
+        Planner planner;
+        planner.mirror.add(view_at(0).rays, no_motions, render_pieces(plane, plane.pixel_depth(), half_busy));
+        planner.mirror.look(view_at(-pixel), no_motions);
+        planner.plan.find(planner.mirror, planner.field, {samples, {}, {}, 0, 0, rays}, planner.rated);
+        double traced = 0, supersampled = 0;
+        for (RatedPatch const& entry : planner.rated) {
+            traced += entry.samples;
+            supersampled += entry.rays_per_sample == four_rays ? entry.samples / four_rays : 0;
+        }
+        EXPECT_LE(traced, rays * beyond_edges * samples) << rays;
+        EXPECT_GE(supersampled, before) << rays;
+        before = supersampled;
+    }
+    EXPECT_GT(before, 0);
+}
+
 TEST(MomentPlan, WhatComesIntoViewIsFirst) {
     Planner planner;
     planner.mirror.look(view_at(0), no_motions);
