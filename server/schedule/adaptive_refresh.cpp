@@ -199,7 +199,7 @@ void AdaptiveRefresh::take_batch(std::size_t most_framelets, RefreshPlan& plan) 
 /// Samples cost the same unless the link is what is scarce.
 void AdaptiveRefresh::find_costs(RefreshInput const& input) {
     costs_.clear();
-    if (!(input.rendered_per_second > input.samples_per_second)) {
+    if (!(rays_a_sample(input) > 1)) {
         return;
     }
     costs_.assign(field_.size(), equal_costs);
@@ -235,13 +235,12 @@ void AdaptiveRefresh::plan_patches(RefreshInput const& input, double samples) {
     }
     make_density_patches(field_.plane(), density_, field_.depth(), tiling_scratch_, cut_);
     rate_patches(field_, choices_, due_errors_, cut_, budget, rated_);
-    append_rated(input, samples);
+    append_rated(samples, samples * rays_a_sample(input));
 }
 
 /// What of the rated patches there is time for, to render and to send.
-void AdaptiveRefresh::append_rated(RefreshInput const& input, double samples) {
-    double const most = std::max(input.rendered_per_second, input.samples_per_second) / input.samples_per_second;
-    select_patches(samples, most * samples, rated_);
+void AdaptiveRefresh::append_rated(double samples, double rays) {
+    select_patches(samples, rays, rated_);
     if (!costs_.empty()) {
         mean_bits_ *= mean_cost(rated_, 0.2f);
     }
@@ -260,11 +259,13 @@ void AdaptiveRefresh::append_rated(RefreshInput const& input, double samples) {
 
 /// Where what the viewer holds shows the moment worst.
 void AdaptiveRefresh::plan_moment(RefreshInput const& input, double samples, RefreshPlan& plan) {
-    double const planned = input.samples_per_second * planned_seconds;
+    double rays = samples * rays_a_sample(input);
     if (!moments_.looks_at(input.moment->begun)) {
+        double const planned = rays_a_sample(input) * input.samples_per_second * planned_seconds;
         plan.checks = moments_.look(plan.moment, input.moment->begun, input.limits.visibility_share * planned,
                                     scene_moves_ ? input.limits.probe_share * planned : 0, plan.probes);
-        samples -= plan.checks->cost(plan.viewport) + probe_cost * static_cast<double>(plan.probes.size());
+        rays -= plan.checks->cost(plan.viewport) + probe_cost * static_cast<double>(plan.probes.size());
+        samples = std::min(samples, rays); // checks are rendered and not sent
     }
     find_costs(input);
     double const together =
@@ -274,9 +275,9 @@ void AdaptiveRefresh::plan_moment(RefreshInput const& input, double samples, Ref
                               costs_,
                               input.moment->begun,
                               input.samples_per_second * plan_overhead,
-                              static_cast<float>(std::max(1.0, input.rendered_per_second / input.samples_per_second))};
+                              static_cast<float>(rays_a_sample(input))};
     moments_.plan(field_, budget, rated_);
-    append_rated(input, samples);
+    append_rated(samples, rays);
 }
 
 /// Probes what seems to stand, the neighbours of what moves first.

@@ -69,7 +69,7 @@ private:
     double plan_inspections(RefreshInput const& input);
     void find_costs(RefreshInput const& input);
     void plan_patches(RefreshInput const& input, double samples);
-    void append_rated(RefreshInput const& input, double samples);
+    void append_rated(double samples, double rays);
     void plan_moment(RefreshInput const& input, double samples, RefreshPlan& plan);
     void plan_probes(double samples, RefreshPlan& plan);
     void take_batch(std::size_t most_framelets, RefreshPlan& plan);

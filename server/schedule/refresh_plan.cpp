@@ -9,6 +9,10 @@ float cycle_length(bool still, double plan_seconds) {
                  : std::clamp(static_cast<float>(40 * plan_seconds), least_cycle_seconds, most_cycle_seconds);
 }
 
+double rays_a_sample(RefreshInput const& input) {
+    return std::max(input.rendered_per_second / input.samples_per_second, 1.0);
+}
+
 std::size_t batch_limit(RefreshInput const& input, bool still) {
     if (input.batch_framelets > 0) {
         return std::min({input.batch_framelets, input.link_framelets, max_batch_framelets});

@@ -38,6 +38,9 @@ struct RefreshInput {
     ResponseLimits limits{};
 };
 
+/// Rays that there is time for, for each sample that there is time for to render and to send.
+double rays_a_sample(RefreshInput const& input);
+
 /// Framelets that a batch may have. `still`: nothing moves, so that a large batch costs no freshness.
 std::size_t batch_limit(RefreshInput const& input, bool still);
 
