@@ -67,7 +67,6 @@ TEST(PixelFilter, IsWhatItSays) {
     }
 }
 
-/// A line becomes wider, and as much darker.
 TEST(PixelFilter, NoContrastIsGreaterThanABytes) {
     Picture const picture = random_picture(33, 9, 1);
     Picture filtered(picture.width, picture.height);
@@ -79,6 +78,7 @@ TEST(PixelFilter, NoContrastIsGreaterThanABytes) {
     EXPECT_EQ(filtered, expected);
 }
 
+/// A line becomes wider, and as much darker.
 TEST(PixelFilter, KeepsTheLight) {
     Picture picture(48, 4);
     for (int y = 0; y < picture.height; ++y) {
