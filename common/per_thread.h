@@ -1,15 +1,51 @@
-// A value of its own for every thread that asks for one.
+// A value of its own for every thread of a loop.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <memory>
+#include <utility>
+#include <vector>
 
-#include <tbb/enumerable_thread_specific.h>
+#include <tbb/task_arena.h>
 
 namespace framelet {
 
-/// In memory of the common heap: TBB's own is not searched by leak checkers, which then take what a value holds for
-/// lost.
+/// TBB's own of this kind destroys values that it has never made where memory runs out, and its memory is not searched
+/// by leak checkers.
 template <typename Value>
-using PerThread = tbb::enumerable_thread_specific<Value, std::allocator<Value>>;
+class PerThread {
+public:
+    /// Makes room for all threads that may take part in a loop of the caller's: before each loop that asks for values.
+    void prepare() {
+        auto const threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()) + 1;
+        if (values_.size() < threads) {
+            values_.resize(threads);
+        }
+    }
+
+    /// The calling thread's, made when it first asks.
+    Value& local() {
+        int const index = std::max(tbb::this_task_arena::current_thread_index(), 0); // negative before any loop
+        std::unique_ptr<Value>& value = values_.at(static_cast<std::size_t>(index));
+        if (value == nullptr) {
+            value = std::make_unique<Value>();
+        }
+        return *value;
+    }
+
+    /// `see(value)` for each that was made. Not while a loop runs.
+    template <typename See>
+    void for_each(See const& see) const {
+        for (std::unique_ptr<Value> const& value : values_) {
+            if (value != nullptr) {
+                see(std::as_const(*value));
+            }
+        }
+    }
+
+private:
+    std::vector<std::unique_ptr<Value>> values_;
+};
 
 } // namespace framelet

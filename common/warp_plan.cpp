@@ -101,6 +101,7 @@ void WarpPlan::make(FrameletCache const& cache, std::size_t slot, bool loose, Ca
             replanned_.push_back(i);
         }
     }
+    joinings_->prepare();
     tbb::parallel_for(std::size_t{0}, replanned_.size(), [&](std::size_t i) {
         std::uint32_t const index = replanned_[i];
         Square& square = squares_[index];

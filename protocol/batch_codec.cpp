@@ -107,6 +107,7 @@ BatchCodec::BatchCodec(BatchCodec&&) noexcept = default;
 BatchCodec& BatchCodec::operator=(BatchCodec&&) noexcept = default;
 
 EncodedBatch BatchCodec::encode(Batch const& batch, HeldPicture* held) {
+    scratch_->workers.prepare();
     std::size_t const count = batch.framelets.size();
     FRAMELET_CHECK(count <= max_batch_framelets);
     FRAMELET_CHECK(batch.quality.empty() || batch.quality.size() == count);
@@ -176,6 +177,7 @@ Batch BatchCodec::decode(EncodedBatch const& encoded, HeldPicture* held) {
 }
 
 void BatchCodec::decode(EncodedBatch const& encoded, HeldPicture* held, Batch& batch) {
+    scratch_->workers.prepare();
     std::size_t const count = encoded.tiles.size();
     if (count > max_batch_framelets) {
         throw ProtocolError("a batch has more than 32768 framelets");

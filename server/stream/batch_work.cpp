@@ -19,6 +19,7 @@ void BatchWork::render(PosedScene const& scene) {
     NumberedView const& view = order.state.view;
     ImagePlane const plane(view.viewport);
     ViewRays const rays = make_view_rays(view.camera, view.viewport);
+    fresh_.prepare();
     std::atomic<std::uint64_t> segments = 0;
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
         segments.fetch_add(render_display(scene.render_scene(), rays, plane, order.plan.tiles[i], order.state.exposure,

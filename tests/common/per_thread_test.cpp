@@ -16,20 +16,22 @@ namespace {
 TEST(PerThread, ThreadsDoNotShareAndKeepWhatTheyHave) {
     PerThread<std::vector<std::size_t>> lists;
     constexpr std::size_t count = 100000;
+    lists.prepare();
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { lists.local().push_back(i); });
     std::vector<bool> found(count);
-    for (auto const& list : lists) {
+    lists.for_each([&](std::vector<std::size_t> const& list) {
         for (std::size_t const i : list) {
             EXPECT_FALSE(found[i]);
             found[i] = true;
         }
-    }
+    });
     EXPECT_EQ(std::vector<bool>(count, true), found);
 }
 
 #if defined(__SANITIZE_ADDRESS__)
 TEST(PerThread, LeakCheckersSeeWhatAValueHolds) {
     PerThread<std::vector<char>> buffers;
+    buffers.prepare();
     tbb::parallel_for(0, 1000, [&](int) { buffers.local().resize(70000); });
     EXPECT_EQ(__lsan_do_recoverable_leak_check(), 0);
 }
