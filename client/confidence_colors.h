@@ -4,8 +4,8 @@
 
 #include <span>
 
-#include "common/confidence.h"
 #include "common/image.h"
+#include "common/picture/confidence.h"
 
 namespace framelet {
 

@@ -4,7 +4,7 @@
 
 #include "common/cpu_clock.h"
 #include "common/error.h"
-#include "common/picture_writer.h"
+#include "common/files/picture_writer.h"
 
 namespace framelet {
 

@@ -2,7 +2,7 @@
 // it, bright yellow where the framelet is fresh, over red to dark blue where it is old.
 #pragma once
 
-#include "common/framelet_cache.h"
+#include "common/held/framelet_cache.h"
 #include "common/image.h"
 
 namespace framelet {

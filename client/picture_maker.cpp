@@ -2,11 +2,11 @@
 
 #include <cmath>
 
+#include "client/camera_track.h"
 #include "client/confidence_colors.h"
 #include "client/framelet_outlines.h"
-#include "common/camera_track.h"
-#include "common/reconstruction.h"
-#include "common/shown_point.h"
+#include "common/picture/reconstruction.h"
+#include "common/picture/shown_point.h"
 
 namespace framelet {
 

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "client/late_clock.h"
+#include "common/held/framelet_pool.h"
 #include "common/image.h"
-#include "common/picture/framelet_pool.h"
-#include "common/reprojector.h"
-#include "common/scene_smoother.h"
+#include "common/picture/reprojector.h"
+#include "common/picture/scene_smoother.h"
 
 namespace framelet {
 

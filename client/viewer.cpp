@@ -11,7 +11,7 @@
 #include "client/display_pace.h"
 #include "common/counted.h"
 #include "common/error.h"
-#include "common/picture_writer.h"
+#include "common/files/picture_writer.h"
 
 namespace framelet {
 

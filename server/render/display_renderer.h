@@ -3,8 +3,8 @@
 #pragma once
 
 #include "common/framelet.h"
-#include "common/rays_per_sample.h"
 #include "server/render/framelet_renderer.h"
+#include "server/render/rays_per_sample.h"
 
 namespace framelet {
 

@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "common/error.h"
-#include "common/image_io.h"
+#include "common/files/image_io.h"
 #include "server/render/environment_filter.h"
 
 namespace framelet {

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "common/probe.h"
 #include "server/render/framelet_renderer.h"
+#include "server/render/probe.h"
 
 namespace framelet {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/camera.h"
-#include "common/place_grid.h"
+#include "server/render/place_grid.h"
 #include "server/render/render_scene.h"
 
 namespace framelet {

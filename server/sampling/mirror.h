@@ -9,7 +9,7 @@
 #include <unordered_set>
 #include <vector>
 
-#include "common/picture/framelet_pool.h"
+#include "common/held/framelet_pool.h"
 #include "server/sampling/cell.h"
 #include "server/sampling/piece_reprojection.h"
 

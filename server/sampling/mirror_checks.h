@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "common/place_grid.h"
-#include "common/probe.h"
+#include "server/render/place_grid.h"
+#include "server/render/probe.h"
 #include "server/sampling/mirror.h"
 
 namespace framelet {

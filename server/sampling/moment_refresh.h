@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "common/place_grid.h"
-#include "common/probe.h"
+#include "server/render/place_grid.h"
+#include "server/render/probe.h"
 #include "server/sampling/looks.h"
 #include "server/sampling/mirror.h"
 #include "server/sampling/moment_plan.h"

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "common/rays_per_sample.h"
+#include "server/render/rays_per_sample.h"
 #include "server/schedule/price.h"
 
 namespace framelet {

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "common/probe.h"
-#include "common/rays_per_sample.h"
+#include "server/render/probe.h"
+#include "server/render/rays_per_sample.h"
 #include "server/response/place_model.h"
 #include "server/response/sampling_choice.h"
 #include "server/schedule/density_tiling.h"

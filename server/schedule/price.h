@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "common/rays_per_sample.h"
+#include "server/render/rays_per_sample.h"
 #include "server/schedule/place_field.h"
 
 namespace framelet {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "common/rays_per_sample.h"
+#include "server/render/rays_per_sample.h"
 #include "server/schedule/patch_selection.h"
 
 namespace framelet {

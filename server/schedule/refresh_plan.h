@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "common/rays_per_sample.h"
+#include "server/render/rays_per_sample.h"
 #include "server/sampling/moment_refresh.h"
 #include "server/schedule/view_state.h"
 

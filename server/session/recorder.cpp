@@ -7,7 +7,7 @@
 #include <spdlog/spdlog.h>
 
 #include "common/error.h"
-#include "common/picture_writer.h"
+#include "common/files/picture_writer.h"
 #include "server/schedule/field_picture.h"
 
 namespace framelet {

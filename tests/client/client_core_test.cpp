@@ -9,7 +9,7 @@
 #include "common/color.h"
 #include "common/error.h"
 #include "tests/client/fake_server.h"
-#include "tests/common/synthetic_framelets.h"
+#include "tests/picture/synthetic_framelets.h"
 
 namespace framelet {
 namespace {

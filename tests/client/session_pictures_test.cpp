@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/common/synthetic_framelets.h"
+#include "tests/picture/synthetic_framelets.h"
 
 namespace framelet {
 namespace {

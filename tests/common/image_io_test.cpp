@@ -1,5 +1,5 @@
-#include "common/image_io.h"
-#include "common/picture_writer.h"
+#include "common/files/image_io.h"
+#include "common/files/picture_writer.h"
 
 #include <filesystem>
 #include <fstream>

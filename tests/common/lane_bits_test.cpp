@@ -1,4 +1,4 @@
-#include "common/lane_bits.h"
+#include "common/simd/lane_bits.h"
 
 #include <random>
 #include <set>

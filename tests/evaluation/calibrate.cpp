@@ -6,10 +6,10 @@
 #include <tbb/global_control.h>
 
 #include "common/color.h"
-#include "common/framelet_cache.h"
-#include "common/picture/framelet_pool.h"
-#include "common/reconstruction.h"
-#include "common/reprojector.h"
+#include "common/held/framelet_cache.h"
+#include "common/held/framelet_pool.h"
+#include "common/picture/reconstruction.h"
+#include "common/picture/reprojector.h"
 #include "protocol/batch_codec.h"
 #include "server/flow/quality_choice.h"
 #include "server/layers/shape_feed.h"

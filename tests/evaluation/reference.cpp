@@ -9,8 +9,8 @@
 #include <unistd.h>
 
 #include "common/color.h"
-#include "common/image_io.h"
-#include "common/picture_writer.h"
+#include "common/files/image_io.h"
+#include "common/files/picture_writer.h"
 
 namespace framelet::bench {
 namespace {

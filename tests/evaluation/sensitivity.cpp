@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "common/picture_writer.h"
+#include "common/files/picture_writer.h"
 #include "tests/evaluation/charts/picture_sheet.h"
 #include "tests/evaluation/figure_table.h"
 #include "tests/evaluation/measures/measures.h"

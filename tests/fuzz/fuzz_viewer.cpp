@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "common/error.h"
-#include "common/framelet_cache.h"
+#include "common/held/framelet_cache.h"
 #include "protocol/batch_codec.h"
 
 extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size) {

@@ -15,7 +15,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "common/image_io.h"
+#include "common/files/image_io.h"
 #include "server/render/framelet_renderer.h"
 #include "server/scene/animation.h"
 #include "server/scene/scene_import.h"

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "common/image_io.h"
+#include "common/files/image_io.h"
 #include "tests/loopback/process.h"
 
 namespace framelet::test {

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "common/error.h"
-#include "common/picture_writer.h"
+#include "common/files/picture_writer.h"
 #include "gltf_writer.h"
 #include "server/scene/animation.h"
 

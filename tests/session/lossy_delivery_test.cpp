@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include "common/framelet_cache.h"
-#include "common/reconstruction.h"
+#include "common/held/framelet_cache.h"
+#include "common/picture/reconstruction.h"
 #include "protocol/batch_codec.h"
 #include "protocol/stream_opening.h"
 #include "server/scene/scene_import.h"

@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include "common/error.h"
-#include "common/image_io.h"
+#include "common/files/image_io.h"
 
 namespace framelet {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "common/picture/framelet_pool.h"
+#include "common/held/framelet_pool.h"
 #include "tests/session/triangle_scenes.h"
 
 namespace framelet {

@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "common/error.h"
-#include "common/image_io.h"
+#include "common/files/image_io.h"
 #include "tests/evaluation/charts/chart_style.h"
 
 namespace framelet::bench {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/error.h"
-#include "common/picture_writer.h"
+#include "common/files/picture_writer.h"
 
 namespace framelet::bench {
 namespace {

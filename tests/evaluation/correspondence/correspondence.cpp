@@ -8,8 +8,8 @@
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
-#include "common/framelet_cache.h"
-#include "common/warp_block.h"
+#include "common/held/framelet_cache.h"
+#include "common/warp/warp_block.h"
 #include "protocol/batch_codec.h"
 #include "server/layers/layer_fit.h"
 #include "server/schedule/tiling.h"

@@ -17,7 +17,7 @@
 #include "client/camera_path.h"
 #include "client/frame_choice.h"
 #include "common/error.h"
-#include "common/image_io.h"
+#include "common/files/image_io.h"
 #include "server/render/framelet_renderer.h"
 #include "tests/evaluation/charts/picture_sheet.h"
 #include "tests/evaluation/codecs/link_emulator.h"

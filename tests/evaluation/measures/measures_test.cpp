@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "common/error.h"
-#include "common/image_io.h"
+#include "common/files/image_io.h"
 #include "tests/evaluation/measures/ratio_summary.h"
 
 namespace framelet::bench {

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "common/reconstruction.h"
+#include "common/picture/reconstruction.h"
 
 namespace framelet::bench {
 

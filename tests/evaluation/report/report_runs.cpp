@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 
-#include "common/picture_writer.h"
+#include "common/files/picture_writer.h"
 #include "tests/evaluation/comparison.h"
 #include "tests/evaluation/report/feature_cost.h"
 #include "tests/evaluation/report/report_text.h"

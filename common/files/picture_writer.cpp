@@ -1,0 +1,106 @@
+#include "common/files/picture_writer.h"
+
+#include <cerrno>
+#include <csetjmp>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <string>
+
+#include <png.h>
+
+#include "common/error.h"
+
+namespace framelet {
+namespace {
+
+/// What the library has to say of a failure.
+struct Complaint {
+    char text[120] = "";
+};
+
+void complain(png_structp png, png_const_charp text) {
+    auto& complaint = *static_cast<Complaint*>(png_get_error_ptr(png));
+    std::snprintf(complaint.text, sizeof(complaint.text), "%s", text);
+    png_longjmp(png, 1);
+}
+
+void ignore(png_structp, png_const_charp) {}
+
+struct Writer {
+    explicit Writer(Complaint& complaint)
+        : png(png_create_write_struct(PNG_LIBPNG_VER_STRING, &complaint, complain, ignore)),
+          info(png != nullptr ? png_create_info_struct(png) : nullptr) {
+        FRAMELET_CHECK(info != nullptr);
+    }
+    ~Writer() { png_destroy_write_struct(&png, &info); }
+    Writer(Writer const&) = delete;
+    Writer& operator=(Writer const&) = delete;
+
+    png_structp png;
+    png_infop info;
+};
+
+/// False where it failed. Nothing here has a destructor: failures jump.
+bool write_all(Writer const& writer, std::FILE* stream, Picture const& picture) {
+    constexpr int compression_level = 3; // pictures of a moving scene are written as they are shown
+    if (setjmp(png_jmpbuf(writer.png)) != 0) {
+        return false;
+    }
+    png_init_io(writer.png, stream);
+    png_set_compression_level(writer.png, compression_level);
+    png_set_filter(writer.png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB | PNG_FILTER_UP);
+    png_set_IHDR(writer.png, writer.info, static_cast<png_uint_32>(picture.width),
+                 static_cast<png_uint_32>(picture.height), 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_sRGB(writer.png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
+    png_write_info(writer.png, writer.info);
+    png_set_filler(writer.png, 0, PNG_FILLER_AFTER);
+    for (int y = 0; y < picture.height; ++y) {
+        png_write_row(writer.png, picture.row(y));
+    }
+    png_write_end(writer.png, writer.info);
+    return true;
+}
+
+InputError failure(std::filesystem::path const& file, std::string const& why) {
+    return InputError("cannot write image '" + file.string() + "': " + why);
+}
+
+/// Opens the file, lets `write` fill it (a failure's text, or none) and closes it again.
+template <typename Write>
+void write_file(std::filesystem::path const& file, Write const& write) {
+    std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "wb"), std::fclose);
+    if (!stream) {
+        throw failure(file, std::strerror(errno));
+    }
+    std::string const why = write(stream.get());
+    if (!why.empty()) {
+        throw failure(file, why);
+    }
+    if (std::fclose(stream.release()) != 0) {
+        throw failure(file, std::strerror(errno));
+    }
+}
+
+} // namespace
+
+void write_png(std::filesystem::path const& file, Picture const& picture) {
+    write_file(file, [&](std::FILE* stream) -> std::string {
+        Complaint complaint;
+        Writer const writer(complaint);
+        return write_all(writer, stream, picture) ? "" : complaint.text;
+    });
+}
+
+void write_ppm(std::filesystem::path const& file, Picture const& picture) {
+    std::string content = "P6\n" + std::to_string(picture.width) + " " + std::to_string(picture.height) + "\n255\n";
+    for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
+        content.append(reinterpret_cast<char const*>(&picture.rgba[i]), 3);
+    }
+    write_file(file, [&](std::FILE* stream) -> std::string {
+        return std::fwrite(content.data(), 1, content.size(), stream) == content.size() ? "" : std::strerror(errno);
+    });
+}
+
+} // namespace framelet

@@ -1,0 +1,390 @@
+#include "common/picture/reprojector.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <cstring>
+
+#include <tbb/parallel_for.h>
+
+#include "common/error.h"
+#include "common/held/block_flags.h"
+#include "common/picture/pixel_filter.h"
+#include "common/picture/reconstruction.h"
+#include "common/reprojection.h"
+#include "common/simd/lanes.h"
+
+namespace framelet {
+
+namespace {
+
+constexpr int side = WarpedBlock::side;
+
+/// Where less than this share of what is held would show (after a cut), the rest being made up, all of it stays where
+/// it was rendered: that is nearer to what comes (measured on cuts of one scene).
+constexpr double least_kept = 0.1;
+
+/// Nothing of a framelet of this view leaves its place; of those that hold something moving only if no time has passed.
+bool is_in_place(HeldView const& view, bool moves, Camera const& camera, SceneTime scene_time) {
+    bool const same_camera = view.camera == camera || !is_reprojectable(view.camera) || !is_reprojectable(camera);
+    return same_camera && (!moves || view.scene_time == scene_time);
+}
+
+bool is_all_in_place(FrameletCache const& cache, Camera const& camera, SceneTime scene_time) {
+    return std::ranges::all_of(cache.views(), [&](HeldView const& view) {
+        return view.framelets == 0 || is_in_place(view, view.moving_framelets > 0, camera, scene_time);
+    });
+}
+
+/// Also true where bodies that could move have come to rest.
+bool is_in_place(CachedFramelet const& framelet, HeldView const& view, Camera const& camera, SceneTime scene_time,
+                 BodyMotions const& motions) {
+    return is_in_place(view, framelet.shape.moves, camera, scene_time) ||
+           (is_in_place(view, false, camera, scene_time) &&
+            is_in_place(framelet.shape, view.scene_time, scene_time, motions));
+}
+
+/// True when the block is covered and all framelets of its place are in place.
+bool is_block_in_place(FrameletCache const& cache, Camera const& camera, SceneTime scene_time,
+                       BodyMotions const& motions, int column, int row) {
+    ImagePlane const& plane = cache.plane();
+    int const depth = plane.pixel_depth();
+    auto const is_fine = [&](CachedFramelet const* framelet) {
+        return framelet == nullptr ||
+               is_in_place(*framelet, cache.views()[framelet->view], camera, scene_time, motions);
+    };
+    bool is_covered = cache.covered_below(depth, column, row) > 0;
+    for (int d = plane.min_depth(); d <= depth; ++d) {
+        CachedFramelet const* const framelet = cache.find(d, column >> (depth - d), row >> (depth - d));
+        is_covered |= framelet != nullptr;
+        if (!is_fine(framelet)) {
+            return false;
+        }
+    }
+    for (int d = depth + 1; d <= plane.max_depth(); ++d) {
+        int const n = 1 << (d - depth);
+        for (int i = 0; i < n * n; ++i) {
+            if (!is_fine(cache.find(d, n * column + i % n, n * row + i / n))) {
+                return false;
+            }
+        }
+    }
+    return is_covered;
+}
+
+/// The moment that has most of its picture.
+FrameletCache const& fullest_of(FrameletPool const& pool) {
+    std::size_t most = 0;
+    for (std::size_t i = 1; i < pool.slot_count(); ++i) {
+        most = pool.slot(i).coverage() > pool.slot(most).coverage() ? i : most;
+    }
+    return pool.slot(most);
+}
+
+std::uint64_t combine(std::uint64_t state, std::uint64_t value) {
+    state = (state ^ value) * 0x9e3779b97f4a7c15u;
+    return state ^ state >> 32;
+}
+
+/// Of pixels of a block: a bit for each slot of which something shows.
+std::uint32_t slots_of(WarpedBlock const& block) {
+    std::uint32_t slots = 0;
+    for (std::int32_t const group : block.group) {
+        slots |= group < 0 ? 0 : 1u << slot_of_group(group);
+    }
+    return slots;
+}
+
+std::uint64_t signature_of(std::span<PatchView const> patches, bool in_place) {
+    std::uint64_t state = in_place ? 2 : 1;
+    for (PatchView const& view : patches) {
+        state = combine(state, view.patch->signature);
+    }
+    return state;
+}
+
+/// Copies a block of four-byte values into a plane of the viewport's size.
+void copy_rows(void const* block, Viewport viewport, int left, int top, void* plane) {
+    constexpr std::size_t row_bytes = 4 * side;
+    auto const* from = static_cast<std::byte const*>(block);
+    std::size_t const pitch = 4 * static_cast<std::size_t>(viewport.width);
+    std::byte* to = static_cast<std::byte*>(plane) + static_cast<std::size_t>(top) * pitch + 4 * left;
+    std::size_t const bytes = 4 * static_cast<std::size_t>(std::min(side, viewport.width - left));
+    for (int y = 0; y < std::min(side, viewport.height - top); ++y, from += row_bytes, to += pitch) {
+        if (bytes == row_bytes) {
+            std::memcpy(to, from, row_bytes); // of a size that the compiler knows
+        } else {
+            std::memcpy(to, from, bytes);
+        }
+    }
+}
+
+/// With `moved_alpha` where what shows was moved.
+void write_colors(WarpedBlock const& block, int left, int top, Picture& picture) {
+    alignas(64) std::array<std::uint32_t, WarpedBlock::pixels> colors;
+    for (std::size_t i = 0; i < WarpedBlock::pixels; i += wide_count) {
+        auto const bytes = [&](std::size_t channel) {
+            WideFloats const value = root(load_lanes<WideFloats>(&block.squares[channel][i])) + 0.5f;
+            return reinterpret_cast<WideWords>(__builtin_convertvector(value, WideInts));
+        };
+        WideInts const is_still = (load_lanes<WideInts>(&block.group[i]) & still_bit) != 0; // holes, too
+        WideWords const color = picture_pixels(bytes(0), bytes(1), bytes(2));
+        store_lanes(is_still ? color : color & ~picture_pixel(0, 0, 0), &colors[i]);
+    }
+    copy_rows(colors.data(), {picture.width, picture.height}, left, top, picture.rgba.data());
+}
+
+void write_plane(std::array<float, WarpedBlock::pixels> const& from, int left, int top, Viewport viewport,
+                 std::vector<float>& plane) {
+    copy_rows(from.data(), viewport, left, top, plane.data());
+}
+
+} // namespace
+
+/// All that is held stays where it is, and no other moment may have what the base of the newest camera lacks.
+bool Reprojector::is_in_place(FrameletPool const& pool, Camera const& camera, SceneTime scene_time) const {
+    FrameletCache const& newest = pool.newest();
+    return !pool.has_moving() && is_all_in_place(newest, camera, scene_time) &&
+           (pool.framelet_count() == newest.framelet_count() || newest.is_covered_from(newest.plane().pixel_depth()));
+}
+
+void Reprojector::show_exact(FrameletPool const& pool, std::span<PixelRect const> changed, Picture& picture,
+                             std::vector<PixelRect>& repainted) {
+    if (has_shown_ && is_exact_ && exact_slot_ == pool.newest_slot()) {
+        reconstruct(pool.newest(), changed, picture);
+        repainted.assign(changed.begin(), changed.end());
+    } else {
+        reconstruct_all(pool.newest(), picture);
+        repainted.assign(1, {0, 0, picture.width, picture.height});
+    }
+    exact_slot_ = pool.newest_slot();
+    is_exact_ = true;
+    noted_slots_ = 0;
+    hole_share_ = 0;
+}
+
+/// After an exact picture no block is known to be as the plan says.
+void Reprojector::start_moving(Viewport viewport, std::size_t blocks) {
+    bool const is_new = is_exact_ || blocks_.size() != blocks;
+    if (is_new) {
+        blocks_.assign(blocks, {});
+    }
+    replanned_.assign(blocks, is_new ? 1 : 0);
+    auto const pixels = static_cast<std::size_t>(viewport.width) * static_cast<std::size_t>(viewport.height);
+    if (unfiltered_.width != viewport.width || unfiltered_.height != viewport.height) {
+        unfiltered_ = Picture(viewport.width, viewport.height);
+    }
+    inverse_depth_.resize(pixels);
+    block_means_.resize(blocks);
+    painted_.resize(blocks);
+    is_exact_ = false;
+}
+
+/// All of them where what shows in its place is another slot's.
+void Reprojector::flag_replanned(FrameletPool const& pool) {
+    std::uint32_t base_slots = 0;
+    for (std::size_t i = 0; i < pool.slot_count(); ++i) {
+        base_slots |= pool.belongs_to_base(i) ? 1u << i : 0u;
+        plans_[i].flag_replanned(replanned_);
+    }
+    if (newest_slot_ != pool.newest_slot() || base_slots_ != base_slots) {
+        std::ranges::fill(replanned_, std::uint8_t{1});
+    }
+    newest_slot_ = pool.newest_slot();
+    base_slots_ = base_slots;
+}
+
+void Reprojector::show(FrameletPool const& pool, std::span<PixelRect const> changed, Camera const& camera,
+                       SceneTime scene_time, BodyMotions const& motions, Picture& picture,
+                       std::vector<PixelRect>& repainted) {
+    Viewport const viewport = pool.plane().viewport();
+    FRAMELET_CHECK(picture.width == viewport.width && picture.height == viewport.height);
+    if (is_in_place(pool, camera, scene_time)) {
+        show_exact(pool, changed, picture, repainted);
+        has_shown_ = true;
+        return;
+    }
+    while (plans_.size() < pool.slot_count()) {
+        plans_.emplace_back();
+    }
+    noted_slots_ = 0;
+    for (std::size_t i = 0; i < pool.slot_count(); ++i) {
+        plans_[i].make(pool.slot(i), i, pool.is_recent(i), camera, scene_time, motions);
+        noted_slots_ |= pool.is_tried(i) ? 1u << i : 0u;
+    }
+    columns_ = plans_[0].columns();
+    rows_ = plans_[0].rows();
+    start_moving(viewport, static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
+    flag_replanned(pool);
+    std::atomic<bool> any = false;
+    tbb::parallel_for(0, rows_, [&](int row) {
+        bool painted = false;
+        std::vector<PatchView> patches;
+        auto index = static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_);
+        for (int column = 0; column < columns_; ++column, ++index) {
+            if (replanned_[index] != 0 || (blocks_[index].slots & noted_slots_) != 0) {
+                painted |= update_block(pool, camera, scene_time, motions, column, row, patches);
+            }
+        }
+        if (painted) {
+            any.store(true, std::memory_order_relaxed);
+        }
+    });
+    if (any) {
+        count_blocks(pool.slot_count());
+    }
+    double const kept = 1 - hole_share_;
+    FrameletCache const* const fullest =
+        parts_.keeps_cuts && kept < least_kept ? &fullest_of(pool) : nullptr; // coverage takes a while
+    if (fullest != nullptr && kept < least_kept * fullest->coverage()) {
+        show_cut(*fullest, picture, repainted);
+    } else {
+        if (any) {
+            fill();
+            filter(picture);
+        }
+        take_flagged(painted_, columns_, viewport, repainted);
+    }
+    has_shown_ = true;
+}
+
+/// As it was.
+void Reprojector::show_cut(FrameletCache const& moment, Picture& picture, std::vector<PixelRect>& repainted) {
+    blocks_.clear(); // no block is as the plan says
+    std::ranges::fill(painted_, std::uint8_t{0});
+    reconstruct_all(moment, picture);
+    repainted.assign(1, {0, 0, picture.width, picture.height});
+}
+
+bool Reprojector::update_block(FrameletPool const& pool, Camera const& camera, SceneTime scene_time,
+                               BodyMotions const& motions, int column, int row, std::vector<PatchView>& patches) {
+    auto const index =
+        static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
+    FrameletCache const& newest = pool.newest();
+    patches.clear();
+    plans_[pool.newest_slot()].add_block(index, patches);
+    std::size_t const newest_patches = patches.size();
+    bool in_place = std::ranges::all_of(patches, [](PatchView const& view) { return view.patch->is_still; }) &&
+                    is_block_in_place(newest, camera, scene_time, motions, column, row);
+    bool const all = !in_place || newest.covered_below(newest.plane().pixel_depth() - 1, column / 2, row / 2) == 0;
+    for (std::size_t i = 0; i < pool.slot_count(); ++i) {
+        if (pool.belongs_to_base(i) || (all && i != pool.newest_slot())) {
+            plans_[i].add_block(index, patches);
+        }
+    }
+    in_place = in_place && patches.size() == newest_patches;
+    order(patches);
+    std::uint64_t const signature = signature_of(patches, in_place);
+    bool const is_same = signature == blocks_[index].signature;
+    if (is_same && (blocks_[index].slots & noted_slots_) == 0) {
+        return false;
+    }
+    Viewport const viewport = pool.plane().viewport();
+    int const left = column * side;
+    int const top = row * side;
+    WarpedBlock block;
+    paint_warped_block(patches, column, row, viewport, block);
+    if (is_same) { // it was to note what shows
+        return false;
+    }
+    if (in_place) {
+        block.holes = 0;
+        for (float& inverse_depth : block.inverse_depth) {
+            inverse_depth = std::max(inverse_depth, 0.0f);
+        }
+        reconstruct_block(newest, column, row, unfiltered_);
+    } else {
+        write_colors(block, left, top, unfiltered_);
+    }
+    write_plane(block.inverse_depth, left, top, viewport, inverse_depth_);
+    block_means_[index] = far_mean(block);
+    blocks_[index] = {signature, block.holes, slots_of(block)};
+    painted_[index] = 1;
+    return true;
+}
+
+bool Reprojector::add_shown(std::size_t slot, std::vector<Tile>& tiles) const {
+    if ((noted_slots_ >> slot & 1) == 0) {
+        return false;
+    }
+    plans_[slot].add_shown(tiles);
+    return true;
+}
+
+void Reprojector::count_blocks(std::size_t slots) {
+    std::int64_t holes = 0;
+    shown_blocks_.assign(slots, 0);
+    for (BlockState const& block : blocks_) {
+        holes += block.holes;
+        for (std::size_t i = 0; i < slots; ++i) {
+            shown_blocks_[i] += block.slots >> i & 1;
+        }
+    }
+    hole_share_ = static_cast<double>(holes) / static_cast<double>(inverse_depth_.size());
+}
+
+template <class Work>
+void Reprojector::for_each_block(Work const& work) {
+    tbb::parallel_for(0, rows_, [&](int row) {
+        for (int column = 0; column < columns_; ++column) {
+            work(column, row,
+                 static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column));
+        }
+    });
+}
+
+bool Reprojector::is_beside_hole(int column, int row) const {
+    for (int y = std::max(row - 1, 0); y < std::min(row + 2, rows_); ++y) {
+        for (int x = std::max(column - 1, 0); x < std::min(column + 2, columns_); ++x) {
+            if (blocks_[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(x)]
+                    .holes > 0) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+/// Holes depend on all that surrounds them, so all of them are filled again.
+void Reprojector::fill() {
+    if (hole_share_ == 0) {
+        return;
+    }
+    means_.make(block_means_, columns_, rows_);
+    cells_.resize(blocks_.size());
+    for_each_block([&](int column, int row, std::size_t index) {
+        if (is_beside_hole(column, row)) {
+            cells_[index] = far_cells(inverse_depth_, unfiltered_, column, row);
+        }
+    });
+    for_each_block([&](int column, int row, std::size_t index) {
+        if (blocks_[index].holes > 0) {
+            fill_holes(means_, cells_, inverse_depth_, column, row, unfiltered_);
+            painted_[index] = 1;
+        }
+    });
+}
+
+/// A block's pixels depend on those beside it: all that lie beside a painted one are written anew.
+void Reprojector::filter(Picture& picture) {
+    filtered_.assign(painted_.size(), 0);
+    for_each_block([&](int column, int row, std::size_t index) {
+        auto const is_painted = [&](int x, int y) {
+            return x >= 0 && x < columns_ && y >= 0 && y < rows_ &&
+                   painted_[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) +
+                            static_cast<std::size_t>(x)] != 0;
+        };
+        if (is_painted(column, row) || is_painted(column - 1, row) || is_painted(column + 1, row) ||
+            is_painted(column, row - 1) || is_painted(column, row + 1)) {
+            int const left = column * side;
+            int const top = row * side;
+            filter_pixels(unfiltered_,
+                          {left, top, std::min(left + side, picture.width), std::min(top + side, picture.height)},
+                          picture, parts_.flat_contrast);
+            filtered_[index] = 1;
+        }
+    });
+    painted_.swap(filtered_);
+}
+
+} // namespace framelet

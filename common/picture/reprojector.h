@@ -1,0 +1,105 @@
+// The picture from any camera at any scene time, from what is held (002, 003; one homography a layer,
+// docs/ALGORITHM.md). In: cache, what changed in it, camera, time, motions of bodies. Out: the picture, and which parts
+// of it changed.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/body_motion.h"
+#include "common/held/framelet_pool.h"
+#include "common/image.h"
+#include "common/picture/hole_fill.h"
+#include "common/picture/pixel_filter.h"
+#include "common/warp/warp_block.h"
+#include "common/warp/warp_plan.h"
+
+namespace framelet {
+
+/// What is done beside moving. The evaluation leaves parts out, to see what each is worth.
+struct ReprojectorParts {
+    int flat_contrast = framelet::flat_contrast; ///< as `filter_pixels` has it; 255: no outline is filtered
+    bool keeps_cuts = true; ///< where nearly nothing would show all stays where it was rendered
+    bool operator==(ReprojectorParts const&) const = default;
+};
+
+/// Moves pictures. Keeps what it needs to know next time which blocks stay as they are; what it shows is a function of
+/// its arguments only, whatever it showed before and however many threads there are.
+class Reprojector {
+public:
+    explicit Reprojector(ReprojectorParts const& parts = {}) : parts_(parts) {}
+
+    /// Writes to `picture`, which has the viewport's size and, from the second call on, holds what the last one wrote.
+    /// `changed` is what `take_changed` of the pool's newest cache gives: all that changed since the last call.
+    /// `repainted` becomes the rectangles that may differ from the last call's, ordered as `take_changed` orders them.
+    ///
+    /// Of all that is held what is nearest shows, and of several samples of one surface those with the least
+    /// `worn_spacing`. Where the base of the newest camera covers the picture with a sample a pixel or more, was
+    /// taken with this camera, nothing in it has moved since, and nothing else that its camera saw moving is held, this
+    /// is `reconstruct` of it, byte by byte; so is every block for which that holds while others move. Samples of or
+    /// for an orthographic camera stay on their pixels. All stays on its pixels where the camera has cut: where nearly
+    /// nothing of what is held would show in the new view. Only blocks whose samples or their places differ from the
+    /// last call's are painted.
+    void show(FrameletPool const& pool, std::span<PixelRect const> changed, Camera const& camera, SceneTime scene_time,
+              BodyMotions const& motions, Picture& picture, std::vector<PixelRect>& repainted);
+
+    /// True when the last picture was `reconstruct`'s as a whole.
+    bool is_exact() const { return is_exact_; }
+    /// A plane of the picture's size, 1 / metres; `hole_depth` where the colour is only filled in. Not kept up while
+    /// the picture is exact.
+    std::span<float const> inverse_depth() const { return inverse_depth_; }
+    /// By slot of the pool: in how many blocks of the last picture something of it shows.
+    std::span<std::uint32_t const> shown_blocks() const { return shown_blocks_; }
+    /// The tiles of one slot of which something shows in the last picture, if that is known: false where the slot had
+    /// not been tried by then or the picture was exact. Some come more than once.
+    bool add_shown(std::size_t slot, std::vector<Tile>& tiles) const;
+    /// Pixels of the last picture that nothing shows, in [0, 1]; 0 where it is exact.
+    double hole_share() const { return hole_share_; }
+
+private:
+    struct BlockState {
+        std::uint64_t signature = 0;
+        std::int32_t holes = 0;
+        std::uint32_t slots = 0; ///< a bit for each slot of which something shows
+    };
+
+    bool is_in_place(FrameletPool const& pool, Camera const& camera, SceneTime scene_time) const;
+    void show_exact(FrameletPool const& pool, std::span<PixelRect const> changed, Picture& picture,
+                    std::vector<PixelRect>& repainted);
+    void start_moving(Viewport viewport, std::size_t blocks);
+    void flag_replanned(FrameletPool const& pool);
+    /// True when it had to be painted.
+    bool update_block(FrameletPool const& pool, Camera const& camera, SceneTime scene_time, BodyMotions const& motions,
+                      int column, int row, std::vector<PatchView>& patches);
+    void show_cut(FrameletCache const& moment, Picture& picture, std::vector<PixelRect>& repainted);
+    void count_blocks(std::size_t slots);
+    template <class Work>
+    void for_each_block(Work const& work);
+    bool is_beside_hole(int column, int row) const;
+    void fill();
+    void filter(Picture& picture);
+
+    ReprojectorParts parts_;
+    bool has_shown_ = false;
+    bool is_exact_ = false;
+    double hole_share_ = 0;
+    std::uint32_t noted_slots_ = 0; ///< a bit for each of which the plan knows what shows in the last picture
+    std::size_t exact_slot_ = 0; ///< that an exact picture shows
+    std::vector<WarpPlan> plans_; ///< by slot
+    std::size_t newest_slot_ = 0; ///< of the last plans
+    std::uint32_t base_slots_ = 0; ///< of the last plans, a bit for each that belongs to the newest slot
+    std::vector<std::uint8_t> replanned_; ///< a flag for each block whose patches may be others than the last time
+    int columns_ = 0, rows_ = 0; ///< of blocks
+    std::vector<BlockState> blocks_;
+    std::vector<FarMean> block_means_;
+    std::vector<std::uint8_t> painted_; ///< a flag for each block
+    std::vector<std::uint8_t> filtered_; ///< scratch, likewise
+    Picture unfiltered_; ///< what was painted: the last picture is this, filtered. Not kept up while that is exact
+    std::vector<std::uint32_t> shown_blocks_;
+    FarMeans means_;
+    std::vector<FarCells> cells_; ///< of blocks with holes and those beside them
+    std::vector<float> inverse_depth_;
+};
+
+} // namespace framelet

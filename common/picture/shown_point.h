@@ -1,0 +1,18 @@
+// What point of the world a pixel of the picture shows. In: pool, display camera and time, motions of bodies, a place
+// in the picture. Out: the point, where one is known.
+#pragma once
+
+#include <optional>
+
+#include "common/body_motion.h"
+#include "common/held/framelet_pool.h"
+
+namespace framelet {
+
+/// Of the picture as `Reprojector::show` would show it if the camera has not cut. `place`: pixel coordinates. In a hole
+/// it is what its nearest neighbour shows, a few pixels away at most. Nothing outside of the picture, where nothing is
+/// held, and where what shows is infinitely far. Plans the whole picture: for a click, not for every picture.
+std::optional<Vec3> find_shown_point(FrameletPool const& pool, Camera const& camera, SceneTime scene_time,
+                                     BodyMotions const& motions, Vec2 place);
+
+} // namespace framelet

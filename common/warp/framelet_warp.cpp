@@ -1,0 +1,356 @@
+#include "common/warp/framelet_warp.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "common/sample_worth.h"
+
+namespace framelet {
+
+namespace {
+
+/// A sample nearer to the display camera than this share of its depth in the source is not drawn.
+constexpr double nearest = 1e-3;
+
+/// No splat is smaller (between pixels' centres it would vanish) or larger than this, pixels.
+constexpr double smallest_splat = 0.75;
+constexpr double largest_splat = 32;
+
+/// Numbers as large as this, and what is not a number, do not get into a patch.
+constexpr double largest = 1e18;
+
+/// Of the worn spacing of what leads: nothing else is as good.
+constexpr float ahead_of_all = 1.0f / 64;
+
+/// Order-dependent hash of what a patch is made of.
+class Signature {
+public:
+    void add(std::uint64_t value) {
+        state_ = (state_ ^ value) * 0x9e3779b97f4a7c15u;
+        state_ ^= state_ >> 32;
+    }
+    void add(float a, float b) {
+        add(std::uint64_t{std::bit_cast<std::uint32_t>(a)} << 32 | std::bit_cast<std::uint32_t>(b));
+    }
+    std::uint64_t value() const { return state_; }
+
+private:
+    std::uint64_t state_ = 0x243f6a8885a308d3u;
+};
+
+std::uint64_t signature_of(WarpPatch const& patch, std::uint64_t content, std::span<Splat const> splats) {
+    Signature out;
+    out.add(content);
+    out.add(std::uint64_t{patch.place} << 32 | static_cast<std::uint32_t>(patch.side));
+    out.add(patch.at[0], patch.at[1]);
+    out.add(patch.dx[0], patch.dx[1]);
+    out.add(patch.dy[0], patch.dy[1]);
+    out.add(patch.at[2], patch.dx[2]);
+    out.add(patch.dy[2], patch.inverse_depth);
+    out.add(patch.inverse_depth_dx, patch.inverse_depth_dy);
+    out.add(std::uint64_t(static_cast<std::uint32_t>(patch.box.left)) << 32 |
+            static_cast<std::uint32_t>(patch.box.top));
+    for (Splat const& splat : splats) {
+        out.add(splat.x, splat.y);
+        out.add(splat.inverse_depth, splat.spacing);
+    }
+    return out.value();
+}
+
+bool is_usable(Layer const& layer) {
+    auto const is_small = [](float value) { return std::abs(value) < static_cast<float>(largest); };
+    return is_small(layer.at) && is_small(layer.dx) && is_small(layer.dy) && is_small(layer.error) &&
+           is_small(layer.velocity.x) && is_small(layer.velocity.y) && is_small(layer.velocity.z);
+}
+
+bool is_usable(WarpPatch const& patch) {
+    bool usable = true;
+    for (float const value :
+         {patch.at[0], patch.at[1], patch.at[2], patch.dx[0], patch.dx[1], patch.dx[2], patch.dy[0], patch.dy[1],
+          patch.dy[2], patch.inverse_depth, patch.inverse_depth_dx, patch.inverse_depth_dy, patch.tolerance}) {
+        usable &= std::abs(value) < static_cast<float>(largest);
+    }
+    return usable;
+}
+
+} // namespace
+
+FrameletWarp::FrameletWarp(FrameletCache const& cache, std::size_t slot, Camera const& display, SceneTime time,
+                           BodyMotions const& motions)
+    : cache_(cache), slot_(slot), display_(display), display_rays_(make_view_rays(display, cache.plane().viewport())),
+      time_(time), motions_(motions) {}
+
+void FrameletWarp::add(CachedFramelet const& framelet, unsigned parts, std::vector<WarpPatch>& patches,
+                       std::vector<Splat>& splats) {
+    HeldShape const& shape = framelet.shape;
+    WarpPatch common;
+    common.side = common.stride = shape.side;
+    common.grid = shape.side == framelet_side ? framelet.samples.data() : shape.reduced.data();
+    common.group = group_of(slot_, framelet.view, framelet.tile.depth());
+    common.batch = framelet.moment.batch;
+    rect_ = cache_.plane().tile_rect(framelet.tile);
+    spacing_ = static_cast<double>(rect_.width()) / shape.side;
+    for (std::uint32_t i = 0; i < shape.layer_count; ++i) {
+        if ((parts >> i & 1) == 0) {
+            continue;
+        }
+        WarpPatch patch = common;
+        patch.layer = i;
+        patch.ends_before[0] = shape.layers[i].ends_before;
+        patch.has_ends = patch.ends_before[0] != 0;
+        patch.place = framelet.tile.code * 4 + i;
+        add_layer(framelet.view, shape.layers[i], shape.fading, framelet.moment.batch, patch, patches);
+    }
+    if ((parts >> FrameletShape::loose & 1) != 0 && !shape.loose.empty()) {
+        common.is_loose = true;
+        common.layer = FrameletShape::loose;
+        common.worn = worn(framelet.view, shape.fading, static_cast<float>(spacing_), 0);
+        common.place = framelet.tile.code * 4 + FrameletShape::loose;
+        common.first_splat = static_cast<std::uint32_t>(splats.size());
+        add_splats(framelet, common, splats);
+        common.splats = static_cast<std::uint32_t>(splats.size()) - common.first_splat;
+        if (!common.box.empty()) {
+            common.signature =
+                signature_of(common, framelet.moment.batch, std::span(splats).subspan(common.first_splat));
+            patches.push_back(common);
+        }
+    }
+}
+
+void FrameletWarp::add(MergedLayer const& merged, std::vector<WarpPatch>& patches) {
+    WarpPatch patch;
+    patch.grid = merged.grid;
+    patch.side = merged.side;
+    patch.stride = merged.stride;
+    patch.group = group_of(slot_, merged.view, merged.first.depth());
+    patch.batch = merged.newest_batch;
+    patch.layer = merged.number;
+    patch.ends_before = merged.ends_before;
+    patch.has_ends = std::ranges::any_of(merged.ends_before, [](std::uint32_t bits) { return bits != 0; });
+    patch.occupied = merged.occupied;
+    patch.place = merged.first.code * 4 + merged.first_layer;
+    rect_ = cache_.plane().tile_rect(merged.tile);
+    spacing_ = static_cast<double>(rect_.width()) / merged.side;
+    add_layer(merged.view, merged.layer, merged.fading, merged.signature, patch, patches);
+}
+
+void FrameletWarp::add_layer(std::uint32_t view, HeldLayer const& layer, FadingCode fading, std::uint64_t content,
+                             WarpPatch& patch, std::vector<WarpPatch>& patches) {
+    if (layer.last_column < layer.first_column || !is_usable(layer.layer)) {
+        return;
+    }
+    turn_to(view, layer.layer.body, layer.layer.velocity);
+    if ((is_still_ ? place_still(layer, patch) : place(layer, patch)) && is_usable(patch)) {
+        rate(view, fading, layer.layer, patch);
+        patch.signature = signature_of(patch, content, {});
+        patches.push_back(patch);
+    }
+}
+
+/// As `worn_step` has it.
+float FrameletWarp::worn(std::uint32_t view, FadingCode fading, float spacing, float misplaced) {
+    SceneTime const rendered = cache_.views()[view].scene_time;
+    float const rate = fading_rate(fading);
+    float const fresh = worn_spacing(spacing, 0, rate) + misplaced;
+    float const step = worn_step(worn_spacing(spacing, static_cast<float>(time_ - rendered), rate) + misplaced);
+    if (rate > 0) {
+        constexpr float rounding = 1e-6f;
+        auto const [low, high] = worn_of_step(step);
+        auto const since = static_cast<double>((low * (1 + rounding) - fresh) / rate);
+        auto const until = static_cast<double>((high * (1 - rounding) - fresh) / rate);
+        bool const both = !(since > 0); // also before it was rendered
+        lasts_.first = std::max(lasts_.first, rendered + (both || time_ < rendered ? -until : since));
+        lasts_.last = std::min(lasts_.last, rendered + (both || time_ >= rendered ? until : -since));
+    }
+    return step;
+}
+
+void FrameletWarp::rate(std::uint32_t view, FadingCode fading, Layer const& layer, WarpPatch& patch) {
+    float const x = 0.5f * static_cast<float>(patch.box.width());
+    float const y = 0.5f * static_cast<float>(patch.box.height());
+    auto const at = [&](std::size_t i) { return patch.at[i] + x * patch.dx[i] + y * patch.dy[i]; };
+    float const z = at(2);
+    float const u = at(0) / z;
+    float const v = at(1) / z;
+    // Samples a pixel, by the derivatives there; where they are farthest apart counts.
+    float const ux = (patch.dx[0] - u * patch.dx[2]) / z, uy = (patch.dy[0] - u * patch.dy[2]) / z;
+    float const vx = (patch.dx[1] - v * patch.dx[2]) / z, vy = (patch.dy[1] - v * patch.dy[2]) / z;
+    float const squares = ux * ux + uy * uy + vx * vx + vy * vy;
+    float const area = ux * vy - uy * vx;
+    float const least = 0.5f * (squares - std::sqrt(std::max(squares * squares - 4 * area * area, 0.0f)));
+    float const spacing = 1 / std::sqrt(std::max(least, 1e-6f));
+    // By so many pixels its samples may be shown off their places: their inverse depths are not quite the plane's.
+    glm::dvec2 const middle = 0.5 * glm::dvec2(patch.box.left + patch.box.right, patch.box.top + patch.box.bottom);
+    float const misplaced = is_still_ ? 0 : layer.error * z * parallax_at(middle);
+    patch.worn = worn(view, fading, spacing, misplaced);
+    auto const age = static_cast<float>(time_ - cache_.views()[view].scene_time);
+    if (drifts(layer.body, layer.velocity)) {
+        patch.group = drifting_group(patch.group);
+        patch.worn *= leads(layer.body, layer.velocity, age) ? ahead_of_all : 1.0f;
+    }
+    patch.hides = hides(spacing, misplaced) && !is_adrift(layer.body, layer.velocity, age);
+    if (is_astray(spacing, misplaced)) {
+        patch.tolerance = static_cast<float>(largest); // nearer than nothing
+    }
+}
+
+float FrameletWarp::parallax_at(glm::dvec2 pixel) const {
+    glm::dvec3 const& parallax = transform_.parallax;
+    return static_cast<float>(glm::length(glm::dvec2(parallax) - pixel * parallax.z));
+}
+
+double FrameletWarp::inverse_depth_within(double pixels, MergedLayer const& merged) {
+    HeldLayer const& held = merged.layer;
+    Layer const& layer = held.layer;
+    turn_to(merged.view, layer.body, layer.velocity);
+    if (is_still_) {
+        return 0;
+    }
+    PixelRect const rect = cache_.plane().tile_rect(merged.tile);
+    double const spacing = static_cast<double>(rect.width()) / merged.side;
+    glm::dvec2 const low = spacing * glm::dvec2(held.first_column, held.first_row);
+    glm::dvec2 const high = spacing * glm::dvec2(held.last_column + 1, held.last_row + 1);
+    glm::dvec2 const middle = 0.5 * (low + high);
+    double const w = layer.at + layer.dx * middle.x + layer.dy * middle.y;
+    glm::dvec3 const& parallax = transform_.parallax;
+    double const dx = transform_.far[0].z + layer.dx * parallax.z;
+    double const dy = transform_.far[1].z + layer.dy * parallax.z;
+    double const z = transform_.map(rect.left + middle.x, rect.top + middle.y, w).z -
+                     0.5 * (std::abs(dx) * (high.x - low.x) + std::abs(dy) * (high.y - low.y)); // the least one
+    double const within = pixels * std::max(z, nearest) / parallax_;
+    return within > 0 ? within : 0;
+}
+
+void FrameletWarp::turn_to(std::uint32_t view, BodyNumber body, Vec3 const& velocity) {
+    if (has_transform_ && view == view_ && body == body_ && velocity == velocity_) {
+        return;
+    }
+    if (body != static_body || velocity != Vec3(0)) {
+        lasts_ = {time_, -INFINITY};
+    }
+    has_transform_ = true;
+    view_ = view;
+    body_ = body;
+    velocity_ = velocity;
+    HeldView const& from = cache_.views()[view];
+    Motion const motion = body == static_body ? Motion{} : motions_.between(body, from.scene_time, time_);
+    glm::dvec3 const drift = (time_ - from.scene_time) * glm::dvec3(velocity);
+    is_still_ = !is_reprojectable(from.camera) || !is_reprojectable(display_) ||
+                (from.camera == display_ && motion == Motion{} && drift == glm::dvec3(0));
+    transform_ = is_still_ ? ViewTransform{}
+                           : make_view_transform(make_view_rays(from.camera, cache_.plane().viewport()), display_rays_,
+                                                 motion, drift);
+    glm::dvec3 const& parallax = transform_.parallax;
+    // What is shown at X moves by (parallax.xy - X parallax.z) / z for each 1 / metre.
+    Viewport const viewport = cache_.plane().viewport();
+    double const x = std::max(std::abs(parallax.x), std::abs(parallax.x - viewport.width * parallax.z));
+    double const y = std::max(std::abs(parallax.y), std::abs(parallax.y - viewport.height * parallax.z));
+    parallax_ = std::max(std::hypot(x, y), 1 / largest);
+    lens_ratio_ = std::sqrt(std::abs(glm::determinant(transform_.far)));
+}
+
+/// Where the layer's samples and half a sample's cell more reach, pixels from the tile's corner.
+glm::dvec2 FrameletWarp::low(HeldLayer const& layer) const {
+    return spacing_ * (glm::dvec2(layer.first_column, layer.first_row) - 0.5);
+}
+
+glm::dvec2 FrameletWarp::high(HeldLayer const& layer) const {
+    return spacing_ * (glm::dvec2(layer.last_column, layer.last_row) + 1.5);
+}
+
+bool FrameletWarp::place_still(HeldLayer const& held, WarpPatch& patch) const {
+    glm::dvec2 const corner(rect_.left, rect_.top);
+    glm::dmat3 to_display(1);
+    to_display[2] = glm::dvec3(corner, 1);
+    patch.box = display_box(to_display, low(held), high(held), cache_.plane().viewport());
+    if (patch.box.empty()) {
+        return false;
+    }
+    PlaneTransform plane;
+    plane.to_source = glm::dmat3(1);
+    plane.to_source[2] = glm::dvec3(-corner, 1);
+    plane.inverse_depth =
+        glm::dvec3(held.layer.dx, held.layer.dy, held.layer.at - held.layer.dx * corner.x - held.layer.dy * corner.y);
+    patch.is_still = true;
+    patch.group = still_group(patch.group);
+    set_maps(plane, patch);
+    patch.tolerance = held.layer.error;
+    return true;
+}
+
+bool FrameletWarp::place(HeldLayer const& held, WarpPatch& patch) const {
+    auto const plane = make_plane_transform(transform_, held.layer, {rect_.left, rect_.top});
+    if (!plane) {
+        return false;
+    }
+    patch.box = display_box(plane->to_display, low(held), high(held), cache_.plane().viewport());
+    if (patch.box.empty()) {
+        return false;
+    }
+    set_maps(*plane, patch);
+    glm::dvec3 const middle((patch.box.left + patch.box.right) / 2.0, (patch.box.top + patch.box.bottom) / 2.0, 1);
+    double const inverse_z = std::max((plane->to_source * middle).z, nearest);
+    patch.tolerance = static_cast<float>(held.layer.error * inverse_z);
+    return true;
+}
+
+void FrameletWarp::set_maps(PlaneTransform const& plane, WarpPatch& patch) const {
+    glm::dmat3 to_samples(1);
+    to_samples[0].x = to_samples[1].y = 1 / spacing_;
+    to_samples[2] = glm::dvec3(-0.5, -0.5, 1);
+    glm::dmat3 const map = to_samples * plane.to_source;
+    glm::dvec3 const first(patch.box.left + 0.5, patch.box.top + 0.5, 1);
+    glm::dvec3 const at = map * first;
+    for (int i = 0; i < 3; ++i) {
+        auto const k = static_cast<std::size_t>(i);
+        patch.at[k] = static_cast<float>(at[i]);
+        patch.dx[k] = static_cast<float>(map[0][i]);
+        patch.dy[k] = static_cast<float>(map[1][i]);
+    }
+    patch.inverse_depth = static_cast<float>(glm::dot(plane.inverse_depth, first));
+    patch.inverse_depth_dx = static_cast<float>(plane.inverse_depth.x);
+    patch.inverse_depth_dy = static_cast<float>(plane.inverse_depth.y);
+}
+
+void FrameletWarp::add_splats(CachedFramelet const& framelet, WarpPatch& patch, std::vector<Splat>& splats) {
+    Viewport const viewport = cache_.plane().viewport();
+    double left = viewport.width, top = viewport.height, right = 0, bottom = 0;
+    bool still = true;
+    for (HeldLoose const& loose : framelet.shape.loose) {
+        turn_to(framelet.view, loose.sample.body, loose.sample.velocity);
+        still = still && is_still_;
+        double const w = std::max(static_cast<double>(loose.sample.inverse_depth), 0.0);
+        glm::dvec3 const at = transform_.map(rect_.left + (loose.place % patch.side + 0.5) * spacing_,
+                                             rect_.top + (loose.place / patch.side + 0.5) * spacing_, w);
+        if (!(at.z > nearest)) {
+            continue;
+        }
+        double const x = at.x / at.z;
+        double const y = at.y / at.z;
+        double const spacing = std::clamp(spacing_ * lens_ratio_ / at.z, smallest_splat, largest_splat);
+        if (!(x + spacing > 0 && y + spacing > 0 && x - spacing < viewport.width && y - spacing < viewport.height)) {
+            continue;
+        }
+        double const inverse_depth = w / at.z;
+        if (!(inverse_depth < largest)) {
+            continue;
+        }
+        splats.push_back({static_cast<float>(x), static_cast<float>(y), static_cast<float>(inverse_depth),
+                          static_cast<float>(spacing), patch.grid[loose.place]});
+        left = std::min(left, x - spacing);
+        top = std::min(top, y - spacing);
+        right = std::max(right, x + spacing);
+        bottom = std::max(bottom, y + spacing);
+    }
+    patch.is_still = still;
+    patch.group = still ? still_group(patch.group) : patch.group;
+    patch.box = {static_cast<int>(std::max(std::floor(left), 0.0)), static_cast<int>(std::max(std::floor(top), 0.0)),
+                 std::min(static_cast<int>(std::ceil(right)), viewport.width),
+                 std::min(static_cast<int>(std::ceil(bottom)), viewport.height)};
+}
+
+} // namespace framelet

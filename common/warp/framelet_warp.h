@@ -1,0 +1,84 @@
+// Where one framelet shows in the picture of another camera at another time. In: a framelet, display camera and time,
+// motions. Out: a patch for each of its layers, a splat for each of its loose samples.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/body_motion.h"
+#include "common/reprojection.h"
+#include "common/warp/merged_square.h"
+#include "common/warp/warp_patch.h"
+
+namespace framelet {
+
+/// From one scene time to another, seconds; empty where that comes before.
+struct TimeSpan {
+    SceneTime first = 0, last = 0;
+
+    bool contains(SceneTime time) const { return first <= time && time <= last; }
+};
+
+/// Transforms one framelet after the other; neighbours mostly share view and body. What is not finite or too large for
+/// single precision does not show.
+class FrameletWarp {
+public:
+    static constexpr unsigned all_parts = (2u << FrameletShape::loose) - 1;
+
+    /// `slot`: of the cache in its pool.
+    FrameletWarp(FrameletCache const& cache, std::size_t slot, Camera const& display, SceneTime time,
+                 BodyMotions const& motions);
+
+    /// Bit i of `parts`: layer i; bit `FrameletShape::loose`: what is loose.
+    void add(CachedFramelet const& framelet, unsigned parts, std::vector<WarpPatch>& patches,
+             std::vector<Splat>& splats);
+    void add(MergedLayer const& merged, std::vector<WarpPatch>& patches);
+
+    /// By how much inverse depths may differ from the plane so that it is shown less than so many pixels off, anywhere
+    /// in the picture. 0 where it stays in its place.
+    double inverse_depth_within(double pixels, MergedLayer const& merged);
+
+    /// For which display times all that was added would be as it is, if the camera stays: neither does anything carry
+    /// it then, nor is it worn by a step more or less. Maybe less than that.
+    TimeSpan lasts() const { return lasts_; }
+
+private:
+    void turn_to(std::uint32_t view, BodyNumber body, Vec3 const& velocity);
+    glm::dvec2 low(HeldLayer const& layer) const;
+    glm::dvec2 high(HeldLayer const& layer) const;
+    void add_layer(std::uint32_t view, HeldLayer const& layer, FadingCode fading, std::uint64_t content,
+                   WarpPatch& patch, std::vector<WarpPatch>& patches);
+    float worn(std::uint32_t view, FadingCode fading, float spacing, float misplaced);
+    void rate(std::uint32_t view, FadingCode fading, Layer const& layer, WarpPatch& patch);
+    /// Pixels for each 1 / metre, of what is shown at a pixel at depth 1.
+    float parallax_at(glm::dvec2 pixel) const;
+    bool place_still(HeldLayer const& held, WarpPatch& patch) const;
+    bool place(HeldLayer const& held, WarpPatch& patch) const;
+    void set_maps(PlaneTransform const& plane, WarpPatch& patch) const;
+    void add_splats(CachedFramelet const& framelet, WarpPatch& patch, std::vector<Splat>& splats);
+
+    FrameletCache const& cache_;
+    std::size_t slot_;
+    Camera const& display_;
+    ViewRays display_rays_;
+    SceneTime time_;
+    BodyMotions const& motions_;
+
+    TimeSpan lasts_{-INFINITY, INFINITY};
+
+    PixelRect rect_; // of the framelet at hand
+    double spacing_ = 1; // of its moving grid
+
+    bool has_transform_ = false;
+    std::uint32_t view_ = 0;
+    BodyNumber body_ = static_body;
+    Vec3 velocity_{0};
+    bool is_still_ = false;
+    ViewTransform transform_;
+    double parallax_ = 0; ///< at most, anywhere in the picture: pixels for each 1 / metre at depth 1
+    double lens_ratio_ = 1;
+};
+
+} // namespace framelet

@@ -1,0 +1,68 @@
+// The layers of the framelets of a square, in rows, so that several are looked at at a time. In: framelets that come
+// and go. Out: rows of numbers.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "common/held/held_shape.h"
+
+namespace framelet {
+
+/// Framelets of one depth below a larger tile, by place: four framelets of one parent make a four; place p is quarter
+/// p / 16 of four p % 16, both in Morton order.
+class SquareLayers {
+public:
+    static constexpr int most_levels = 3; ///< of framelets below the square
+    static constexpr std::size_t most_fours = std::size_t{1} << 2 * (most_levels - 1);
+    static constexpr std::size_t places = 4 * most_fours;
+    static_assert(places == 64); // a bit each
+
+    /// Of a part of the square, in Morton order.
+    static constexpr std::size_t place_of(std::size_t part) { return part % 4 * most_fours + part / 4; }
+    static constexpr std::size_t part_at(std::size_t place) { return place % most_fours * 4 + place / most_fours; }
+
+    /// What carries a layer, and from where it was seen.
+    struct Motion {
+        std::uint32_t view = 0;
+        BodyNumber body = static_body;
+        Vec3 velocity{0};
+
+        bool operator==(Motion const&) const = default;
+    };
+
+    /// First layers, or second ones, or third ones.
+    struct Rows {
+        template <class T>
+        using Row = std::array<T, places>;
+
+        alignas(64) Row<float> at{}, dx{}, dy{}, error{}; ///< as in `Layer`
+        Row<std::int32_t> box{}; ///< bytes as in `HeldLayer`, lowest first
+        Row<std::int32_t> motion{}; ///< index into `motions`
+        std::uint64_t held = 0; ///< a bit for each place where some samples lie on one
+    };
+
+    void clear(std::size_t place);
+    /// False where there are too many motions to number; `forget_motions` then, and set all of them anew.
+    bool set(std::size_t place, std::uint32_t view, std::uint64_t batch, HeldShape const& shape);
+    void forget_motions() { motions_.clear(); }
+
+    Rows const& rows(std::size_t layer) const { return rows_[layer]; }
+    Motion const& motion(std::int32_t index) const { return motions_[static_cast<std::size_t>(index)]; }
+    std::uint64_t batch(std::size_t place) const { return batches_[place]; }
+
+private:
+    /// More than layers; where there are as many some of them are of no layer.
+    static constexpr std::size_t most_motions = 4 * places;
+
+    std::int32_t number_of(Motion const& motion);
+
+    std::array<Rows, max_layers> rows_;
+    Rows::Row<std::uint64_t> batches_{};
+    std::vector<Motion> motions_;
+    std::size_t last_motion_ = 0; ///< that was asked for
+};
+
+} // namespace framelet

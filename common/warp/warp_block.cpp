@@ -1,0 +1,310 @@
+#include "common/warp/warp_block.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+
+#include "common/warp/patch_sampling.h"
+
+namespace framelet {
+
+namespace {
+
+constexpr int side = WarpedBlock::side;
+constexpr std::size_t pixels = WarpedBlock::pixels;
+
+/// Of a loose sample's tent: within half its spacing.
+constexpr float firm_tent = 0.25f;
+/// Less than this is no cover at all.
+constexpr float faint = 1e-3f;
+/// Inverse depths that differ by this share belong to one surface.
+constexpr float same_surface = 0.01f;
+
+/// What is in front at each pixel so far. The left half of the block comes first, so that what is worked on together
+/// lies together.
+struct Layers {
+    alignas(64) std::array<float, pixels> red, green, blue, weight, inverse_depth;
+    alignas(64) std::array<std::int32_t, pixels> group, is_firm;
+    /// Inverse depth of a surface that is known not to go as far as here; less than 0: of none.
+    alignas(64) std::array<float, pixels> ended;
+};
+
+/// Where a pixel lies in `Layers`.
+constexpr std::size_t place_of(int x, int y) {
+    return static_cast<std::size_t>(x / wide_columns * (wide_columns * side) + y * wide_columns + x % wide_columns);
+}
+
+/// Lets candidates compete with what pixels have. Of two that cover firmly or both do not, the clearly nearer
+/// one wins; else the one that was there, which is the better one. Those of one group on one surface add up. Where
+/// better samples show that a surface has ended, others of it are not firm: else it would be as wide as all together
+/// say, and one that is wrong would suffice. True
+/// where one of the candidates shows.
+bool merge(Candidate const& candidate, std::int32_t group, float tolerance, std::size_t first, bool has_ends,
+           Layers& layers) {
+    WideFloats const there = load_lanes<WideFloats>(&layers.inverse_depth[first]);
+    WideFloats const weight = load_lanes<WideFloats>(&layers.weight[first]);
+    WideInts const groups = load_lanes<WideInts>(&layers.group[first]);
+    WideFloats const depth = candidate.inverse_depth;
+    WideFloats const limit = tolerance + same_surface * depth;
+    WideInts const shows = candidate.weight > faint;
+    WideFloats const ended = load_lanes<WideFloats>(&layers.ended[first]);
+    WideInts const is_ended = (depth - ended <= limit) & (ended - depth <= limit);
+    WideInts const is_firm = shows & candidate.is_firm & ~is_ended;
+    if (has_ends) {
+        WideInts const begins = candidate.ends & (ended < 0);
+        store_lanes(begins ? depth : ended, &layers.ended[first]);
+    }
+    WideInts const was_firm = load_lanes<WideInts>(&layers.is_firm[first]);
+    WideInts const joins = shows & (groups == group) & (depth - there <= limit) & (there - depth <= limit);
+    WideInts const wins = shows & ((is_firm & ~was_firm) | (~(is_firm ^ was_firm) & (depth > there + limit)));
+    WideInts const replaces = wins & ~joins;
+    WideFloats const zero{};
+    WideFloats const one = zero + 1;
+    WideFloats const keep = replaces ? zero : one;
+    WideFloats const take = (wins | joins) ? one : zero;
+    store_lanes(keep * load_lanes<WideFloats>(&layers.red[first]) + take * candidate.red, &layers.red[first]);
+    store_lanes(keep * load_lanes<WideFloats>(&layers.green[first]) + take * candidate.green, &layers.green[first]);
+    store_lanes(keep * load_lanes<WideFloats>(&layers.blue[first]) + take * candidate.blue, &layers.blue[first]);
+    store_lanes(keep * weight + take * candidate.weight, &layers.weight[first]);
+    store_lanes(replaces ? depth : there, &layers.inverse_depth[first]);
+    store_lanes(replaces ? WideInts{} + group : groups, &layers.group[first]);
+    store_lanes(replaces ? is_firm : was_firm | (joins & is_firm), &layers.is_firm[first]);
+    return any_lane(wins | joins);
+}
+
+/// True where nothing of the patch can show in so many rows of lanes, the first of which lies (x, y) from the centre of
+/// its box's first pixel: they are covered firmly, by what is near enough, and by nothing that its samples would add up
+/// with.
+bool is_hidden(WarpPatch const& patch, float x, float y, int column, int first_row, int count, Layers const& layers) {
+    constexpr float rounding = 1e-5f; // what the sums here and those of `sample_patch` may differ by
+    WideFloats const from_left = x + __builtin_convertvector(wide_column, WideFloats);
+    WideFloats const from_top = y + __builtin_convertvector(wide_row, WideFloats);
+    WideFloats depth = (patch.inverse_depth + from_top * patch.inverse_depth_dy) + from_left * patch.inverse_depth_dx;
+    WideInts shows{};
+    for (int i = 0; i < count; ++i) {
+        std::size_t const at = place_of(column, first_row + i * wide_rows);
+        WideFloats const hiding = (1 + rounding - same_surface) * depth - patch.tolerance;
+        shows |= ~load_lanes<WideInts>(&layers.is_firm[at]) |
+                 (load_lanes<WideFloats>(&layers.inverse_depth[at]) < hiding) |
+                 (load_lanes<WideInts>(&layers.group[at]) == patch.group);
+        depth += static_cast<float>(wide_rows) * patch.inverse_depth_dy;
+    }
+    return !any_lane(shows);
+}
+
+/// They show where nothing firm does.
+void fade(std::span<Candidate> candidates) {
+    constexpr float share = 0.1f;
+    for (Candidate& candidate : candidates) {
+        candidate.is_firm = WideInts{};
+        for (WideFloats* const sum : {&candidate.red, &candidate.green, &candidate.blue, &candidate.weight}) {
+            *sum *= share;
+        }
+    }
+}
+
+/// True where something of it shows.
+bool paint_layer(WarpPatch const& patch, int left, int top, Layers& layers) {
+    bool shows = false;
+    CandidateColumn column;
+    int const first_row = std::max(patch.box.top - top, 0) / wide_rows * wide_rows;
+    int const last_row = std::min(patch.box.bottom - top, side);
+    int const count = (last_row - first_row + wide_rows - 1) / wide_rows;
+    int const last = std::min(patch.box.right - left, side);
+    for (int x = std::max(patch.box.left - left, 0) / wide_columns * wide_columns; x < last; x += wide_columns) {
+        float const from_left = static_cast<float>(left + x - patch.box.left);
+        float const from_top = static_cast<float>(top + first_row - patch.box.top);
+        if (is_hidden(patch, from_left, from_top, x, first_row, count, layers) ||
+            !may_show(patch, from_left, from_top, count)) {
+            continue;
+        }
+        sample_patch(patch, from_left, from_top, count, column);
+        if (!patch.hides) {
+            fade(std::span(column).first(static_cast<std::size_t>(count)));
+        }
+        for (int i = 0; i < count; ++i) {
+            shows |= merge(column[static_cast<std::size_t>(i)], patch.group, patch.tolerance,
+                           place_of(x, first_row + i * wide_rows), patch.has_ends, layers);
+        }
+    }
+    return shows;
+}
+
+/// Fetches from memory the rows of the grid that painting will read, about.
+void prefetch_grid(WarpPatch const& patch, int left, int top) {
+    constexpr int line = 64 / sizeof(PackedSample);
+    auto const x = static_cast<float>(std::max(left - patch.box.left, 0));
+    int const first_row = std::max(top - patch.box.top, 0);
+    int const last_row = std::min(top + side, patch.box.bottom) - patch.box.top;
+    float const step = 1 / std::max(patch.at[2], 1e-3f);
+    float const u = (patch.at[0] + x * patch.dx[0]) * step;
+    float const v = (patch.at[1] + x * patch.dx[1]) * step;
+    float const last = static_cast<float>(patch.side - 1);
+    int const column = static_cast<int>(std::clamp(u, 0.0f, last));
+    int const from = static_cast<int>(std::clamp(v + static_cast<float>(first_row) * patch.dy[1] * step, 0.0f, last));
+    int const to = static_cast<int>(std::clamp(v + static_cast<float>(last_row) * patch.dy[1] * step, 0.0f, last));
+    PackedSample const* const grid = patch.grid + column;
+    for (int row = from; row <= to; ++row) {
+        __builtin_prefetch(grid + row * patch.stride);
+        __builtin_prefetch(grid + row * patch.stride + line);
+    }
+}
+
+/// 1 at no distance, falling to 0 at 1 / scale.
+WideFloats tent(WideFloats distance, float scale) {
+    return larger(1 - larger(distance, -distance) * scale, WideFloats{});
+}
+
+/// True where the pixel nearest to the splat's middle is covered firmly, by what is near enough and no part of what the
+/// splat adds up with: most of the splat is hidden then.
+bool is_hidden(Splat const& splat, std::int32_t group, float x, float y, Layers const& layers) {
+    auto const pixel = [](float at) { return static_cast<int>(std::clamp(at + 0.5f, 0.0f, side - 1.0f)); };
+    std::size_t const at = place_of(pixel(x), pixel(y));
+    return layers.is_firm[at] != 0 && layers.group[at] != group &&
+           layers.inverse_depth[at] >= (1 - same_surface) * splat.inverse_depth;
+}
+
+/// Loose samples: a tent each, as wide as its neighbours are far.
+bool paint_splat(Splat const& splat, std::int32_t group, int left, int top, Layers& layers) {
+    float const x = splat.x - static_cast<float>(left) - 0.5f;
+    float const y = splat.y - static_cast<float>(top) - 0.5f;
+    float const scale = 1 / splat.spacing;
+    int const first_row = static_cast<int>(std::ceil(std::max(y - splat.spacing, 0.0f)));
+    int const last_row = static_cast<int>(std::floor(std::min(y + splat.spacing, side - 1.0f)));
+    if (x + splat.spacing < 0 || x - splat.spacing > side - 1 || is_hidden(splat, group, x, y, layers)) {
+        return false;
+    }
+    bool shows = false;
+    WideFloats const zero{};
+    Candidate some;
+    for (int from = 0; from < side; from += wide_columns) {
+        if (x + splat.spacing < static_cast<float>(from) ||
+            x - splat.spacing > static_cast<float>(from + wide_columns - 1)) {
+            continue;
+        }
+        WideFloats const wx = tent(__builtin_convertvector(wide_column + from, WideFloats) - x, scale);
+        for (int j = first_row / wide_rows * wide_rows; j <= last_row; j += wide_rows) {
+            some.weight = wx * tent(__builtin_convertvector(wide_row + j, WideFloats) - y, scale);
+            some.red = some.weight * square(red_of(splat.sample));
+            some.green = some.weight * square(green_of(splat.sample));
+            some.blue = some.weight * square(blue_of(splat.sample));
+            some.inverse_depth = zero + splat.inverse_depth;
+            some.is_firm = some.weight >= firm_tent;
+            shows |= merge(some, group, 0, place_of(from, j), false, layers);
+        }
+    }
+    return shows;
+}
+
+/// True where something of it shows.
+bool paint_patch(PatchView const& view, int left, int top, Layers& layers) {
+    WarpPatch const& patch = *view.patch;
+    if (!patch.is_loose) {
+        return paint_layer(patch, left, top, layers);
+    }
+    bool shows = false;
+    for (std::uint32_t k = 0; k < patch.splats; ++k) {
+        shows |= paint_splat(view.splats[patch.first_splat + k], patch.group, left, top, layers);
+    }
+    return shows;
+}
+
+/// To the rows of a block what lies together in `Layers`.
+template <class Lanes, class T>
+void store_pixels(Lanes const& values, int x, int y, std::array<T, pixels>& plane) {
+    T* const to = &plane[static_cast<std::size_t>(y * side + x)];
+#ifdef __AVX512F__
+    store_lanes(__builtin_shufflevector(values, values, 0, 1, 2, 3, 4, 5, 6, 7), to);
+    store_lanes(__builtin_shufflevector(values, values, 8, 9, 10, 11, 12, 13, 14, 15), to + side);
+#else
+    store_lanes(values, to);
+#endif
+}
+
+/// Divides by the weights.
+void finish(Layers const& layers, int width, int height, WarpedBlock& block) {
+    WideFloats const zero{};
+    WideInts holes{};
+    for (int x = 0; x < side; x += wide_columns) {
+        for (int y = 0; y < side; y += wide_rows) {
+            std::size_t const i = place_of(x, y);
+            WideFloats const weight = load_lanes<WideFloats>(&layers.weight[i]);
+            WideInts const shows = weight > 0;
+            WideFloats const scale = shows ? 1 / weight : zero;
+            store_pixels(scale * load_lanes<WideFloats>(&layers.red[i]), x, y, block.squares[0]);
+            store_pixels(scale * load_lanes<WideFloats>(&layers.green[i]), x, y, block.squares[1]);
+            store_pixels(scale * load_lanes<WideFloats>(&layers.blue[i]), x, y, block.squares[2]);
+            store_pixels(shows ? load_lanes<WideFloats>(&layers.inverse_depth[i]) : zero + hole_depth, x, y,
+                         block.inverse_depth);
+            store_pixels(load_lanes<WideInts>(&layers.group[i]), x, y, block.group);
+            holes -= (wide_column < width - x) & (wide_row < height - y) & ~shows;
+        }
+    }
+    block.holes = 0;
+    for (int k = 0; k < wide_count; ++k) {
+        block.holes += holes[k];
+    }
+}
+
+/// Less than this of a block is not worth keeping a patch for.
+constexpr int enough_pixels = 6;
+
+bool shows_enough(std::int32_t group, Layers const& layers) {
+    WideInts count{};
+    for (std::size_t i = 0; i < pixels; i += wide_count) {
+        count -= load_lanes<WideInts>(&layers.group[i]) == group;
+    }
+    int sum = 0;
+    for (int k = 0; k < wide_count; ++k) {
+        sum += count[k];
+    }
+    return sum >= enough_pixels;
+}
+
+/// Other blocks note the same.
+void note_shown(PatchView const& view) {
+    if (view.shows != nullptr) {
+        std::atomic_ref(*view.shows).store(1, std::memory_order_relaxed);
+    }
+}
+
+} // namespace
+
+void paint_warped_block(std::span<PatchView const> patches, int column, int row, Viewport viewport,
+                        WarpedBlock& block) {
+    Layers layers;
+    for (auto* const plane : {&layers.red, &layers.green, &layers.blue, &layers.weight}) {
+        plane->fill(0);
+    }
+    layers.inverse_depth.fill(hole_depth);
+    layers.group.fill(-1);
+    layers.is_firm.fill(0);
+    layers.ended.fill(-1e30f);
+    int const left = column * side;
+    int const top = row * side;
+    constexpr std::size_t most_claims = 64;
+    std::uint64_t claims = 0; // bits of patches of which something showed once
+    for (std::size_t i = 0; i < patches.size(); ++i) {
+        if (i + 1 < patches.size()) {
+            prefetch_grid(*patches[i + 1].patch, left, top);
+        }
+        if (!paint_patch(patches[i], left, top, layers)) {
+            continue;
+        }
+        if (i < most_claims) {
+            claims |= std::uint64_t{1} << i;
+        } else {
+            note_shown(patches[i]);
+        }
+    }
+    for (; claims != 0; claims &= claims - 1) {
+        PatchView const& view = patches[static_cast<std::size_t>(std::countr_zero(claims))];
+        if (shows_enough(view.patch->group, layers)) {
+            note_shown(view);
+        }
+    }
+    finish(layers, viewport.width - left, viewport.height - top, block);
+}
+
+} // namespace framelet

@@ -1,0 +1,322 @@
+#include "common/warp/warp_plan.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+
+#include <tbb/parallel_for.h>
+
+#include "common/per_thread.h"
+#include "common/warp/layer_joining.h"
+
+namespace framelet {
+
+namespace {
+
+/// What is joined takes the place of two layers or more.
+constexpr std::uint32_t patches_per_square = MergedSquare::most_children * (max_layers + 1);
+constexpr int block_side = FrameletCache::block_side;
+
+/// How far off merging may show a sample.
+constexpr double merging_pixels = 1.0 / 16;
+
+/// The blocks that a box which is not empty touches.
+PixelRect blocks_of(PixelRect const& box) {
+    return {box.left / block_side, box.top / block_side, (box.right - 1) / block_side + 1,
+            (box.bottom - 1) / block_side + 1};
+}
+
+template <class Visit>
+void for_each_block(PixelRect const& box, int columns, Visit const& visit) {
+    if (box.empty()) {
+        return;
+    }
+    PixelRect const blocks = blocks_of(box);
+    for (int row = blocks.top; row < blocks.bottom; ++row) {
+        for (int column = blocks.left; column < blocks.right; ++column) {
+            visit(static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column));
+        }
+    }
+}
+
+std::size_t block_count(PixelRect const& box) {
+    if (box.empty()) {
+        return 0;
+    }
+    PixelRect const blocks = blocks_of(box);
+    return static_cast<std::size_t>(blocks.width()) * static_cast<std::size_t>(blocks.height());
+}
+
+/// Numbers that are not below 0 compare as their bits do.
+std::uint64_t rank_of(WarpPatch const& patch) {
+    return std::uint64_t{std::bit_cast<std::uint32_t>(patch.worn)} << 32 | (~patch.batch & 0xffffffffu);
+}
+
+bool is_before(WarpPatch const& a, WarpPatch const& b) {
+    std::uint64_t const rank = rank_of(a), other = rank_of(b);
+    return rank != other ? rank < other : a.place < b.place;
+}
+
+} // namespace
+
+struct WarpPlan::Joinings : PerThread<LayerJoining> {};
+
+WarpPlan::WarpPlan() : joinings_(std::make_unique<Joinings>()) {}
+WarpPlan::~WarpPlan() = default;
+WarpPlan::WarpPlan(WarpPlan&&) noexcept = default;
+WarpPlan& WarpPlan::operator=(WarpPlan&&) noexcept = default;
+
+void WarpPlan::Square::clear() {
+    before.clear();
+    for (WarpPatch const& patch : patches) {
+        before.push_back(patch.box);
+    }
+    patches.clear();
+    splats.clear();
+    places.clear();
+}
+
+void WarpPlan::Square::give_back_room() {
+    merged = {};
+    patches = std::vector<WarpPatch>();
+    splats = std::vector<Splat>();
+    places = std::vector<std::uint64_t>();
+    shows = std::vector<std::uint8_t>();
+}
+
+void WarpPlan::make(FrameletCache const& cache, std::size_t slot, bool loose, Camera const& display,
+                    SceneTime display_time, BodyMotions const& motions) {
+    set_size(cache.plane().viewport());
+    set_squares(cache);
+    bool const is_new = is_limited_ || loose != loose_ || !(display == display_);
+    display_ = display;
+    loose_ = loose;
+    replanned_.clear();
+    for (std::uint32_t i = 0; i < known_.size(); ++i) {
+        Known& known = known_[i];
+        std::uint64_t const change = cache.square_changes()[known.index];
+        bool const holds = change == 0 || (!is_new && known.lasts.contains(display_time)); // 0: nothing ever was there
+        if (known.change != change || !holds) {
+            known.change = change;
+            replanned_.push_back(i);
+        }
+    }
+    joinings_->prepare();
+    tbb::parallel_for(std::size_t{0}, replanned_.size(), [&](std::size_t i) {
+        std::uint32_t const index = replanned_[i];
+        Square& square = squares_[index];
+        square.merged.update(cache, square.tile, square.depth, joinings_->local());
+        FrameletWarp warp(cache, slot, display, display_time, motions);
+        plan(square, loose, warp);
+        known_[index].lasts = warp.lasts();
+        known_[index].is_empty = square.patches.empty();
+        // What is finer than pixels is held where the camera rests, of one moment after the other: else each would keep
+        // the room for it.
+        if (square.depth > cache.plane().pixel_depth() && square.merged.is_empty()) {
+            square.give_back_room();
+        }
+    });
+    if (!replanned_.empty() || first_entry_.empty()) {
+        occupied_.clear();
+        for (std::uint32_t i = 0; i < known_.size(); ++i) {
+            if (!known_[i].is_empty) {
+                occupied_.push_back(i);
+            }
+        }
+        make_bins();
+    }
+    for (std::uint32_t const i : occupied_) {
+        squares_[i].shows.assign(squares_[i].patches.size(), 0);
+    }
+}
+
+/// Where patches of replanned squares were, where they are, and the squares, whose samples may show in their places.
+void WarpPlan::flag_replanned(std::vector<std::uint8_t>& blocks) const {
+    auto const flag = [&](PixelRect const& box) {
+        for_each_block(box, columns_, [&](std::size_t block) { blocks[block] = 1; });
+    };
+    for (std::uint32_t const i : replanned_) {
+        Square const& square = squares_[i];
+        std::ranges::for_each(square.before, flag);
+        for (WarpPatch const& patch : square.patches) {
+            flag(patch.box);
+        }
+        PixelRect const rect = plane_.tile_rect(square.tile);
+        Viewport const viewport = plane_.viewport();
+        flag({rect.left, rect.top, std::min(rect.right, viewport.width), std::min(rect.bottom, viewport.height)});
+    }
+}
+
+void WarpPlan::set_size(Viewport viewport) {
+    columns_ = (viewport.width + block_side - 1) / block_side;
+    rows_ = (viewport.height + block_side - 1) / block_side;
+}
+
+void WarpPlan::set_squares(FrameletCache const& cache) {
+    ImagePlane const& plane = cache.plane();
+    if (!squares_.empty() && plane == plane_) {
+        return;
+    }
+    plane_ = plane;
+    squares_.clear();
+    known_.clear();
+    first_entry_.clear();
+    for (int depth = plane.min_depth(); depth <= plane.max_depth(); ++depth) {
+        int const square_depth = std::max(depth - MergedSquare::most_levels, 0);
+        for (std::uint32_t index = 0; index < 1u << 2 * square_depth; ++index) {
+            Tile const tile{(1u << 2 * square_depth) + index};
+            if (plane.is_visible(tile)) {
+                Square& square = squares_.emplace_back();
+                square.tile = tile;
+                square.depth = depth;
+                known_.emplace_back().index = cache.square_index(depth, tile.column(), tile.row());
+            }
+        }
+    }
+}
+
+/// Nothing is added where it is out of the picture. False where what is joined is not near enough to its parts.
+bool WarpPlan::add_joined(MergedLayer const& merged, FrameletWarp& warp, Square& square) {
+    if (merged.difference > 0 && !(merged.difference <= warp.inverse_depth_within(merging_pixels, merged))) {
+        return false;
+    }
+    warp.add(merged, square.patches);
+    square.note_places(merged.parts[0] | merged.parts[1] | merged.parts[2]);
+    return true;
+}
+
+/// Fours as far as they are near enough; what is left is `alone`.
+void WarpPlan::add_parts(MergedLayer const& merged, FrameletWarp& warp, Square& square, LayerBits& alone) {
+    LayerBits left = merged.parts;
+    for (JoinedLayer const& four : square.merged.fours()) {
+        if ((four.parts[0] & ~left[0]) == 0 && four.parts != merged.parts) {
+            MergedLayer part = square.merged.merge(four);
+            part.number = merged.number; // as its samples have
+            part.ends_before = merged.ends_before;
+            left[0] &= add_joined(part, warp, square) ? ~four.parts[0] : ~std::uint64_t{0};
+        }
+    }
+    for (std::size_t k = 0; k < max_layers; ++k) {
+        alone[k] |= left[k];
+    }
+}
+
+/// What is joined, then what is left of the framelets.
+void WarpPlan::plan(Square& square, bool loose, FrameletWarp& warp) {
+    square.clear();
+    LayerBits alone{};
+    for (MergedLayer const& merged : square.merged.merged()) {
+        if (!add_joined(merged, warp, square)) {
+            add_parts(merged, warp, square, alone);
+        }
+    }
+    std::span<MergedSquare::Child const> const children = square.merged.children();
+    for (std::uint64_t left = alone[0] | alone[1] | alone[2] | (loose ? square.merged.loose_children() : 0); left != 0;
+         left &= left - 1) {
+        auto const place = static_cast<std::size_t>(std::countr_zero(left));
+        unsigned parts = loose && children[place].has_loose ? 1u << FrameletShape::loose : 0u;
+        for (std::size_t k = 0; k < max_layers; ++k) {
+            parts |= static_cast<unsigned>(alone[k] >> place & 1) << k;
+        }
+        warp.add(*children[place].framelet, parts, square.patches, square.splats);
+        square.note_places(std::uint64_t{1} << place);
+    }
+}
+
+/// How many patches each block has, in `first_entry_`, unless they are more than `most` together.
+bool WarpPlan::count_entries(std::size_t most) {
+    first_entry_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_) + 1, 0);
+    std::size_t total = 0;
+    for (std::uint32_t const i : occupied_) {
+        for (WarpPatch const& patch : squares_[i].patches) {
+            total += block_count(patch.box);
+            if (total > most) {
+                return false;
+            }
+            for_each_block(patch.box, columns_, [&](std::size_t block) { ++first_entry_[block + 1]; });
+        }
+    }
+    return true;
+}
+
+void WarpPlan::limit_entries(std::size_t most) {
+    std::vector<WarpPatch*> order;
+    for (std::uint32_t const i : occupied_) {
+        for (WarpPatch& patch : squares_[i].patches) {
+            order.push_back(&patch);
+        }
+    }
+    std::sort(order.begin(), order.end(), [](WarpPatch const* a, WarpPatch const* b) { return is_before(*a, *b); });
+    std::size_t total = 0;
+    for (WarpPatch* const patch : order) {
+        total += block_count(patch->box);
+        if (total > most) {
+            patch->box = {};
+            total = most; // of those that follow none has room
+        }
+    }
+}
+
+void WarpPlan::make_bins() {
+    std::size_t const blocks = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
+    std::size_t const most = most_patches_per_block * blocks;
+    is_limited_ = !count_entries(most);
+    if (is_limited_) {
+        limit_entries(most);
+        count_entries(most);
+    }
+    for (std::size_t i = 0; i < blocks; ++i) {
+        first_entry_[i + 1] += first_entry_[i];
+    }
+    entries_.resize(first_entry_.back());
+    next_entry_.assign(first_entry_.begin(), first_entry_.end() - 1);
+    for (std::uint32_t const i : occupied_) {
+        std::uint32_t entry = i * patches_per_square;
+        for (WarpPatch const& patch : squares_[i].patches) {
+            for_each_block(patch.box, columns_, [&](std::size_t block) { entries_[next_entry_[block]++] = entry; });
+            ++entry;
+        }
+    }
+}
+
+WarpPatch const& WarpPlan::patch_at(std::uint32_t entry) const {
+    return squares_[entry / patches_per_square].patches[entry % patches_per_square];
+}
+
+void WarpPlan::add_block(std::size_t index, std::vector<PatchView>& patches) {
+    for (std::uint32_t i = first_entry_[index]; i < first_entry_[index + 1]; ++i) {
+        Square& square = squares_[entries_[i] / patches_per_square];
+        std::size_t const patch = entries_[i] % patches_per_square;
+        WarpPatch const& own = square.patches[patch];
+        patches.push_back({&own, square.splats.data(), &square.shows[patch], rank_of(own)});
+    }
+    // Those of the block that is most likely asked for next.
+    std::size_t const next = std::min(index + 2, first_entry_.size() - 1);
+    for (std::uint32_t i = first_entry_[index + 1]; i < first_entry_[next]; ++i) {
+        auto const* const patch = reinterpret_cast<char const*>(&patch_at(entries_[i]));
+        for (std::size_t at = 0; at < sizeof(WarpPatch); at += 64) {
+            __builtin_prefetch(patch + at);
+        }
+    }
+}
+
+void WarpPlan::add_shown(std::vector<Tile>& tiles) const {
+    for (std::uint32_t const index : occupied_) {
+        Square const& square = squares_[index];
+        for (std::size_t i = 0; i < square.shows.size(); ++i) {
+            if (square.shows[i] != 0) {
+                for (std::uint64_t left = square.places[i]; left != 0; left &= left - 1) {
+                    tiles.push_back(square.merged.child_tile(static_cast<std::size_t>(std::countr_zero(left))));
+                }
+            }
+        }
+    }
+}
+
+void order(std::vector<PatchView>& patches) {
+    std::ranges::sort(patches, [](PatchView const& a, PatchView const& b) {
+        return a.rank != b.rank ? a.rank < b.rank : a.patch->place < b.patch->place;
+    });
+}
+
+} // namespace framelet

@@ -1,0 +1,107 @@
+// Where everything that is held shows in the picture of another camera at another time: a patch for each layer, a splat
+// for each loose sample, and for each block of the picture the patches that may touch it. In: cache, display camera and
+// time, motions. Out: the plan, from which every block is painted on its own.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "common/body_motion.h"
+#include "common/held/framelet_cache.h"
+#include "common/warp/framelet_warp.h"
+#include "common/warp/merged_square.h"
+#include "common/warp/warp_patch.h"
+
+namespace framelet {
+
+class WarpPlan {
+public:
+    /// As many patches are kept for a block, on the average. Where a camera goes so near that there would be more, the
+    /// newest ones are.
+    static constexpr std::size_t most_patches_per_block = 256;
+
+    WarpPlan();
+    ~WarpPlan();
+    WarpPlan(WarpPlan&&) noexcept;
+    WarpPlan& operator=(WarpPlan&&) noexcept;
+
+    /// Replaces the plan; `cache` and `slot` are always the same ones. Squares of which all stays as it was planned
+    /// last are kept. Runs in parallel; allocates only where more is held than ever before.
+    void make(FrameletCache const& cache, std::size_t slot, bool loose, Camera const& display, SceneTime display_time,
+              BodyMotions const& motions);
+
+    int columns() const { return columns_; }
+    int rows() const { return rows_; }
+    /// Sets the flags of those blocks whose plan may not be what it was before `make` was called last.
+    void flag_replanned(std::vector<std::uint8_t>& blocks) const;
+    /// Adds what may touch a block to `patches`.
+    void add_block(std::size_t index, std::vector<PatchView>& patches);
+    /// Adds the tiles of what was noted to show since the plan was made; some come more than once.
+    void add_shown(std::vector<Tile>& tiles) const;
+    /// The blocks' numbers of patches, all together.
+    std::size_t entry_count() const { return entries_.size(); }
+
+private:
+    /// All framelets of one depth below a tile.
+    struct Square {
+        Tile tile;
+        int depth = 0; ///< of the framelets
+        MergedSquare merged;
+        std::vector<PixelRect> before; ///< where its patches were before it was planned
+
+        std::vector<WarpPatch> patches;
+        std::vector<Splat> splats;
+        std::vector<std::uint64_t> places; ///< of what framelets each patch is: bits, as `MergedLayer::parts`
+        std::vector<std::uint8_t> shows; ///< of patches: whether something of it showed when blocks were painted
+
+        void clear();
+        /// Of a square of which nothing is held.
+        void give_back_room();
+        /// Patches that have been added since the last call are of these.
+        void note_places(std::uint64_t some) { places.resize(patches.size(), some); }
+    };
+
+    /// Of a square, close together: all are looked at each time.
+    struct Known {
+        std::size_t index = 0; ///< in the cache's `square_changes`
+        std::uint64_t change = 0; ///< of it, when it was planned
+        TimeSpan lasts{0, -1}; ///< display times for which the plan holds
+        bool is_empty = true; ///< has no patches
+    };
+
+    /// Bit p of word k: layer k of the framelet at place p.
+    using LayerBits = std::array<std::uint64_t, max_layers>;
+
+    WarpPatch const& patch_at(std::uint32_t entry) const;
+    void set_size(Viewport viewport);
+    void set_squares(FrameletCache const& cache);
+    static void plan(Square& square, bool loose, FrameletWarp& warp);
+    static bool add_joined(MergedLayer const& merged, FrameletWarp& warp, Square& square);
+    static void add_parts(MergedLayer const& merged, FrameletWarp& warp, Square& square, LayerBits& alone);
+    bool count_entries(std::size_t most);
+    void limit_entries(std::size_t most);
+    void make_bins();
+
+    int columns_ = 0, rows_ = 0;
+    ImagePlane plane_; ///< of the squares
+    std::vector<Square> squares_; ///< all that can be held
+    std::vector<Known> known_; ///< of these
+    std::vector<std::uint32_t> replanned_; ///< those that were planned when the plan was made last
+    std::vector<std::uint32_t> occupied_; ///< those with patches
+    struct Joinings;
+    std::unique_ptr<Joinings> joinings_; ///< scratch
+    Camera display_; ///< of the plan
+    bool loose_ = false; ///< whether what is loose is in it
+    bool is_limited_ = false; ///< not all of it has room
+    std::vector<std::uint32_t> first_entry_; ///< by block; one more at the end
+    std::vector<std::uint32_t> next_entry_;
+    std::vector<std::uint32_t> entries_; ///< square * patches_per_square + patch
+};
+
+/// Puts the patches of a block into the order in which they are painted: the best samples first, the newest of those,
+/// then by tiles and layers.
+void order(std::vector<PatchView>& patches);
+
+} // namespace framelet

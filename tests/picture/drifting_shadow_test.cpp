@@ -1,0 +1,135 @@
+// A shadow that goes over a floor, shown later than it was seen.
+#include <gtest/gtest.h>
+
+#include "common/warp/framelet_warp.h"
+#include "tests/picture/moved_room.h"
+
+namespace framelet {
+namespace {
+
+constexpr float dark = 40, bright = 200;
+
+/// A floor, and just above it a shadow that goes to the right.
+AnalyticScene shaded_floor() {
+    AnalyticScene scene;
+    scene.quads.push_back({{-8, 0, -8}, {16, 0, 0}, {0, 0, 16}, plain(bright, bright, bright)});
+    scene.quads.push_back({{-0.8, 1e-6, 0}, {1, 0, 0}, {0, 0, 1.5}, plain(dark, dark, dark)});
+    scene.quads[1].velocity = {4, 0, 0};
+    return scene;
+}
+
+/// Framelets in which there is some of the shadow fade: they change soonest.
+Batch batch_at(AnalyticScene const& scene, std::uint64_t number, Camera const& camera, SceneTime time) {
+    ImagePlane const plane(viewport);
+    Batch batch = scene.batch(plane, number, camera, time, visible_tiles(plane, plane.pixel_depth()));
+    for (FrameletShape& shape : batch.shapes) {
+        shape.fading = shape.layer_count > 1 ? 180 : 0;
+    }
+    return batch;
+}
+
+struct Counts {
+    int right = 0, pixels = 0;
+
+    void add(bool is_right) {
+        right += is_right ? 1 : 0;
+        ++pixels;
+    }
+    double share() const { return static_cast<double>(right) / pixels; }
+};
+
+struct Agreement {
+    Counts shadow, lit;
+};
+
+/// Away from the shadow's rim, what the source saw: is it shown as it is at the display's time?
+Agreement compare(AnalyticScene const& scene, SceneTime from, SceneTime to, Shown const& shown) {
+    Agreement out;
+    for (int y = 0; y < viewport.height; ++y) {
+        for (int x = 0; x < viewport.width; ++x) {
+            AnalyticScene::Expected const expected =
+                scene.expect(front(), from, front(), to, viewport, x + 0.5, y + 0.5, 1.5);
+            if (expected.was_seen && expected.hit.quad >= 0) {
+                Counts& counts = expected.hit.quad == 1 ? out.shadow : out.lit;
+                counts.add(std::abs(shown.picture.row(y)[4 * x] - expected.hit.color[0]) < 2);
+            }
+        }
+    }
+    return out;
+}
+
+TEST(DriftingShadow, GoesOverWhatIsLitAndStaysDark) {
+    AnalyticScene const scene = shaded_floor();
+    FrameletPool pool((ImagePlane(viewport)));
+    pool.insert(batch_at(scene, 1, front(), 0), scene.motions);
+    for (double const time : {0.0, 0.05, 0.1, 0.15}) {
+        Agreement const got = compare(scene, 0, time, show(pool, front(), time));
+        EXPECT_GT(got.shadow.pixels, 500);
+        EXPECT_GE(got.shadow.share(), 0.999) << time;
+        EXPECT_GE(got.lit.share(), 0.98) << time;
+    }
+}
+
+TEST(DriftingShadow, GoesOverWhatWasSeenLitSince) {
+    AnalyticScene const scene = shaded_floor();
+    AnalyticScene lit = scene;
+    lit.quads.pop_back();
+    ImagePlane const plane(viewport);
+    Camera aside = front();
+    aside.position.x += 0.02f;
+    FrameletPool pool(plane);
+    pool.insert(batch_at(scene, 1, front(), 0), scene.motions);
+    pool.insert(lit.batch(plane, 2, aside, 0.05, {make_tile(plane.pixel_depth(), 11, 7)}),
+                lit.motions); // where it goes
+    Agreement const got = compare(scene, 0, 0.15, show(pool, front(), 0.15));
+    EXPECT_GE(got.shadow.share(), 0.999);
+}
+
+TEST(DriftingShadow, IsNotBelievedForLongAgainstWhatWasSeenSince) {
+    AnalyticScene const scene = shaded_floor();
+    AnalyticScene lit = scene;
+    lit.quads.pop_back();
+    Camera aside = front();
+    aside.position.x += 0.02f;
+    FrameletPool pool((ImagePlane(viewport)));
+    pool.insert(batch_at(scene, 1, front(), 0), scene.motions);
+    pool.insert(batch_at(lit, 2, aside, 0.2), lit.motions);
+    Agreement const got = compare(scene, 0, 0.4, show(pool, front(), 0.4));
+    EXPECT_GT(got.shadow.pixels, 500);
+    EXPECT_LE(got.shadow.share(), 0.001);
+}
+
+/// So many of the shadow's patches hide what lies behind them, of all.
+std::pair<int, int> hiding_patches(FrameletCache const& cache, SceneTime time) {
+    BodyMotions const motions;
+    Camera const camera = front();
+    FrameletWarp warp(cache, 0, camera, time, motions);
+    std::vector<Splat> splats;
+    std::pair<int, int> out;
+    for (std::size_t i = 0; i < cache.slot_count(); ++i) {
+        CachedFramelet const* const framelet = cache.at_slot(i);
+        for (unsigned k = 0; framelet != nullptr && k < framelet->shape.layer_count; ++k) {
+            std::vector<WarpPatch> patches;
+            warp.add(*framelet, 1u << k, patches, splats);
+            bool const is_shadow = framelet->shape.layers[k].layer.velocity != Vec3(0);
+            for (WarpPatch const& patch : patches) {
+                out.first += is_shadow && patch.hides ? 1 : 0;
+                out.second += is_shadow ? 1 : 0;
+            }
+        }
+    }
+    return out;
+}
+
+TEST(DriftingShadow, HidesNothingOnceItMayBeElsewhere) {
+    AnalyticScene const scene = shaded_floor();
+    FrameletPool pool((ImagePlane(viewport)));
+    pool.insert(batch_at(scene, 1, front(), 0), scene.motions);
+    auto const [young, all] = hiding_patches(pool.newest(), 0.1);
+    EXPECT_GT(all, 0);
+    EXPECT_EQ(young, all);
+    EXPECT_EQ(hiding_patches(pool.newest(), 0.4).first, 0);
+}
+
+} // namespace
+} // namespace framelet

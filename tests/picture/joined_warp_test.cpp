@@ -1,0 +1,113 @@
+// What is joined beside what it was joined of.
+#include "common/warp/warp_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "common/warp/warp_block.h"
+#include "tests/picture/moved_room.h"
+
+namespace framelet {
+namespace {
+
+/// Each framelet alone, in the order of the plan.
+void alone(FrameletCache const& cache, Camera const& display, SceneTime time, BodyMotions const& motions,
+           std::vector<WarpPatch>& patches, std::vector<Splat>& splats) {
+    FrameletWarp warp(cache, 0, display, time, motions);
+    for (std::size_t slot = 0; slot < cache.slot_count(); ++slot) {
+        if (CachedFramelet const* const framelet = cache.at_slot(slot)) {
+            warp.add(*framelet, FrameletWarp::all_parts, patches, splats);
+        }
+    }
+    std::ranges::sort(patches, [](WarpPatch const& a, WarpPatch const& b) {
+        return a.batch != b.batch ? a.batch > b.batch : a.place < b.place;
+    });
+}
+
+/// Several planes in a framelet, bodies, what deforms, loose samples; all framelets of one batch, each fifth of one, or
+/// planes of neighbours that do not quite meet.
+TEST(JoinedWarp, WhatIsJoinedShowsAsEachFrameletAlone) {
+    ImagePlane const plane(viewport);
+    AnalyticScene scene = room();
+    BodyTrack track{5, 0, {}};
+    for (int i = 0; i <= 60; ++i) {
+        auto const time = static_cast<float>(i) / body_keys_per_second;
+        track.keys.push_back({Vec3(0.3f * time, 0, 0), glm::angleAxis(0.2f * time, Vec3(0, 0, 1)), Vec3(1)});
+    }
+    scene.motions.extend(track);
+    scene.quads[2].body = 5;
+    for (int i = 0; i < 6; ++i) { // more than layers in some framelets
+        scene.quads.push_back({{0.2 + 0.04 * i, 1, 2 + 0.1 * i}, {0.04, 0, 0}, {0, 0.3, 0.1}, waves(2, 2)});
+    }
+    scene.quads[1].velocity = {0.1, 0, 0.05};
+    Camera const display = look_at(Vec3(0.2f, 1.6f, 5.8f), Vec3(0.05f, 0.95f, 0), Vec3(0, 1, 0), 0.8f);
+    std::mt19937 random(4);
+    std::normal_distribution<double> normal;
+    for (int levels = -1; levels <= finest_levels; ++levels) {
+        for (int kind = 0; kind < 3; ++kind) {
+            std::size_t const batches = kind == 1 ? 5 : 1;
+            double const rough = kind == 2 ? 4e-4 : 0;
+            // Of neighbours that are not joined only one shows where something farther was painted between them.
+            float const tolerance = kind == 0 ? 2 : 8;
+            FrameletCache cache(plane);
+            std::vector<Tile> const tiles = visible_tiles(plane, plane.pixel_depth() + levels);
+            for (std::size_t k = 0; k < batches; ++k) {
+                std::vector<Tile> part;
+                for (std::size_t i = k; i < tiles.size(); i += batches) {
+                    part.push_back(tiles[i]);
+                }
+                Batch batch = scene.batch(plane, k + 1, front(), 0, part);
+                for (FrameletShape& shape : batch.shapes) {
+                    for (Layer& layer : shape.layers) {
+                        layer.at *= static_cast<float>(1 + rough * normal(random));
+                    }
+                }
+                cache.insert(batch);
+            }
+            WarpPlan plan;
+            plan.make(cache, 0, true, display, 0.3, scene.motions);
+            std::vector<WarpPatch> each;
+            std::vector<Splat> splats;
+            alone(cache, display, 0.3, scene.motions, each, splats);
+            std::size_t entries = 0;
+            int different = 0, shown = 0;
+            for (int row = 0; row < plan.rows(); ++row) {
+                for (int column = 0; column < plan.columns(); ++column) {
+                    std::vector<PatchView> joined, views;
+                    joined.clear();
+                    plan.add_block(static_cast<std::size_t>(row * plan.columns() + column), joined);
+                    order(joined);
+                    PixelRect const block{16 * column, 16 * row, 16 * column + 16, 16 * row + 16};
+                    for (WarpPatch const& patch : each) {
+                        if (patch.box.left < block.right && patch.box.right > block.left &&
+                            patch.box.top < block.bottom && patch.box.bottom > block.top) {
+                            views.push_back({&patch, splats.data()});
+                        }
+                    }
+                    entries += views.size();
+                    WarpedBlock one, other;
+                    paint_warped_block(joined, column, row, viewport, one);
+                    paint_warped_block(views, column, row, viewport, other);
+                    for (std::size_t i = 0; i < WarpedBlock::pixels; ++i) {
+                        ++shown;
+                        bool same = std::abs(one.inverse_depth[i] - other.inverse_depth[i]) < 1e-3f;
+                        for (std::size_t channel = 0; channel < 3; ++channel) {
+                            same = same && std::abs(std::sqrt(one.squares[channel][i]) -
+                                                    std::sqrt(other.squares[channel][i])) < tolerance;
+                        }
+                        different += same ? 0 : 1;
+                    }
+                }
+            }
+            EXPECT_LT(plan.entry_count(), entries * 4 / 5) << levels << ' ' << kind;
+            // Where little of a plane is seen in a framelet, that of its neighbours makes a firm whole of it.
+            EXPECT_LE(different, shown / 500) << levels << ' ' << kind;
+        }
+    }
+}
+
+} // namespace
+} // namespace framelet

@@ -1,0 +1,323 @@
+#include "common/warp/layer_joining.h"
+
+#include <algorithm>
+#include <bit>
+#include <iterator>
+#include <limits>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "common/morton.h"
+
+namespace framelet {
+namespace {
+
+/// A layer of framelet `part` of 8x8 whose tiles have a side of 16 pixels and samples, all of which lie on it.
+struct TestLayer {
+    HeldLayer held;
+    std::uint32_t part = 0, view = 0;
+    std::size_t layer = 0; ///< set by `joined`
+};
+
+/// `plane`: from the square's corner on.
+TestLayer layer_at(AffinePlane const& plane, std::uint32_t part) {
+    TestLayer out{{}, part};
+    double const column = 16.0 * morton_x(part);
+    double const row = 16.0 * morton_y(part);
+    out.held.layer.at = static_cast<float>(plane(column, row));
+    out.held.layer.dx = static_cast<float>(plane.dx);
+    out.held.layer.dy = static_cast<float>(plane.dy);
+    out.held.last_column = out.held.last_row = 15;
+    return out;
+}
+
+PlanePiece piece_of(TestLayer const& of) {
+    AffinePlane const own{of.held.layer.at, of.held.layer.dx, of.held.layer.dy}; // from the tile's corner on
+    double const column = 16.0 * morton_x(of.part);
+    double const row = 16.0 * morton_y(of.part);
+    return piece_of(AffinePlane{own(-column, -row), own.dx, own.dy},
+                    PlaneExtent{column + of.held.first_column, row + of.held.first_row,
+                                column + of.held.last_column + 1, row + of.held.last_row + 1});
+}
+
+std::uint64_t bit_of(std::uint32_t part) {
+    return std::uint64_t{1} << SquareLayers::place_of(part);
+}
+
+bool is_part(JoinedLayer const& joined, TestLayer const& layer) {
+    return (joined.parts[layer.layer] & bit_of(layer.part)) != 0;
+}
+
+int part_count(JoinedLayer const& joined) {
+    return std::popcount(joined.parts[0]) + std::popcount(joined.parts[1]) + std::popcount(joined.parts[2]);
+}
+
+/// Layers of one part come one after the other.
+LayerJoining joined(std::vector<TestLayer>& layers) {
+    SquareLayers square;
+    HeldShape shape;
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        bool const is_first = i == 0 || layers[i].part != layers[i - 1].part;
+        shape.layer_count = static_cast<std::uint8_t>(is_first ? 1 : shape.layer_count + 1);
+        layers[i].layer = shape.layer_count - 1u;
+        shape.layers[layers[i].layer] = layers[i].held;
+        EXPECT_TRUE(square.set(SquareLayers::place_of(layers[i].part), layers[i].view, 1, shape));
+    }
+    LayerJoining out;
+    out.join(square, {});
+    return out;
+}
+
+/// Those of more than one.
+std::vector<JoinedLayer> several(LayerJoining const& joining) {
+    std::vector<JoinedLayer> out;
+    std::ranges::copy_if(joining.joined(), std::back_inserter(out),
+                         [](JoinedLayer const& layer) { return part_count(layer) > 1; });
+    return out;
+}
+
+TEST(PlaneFit, OfOnePlaneIsThatPlane) {
+    AffinePlane const plane{0.3, 2e-3, -1e-3};
+    PlaneSums sums;
+    for (PlaneExtent const& extent : {PlaneExtent{0, 0, 16, 16}, {16, 0, 20, 3}, {40, 64, 72, 66}}) {
+        sums += sums_over(piece_of(plane, extent));
+    }
+    AffinePlane const fit = fit_plane(sums);
+    EXPECT_NEAR(fit.at, plane.at, 1e-12);
+    EXPECT_NEAR(fit.dx, plane.dx, 1e-12);
+    EXPECT_NEAR(fit.dy, plane.dy, 1e-12);
+}
+
+TEST(PlaneFit, IsTheBestOne) {
+    std::mt19937 random(3);
+    std::normal_distribution<double> normal;
+    PlaneExtent const extents[] = {{0, 0, 16, 16}, {16, 0, 32, 8}, {4, 16, 16, 32}};
+    AffinePlane planes[3];
+    PlaneSums sums;
+    for (int i = 0; i < 3; ++i) {
+        planes[i] = {normal(random), normal(random), normal(random)};
+        sums += sums_over(piece_of(planes[i], extents[i]));
+    }
+    auto const error = [&](AffinePlane const& fit) {
+        double sum = 0;
+        for (int i = 0; i < 3; ++i) {
+            for (double y = extents[i].top + 0.125; y < extents[i].bottom; y += 0.25) {
+                for (double x = extents[i].left + 0.125; x < extents[i].right; x += 0.25) {
+                    double const difference = planes[i](x, y) - fit(x, y);
+                    sum += difference * difference;
+                }
+            }
+        }
+        return sum;
+    };
+    AffinePlane const fit = fit_plane(sums);
+    for (AffinePlane const& step : {AffinePlane{0.05, 0, 0}, AffinePlane{0, 0.01, 0}, AffinePlane{0, 0, 0.01}}) {
+        EXPECT_LT(error(fit), error({fit.at + step.at, fit.dx + step.dx, fit.dy + step.dy}));
+        EXPECT_LT(error(fit), error({fit.at - step.at, fit.dx - step.dx, fit.dy - step.dy}));
+    }
+}
+
+TEST(PlaneFit, PiecesKnowHowFarAPlaneIs) {
+    std::mt19937 random(17);
+    std::normal_distribution<double> normal;
+    for (int round = 0; round < 1000; ++round) {
+        AffinePlane const own{normal(random), normal(random), normal(random)};
+        AffinePlane const plane{normal(random), normal(random), normal(random)};
+        PlaneExtent extent{normal(random), normal(random), 0, 0};
+        extent.right = extent.left + std::abs(normal(random));
+        extent.bottom = extent.top + std::abs(normal(random));
+        double most = 0, least = std::numeric_limits<double>::max();
+        for (double const x : {extent.left, extent.right}) {
+            for (double const y : {extent.top, extent.bottom}) {
+                most = std::max(most, std::abs(own(x, y) - plane(x, y)));
+                least = std::min(least, plane(x, y));
+            }
+        }
+        PlanePiece const piece = piece_of(own, extent);
+        EXPECT_NEAR(largest_difference(piece, plane), most, 1e-12);
+        EXPECT_NEAR(least_value(plane, piece), least, 1e-12);
+        EXPECT_NEAR(piece.plane()(0.5, 2), own(0.5, 2), 1e-12);
+        EXPECT_NEAR(piece.extent().right, extent.right, 1e-12);
+        EXPECT_NEAR(piece.extent().top, extent.top, 1e-12);
+    }
+}
+
+TEST(LayerJoining, TwoPlanesInEveryFrameletAreTwo) {
+    std::vector<TestLayer> layers;
+    for (std::uint32_t part = 0; part < 64; ++part) {
+        layers.push_back(layer_at({0.5, 1e-4, 0}, part));
+        layers.push_back(layer_at({0.2, 0, -1e-4}, part));
+    }
+    LayerJoining const joining = joined(layers);
+    ASSERT_EQ(joining.joined().size(), 2u);
+    for (std::size_t i = 0; i < 2; ++i) {
+        JoinedLayer const& layer = joining.joined()[i];
+        EXPECT_NEAR(layer.plane.at, i == 0 ? 0.5 : 0.2, 1e-7);
+        EXPECT_EQ(layer.parts[i], ~std::uint64_t{0});
+        EXPECT_EQ(layer.parts[1 - i], 0u);
+        EXPECT_LT(layer.difference, 1e-6);
+        EXPECT_EQ(layer.extent.left, 0);
+        EXPECT_EQ(layer.extent.top, 0);
+        EXPECT_EQ(layer.extent.right, 128);
+        EXPECT_EQ(layer.extent.bottom, 128);
+    }
+}
+
+TEST(LayerJoining, OnlyOfOneViewBodyAndVelocity) {
+    for (int kind = 0; kind < 4; ++kind) {
+        std::vector<TestLayer> layers;
+        for (std::uint32_t part = 0; part < 4; ++part) {
+            TestLayer layer = layer_at({0.5, 0, 0}, part);
+            bool const other = part % 2 == 1;
+            layer.view = kind == 1 && other ? 7 : 0;
+            layer.held.layer.body = kind == 2 && other ? 7 : static_body;
+            layer.held.layer.velocity = Vec3(kind == 3 && other ? 7.0f : 0.0f);
+            layers.push_back(layer);
+        }
+        LayerJoining const joining = joined(layers);
+        EXPECT_EQ(joining.joined().size(), kind == 0 ? 1u : 2u);
+        EXPECT_EQ(is_part(joining.joined()[0], layers[1]), kind == 0);
+        EXPECT_TRUE(is_part(joining.joined()[0], layers[2]));
+    }
+}
+
+/// Whatever is joined is as near to all layers it was joined of as it says, and each layer is in one.
+TEST(LayerJoining, DifferencesAreBounds) {
+    std::mt19937 random(11);
+    std::normal_distribution<double> normal;
+    int of_fours = 0, of_layers = 0, alone = 0;
+    std::ptrdiff_t fours = 0;
+    for (int round = 0; round < 200; ++round) {
+        int const of_each = 1 + round / 4 % 2; // fours of framelets with one layer each are joined by themselves
+        std::vector<TestLayer> layers;
+        for (std::uint32_t part = 0; part < 64; ++part) {
+            for (int i = 0; i < of_each; ++i) {
+                double const rough = 3e-4 * (round % 4);
+                double const at = 0.3 * (i + 1) * (1 + rough * normal(random));
+                layers.push_back(layer_at({at, 1e-3 * i, 1e-5 * rough * normal(random)}, part));
+                HeldLayer& held = layers.back().held;
+                if (round % 3 == 0) { // some of its samples
+                    held.first_column = static_cast<std::int8_t>(random() % 4);
+                    held.last_row = static_cast<std::int8_t>(12 + random() % 4);
+                }
+            }
+        }
+        LayerJoining const joining = joined(layers);
+        int parts = 0;
+        for (JoinedLayer const& found : joining.joined()) {
+            parts += part_count(found);
+            (part_count(found) == 1 ? alone : of_each == 1 ? of_fours : of_layers) += 1;
+            PlaneExtent extent;
+            bool is_first = true;
+            for (TestLayer const& layer : layers) {
+                if (is_part(found, layer)) {
+                    PlanePiece const piece = piece_of(layer);
+                    double const off = largest_difference(piece, found.plane);
+                    EXPECT_LE(off, found.difference + 1e-12);
+                    EXPECT_LE(off, 2.002e-3 * least_value(found.plane, piece)); // a four's share is of the four's plane
+                    extent = is_first ? piece.extent() : united(extent, piece.extent());
+                    is_first = false;
+                }
+            }
+            EXPECT_EQ(extent.left, found.extent.left);
+            EXPECT_EQ(extent.top, found.extent.top);
+            EXPECT_EQ(extent.right, found.extent.right);
+            EXPECT_EQ(extent.bottom, found.extent.bottom);
+        }
+        EXPECT_EQ(static_cast<std::size_t>(parts), layers.size());
+        for (JoinedLayer const& four : joining.fours()) {
+            EXPECT_EQ(part_count(four), 4);
+            for (TestLayer const& layer : layers) {
+                if (is_part(four, layer)) {
+                    EXPECT_LE(largest_difference(piece_of(layer), four.plane), four.difference + 1e-12);
+                }
+            }
+            fours += std::ranges::count_if(
+                joining.joined(), [&](JoinedLayer const& found) { return (four.parts[0] & ~found.parts[0]) == 0; });
+        }
+        fours -= static_cast<std::ptrdiff_t>(joining.fours().size()); // each is in one
+        for (TestLayer const& layer : layers) {
+            EXPECT_EQ(std::ranges::count_if(joining.joined(),
+                                            [&](JoinedLayer const& found) { return is_part(found, layer); }),
+                      1);
+        }
+    }
+    EXPECT_EQ(fours, 0);
+    EXPECT_GT(of_fours, 100);
+    EXPECT_GT(of_layers, 100);
+    EXPECT_GT(alone, 20);
+}
+
+TEST(LayerJoining, WhatIsNoNumberStaysAlone) {
+    for (int kind = 0; kind < 2; ++kind) {
+        std::vector<TestLayer> layers;
+        for (std::uint32_t part = 0; part < 8; ++part) {
+            layers.push_back(
+                layer_at({kind == 0 && part == 2 ? NAN : 0.5, kind == 1 && part == 2 ? NAN : 0.0, 0}, part));
+        }
+        std::vector<JoinedLayer> const found = several(joined(layers));
+        ASSERT_EQ(found.size(), 1u);
+        EXPECT_FALSE(is_part(found[0], layers[2]));
+        EXPECT_EQ(part_count(found[0]), 7);
+        EXPECT_NEAR(found[0].plane.at, 0.5, 1e-12);
+    }
+}
+
+/// What is infinitely far is of one plane too.
+TEST(LayerJoining, TheSkyIsOne) {
+    std::vector<TestLayer> layers;
+    for (std::uint32_t part = 0; part < 64; ++part) {
+        layers.push_back(layer_at({0, 0, 0}, part));
+    }
+    LayerJoining const joining = joined(layers);
+    ASSERT_EQ(joining.joined().size(), 1u);
+    EXPECT_EQ(joining.joined()[0].difference, 0);
+}
+
+/// Far apart from each other two cost less than what holds both.
+TEST(LayerJoining, OnlyWhereThatIsCheaper) {
+    std::vector<TestLayer> layers{layer_at({0.5, 0, 0}, 0), layer_at({0.5, 0, 0}, 63)};
+    EXPECT_TRUE(several(joined(layers)).empty());
+    std::vector<TestLayer> beside{layer_at({0.5, 0, 0}, 0), layer_at({0.5, 0, 0}, 1)};
+    EXPECT_EQ(several(joined(beside)).size(), 1u);
+}
+
+/// A column of framelets grows piece by piece, past what is of another plane.
+TEST(LayerJoining, WhatIsNearIsAddedUntilNothingIs) {
+    std::vector<TestLayer> layers;
+    for (std::uint32_t row = 0; row < 8; ++row) {
+        std::uint32_t const part = morton_index(3, row);
+        layers.push_back(layer_at({0.2, 0, 1e-4}, part));
+        layers.push_back(layer_at({0.5, 0, 0}, part));
+    }
+    LayerJoining const joining = joined(layers);
+    ASSERT_EQ(joining.joined().size(), 2u);
+    EXPECT_EQ(part_count(joining.joined()[0]), 8);
+    EXPECT_EQ(part_count(joining.joined()[1]), 8);
+}
+
+TEST(SquareLayers, MotionsAreNumbered) {
+    SquareLayers square;
+    HeldShape shape;
+    shape.layer_count = 1;
+    shape.layers[0].last_column = shape.layers[0].last_row = 3;
+    std::uint32_t view = 0;
+    int sets = 0;
+    for (; square.set(sets % 64, view, 1, shape); ++sets) {
+        view = static_cast<std::uint32_t>(sets);
+    }
+    EXPECT_GT(sets, 192); // all that can be held at once
+    EXPECT_LT(sets, 1000);
+    square.forget_motions();
+    for (std::size_t place = 0; place < SquareLayers::places; ++place) {
+        ASSERT_TRUE(square.set(place, 7 + static_cast<std::uint32_t>(place % 2), 1, shape));
+    }
+    EXPECT_EQ(square.motion(square.rows(0).motion[5]).view, 8u);
+    EXPECT_EQ(square.rows(0).motion[5], square.rows(0).motion[7]);
+    square.clear(5);
+    EXPECT_EQ(square.rows(0).held, ~std::uint64_t{1u << 5});
+}
+
+} // namespace
+} // namespace framelet

@@ -1,0 +1,107 @@
+#include "common/warp/warp_plan.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/picture/analytic_scene.h"
+#include "tests/picture/synthetic_framelets.h"
+
+namespace framelet {
+namespace {
+
+constexpr Viewport viewport{320, 192};
+
+Camera front() {
+    return look_at(Vec3(0, 0, 5), Vec3(0, 0, 0), Vec3(0, 1, 0), 0.8f);
+}
+
+AnalyticScene wall() {
+    AnalyticScene scene;
+    scene.quads.push_back({{-8, -8, 0}, {16, 0, 0}, {0, 16, 0}, [](double, double) { return Color{90, 90, 90}; }});
+    return scene;
+}
+
+/// Every framelet flies right before the camera, where it is larger than the picture.
+TEST(WarpPlan, HoldsBoundedlyManyPatchesAndTheNewestOnes) {
+    ImagePlane const plane(viewport);
+    FrameletCache cache(plane);
+    ViewRays const rays = make_view_rays(front(), viewport);
+    std::vector<Tile> const tiles = visible_tiles(plane, plane.pixel_depth() + 1);
+    std::uint64_t number = 0;
+    for (Tile const tile : tiles) {
+        Batch batch = wall().batch(plane, ++number, front(), 0, {tile});
+        PixelRect const rect = plane.tile_rect(tile);
+        Vec3 const towards = rays.direction + rays.direction_dx * (static_cast<float>(rect.left) + 4) +
+                             rays.direction_dy * (static_cast<float>(rect.top) + 4);
+        batch.shapes[0].layers[0].velocity = Vec3(0, 0, -0.02f) - 5.0f * towards;
+        cache.insert(batch);
+    }
+    WarpPlan plan;
+    plan.make(cache, 0, true, front(), 1, {});
+    auto const blocks = static_cast<std::size_t>(plan.columns() * plan.rows());
+    ASSERT_GT(tiles.size(), 2 * WarpPlan::most_patches_per_block);
+    EXPECT_LE(plan.entry_count(), WarpPlan::most_patches_per_block * blocks);
+    EXPECT_GT(plan.entry_count(), WarpPlan::most_patches_per_block * blocks / 2);
+    std::vector<PatchView> patches;
+    for (std::size_t i = 0; i < blocks; ++i) {
+        patches.clear();
+        plan.add_block(i, patches);
+        order(patches);
+        ASSERT_FALSE(patches.empty());
+        ASSERT_EQ(patches[0].patch->batch, number);
+    }
+}
+
+TEST(WarpPlan, FrameletsOfOnePlaneAreOnePatchForManyBlocks) {
+    ImagePlane const plane(viewport);
+    Camera aside = front();
+    aside.position.x += 0.1f;
+    for (int levels = 0; levels <= finest_levels; ++levels) {
+        FrameletCache cache(plane);
+        cache.insert(wall().batch(plane, 1, front(), 0, visible_tiles(plane, plane.pixel_depth() + levels)));
+        WarpPlan plan;
+        plan.make(cache, 0, true, aside, 0, {});
+        EXPECT_GT(plan.entry_count(), 0u);
+        // A patch of a block alone reaches three blocks upright and two across.
+        EXPECT_LT(plan.entry_count(), static_cast<std::size_t>(4 * plan.columns() * plan.rows())) << levels;
+    }
+}
+
+/// What is not flagged has the patches that it had, also where one has left.
+TEST(WarpPlan, FlagsEachBlockOfWhichThePatchesAreOthers) {
+    ImagePlane const plane(viewport);
+    FrameletCache cache(plane);
+    AnalyticScene scene;
+    scene.quads.push_back({{-0.3, -0.3, 0}, {0.6, 0, 0}, {0, 0.6, 0}, [](double, double) {
+                               return Color{90, 90, 90};
+                           }});
+    scene.quads[0].body = 5;
+    scene.motions.extend({5, 0, {BodyPose{}, BodyPose{Vec3(1.5f, 0, 0)}, BodyPose{Vec3(-1.5f, 0, 0)}}});
+    Batch const batch = scene.batch(plane, 1, front(), 0, visible_tiles(plane, plane.pixel_depth() + 1));
+    cache.insert(batch);
+    WarpPlan plan;
+    std::vector<std::vector<std::uint64_t>> before;
+    int unflagged = 0;
+    for (double const time : {0.0, 1.0, 1.0, 2.0, 1.5}) {
+        plan.make(cache, 0, true, front(), time / body_keys_per_second, scene.motions);
+        auto const blocks = static_cast<std::size_t>(plan.columns() * plan.rows());
+        before.resize(blocks);
+        std::vector<std::uint8_t> flags(blocks);
+        plan.flag_replanned(flags);
+        for (std::size_t i = 0; i < blocks; ++i) {
+            std::vector<PatchView> patches;
+            plan.add_block(i, patches);
+            order(patches);
+            std::vector<std::uint64_t> now;
+            for (PatchView const& view : patches) {
+                now.push_back(view.patch->signature);
+            }
+            EXPECT_TRUE(flags[i] != 0 || now == before[i]) << i << ' ' << time;
+            unflagged += flags[i] == 0 ? 1 : 0;
+            before[i] = now;
+        }
+    }
+    EXPECT_GT(unflagged, 0);
+}
+
+} // namespace
+} // namespace framelet
