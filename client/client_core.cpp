@@ -12,7 +12,7 @@
 #include "client/server_connection.h"
 #include "client/session_pictures.h"
 #include "common/error.h"
-#include "protocol/batch_codec.h"
+#include "protocol/codec/batch_codec.h"
 
 namespace framelet {
 

@@ -15,7 +15,7 @@
 #include "client/server_address.h"
 #include "common/image.h"
 #include "common/tile.h"
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 
 namespace framelet {
 

@@ -3,7 +3,7 @@
 #include <charconv>
 
 #include "common/error.h"
-#include "protocol/token.h"
+#include "protocol/stream/token.h"
 
 namespace framelet {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/command_line.h"
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 
 namespace framelet {
 

@@ -15,9 +15,9 @@
 
 #include "client/back_off.h"
 #include "common/error.h"
-#include "protocol/known_servers.h"
-#include "protocol/local_token.h"
-#include "protocol/stream_opening.h"
+#include "protocol/stream/known_servers.h"
+#include "protocol/stream/local_token.h"
+#include "protocol/stream/stream_opening.h"
 
 namespace framelet {
 

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "client/server_address.h"
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 
 namespace framelet {
 

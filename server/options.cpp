@@ -5,7 +5,7 @@
 #include "common/command_line.h"
 #include "common/error.h"
 #include "common/number_range.h"
-#include "protocol/token.h"
+#include "protocol/stream/token.h"
 
 namespace framelet {
 namespace {

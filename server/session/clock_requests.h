@@ -5,7 +5,7 @@
 #include <chrono>
 #include <utility>
 
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 #include "server/session/scene_clock.h"
 
 namespace framelet {

@@ -6,7 +6,7 @@
 #include <deque>
 #include <memory>
 
-#include "protocol/framed_stream.h"
+#include "protocol/stream/framed_stream.h"
 
 namespace framelet {
 

@@ -5,7 +5,7 @@
 #include <mutex>
 
 #include "common/scene_clock.h"
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 
 namespace framelet {
 

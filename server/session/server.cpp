@@ -16,8 +16,8 @@
 #include <spdlog/spdlog.h>
 
 #include "common/error.h"
-#include "protocol/stream_opening.h"
-#include "protocol/token.h"
+#include "protocol/stream/stream_opening.h"
+#include "protocol/stream/token.h"
 #include "server/scene/animation.h"
 #include "server/scene/scene_identity.h"
 #include "server/session/clock_requests.h"

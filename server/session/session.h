@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "protocol/framed_stream.h"
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
+#include "protocol/stream/framed_stream.h"
 #include "server/stream/stream_event.h"
 
 namespace framelet {

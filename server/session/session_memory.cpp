@@ -1,6 +1,6 @@
 #include "server/session/session_memory.h"
 
-#include "protocol/held_picture.h"
+#include "protocol/codec/color/held_picture.h"
 #include "server/flow/lossy_places.h"
 #include "server/schedule/adaptive_refresh.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/per_thread.h"
-#include "protocol/batch_codec.h"
+#include "protocol/codec/batch_codec.h"
 #include "server/flow/lossy_places.h"
 #include "server/layers/shape_feed.h"
 #include "server/render/probe_renderer.h"

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <variant>
 
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 
 namespace framelet {
 

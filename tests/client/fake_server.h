@@ -17,8 +17,8 @@
 #include <boost/asio/write.hpp>
 
 #include "client/server_address.h"
-#include "protocol/batch_codec.h"
-#include "protocol/stream_opening.h"
+#include "protocol/codec/batch_codec.h"
+#include "protocol/stream/stream_opening.h"
 
 namespace framelet::test {
 

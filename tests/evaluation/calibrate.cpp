@@ -10,7 +10,7 @@
 #include "common/held/framelet_pool.h"
 #include "common/picture/reconstruction.h"
 #include "common/picture/reprojector.h"
-#include "protocol/batch_codec.h"
+#include "protocol/codec/batch_codec.h"
 #include "server/flow/quality_choice.h"
 #include "server/layers/shape_feed.h"
 #include "tests/evaluation/codecs/h264_codec.h"

@@ -13,8 +13,8 @@
 #include <tbb/parallel_for.h>
 
 #include "common/error.h"
-#include "protocol/framed_stream.h"
-#include "protocol/stream_opening.h"
+#include "protocol/stream/framed_stream.h"
+#include "protocol/stream/stream_opening.h"
 #include "server/session/server.h"
 #include "tests/evaluation/stopwatch.h"
 

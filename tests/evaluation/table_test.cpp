@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/error.h"
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 #include "tests/evaluation/small_run.h"
 #include "tests/evaluation/table.h"
 

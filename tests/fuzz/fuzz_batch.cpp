@@ -2,7 +2,7 @@
 #include <array>
 
 #include "common/error.h"
-#include "protocol/batch_codec.h"
+#include "protocol/codec/batch_codec.h"
 
 extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size) {
     using namespace framelet;

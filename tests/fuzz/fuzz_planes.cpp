@@ -1,7 +1,7 @@
 // Groups of framelets behind the decompression, where damage is likelier to get far. Input: one byte, the number of
 // framelets; one byte, odd where they are predicted; what a frame holds.
 #include "common/error.h"
-#include "protocol/plane_codec.h"
+#include "protocol/codec/color/plane_codec.h"
 
 namespace {
 

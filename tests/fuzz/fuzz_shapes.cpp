@@ -1,7 +1,7 @@
 // Shapes of a group of framelets behind the decompression. Input: one byte, the number of framelets; what a frame
 // holds.
 #include "common/error.h"
-#include "protocol/shape_codec.h"
+#include "protocol/codec/geometry/shape_codec.h"
 
 extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size) {
     using namespace framelet;

@@ -7,7 +7,7 @@
 #include <sys/socket.h>
 
 #include "common/error.h"
-#include "protocol/stream_opening.h"
+#include "protocol/stream/stream_opening.h"
 
 extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size) {
     using namespace framelet;

@@ -7,9 +7,9 @@
 #include <unistd.h>
 
 #include "common/error.h"
-#include "protocol/known_servers.h"
-#include "protocol/message.h"
-#include "protocol/token.h"
+#include "protocol/messages/message.h"
+#include "protocol/stream/known_servers.h"
+#include "protocol/stream/token.h"
 
 namespace {
 

@@ -4,9 +4,9 @@
 #include <iostream>
 #include <random>
 
-#include "protocol/batch_codec.h"
-#include "protocol/plane_codec.h"
-#include "protocol/shape_codec.h"
+#include "protocol/codec/batch_codec.h"
+#include "protocol/codec/color/plane_codec.h"
+#include "protocol/codec/geometry/shape_codec.h"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "protocol/batch_codec.h"
+#include "protocol/codec/batch_codec.h"
 
 #include <cmath>
 #include <random>

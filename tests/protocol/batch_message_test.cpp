@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "common/error.h"
-#include "protocol/batch_codec.h"
+#include "protocol/codec/batch_codec.h"
 #include "random_shape.h"
 
 namespace framelet {

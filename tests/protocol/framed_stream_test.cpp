@@ -1,4 +1,4 @@
-#include "protocol/framed_stream.h"
+#include "protocol/stream/framed_stream.h"
 
 #include <atomic>
 #include <future>

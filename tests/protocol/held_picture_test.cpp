@@ -1,4 +1,4 @@
-#include "protocol/held_picture.h"
+#include "protocol/codec/color/held_picture.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "protocol/morton_rows.h"
-#include "protocol/vector_search.h"
+#include "protocol/codec/color/vector_search.h"
+#include "protocol/codec/entropy/morton_rows.h"
 
 namespace framelet {
 namespace {

@@ -1,4 +1,4 @@
-#include "protocol/known_servers.h"
+#include "protocol/stream/known_servers.h"
 
 #include <fstream>
 

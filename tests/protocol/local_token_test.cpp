@@ -1,4 +1,4 @@
-#include "protocol/local_token.h"
+#include "protocol/stream/local_token.h"
 
 #include <cstdlib>
 #include <fstream>
@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "common/error.h"
-#include "protocol/user_folders.h"
+#include "protocol/stream/user_folders.h"
 
 namespace framelet {
 namespace {

@@ -1,4 +1,4 @@
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 
 #include <gtest/gtest.h>
 

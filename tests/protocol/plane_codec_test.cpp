@@ -1,4 +1,4 @@
-#include "protocol/plane_codec.h"
+#include "protocol/codec/color/plane_codec.h"
 
 #include <cmath>
 #include <random>
@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "common/error.h"
-#include "protocol/batch_codec.h"
-#include "protocol/haar_transform.h"
+#include "protocol/codec/batch_codec.h"
+#include "protocol/codec/color/haar_transform.h"
 
 namespace framelet {
 namespace {

@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "common/error.h"
-#include "protocol/batch_codec.h"
-#include "protocol/plane_codec.h"
+#include "protocol/codec/batch_codec.h"
+#include "protocol/codec/color/plane_codec.h"
 
 namespace framelet {
 namespace {

@@ -6,7 +6,7 @@
 #include <random>
 #include <set>
 
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 
 namespace framelet {
 

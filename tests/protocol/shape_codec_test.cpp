@@ -1,11 +1,11 @@
-#include "protocol/shape_codec.h"
+#include "protocol/codec/geometry/shape_codec.h"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "common/error.h"
-#include "protocol/shape_quantisation.h"
+#include "protocol/codec/geometry/shape_quantisation.h"
 #include "random_shape.h"
 
 namespace framelet {

@@ -13,7 +13,7 @@
 #include <boost/asio/read.hpp>
 #include <boost/asio/write.hpp>
 
-#include "protocol/stream_opening.h"
+#include "protocol/stream/stream_opening.h"
 
 namespace framelet {
 

@@ -7,7 +7,7 @@
 #include <openssl/x509v3.h>
 
 #include "common/error.h"
-#include "protocol/stream_opening.h"
+#include "protocol/stream/stream_opening.h"
 #include "random_message.h"
 #include "stream_pair.h"
 

@@ -1,4 +1,4 @@
-#include "protocol/token.h"
+#include "protocol/stream/token.h"
 
 #include <fstream>
 

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "common/error.h"
-#include "protocol/track_codec.h"
+#include "protocol/codec/geometry/track_codec.h"
 
 namespace framelet {
 namespace {

@@ -1,7 +1,7 @@
 // Messages whose numbers may be out of range, as a peer that does not check could send them. For tests only.
 #pragma once
 
-#include "protocol/message_wire.h"
+#include "protocol/messages/message_wire.h"
 
 namespace framelet {
 

@@ -1,7 +1,7 @@
 // A connection without a socket. For tests only.
 #pragma once
 
-#include "protocol/framed_stream.h"
+#include "protocol/stream/framed_stream.h"
 
 namespace framelet {
 

@@ -10,8 +10,8 @@
 
 #include "common/held/framelet_cache.h"
 #include "common/picture/reconstruction.h"
-#include "protocol/batch_codec.h"
-#include "protocol/stream_opening.h"
+#include "protocol/codec/batch_codec.h"
+#include "protocol/stream/stream_opening.h"
 #include "server/scene/scene_import.h"
 #include "server/session/server.h"
 #include "tests/evaluation/codecs/link_emulator.h"

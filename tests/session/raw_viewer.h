@@ -12,7 +12,7 @@
 #include <boost/asio/write.hpp>
 #include <sys/socket.h>
 
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 
 namespace framelet {
 

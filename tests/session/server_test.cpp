@@ -9,7 +9,7 @@
 #include <tbb/global_control.h>
 
 #include "common/error.h"
-#include "protocol/stream_opening.h"
+#include "protocol/stream/stream_opening.h"
 #include "raw_viewer.h"
 #include "running_server.h"
 

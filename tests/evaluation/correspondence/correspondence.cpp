@@ -10,7 +10,7 @@
 
 #include "common/held/framelet_cache.h"
 #include "common/warp/warp_block.h"
-#include "protocol/batch_codec.h"
+#include "protocol/codec/batch_codec.h"
 #include "server/layers/layer_fit.h"
 #include "server/schedule/tiling.h"
 #include "tests/evaluation/bench_scene.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <map>
 
-#include "protocol/batch_codec.h"
+#include "protocol/codec/batch_codec.h"
 #include "server/layers/shape_feed.h"
 #include "tests/evaluation/methods/h264_frames.h"
 #include "tests/evaluation/methods/methods.h"

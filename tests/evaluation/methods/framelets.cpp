@@ -4,7 +4,7 @@
 #include <deque>
 #include <utility>
 
-#include "protocol/batch_codec.h"
+#include "protocol/codec/batch_codec.h"
 #include "server/schedule/render_rate.h"
 #include "server/stream/framelet_stream.h"
 #include "tests/evaluation/methods/methods.h"

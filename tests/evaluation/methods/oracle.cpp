@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "protocol/batch_codec.h"
+#include "protocol/codec/batch_codec.h"
 #include "server/layers/shape_feed.h"
 #include "tests/evaluation/methods/frame_forecast.h"
 #include "tests/evaluation/methods/methods.h"

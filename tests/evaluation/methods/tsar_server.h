@@ -3,7 +3,7 @@
 
 #include <unordered_map>
 
-#include "protocol/batch_codec.h"
+#include "protocol/codec/batch_codec.h"
 #include "server/response/density_response.h"
 #include "server/response/haar_error.h"
 #include "tests/evaluation/method.h"

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <tbb/global_control.h>
 
-#include "protocol/message.h"
+#include "protocol/messages/message.h"
 #include "server/scene/animation.h"
 #include "server/scene/scene_import.h"
 #include "server/stream/framelet_stream.h"

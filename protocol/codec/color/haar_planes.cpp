@@ -1,0 +1,265 @@
+#include "protocol/codec/color/haar_planes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "common/error.h"
+#include "protocol/codec/color/haar_transform.h"
+#include "protocol/codec/entropy/zigzag.h"
+
+namespace framelet {
+namespace {
+
+constexpr std::size_t octaves = 4;
+/// Of an octave, from the finest (0).
+constexpr std::size_t places(std::size_t octave) {
+    return std::size_t{framelet_samples} >> (2 * (octave + 1));
+}
+/// Details of the octaves of one plane, the coarsest first, each [0, h, v, d] a place.
+constexpr std::array<std::size_t, octaves> first_four{84, 20, 4, 0};
+
+/// Quantisation step of the plane's mean and of its coarsest octave, sixteenths; it doubles with each finer one, as the
+/// orthonormal transform has it. Errors of Y and Cg count three times in red, green and blue, those of Co twice.
+std::uint16_t base_step(std::size_t plane, unsigned quality) {
+    return static_cast<std::uint16_t>(plane == 1 ? (5 * quality + 2) / 4 : quality);
+}
+std::uint16_t octave_step(std::uint16_t base, std::size_t octave) {
+    return static_cast<std::uint16_t>(base << (octaves - 1 - octave));
+}
+
+/// Smallest share of a step that rounds a mean up, in 64ths.
+constexpr int mean_rounding = 32;
+
+std::int16_t quantised_mean(int value, int step) {
+    int const size = ((value < 0 ? -value : value) + step * mean_rounding / 64) / step;
+    return static_cast<std::int16_t>(value < 0 ? -size : size);
+}
+
+std::int16_t times(std::int16_t level, std::uint16_t step) {
+    return static_cast<std::int16_t>(static_cast<std::uint16_t>(static_cast<std::uint16_t>(level) * unsigned{step}));
+}
+
+/// Details of all octaves of a plane, from its levels.
+Fours details_of(Fours const& levels, std::uint16_t base) {
+    Fours details;
+    for (std::size_t octave = 0; octave < octaves; ++octave) {
+        std::uint16_t const step = octave_step(base, octave);
+        std::size_t const first = first_four[octave];
+        std::transform(&levels[first], &levels[first] + 4 * places(octave), &details[first],
+                       [step](std::int16_t level) { return times(level, step); });
+    }
+    return details;
+}
+
+/// Returns the bits of the levels.
+int quantise(Fours const& details, std::uint16_t base, Fours& levels) {
+    int bits = 0;
+    for (std::size_t octave = 0; octave < octaves; ++octave) {
+        std::size_t const first = first_four[octave];
+        bits += quantise(&details[first], places(octave), DetailStep(octave_step(base, octave)), &levels[first]);
+    }
+    return bits;
+}
+
+int bits_of_level(std::int16_t level) {
+    int const size = std::abs(int{level});
+    return size == 0 ? 0 : std::min(size, int{most_bits_of_size}) + int{bits_of_any};
+}
+
+/// What details of chroma have from those of luma.
+std::int16_t shared(std::int16_t luma, std::int8_t share) {
+    return static_cast<std::int16_t>(times(luma, static_cast<std::uint16_t>(share)) >> 3);
+}
+
+/// Values of a plane from its mean and levels, which are overwritten. `base`: 0 where they are details.
+void synthesise(Fours& levels, std::uint16_t base, std::int16_t mean, std::int16_t* values) {
+    constexpr std::uint16_t one = 1;
+    std::int16_t const* means = &mean;
+    for (std::size_t octave = octaves; octave-- > 0;) {
+        std::int16_t* const fours = &levels[first_four[octave]];
+        std::int16_t* const out = octave == 0 ? values : fours;
+        haar_inverse(means, fours, base == 0 ? one : octave_step(base, octave), places(octave), out);
+        means = out;
+    }
+}
+
+/// The levels are overwritten.
+DisplayValues synthesise(HaarLevels& levels, std::uint8_t quality) {
+    DisplayValues out;
+    std::array<std::uint16_t, 3> bases;
+    std::array<std::int16_t, 3> means;
+    for (std::size_t plane = 0; plane < bases.size(); ++plane) {
+        bases[plane] = base_step(plane, quality);
+        means[plane] = times(levels.means[plane], bases[plane]);
+    }
+    if (levels.shares[0] != 0 || levels.shares[1] != 0) {
+        Fours const luma = details_of(levels.details[0], bases[0]);
+        for (std::size_t chroma = 0; chroma < levels.shares.size(); ++chroma) {
+            if (std::int8_t const share = levels.shares[chroma]; share != 0) {
+                Fours& details = levels.details[1 + chroma];
+                details = details_of(details, bases[1 + chroma]);
+                std::transform(details.begin(), details.end(), luma.begin(), details.begin(),
+                               [share](std::int16_t own, std::int16_t of_luma) {
+                                   return static_cast<std::int16_t>(own + shared(of_luma, share));
+                               });
+                bases[1 + chroma] = 0;
+            }
+        }
+    }
+    for (std::size_t plane = 0; plane < bases.size(); ++plane) {
+        synthesise(levels.details[plane], bases[plane], means[plane], out.planes[plane].data());
+    }
+    return out;
+}
+
+} // namespace
+
+int code(DisplayValues const& values, std::uint8_t quality, int most, HaarCode& out) {
+    int bits = 0;
+    for (std::size_t plane = 0; plane < values.planes.size(); ++plane) {
+        std::uint16_t const base = base_step(plane, quality);
+        Fours& details = out.values[plane];
+        Fours& levels = out.levels.details[plane];
+        std::int16_t const* fours = values.planes[plane].data();
+        std::int16_t mean = 0;
+        int const bits_before = bits;
+        for (std::size_t octave = 0; octave < octaves; ++octave) {
+            std::size_t const first = first_four[octave];
+            std::int16_t* const means = octave + 1 < octaves ? &details[first_four[octave + 1]] : &mean;
+            bits += haar_forward(fours, places(octave), DetailStep(octave_step(base, octave)), means, &details[first],
+                                 &levels[first]);
+            if (bits > most) {
+                return bits;
+            }
+            fours = means;
+        }
+        out.bits[plane] = bits - bits_before;
+        out.levels.means[plane] = quantised_mean(mean, base);
+        bits += bits_of_level(out.levels.means[plane]);
+    }
+    out.levels.shares = {};
+    return bits;
+}
+
+namespace {
+
+/// Least squares: how many eighths of luma, as it will be read, the details of chroma have. Each counts as much as it
+/// does in the picture.
+int fitted_share(Fours const& luma, Fours const& chroma) {
+    float products = 0, squares = 0;
+    for (std::size_t octave = 0; octave < octaves; ++octave) {
+        // Below 1.5e9: details of a place have at most the squares of its samples, 64 times 4080^2 together; rounding
+        // adds at most 349 to each of 192 of luma.
+        std::int32_t product = 0, square = 0;
+        for (std::size_t i = first_four[octave]; i < first_four[octave] + 4 * places(octave); ++i) {
+            product += luma[i] * chroma[i];
+            square += luma[i] * luma[i];
+        }
+        auto const weight = static_cast<float>(1u << (2 * octave));
+        products += weight * static_cast<float>(product);
+        squares += weight * static_cast<float>(square);
+    }
+    constexpr float eighths = 8;
+    return squares > 0 ? static_cast<int>(std::lround(std::clamp(eighths * products / squares, -8.0f, 7.0f))) : 0;
+}
+
+} // namespace
+
+void share_luma(std::uint8_t quality, HaarCode& code) {
+    HaarLevels& levels = code.levels;
+    if (code.bits[0] == 0 || code.bits[1] + code.bits[2] == 0) {
+        return; // nothing to share, or nobody to share it
+    }
+    Fours const luma = details_of(levels.details[0], base_step(0, quality));
+    for (std::size_t chroma = 0; chroma < levels.shares.size(); ++chroma) {
+        std::size_t const plane = 1 + chroma;
+        if (code.bits[plane] == 0) {
+            continue;
+        }
+        auto const share = static_cast<std::int8_t>(fitted_share(luma, code.values[plane]));
+        if (share == 0) {
+            continue;
+        }
+        Fours tried, tried_levels;
+        std::transform(code.values[plane].begin(), code.values[plane].end(), luma.begin(), tried.begin(),
+                       [share](std::int16_t own, std::int16_t of_luma) {
+                           return static_cast<std::int16_t>(own - shared(of_luma, share));
+                       });
+        if (quantise(tried, base_step(plane, quality), tried_levels) < code.bits[plane]) {
+            levels.details[plane] = tried_levels;
+            levels.shares[chroma] = share;
+        }
+    }
+}
+
+DisplayValues dequantise(HaarLevels const& levels, std::uint8_t quality) {
+    HaarLevels copy = levels;
+    return synthesise(copy, quality);
+}
+
+namespace {
+
+TokenWriter writer_of(HaarWriter::Memory& memory, std::size_t part, std::size_t framelets) {
+    std::size_t const planes = part % 2 == 0 ? 1 : 2;
+    std::size_t const details = planes * (part < 2 ? coarse_details : fine_details);
+    memory.tokens[part].resize(most_token_bytes(details) * framelets);
+    return TokenWriter(memory.tokens[part].data());
+}
+
+} // namespace
+
+HaarWriter::HaarWriter(Memory& memory, std::size_t count)
+    : memory_(memory), count_(count), writers_{writer_of(memory, 0, count), writer_of(memory, 1, count),
+                                               writer_of(memory, 2, count), writer_of(memory, 3, count)} {
+    memory.shares.resize(share_bytes * count);
+    memory.means.resize(mean_bytes * count);
+    memory.escapes.resize(most_escape_bytes(3 * (coarse_details + fine_details)) * count);
+    escapes_ = memory.escapes.data();
+}
+
+void HaarWriter::put_mean(std::size_t plane, std::int16_t level) {
+    auto const code = zigzag(level);
+    std::size_t const i = plane * count_ + written_;
+    memory_.means[i] = static_cast<std::uint8_t>(code);
+    memory_.means[3 * count_ + i] = static_cast<std::uint8_t>(code >> 8);
+}
+
+void HaarWriter::write(HaarLevels const& levels) {
+    memory_.shares[written_] =
+        static_cast<std::uint8_t>((levels.shares[0] & 15) | static_cast<std::uint8_t>(levels.shares[1]) << 4);
+    for (std::size_t plane = 0; plane < 3; ++plane) {
+        put_mean(plane, levels.means[plane]);
+        std::int16_t const* const fours = levels.details[plane].data();
+        escapes_ = writers_[token_part(plane, false)].write(fours, first_four[0] / 4, escapes_);
+        escapes_ = writers_[token_part(plane, true)].write(fours + first_four[0], places(0), escapes_);
+    }
+    ++written_;
+}
+
+std::int16_t HaarReader::mean(std::size_t plane) const {
+    std::size_t const i = plane * (means_.size() / mean_bytes) + read_;
+    return from_zigzag(static_cast<std::uint16_t>(means_[i] | means_[means_.size() / 2 + i] << 8));
+}
+
+DisplayValues HaarReader::read(std::uint8_t quality) {
+    HaarLevels levels;
+    levels.details = {};
+    for (std::size_t plane = 0; plane < levels.details.size(); ++plane) {
+        std::int16_t* const fours = levels.details[plane].data();
+        readers_[token_part(plane, false)].read(fours, first_four[0] / 4, escapes_);
+        readers_[token_part(plane, true)].read(fours + first_four[0], places(0), escapes_);
+        levels.means[plane] = mean(plane);
+    }
+    unsigned const shares = shares_[read_];
+    ++read_;
+    auto const share = [](unsigned nibble) { return static_cast<std::int8_t>(nibble < 8 ? nibble : nibble - 16); };
+    levels.shares = {share(shares & 15), share(shares >> 4)};
+    return synthesise(levels, quality);
+}
+
+bool HaarReader::is_at_end() const {
+    return escapes_.left() == 0 && std::ranges::all_of(readers_, [](TokenReader const& r) { return r.is_at_end(); });
+}
+
+} // namespace framelet

@@ -1,0 +1,64 @@
+#include "protocol/codec/color/prediction.h"
+
+#include <limits>
+
+namespace framelet {
+namespace {
+
+/// What saying so takes, bits.
+constexpr int bits_of_kind = 2, bits_of_vector = 12;
+/// Below this, looking further gains nothing.
+constexpr int few_bits = 70;
+
+/// A way of coding a framelet.
+struct Way {
+    Prediction prediction;
+    HaarCode code; ///< of what is left
+    int bits = 0; ///< expected; at least so many
+};
+
+} // namespace
+
+HaarLevels predict(HeldPicture const& held, DisplayFramelet const& framelet, std::uint8_t quality, VectorSearch& search,
+                   Prediction& prediction) {
+    Way at_place, alone, moved;
+    at_place.prediction.kind = PredictionKind::same_place;
+    moved.prediction.kind = PredictionKind::moved;
+    Way* best = nullptr;
+    int least = std::numeric_limits<int>::max();
+    // The way that is likely the best one comes first: all others end where they take more.
+    auto const consider = [&](Way& way, DisplayValues const& values, int bits_beside) {
+        way.bits = code(values, quality, least - bits_beside, way.code) + bits_beside;
+        if (way.bits < least) {
+            best = &way;
+            least = way.bits;
+        }
+    };
+    auto const consider_from = [&](PictureVector vector, Way& way, int bits_beside) {
+        way.prediction.vector = vector;
+        held.predict(framelet.tile, vector, way.prediction.samples);
+        consider(way, difference(framelet, way.prediction.samples), bits_beside);
+    };
+    bool const may_have_moved = search.has_moved();
+    if (!may_have_moved) {
+        consider_from({}, at_place, bits_of_kind);
+    }
+    if (least > few_bits) {
+        PictureVector const vector = search.find(held, framelet);
+        if (vector != PictureVector{}) {
+            consider_from(vector, moved, bits_of_kind + bits_of_vector);
+        }
+        if (may_have_moved) {
+            consider_from({}, at_place, bits_of_kind);
+        }
+        if (least > few_bits) {
+            consider(alone, display_values(framelet), 0);
+        }
+        share_luma(quality, best->code);
+    }
+    search.note_moved(best == &moved);
+    prediction = best->prediction;
+    return best->code.levels;
+}
+
+} // namespace framelet

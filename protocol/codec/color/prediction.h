@@ -1,0 +1,27 @@
+// How a framelet with loss is coded beside what the viewer holds: on its own, as the difference to what lies at its
+// place, or to what lies elsewhere because it has moved. In: framelet, picture. Out: the cheapest way, and what is left
+// to code.
+#pragma once
+
+#include <cstdint>
+
+#include "protocol/codec/color/haar_planes.h"
+#include "protocol/codec/color/held_picture.h"
+#include "protocol/codec/color/vector_search.h"
+
+namespace framelet {
+
+/// As on the wire.
+enum class PredictionKind : std::uint8_t { none = 0, same_place = 1, moved = 2 };
+
+struct Prediction {
+    PredictionKind kind = PredictionKind::none;
+    PictureVector vector; ///< zero where it has not moved
+    DisplayFramelet samples; ///< predicted; only where there is a prediction
+};
+
+/// Levels of what is left of the framelet at this quality, 1..coarsest_quality.
+HaarLevels predict(HeldPicture const& held, DisplayFramelet const& framelet, std::uint8_t quality, VectorSearch& search,
+                   Prediction& prediction);
+
+} // namespace framelet

@@ -1,0 +1,211 @@
+#include "protocol/codec/color/vector_search.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
+
+#include "protocol/codec/entropy/morton_rows.h"
+
+namespace framelet {
+namespace {
+
+/// Half pixels.
+constexpr int first_step = 16;
+/// Where a vector that was found before leaves no more than this of a framelet, 8 of a sample, the search begins near
+/// it.
+constexpr int hardly_any = 2048, near_step = 4;
+constexpr int farthest = 127;
+/// What a vector must gain for each half pixel that it is longer: of two that are as good, the shorter one.
+constexpr int length_cost = 4;
+
+/// A row of samples.
+using Row = PointRow;
+using Rows = std::array<Row, framelet_side>;
+
+Rows rows_of(SamplePlane const& samples) {
+    Rows rows;
+    to_rows(samples.data(), reinterpret_cast<std::uint8_t*>(rows.data()), framelet_side);
+    return rows;
+}
+
+/// Values from the picture near the middles of a row of samples. `Lane` holds a row of those that a sample covers.
+template <typename Lane>
+Row row_at(std::uint8_t const* held) {
+    constexpr std::size_t pitch = sizeof(Lane);
+    using Lanes [[gnu::vector_size(framelet_side * pitch)]] = Lane;
+    Lanes values;
+    std::memcpy(&values, held, sizeof values);
+    return __builtin_convertvector(values >> (8 * (pitch / 2)), Row);
+}
+
+Row doubled_row_at(std::uint8_t const* held) {
+    using Half [[gnu::vector_size(framelet_side / 2)]] = std::uint8_t;
+    Half half;
+    std::memcpy(&half, held, sizeof half);
+    return __builtin_shufflevector(half, half, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7);
+}
+
+using Sums [[gnu::vector_size(framelet_side)]] = std::uint64_t;
+
+/// Sums of the differences in each half of a row.
+Sums differences(Row const& a, Row const& b) {
+#ifdef __SSE2__
+    return reinterpret_cast<Sums>(_mm_sad_epu8(reinterpret_cast<__m128i>(a), reinterpret_cast<__m128i>(b)));
+#else
+    Row const apart = a > b ? a - b : b - a;
+    Sums sums{};
+    for (std::size_t x = 0; x < framelet_side; ++x) {
+        sums[x / 8] += apart[x];
+    }
+    return sums;
+#endif
+}
+
+/// How a framelet's samples lie in the picture: `twice_pitch` rows of it are two rows of samples.
+template <std::size_t twice, Row (*at)(std::uint8_t const*)>
+struct Reading {
+    static constexpr std::size_t twice_pitch = twice;
+    static Row row_at(std::uint8_t const* held) { return at(held); }
+};
+
+/// Sum of differences of rows `apart` from each other, or any number above `most` where it is above that.
+template <typename Reading, std::size_t apart>
+int difference(Rows const& rows, SearchPicture::Source const& from, int most) {
+    constexpr std::size_t rows_at_a_time = 4;
+    std::uint8_t const* const first = from.first + Reading::twice_pitch / 4 * from.stride;
+    int sum = 0;
+    for (std::size_t y = 0; y < framelet_side && sum <= most;) {
+        Sums sums{};
+        for (std::size_t i = 0; i < rows_at_a_time; ++i, y += apart) {
+            sums += differences(rows[y], Reading::row_at(first + y * Reading::twice_pitch / 2 * from.stride));
+        }
+        sum += static_cast<int>(sums[0] + sums[1]);
+    }
+    return sum;
+}
+
+/// The search for one framelet.
+template <typename Reading>
+class Search {
+public:
+    Search(HeldPicture const& held, Rows const& rows, HeldPicture::Place const& place)
+        : held_(held), rows_(rows), place_(place) {}
+
+    PictureVector best() const { return best_; }
+    bool leaves_hardly_any() const { return least_ <= hardly_any; }
+
+    /// These rows are compared from now on: begins anew with the best one so far.
+    template <std::size_t apart>
+    void compare_rows() {
+        least_ = std::numeric_limits<int>::max();
+        least_ = cost<apart>(best_);
+    }
+
+    template <std::size_t apart>
+    void consider(int x, int y) {
+        PictureVector const vector{static_cast<std::int8_t>(std::clamp(x, -farthest, farthest)),
+                                   static_cast<std::int8_t>(std::clamp(y, -farthest, farthest))};
+        if (int const there = cost<apart>(vector); there < least_) {
+            least_ = there;
+            best_ = vector;
+        }
+    }
+
+    template <std::size_t apart>
+    void consider_around(int step) {
+        PictureVector const centre = best_;
+        for (int y = -step; y <= step; y += step) {
+            for (int x = -step; x <= step; x += step) {
+                if (x != 0 || y != 0) {
+                    consider<apart>(centre.x + x, centre.y + y);
+                }
+            }
+        }
+    }
+
+private:
+    template <std::size_t apart>
+    int cost(PictureVector vector) const {
+        int const of_length = length_cost * (std::abs(int{vector.x}) + std::abs(int{vector.y}));
+        constexpr int by = static_cast<int>(apart);
+        return by * difference<Reading, apart>(rows_, held_.searched(place_, vector), (least_ - of_length) / by) +
+               of_length;
+    }
+
+    HeldPicture const& held_;
+    Rows const& rows_;
+    HeldPicture::Place const place_;
+    PictureVector best_;
+    int least_ = std::numeric_limits<int>::max();
+};
+
+/// What was found before, and steps from there down to `last_step`.
+template <typename Reading, std::size_t apart>
+void search_in_steps(Search<Reading>& search, std::span<PictureVector const> found, int last_step) {
+    search.template compare_rows<apart>();
+    for (PictureVector const vector : found) {
+        search.template consider<apart>(vector.x, vector.y);
+    }
+    for (int step = search.leaves_hardly_any() ? near_step : first_step; step >= last_step; step /= 2) {
+        search.template consider_around<apart>(step);
+    }
+}
+
+template <typename Reading>
+PictureVector search_coarsely(HeldPicture const& held, Rows const& rows, HeldPicture::Place const& place,
+                              std::span<PictureVector const> found) {
+    Search<Reading> search(held, rows, place);
+    search_in_steps<Reading, 2>(search, found, SearchPicture::coarse);
+    return search.best();
+}
+
+template <typename Reading>
+PictureVector search_finely(HeldPicture const& held, Rows const& rows, HeldPicture::Place const& place,
+                            std::span<PictureVector const> found) {
+    Search<Reading> search(held, rows, place);
+    search_in_steps<Reading, 4>(search, found, near_step);
+    search.template compare_rows<2>();
+    search.template consider_around<2>(2);
+    search.template compare_rows<1>();
+    search.template consider_around<1>(1);
+    return search.best();
+}
+
+PictureVector search(HeldPicture const& held, Rows const& rows, HeldPicture::Place const& place,
+                     std::span<PictureVector const> found) {
+    switch (place.pitch()) {
+    case -1:
+        return search_finely<Reading<1, doubled_row_at>>(held, rows, place, found);
+    case 0:
+        return search_finely<Reading<2, row_at<std::uint8_t>>>(held, rows, place, found);
+    case 1:
+        return search_finely<Reading<4, row_at<std::uint16_t>>>(held, rows, place, found);
+    case 2:
+        return search_finely<Reading<8, row_at<std::uint32_t>>>(held, rows, place, found);
+    case 3: // of the coarse points, as all that is coarser
+        return search_coarsely<Reading<4, row_at<std::uint16_t>>>(held, rows, place, found);
+    default:
+        return search_coarsely<Reading<8, row_at<std::uint32_t>>>(held, rows, place, found);
+    }
+}
+
+} // namespace
+
+PictureVector VectorSearch::find(HeldPicture const& held, DisplayFramelet const& framelet) {
+    if (!held.is_searched()) {
+        return {};
+    }
+    PictureVector const best = search(held, rows_of(framelet.green), held.place(framelet.tile), found_);
+    if (std::find(found_.begin(), found_.end(), best) == found_.end()) {
+        found_[next_] = best;
+        next_ = (next_ + 1) % found_.size();
+    }
+    return best;
+}
+
+} // namespace framelet

@@ -1,0 +1,133 @@
+#include "protocol/codec/zstd_frames.h"
+
+#include <array>
+#include <cstring>
+
+#include "common/error.h"
+
+namespace framelet {
+namespace {
+
+constexpr int compression_level = 1;
+/// Shorter repetitions, bytes, are left to the entropy stage: in differences of neighbours they are chance.
+constexpr int least_match = 7;
+/// Parts that are fewer bytes together share their tables: to write some for each takes more than these save.
+constexpr std::size_t few_bytes = 10'000;
+constexpr std::size_t length_bytes = 4;
+/// First bytes of a zstd frame (RFC 8878); other kinds of frames that the library knows are not part of the format.
+constexpr std::array<std::uint8_t, 4> zstd_magic{0x28, 0xb5, 0x2f, 0xfd};
+
+void put_length(std::byte* out, std::size_t length) {
+    for (std::size_t i = 0; i < length_bytes; ++i) {
+        out[i] = static_cast<std::byte>(length >> (8 * i));
+    }
+}
+
+std::size_t get_length(std::byte const* in) {
+    std::size_t length = 0;
+    for (std::size_t i = 0; i < length_bytes; ++i) {
+        length |= std::to_integer<std::size_t>(in[i]) << (8 * i);
+    }
+    return length;
+}
+
+} // namespace
+
+Bytes join_frames(std::span<ByteView const> frames) {
+    std::size_t total = frames.size() * length_bytes;
+    for (ByteView const frame : frames) {
+        total += frame.size();
+    }
+    Bytes payload;
+    payload.reserve(total);
+    payload.resize(frames.size() * length_bytes);
+    for (std::size_t group = 0; group < frames.size(); ++group) {
+        put_length(&payload[group * length_bytes], frames[group].size());
+        payload.insert(payload.end(), frames[group].begin(), frames[group].end());
+    }
+    return payload;
+}
+
+std::vector<ByteView> split_frames(ByteView payload, std::size_t groups) {
+    if (payload.size() < groups * length_bytes) {
+        throw ProtocolError("a batch's payload is too short for its tiles");
+    }
+    std::vector<ByteView> frames;
+    ByteView rest = payload.subspan(groups * length_bytes);
+    for (std::size_t group = 0; group < groups; ++group) {
+        std::size_t const length = get_length(&payload[group * length_bytes]);
+        if (length > rest.size()) {
+            throw ProtocolError("a batch's payload is shorter than its groups");
+        }
+        frames.push_back(rest.first(length));
+        rest = rest.subspan(length);
+    }
+    if (!rest.empty()) {
+        throw ProtocolError("a batch's payload is longer than its groups");
+    }
+    return frames;
+}
+
+void check_frame(ByteView frame, std::size_t least, std::size_t most) {
+    if (frame.size() < zstd_magic.size() || std::memcmp(frame.data(), zstd_magic.data(), zstd_magic.size()) != 0) {
+        throw ProtocolError("a group of a batch is not a zstd frame");
+    }
+    // Where the size is unknown or the header damaged this is near 2^64.
+    unsigned long long const size = ZSTD_getFrameContentSize(frame.data(), frame.size());
+    if (size < least || size > most) {
+        throw ProtocolError("a group of a batch does not hold what its tiles need");
+    }
+    if (ZSTD_findFrameCompressedSize(frame.data(), frame.size()) != frame.size()) {
+        throw ProtocolError("a group of a batch is not exactly one zstd frame");
+    }
+}
+
+std::size_t FrameCodec::compress(std::span<std::span<std::uint8_t const> const> parts, std::span<std::byte> out) {
+    if (!compressor_) {
+        compressor_.reset(ZSTD_createCCtx());
+        FRAMELET_CHECK(compressor_ != nullptr);
+        ZSTD_CCtx_setParameter(compressor_.get(), ZSTD_c_compressionLevel, compression_level);
+        ZSTD_CCtx_setParameter(compressor_.get(), ZSTD_c_minMatch, least_match);
+    }
+    if (parts.size() == 1) { // in one call it copies nothing
+        std::size_t const written =
+            ZSTD_compress2(compressor_.get(), out.data(), out.size(), parts[0].data(), parts[0].size());
+        FRAMELET_CHECK(!ZSTD_isError(written));
+        return written;
+    }
+    std::size_t size = 0;
+    for (auto const part : parts) {
+        size += part.size();
+    }
+    ZSTD_CCtx_reset(compressor_.get(), ZSTD_reset_session_only);
+    ZSTD_CCtx_setPledgedSrcSize(compressor_.get(), size);
+    ZSTD_EndDirective const between = size < few_bytes ? ZSTD_e_continue : ZSTD_e_flush;
+    ZSTD_outBuffer to{out.data(), out.size(), 0};
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        ZSTD_inBuffer from{parts[i].data(), parts[i].size(), 0};
+        std::size_t const left =
+            ZSTD_compressStream2(compressor_.get(), &to, &from, i + 1 == parts.size() ? ZSTD_e_end : between);
+        FRAMELET_CHECK(left == 0);
+    }
+    return to.pos;
+}
+
+std::span<std::uint8_t const> FrameCodec::decompress(ByteView frame) {
+    if (!decompressor_) {
+        decompressor_.reset(ZSTD_createDCtx());
+        FRAMELET_CHECK(decompressor_ != nullptr);
+    }
+    std::size_t const size = ZSTD_getFrameContentSize(frame.data(), frame.size());
+    content_.resize(size);
+    if (ZSTD_decompressDCtx(decompressor_.get(), content_.data(), size, frame.data(), frame.size()) != size) {
+        throw ProtocolError("a group of a batch cannot be decompressed");
+    }
+    return content_;
+}
+
+std::size_t most_frame_bytes(std::size_t content_bytes) {
+    constexpr std::size_t three_blocks = 64; // more than one pass needs
+    return ZSTD_compressBound(content_bytes) + three_blocks;
+}
+
+} // namespace framelet

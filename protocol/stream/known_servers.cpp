@@ -1,0 +1,91 @@
+#include "protocol/stream/known_servers.h"
+
+#include <fstream>
+#include <optional>
+#include <sstream>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include "protocol/stream/user_folders.h"
+
+namespace framelet {
+namespace {
+
+/// In place of a fingerprint.
+constexpr char const* vouched = "authorities";
+
+std::optional<std::string> find(std::filesystem::path const& file, std::string const& server) {
+    std::ifstream lines(file);
+    for (std::string line; std::getline(lines, line);) {
+        std::istringstream words(line);
+        std::string name, known;
+        if (words >> name >> known && name == server) {
+            return known;
+        }
+    }
+    return std::nullopt;
+}
+
+/// As editors leave it that end no last line.
+bool ends_amid_a_line(std::filesystem::path const& file) {
+    std::ifstream bytes(file, std::ios::binary | std::ios::ate);
+    if (!bytes || bytes.tellg() <= 0) {
+        return false;
+    }
+    bytes.seekg(-1, std::ios::end);
+    return bytes.get() != '\n';
+}
+
+/// False where it could not be written.
+bool add(std::filesystem::path const& file, std::string const& server, std::string const& known) {
+    int const descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
+    std::string const line = (ends_amid_a_line(file) ? "\n" : "") + server + " " + known + "\n";
+    // At once: other viewers may add theirs.
+    bool const written =
+        descriptor >= 0 && ::write(descriptor, line.data(), line.size()) == static_cast<ssize_t>(line.size());
+    ::close(descriptor);
+    return written;
+}
+
+} // namespace
+
+std::filesystem::path known_servers_file() {
+    for (std::filesystem::path const& folder : state_folders()) {
+        if (make_private_folder(folder)) {
+            return folder / "known_servers";
+        }
+    }
+    return {};
+}
+
+CertificateVerdict judge_certificate(std::filesystem::path const& file, std::string const& server,
+                                     std::string const& fingerprint) {
+    std::optional<std::string> const known = find(file, server);
+    if (fingerprint.empty()) {
+        if (!known) {
+            add(file, server, vouched);
+        }
+        return {true, ""};
+    }
+    if (known == fingerprint) {
+        return {true, ""};
+    }
+    if (known) {
+        return {false, "the certificate of the server at " + server +
+                           " is not the one that it had before: somebody may be between. If you know that it has a new "
+                           "one, with the SHA-256 fingerprint " +
+                           fingerprint + ", remove the line of " + server + " from '" + file.string() + "'"};
+    }
+    if (!add(file, server, fingerprint)) {
+        return {false, "no authority vouches for the certificate of the server at " + server +
+                           ", and there is no file to remember it in ('" + file.string() +
+                           "' cannot be written): name the certificate with --tls-ca"};
+    }
+    return {true, "the certificate of the server at " + server +
+                      " is trusted from now on, though no authority vouches for it: compare its SHA-256 fingerprint "
+                      "with the one that the server printed: " +
+                      fingerprint};
+}
+
+} // namespace framelet

@@ -1,0 +1,58 @@
+#include "protocol/stream/token.h"
+
+#include <array>
+#include <fstream>
+
+#include <openssl/crypto.h>
+#include <openssl/rand.h>
+
+#include "common/error.h"
+#include "protocol/messages/text.h"
+
+namespace framelet {
+
+bool same_token(std::string_view left, std::string_view right) {
+    return left.size() == right.size() && CRYPTO_memcmp(left.data(), right.data(), left.size()) == 0;
+}
+
+std::string make_token() {
+    std::array<unsigned char, 16> random{};
+    FRAMELET_CHECK(RAND_bytes(random.data(), static_cast<int>(random.size())) == 1);
+    std::string token;
+    for (unsigned char const byte : random) {
+        token += "0123456789abcdef"[byte >> 4];
+        token += "0123456789abcdef"[byte & 15];
+    }
+    return token;
+}
+
+std::string read_token_file(std::filesystem::path const& file) {
+    std::ifstream stream(file, std::ios::binary);
+    // A little more than allowed is read, so that a file that never ends (a device) is refused as well.
+    std::string text(max_token_bytes + 256, '\0');
+    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<std::size_t>(stream.gcount()));
+    if (text.empty() && !stream.eof()) {
+        throw InputError("token file '" + file.string() + "' cannot be read");
+    }
+    std::string line = text.substr(0, text.find('\n'));
+    line.erase(line.find_last_not_of(" \t\r") + 1);
+    line.erase(0, line.find_first_not_of(" \t"));
+    if (line.empty()) {
+        throw InputError("token file '" + file.string() + "' has an empty first line; put the token there");
+    }
+    if (line.size() < min_token_bytes) {
+        throw InputError("token file '" + file.string() + "': the first line is shorter than " +
+                         std::to_string(min_token_bytes) +
+                         " characters and could be guessed: put a line there that framelet-server --make-token prints");
+    }
+    if (line.size() > max_token_bytes) {
+        throw InputError("token file '" + file.string() + "': the first line is longer than 4096 bytes");
+    }
+    if (!is_one_line(line)) {
+        throw InputError("token file '" + file.string() + "': the first line is not UTF-8 text");
+    }
+    return line;
+}
+
+} // namespace framelet
