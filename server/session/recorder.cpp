@@ -8,7 +8,7 @@
 
 #include "common/error.h"
 #include "common/files/picture_writer.h"
-#include "server/schedule/field_picture.h"
+#include "server/sampling/field/field_picture.h"
 
 namespace framelet {
 namespace {

@@ -11,7 +11,7 @@
 #include <mutex>
 #include <vector>
 
-#include "server/schedule/render_rate.h"
+#include "server/sampling/plan/render_rate.h"
 #include "server/session/recorder.h"
 #include "server/session/scene_clock.h"
 #include "server/session/session.h"

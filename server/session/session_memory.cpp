@@ -1,8 +1,8 @@
 #include "server/session/session_memory.h"
 
 #include "protocol/codec/color/held_picture.h"
-#include "server/flow/lossy_places.h"
-#include "server/schedule/adaptive_refresh.h"
+#include "server/sampling/plan/adaptive_refresh.h"
+#include "server/stream/flow/lossy_places.h"
 
 namespace framelet {
 namespace {

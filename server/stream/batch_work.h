@@ -7,10 +7,10 @@
 
 #include "common/per_thread.h"
 #include "protocol/codec/batch_codec.h"
-#include "server/flow/lossy_places.h"
-#include "server/layers/shape_feed.h"
 #include "server/render/probe_renderer.h"
-#include "server/schedule/adaptive_refresh.h"
+#include "server/sampling/plan/adaptive_refresh.h"
+#include "server/stream/flow/lossy_places.h"
+#include "server/stream/layers/shape_feed.h"
 #include "server/stream/posed_scene.h"
 #include "server/stream/viewer_stream.h"
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-#include "server/schedule/adaptive_refresh.h"
+#include "server/sampling/plan/adaptive_refresh.h"
 
 namespace framelet {
 

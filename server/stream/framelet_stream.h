@@ -4,10 +4,10 @@
 
 #include <array>
 
-#include "server/flow/link_estimate.h"
-#include "server/flow/quality_choice.h"
 #include "server/stream/batch_work.h"
 #include "server/stream/camera_forecast.h"
+#include "server/stream/flow/link_estimate.h"
+#include "server/stream/flow/quality_choice.h"
 #include "server/stream/moment_choice.h"
 #include "server/stream/viewer_stream.h"
 

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "server/schedule/view_state.h"
+#include "server/sampling/plan/view_state.h"
 
 namespace framelet {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "server/schedule/adaptive_refresh.h"
+#include "server/sampling/plan/adaptive_refresh.h"
 
 namespace framelet::bench {
 

@@ -4,7 +4,7 @@
 
 #include "common/color.h"
 #include "server/render/probe_renderer.h"
-#include "server/schedule/adaptive_refresh.h"
+#include "server/sampling/plan/adaptive_refresh.h"
 #include "tests/evaluation/stopwatch.h"
 
 namespace framelet::bench {

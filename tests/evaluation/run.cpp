@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "client/making_time.h"
-#include "server/schedule/tiling.h"
+#include "server/sampling/field/tiling.h"
 
 namespace framelet::bench {
 namespace {

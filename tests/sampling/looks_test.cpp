@@ -1,4 +1,4 @@
-#include "server/sampling/looks.h"
+#include "server/sampling/plan/looks.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "server/sampling/mirror.h"
+#include "server/sampling/mirror/mirror.h"
 
 #include <limits>
 #include <set>
@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "common/sample_worth.h"
-#include "server/sampling/mirror_checks.h"
+#include "server/sampling/mirror/mirror_checks.h"
 #include "tests/sampling/rendered_planes.h"
 
 namespace framelet {

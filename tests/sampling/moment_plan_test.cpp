@@ -1,10 +1,10 @@
-#include "server/sampling/moment_plan.h"
+#include "server/sampling/plan/moment_plan.h"
 
 #include <set>
 
 #include <gtest/gtest.h>
 
-#include "server/sampling/mirror_checks.h"
+#include "server/sampling/mirror/mirror_checks.h"
 #include "tests/sampling/rendered_planes.h"
 
 namespace framelet {

@@ -1,4 +1,4 @@
-#include "server/sampling/piece.h"
+#include "server/sampling/mirror/piece.h"
 
 #include <limits>
 

@@ -7,8 +7,8 @@
 
 #include "common/framelet.h"
 #include "common/morton.h"
-#include "server/layers/layer_fit.h"
-#include "server/sampling/mirror.h"
+#include "server/sampling/mirror/mirror.h"
+#include "server/stream/layers/layer_fit.h"
 
 namespace framelet {
 

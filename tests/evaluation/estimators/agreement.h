@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "server/response/error_estimators.h"
 #include "tests/evaluation/estimators/observations.h"
+#include "tests/evaluation/methods/response/error_estimators.h"
 
 namespace framelet::bench {
 

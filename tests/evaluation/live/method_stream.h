@@ -7,7 +7,7 @@
 #include <mutex>
 #include <vector>
 
-#include "server/schedule/view_state.h"
+#include "server/sampling/plan/view_state.h"
 #include "server/stream/viewer_stream.h"
 #include "tests/evaluation/method.h"
 

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "protocol/codec/batch_codec.h"
-#include "server/layers/shape_feed.h"
+#include "server/stream/layers/shape_feed.h"
 #include "tests/evaluation/methods/h264_frames.h"
 #include "tests/evaluation/methods/methods.h"
 #include "tests/evaluation/methods/warp_viewer.h"

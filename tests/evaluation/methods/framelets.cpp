@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "protocol/codec/batch_codec.h"
-#include "server/schedule/render_rate.h"
+#include "server/sampling/plan/render_rate.h"
 #include "server/stream/framelet_stream.h"
 #include "tests/evaluation/methods/methods.h"
 #include "tests/evaluation/methods/warp_viewer.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "protocol/codec/batch_codec.h"
-#include "server/layers/shape_feed.h"
+#include "server/stream/layers/shape_feed.h"
 #include "tests/evaluation/methods/frame_forecast.h"
 #include "tests/evaluation/methods/methods.h"
 #include "tests/evaluation/methods/true_gain.h"

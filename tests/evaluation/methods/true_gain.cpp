@@ -6,7 +6,7 @@
 #include <tbb/parallel_for.h>
 
 #include "common/color.h"
-#include "server/schedule/tiling.h"
+#include "server/sampling/field/tiling.h"
 #include "tests/evaluation/methods/warp_viewer.h"
 #include "tests/evaluation/reference.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/image.h"
-#include "server/layers/shape_feed.h"
+#include "server/stream/layers/shape_feed.h"
 #include "tests/evaluation/bench_scene.h"
 #include "tests/evaluation/cost_table.h"
 

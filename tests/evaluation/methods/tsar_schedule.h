@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "server/response/density_field.h"
-#include "server/schedule/tiling.h"
+#include "server/sampling/field/tiling.h"
+#include "tests/evaluation/methods/response/density_field.h"
 
 namespace framelet::bench {
 

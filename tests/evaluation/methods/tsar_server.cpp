@@ -8,7 +8,7 @@
 #include "common/color.h"
 #include "common/error.h"
 #include "server/render/framelet_renderer.h"
-#include "server/response/depth_first_order.h"
+#include "tests/evaluation/methods/response/depth_first_order.h"
 
 namespace framelet::bench {
 namespace {

@@ -4,9 +4,9 @@
 #include <unordered_map>
 
 #include "protocol/codec/batch_codec.h"
-#include "server/response/density_response.h"
-#include "server/response/haar_error.h"
 #include "tests/evaluation/method.h"
+#include "tests/evaluation/methods/response/density_response.h"
+#include "tests/evaluation/methods/response/haar_error.h"
 #include "tests/evaluation/methods/tsar_schedule.h"
 
 namespace framelet::bench {

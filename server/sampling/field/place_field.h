@@ -1,0 +1,112 @@
+// What the server knows of every place of one viewer's picture, and what the viewer holds there: a field over the image
+// plane in Morton order. In: time and camera as they go on, and what was rendered. Out: the error that is shown.
+#pragma once
+
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "server/render/probe.h"
+#include "server/render/rays_per_sample.h"
+#include "server/sampling/field/density_tiling.h"
+#include "server/sampling/model/place_model.h"
+#include "server/sampling/model/sampling_choice.h"
+
+namespace framelet {
+
+inline constexpr double never = -std::numeric_limits<double>::infinity();
+
+inline constexpr std::size_t probes_per_place = 16;
+
+/// Drift of one pixel of displacement: detail of a pixel is elsewhere after two.
+inline constexpr float drift_per_pixel = 0.5f;
+
+/// What has been taken to be rendered and is not learnt yet.
+struct TakenSamples {
+    int level = -1; ///< -1: nothing
+    float drift = 0; ///< since it was taken
+    double when = never; ///< seconds
+};
+
+struct Place {
+    PlaceModel model = unknown_place();
+    int level = -1; ///< of what the viewer holds; -1: nothing
+    float drift = 0; ///< since that was rendered
+    TakenSamples taken;
+    double rendered = never; ///< seconds
+    float left = 0; ///< mean squared error that the finest samples leave, by their last rendering alone
+    double supersampled = never; ///< when the viewer got it with four rays a sample, seconds
+    double changed = never; ///< when it was last seen to be different
+    double doubted = never; ///< when it was last rendered with nothing to compare with, and might have changed
+    double checked = never; ///< when it was last rendered or probed
+    double asked = never; ///< the same, learnt or not
+    bool settled = true; ///< false from a change that was seen until two renderings are the same
+    double inspected = never; ///< when all its pixels were last rendered
+    float inverse_depth = 0; ///< mean, 1/metres
+    float arriving = 0; ///< the farthest way, pixels, by which the camera's last step brought something here
+    float speed = 0; ///< of the camera's motion here, pixels a second, when `model.motion` was learnt
+    std::array<Probe, probes_per_place> probes{};
+    std::size_t probe_count = 0;
+    std::array<float, probes_per_place> seen{}; ///< what the probes last were: their luma
+};
+
+class PlaceField {
+public:
+    PlaceField() : PlaceField(ImagePlane()) {}
+    explicit PlaceField(ImagePlane plane);
+
+    ImagePlane const& plane() const { return plane_; }
+    int depth() const { return depth_; }
+    /// Levels that tiles of this plane can have: [least_level(), sampling_levels).
+    int least_level() const { return plane_.min_depth() - plane_.pixel_depth() + pixel_level; }
+    int level_of(int tile_depth) const { return tile_depth - plane_.pixel_depth() + pixel_level; }
+    int depth_of(int level) const { return level + plane_.pixel_depth() - pixel_level; }
+
+    /// Morton indices of the places of which something is in the viewport.
+    std::span<std::uint32_t const> visible() const { return visible_; }
+    Place& operator[](std::uint32_t index) { return places_[index]; }
+    Place const& operator[](std::uint32_t index) const { return places_[index]; }
+    std::size_t size() const { return places_.size(); }
+    /// Pixels along a side, and of the part inside the viewport.
+    int place_side() const { return plane_.side() >> depth_; }
+    PixelRect rect_of(std::uint32_t index) const;
+    /// The place alone, of tiles of a depth that is no less than the field's.
+    Patch patch_of(std::uint32_t index, int tile_depth) const { return {{(1u << (2 * depth_)) + index}, tile_depth}; }
+    float pixels_of(std::uint32_t index) const { return pixels_[index]; }
+
+    /// Indices of the places under a node.
+    struct Range {
+        std::uint32_t first = 0, last = 0;
+
+        std::size_t size() const { return last - first; }
+    };
+    Range range_of(Tile node) const;
+
+private:
+    ImagePlane plane_;
+    int depth_;
+    std::vector<Place> places_;
+    std::vector<float> pixels_;
+    std::vector<std::uint32_t> visible_;
+};
+
+/// The error that the viewer sees at this place once what was taken has been rendered and `more` drift has been added.
+float shown_error(Place const& place, float more);
+/// Error of a place of which the viewer has nothing.
+inline constexpr float bare_error = 0.25f;
+
+/// Time goes on by `seconds` while the camera moves from one view to the other. `moving`: the scene's own things may
+/// move as well. A place drifts as it was found to, more where the camera has become faster, less where slower; as much
+/// as what it shows is carried away, or as what comes there instead.
+void drift_on(PlaceField& field, ViewRays const& from, ViewRays const& to, bool moving, float seconds);
+/// What a patch shows with so many rays a sample: means of four are as good as samples of the next level.
+int shown_level(PlaceField const& field, Patch const& patch, int rays_per_sample);
+
+/// A patch has been taken to be rendered, with so many rays a sample.
+void take(PlaceField& field, Patch const& patch, double now, int rays_per_sample);
+/// What of these was taken at `when`, and not later again, is taken no longer.
+void release(PlaceField& field, std::span<Patch const> patches, double when);
+/// Nothing that is held is true any more (a cut, another exposure).
+void invalidate(PlaceField& field);
+
+} // namespace framelet

@@ -1,0 +1,256 @@
+#include "server/sampling/field/place_learning.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/error.h"
+
+namespace framelet {
+namespace {
+
+/// Where sample `i` of a tile lies, pixels.
+Vec2 sample_place(ImagePlane const& plane, Tile tile, std::size_t i) {
+    PixelRect const rect = plane.tile_rect(tile);
+    float const spacing = plane.sample_spacing(tile);
+    auto const sample = static_cast<std::uint32_t>(i);
+    return Vec2(rect.left, rect.top) + (Vec2(morton_x(sample), morton_y(sample)) + 0.5f) * spacing;
+}
+
+/// Spreads over [0, count).
+std::size_t scattered(std::uint32_t seed, std::size_t count) {
+    return (seed * 0x9e3779b9u >> 16) % count;
+}
+
+float luma_at(LumaHistory::Entry const& entry, std::size_t sample) {
+    return static_cast<float>(entry.luma[sample]) / LumaHistory::luma_steps;
+}
+
+using Steps = std::array<std::uint16_t, framelet_samples>;
+
+/// How much each sample differs from the next one along the curve: where an edge is, the smallest motion shows.
+Steps steps_of(LumaHistory::Entry const& entry) {
+    auto const step = [](int a, int b) { return static_cast<std::uint16_t>(std::abs(a - b)); };
+    Steps steps;
+    for (std::size_t i = 0; i + 1 < steps.size(); ++i) {
+        steps[i] = step(entry.luma[i], entry.luma[i + 1]);
+    }
+    steps.back() = step(entry.luma.back(), entry.luma.front());
+    return steps;
+}
+
+/// Of samples [first, last) the steepest.
+std::size_t steepest(Steps const& steps, std::size_t first, std::size_t last) {
+    std::uint16_t most = 0;
+    for (std::size_t i = first; i < last; ++i) {
+        most = std::max(most, steps[i]);
+    }
+    while (first + 1 < last && steps[first] < most) {
+        ++first;
+    }
+    return first;
+}
+
+/// Notes some samples of a part of a framelet, one in each of equal shares of it: in turn the steepest and any one.
+void note_probes(PlaceFindings& place, ImagePlane const& plane, LumaHistory::Entry const& entry, Steps const& steps,
+                 std::size_t first, std::size_t count, std::size_t wanted) {
+    Viewport const viewport = plane.viewport();
+    if (wanted == 0) {
+        return;
+    }
+    std::size_t const share = std::max<std::size_t>(count / wanted, 1);
+    for (std::size_t i = 0; i < std::min(wanted, count) && place.probe_count < probes_per_place; ++i) {
+        std::size_t const begin = first + i * share;
+        std::size_t const sample = place.probe_count % 2 == 0
+                                       ? steepest(steps, begin, begin + share)
+                                       : begin + scattered(entry.tile.code + static_cast<std::uint32_t>(i), share);
+        Vec2 const at = sample_place(plane, entry.tile, sample);
+        if (at.x < static_cast<float>(viewport.width) && at.y < static_cast<float>(viewport.height)) {
+            place.probes[place.probe_count++] = {at, plane.sample_spacing(entry.tile), luma_at(entry, sample)};
+        }
+    }
+}
+
+float mean_inverse_depth(Framelet const& framelet, std::size_t first, std::size_t count) {
+    // Four sums side by side: they do not wait for each other. What is finer than four samples has one of each.
+    std::array<float, 4> sums{};
+    for (std::size_t i = 0; i < count; ++i) {
+        sums[i % sums.size()] += 1 / std::max(framelet.depth[first + i], 1e-6f); // infinity gives 0
+    }
+    return ((sums[0] + sums[1]) + (sums[2] + sums[3])) / static_cast<float>(count);
+}
+
+/// Mean squared difference of the probes' luma to what it was, 0 below half a step of the display. The steepest samples
+/// say whether there is one; how large it is on the whole the others know.
+template <class Before>
+float probed_error(std::span<float const> luma, Before&& before) {
+    constexpr float step = 1.0f / 255;
+    constexpr float steep_weight = 1.0f / 16;
+    float sum = 0;
+    float weights = 0;
+    for (std::size_t i = 0; i < luma.size(); ++i) {
+        float const difference = std::abs(luma[i] - before(i));
+        float const weight = i % 2 == 0 ? steep_weight : 1 - steep_weight;
+        sum += difference > 0.5f * step ? weight * difference * difference : 0;
+        weights += weight;
+    }
+    return luma.empty() ? 0 : sum / weights;
+}
+
+bool shows_motion(Framelet const& framelet) {
+    return std::ranges::any_of(framelet.body, [](BodyNumber body) { return body != static_body; }) ||
+           std::ranges::any_of(framelet.velocity, [](Vec3 const& velocity) { return velocity != Vec3(0); });
+}
+
+bool is_change(Observation const& seen) {
+    constexpr float noise = 1e-6f; // a quarter of a display step, squared
+    float change = seen.mean_change;
+    for (float const octave : seen.change) {
+        change += octave;
+    }
+    return seen.has_change && change > noise;
+}
+
+} // namespace
+
+float drift_since(Place const& place, double now) {
+    if (place.taken.level < 0) {
+        return 0;
+    }
+    // What has been taken again meanwhile knows that no more: what is known of before is too much.
+    return place.taken.when == now ? place.taken.drift : place.drift;
+}
+
+double examine_patch(PlaceField const& field, Patch const& patch, std::span<DisplayFramelet const> framelets,
+                     std::span<Framelet const> rendered, RenderedTimes times, RenderedMoment const& moment,
+                     LumaHistory const& history, std::span<LumaHistory::Entry> entries,
+                     std::span<PlaceFindings> places) {
+    FRAMELET_CHECK(framelets.size() == rendered.size() && framelets.size() == entries.size() && !framelets.empty());
+    FRAMELET_CHECK(framelet_samples % places.size() == 0);
+    int const level = field.level_of(patch.depth);
+    std::size_t const count = framelet_samples / places.size();
+    std::array<float, framelet_samples> luma;
+    std::array<float, framelet_samples> change;
+    std::fill(places.begin(), places.end(), PlaceFindings{});
+    double same_since = times.now;
+    for (std::size_t f = 0; f < framelets.size(); ++f) {
+        LumaHistory::Entry& entry = entries[f];
+        fill_entry(entry, framelets[f], times.now, times.moment);
+        entry.moves = moment.motions != nullptr && shows_motion(rendered[f]);
+        for (std::size_t i = 0; i < luma.size(); ++i) {
+            luma[i] = luma_at(entry, i);
+        }
+        haar_forward(luma);
+        std::optional<std::span<float const, framelet_samples>> difference;
+        float seconds = 0;
+        LumaHistory::Entry const* const before = history.find(entry.tile);
+        // Of one moment the same samples are the same: that says nothing of what time changes.
+        if (before != nullptr && before->moment != entry.moment) {
+            for (std::size_t i = 0; i < change.size(); ++i) {
+                change[i] = static_cast<float>(entry.luma[i] - before->luma[i]) / LumaHistory::luma_steps;
+            }
+            haar_forward(change);
+            difference = std::span<float const, framelet_samples>(change);
+            seconds = static_cast<float>(entry.moment - before->moment);
+        }
+        bool const in_place = before != nullptr && before->time >= times.base && !before->moves && !entry.moves;
+        bool const same = in_place && before->content == entry.content;
+        same_since = std::min(same_since, same ? before->time : never);
+        std::size_t const wanted =
+            (f + 1) * probes_per_place / framelets.size() - f * probes_per_place / framelets.size();
+        Steps const steps = steps_of(entry);
+        std::size_t first = 0;
+        for (PlaceFindings& place : places) {
+            accumulate(place.seen, observe(level, luma, difference, seconds, first, count));
+            note_probes(place, field.plane(), entry, steps, first, count, wanted);
+            place.inverse_depth += mean_inverse_depth(rendered[f], first, count);
+            place.meeting_speed =
+                std::max(place.meeting_speed, meeting_speed(rendered[f], field.plane(), moment, first, count));
+            first += count;
+        }
+    }
+    for (PlaceFindings& place : places) {
+        place.seen = mean_of(place.seen, static_cast<int>(framelets.size()));
+        place.inverse_depth /= static_cast<float>(framelets.size());
+    }
+    return same_since;
+}
+
+bool learn_patch(PlaceField& field, Patch const& patch, std::span<PlaceFindings const> places, double same_since,
+                 double still_since, double now, bool withholds) {
+    int const level = field.level_of(patch.depth);
+    PlaceField::Range const range = field.range_of(patch.node);
+    FRAMELET_CHECK(places.size() == range.last - range.first);
+    // The viewer has it, or better, and either has had it since before it looked the same, or what it got later is of a
+    // place that has not changed meanwhile: nothing to send.
+    bool known = withholds && same_since > never;
+    for (std::uint32_t i = range.first; i < range.last; ++i) {
+        Place const& place = field[i];
+        bool const goes_on = std::min(place.rendered, std::max(place.changed, place.doubted)) <= same_since;
+        known = known && (field.pixels_of(i) == 0 || (place.level >= level && goes_on));
+    }
+    for (std::uint32_t i = range.first; i < range.last; ++i) {
+        Place& place = field[i];
+        PlaceFindings const& found = places[i - range.first];
+        place.probes = found.probes;
+        place.probe_count = found.probe_count;
+        std::ranges::transform(found.probes, place.seen.begin(), &Probe::luma);
+        place.inverse_depth = found.inverse_depth;
+        learn(place.model, found.seen);
+        if (level == sampling_levels - 1) {
+            place.left = unresolved_error(found.seen);
+        }
+        // What is uncovered there may look like what was rendered there before. It fills a place in so long.
+        place.model.motion = std::max(place.model.motion, found.meeting_speed / static_cast<float>(field.place_side()));
+        if (found.seen.has_change) {
+            place.settled = !is_change(found.seen);
+        }
+        if (is_change(found.seen) || place.rendered == never) {
+            place.changed = now;
+        }
+        if (!found.seen.has_change && place.rendered < still_since) {
+            place.doubted = now;
+        }
+        place.checked = now;
+        if (level >= pixel_level) {
+            place.inspected = now;
+        }
+        place.drift = drift_since(place, now);
+        if (!known || place.level == level) { // where it is known, what is held is the very picture of then
+            place.level = level;
+            place.rendered = now;
+            place.supersampled = never;
+        }
+    }
+    return !known;
+}
+
+void learn_probes(Place& place, std::span<float const> luma, double now) {
+    FRAMELET_CHECK(luma.size() == place.probe_count && place.level >= 0);
+    float const error = probed_error(luma, [&](std::size_t i) { return place.probes[i].luma; });
+    float const change = probed_error(luma, [&](std::size_t i) { return place.seen[i]; });
+    auto const seconds = static_cast<float>(now - place.checked);
+    if (error > 0) {
+        place.drift = std::max(place.drift, drift_of_error(place.model, place.level, error));
+        place.settled = false;
+    }
+    if (change > 0) {
+        float const drift = drift_of_error(place.model, place.level, change);
+        place.model.motion = std::max(place.model.motion, seconds > 0 ? drift / seconds : 0);
+        place.changed = now;
+    } else if (error > 0) {
+        // It is not what the viewer has, and stands: a step, after which it is worth rendering again.
+        constexpr float unseen_drift = 0.1f;
+        place.model.motion = std::min(0.5f * place.model.motion, seconds > 0 ? unseen_drift / seconds : INFINITY);
+        place.model.pace = PlaceModel::unknown_pace();
+    } else {
+        // Too few samples to say so of all of it, unless its last rendering did.
+        constexpr float least_motion = 0.5f;
+        float const kept = place.settled || place.model.motion < least_motion ? 0 : 0.5f;
+        place.drift *= kept;
+        place.model.motion *= kept;
+    }
+    std::ranges::copy(luma, place.seen.begin());
+    place.checked = now;
+}
+
+} // namespace framelet

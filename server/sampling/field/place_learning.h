@@ -1,0 +1,51 @@
+// Learning from what was rendered, in two steps: what the framelets of a patch say of its places (for all patches in
+// parallel), and then what the server knows of them from now on. In: framelets, probes. Out: the field, brought up to
+// date, and whether the viewer needs what was rendered.
+#pragma once
+
+#include <span>
+
+#include "server/sampling/field/meeting_bodies.h"
+#include "server/sampling/field/place_field.h"
+#include "server/sampling/model/luma_history.h"
+
+namespace framelet {
+
+/// What was seen of one place.
+struct PlaceFindings {
+    Observation seen;
+    std::array<Probe, probes_per_place> probes{};
+    std::size_t probe_count = 0;
+    float inverse_depth = 0; ///< mean, 1/metres
+    float meeting_speed = 0; ///< of bodies, pixels a second
+};
+
+/// When something was rendered, and when what it shows was the present; seconds, steady. `base`: as `base_begun` of the
+/// plan.
+struct RenderedTimes {
+    double now = 0, moment = 0, base = never;
+};
+
+/// Of one patch. `framelets`: of its tiles, all the visible ones; `rendered`: the same with depth. Fills `entries` (a
+/// framelet each) and `places` (a place of the patch each). Returns since when all of it is what `history` remembers
+/// and the viewer shows in its place: the same picture may be of a body that has moved, or from before the camera has,
+/// and the viewer has moved it away. `never` where it is not.
+double examine_patch(PlaceField const& field, Patch const& patch, std::span<DisplayFramelet const> framelets,
+                     std::span<Framelet const> rendered, RenderedTimes times, RenderedMoment const& moment,
+                     LumaHistory const& history, std::span<LumaHistory::Entry> entries,
+                     std::span<PlaceFindings> places);
+
+/// Takes the findings of a patch that was rendered at `now` into account. `same_since`: what `examine_patch` returned;
+/// `still_since`: when anything that is to be seen moved last.
+/// Returns whether the viewer needs the patch: false where it holds the very same and `withholds`, since what the
+/// viewer moves takes the place of what it holds there, finer or not.
+bool learn_patch(PlaceField& field, Patch const& patch, std::span<PlaceFindings const> places, double same_since,
+                 double still_since, double now, bool withholds);
+
+/// Drift since a rendering of it that was planned at `now`, which may have been a while ago.
+float drift_since(Place const& place, double now);
+
+/// Takes the answers to a place's probes into account: their luma now.
+void learn_probes(Place& place, std::span<float const> luma, double now);
+
+} // namespace framelet

@@ -1,0 +1,381 @@
+#include "server/sampling/mirror/mirror.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+namespace framelet {
+namespace {
+
+/// Inverse depths that differ by less than this share belong to one surface, besides by what pieces may be off.
+constexpr float same_surface = 0.02f;
+/// What is loose and has stopped showing is missed for so many moments more.
+constexpr std::uint64_t missed_moments = 3;
+/// A piece that covers less of a cell than this is not what it shows, where there is another.
+constexpr int least_share = cell_pixels / 2;
+/// More than a viewer can hold is not worth remembering as gone.
+constexpr std::size_t most_forgotten = std::size_t{1} << 18;
+
+std::uint64_t key_of(SentTile const& sent) {
+    return sent.batch << 32 ^ sent.tile.code;
+}
+
+} // namespace
+
+Mirror::Mirror(Viewport viewport)
+    : viewport_(viewport), columns_((viewport.width + cell_side - 1) / cell_side),
+      rows_((viewport.height + cell_side - 1) / cell_side),
+      cells_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_)) {}
+
+int Mirror::pixels_of(int column, int row) const {
+    return std::min(cell_side, viewport_.width - column * cell_side) *
+           std::min(cell_side, viewport_.height - row * cell_side);
+}
+
+bool Mirror::looks_at(MirrorView const& view) const {
+    return target_.scene_time == view.scene_time && same_camera(target_.rays, view.rays);
+}
+
+std::size_t Mirror::piece_count() const {
+    std::size_t count = 0;
+    for (Moment const& moment : moments_) {
+        count += moment.pieces.size();
+    }
+    return count;
+}
+
+std::size_t Mirror::moment_count() const {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(moments_, [](Moment const& moment) { return moment.number > 0; }));
+}
+
+void Mirror::look(MirrorView const& view, BodyMotions const& motions) {
+    target_ = view;
+    camera_stands_ = moments_[base_].number == 0 || same_camera(moments_[base_].rays, view.rays);
+    if (std::exchange(settles_, false)) {
+        settle_now();
+    }
+    Moment const& base = moments_[base_];
+    awaits_moment_ = base.number > 0 && (!same_camera(base.rays, view.rays) || last_number_ > base.number);
+    std::ranges::fill(cells_, Cell{});
+    erase_forgotten();
+    for (Moment& moment : moments_) {
+        draw(moment, 0, motions);
+    }
+    for (Moment const& moment : moments_) {
+        if (!shows_loose(moment) && is_missed(moment)) {
+            miss(moment, motions);
+        }
+    }
+}
+
+float Mirror::luma_of(Cell const& cell, Vec2 at) const {
+    Piece const& piece = piece_of(cell);
+    return piece.luma + glm::dot(piece.slope, at - place_of(cell)) / scale_of(cell);
+}
+
+bool Mirror::mark(std::span<CellFault const> faults) {
+    auto const cell_of = [](float pixel, int count) {
+        return std::clamp(static_cast<int>(std::round(pixel / float{cell_side})), 0, count);
+    };
+    for (CellFault const& fault : faults) {
+        Vec2 const half(0.5f * static_cast<float>(fault.side));
+        Vec2 const low = fault.at - half;
+        Vec2 const high = fault.at + half;
+        for (int row = cell_of(low.y, rows_); row < cell_of(high.y, rows_); ++row) {
+            for (int column = cell_of(low.x, columns_); column < cell_of(high.x, columns_); ++column) {
+                Cell& cell = cells_[index_of(column, row)];
+                cell.is_wrong = cell.is_wrong || fault.is_wrong;
+                cell.stale = std::max(cell.stale, fault.stale);
+            }
+        }
+    }
+    return !faults.empty();
+}
+
+void Mirror::forget(std::span<SentTile const> framelets) {
+    for (SentTile const& sent : framelets) {
+        if (forgotten_.size() < most_forgotten) {
+            forgotten_.insert(key_of(sent));
+        }
+    }
+}
+
+void Mirror::erase_forgotten() {
+    for (Moment& moment : moments_) {
+        bool const loose = shows_loose(moment) || is_missed(moment);
+        std::uint64_t last = 0; // pieces of a framelet follow each other
+        bool is_gone = false;
+        std::erase_if(moment.pieces, [&](Piece const& piece) {
+            if (std::uint64_t const key = key_of(piece.of); key != last) {
+                last = key;
+                is_gone = forgotten_.contains(key);
+            }
+            return is_gone || piece.is_replaced || (piece.is_loose && !loose);
+        });
+        if (moment.pieces.empty() && &moment != &moments_[base_]) {
+            moment.number = 0;
+        }
+        give_back_room(moment);
+    }
+    forgotten_.clear();
+}
+
+void Mirror::add(ViewRays const& rays, BodyMotions const& motions, std::span<Piece const> pieces) {
+    if (pieces.empty()) {
+        return;
+    }
+    SceneTime const scene_time = pieces.front().scene_time;
+    if (moments_[base_].number == 0 || !same_camera(moments_[base_].rays, rays)) {
+        begin_base(rays, scene_time);
+    }
+    standing_.clear();
+    moving_.clear();
+    for (Piece const& piece : pieces) {
+        bool const stands = !piece.moves || piece.rests || moments_[base_].scene_time == scene_time;
+        (stands ? standing_ : moving_).push_back(piece);
+    }
+    add_to(moments_[base_], motions, standing_);
+    if (!moving_.empty()) {
+        add_to(slot_of_moving(scene_time), motions, moving_);
+    }
+}
+
+void Mirror::add_to(Moment& moment, BodyMotions const& motions, std::span<Piece const> pieces) {
+    replace(moment, pieces);
+    std::size_t const first = moment.pieces.size();
+    moment.pieces.insert(moment.pieces.end(), pieces.begin(), pieces.end());
+    draw(moment, first, motions);
+}
+
+void Mirror::begin_base(ViewRays const& rays, SceneTime scene_time) {
+    if (moments_[base_].number > 0) {
+        moments_[base_].number = last_number_; // what the last camera saw is as recent as what moved before it
+    }
+    base_ = static_cast<std::size_t>(&begin_slot(rays, scene_time) - moments_.data());
+}
+
+/// Of the newest camera, after its base began.
+Mirror::Moment& Mirror::slot_of_moving(SceneTime scene_time) {
+    auto const found = std::ranges::find_if(
+        moments_, [&](Moment const& moment) { return belongs_to_base(moment) && moment.scene_time == scene_time; });
+    return found != moments_.end() ? *found : begin_slot(moments_[base_].rays, scene_time);
+}
+
+Mirror::Moment& Mirror::begin_slot(ViewRays const& rays, SceneTime scene_time) {
+    Moment& slot = free_slot();
+    slot.rays = rays;
+    slot.scene_time = scene_time;
+    slot.number = ++last_number_;
+    awaits_moment_ = false;
+    return slot;
+}
+
+/// All of the newest camera into its base. What shows is not known until the next look.
+void Mirror::settle_now() {
+    Moment& base = moments_[base_];
+    std::uint64_t newest = base.number;
+    for (Moment& moment : moments_) {
+        if (!belongs_to_base(moment)) {
+            continue;
+        }
+        base.pieces.insert(base.pieces.end(), moment.pieces.begin(), moment.pieces.end());
+        if (moment.number > newest) {
+            newest = moment.number;
+            base.scene_time = moment.scene_time;
+        }
+        empty(moment);
+    }
+    base.number = newest;
+    replace(base, base.pieces);
+}
+
+/// When all are used, the oldest moment's, but not the base.
+Mirror::Moment& Mirror::free_slot() {
+    auto const rank = [this](Moment const& moment) {
+        return std::pair(moment.number > 0 && &moment == &moments_[base_], moment.number);
+    };
+    Moment& free = *std::ranges::min_element(moments_, {}, rank);
+    if (free.number > 0) {
+        for (Cell& cell : cells_) {
+            cell = cell.is_shown() && &moments_[cell.moment] == &free ? Cell{} : cell;
+        }
+        empty(free);
+    }
+    return free;
+}
+
+void Mirror::empty(Moment& moment) {
+    moment.number = 0;
+    moment.pieces.clear();
+    moment.reprojected.clear();
+    give_back_room(moment);
+}
+
+/// A picture at rest has many times the pieces that one has while things move: not every moment keeps room for that.
+void Mirror::give_back_room(Moment& moment) {
+    if (moment.pieces.capacity() > std::max(cells_.size(), 4 * moment.pieces.size())) {
+        moment.pieces.shrink_to_fit();
+        moment.reprojected.resize(std::min(moment.reprojected.size(), moment.pieces.size()));
+        moment.reprojected.shrink_to_fit();
+    }
+}
+
+/// What a viewer holds of one moment is the newest at each place: what is older than these goes.
+void Mirror::replace(Moment& moment, std::span<Piece const> pieces) {
+    if (moment.pieces.empty() || pieces.empty()) {
+        return;
+    }
+    auto const clamped = [](float pixel, int count) {
+        return std::clamp(static_cast<int>(std::floor(pixel)) / cell_side, 0, count - 1);
+    };
+    newest_batch_.assign(cells_.size(), 0);
+    for (Piece const& piece : pieces) {
+        Vec2 const low = piece.centre - piece.half_side + 0.1f;
+        Vec2 const high = piece.centre + piece.half_side - 0.1f;
+        for (int row = clamped(low.y, rows_); row <= clamped(high.y, rows_); ++row) {
+            for (int column = clamped(low.x, columns_); column <= clamped(high.x, columns_); ++column) {
+                std::uint64_t& newest = newest_batch_[index_of(column, row)];
+                newest = std::max(newest, piece.of.batch);
+            }
+        }
+    }
+    for (Piece& piece : moment.pieces) {
+        std::size_t const cell = index_of(clamped(piece.centre.x, columns_), clamped(piece.centre.y, rows_));
+        piece.is_replaced = piece.is_replaced || piece.of.batch < newest_batch_[cell];
+    }
+}
+
+/// What is loose shows of the base and of the newest moments only, of which one may be still to come.
+bool Mirror::shows_loose(Moment const& moment) const {
+    return &moment == &moments_[base_] ||
+           moment.number + FrameletPool::recent_moments > last_number_ + (awaits_moment_ ? 1 : 0);
+}
+
+/// What is loose in it may be behind nothing that shows, though it shows no longer.
+bool Mirror::is_missed(Moment const& moment) const {
+    return moment.number + FrameletPool::recent_moments + missed_moments > last_number_;
+}
+
+/// Where what is loose in a moment no longer shows, and only what is farther and was rendered before it does, the
+/// viewer shows that through it: crowns are full of such holes, and rays that are not shaded tell little of leaves.
+void Mirror::miss(Moment const& moment, BodyMotions const& motions) {
+    missed_.clear();
+    reproject(to_picture(moment, motions), moment.pieces, PieceKinds::loose, transforms_, missed_);
+    for (ReprojectedPiece const& missed : missed_) {
+        if (!missed.is_in_picture()) {
+            continue;
+        }
+        Vec2 const low = glm::max(missed.at - missed.half_side, Vec2(0)) / float{cell_side};
+        Vec2 const high = (missed.at + missed.half_side) / float{cell_side};
+        // Cells of which it covers the middle.
+        for (int row = static_cast<int>(low.y + 0.5f); row < std::min(static_cast<int>(high.y + 0.5f), rows_); ++row) {
+            for (int column = static_cast<int>(low.x + 0.5f);
+                 column < std::min(static_cast<int>(high.x + 0.5f), columns_); ++column) {
+                Cell& cell = cells_[index_of(column, row)];
+                bool const was_before = cell.is_shown() && moments_[cell.moment].number < moment.number;
+                cell.is_wrong =
+                    cell.is_wrong || (was_before && cell.inverse_depth < missed.inverse_depth * (1 - nearer_share));
+            }
+        }
+    }
+}
+
+PieceReprojection Mirror::to_picture(Moment const& moment, BodyMotions const& motions) const {
+    return {moment.rays, target_, Vec2(columns_, rows_) * float{cell_side}, &motions}; // the last cells are whole, too
+}
+
+/// Of a moment, from piece `first` on.
+void Mirror::draw(Moment& moment, std::size_t first, BodyMotions const& motions) {
+    moment.is_of_camera = same_camera(moment.rays, target_.rays);
+    moment.reprojected.resize(first);
+    reproject(to_picture(moment, motions), std::span(moment.pieces).subspan(first),
+              shows_loose(moment) ? PieceKinds::all : PieceKinds::layered, transforms_, moment.reprojected);
+    for (std::size_t i = first; i < moment.pieces.size(); ++i) {
+        if (moment.reprojected[i].is_in_picture()) {
+            ReprojectedPiece const& piece = moment.reprojected[i];
+            for_each_covered(piece.at - piece.half_side, piece.at + piece.half_side, columns_, rows_,
+                             [&](int column, int row, unsigned mask) { show(moment, i, mask, column, row); });
+        }
+    }
+    if (&moment == &moments_[base_] && moment.is_of_camera) {
+        cover_from(moment, first);
+    }
+}
+
+/// By the framelets of the base that are where they were rendered: pieces of a square may leave gaps between each
+/// other, its samples do not.
+void Mirror::cover_from(Moment const& moment, std::size_t first) {
+    for (std::size_t end = first; first < moment.pieces.size(); first = end) {
+        bool is_still = true;
+        for (; end < moment.pieces.size() && moment.pieces[end].of == moment.pieces[first].of; ++end) {
+            is_still = is_still && (!moment.pieces[end].moves || moment.reprojected[end].is_still);
+        }
+        for (std::size_t i = first; is_still && i < end; ++i) {
+            cover(moment, i);
+        }
+    }
+}
+
+void Mirror::cover(Moment const& moment, std::size_t index) {
+    PixelRect const part = part_of(moment.pieces[index], ImagePlane(viewport_));
+    for (int row = part.top / cell_side; row < std::min(part.bottom / cell_side, rows_); ++row) {
+        for (int column = part.left / cell_side; column < std::min(part.right / cell_side, columns_); ++column) {
+            Cell& cell = cells_[index_of(column, row)];
+            cell.covered = 0xffff;
+            if (!cell.is_shown() && moment.reprojected[index].is_in_picture()) {
+                put(moment, index, moment.reprojected[index].inverse_depth, 1, cell);
+            }
+        }
+    }
+}
+
+/// In the pixels `mask` of a cell.
+void Mirror::show(Moment const& moment, std::size_t index, unsigned mask, int column, int row) {
+    ReprojectedPiece const& reprojected = moment.reprojected[index];
+    Cell& cell = cells_[index_of(column, row)];
+    cell.covered = static_cast<std::uint16_t>(cell.covered | mask);
+    if (moment.is_of_camera) {
+        cell.is_wrong = false;
+        cell.stale = 0;
+    }
+    Vec2 const middle((static_cast<float>(column) + 0.5f) * cell_side, (static_cast<float>(row) + 0.5f) * cell_side);
+    Vec2 const from = glm::clamp(middle - reprojected.at, -reprojected.half_side, reprojected.half_side);
+    float const w = std::max(reprojected.inverse_depth + glm::dot(reprojected.depth_slope, from), 0.0f);
+    int const share = std::popcount(mask);
+    if (is_better(moment, reprojected, w, share, cell)) {
+        put(moment, index, w, share, cell);
+    }
+}
+
+/// A piece is what a cell shows.
+void Mirror::put(Moment const& moment, std::size_t index, float inverse_depth, int share, Cell& cell) const {
+    ReprojectedPiece const& reprojected = moment.reprojected[index];
+    cell.inverse_depth = inverse_depth;
+    cell.worn = reprojected.worn;
+    cell.leads = reprojected.leads;
+    cell.detail = moment.pieces[index].detail / reprojected.scale;
+    cell.piece = static_cast<std::uint32_t>(index);
+    cell.moment = static_cast<std::uint8_t>(&moment - moments_.data());
+    cell.share = static_cast<std::uint8_t>(share);
+}
+
+/// Than what a cell shows; of one moment, what came later.
+bool Mirror::is_better(Moment const& moment, ReprojectedPiece const& reprojected, float inverse_depth, int share,
+                       Cell const& cell) const {
+    if (share < least_share || cell.share < least_share) {
+        return share > cell.share;
+    }
+    float const difference = inverse_depth - cell.inverse_depth;
+    float const limit = same_surface * std::max(inverse_depth, cell.inverse_depth) + reprojected.tolerance;
+    if (std::abs(difference) > limit) {
+        return difference > 0;
+    }
+    if (reprojected.leads != cell.leads) {
+        return reprojected.leads;
+    }
+    return reprojected.worn != cell.worn ? reprojected.worn < cell.worn : moment.number >= moments_[cell.moment].number;
+}
+
+} // namespace framelet

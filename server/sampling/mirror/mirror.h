@@ -1,0 +1,124 @@
+// What a viewer holds (its `FrameletPool`), without its colours: pieces of the moments that it was sent, and what they
+// show in the picture of another moment. In: rendered framelets that are sent, where to look from. Out: for each cell
+// of that picture how good what the viewer shows there is.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <unordered_set>
+#include <vector>
+
+#include "common/held/framelet_pool.h"
+#include "server/sampling/mirror/cell.h"
+#include "server/sampling/mirror/piece_reprojection.h"
+
+namespace framelet {
+
+/// What is nearer by less than this share of its inverse depth is not worth looking for: crowns are full of it.
+inline constexpr float nearer_share = 0.25f;
+
+class Mirror {
+public:
+    explicit Mirror(Viewport viewport = {});
+
+    Viewport viewport() const { return viewport_; }
+    int columns() const { return columns_; }
+    int rows() const { return rows_; }
+    /// Of what was looked at last, row by row.
+    std::span<Cell const> cells() const { return cells_; }
+    Cell const& cell(int column, int row) const { return cells_[index_of(column, row)]; }
+    /// Pixels of a cell that lie in the viewport.
+    int pixels_of(int column, int row) const;
+    Piece const& piece_of(Cell const& cell) const { return moments_[cell.moment].pieces[cell.piece]; }
+    /// Where the middle of that piece is in the picture of the cell, pixels; how much larger it is than it was
+    /// rendered; of when it is.
+    Vec2 place_of(Cell const& cell) const { return moments_[cell.moment].reprojected[cell.piece].at; }
+    float scale_of(Cell const& cell) const { return moments_[cell.moment].reprojected[cell.piece].scale; }
+    /// The luma that a cell shows at a place of its picture, display-encoded.
+    float luma_of(Cell const& cell, Vec2 at) const;
+    SceneTime time_of(Cell const& cell) const { return piece_of(cell).scene_time; }
+    /// True where a new framelet takes the place of what shows, be it better or not: it is of the base of the camera
+    /// that is looked through.
+    bool gives_way(Cell const& cell) const { return cell.moment == base_ && moments_[base_].is_of_camera; }
+    /// True where what shows was rendered as another camera saw it: it is interpolated between its samples.
+    bool is_moved(Cell const& cell) const { return !moments_[cell.moment].is_of_camera; }
+    /// True when the picture is from where the newest that had come by then was rendered, or nothing had: the camera
+    /// stands, for all that is known.
+    bool camera_stands() const { return camera_stands_; }
+    /// The moment that was looked at last.
+    MirrorView const& view() const { return target_; }
+    /// True when the picture is of this moment.
+    bool looks_at(MirrorView const& view) const;
+
+    /// Finds what the viewer shows of `view` as bodies move by `motions`.
+    void look(MirrorView const& view, BodyMotions const& motions);
+    /// The viewer gets these pieces, of one camera and one time, as well: they are remembered, and seen at once.
+    void add(ViewRays const& rays, BodyMotions const& motions, std::span<Piece const> pieces);
+    /// The viewer settles (`FrameletPool::settle`); from the next look on.
+    void settle() { settles_ = true; }
+
+    /// Marks what is at fault until something of the moment comes there. True where there is anything.
+    bool mark(std::span<CellFault const> faults);
+    /// The viewer has let go of these; from the next look on.
+    void forget(std::span<SentTile const> framelets);
+
+    std::size_t piece_count() const;
+    std::size_t moment_count() const;
+    bool is_empty() const { return piece_count() == 0; }
+
+private:
+    struct Moment {
+        ViewRays rays;
+        SceneTime scene_time = 0; ///< of pieces that move
+        std::uint64_t number = 0; ///< in order of their coming; 0: free
+        std::vector<Piece> pieces;
+        std::vector<ReprojectedPiece> reprojected; ///< one each, in the picture that is looked at
+        bool is_of_camera = false; ///< that is looked through
+    };
+    std::size_t index_of(int column, int row) const {
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
+    }
+    void erase_forgotten();
+    void replace(Moment& moment, std::span<Piece const> pieces);
+    void add_to(Moment& moment, BodyMotions const& motions, std::span<Piece const> pieces);
+    bool belongs_to_base(Moment const& moment) const { return moment.number > moments_[base_].number; }
+    void settle_now();
+    void empty(Moment& moment);
+    void give_back_room(Moment& moment);
+    void begin_base(ViewRays const& rays, SceneTime scene_time);
+    Moment& slot_of_moving(SceneTime scene_time);
+    Moment& begin_slot(ViewRays const& rays, SceneTime scene_time);
+    Moment& free_slot();
+    PieceReprojection to_picture(Moment const& moment, BodyMotions const& motions) const;
+    void draw(Moment& moment, std::size_t first, BodyMotions const& motions);
+    void cover_from(Moment const& moment, std::size_t first);
+    void cover(Moment const& moment, std::size_t index);
+    void show(Moment const& moment, std::size_t index, unsigned mask, int column, int row);
+    void put(Moment const& moment, std::size_t index, float inverse_depth, int share, Cell& cell) const;
+    bool is_better(Moment const& moment, ReprojectedPiece const& reprojected, float inverse_depth, int share,
+                   Cell const& cell) const;
+    bool shows_loose(Moment const& moment) const;
+    bool is_missed(Moment const& moment) const;
+    void miss(Moment const& moment, BodyMotions const& motions);
+
+    Viewport viewport_;
+    int columns_, rows_;
+    std::vector<Cell> cells_;
+    /// Twice as many as a viewer has: it says late what it lets go of.
+    std::array<Moment, 2 * FrameletPool::most_moments> moments_;
+    std::unordered_set<std::uint64_t> forgotten_; ///< keys of framelets
+    std::uint64_t last_number_ = 0;
+    std::size_t base_ = 0; ///< slot of what stands before the newest camera
+    bool settles_ = false;
+    MirrorView target_;
+    bool camera_stands_ = false;
+    bool awaits_moment_ = false; ///< nothing has come yet of the moment that is looked at
+
+    std::vector<std::uint64_t> newest_batch_; ///< by cell
+    std::vector<Piece> standing_, moving_; ///< scratch
+    std::vector<ReprojectedPiece> missed_; ///< scratch
+    BodyTransforms transforms_; ///< scratch
+};
+
+} // namespace framelet

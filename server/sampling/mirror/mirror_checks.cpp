@@ -1,0 +1,122 @@
+#include "server/sampling/mirror/mirror_checks.h"
+
+#include <algorithm>
+
+#include "common/error.h"
+
+namespace framelet {
+namespace {
+
+/// Beyond so many standard deviations it is a change, or where all probes around it together are.
+constexpr float doubt = 4;
+
+Cell const& cell_at(Mirror const& mirror, Vec2 at) {
+    return mirror.cell(static_cast<int>(at.x) / cell_side, static_cast<int>(at.y) / cell_side);
+}
+
+/// Calls `look` with each place of a grid.
+template <class Look>
+void for_each_place(PlaceGrid const& grid, Viewport viewport, Look look) {
+    int const columns = grid.columns(viewport);
+    int const rows = grid.rows(viewport);
+    for (int row = 0; row < rows; ++row) {
+        for (int column = 0; column < columns; ++column) {
+            look(grid.place(column, row));
+        }
+    }
+}
+
+/// The cell of a place or one beside it.
+bool shows_as_near(Mirror const& mirror, Vec2 at, float inverse_depth) {
+    int const column = static_cast<int>(at.x) / cell_side;
+    int const row = static_cast<int>(at.y) / cell_side;
+    float const least = inverse_depth * (1 - nearer_share);
+    for (int y = std::max(row - 1, 0); y <= std::min(row + 1, mirror.rows() - 1); ++y) {
+        for (int x = std::max(column - 1, 0); x <= std::min(column + 1, mirror.columns() - 1); ++x) {
+            if (mirror.cell(x, y).inverse_depth >= least) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+/// Of luma: of one probe, or summed over some.
+struct Difference {
+    float luma = 0;
+    float chance = 0; ///< its variance where nothing has changed; 0: not known
+
+    bool beyond(float deviations) const { return luma * luma > deviations * deviations * chance; }
+};
+
+/// What a probe really shows with what the viewer does.
+Difference compare(Mirror const& mirror, Probe const& probe, float luma) {
+    Cell const& shown = cell_at(mirror, probe.place);
+    if (shown.share < cell_pixels) { // something else has come
+        return {};
+    }
+    Piece const& piece = mirror.piece_of(shown);
+    float const scale = mirror.scale_of(shown);
+    float const side = 2 * scale * std::max(piece.half_side.x, piece.half_side.y);
+    return {luma - probe.luma, chance_difference(piece.detail / scale, probe.spacing + scale * piece.spacing, side)};
+}
+
+} // namespace
+
+std::vector<CellFault> find_wrong(Mirror const& mirror, PlaceGrid const& grid, std::span<float const> inverse_depth) {
+    std::size_t const columns = static_cast<std::size_t>(grid.columns(mirror.viewport()));
+    FRAMELET_CHECK(inverse_depth.size() == columns * static_cast<std::size_t>(grid.rows(mirror.viewport())));
+    std::vector<CellFault> faults;
+    auto seen = inverse_depth.begin();
+    for_each_place(grid, mirror.viewport(), [&](Vec2 at) {
+        if (!shows_as_near(mirror, at, *seen++)) {
+            faults.push_back({.at = at, .side = grid.spacing, .is_wrong = true});
+        }
+    });
+    return faults;
+}
+
+void list_probes(Mirror const& mirror, PlaceGrid const& grid, std::vector<Probe>& probes) {
+    probes.clear();
+    for_each_place(grid, mirror.viewport(), [&](Vec2 at) {
+        Cell const& shown = cell_at(mirror, at);
+        if (shown.share == cell_pixels && !mirror.piece_of(shown).is_loose &&
+            mirror.time_of(shown) != mirror.view().scene_time) {
+            probes.push_back({at, 1, mirror.luma_of(shown, at)});
+        }
+    });
+}
+
+std::vector<CellFault> find_stale(Mirror const& mirror, std::span<Probe const> probes, std::span<float const> luma,
+                                  int spacing) {
+    FRAMELET_CHECK(probes.size() == luma.size());
+    if (probes.empty()) {
+        return {};
+    }
+    int const columns = mirror.viewport().width / spacing + 3; // one beyond each side
+    auto const index_at = [&](Vec2 at) {
+        return (static_cast<int>(at.y) / spacing + 1) * columns + static_cast<int>(at.x) / spacing + 1;
+    };
+    std::vector<Difference> differences(static_cast<std::size_t>(columns * (mirror.viewport().height / spacing + 3)));
+    for (std::size_t i = 0; i < probes.size(); ++i) {
+        differences[static_cast<std::size_t>(index_at(probes[i].place))] = compare(mirror, probes[i], luma[i]);
+    }
+    std::vector<CellFault> faults;
+    for (Probe const& probe : probes) {
+        int const at = index_at(probe.place);
+        Difference const own = differences[static_cast<std::size_t>(at)];
+        Difference around;
+        for (int const row : {at - columns, at, at + columns}) {
+            for (int i = row - 1; i <= row + 1; ++i) {
+                around.luma += differences[static_cast<std::size_t>(i)].luma;
+                around.chance += differences[static_cast<std::size_t>(i)].chance;
+            }
+        }
+        if (own.chance > 0 && (own.beyond(doubt) || around.beyond(doubt))) {
+            faults.push_back({.at = probe.place, .side = spacing, .stale = own.luma * own.luma});
+        }
+    }
+    return faults;
+}
+
+} // namespace framelet

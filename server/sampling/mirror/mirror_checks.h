@@ -1,0 +1,27 @@
+// What a mirror shows compared with what is really to be seen of the moment. In: a mirror, and inverse depths or luma
+// that were rendered of the moment. Out: places around which the viewer shows something else; where to look for such.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "server/render/place_grid.h"
+#include "server/render/probe.h"
+#include "server/sampling/mirror/mirror.h"
+
+namespace framelet {
+
+/// Inverse depths of the places of a grid, 1 / metres, row by row, < 0 where that is not known: of those where neither
+/// the cell of the place nor those beside it show anything about as near, the cells around are wrong.
+std::vector<CellFault> find_wrong(Mirror const& mirror, PlaceGrid const& grid, std::span<float const> inverse_depth);
+
+/// Replaces `probes` by one for each place of a grid that shows, well within a surface, what is of another time:
+/// with the luma that the viewer shows there.
+void list_probes(Mirror const& mirror, PlaceGrid const& grid, std::vector<Probe>& probes);
+
+/// What probes really show of the moment, luma in their order: where that differs from what they showed by more than
+/// chance the cells around are stale. `spacing`: pixels from one probe to the next.
+std::vector<CellFault> find_stale(Mirror const& mirror, std::span<Probe const> probes, std::span<float const> luma,
+                                  int spacing);
+
+} // namespace framelet

@@ -1,0 +1,131 @@
+#include "server/sampling/mirror/piece_reprojection.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/matrix.hpp>
+
+#include "common/reprojection.h"
+#include "common/sample_worth.h"
+
+namespace framelet {
+namespace {
+
+/// Nearer than this (depth in the picture over depth where it was rendered) nothing is drawn.
+constexpr float nearest = 1e-3f;
+constexpr float most_pixels = 1e6f, most_scale = 1e6f;
+/// A moved piece covers somewhat more, or the gaps that turning and tilting leave between neighbours were holes,
+/// pixels.
+constexpr float margin = 0.5f;
+/// A plane whose area shrinks by more than this is seen edge-on.
+constexpr float thinnest = 1e-4f;
+
+BodyTransform make_body_transform(PieceReprojection const& reprojection, Motion const& motion, std::uint64_t stamp) {
+    ViewRays const& source = reprojection.source;
+    ViewRays const& display = reprojection.display.rays;
+    ViewTransform const view = make_view_transform(source, display, motion);
+    BodyTransform transform;
+    transform.stamp = stamp;
+    transform.far = Mat3(view.far);
+    transform.parallax = Vec3(view.parallax);
+    for (std::size_t axis = 0; axis < transform.carried.size(); ++axis) {
+        glm::dvec3 metre(0);
+        metre[static_cast<int>(axis)] = 1;
+        ViewTransform const carried = make_view_transform(source, display, motion, metre);
+        transform.carried[axis] = Vec3(carried.parallax - view.parallax);
+    }
+    transform.is_still = same_camera(source, display) && motion == Motion{};
+    transform.lens = static_cast<float>(std::sqrt(std::abs(glm::determinant(view.far))));
+    return transform;
+}
+
+/// Of the body of a piece, at the scene time of the piece.
+BodyTransform const& transform_of(PieceReprojection const& reprojection, Piece const& piece,
+                                  BodyTransforms& transforms) {
+    if (transforms.of_body.size() <= piece.body) {
+        transforms.of_body.resize(std::size_t{piece.body} + 1);
+    }
+    BodyTransform& transform = transforms.of_body[piece.body];
+    if (transform.stamp != transforms.stamp) {
+        SceneTime const to = reprojection.display.scene_time;
+        Motion const motion =
+            piece.body == static_body ? Motion{} : reprojection.motions->between(piece.body, piece.scene_time, to);
+        transform = make_body_transform(reprojection, motion, transforms.stamp);
+    }
+    return transform;
+}
+
+/// `size`: of the picture, pixels; `age`: of the piece in it, seconds of scene time.
+ReprojectedPiece reproject(Piece const& piece, BodyTransform const& body, Vec2 size, float age) {
+    Vec3 parallax = body.parallax;
+    if (piece.velocity != Vec3(0)) {
+        Vec3 const drift = age * piece.velocity;
+        parallax += drift.x * body.carried[0] + drift.y * body.carried[1] + drift.z * body.carried[2];
+    }
+    Vec3 const at = body.far * Vec3(piece.centre, 1) + piece.inverse_depth * parallax;
+    if (!(at.z > nearest)) {
+        return {};
+    }
+    ReprojectedPiece reprojected;
+    float const share = 1 / at.z;
+    reprojected.at = share * Vec2(at);
+    // How far it goes for each pixel to the right and down in the picture of its moment.
+    Vec3 const dx = body.far[0] + piece.depth_slope.x * parallax;
+    Vec3 const dy = body.far[1] + piece.depth_slope.y * parallax;
+    Vec2 const right = share * (Vec2(dx) - dx.z * reprojected.at);
+    Vec2 const down = share * (Vec2(dy) - dy.z * reprojected.at);
+    float const area = right.x * down.y - right.y * down.x;
+    reprojected.scale = std::clamp(body.lens * share, 1 / most_scale, most_scale);
+    reprojected.half_side =
+        glm::min(piece.half_side.x * glm::abs(right) + piece.half_side.y * glm::abs(down) + margin, Vec2(most_pixels));
+    Vec2 const low = reprojected.at - reprojected.half_side;
+    Vec2 const high = reprojected.at + reprojected.half_side;
+    if (!(area > thinnest * reprojected.scale * reprojected.scale && low.x < size.x && low.y < size.y && high.x > 0 &&
+          high.y > 0 && low.x > -most_pixels && low.y > -most_pixels && high.x < most_pixels && high.y < most_pixels)) {
+        return {};
+    }
+    float const tolerance = share * piece.error;
+    float spacing = piece.spacing;
+    float misplaced = 0;
+    reprojected.is_still = body.is_still && piece.velocity == Vec3(0);
+    if (!piece.is_loose) { // as the viewer rates them
+        float const squares = glm::dot(right, right) + glm::dot(down, down);
+        spacing *= std::sqrt(0.5f * (squares + std::sqrt(std::max(squares * squares - 4 * area * area, 0.0f))));
+        misplaced = reprojected.is_still ? 0 : tolerance * glm::length(Vec2(parallax) - parallax.z * reprojected.at);
+        if (!hides(spacing, misplaced) || is_adrift(piece.body, piece.velocity, age)) { // it shows where nothing does
+            return {};
+        }
+    }
+    reprojected.inverse_depth = share * piece.inverse_depth;
+    Vec2 const slope = share * (piece.depth_slope - reprojected.inverse_depth * Vec2(dx.z, dy.z)); // along its own axes
+    reprojected.depth_slope = Vec2(down.y * slope.x - right.y * slope.y, right.x * slope.y - down.x * slope.x) / area;
+    reprojected.tolerance = tolerance;
+    reprojected.leads = leads(piece.body, piece.velocity, age) && !piece.is_loose;
+    reprojected.worn = worn_step(worn_spacing(spacing, age, piece.fading) + misplaced);
+    return reprojected;
+}
+
+} // namespace
+
+bool same_camera(ViewRays const& a, ViewRays const& b) {
+    return a.origin == b.origin && a.direction == b.direction && a.direction_dx == b.direction_dx &&
+           a.direction_dy == b.direction_dy;
+}
+
+void reproject(PieceReprojection const& reprojection, std::span<Piece const> pieces, PieceKinds kinds,
+               BodyTransforms& transforms, std::vector<ReprojectedPiece>& reprojected) {
+    ++transforms.stamp;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        Piece const& piece = pieces[i];
+        if (i > 0 && piece.scene_time != pieces[i - 1].scene_time) {
+            ++transforms.stamp; // bodies were elsewhere
+        }
+        bool const wanted = kinds == PieceKinds::all || piece.is_loose == (kinds == PieceKinds::loose);
+        auto const age = static_cast<float>(reprojection.display.scene_time - piece.scene_time);
+        reprojected.push_back(
+            wanted ? reproject(piece, transform_of(reprojection, piece, transforms), reprojection.display_size, age)
+                   : ReprojectedPiece{});
+    }
+}
+
+} // namespace framelet

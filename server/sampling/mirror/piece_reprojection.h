@@ -1,0 +1,71 @@
+// Where pieces lie in the picture of another moment, as the viewer moves what it holds. In: pieces of one moment, the
+// cameras and times of both, how bodies move. Out: for each piece the box that it covers, how near and how worn it is.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/body_motion.h"
+#include "common/camera.h"
+#include "server/sampling/mirror/piece.h"
+
+namespace framelet {
+
+/// A camera (perspective) and a scene time.
+struct MirrorView {
+    ViewRays rays{};
+    SceneTime scene_time = 0;
+};
+
+/// True where perspective cameras see the same.
+bool same_camera(ViewRays const& a, ViewRays const& b);
+
+/// A piece in the picture of another moment.
+struct ReprojectedPiece {
+    Vec2 at{0}; ///< its middle, pixels
+    Vec2 half_side{0}; ///< of the box that it covers, pixels
+    float inverse_depth = -1; ///< < 0: it is not in the picture, and the rest says nothing
+    Vec2 depth_slope{0}; ///< of the inverse depth, for each pixel
+    float tolerance = 0; ///< by which its inverse depths may differ
+    float scale = 1; ///< how much larger it is than it was rendered
+    float worn = 0; ///< spacing, pixels
+    bool leads = false; ///< a shadow that shows before what it comes over
+    bool is_still = false; ///< its pixels are where they were rendered
+
+    bool is_in_picture() const { return inverse_depth >= 0; }
+};
+
+/// Takes pixels of one body to the other picture.
+struct BodyTransform {
+    std::uint64_t stamp = 0; ///< of the call and the scene time for which it holds
+    Mat3 far{1};
+    Vec3 parallax{0};
+    std::array<Vec3, 3> carried{}; ///< parallax of a metre along each axis of the world
+    float lens = 1;
+    bool is_still = false; ///< pixels stay where they are
+};
+
+/// Scratch: found once for all pieces of a body and a scene time, and kept so that nothing is allocated again.
+struct BodyTransforms {
+    std::vector<BodyTransform> of_body;
+    std::uint64_t stamp = 0;
+};
+
+/// From the picture of a moment to another.
+struct PieceReprojection {
+    ViewRays source{}; ///< the moment's camera
+    MirrorView display{};
+    Vec2 display_size{0}; ///< pixels
+    BodyMotions const* motions = nullptr; ///< not null
+};
+
+enum class PieceKinds { all, layered, loose };
+
+/// Appends one to `reprojected` for each piece; those of other kinds, what lies outside the picture and what is too
+/// coarse or too uncertain to hide anything are not in the picture.
+void reproject(PieceReprojection const& reprojection, std::span<Piece const> pieces, PieceKinds kinds,
+               BodyTransforms& transforms, std::vector<ReprojectedPiece>& reprojected);
+
+} // namespace framelet

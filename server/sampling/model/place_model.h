@@ -1,0 +1,106 @@
+// What the server knows of one place of the picture: how much detail it has at each spacing of samples and how fast
+// that detail passes. In: rendered framelets, beside what the same tile showed before. Out: the error that a viewer
+// would see, in mean squared difference of display-encoded luma, for any spacing and any age.
+//
+// The model (of our own, in no paper): detail is kept by bands, each of them what one more level of the quadtree resolves. A
+// band that is not sampled is missing from the picture and costs its energy E. A band that is sampled but no longer
+// true costs up to twice its energy, 2 E (1 - exp(-drift w)), where drift is how far the content has moved since, in
+// units common to all bands, and w is how much sooner than others the band passes. Where that has not been seen, w
+// doubles from a band to the next finer one.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "common/tile.h"
+#include "server/sampling/model/haar.h"
+
+namespace framelet {
+
+/// Levels of sampling, from the coarsest tiles (0) over one sample a pixel to the finest.
+inline constexpr int sampling_levels = coarsest_levels + 1 + finest_levels;
+inline constexpr int pixel_level = coarsest_levels;
+
+/// Samples per pixel of a level: 1/64 .. 16.
+constexpr float samples_per_pixel(int level) {
+    return level >= pixel_level ? static_cast<float>(1 << (2 * (level - pixel_level)))
+                                : 1.0f / static_cast<float>(1 << (2 * (pixel_level - level)));
+}
+
+struct PlaceModel {
+    /// Energy of band b: what level b resolves beyond level b - 1. Band 0: all that level 0 resolves.
+    std::array<float, sampling_levels> energy{};
+    int finest_seen = -1; ///< finer bands are extrapolated; -1: nothing is known
+    float motion = 0; ///< drift a second; 1 is about the time that detail of a pixel takes to be elsewhere
+    /// How soon each band passes, w: 1 for that of a pixel where all of it moves as one.
+    std::array<float, sampling_levels> pace = unknown_pace();
+
+    /// Doubling from band to band.
+    static constexpr std::array<float, sampling_levels> unknown_pace() {
+        std::array<float, sampling_levels> pace{};
+        for (std::size_t band = 0; band < pace.size(); ++band) {
+            pace[band] = static_cast<float>(1 << band) / static_cast<float>(1 << pixel_level);
+        }
+        return pace;
+    }
+
+    bool operator==(PlaceModel const&) const = default;
+};
+
+/// A place that nothing is known of: detail as pictures have it on average (their power falls with the square of
+/// frequency, which halves the energy from band to band).
+PlaceModel unknown_place();
+
+/// Mean squared error of sampling at this level, fresh: what is missing, and what it puts into the wrong bands.
+float unresolved_error(PlaceModel const& place, int level);
+
+/// Mean squared error by what has changed since, for samples of this level: 0 at drift 0, growing, bounded.
+float drift_error(PlaceModel const& place, int level, float drift);
+
+/// drift_error for ever (its bound), and its growth at drift 0.
+struct DriftBounds {
+    float most = 0, growth = 0;
+};
+DriftBounds drift_bounds(PlaceModel const& place, int level);
+
+/// `unresolved_error` and `drift_bounds` of every level.
+struct LevelErrors {
+    std::array<float, sampling_levels> unresolved{};
+    std::array<DriftBounds, sampling_levels> drift{};
+};
+LevelErrors level_errors(PlaceModel const& place);
+
+/// The drift at which `drift_error` is `error`. Where the bands have too little energy for so much error, band 0 is
+/// given more: something has come that they knew nothing of.
+float drift_of_error(PlaceModel& place, int level, float error);
+
+/// What one rendered framelet says of a part of its samples.
+struct Observation {
+    int level = 0;
+    OctaveEnergies energy{}; ///< by octave of the framelet, 0 the finest
+    bool has_change = false; ///< the tile has been rendered before
+    OctaveEnergies change{}; ///< energies of the difference to then
+    float mean_change = 0; ///< square of the difference of the means
+    float seconds = 0; ///< since then
+};
+
+/// Of samples [first, first + count) of a framelet in Morton order; `count` a power of 4. Coarser octaves than the part
+/// are those of the blocks that it lies in. `luma`: Haar coefficients of display-encoded luma; `change`: those of its
+/// difference to `seconds` before, where the same tile was rendered then.
+Observation observe(int level, std::span<float const, framelet_samples> luma,
+                    std::optional<std::span<float const, framelet_samples>> change, float seconds, std::size_t first,
+                    std::size_t count);
+
+/// Mean of the observations of tiles that share a place.
+void accumulate(Observation& sum, Observation const& more);
+Observation mean_of(Observation const& sum, int count);
+
+/// What the mean over a pixel's samples leaves unresolved, by the observation alone; of levels from a pixel on.
+float unresolved_error(Observation const& seen);
+
+/// Takes an observation into account. All results are finite and not below 0 for any finite input.
+void learn(PlaceModel& place, Observation const& observation);
+
+} // namespace framelet

@@ -1,0 +1,43 @@
+// The best way to sample a place for a given price of samples. In: what is known of the place, the price, how late what
+// is rendered shows. Out: how finely, how often, and what error that leaves.
+//
+// A place that is refreshed at level l every P seconds shows on average the error
+//     F = unresolved(l) + mean over ages a in [latency, latency + P] of drift_error(l, motion a),
+// and costs samples_per_pixel(l) / P (times what a sample costs). The choice minimises F + price * cost. With
+// drift_error taken as one exponential, V (1 - exp(-r a)), the best period solves 1 - exp(-x)(1 + x) = price * spp * r
+// / (V exp(-r latency)) for x = r P, and what is paid altogether is unresolved(l) + V (1 - exp(-r latency - x)): the
+// error at the end of the period.
+#pragma once
+
+#include "server/sampling/model/coding_cost.h"
+
+namespace framelet {
+
+/// All samples cost the same.
+inline constexpr LevelCosts equal_costs = [] {
+    LevelCosts costs{};
+    costs.fill(1);
+    return costs;
+}();
+
+struct SamplingPrice {
+    float price = 0; ///< of one sample a pixel a second, in mean squared error
+    float latency = 0; ///< seconds from rendering to display
+    float least_period = 0; ///< seconds; a cycle
+    float bias = 0; ///< -1 (spatial fidelity) .. 1 (temporal)
+};
+
+struct SamplingChoice {
+    int level = 0;
+    float period = 0; ///< seconds between refreshes
+    float due_error = 0; ///< it is time to refresh once the shown error is as great
+    bool recurring = false; ///< false: it goes on as it is for its life; another refresh is not worth its price
+};
+
+/// `life`: seconds for which the place is expected to go on as it does: nothing is worth more than it saves in that
+/// time. `least_level`, `most_level`: levels to choose from. `costs`: of a sample of each level, in those that the
+/// price is of.
+SamplingChoice choose_sampling(PlaceModel const& place, float life, SamplingPrice const& price, int least_level,
+                               int most_level, LevelCosts const& costs = equal_costs);
+
+} // namespace framelet

@@ -1,0 +1,115 @@
+// What one viewer's picture gets next, adaptively: price -> choices -> density -> tiling -> selection, and learning
+// from what was rendered. In: what is to be seen, when, how many samples a cycle has time for; then the framelets. Out:
+// tiles and probes to render, and which of the framelets are worth sending. Batches may be planned before those before
+// them are learnt: what has been taken is taken to become what the viewer holds, and is not taken again meanwhile.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "server/sampling/plan/batch_learning.h"
+#include "server/sampling/plan/patch_selection.h"
+#include "server/sampling/plan/probe_selection.h"
+#include "server/sampling/plan/refinement_selection.h"
+#include "server/sampling/plan/refresh_plan.h"
+
+namespace framelet {
+
+class AdaptiveRefresh {
+public:
+    /// True when the picture of `state` is complete, as far as is learnt: `plan` would find nothing.
+    bool is_complete(ViewState const& state) const;
+
+    /// True when the last plan was for the same picture: nothing moves, and large batches cost no freshness.
+    bool is_still(ViewState const& state) const { return seen_ && same_picture(*seen_, state); }
+
+    /// Writes the next batch's work to `plan`: of the cycle that was planned last while that lasts, or of a new one, so
+    /// that small batches do not plan more often than large ones. Time goes on from call to call. While something is
+    /// not learnt yet an empty plan only says that there is nothing else.
+    void plan(RefreshInput const& input, RefreshPlan& plan);
+
+    /// Takes in what was rendered by a plan: display samples, the same with depth, luma of the probes. Plans are learnt
+    /// once each and in order. Returns for each framelet whether the viewer needs it, which it does not where its
+    /// picture has another size by now; valid until the next call.
+    std::vector<std::uint8_t> const& learn(RefreshPlan const& plan, std::span<DisplayFramelet const> framelets,
+                                           std::span<Framelet const> rendered, std::span<float const> probe_luma);
+
+    /// The viewer gets those framelets of a plan for which `sent` (of the plan's tiles) is not 0, in a batch of
+    /// this number, with these shapes, in order; sets how soon what they show fades. After `learn` of the same plan.
+    void note_sent(RefreshPlan const& plan, std::uint64_t batch, std::span<DisplayFramelet const> framelets,
+                   std::span<Framelet const> rendered, std::span<std::uint8_t const> sent,
+                   std::span<FrameletShape> shapes);
+    /// What is really to be seen of the moment of a plan that asks for it: inverse depths of the places of its grid, 1
+    /// / metres, row by row; < 0: not known.
+    void note_visibility(RefreshPlan const& plan, std::span<float const> inverse_depth);
+    /// The viewer no longer holds these.
+    void forget(std::span<SentTile const> framelets) { moments_.forget(framelets); }
+    /// The viewer is told that it holds all of the picture.
+    void settle() { moments_.settle(); }
+
+    // To look at it.
+    Mirror const& mirror() const { return moments_.mirror(); }
+    PlaceField const& field() const { return field_; }
+    Choices const& choices() const { return choices_; }
+    float price() const { return price_; }
+    /// The cycle that was planned last: how many there have been, its tiling, the patches to render, the samples
+    /// that it has time for (by what they cost), from which patch on each sample is made of four rays, and its length.
+    std::uint64_t cycle_count() const { return cycle_count_; }
+    std::vector<Patch> const& cut() const { return cut_; }
+    std::vector<Patch> const& cycle() const { return cycle_; }
+    double cycle_budget() const { return cycle_budget_; }
+    std::size_t first_supersampled() const { return first_supersampled_; }
+    double cycle_seconds() const { return cycle_seconds_; }
+
+private:
+    bool goes_on(RefreshInput const& input, bool mirrored) const;
+    void advance(RefreshInput const& input);
+    void note_base(Camera const& camera, bool moves_samples, double now);
+    void plan_cycle(RefreshInput const& input, RefreshPlan& plan);
+    double plan_inspections(RefreshInput const& input);
+    void find_costs(RefreshInput const& input);
+    void plan_patches(RefreshInput const& input, double samples);
+    void append_rated(double samples, double rays);
+    void plan_moment(RefreshInput const& input, double samples, RefreshPlan& plan);
+    void plan_probes(double samples, RefreshPlan& plan);
+    void take_batch(std::size_t most_framelets, RefreshPlan& plan);
+
+    std::optional<ViewState> seen_;
+    double advanced_ = 0; ///< the time that the field stands for
+    double still_since_ = 0; ///< when what is to be seen changed last
+    bool strayed_ = false; ///< something was rendered for another state than `seen_` since
+    std::optional<Camera> base_camera_; ///< of the last plan, where the viewer moves its samples
+    double base_begun_ = never; ///< when the first plan of that camera was made since there was another one
+    bool scene_moves_ = false;
+    bool still_ = false; ///< what is to be seen is what the last plan was for
+    PlaceField field_;
+    LumaHistory history_;
+    std::vector<LevelCosts> costs_; ///< of samples, by place; none where all cost the same
+    /// Of a sample planned lately, as estimated. It begins below what pictures have, so that a slow link is not filled
+    /// with the first of them (measured).
+    float mean_bits_ = 1;
+    Choices choices_;
+    float price_ = 1e-6f;
+    double planned_ = never; ///< when the cycle was planned
+    std::uint64_t cycle_count_ = 0;
+    double cycle_budget_ = 0; ///< samples
+    double cycle_seconds_ = 0;
+    std::vector<Patch> cycle_; ///< patches of the cycle
+    std::size_t first_supersampled_ = 0; ///< of these: from here on each sample is made of four rays
+    std::size_t next_ = 0; ///< of these
+    std::vector<std::uint8_t> send_;
+    MomentRefresh moments_;
+
+    // Scratch.
+    std::vector<float> due_errors_;
+    std::vector<float> density_;
+    TilingScratch tiling_scratch_;
+    std::vector<Patch> cut_;
+    std::vector<RatedPatch> rated_;
+    std::vector<std::uint32_t> suspects_;
+    UnresolvedPlaces unresolved_;
+    ProbeScratch probe_scratch_;
+    BatchFindings findings_;
+};
+
+} // namespace framelet

@@ -1,0 +1,323 @@
+#include "server/sampling/plan/moment_plan.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <tbb/parallel_for.h>
+
+#include "common/error.h"
+#include "common/sample_worth.h"
+
+namespace framelet {
+namespace {
+
+/// Of what nothing is known: as `unknown_place` has it.
+constexpr float unknown_detail = 0.0025f;
+/// However coarse samples are, their mean is about right.
+constexpr float most_error = 0.1f;
+/// As if they lay so much farther apart, pixels, are samples that are interpolated, beside those that come to lie on
+/// their own pixels before a camera that stands.
+constexpr float interpolated_wear = 1;
+/// Prices outside are of no use: of a sample, squared error summed over pixels.
+constexpr float least_price = 5e-6f, most_price = 1e2f;
+
+constexpr float spacing_of(int level) {
+    return level <= pixel_level ? static_cast<float>(1 << (pixel_level - level))
+                                : 1.0f / static_cast<float>(1 << (level - pixel_level));
+}
+
+/// What samples so far apart, pixels, miss and make up, of the detail.
+constexpr float missed_share(float s) {
+    constexpr float alias = 4.0f / 9.0f;
+    return s <= 1   ? s * s * s // the mean of 1 / s^2 samples, of what lies between them
+           : s <= 2 ? 1 + (s - 1) * 2 * alias
+                    : error_growth * s - 1;
+}
+
+/// The same of levels. `finest`: what is finer shows no better, pixels.
+constexpr std::array<float, sampling_levels> missed_shares(float finest) {
+    std::array<float, sampling_levels> shares{};
+    for (int level = 0; level < sampling_levels; ++level) {
+        shares[static_cast<std::size_t>(level)] = missed_share(std::max(spacing_of(level), finest));
+    }
+    return shares;
+}
+
+/// Of what the viewer moves, and of samples that stay on their own pixels, which show the mean of all.
+constexpr std::array<float, sampling_levels> moved_shares = missed_shares(finest_shown_spacing),
+                                             standing_shares = missed_shares(0);
+
+/// Means of four rays are as good as samples so many times closer to each other: by the mean's definition where they
+/// stay on their own pixels, by measurement once moved, where they blur and wear out before they have repaid four rays.
+constexpr float standing_supersampled = 0.5f, moved_supersampled = 0.95f;
+constexpr float standing_supersampled_share = missed_share(standing_supersampled),
+                moved_supersampled_share = missed_share(moved_supersampled);
+
+/// Whether what shows of a piece are means of rays; of samples finer than pixels the viewer moves their means.
+bool shows_means(Piece const& piece, bool stands) {
+    return piece.is_supersampled || (!stands && piece.spacing < 1);
+}
+
+/// Whether a cell is worth the finest samples: as far as is known it will show the same for a second, in which they
+/// wear by less than what they are finer.
+bool stays(Mirror const& mirror, Cell const& cell) {
+    constexpr float most_fading = 0.25f; // pixels a second
+    if (!mirror.camera_stands() || !cell.is_shown() || !mirror.gives_way(cell) || cell.is_wrong || cell.stale > 0) {
+        return false;
+    }
+    Piece const& piece = mirror.piece_of(cell);
+    return (!piece.moves || piece.rests) && piece.change == 0 && piece.fading < most_fading;
+}
+
+/// Mean squared error of samples `spacing` pixels apart (worn), of a surface of such `detail` (see `Piece`): what is
+/// missing and what aliases, as `unresolved_error` has it where each band has half the energy of the coarser one.
+float spacing_error(float detail, float spacing) {
+    return std::min(detail * missed_share(spacing), most_error);
+}
+
+} // namespace
+
+void MomentPlan::find(Mirror const& mirror, PlaceField const& field, MomentBudget const& budget,
+                      std::vector<RatedPatch>& rated) {
+    FRAMELET_CHECK(mirror.viewport() == field.plane().viewport());
+    rated.clear();
+    find_gains(mirror, field, budget);
+    sum_nodes(field, budget);
+    float const least = std::max(least_price, budget.limits.least_price);
+    float low = least, high = most_price;
+    price_ = least;
+    if (solve(field, budget, least) > budget.samples) {
+        for (int step = 0; step < 18; ++step) {
+            float const middle = std::sqrt(low * high);
+            (solve(field, budget, middle) > budget.samples ? low : high) = middle;
+        }
+        price_ = high;
+        if (!(solve(field, budget, high) > 0)) { // rather a little more than none at all
+            price_ = low;
+            solve(field, budget, low);
+        }
+    }
+    if (budget.limits.coarse_first && stale_ > 0.5f * wrong_) {
+        choose_horizon(field, budget);
+    }
+    collect(field, 0, 0, rated);
+}
+
+/// What gains much for few samples is shown before what those lack is refined: of the dearer prices too the one is
+/// taken whose patches gain most a second, where each plan takes `overhead` besides.
+void MomentPlan::choose_horizon(PlaceField const& field, MomentBudget const& budget) {
+    constexpr int most_steps = 12;
+    float const first = price_;
+    float best_rate = -1;
+    float best = first;
+    for (int step = 0; step <= most_steps; ++step) {
+        float const price = std::ldexp(first, step);
+        auto const spent = static_cast<float>(solve(field, budget, price));
+        float const rate = gain_ / (spent + static_cast<float>(budget.overhead));
+        if (rate > best_rate) {
+            best_rate = rate;
+            best = price;
+        }
+    }
+    price_ = best;
+    solve(field, budget, best);
+}
+
+void MomentPlan::find_gains(Mirror const& mirror, PlaceField const& field, MomentBudget const& budget) {
+    double detail = 0;
+    std::size_t shown = 0;
+    for (Cell const& cell : mirror.cells()) {
+        detail += cell.is_shown() ? static_cast<double>(cell.detail) : 0;
+        shown += cell.is_shown() ? 1 : 0;
+    }
+    mean_detail_ = shown > 0 ? static_cast<float>(detail / static_cast<double>(shown)) : unknown_detail;
+    leaves_.assign(field.size(), Leaf{});
+    std::span<std::uint32_t const> const places = field.visible();
+    tbb::parallel_for(std::size_t{0}, places.size(),
+                      [&](std::size_t i) { add_gains(mirror, field, places[i], budget); });
+    stale_ = wrong_ = 0;
+    for (std::uint32_t const index : places) {
+        stale_ += leaves_[index].stale;
+        wrong_ += leaves_[index].wrong;
+    }
+}
+
+/// Of one place.
+void MomentPlan::add_gains(Mirror const& mirror, PlaceField const& field, std::uint32_t index,
+                           MomentBudget const& budget) {
+    Place const& place = field[index];
+    Leaf& leaf = leaves_[index];
+    // What is on its way, or has been rendered of this moment, the viewer has whatever the mirror makes of it.
+    int had = place.taken.level;
+    if (place.rendered >= budget.moment_begun) {
+        had = std::max(had, place.level + (place.supersampled >= budget.moment_begun ? 1 : 0));
+    }
+    PixelRect const rect = field.rect_of(index);
+    int const last_column = std::min(rect.right / cell_side, mirror.columns());
+    int const last_row = std::min(rect.bottom / cell_side, mirror.rows());
+    float place_detail = 0;
+    int shown = 0;
+    for (int row = rect.top / cell_side; row < last_row; ++row) {
+        for (int column = rect.left / cell_side; column < last_column; ++column) {
+            Cell const& cell = mirror.cell(column, row);
+            place_detail += cell.is_shown() ? cell.detail : 0;
+            shown += cell.is_shown() ? 1 : 0;
+        }
+    }
+    float const hidden_detail = shown > 0 ? place_detail / static_cast<float>(shown) : mean_detail_;
+    for (int row = rect.top / cell_side; row < last_row; ++row) {
+        for (int column = rect.left / cell_side; column < last_column; ++column) {
+            Cell const& cell = mirror.cell(column, row);
+            auto const pixels = static_cast<float>(mirror.pixels_of(column, row));
+            float covered = cell.is_wrong ? 0 : cell.covered_share() * pixels;
+            float const detail = cell.is_shown() ? cell.detail : hidden_detail;
+            float worn = cell.is_shown() ? cell.worn : INFINITY;
+            worn += cell.is_shown() && mirror.camera_stands() && mirror.is_moved(cell) ? interpolated_wear : 0;
+            float stale = cell.stale;
+            bool const stands = stays(mirror, cell);
+            float const supersampled = stands ? standing_supersampled : moved_supersampled;
+            if (stands && worn <= finest_shown_spacing) {
+                worn = std::min(worn, mirror.piece_of(cell).spacing);
+            }
+            worn *= cell.is_shown() && shows_means(mirror.piece_of(cell), stands) ? supersampled : 1;
+            if (had >= 0) {
+                covered = pixels;
+                worn = std::min(worn, spacing_of(had));
+                stale = 0;
+            }
+            // What comes is shown although it is worse, or only where it is better.
+            float const least = cell.is_shown() && mirror.gives_way(cell) ? -most_error : 0.0f;
+            float const now = covered > 0 ? spacing_error(detail, worn) + stale : 0;
+            std::array<float, sampling_levels> const& shares = stands ? standing_shares : moved_shares;
+            leaf.stale += covered * stale;
+            leaf.wrong += covered * now + (pixels - covered) * hole_error;
+            auto const gain = [&](float share) {
+                float const then = std::min(detail * share, most_error);
+                return covered * std::max(now - then, least) + (pixels - covered) * std::max(hole_error - then, 0.0f);
+            };
+            for (std::size_t level = 0; level < leaf.gain.size(); ++level) {
+                leaf.gain[level] += gain(shares[level]);
+            }
+            leaf.supersampled_gain += gain(stands ? standing_supersampled_share : moved_supersampled_share);
+        }
+    }
+    for (int level = field.least_level(); level < sampling_levels; ++level) {
+        auto const l = static_cast<std::size_t>(level);
+        float const factor = budget.costs.empty() ? 1.0f : budget.costs[index][l];
+        leaf.cost[l] = samples_per_pixel(level) * field.pixels_of(index) * factor;
+    }
+    // Rays are cheaper than samples as far as the link leaves time for them.
+    leaf.supersampled_cost = leaf.cost[pixel_level] * std::max(1.0f, four_rays / budget.rays);
+}
+
+/// Gains of tiles that are larger than a place.
+void MomentPlan::sum_nodes(PlaceField const& field, MomentBudget const& budget) {
+    nodes_.resize(static_cast<std::size_t>(field.depth()));
+    for (int depth = 0; depth < field.depth(); ++depth) {
+        std::vector<Node>& nodes = nodes_[static_cast<std::size_t>(depth)];
+        nodes.assign(std::size_t{1} << (2 * depth), Node{});
+        int const level = field.level_of(depth);
+        if (level < std::max(field.least_level(), budget.limits.least_level) || level > budget.limits.most_level) {
+            continue;
+        }
+        int const shift = 2 * (field.depth() - depth);
+        for (std::uint32_t const index : field.visible()) {
+            Leaf const& leaf = leaves_[index];
+            Node& node = nodes[index >> shift];
+            node.gain += leaf.gain[static_cast<std::size_t>(level)];
+            node.cost += leaf.cost[static_cast<std::size_t>(level)];
+        }
+    }
+}
+
+/// Chooses what is best for the price; returns what it costs.
+double MomentPlan::solve(PlaceField const& field, MomentBudget const& budget, float price) {
+    int const first = std::max(field.level_of(field.depth()), budget.limits.least_level);
+    auto const deepest = static_cast<std::size_t>(field.depth());
+    for (std::vector<Node>& nodes : nodes_) {
+        for (Node& node : nodes) {
+            node.best = node.spent = 0;
+        }
+    }
+    double all = 0;
+    gain_ = 0;
+    for (std::uint32_t const index : field.visible()) {
+        Leaf& leaf = leaves_[index];
+        leaf.level = -1;
+        leaf.is_supersampled = false;
+        float best = 0;
+        float spent = 0;
+        for (int level = first; level <= budget.limits.most_level; ++level) {
+            auto const l = static_cast<std::size_t>(level);
+            float const value = leaf.gain[l] - price * leaf.cost[l];
+            if (value > best) {
+                best = value;
+                leaf.level = level;
+                spent = leaf.cost[l];
+            }
+        }
+        float const supersampled = leaf.supersampled_gain - price * leaf.supersampled_cost;
+        if (supersampled > best && budget.limits.most_rays >= four_rays && first <= pixel_level &&
+            pixel_level <= budget.limits.most_level) {
+            best = supersampled;
+            leaf.level = pixel_level;
+            leaf.is_supersampled = true;
+            spent = leaf.supersampled_cost;
+        }
+        if (deepest > 0) {
+            nodes_[deepest - 1][index >> 2].best += best;
+            nodes_[deepest - 1][index >> 2].spent += spent;
+        }
+        all += static_cast<double>(spent);
+        gain_ += best;
+    }
+    for (std::size_t depth = deepest; depth-- > 0;) {
+        for (std::size_t i = 0; i < nodes_[depth].size(); ++i) {
+            Node& node = nodes_[depth][i];
+            float const value = node.gain - price * node.cost;
+            node.whole = node.cost > 0 && value > node.best;
+            if (node.whole) {
+                all += static_cast<double>(node.cost - node.spent);
+                gain_ += value - node.best;
+                node.best = value;
+                node.spent = node.cost;
+            }
+            if (depth > 0) {
+                nodes_[depth - 1][i >> 2].best += node.best;
+                nodes_[depth - 1][i >> 2].spent += node.spent;
+            }
+        }
+    }
+    gain_ += price * static_cast<float>(all);
+    return all;
+}
+
+void MomentPlan::collect(PlaceField const& field, int depth, std::uint32_t index,
+                         std::vector<RatedPatch>& rated) const {
+    Tile const tile{(1u << (2 * depth)) + index};
+    auto const rate = [&](int tile_depth, float gain, float cost, int rays_per_sample) {
+        Patch const patch{tile, tile_depth};
+        rated.push_back({patch, framelet_samples * tile_count(patch) * rays_per_sample, static_cast<double>(cost),
+                         static_cast<double>(gain) / static_cast<double>(cost), rays_per_sample});
+    };
+    if (depth == field.depth()) {
+        Leaf const& leaf = leaves_[index];
+        if (leaf.is_supersampled) {
+            rate(field.depth_of(pixel_level), leaf.supersampled_gain, leaf.supersampled_cost, four_rays);
+        } else if (leaf.level >= 0) {
+            auto const l = static_cast<std::size_t>(leaf.level);
+            rate(field.depth_of(leaf.level), leaf.gain[l], leaf.cost[l], single_ray);
+        }
+        return;
+    }
+    Node const& node = nodes_[static_cast<std::size_t>(depth)][index];
+    if (node.whole) {
+        rate(depth, node.gain, node.cost, single_ray);
+    } else if (node.best > 0) {
+        for (std::uint32_t child = 0; child < 4; ++child) {
+            collect(field, depth + 1, 4 * index + child, rated);
+        }
+    }
+}
+
+} // namespace framelet

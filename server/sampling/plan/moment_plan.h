@@ -1,0 +1,73 @@
+// What of a moment is rendered next: where the viewer would show holes, or what is coarse or worn, as far as samples
+// lower that error most. In: what the viewer shows of the moment (mirror), what is taken already, samples. Out:
+// patches, those that gain most for their samples first.
+//
+// For a price of samples the best patches are found exactly: the levels that a tile may have form a quadtree, and from
+// the leaves up a node is one tile where that gains more, less its price, than the best of its children together
+// (pruning as of Chou, Lookabaugh and Gray). The price is the one at which they use the samples.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "server/sampling/mirror/mirror.h"
+#include "server/sampling/plan/patch_selection.h"
+
+namespace framelet {
+
+/// Mean squared error of what a viewer fills a hole with.
+inline constexpr float hole_error = 0.03f;
+
+/// By how much the error of samples grows with their spacing, of the detail, for each pixel.
+inline constexpr float error_growth = 1 + 4.0f / 9;
+
+struct MomentBudget {
+    double samples = 0; ///< that the patches together may cost
+    ResponseLimits limits{};
+    std::span<LevelCosts const> costs{}; ///< as of `Budget`
+    double moment_begun = 0; ///< what has been rendered since then is of this moment
+    double overhead = 0; ///< samples that a plan costs besides, be it short or long
+    float rays = 1; ///< that there is time for, for each of `samples`: more than 1 where the link is what is scarce
+};
+
+class MomentPlan {
+public:
+    /// Replaces `rated` by disjoint patches, unsorted. `mirror` looks at the moment, with the viewport of `field`.
+    void find(Mirror const& mirror, PlaceField const& field, MomentBudget const& budget,
+              std::vector<RatedPatch>& rated);
+
+    /// Of the patches found last: squared error that the last sample takes away, summed over pixels.
+    float price() const { return price_; }
+
+private:
+    using LevelGains = std::array<float, sampling_levels>;
+    struct Node {
+        float gain = 0, cost = 0; ///< as one tile; cost 0: it may not be one
+        float best = 0; ///< gain less price
+        float spent = 0; ///< cost of the best
+        bool whole = false; ///< one tile is best
+    };
+    struct Leaf {
+        LevelGains gain{}, cost{};
+        float supersampled_gain = 0, supersampled_cost = 0; ///< of a sample of four rays a pixel
+        float stale = 0, wrong = 0; ///< squared error summed over pixels: by changed looks, all of it
+        int level = -1; ///< best; -1: none
+        bool is_supersampled = false; ///< that is best
+    };
+
+    void find_gains(Mirror const& mirror, PlaceField const& field, MomentBudget const& budget);
+    void add_gains(Mirror const& mirror, PlaceField const& field, std::uint32_t index, MomentBudget const& budget);
+    void sum_nodes(PlaceField const& field, MomentBudget const& budget);
+    void choose_horizon(PlaceField const& field, MomentBudget const& budget);
+    double solve(PlaceField const& field, MomentBudget const& budget, float price);
+    void collect(PlaceField const& field, int depth, std::uint32_t index, std::vector<RatedPatch>& rated) const;
+
+    float price_ = 0;
+    float gain_ = 0; ///< of what was chosen last
+    float mean_detail_ = 0;
+    float stale_ = 0, wrong_ = 0; ///< of all leaves
+    std::vector<Leaf> leaves_; ///< of the places
+    std::vector<std::vector<Node>> nodes_; ///< by depth, above the places
+};
+
+} // namespace framelet

@@ -1,0 +1,126 @@
+#include "server/sampling/plan/patch_selection.h"
+
+#include <algorithm>
+
+namespace framelet {
+namespace {
+
+constexpr double least_inspection_period = 2;
+
+struct Gain {
+    double error = 0; ///< that refreshing takes away, beyond what is tolerated, summed over pixels
+    double pixels = 0;
+    double cost = 0; ///< of a sample, summed over pixels
+    bool spoils = false; ///< what is finer and still true
+};
+
+Gain gain_of(PlaceField const& field, Choices const& choices, std::span<float const> due, Budget const& budget,
+             PlaceField::Range range, int level) {
+    Gain gain;
+    for (std::uint32_t i = range.first; i < range.last; ++i) {
+        Place const& place = field[i];
+        auto const pixels = static_cast<double>(field.pixels_of(i));
+        gain.pixels += pixels;
+        gain.cost += pixels * static_cast<double>(costs_at(budget, i)[static_cast<std::size_t>(level)]);
+        if (pixels == 0 || place.taken.level >= 0) { // what it is worth is seen once it is learnt
+            continue;
+        }
+        gain.spoils =
+            gain.spoils || (place.level > level && place.drift == 0 && (budget.still || place.model.motion == 0));
+        float const unresolved = unresolved_error(place.model, level);
+        float fresh = unresolved + drift_error(place.model, level, drift_on_the_way(place, budget));
+        if (place.rendered >= budget.moment_begun) { // of this moment there is only more detail to show
+            float const detail = level > place.level ? unresolved_error(place.model, place.level) - unresolved : 0;
+            fresh = due[i] - std::max(detail, 0.0f);
+        }
+        gain.error += pixels * static_cast<double>(due[i] - std::max(choices[i].due_error, fresh));
+    }
+    return gain;
+}
+
+} // namespace
+
+void rate_patches(PlaceField const& field, Choices const& choices, std::span<float const> due,
+                  std::vector<Patch> const& cut, Budget const& budget, std::vector<RatedPatch>& rated) {
+    rated.clear();
+    auto const rate = [&](Patch const& patch) {
+        Gain const gain = gain_of(field, choices, due, budget, field.range_of(patch.node), field.level_of(patch.depth));
+        if (!gain.spoils) {
+            double const samples = framelet_samples * tile_count(patch);
+            double const cost = samples * (gain.pixels > 0 ? gain.cost / gain.pixels : 1);
+            rated.push_back({patch, samples, cost, gain.error / cost});
+        }
+        return !gain.spoils;
+    };
+    for (Patch const& patch : cut) {
+        if (rate(patch)) {
+            continue;
+        }
+        // What is true among them must not keep the others waiting: each for itself.
+        PlaceField::Range const range = field.range_of(patch.node);
+        for (std::uint32_t i = range.first; i < range.last && range.last - range.first > 1; ++i) {
+            if (field.pixels_of(i) > 0) {
+                rate(field.patch_of(i, std::max(patch.depth, field.depth())));
+            }
+        }
+    }
+}
+
+void select_patches(double budget, double most_samples, std::vector<RatedPatch>& rated) {
+    std::erase_if(rated, [](RatedPatch const& entry) { return !(entry.urgency > 0); });
+    std::sort(rated.begin(), rated.end(), [](RatedPatch const& a, RatedPatch const& b) {
+        return a.urgency != b.urgency ? a.urgency > b.urgency : a.patch.node < b.patch.node;
+    });
+    double spent = 0;
+    double samples = 0;
+    std::size_t count = 0;
+    while (count < rated.size() && spent < budget && samples < most_samples) {
+        spent += rated[count].cost;
+        samples += rated[count].samples;
+        ++count;
+    }
+    rated.resize(count);
+}
+
+bool append_new(Patch const& patch, std::size_t count, std::vector<Patch>& patches) {
+    auto const end = patches.begin() + static_cast<std::ptrdiff_t>(count);
+    bool const is_new = std::find(patches.begin(), end, patch) == end;
+    if (is_new) {
+        patches.push_back(patch);
+    }
+    return is_new;
+}
+
+double inspection_period(PlaceField const& field, Budget const& budget) {
+    Viewport const viewport = field.plane().viewport();
+    double const pixels = static_cast<double>(viewport.width) * viewport.height;
+    return std::max(least_inspection_period, pixels / (budget.limits.inspection_share * budget.samples_per_second));
+}
+
+void select_inspections(PlaceField const& field, double now, Budget const& budget, std::vector<std::uint32_t>& scratch,
+                        std::vector<Patch>& patches) {
+    double const latest = now - inspection_period(field, budget);
+    scratch.clear();
+    for (std::uint32_t const index : field.visible()) {
+        Place const& place = field[index];
+        if (place.inspected < latest && place.taken.level < pixel_level) {
+            scratch.push_back(index);
+        }
+    }
+    std::sort(scratch.begin(), scratch.end(), [&field](std::uint32_t a, std::uint32_t b) {
+        return field[a].inspected != field[b].inspected ? field[a].inspected < field[b].inspected : a < b;
+    });
+    double samples =
+        budget.limits.inspection_share * budget.samples_per_second * static_cast<double>(budget.cycle_seconds);
+    for (std::uint32_t const index : scratch) {
+        if (samples <= 0) {
+            return;
+        }
+        Patch const patch = field.patch_of(index, field.plane().pixel_depth());
+        if (append_new(patch, patches.size(), patches)) {
+            samples -= framelet_samples * tile_count(patch);
+        }
+    }
+}
+
+} // namespace framelet

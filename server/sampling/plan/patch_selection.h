@@ -1,0 +1,40 @@
+// Which patches of a tiling are rendered next: those by whose refresh the picture gains most for what they cost. In:
+// the field, the choices, the cut that follows from them; out: patches, the most urgent first.
+#pragma once
+
+#include <vector>
+
+#include "server/render/rays_per_sample.h"
+#include "server/sampling/field/price.h"
+
+namespace framelet {
+
+struct RatedPatch {
+    Patch patch;
+    double samples = 0; ///< rays that they take
+    double cost = 0; ///< of them: as many where all cost the same
+    double urgency = 0; ///< error that waiting costs, summed over pixels, for each sample's cost; above 0: due
+    int rays_per_sample = single_ray;
+};
+
+/// Replaces `rated` by every patch of the cut, with its urgency; a patch that would put something coarser over what is
+/// true gives way to those of its places that need it. `due`: what `find_due_errors` gives.
+void rate_patches(PlaceField const& field, Choices const& choices, std::span<float const> due,
+                  std::vector<Patch> const& cut, Budget const& budget, std::vector<RatedPatch>& rated);
+
+/// Keeps what is due, the most urgent first, until `budget` is spent or there are so many samples.
+void select_patches(double budget, double most_samples, std::vector<RatedPatch>& rated);
+
+/// Appends a patch unless it is among the first `count` already: once is enough. Returns whether it was appended.
+bool append_new(Patch const& patch, std::size_t count, std::vector<Patch>& patches);
+
+/// How long a place may go without a look at all of its pixels, seconds: at least two, and so long that looking takes a
+/// twentieth of the samples. It bounds how long anything small can stay unseen.
+double inspection_period(PlaceField const& field, Budget const& budget);
+
+/// Appends a patch at one sample a pixel for places that have not been looked at for so long, within their twentieth of
+/// a cycle's samples, those that have waited longest first. `scratch` is overwritten.
+void select_inspections(PlaceField const& field, double now, Budget const& budget, std::vector<std::uint32_t>& scratch,
+                        std::vector<Patch>& patches);
+
+} // namespace framelet

@@ -1,0 +1,95 @@
+#include "server/sampling/plan/refinement_selection.h"
+
+#include <algorithm>
+#include <functional>
+
+#include "server/render/rays_per_sample.h"
+#include "server/sampling/plan/patch_selection.h"
+
+namespace framelet {
+namespace {
+
+/// Mean squared error of the finest samples, as modelled, above which they are not enough of a still picture.
+constexpr float enough = 5e-5f;
+
+} // namespace
+
+bool is_finest(Place const& place, double still_since) {
+    return place.level == sampling_levels - 1 && place.rendered >= still_since;
+}
+
+bool is_finished(Place const& place, double still_since) {
+    return is_finest(place, still_since) && (place.supersampled >= still_since || place.left <= enough);
+}
+
+void select_refinement(PlaceField const& field, double samples, UnresolvedPlaces& scratch,
+                       std::vector<Patch>& patches) {
+    scratch.clear();
+    for (std::uint32_t const index : field.visible()) {
+        Place const& place = field[index];
+        if (place.level < 0 || place.level + 1 >= sampling_levels || place.taken.level >= 0) {
+            continue;
+        }
+        int const finer = place.level + 1;
+        float const gain = unresolved_error(place.model, place.level) - unresolved_error(place.model, finer);
+        if (gain > 0) {
+            scratch.push_back({gain / samples_per_pixel(finer), index});
+        }
+    }
+    std::ranges::sort(scratch, std::ranges::greater());
+    std::size_t const before = patches.size();
+    double planned = 0;
+    for (auto const& [gain, index] : scratch) {
+        Patch const patch = field.patch_of(index, std::max(field.depth_of(field[index].level + 1), field.depth()));
+        if (!append_new(patch, before, patches)) {
+            continue;
+        }
+        planned += tile_count(patch) * framelet_samples;
+        if (planned >= samples) {
+            return;
+        }
+    }
+}
+
+void select_completion(PlaceField const& field, double still_since, bool scene_moves, double samples,
+                       std::vector<Patch>& patches) {
+    double tiles = 0;
+    for (std::uint32_t const index : field.visible()) {
+        Place const& place = field[index];
+        bool const fine = place.level == sampling_levels - 1 && place.settled;
+        bool const taken = place.taken.level == sampling_levels - 1 && place.taken.when >= still_since;
+        if (is_finest(place, still_since) || taken ||
+            (scene_moves && fine)) { // while things move, probes and inspections are enough
+            continue;
+        }
+        Patch const patch = field.patch_of(index, field.plane().max_depth());
+        patches.push_back(patch);
+        tiles += tile_count(patch);
+        if (tiles * framelet_samples >= samples) {
+            return;
+        }
+    }
+}
+
+void select_supersampling(PlaceField const& field, double still_since, double samples, UnresolvedPlaces& scratch,
+                          std::vector<Patch>& patches) {
+    scratch.clear();
+    for (std::uint32_t const index : field.visible()) {
+        if (is_finest(field[index], still_since) && !is_finished(field[index], still_since) &&
+            field[index].taken.level < 0) {
+            scratch.push_back({field[index].left, index});
+        }
+    }
+    std::ranges::sort(scratch, std::ranges::greater());
+    double rays = 0;
+    for (auto const& [error, index] : scratch) {
+        Patch const patch = field.patch_of(index, field.plane().max_depth());
+        patches.push_back(patch);
+        rays += tile_count(patch) * framelet_samples * four_rays;
+        if (rays >= samples) {
+            return;
+        }
+    }
+}
+
+} // namespace framelet

@@ -1,0 +1,76 @@
+// What adaptive refresh is asked and what it answers. In: what is to be seen, when, how many samples a cycle has time
+// for. Out: tiles and probes to render, how long a cycle and how large a batch should be.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "server/render/rays_per_sample.h"
+#include "server/sampling/plan/moment_refresh.h"
+#include "server/sampling/plan/view_state.h"
+
+namespace framelet {
+
+/// Bounds of a cycle's length.
+inline constexpr float least_cycle_seconds = 0.01f;
+inline constexpr float most_cycle_seconds = 0.05f;
+/// How long a cycle should be where planning one takes so long: planning may take a fortieth of it. `still`: nothing
+/// moves, so that a long one costs no freshness.
+float cycle_length(bool still, double plan_seconds);
+
+struct RefreshInput {
+    ViewState state; ///< what is to be seen at present
+    std::optional<HeldMoment> moment; ///< what is rendered instead, while things move; nothing: the present
+    double now = 0; ///< seconds, steady
+    double samples_per_second = 0; ///< what there is time for, to render and to send
+    /// What the renderer alone could do. Where that is more the link is what is scarce, and samples cost by the bytes
+    /// that they take: `samples_per_second` are of the mean then. 0: the same.
+    double rendered_per_second = 0;
+    float cycle_seconds = least_cycle_seconds; ///< how often the response is worked out anew
+    float delivery_seconds = 0; ///< from the end of its rendering until it shows
+    float bias = 0;
+    /// How bodies move, as the viewer knows it that moves what it holds along with them; null for one that does not.
+    BodyMotions const* motions = nullptr;
+    /// Most framelets of one batch; 0: what half a cycle has time for, so that it shows sooner, or all of it while
+    /// nothing moves.
+    std::size_t batch_framelets = 0;
+    std::size_t link_framelets = max_batch_framelets; ///< most that the link takes at once
+    ResponseLimits limits{};
+};
+
+/// Rays that there is time for, for each sample that there is time for to render and to send.
+double rays_a_sample(RefreshInput const& input);
+
+/// Framelets that a batch may have. `still`: nothing moves, so that a large batch costs no freshness.
+std::size_t batch_limit(RefreshInput const& input, bool still);
+
+/// What to render now.
+struct RefreshPlan {
+    double now = 0; ///< when
+    double still_since = 0; ///< when anything moved last
+    /// Since when a viewer that moves its samples has seen this camera and no other: what it was sent before, it has
+    /// moved away. `never`: it shows all where it was rendered.
+    double base_begun = never;
+    Viewport viewport;
+    double moment_begun = 0; ///< when what is rendered was the present
+    RenderedMoment moment; ///< whose motions must live until it is learnt
+    bool is_new_cycle = false; ///< worked out anew, not what the last one left
+    bool is_mirrored = false; ///< of a held moment, by what the viewer will see of it
+    ResponseLimits limits{}; ///< by which it was made
+    std::vector<Patch> patches;
+    std::vector<std::size_t> tile_counts; ///< of each patch
+    std::vector<Tile> tiles; ///< of the patches, in order
+    int rays_per_sample = single_ray; ///< of the tiles
+    /// Where what the moment shows is to be compared with what the viewer would.
+    std::optional<MomentChecks> checks;
+    std::vector<Probe> probes; ///< of the probed places, in order
+    std::vector<std::uint32_t> probed; ///< places
+
+    bool is_empty() const { return tiles.empty() && probes.empty() && !checks; }
+    /// Through the samples of the tiles.
+    std::size_t ray_count() const {
+        return tiles.size() * framelet_samples * static_cast<std::size_t>(rays_per_sample);
+    }
+};
+
+} // namespace framelet

@@ -1,0 +1,234 @@
+#include "server/stream/flow/link_estimate.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace framelet {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+/// Half of what a minimum remembers, seconds.
+constexpr double half_window = 5;
+
+/// The queue that the window leaves room for, seconds: enough that the link has always something to carry.
+constexpr double wanted_queue = 0.015;
+/// What stands for longer is too much.
+constexpr double most_queue = 0.03;
+/// What stands for less leaves room to try more.
+constexpr double least_queue = 0.012;
+/// For how long a queue has to stand.
+constexpr double standing_seconds = 0.05;
+/// A fast link gets a shorter queue: what is on its way when it turns slow has to be through within a second.
+constexpr double most_queue_bytes = 64e3, fast_queue = 0.006;
+/// Of the rate, per step upwards: the first one, how much it may become, and the queue, seconds, that it makes at most
+/// until that stands.
+constexpr double first_growth = 1.03, most_growth = 1.5, tried_queue = 0.02;
+/// A step upwards has been tried when so much of the rate was sent since. Nobody knows that a rate is carried which
+/// nothing was sent at, and the next burst would find out. Less than what a quality that is kept makes use of.
+constexpr double tried_share = 0.75;
+/// The same, as long as the rate is below this share of what it was before it fell.
+constexpr double known_growth = 1.5, known_share = 0.5;
+/// After a queue for so long none, seconds.
+constexpr double quiet_seconds = 0.1;
+/// Of the rate, while a queue stands.
+constexpr double draining_share = 0.8;
+/// The next batch may be begun so long before its time comes, and one that is late may make up for so much.
+constexpr double slack_seconds = 0.01;
+/// A batch may take so long on the link, seconds, or so much of the window.
+constexpr double batch_seconds = 0.01, batch_share = 0.125, first_batch_share = 0.25;
+constexpr double first_used_share = 0.2;
+/// Over what time the measured rate is a mean, and the most that one batch counts for, seconds: a stall is no rate.
+constexpr double rate_memory = 0.1, most_weight = 0.1;
+constexpr double least_rate = 1e3, most_rate = 1e12;
+/// A shorter round trip says nothing of a link: there is hardly one.
+constexpr double least_round_trip = 0.002;
+constexpr double first_window = 32e3, least_window = 4e3;
+/// Before the first batch: without loss, and its shape.
+constexpr double first_bytes_per_sample = 1.3;
+/// Of a new value in a running mean.
+constexpr double news = 0.125;
+
+double window_of(double rate, double base) {
+    double const queue = std::min(rate * wanted_queue, std::max(most_queue_bytes, rate * fast_queue));
+    return std::max(least_window, rate * base + queue);
+}
+
+} // namespace
+
+void WindowedMinimum::add(double now, double value) {
+    if (!(now - begun_ < half_window)) {
+        older_ = now - begun_ < 2 * half_window ? newer_ : infinity;
+        newer_ = infinity;
+        begun_ = now;
+    }
+    newer_ = std::min(newer_, value);
+}
+
+double WindowedMinimum::least() const {
+    return std::min(older_, newer_);
+}
+
+LinkEstimate::LinkEstimate() : window_(first_window), bytes_per_sample_(first_bytes_per_sample) {}
+
+LinkState LinkEstimate::state() const {
+    LinkState state;
+    state.bytes_per_sample = bytes_per_sample_;
+    state.delivery_seconds = delivery_seconds_;
+    state.queueing_seconds = queueing_seconds_;
+    double const base = base_.least();
+    bool const is_answered = std::isfinite(base);
+    state.base_seconds = is_answered ? base : 0;
+    if (!starting_) {
+        state.bytes_per_second = rate_;
+        state.batch_bytes = std::max(batch_seconds * rate_, batch_share * window_);
+    } else {
+        state.bytes_per_second = held_up_ && is_answered ? window_ / std::max(base, least_round_trip) : infinity;
+        state.batch_bytes = base < least_round_trip ? infinity : first_batch_share * window_;
+    }
+    return state;
+}
+
+/// While no queue has been met, a part of the window suffices to try a larger one: the renderer may have no more.
+bool LinkEstimate::is_full() const {
+    return in_flight_ >= (starting_ ? first_used_share : 1) * window_;
+}
+
+bool LinkEstimate::has_room(double now) const {
+    return in_flight_ < window_ && (starting_ || now >= paced_ - slack_seconds);
+}
+
+void LinkEstimate::begin(double samples) {
+    flights_.push_back({samples, bytes_per_sample_ * samples, {}});
+    in_flight_ += flights_.back().bytes;
+    was_full_ = was_full_ || is_full();
+}
+
+void LinkEstimate::sent(std::uint64_t batch, double now, double bytes) {
+    if (batch <= acknowledged_ || batch - acknowledged_ > flights_.size()) {
+        return;
+    }
+    Flight& flight = flights_[static_cast<std::size_t>(batch - acknowledged_ - 1)];
+    in_flight_ += bytes - flight.bytes;
+    held_up_ = held_up_ || in_flight_ >= window_;
+    flight.bytes = bytes;
+    flight.sent = now;
+    was_full_ = was_full_ || is_full();
+    if (!starting_) {
+        double const rate = queued_ ? draining_share * rate_ : rate_;
+        used_ += bytes;
+        paced_ = std::max(paced_, now - slack_seconds) + bytes / rate;
+    }
+    if (flight.samples > 0) {
+        double const each = bytes / flight.samples;
+        bytes_per_sample_ += news * (each - bytes_per_sample_);
+    }
+}
+
+void LinkEstimate::acknowledged(std::uint64_t batch, double now, std::optional<double> received) {
+    if (batch <= acknowledged_ || batch - acknowledged_ > flights_.size()) {
+        return;
+    }
+    double bytes = 0;
+    std::optional<double> const first_sent = flights_.front().sent;
+    Flight last;
+    for (; acknowledged_ < batch; ++acknowledged_) {
+        last = flights_.front();
+        bytes += last.bytes;
+        flights_.pop_front();
+    }
+    in_flight_ = flights_.empty() ? 0 : std::max(0.0, in_flight_ - bytes);
+    if (flights_.empty()) { // nothing waits: whatever the rate, soon something has to find out what the link carries
+        paced_ = std::min(paced_, now + standing_seconds);
+    }
+    if (!first_sent || !last.sent) {
+        return; // a guess, not an answer
+    }
+    bool const has_clock = received && std::isfinite(*received);
+    double const arrived = has_clock ? *received : now;
+    if (has_clock != has_viewer_clock_ || (last_arrived_ && arrived < *last_arrived_)) {
+        base_way_.clear(); // another clock, or one that was set
+        last_arrived_.reset();
+        has_viewer_clock_ = has_clock;
+    }
+    double const round_trip = std::max(0.0, now - *last.sent);
+    base_.add(now, round_trip);
+    base_way_.add(now, arrived - *last.sent);
+    measure_rate(*first_sent, bytes, arrived);
+    double const queue = measure_queue(last, now, round_trip, arrived);
+    double const delivery = std::max(0.0, round_trip - 0.5 * base_.least());
+    delivery_seconds_ += (delivery_seconds_ > 0 ? news : 1) * (delivery - delivery_seconds_);
+    last_arrived_ = arrived;
+    adapt(now, bytes, queue);
+}
+
+/// Counts the time for which the link was busy with what has just arrived: since the batch before, or since it was sent
+/// itself.
+void LinkEstimate::measure_rate(double first_sent, double bytes, double arrived) {
+    double const began = std::max(last_arrived_.value_or(-infinity), first_sent + base_way_.least());
+    double const seconds = std::max(0.0, arrived - began);
+    double const kept = std::exp(-(arrived - last_arrived_.value_or(arrived)) / rate_memory);
+    double const weight = std::min(1.0, most_weight / seconds); // 1 for 0 seconds
+    busy_bytes_ = kept * busy_bytes_ + weight * bytes;
+    busy_seconds_ = kept * busy_seconds_ + weight * seconds;
+}
+
+double LinkEstimate::measured_rate() const {
+    return busy_seconds_ > 0 ? std::clamp(busy_bytes_ / busy_seconds_, least_rate, most_rate) : most_rate;
+}
+
+/// How long a batch has waited, at the least, of those that came lately. Seconds; by both clocks, so that neither one
+/// that was set nor a slow way back makes a queue.
+double LinkEstimate::measure_queue(Flight const& flight, double now, double round_trip, double arrived) {
+    double const own = starting_ ? 0 : flight.bytes / std::max(rate_, measured_rate());
+    double const late = std::min(round_trip - base_.least(), arrived - *flight.sent - base_way_.least());
+    double const seconds = std::max(0.0, late - own);
+    while (!waited_.empty() && !(now - waited_.front().when < standing_seconds)) {
+        waited_.pop_front();
+    }
+    while (!waited_.empty() && waited_.back().seconds >= seconds) {
+        waited_.pop_back(); // never the smallest any more
+    }
+    waited_.push_back({now, seconds});
+    queueing_seconds_ += news * (seconds - queueing_seconds_);
+    return waited_.front().seconds;
+}
+
+void LinkEstimate::adapt(double now, double bytes, double queue) {
+    double const base = base_.least();
+    double const measured = measured_rate();
+    if (starting_) {
+        if (queue < most_queue) {
+            window_ += was_full_ ? bytes : 0;
+            was_full_ = is_full();
+            held_up_ = held_up_ && in_flight_ >= 0.5 * window_;
+            return;
+        }
+        starting_ = false;
+        rate_ = measured;
+    } else if (queue >= most_queue && measured < rate_) {
+        ceiling_ = rate_;
+        rate_ = measured; // at once: what is too much waits
+    } else if (queue >= least_queue) {
+        rate_ += 0.25 * (measured - rate_);
+    } else if (queue < 0.5 * least_queue && now - grown_ >= 1.25 * base + standing_seconds) {
+        if (used_ >= tried_share * rate_ * (now - grown_)) {
+            bool const is_known = rate_ < known_share * ceiling_;
+            // What is tried shows only a round trip later.
+            growth_ = std::min({growth_ * growth_, most_growth, 1 + tried_queue / (base + standing_seconds)});
+            rate_ = std::min((is_known ? known_growth : growth_) * rate_, most_rate);
+        } else {
+            growth_ = first_growth;
+        }
+        grown_ = now;
+        used_ = 0;
+    }
+    queued_ = queue >= least_queue;
+    if (queued_) {
+        growth_ = first_growth;
+        grown_ = now + quiet_seconds;
+        used_ = 0;
+    }
+    window_ = window_of(rate_, base);
+}
+
+} // namespace framelet

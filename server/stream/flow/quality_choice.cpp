@@ -1,0 +1,66 @@
+#include "server/stream/flow/quality_choice.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/framelet.h"
+
+namespace framelet {
+namespace {
+
+/// Of the link: the rest is for what a batch is larger than expected.
+constexpr double link_share = 0.95;
+/// How far what is wanted may be off what the link carries before the quality changes.
+constexpr double too_much = 1.1, too_little = 0.8;
+/// The finest quality with a loss: its step is below one of a display's, and what is finer costs like exact.
+constexpr std::uint8_t least_loss = 4;
+/// Exact samples take about so much more than those of `least_loss`.
+constexpr double exact_cost = 3.5;
+/// At most one step in so many seconds.
+constexpr double step_seconds = 0.03;
+
+} // namespace
+
+void SentShare::add(double rays, double sent_samples) {
+    if (!(rays > 0)) {
+        return;
+    }
+    constexpr double memory_rays = 5e5; // a tenth of a second of two cores
+    value_ += (1 - std::exp(-rays / memory_rays)) * (sent_samples / rays - value_);
+}
+
+std::uint8_t QualityChoice::choose(LinkState const& link, double samples_per_second, double now, bool moves) {
+    if (now - changed_ >= step_seconds) {
+        follow(link, samples_per_second, now);
+    }
+    return moves ? std::max(quality_, moving_loss) : quality_;
+}
+
+void QualityChoice::follow(LinkState const& link, double samples_per_second, double now) {
+    double const wanted = samples_per_second * link.bytes_per_sample / (link_share * link.bytes_per_second);
+    std::uint8_t const before = quality_;
+    if (wanted > too_much) {
+        int const steps = wanted > 2 ? 2 : 1;
+        quality_ = static_cast<std::uint8_t>(std::clamp(quality_ + steps, int{least_loss}, int{most_loss}));
+    } else if (quality_ > least_loss && wanted < too_little) {
+        --quality_;
+    } else if (quality_ > 0 && wanted * exact_cost < too_little) {
+        quality_ = 0;
+    }
+    changed_ = quality_ == before ? changed_ : now;
+}
+
+double bounded_rate(LinkState const& link, double samples_per_second) {
+    if (!(link.bytes_per_sample > 0)) {
+        return samples_per_second; // nothing but empty messages
+    }
+    return std::min(samples_per_second, std::max(1.0, link_share * link.bytes_per_second / link.bytes_per_sample));
+}
+
+std::size_t bounded_batch(LinkState const& link) {
+    double const most = static_cast<double>(max_batch_framelets);
+    double const bytes = link.bytes_per_sample * framelet_samples;
+    return static_cast<std::size_t>(bytes > 0 ? std::clamp(link.batch_bytes / bytes, 1.0, most) : most);
+}
+
+} // namespace framelet

@@ -1,0 +1,94 @@
+#include "server/stream/layers/shape_feed.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include <tbb/parallel_for.h>
+
+#include "common/error.h"
+
+namespace framelet {
+namespace {
+
+/// After a pause the viewer gets the keys of all of it, or it could not move what it has from before; but not after a
+/// leap of the clock.
+constexpr std::int64_t most_missed_keys = 5 * body_keys_per_second;
+/// So many at a time: a track costs bytes of its own.
+constexpr std::int64_t least_keys = body_keys_per_second / 10;
+/// The first picture does not wait for keys that hardly anybody will need: seconds ahead at first, more for each
+/// second.
+constexpr SceneTime first_ahead_seconds = 0.3, ahead_growth = 0.5;
+
+} // namespace
+
+/// Cameras come more rarely than batches: what counts is their speed over a tenth of a second.
+void ShapeFeed::follow(Vec3 eye, double now) {
+    constexpr double seconds = 0.1;
+    double const elapsed = now - now_;
+    if (elapsed > 0 && std::isfinite(elapsed)) {
+        float const speed = glm::distance(eye, eye_) / static_cast<float>(elapsed);
+        speed_ += static_cast<float>(1 - std::exp(-elapsed / seconds)) * (speed - speed_);
+    }
+    eye_ = eye;
+    now_ = now;
+}
+
+void ShapeFeed::fit(std::span<Framelet const> rendered, std::span<std::uint8_t const> send, ViewRays const& rays,
+                    ImagePlane const& plane, double now, std::vector<FrameletShape>& shapes) {
+    FRAMELET_CHECK(rendered.size() == send.size());
+    sent_.clear();
+    for (std::size_t i = 0; i < send.size(); ++i) {
+        if (send[i] != 0) {
+            sent_.push_back(i);
+        }
+    }
+    shapes.resize(sent_.size());
+    if (sent_.empty()) {
+        return;
+    }
+    follow(rays.origin, now);
+    // A small batch may lie in a corner of the picture.
+    constexpr float weight = 0.1f;
+    float const found = median_depth(rendered);
+    median_depth_ = median_depth_ > 0 ? median_depth_ + weight * (found - median_depth_) : found;
+    LayerTolerance const tolerance = layer_tolerance(median_depth_, rays, speed_);
+    tbb::parallel_for(std::size_t{0}, sent_.size(),
+                      [&](std::size_t i) { fit_layers(rendered[sent_[i]], plane, tolerance, shapes[i]); });
+}
+
+void ShapeFeed::track(Scene const& scene, std::span<Index const> clips, SceneBodies const& bodies, int camera,
+                      SceneTime time, std::vector<BodyTrack>& tracks, std::optional<BodyTrack>& camera_track) {
+    tracks.clear();
+    camera_track.reset();
+    if (!bodies.any_moves() && camera < 0) {
+        return;
+    }
+    auto const key = static_cast<std::int64_t>(std::floor(time * body_keys_per_second));
+    auto const most_keys = static_cast<std::int64_t>(max_batch_keys / bodies.frames.size());
+    bool const goes_on = camera == camera_ && end_key_ > first_key_ && key >= first_key_ &&
+                         key <= end_key_ + most_missed_keys && key_behind(time) <= end_key_ + most_keys;
+    if (!goes_on) {
+        first_key_ = end_key_ = key;
+        camera_ = camera;
+    }
+    std::int64_t const end = key_behind(time);
+    if (end - end_key_ >= (goes_on ? least_keys : 1)) {
+        auto const count = static_cast<std::size_t>(end - end_key_);
+        tracks = body_tracks(scene, clips, bodies, end_key_, count);
+        if (camera >= 0) {
+            camera_track = scene_camera_track(scene, clips, camera, end_key_, count);
+        }
+        end_key_ = end;
+    }
+}
+
+/// Of all that is given out with the batch of `time`.
+std::int64_t ShapeFeed::key_behind(SceneTime time) const {
+    SceneTime const known = time - static_cast<double>(first_key_) / body_keys_per_second;
+    SceneTime const ahead = std::min(first_ahead_seconds + ahead_growth * known, tracked_ahead_seconds);
+    return static_cast<std::int64_t>(std::ceil((time + ahead) * body_keys_per_second)) + 1;
+}
+
+} // namespace framelet

@@ -1,0 +1,76 @@
+#include "server/stream/flow/lossy_places.h"
+
+#include <gtest/gtest.h>
+
+namespace framelet {
+namespace {
+
+ImagePlane const plane({40, 24}); // 64x64 pixels, one sample a pixel at depth 2
+
+std::vector<Tile> listed(LossyPlaces const& places) {
+    std::vector<Tile> tiles;
+    places.list(100000, tiles);
+    return tiles;
+}
+
+TEST(LossyPlaces, WhatCameLastCounts) {
+    LossyPlaces places;
+    EXPECT_TRUE(places.empty());
+    Tile const tile = make_tile(plane.pixel_depth(), 1, 0);
+    places.sent(plane, tile, 8);
+    EXPECT_TRUE(places.is_held(plane, tile));
+    EXPECT_FALSE(places.is_held(plane, tile.parent()));
+    EXPECT_FALSE(places.is_held(plane, tile.child(0))) << "what is coarser there does not make the finer one held";
+    EXPECT_EQ(listed(places).size(), 16u);
+    places.sent(plane, tile.child(1), exact_quality);
+    EXPECT_FALSE(places.is_held(plane, tile)) << "a part of it is better already";
+    EXPECT_EQ(listed(places).size(), 12u);
+    for (Tile const finest : listed(places)) {
+        EXPECT_EQ(finest.depth(), plane.max_depth());
+        places.sent(plane, finest, exact_quality);
+    }
+    EXPECT_TRUE(places.empty());
+}
+
+TEST(LossyPlaces, OnlyVisibleOnesCount) {
+    LossyPlaces places;
+    places.sent(plane, Tile{1}, 3);
+    EXPECT_EQ(listed(places).size(), 60u); // 40x24 pixels of 4x4 each
+    EXPECT_TRUE(places.is_held(plane, Tile{1}));
+    std::vector<Tile> few;
+    places.list(7, few);
+    EXPECT_EQ(few.size(), 7u);
+    places.sent(ImagePlane({64, 64}), make_tile(2, 0, 0), exact_quality);
+    EXPECT_TRUE(places.empty()) << "another viewport: the viewer begins anew";
+}
+
+TEST(LossyPlaces, UnchangedIsSentExactlyOnce) {
+    LossyPlaces places;
+    std::vector<Tile> const tiles{make_tile(2, 0, 0), make_tile(2, 1, 0), make_tile(4, 8, 0)};
+    std::vector<std::uint8_t> needed{1, 0, 1}, qualities;
+    choose_qualities(plane, tiles, needed, 9, false, places, qualities);
+    EXPECT_EQ(needed, (std::vector<std::uint8_t>{1, 0, 1}));
+    EXPECT_EQ(qualities, (std::vector<std::uint8_t>{9, 9}));
+
+    needed = {0, 0, 0};
+    choose_qualities(plane, tiles, needed, 9, false, places, qualities);
+    EXPECT_EQ(needed, (std::vector<std::uint8_t>{1, 0, 1}));
+    EXPECT_TRUE(qualities.empty()) << "all exact";
+    EXPECT_TRUE(places.empty());
+
+    needed = {0, 0, 0};
+    choose_qualities(plane, tiles, needed, 9, false, places, qualities);
+    EXPECT_EQ(needed, (std::vector<std::uint8_t>{0, 0, 0}));
+}
+
+TEST(LossyPlaces, FinestOfAStillPictureAreExact) {
+    LossyPlaces places;
+    std::vector<Tile> const tiles{make_tile(4, 8, 0), make_tile(2, 0, 0), make_tile(4, 0, 0)};
+    std::vector<std::uint8_t> needed{1, 1, 1}, qualities;
+    choose_qualities(plane, tiles, needed, 9, true, places, qualities);
+    EXPECT_EQ(qualities, (std::vector<std::uint8_t>{0, 9, 0}));
+    EXPECT_EQ(listed(places).size(), 15u) << "the finer one of the batch shows";
+}
+
+} // namespace
+} // namespace framelet

@@ -1,0 +1,113 @@
+#include "server/stream/flow/quality_choice.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "common/framelet.h"
+
+namespace framelet {
+namespace {
+
+/// About what the codec makes of a moving picture.
+double bytes_of(std::uint8_t quality) {
+    return quality == 0 ? 1.15 : 0.6 / (1 + 0.2 * quality);
+}
+
+struct Outcome {
+    int quality = 0;
+    int changes = 0; ///< in the second half
+};
+
+Outcome outcome_of(double bytes_per_second, double samples_per_second, bool moves = false) {
+    QualityChoice choice;
+    LinkState link;
+    link.bytes_per_second = bytes_per_second;
+    link.bytes_per_sample = bytes_of(0);
+    Outcome outcome;
+    for (int i = 0; i < 400; ++i) {
+        std::uint8_t const quality = choice.choose(link, samples_per_second, 100 + 0.01 * i, moves);
+        outcome.changes += i >= 200 && quality != outcome.quality ? 1 : 0;
+        outcome.quality = quality;
+        link.bytes_per_sample += 0.2 * (bytes_of(quality) - link.bytes_per_sample);
+    }
+    return outcome;
+}
+
+TEST(SentShare, IsThatOfTheLastRays) {
+    SentShare share;
+    EXPECT_EQ(share.value(), 1) << "all, until more is known";
+    share.add(0, 0);
+    EXPECT_EQ(share.value(), 1);
+    for (int i = 0; i < 100; ++i) {
+        share.add(1e5, 0.25e5);
+        EXPECT_GE(share.value(), 0.25);
+        EXPECT_LE(share.value(), 1);
+    }
+    EXPECT_NEAR(share.value(), 0.25, 1e-6);
+    share.add(1e9, 0);
+    EXPECT_NEAR(share.value(), 0, 1e-6) << "all of it was held";
+}
+
+TEST(QualityChoice, ExactWhereTheLinkTakesIt) {
+    EXPECT_EQ(outcome_of(std::numeric_limits<double>::infinity(), 1e7).quality, 0);
+    EXPECT_EQ(outcome_of(2e6, 1e6).quality, 0);
+}
+
+TEST(QualityChoice, WithALossWhileSomethingMoves) {
+    constexpr double endless = std::numeric_limits<double>::infinity();
+    EXPECT_EQ(outcome_of(endless, 1e7, true).quality, moving_loss);
+    EXPECT_EQ(outcome_of(0.3e6, 1e6, true).quality, outcome_of(0.3e6, 1e6).quality) << "a narrow link asks for more";
+    QualityChoice choice;
+    LinkState link{.bytes_per_second = endless, .bytes_per_sample = 1};
+    EXPECT_EQ(choice.choose(link, 1e7, 1, true), moving_loss);
+    EXPECT_EQ(choice.choose(link, 1e7, 1, false), 0) << "exact as soon as it stands";
+}
+
+TEST(QualityChoice, CoarserTheSlowerTheLinkAndSteady) {
+    int before = 0;
+    for (double const rate : {1.0e6, 0.8e6, 0.6e6, 0.45e6, 0.35e6, 0.3e6, 0.1e6, 1.0}) {
+        Outcome const outcome = outcome_of(rate, 1e6);
+        EXPECT_GE(outcome.quality, before) << rate;
+        EXPECT_LE(outcome.changes, 1) << rate;
+        before = outcome.quality;
+    }
+    EXPECT_EQ(before, most_loss);
+}
+
+TEST(QualityChoice, StepsAreSmallAndItComesBack) {
+    QualityChoice choice;
+    LinkState link{.bytes_per_second = 1e5, .bytes_per_sample = 1};
+    int quality = choice.choose(link, 1e6, 1, false);
+    for (int i = 1; i < 100; ++i) {
+        int const next = choice.choose(link, 1e6, 1 + 0.001 * i, false);
+        EXPECT_LE(std::abs(next - quality), 2);
+        quality = next;
+    }
+    EXPECT_LT(quality, most_loss) << "in a tenth of a second";
+    link.bytes_per_second = 1e8;
+    for (int i = 0; i < 100; ++i) {
+        quality = choice.choose(link, 1e6, 2 + 0.01 * i, false);
+    }
+    EXPECT_EQ(quality, 0);
+}
+
+TEST(QualityChoice, RateAndBatchAreBounded) {
+    LinkState link;
+    EXPECT_EQ(bounded_rate(link, 5e6), 5e6);
+    EXPECT_EQ(bounded_batch(link), max_batch_framelets);
+    link.bytes_per_sample = 0.5;
+    link.batch_bytes = 128 * 100;
+    EXPECT_EQ(bounded_rate(link, 5e6), 5e6) << "the link is not felt";
+    EXPECT_EQ(bounded_batch(link), 100u);
+    link.bytes_per_second = 1e6;
+    EXPECT_NEAR(bounded_rate(link, 5e6), 2e6, 2e5);
+    link.batch_bytes = 0;
+    EXPECT_EQ(bounded_batch(link), 1u);
+    link.batch_bytes = 1e30;
+    EXPECT_EQ(bounded_batch(link), max_batch_framelets);
+}
+
+} // namespace
+} // namespace framelet

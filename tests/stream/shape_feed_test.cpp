@@ -1,0 +1,108 @@
+#include "server/stream/layers/shape_feed.h"
+
+#include <algorithm>
+#include <array>
+
+#include <gtest/gtest.h>
+
+#include "common/body_motion.h"
+#include "common/scene_clock.h"
+
+namespace framelet {
+namespace {
+
+/// One body, 3 metres a second along x, for a minute.
+struct Drive {
+    Scene scene;
+    std::array<Index, 1> clips{0};
+    SceneBodies bodies;
+    ShapeFeed feed;
+    BodyMotions viewer;
+
+    Drive() {
+        scene.meshes.resize(1);
+        scene.nodes.resize(1);
+        scene.nodes[0].mesh = 0;
+        scene.clips.resize(1);
+        scene.clips[0].duration = 60;
+        scene.clips[0].channels.push_back(
+            {0, AnimatedProperty::translation, Interpolation::linear, 3, {0, 60}, {0, 0, 0, 180, 0, 0}});
+        bodies = find_bodies(scene, clips);
+    }
+
+    /// Keys that the batch of `time` took.
+    std::size_t batch(SceneTime time) {
+        std::vector<BodyTrack> tracks;
+        std::optional<BodyTrack> camera;
+        feed.track(scene, clips, bodies, -1, time, tracks, camera);
+        std::size_t keys = 0;
+        for (BodyTrack const& track : tracks) {
+            keys += track.keys.size();
+            viewer.extend(track);
+        }
+        return keys;
+    }
+    double moved(SceneTime from, SceneTime to) const { return viewer.between(1, from, to).offset.x; }
+};
+
+TEST(ShapeFeed, AllIsKnownWhateverThePausesBetweenBatches) {
+    Drive drive;
+    double time = 1;
+    for (double const pause : {0.01, 0.02, 0.3, 0.7, 0.02, 1.5, 4.0, 0.1}) {
+        time += pause;
+        drive.batch(time);
+        EXPECT_NEAR(drive.moved(1.1, time + 0.3), 3 * (time + 0.3 - 1.1), 1e-4) << pause;
+    }
+}
+
+TEST(ShapeFeed, KeysAreGivenOutOnce) {
+    Drive drive;
+    std::size_t keys = 0;
+    for (int i = 0; i <= 100; ++i) {
+        keys += drive.batch(2 + 0.01 * i);
+    }
+    EXPECT_NEAR(static_cast<double>(keys), (1 + 0.8) * body_keys_per_second, 3)
+        << "0.3 s ahead, and 0.5 more each second";
+    EXPECT_EQ(drive.batch(3), 0u);
+}
+
+TEST(ShapeFeed, InTheEndASecondAheadIsKnown) {
+    Drive drive;
+    for (int i = 0; i <= 200; ++i) {
+        drive.batch(2 + 0.01 * i);
+    }
+    EXPECT_NEAR(drive.moved(2, 4 + tracked_ahead_seconds), 3 * (2 + tracked_ahead_seconds), 1e-4);
+}
+
+TEST(ShapeFeed, AfterALeapOfTheClockOnlyWhatIsNearIsGivenOut) {
+    Drive drive;
+    drive.batch(2);
+    double const once = 0.3 * body_keys_per_second;
+    EXPECT_NEAR(static_cast<double>(drive.batch(50)), once, 3) << "forwards";
+    EXPECT_NEAR(static_cast<double>(drive.batch(1)), once, 3) << "backwards";
+    EXPECT_NEAR(drive.moved(1, 1.2), 0.6, 1e-4);
+}
+
+TEST(ShapeFeed, TheLastMomentHasKeys) {
+    Drive drive;
+    drive.batch(2);
+    EXPECT_NEAR(static_cast<double>(drive.batch(max_scene_time)), 0.3 * body_keys_per_second, 3);
+}
+
+TEST(ShapeFeed, ManyBodiesAfterAPauseFitABatch) {
+    Drive drive;
+    drive.bodies.frames.assign(4097, 0); // as many as there may be
+    drive.batch(1);
+    for (double const time : {1.5, 2.0, 2.9, 5.0, 5.1, 6.0, 7.0, 7.5}) {
+        EXPECT_LE(drive.batch(time), max_batch_keys) << time;
+    }
+}
+
+TEST(ShapeFeed, StillScenesHaveNoTracks) {
+    Drive drive;
+    drive.bodies = find_bodies(drive.scene, {});
+    EXPECT_EQ(drive.batch(1), 0u);
+}
+
+} // namespace
+} // namespace framelet
