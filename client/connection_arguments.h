@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "client/server_address.h"
+#include "client/core/server_address.h"
 #include "common/camera.h"
 #include "common/command_line.h"
 

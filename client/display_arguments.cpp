@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "client/client_core.h"
+#include "client/core/client_core.h"
 #include "common/number_range.h"
 
 namespace framelet {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "client/client_core.h"
+#include "client/core/client_core.h"
 
 namespace framelet {
 

@@ -5,8 +5,8 @@
 
 #include "client/connection_arguments.h"
 #include "client/display_arguments.h"
-#include "client/first_connection.h"
-#include "client/viewer.h"
+#include "client/window/first_connection.h"
+#include "client/window/viewer.h"
 #include "common/error.h"
 #include "common/program_failure.h"
 

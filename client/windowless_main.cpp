@@ -6,11 +6,11 @@
 #include <iostream>
 #include <optional>
 
-#include "client/camera_path.h"
-#include "client/client_core.h"
 #include "client/connection_arguments.h"
+#include "client/core/camera_path.h"
+#include "client/core/client_core.h"
+#include "client/core/display_pace.h"
 #include "client/display_arguments.h"
-#include "client/display_pace.h"
 #include "client/frame_choice.h"
 #include "client/frame_log.h"
 #include "client/frame_writer.h"

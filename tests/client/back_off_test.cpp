@@ -1,4 +1,4 @@
-#include "client/back_off.h"
+#include "client/core/back_off.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "client/client_core.h"
+#include "client/core/client_core.h"
 
 #include <atomic>
 #include <thread>

@@ -16,7 +16,7 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/write.hpp>
 
-#include "client/server_address.h"
+#include "client/core/server_address.h"
 #include "protocol/codec/batch_codec.h"
 #include "protocol/stream/stream_opening.h"
 

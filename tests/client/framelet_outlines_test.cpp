@@ -1,4 +1,4 @@
-#include "client/framelet_outlines.h"
+#include "client/core/framelet_outlines.h"
 
 #include <gtest/gtest.h>
 

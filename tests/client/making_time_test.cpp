@@ -1,4 +1,4 @@
-#include "client/making_time.h"
+#include "client/core/making_time.h"
 
 #include <random>
 

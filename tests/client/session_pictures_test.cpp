@@ -1,4 +1,4 @@
-#include "client/session_pictures.h"
+#include "client/core/session_pictures.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // what goes on comes to the exact picture.
 #include <gtest/gtest.h>
 
-#include "client/client_core.h"
+#include "client/core/client_core.h"
 #include "common/error.h"
 #include "common/program_failure.h"
 #include "tests/faults/failing_allocations.h"

@@ -7,12 +7,12 @@
 
 #include <tbb/global_control.h>
 
-#include "client/display_pace.h"
+#include "client/core/display_pace.h"
+#include "client/core/making_time.h"
+#include "client/core/server_connection.h"
 #include "client/frame_choice.h"
 #include "client/frame_log.h"
 #include "client/frame_writer.h"
-#include "client/making_time.h"
-#include "client/server_connection.h"
 #include "common/cpu_clock.h"
 #include "common/error.h"
 #include "server/session/server.h"

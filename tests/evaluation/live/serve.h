@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <string>
 
-#include "client/camera_path.h"
-#include "client/server_address.h"
+#include "client/core/camera_path.h"
+#include "client/core/server_address.h"
 #include "tests/evaluation/method.h"
 
 namespace framelet::bench {

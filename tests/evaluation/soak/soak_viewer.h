@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "client/camera_path.h"
-#include "client/client_core.h"
+#include "client/core/camera_path.h"
+#include "client/core/client_core.h"
 #include "tests/evaluation/codecs/link_emulator.h"
 #include "tests/evaluation/soak/storm.h"
 

@@ -4,8 +4,8 @@
 
 #include <memory>
 
-#include "client/client_core.h"
-#include "client/window.h"
+#include "client/core/client_core.h"
+#include "client/window/window.h"
 
 namespace framelet {
 

@@ -1,4 +1,4 @@
-#include "client/picture_texture.h"
+#include "client/window/picture_texture.h"
 
 #include <algorithm>
 #include <string>

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "client/command.h"
-#include "client/time_line.h"
+#include "client/window/command.h"
+#include "client/window/time_line.h"
 #include "common/tile.h"
 
 struct GLFWwindow;

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "client/picture_maker.h"
+#include "client/core/picture_maker.h"
 
 namespace framelet {
 

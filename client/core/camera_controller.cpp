@@ -1,4 +1,4 @@
-#include "client/camera_controller.h"
+#include "client/core/camera_controller.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "client/server_address.h"
+#include "client/core/server_address.h"
 #include "protocol/messages/message.h"
 
 namespace framelet {

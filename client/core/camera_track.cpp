@@ -1,4 +1,4 @@
-#include "client/camera_track.h"
+#include "client/core/camera_track.h"
 
 #include <algorithm>
 #include <cmath>

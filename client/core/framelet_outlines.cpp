@@ -1,11 +1,11 @@
-#include "client/framelet_outlines.h"
+#include "client/core/framelet_outlines.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
-#include "client/age_colors.h"
+#include "client/core/age_colors.h"
 #include "common/error.h"
 
 namespace framelet {

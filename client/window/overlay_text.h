@@ -3,8 +3,8 @@
 
 #include <chrono>
 
-#include "client/client_core.h"
-#include "client/overlay.h"
+#include "client/core/client_core.h"
+#include "client/window/overlay.h"
 
 namespace framelet {
 

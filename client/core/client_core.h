@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "client/picture_maker.h"
-#include "client/server_address.h"
+#include "client/core/picture_maker.h"
+#include "client/core/server_address.h"
 #include "common/image.h"
 #include "common/tile.h"
 #include "protocol/messages/message.h"

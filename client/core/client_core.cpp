@@ -1,4 +1,4 @@
-#include "client/client_core.h"
+#include "client/core/client_core.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +8,9 @@
 #include <thread>
 #include <utility>
 
-#include "client/making_time.h"
-#include "client/server_connection.h"
-#include "client/session_pictures.h"
+#include "client/core/making_time.h"
+#include "client/core/server_connection.h"
+#include "client/core/session_pictures.h"
 #include "common/error.h"
 #include "protocol/codec/batch_codec.h"
 

@@ -1,4 +1,4 @@
-#include "client/first_connection.h"
+#include "client/window/first_connection.h"
 
 #include <chrono>
 #include <future>
@@ -6,9 +6,9 @@
 #include <random>
 #include <string>
 
-#include "client/back_off.h"
-#include "client/overlay.h"
-#include "client/viewer.h"
+#include "client/core/back_off.h"
+#include "client/window/overlay.h"
+#include "client/window/viewer.h"
 #include "common/error.h"
 
 namespace framelet {

@@ -1,4 +1,4 @@
-#include "client/viewer.h"
+#include "client/window/viewer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <sstream>
 #include <utility>
 
-#include "client/display_pace.h"
+#include "client/core/display_pace.h"
 #include "common/counted.h"
 #include "common/error.h"
 #include "common/files/picture_writer.h"

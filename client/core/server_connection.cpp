@@ -1,4 +1,4 @@
-#include "client/server_connection.h"
+#include "client/core/server_connection.h"
 
 #include <chrono>
 #include <concepts>
@@ -13,7 +13,7 @@
 #include <boost/asio/connect.hpp>
 #include <boost/asio/steady_timer.hpp>
 
-#include "client/back_off.h"
+#include "client/core/back_off.h"
 #include "common/error.h"
 #include "protocol/stream/known_servers.h"
 #include "protocol/stream/local_token.h"

@@ -1,10 +1,10 @@
-#include "client/picture_maker.h"
+#include "client/core/picture_maker.h"
 
 #include <cmath>
 
-#include "client/camera_track.h"
-#include "client/confidence_colors.h"
-#include "client/framelet_outlines.h"
+#include "client/core/camera_track.h"
+#include "client/core/confidence_colors.h"
+#include "client/core/framelet_outlines.h"
 #include "common/picture/reconstruction.h"
 #include "common/picture/shown_point.h"
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "client/late_clock.h"
+#include "client/core/late_clock.h"
 #include "common/held/framelet_pool.h"
 #include "common/image.h"
 #include "common/picture/reprojector.h"

@@ -1,4 +1,4 @@
-#include "client/window.h"
+#include "client/window/window.h"
 
 #include <algorithm>
 #include <optional>
@@ -9,7 +9,7 @@
 #include <GLFW/glfw3.h>
 #include <glm/geometric.hpp>
 
-#include "client/picture_texture.h"
+#include "client/window/picture_texture.h"
 #include "common/error.h"
 
 namespace framelet {

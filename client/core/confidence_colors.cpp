@@ -1,9 +1,9 @@
-#include "client/confidence_colors.h"
+#include "client/core/confidence_colors.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "client/age_colors.h"
+#include "client/core/age_colors.h"
 #include "common/error.h"
 
 namespace framelet {

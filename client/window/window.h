@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "client/camera_controller.h"
-#include "client/command.h"
+#include "client/core/camera_controller.h"
+#include "client/window/command.h"
 #include "common/image.h"
 #include "common/tile.h"
 

@@ -7,12 +7,12 @@
 #include <optional>
 #include <string>
 
-#include "client/camera_controller.h"
-#include "client/client_core.h"
-#include "client/making_time.h"
-#include "client/overlay.h"
-#include "client/overlay_text.h"
-#include "client/window.h"
+#include "client/core/camera_controller.h"
+#include "client/core/client_core.h"
+#include "client/core/making_time.h"
+#include "client/window/overlay.h"
+#include "client/window/overlay_text.h"
+#include "client/window/window.h"
 
 namespace framelet {
 

@@ -1,4 +1,4 @@
-#include "client/overlay.h"
+#include "client/window/overlay.h"
 
 #include <algorithm>
 #include <cstdio>

@@ -1,4 +1,4 @@
-#include "client/server_address.h"
+#include "client/core/server_address.h"
 
 #include <algorithm>
 #include <charconv>
