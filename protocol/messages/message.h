@@ -20,6 +20,14 @@ using ByteView = std::span<std::byte const>;
 
 inline constexpr std::uint16_t protocol_version = 4;
 
+/// What lets a viewer go on where its connection was cut: 128 random bits. All of them 0: none.
+struct Ticket {
+    std::uint64_t high = 0, low = 0;
+    explicit operator bool() const { return (high | low) != 0; }
+    /// In a time that says nothing of where they differ.
+    bool operator==(Ticket const& other) const { return ((high ^ other.high) | (low ^ other.low)) == 0; }
+};
+
 // --- upstream
 // ---------------------------------------------------------------------------------------------------------
 
@@ -37,6 +45,8 @@ struct Hello {
     std::uint16_t version = protocol_version;
     std::string token; ///< empty where the server asks for none
     std::uint32_t codings = coding::exact_colour;
+    Ticket ticket{}; ///< of the session before, to go on with it
+    std::uint64_t last_batch = 0; ///< of that session, the newest that the viewer has as a whole
     bool operator==(Hello const&) const = default;
 };
 
@@ -104,6 +114,9 @@ struct Welcome {
     ClockState clock;
     std::uint64_t scene_identity = 0; ///< the same where it is the same scene, whatever the server; 0: not known
     bool controls = true; ///< whether this viewer's clock requests count
+    Ticket ticket{}; ///< for the viewer's next Hello
+    bool resumed = false; ///< the session before goes on: what the viewer holds of it stays, what it lacks comes again
+    std::uint64_t let_go = 0; ///< as in Status
 };
 
 /// How the samples of a batch are coded.
@@ -135,6 +148,7 @@ struct Status {
     double samples_per_second = 0; ///< rendered for all sessions together
     std::uint32_t sessions = 0;
     bool controls = true; ///< as in Welcome, by now
+    std::uint64_t let_go = 0; ///< how many messages LetGo of this viewer have come
     bool operator==(Status const&) const = default;
 };
 

@@ -51,9 +51,11 @@ Offset<wire::Welcome> write(Builder& builder, Welcome const& value) {
     auto const server = write_text(builder, value.server, max_name_bytes);
     auto const scene = write_text(builder, value.scene_name, max_name_bytes);
     auto const start = write(builder, value.start_camera);
+    wire::Ticket const ticket = write(value.ticket);
     return wire::CreateWelcome(builder, value.version, server, scene, value.scene_bounds.empty() ? nullptr : &box,
                                start, builder.CreateVector(cameras), value.animation_duration, &clock,
-                               value.scene_identity, value.controls);
+                               value.scene_identity, value.controls, value.ticket ? &ticket : nullptr, value.resumed,
+                               value.let_go);
 }
 
 Welcome read(wire::Welcome const& wire) {
@@ -80,6 +82,9 @@ Welcome read(wire::Welcome const& wire) {
     value.clock = read(*wire.clock());
     value.scene_identity = wire.scene_identity();
     value.controls = wire.controls();
+    value.ticket = read(wire.ticket());
+    value.resumed = wire.resumed();
+    value.let_go = wire.let_go();
     return value;
 }
 
@@ -202,7 +207,7 @@ char const* problem(EncodedBatch const& value) {
 Offset<wire::Status> write(Builder& builder, Status const& value) {
     wire::Clock const clock = write(value.clock);
     return wire::CreateStatus(builder, &clock, value.last_batch, value.camera_number, value.converged,
-                              value.samples_per_second, value.sessions, value.controls);
+                              value.samples_per_second, value.sessions, value.controls, value.let_go);
 }
 
 Status read(wire::Status const& wire) {
@@ -214,6 +219,7 @@ Status read(wire::Status const& wire) {
     value.samples_per_second = wire.samples_per_second();
     value.sessions = wire.sessions();
     value.controls = wire.controls();
+    value.let_go = wire.let_go();
     return value;
 }
 

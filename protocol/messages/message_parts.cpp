@@ -20,6 +20,14 @@ ClockState read(wire::Clock const& wire) {
     return {wire.time(), wire.playing(), wire.speed()};
 }
 
+wire::Ticket write(Ticket const& value) {
+    return {value.high, value.low};
+}
+
+Ticket read(wire::Ticket const* wire) {
+    return wire == nullptr ? Ticket{} : Ticket{wire->high(), wire->low()};
+}
+
 char const* problem(ClockState const& value) {
     if (!is_time(value.time)) {
         return "the clock's time is not within 0..1e9";

@@ -7,11 +7,14 @@
 namespace framelet {
 
 Offset<wire::Hello> write(Builder& builder, Hello const& value) {
-    return wire::CreateHello(builder, value.version, write_text(builder, value.token, max_token_bytes), value.codings);
+    wire::Ticket const ticket = write(value.ticket);
+    return wire::CreateHello(builder, value.version, write_text(builder, value.token, max_token_bytes), value.codings,
+                             value.ticket ? &ticket : nullptr, value.last_batch);
 }
 
 Hello read(wire::Hello const& wire) {
-    return {wire.version(), read_text(wire.token(), max_token_bytes), wire.codings()};
+    return {wire.version(), read_text(wire.token(), max_token_bytes), wire.codings(), read(wire.ticket()),
+            wire.last_batch()};
 }
 
 char const* problem(Hello const&) {

@@ -32,6 +32,8 @@ Vec3 read(wire::Vec3 const& wire);
 wire::Clock write(ClockState const& value);
 ClockState read(wire::Clock const& wire);
 char const* problem(ClockState const& value);
+wire::Ticket write(Ticket const& value);
+Ticket read(wire::Ticket const* wire);
 Offset<wire::Camera> write(Builder& builder, Camera const& value);
 Camera read(wire::Camera const& wire);
 char const* problem(Camera const& value);

@@ -143,6 +143,10 @@ public:
         return open_ && !finished_ && ((awaited_reads_ == 0 && !peer_done_) || (awaited_writes_ == 0 && writing_));
     }
 
+    bool was_cut() const override {
+        return cut_;
+    }
+
     std::string peer() const override {
         return peer_;
     }
@@ -448,6 +452,7 @@ private:
 
     /// The connection is gone.
     void lose(std::string const& reason) {
+        cut_ = true;
         finish();
         tell(reason);
     }
@@ -529,6 +534,7 @@ private:
     bool ending_ = false; ///< no message is read or queued any more
     bool peer_done_ = false; ///< nothing more will arrive
     bool finished_ = false;
+    bool cut_ = false;
 };
 
 } // namespace

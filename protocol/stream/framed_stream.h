@@ -49,6 +49,8 @@ public:
     /// Where memory was missing for the next step of reading or writing, so that neither goes on and nobody is told.
     /// Only between callbacks.
     virtual bool is_stuck() const { return false; }
+    /// Once `on_close` was called: whether the connection is gone without a word of either side, who might meet again.
+    virtual bool was_cut() const { return false; }
     /// Address and port of the other side, as they were at the beginning. From any thread.
     virtual std::string peer() const = 0;
 };

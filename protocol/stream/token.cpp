@@ -26,6 +26,12 @@ std::string make_token() {
     return token;
 }
 
+Ticket make_ticket() {
+    Ticket ticket;
+    FRAMELET_CHECK(RAND_bytes(reinterpret_cast<unsigned char*>(&ticket), sizeof ticket) == 1);
+    return ticket;
+}
+
 std::string read_token_file(std::filesystem::path const& file) {
     std::ifstream stream(file, std::ios::binary);
     // A little more than allowed is read, so that a file that never ends (a device) is refused as well.

@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "protocol/messages/message.h"
+
 namespace framelet {
 
 /// A shorter one can be guessed.
@@ -13,6 +15,9 @@ inline constexpr std::size_t min_token_bytes = 16;
 
 /// 128 bits of the system's randomness, in 32 hexadecimal digits.
 std::string make_token();
+
+/// As many, for one viewer that comes back.
+Ticket make_ticket();
 
 /// True when both are the same. Takes a time that depends on their lengths only.
 bool same_token(std::string_view left, std::string_view right);

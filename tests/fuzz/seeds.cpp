@@ -182,10 +182,13 @@ void write_sessions(std::filesystem::path const& folder) {
     clock.set = ClockRequest::time | ClockRequest::playing | ClockRequest::speed;
     clock.state = {0.5, true, -2};
     write_session(folder, "looks", {camera(1, {64, 48}), Ack{1, 1000, 100}, camera(2, {64, 48}), Ack{2, 20'000, 100}});
-    write_session(folder, "resizes", {camera(1, {64, 48}), camera(2, {33, 17}), Ack{1, 1000, 100}, camera(3, {120, 90})});
-    write_session(folder, "lets_go", {camera(1, {64, 48}), Ack{1, 1000, 100}, LetGo{{{1, Tile{1}}, {1, Tile{5}}}}, clock});
-    write_session(folder, "wants", {ViewerSettings{1, 0.5f, true}, camera(1, {64, 48}), ViewerSettings{-1, 0, false},
-                                    clock, Ack{1, 0, 0}, Ack{2, 0, 0}, camera(2, {64, 48}), Failure{"enough"}});
+    write_session(folder, "resizes",
+                  {camera(1, {64, 48}), camera(2, {33, 17}), Ack{1, 1000, 100}, camera(3, {120, 90})});
+    write_session(folder, "lets_go",
+                  {camera(1, {64, 48}), Ack{1, 1000, 100}, LetGo{{{1, Tile{1}}, {1, Tile{5}}}}, clock});
+    write_session(folder, "wants",
+                  {ViewerSettings{1, 0.5f, true}, camera(1, {64, 48}), ViewerSettings{-1, 0, false}, clock,
+                   Ack{1, 0, 0}, Ack{2, 0, 0}, camera(2, {64, 48}), Failure{"enough"}});
 }
 
 void write_secrets(std::filesystem::path const& folder) {
@@ -233,9 +236,11 @@ int main(int argc, char** argv) {
     int number = 0;
     SceneCameraInfo const camera{"camera", {}};
     for (Message const& message :
-         {Message(Hello{protocol_version, "secret"}), Message(CameraUpdate{}), Message(ViewerSettings{1, 0}),
-          Message(ClockRequest{}), Message(Ack{3, 4, 5}), Message(LetGo{{{3, Tile{5}}}}),
-          Message(Welcome{1, "s", "n", {}, {}, {camera}, 2, {}}), Message(Status{}), Message(Failure{"text"})}) {
+         {Message(Hello{protocol_version, "secret"}), Message(Hello{protocol_version, {}, coding::all, {1, 2}, 3}),
+          Message(CameraUpdate{}), Message(ViewerSettings{1, 0}), Message(ClockRequest{}), Message(Ack{3, 4, 5}),
+          Message(LetGo{{{3, Tile{5}}}}),
+          Message(Welcome{1, "s", "n", {}, {}, {camera}, 2, {}, 7, true, {1, 2}, true, 4}), Message(Status{}),
+          Message(Failure{"text"})}) {
         write_message(folder, message, std::to_string(number++));
     }
     return 0;

@@ -140,6 +140,7 @@ TEST_F(FramedStreamTest, GarbageIsRefused) {
     write(framed(Bytes(40, std::byte{0x55})));
     EXPECT_EQ(end.wait_for_close(), "a message is not well-formed");
     EXPECT_EQ(failure_sent(), "a message is not well-formed");
+    EXPECT_FALSE(end.stream->was_cut());
 }
 
 TEST_F(FramedStreamTest, EmptyMessageIsRefused) {
@@ -261,6 +262,7 @@ TEST_F(FramedStreamTest, PeerVanishesInTheMiddle) {
         boost::asio::write(one, boost::asio::buffer(whole, size));
         one.close();
         EXPECT_EQ(other.wait_for_close(), "the other side closed the connection in the middle of a message");
+        EXPECT_TRUE(other.stream->was_cut());
     }
 }
 

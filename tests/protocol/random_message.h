@@ -58,6 +58,7 @@ public:
         return {static_cast<int>(number(1, max_viewport_side)), static_cast<int>(number(1, max_viewport_side))};
     }
     NumberedView view() { return {any64(), camera(), viewport(), any64()}; }
+    Ticket ticket() { return {any64(), any64()}; }
     ClockState clock() { return {number(0, 1e9), coin(), small(-16, 16)}; }
 
     Welcome welcome() {
@@ -77,6 +78,9 @@ public:
         welcome.clock = clock();
         welcome.scene_identity = any64();
         welcome.controls = coin();
+        welcome.ticket = ticket();
+        welcome.resumed = coin();
+        welcome.let_go = any64();
         return welcome;
     }
 
@@ -130,7 +134,7 @@ public:
     Message message() {
         switch (integer(0, 9)) {
         case 0:
-            return Hello{static_cast<std::uint16_t>(any64()), text(4096), any32()};
+            return Hello{static_cast<std::uint16_t>(any64()), text(4096), any32(), ticket(), any64()};
         case 1:
             return CameraUpdate{view(), static_cast<int>(number(-1, 4095))};
         case 2:
@@ -146,7 +150,7 @@ public:
         case 7:
             return batch();
         case 8:
-            return Status{clock(), any64(), any64(), coin(), number(0, 1e12), any32(), coin()};
+            return Status{clock(), any64(), any64(), coin(), number(0, 1e12), any32(), coin(), any64()};
         default:
             return Failure{text(4096), coin()};
         }
@@ -174,7 +178,8 @@ inline bool same(Message const& left, Message const& right) {
                a->scene_bounds.lower == b->scene_bounds.lower && a->scene_bounds.upper == b->scene_bounds.upper &&
                a->start_camera == b->start_camera && a->cameras == b->cameras &&
                a->animation_duration == b->animation_duration && a->clock == b->clock &&
-               a->scene_identity == b->scene_identity && a->controls == b->controls;
+               a->scene_identity == b->scene_identity && a->controls == b->controls && a->ticket == b->ticket &&
+               a->resumed == b->resumed && a->let_go == b->let_go;
     }
     return std::visit(
         [&](auto const& value) {

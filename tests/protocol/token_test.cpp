@@ -65,6 +65,15 @@ TEST(Token, MadeOnesAreLongAndDiffer) {
     EXPECT_NE(token, make_token());
 }
 
+TEST(Token, TicketsDiffer) {
+    Ticket const ticket = make_ticket();
+    EXPECT_TRUE(ticket);
+    EXPECT_NE(ticket, make_ticket());
+    EXPECT_NE(ticket, (Ticket{ticket.high, ticket.low ^ 1}));
+    EXPECT_NE(ticket, (Ticket{ticket.high ^ 1, ticket.low}));
+    EXPECT_FALSE(Ticket{});
+}
+
 TEST(Token, Comparison) {
     EXPECT_TRUE(same_token("", ""));
     EXPECT_TRUE(same_token("secret", "secret"));
