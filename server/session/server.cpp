@@ -27,6 +27,7 @@
 #include "server/session/scene_control.h"
 #include "server/session/session_memory.h"
 #include "server/session/source.h"
+#include "server/session/tickets.h"
 #include "server/session/token_guesses.h"
 #include "server/session/waiting_room.h"
 
@@ -84,6 +85,7 @@ struct Server::Impl {
     SceneControl control;
     ClockRequests clock_requests; ///< for the io thread only, as all down to the sessions
     SessionMemory memory;
+    Tickets tickets;
     WaitingRoom waiting;
     TokenGuesses guesses;
     LogLimit wrong_tokens, turned_away, without_memory; ///< for what the log says of them
@@ -196,10 +198,38 @@ struct Server::Impl {
                 set_clock(request);
             }
         };
-        events.resize = [this, id](Viewport viewport, bool predicts) { return memory.reserve(id, viewport, predicts); };
+        events.resize = [this, id](Viewport viewport, bool predicts) { return reserve(id, viewport, predicts); };
         events.changed = [this] { loop.wake(); };
         events.ended = [this, id](std::string const& reason) { end_session(id, reason); };
         return events;
+    }
+
+    /// Viewers that are away leave their memory to those that are here.
+    std::optional<std::string> reserve(std::uint64_t id, Viewport viewport, bool predicts) {
+        auto refusal = memory.reserve(id, viewport, predicts);
+        while (refusal && give_up_longest_parked()) {
+            refusal = memory.reserve(id, viewport, predicts);
+        }
+        return refusal;
+    }
+
+    /// False where nobody is away.
+    bool give_up_longest_parked() {
+        Tickets::Holder* const holder = tickets.longest_parked();
+        if (holder == nullptr) {
+            return false;
+        }
+        give_up(*holder);
+        return true;
+    }
+
+    /// This viewer, which is away, does not come back, or has to begin anew.
+    void give_up(Tickets::Holder const& holder) {
+        std::shared_ptr<Session> const session = holder.session;
+        tickets.erase(&holder);
+        session->abandon();
+        memory.release(session->id());
+        loop.wake();
     }
 
     std::variant<Welcome, Failure> admit(std::uint64_t id, Hello const& hello) {
@@ -217,6 +247,13 @@ struct Server::Impl {
             }
             return Failure{"wrong or missing token: start the viewer with --token-file"};
         }
+        Tickets::Holder* holder = hello.ticket ? tickets.find(hello.ticket) : nullptr;
+        if (holder != nullptr && !holder->parked) { // what it says is newer than what is known of its connection
+            auto const before = holder->session;
+            before->cut();
+            remove(before->id(), "it has come back by another connection");
+            holder = tickets.find(hello.ticket);
+        }
         if (open_sessions().size() >= options.max_sessions) {
             return Failure{"the server has its " + std::to_string(options.max_sessions) +
                                " viewers already: try later or raise --max-sessions",
@@ -229,7 +266,34 @@ struct Server::Impl {
         Welcome answer = welcome;
         answer.clock = clock.state(steady_clock::now());
         answer.controls = control.controls(id);
+        if (holder != nullptr && !resume(*holder, connection.session, hello, knows_control_token)) {
+            give_up(*holder);
+            holder = nullptr;
+        }
+        if (holder != nullptr) {
+            answer.resumed = true;
+            answer.let_go = connection.session->status().let_go;
+        } else {
+            tickets.issue({make_ticket(), connection.session, hello.codings, knows_control_token, std::nullopt});
+        }
+        answer.ticket = tickets.of(*connection.session)->ticket;
         return answer;
+    }
+
+    /// False where the viewer is another one by what it knows and reads, or lacks what is not kept any more.
+    bool resume(Tickets::Holder& holder, std::shared_ptr<Session> const& session, Hello const& hello,
+                bool knows_control_token) {
+        auto const earlier = holder.session;
+        if (holder.codings != hello.codings || holder.knows_control_token != knows_control_token ||
+            !earlier->can_be_resumed(hello.last_batch)) {
+            return false;
+        }
+        spdlog::info("viewer {} is viewer {}, who has come back", session->id(), earlier->id());
+        memory.pass(earlier->id(), session->id());
+        session->resume(earlier, hello.last_batch);
+        holder.session = session;
+        holder.parked.reset();
+        return true;
     }
 
     void note_wrong_token(std::string const& source) {
@@ -280,17 +344,38 @@ struct Server::Impl {
         log_end(id, found->second, reason);
         auto const stream = found->second.stream;
         forget(id);
+        while (tickets.parked_count() > options.max_sessions) {
+            give_up_longest_parked();
+        }
         farewells.add(stream);
         send_status(); // it may be another's turn to control
     }
 
-    /// Gives back all that it had. Takes no memory for that.
+    /// Gives back all that it had, but what a viewer goes on with that comes back. Takes no memory for that.
     void forget(std::uint64_t id) {
         waiting.leave(id);
-        memory.release(id);
         control.leave(id);
+        park_or_release(id);
         std::scoped_lock const lock(sessions_mutex);
         connections.erase(id);
+    }
+
+    void park_or_release(std::uint64_t id) {
+        auto const found = connections.find(id);
+        Tickets::Holder* const holder = found == connections.end() ? nullptr : tickets.of(*found->second.session);
+        if (holder != nullptr && holder->session->is_parked()) {
+            holder->parked = steady_clock::now();
+        } else if (holder != nullptr) {
+            give_up(*holder);
+        } else {
+            memory.release(id);
+        }
+    }
+
+    void give_up_who_stay_away() {
+        while (auto const* const holder = tickets.overdue(steady_clock::now())) {
+            give_up(*holder);
+        }
     }
 
     void log_end(std::uint64_t id, Connection const& connection, std::string const& reason) {
@@ -365,6 +450,7 @@ struct Server::Impl {
                 drop_stuck_connections();
                 drop_remains();
                 drop_overdue_connections();
+                give_up_who_stay_away();
                 send_status();
                 beat();
             }

@@ -11,6 +11,15 @@ double seconds_of(std::chrono::steady_clock::time_point time) {
     return std::chrono::duration<double>(time.time_since_epoch()).count();
 }
 
+EncodedBatch const& batch_of(std::shared_ptr<Message const> const& message) {
+    return std::get<EncodedBatch>(*message);
+}
+
+/// About.
+std::size_t bytes_of(EncodedBatch const& batch) {
+    return batch.payload.size() + batch.shapes.size() + batch.tracks.size() + batch.tiles.size() * sizeof(Tile);
+}
+
 } // namespace
 
 Session::Session(std::uint64_t id, std::shared_ptr<FramedStream> stream, Events events)
@@ -26,7 +35,9 @@ void Session::start() {
     }
     FramedStream::Handlers handlers;
     handlers.on_message = [self = shared_from_this()](Message message) { self->receive(std::move(message)); };
-    handlers.on_close = [self = shared_from_this()](std::string const& reason) { self->fail(reason); };
+    handlers.on_close = [self = shared_from_this()](std::string const& reason) {
+        self->fail(reason, self->stream_->was_cut());
+    };
     stream_->start(std::move(handlers), max_upstream_message_bytes);
 }
 
@@ -35,6 +46,7 @@ void Session::close(std::string const& farewell, bool again) {
         std::scoped_lock const lock(mutex_);
         open_ = false;
         ended_ = true;
+        parked_ = false;
     }
     stream_->send(Failure{farewell, again});
     stream_->close_after_sending();
@@ -43,6 +55,7 @@ void Session::close(std::string const& farewell, bool again) {
 void Session::end(std::string const& reason, bool again) {
     {
         std::scoped_lock const lock(mutex_);
+        parked_ = false;
         if (std::exchange(ended_, true)) {
             return;
         }
@@ -53,6 +66,59 @@ void Session::end(std::string const& reason, bool again) {
     events_.ended(reason);
 }
 
+void Session::cut() {
+    stream_->close();
+    std::scoped_lock const lock(mutex_);
+    parked_ = parked_ || open_;
+    open_ = false;
+    ended_ = true;
+}
+
+bool Session::can_be_resumed(std::uint64_t last_batch) const {
+    std::scoped_lock const lock(mutex_);
+    return parked_ && last_ack_ <= last_batch && last_batch <= last_batch_ &&
+           (last_batch == last_batch_ || (!kept_.empty() && batch_of(kept_.front()).number <= last_batch + 1));
+}
+
+void Session::resume(std::shared_ptr<Session> earlier, std::uint64_t last_batch) {
+    std::scoped_lock const lock(mutex_, earlier->mutex_);
+    let_go_ = earlier->let_go_;
+    last_batch_ = last_ack_ = last_batch;
+    earlier_ = std::move(earlier);
+}
+
+void Session::take_over() {
+    std::deque<std::shared_ptr<Message const>> lacked;
+    {
+        std::shared_ptr<Session> const earlier = this->earlier();
+        std::scoped_lock const lock(mutex_, earlier->mutex_);
+        std::vector<StreamEvent> events = std::move(earlier->waiting_events_);
+        events.push_back({seconds_of(std::chrono::steady_clock::now()), Resumed{last_batch_}});
+        events.insert(events.end(), waiting_events_.begin(), waiting_events_.end());
+        waiting_events_ = std::move(events);
+        waiting_let_go_ += earlier->waiting_let_go_;
+        lacked = std::move(earlier->kept_);
+        std::erase_if(lacked, [this](auto const& message) { return batch_of(message).number <= last_batch_; });
+        earlier->parked_ = false;
+        earlier_.reset();
+    }
+    for (auto const& message : lacked) {
+        send_batch(message);
+    }
+}
+
+void Session::abandon() {
+    std::shared_ptr<Session> earlier;
+    {
+        std::scoped_lock const lock(mutex_);
+        parked_ = false;
+        earlier = std::move(earlier_);
+    }
+    if (earlier) {
+        earlier->abandon();
+    }
+}
+
 bool Session::is_open() const {
     std::scoped_lock const lock(mutex_);
     return open_;
@@ -61,6 +127,26 @@ bool Session::is_open() const {
 bool Session::has_ended() const {
     std::scoped_lock const lock(mutex_);
     return ended_;
+}
+
+bool Session::is_parked() const {
+    std::scoped_lock const lock(mutex_);
+    return parked_;
+}
+
+bool Session::is_served() const {
+    std::scoped_lock const lock(mutex_);
+    return open_ || parked_;
+}
+
+bool Session::is_ready() const {
+    std::scoped_lock const lock(mutex_);
+    return !earlier_ || camera_number_ > 0;
+}
+
+std::shared_ptr<Session> Session::earlier() const {
+    std::scoped_lock const lock(mutex_);
+    return earlier_;
 }
 
 std::uint32_t Session::codings() const {
@@ -83,11 +169,23 @@ void Session::send(Message const& message) {
 }
 
 void Session::send_batch(EncodedBatch batch) {
-    std::uint64_t const number = batch.number;
+    send_batch(std::make_shared<Message const>(std::move(batch)));
+}
+
+void Session::send_batch(std::shared_ptr<Message const> const& batch) {
+    std::uint64_t const number = batch_of(batch).number;
     {
         std::scoped_lock const lock(mutex_);
+        if (!open_ && !parked_) {
+            return;
+        }
+        kept_.push_back(batch);
+        kept_bytes_ += bytes_of(batch_of(batch));
         if (!open_) {
             return;
+        }
+        while (kept_bytes_ > most_kept_bytes) {
+            drop_kept();
         }
         if (last_batch_ == last_ack_) {
             last_progress_ = std::chrono::steady_clock::now();
@@ -95,7 +193,7 @@ void Session::send_batch(EncodedBatch batch) {
         last_batch_ = number; // the answer may be here before it is sent as a whole
     }
     double const now = seconds_of(std::chrono::steady_clock::now());
-    std::size_t const bytes = stream_->send(std::move(batch));
+    std::size_t const bytes = stream_->send(*batch);
     std::scoped_lock const lock(mutex_);
     waiting_events_.push_back({now, BatchSent{number, bytes}});
 }
@@ -123,6 +221,7 @@ Status Session::status() const {
     std::scoped_lock const lock(mutex_);
     Status status;
     status.last_batch = last_batch_;
+    status.let_go = let_go_;
     status.camera_number = camera_number_;
     status.converged = camera_number_ > 0 && converged_version_ == version_;
     return status;
@@ -173,11 +272,17 @@ void Session::receive(Message message) {
         receive_let_go(std::move(*gone));
     } else if (auto const* const failure = std::get_if<Failure>(&message)) {
         stream_->close();
-        fail("the viewer gave up: " + failure->text);
+        fail("the viewer gave up: " + failure->text, false);
     } else {
         close("unexpected message");
         events_.ended("the viewer sent a message that only a server may send");
     }
+}
+
+/// Under the lock.
+void Session::drop_kept() {
+    kept_bytes_ -= bytes_of(batch_of(kept_.front()));
+    kept_.pop_front();
 }
 
 /// False where it answers nothing that waits for an answer.
@@ -187,6 +292,9 @@ bool Session::receive_ack(Ack const& ack) {
         return false;
     }
     last_ack_ = ack.batch;
+    while (!kept_.empty() && batch_of(kept_.front()).number <= last_ack_) {
+        drop_kept();
+    }
     last_progress_ = std::chrono::steady_clock::now();
     waiting_events_.push_back({seconds_of(last_progress_), ack});
     return true;
@@ -196,6 +304,7 @@ bool Session::receive_ack(Ack const& ack) {
 void Session::receive_let_go(LetGo gone) {
     constexpr std::size_t most_waiting = std::size_t{1} << 18;
     std::scoped_lock const lock(mutex_);
+    ++let_go_;
     waiting_let_go_ += gone.framelets.size() + 1;
     if (waiting_let_go_ <= most_waiting) {
         waiting_events_.push_back({seconds_of(std::chrono::steady_clock::now()), std::move(gone)});
@@ -249,12 +358,13 @@ void Session::receive_hello(Message const& message) {
     events_.changed();
 }
 
-void Session::fail(std::string const& reason) {
+void Session::fail(std::string const& reason, bool is_cut) {
     {
         std::scoped_lock const lock(mutex_);
         if (std::exchange(ended_, true)) {
             return;
         }
+        parked_ = open_ && is_cut;
         open_ = false;
     }
     events_.ended(reason);

@@ -1,9 +1,11 @@
 // One viewer's connection: handshake, and the events that its stream has not taken yet. A resource; the io thread feeds
-// it, the render loop takes what has come and hands it batches.
+// it, the render loop takes what has come and hands it batches. One whose connection was cut is parked: it keeps what
+// another session of the same viewer may go on with.
 #pragma once
 
 #include <chrono>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -38,6 +40,8 @@ public:
     static constexpr std::chrono::seconds camera_timeout{10};
     /// A viewer that owes an acknowledgement for so long is taken for gone.
     static constexpr std::chrono::seconds ack_timeout{30};
+    /// What is kept of batches that have no answer. Of more the oldest are not, and who lacks those cannot go on.
+    static constexpr std::size_t most_kept_bytes = std::size_t{16} << 20;
 
     Session(std::uint64_t id, std::shared_ptr<FramedStream> stream, Events events);
 
@@ -45,6 +49,15 @@ public:
     void start();
     /// `again`: the viewer may come back by itself.
     void close(std::string const& farewell, bool again = false);
+
+    /// The viewer has come back, before its connection is known to be gone: it is cut here.
+    void cut();
+    /// Whether a viewer that has all batches up to this one could go on with it, parked.
+    bool can_be_resumed(std::uint64_t last_batch) const;
+    /// Before its Welcome: goes on with what `earlier` was doing, parked, once the loop calls `take_over`.
+    void resume(std::shared_ptr<Session> earlier, std::uint64_t last_batch);
+    /// The viewer does not come back, or the session has ended and leaves nothing to go on with.
+    void abandon();
 
     std::uint64_t id() const { return id_; }
     std::string peer() const { return stream_->peer(); }
@@ -54,6 +67,18 @@ public:
     void end(std::string const& reason, bool again = false);
     bool is_open() const;
     bool has_ended() const;
+    /// Cut, and to be gone on with if the viewer comes back.
+    bool is_parked() const;
+    /// Open or parked: batches are made for it.
+    bool is_served() const;
+    /// False where it has something to take over and no camera has come yet: what is sent now might be before its
+    /// Welcome.
+    bool is_ready() const;
+    /// What it has to `take_over`; null: nothing.
+    std::shared_ptr<Session> earlier() const;
+    /// From the loop's thread, when nothing more is made for that one: what has come there and was not taken, and what
+    /// the viewer lacks, which is sent once more.
+    void take_over();
     /// As of its stream.
     bool is_stuck() const { return stream_->is_stuck(); }
     /// What the viewer can read, as its Hello said.
@@ -82,7 +107,9 @@ private:
     void receive_let_go(LetGo gone);
     template <class What>
     void add_newest(What const& what);
-    void fail(std::string const& reason);
+    void send_batch(std::shared_ptr<Message const> const& batch);
+    void drop_kept();
+    void fail(std::string const& reason, bool is_cut);
 
     std::uint64_t const id_;
     std::shared_ptr<FramedStream> const stream_;
@@ -92,14 +119,19 @@ private:
     bool started_ = false;
     bool open_ = false; ///< handshake done, not ended
     bool ended_ = false;
+    bool parked_ = false; ///< ended by a cut, and may be gone on with
+    std::shared_ptr<Session> earlier_; ///< to be taken over
     std::uint32_t codings_ = coding::exact_colour;
     std::uint64_t camera_number_ = 0; ///< newest that came; 0: none
     Viewport viewport_; ///< its
     std::vector<StreamEvent> waiting_events_; ///< few: none of those that a newer one replaces
     std::size_t waiting_let_go_ = 0; ///< messages and framelets among these
+    std::uint64_t let_go_ = 0; ///< messages that have come, in sessions before this one too
     std::uint64_t version_ = 0;
     std::uint64_t last_batch_ = 0;
     std::uint64_t last_ack_ = 0;
+    std::deque<std::shared_ptr<Message const>> kept_; ///< batches after that one, the last of them the newest
+    std::size_t kept_bytes_ = 0;
     std::uint64_t converged_version_ = 0; ///< for which there is nothing left to refine; 0: none
     std::chrono::steady_clock::time_point last_progress_; ///< of what the viewer owes: a hello, a camera or an Ack
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <new>
+#include <stdexcept>
 #include <thread>
 #include <utility>
 
@@ -34,6 +35,8 @@ double seconds_of(WallTime time) {
 } // namespace
 
 struct SessionLoop::Viewer {
+    std::shared_ptr<Session> session; ///< the newest
+    std::uint64_t number = 0; ///< of its first session
     std::unique_ptr<ViewerStream> stream;
     std::vector<StreamEvent> events; ///< scratch
     std::uint64_t version = 0; ///< of what the viewer asks for
@@ -105,11 +108,14 @@ void SessionLoop::serve_once() {
 
 /// One turn for each; true when something was rendered or learnt.
 bool SessionLoop::give_turns(Sessions const& sessions, WallTime now) {
-    forget_ended(sessions);
+    forget_ended();
     waits_for_room_ = false;
     bool worked = false;
     for (auto const& session : sessions) {
-        bool const served = contain(*session, [&] { worked |= give_turn(session, viewer_of(*session), now); });
+        if (!session->is_ready()) {
+            continue;
+        }
+        bool const served = contain(*session, [&] { worked |= give_turn(session, viewer_of(session), now); });
         if (!served) {
             drop_rendered(*session);
         }
@@ -127,18 +133,48 @@ std::size_t SessionLoop::sharers(Viewer const& served) const {
         viewers_, [&served](auto const& entry) { return entry.second.get() == &served || entry.second->rendered; }));
 }
 
-SessionLoop::Viewer& SessionLoop::viewer_of(Session const& session) {
-    std::unique_ptr<Viewer>& viewer = viewers_[session.id()];
-    if (!viewer) {
-        std::uint32_t const codings = session.codings();
-        viewer = std::make_unique<Viewer>();
-        viewer->stream = options_.make_stream ? options_.make_stream(options_.stream, codings)
-                                              : std::make_unique<FrameletStream>(options_.stream, codings);
-        if (options_.event_log != nullptr) {
-            options_.event_log->add_viewer(session.id(), codings);
-        }
+SessionLoop::Viewer& SessionLoop::viewer_of(std::shared_ptr<Session> const& session) {
+    auto found = viewers_.find(session->id());
+    if (found == viewers_.end()) {
+        auto viewer = session->earlier() ? take_up(*session) : new_viewer(session);
+        viewer->session = session;
+        found = viewers_.emplace(session->id(), std::move(viewer)).first;
     }
-    return *viewer;
+    return *found->second;
+}
+
+std::unique_ptr<SessionLoop::Viewer> SessionLoop::new_viewer(std::shared_ptr<Session> const& session) const {
+    std::uint32_t const codings = session->codings();
+    auto viewer = std::make_unique<Viewer>();
+    viewer->session = session;
+    viewer->number = session->id();
+    viewer->stream = options_.make_stream ? options_.make_stream(options_.stream, codings)
+                                          : std::make_unique<FrameletStream>(options_.stream, codings);
+    if (options_.event_log != nullptr) {
+        options_.event_log->add_viewer(viewer->number, codings);
+    }
+    return viewer;
+}
+
+/// What is known of the viewer of the session that this one resumes, which goes on with it. There may be several that
+/// each resumed the one before without having had a turn.
+std::unique_ptr<SessionLoop::Viewer> SessionLoop::take_up(Session& session) {
+    std::shared_ptr<Session> const earlier = session.earlier();
+    finish_rendered(); // it may be of that one
+    if (!earlier->is_parked()) {
+        throw std::runtime_error("there was no memory left for it while the viewer was away");
+    }
+    std::unique_ptr<Viewer> viewer;
+    if (earlier->earlier()) {
+        viewer = take_up(*earlier);
+    } else if (auto const found = viewers_.find(earlier->id()); found != viewers_.end()) {
+        viewer = std::move(found->second);
+        viewers_.erase(found);
+    } else {
+        viewer = new_viewer(earlier);
+    }
+    session.take_over();
+    return viewer;
 }
 
 bool SessionLoop::give_turn(std::shared_ptr<Session> const& session, Viewer& viewer, WallTime round_began) {
@@ -155,13 +191,13 @@ bool SessionLoop::give_turn(std::shared_ptr<Session> const& session, Viewer& vie
     for (StreamEvent const& event : viewer.events) {
         stream.take(event);
         if (log != nullptr) {
-            log->add_event(session->id(), event);
+            log->add_event(viewer.number, event);
         }
     }
     Laps laps;
     Step const step = stream.plan(turn, scene_);
     if (log != nullptr) {
-        log->add_turn(session->id(), turn, step);
+        log->add_turn(viewer.number, turn, step);
     }
     if (step == Step::render) {
         viewer.rendered = now;
@@ -186,7 +222,7 @@ bool SessionLoop::give_turn(std::shared_ptr<Session> const& session, Viewer& vie
         plan_seconds_ += weight * (record.stage_seconds.plan - plan_seconds_);
     }
     if (options_.recorder != nullptr && stream.scheduler() != nullptr) {
-        record.session = session->id();
+        record.session = viewer.number;
         record.scene_time = stream.moment();
         record.samples_rendered = figures.rays;
         record.probes = figures.probes;
@@ -235,14 +271,14 @@ void SessionLoop::finish_one(bool learns) {
         done.record.framelets_unchanged = figures.framelets - done.record.framelets_sent;
         done.record.stage_seconds.learn = laps.lap();
         if (log != nullptr) {
-            log->add_learning(done.session->id());
+            log->add_learning(done.viewer->number);
         }
         return;
     }
     if (done.sends) {
         EncodedBatch batch = stream.encode();
         if (log != nullptr) {
-            log->add_batch(done.session->id(), batch);
+            log->add_batch(done.viewer->number, batch);
         }
         done.session->send_batch(std::move(batch));
     }
@@ -256,10 +292,10 @@ void SessionLoop::start_finishing() {
     auto const finish = [this, learnt = std::exchange(pipeline_->rendered->learnt, true)] {
         Session& session = *pipeline_->rendered->session;
         contain(session, [&] {
-            if (!learnt && session.is_open()) {
+            if (!learnt && session.is_served()) {
                 finish_one(true);
             }
-            if (session.is_open()) {
+            if (session.is_served()) {
                 finish_one(false);
             }
         });
@@ -299,11 +335,14 @@ bool SessionLoop::finish_rendered() {
     return learns;
 }
 
-void SessionLoop::forget_ended(Sessions const& sessions) {
-    auto const has_ended = [&sessions](auto const& entry) {
-        return std::none_of(sessions.begin(), sessions.end(),
-                            [&entry](auto const& session) { return session->id() == entry.first; });
-    };
+/// Those that are parked are kept, and take no share of the time.
+void SessionLoop::forget_ended() {
+    auto const has_ended = [](auto const& entry) { return !entry.second->session->is_served(); };
+    for (auto const& [id, viewer] : viewers_) {
+        if (!viewer->session->is_open()) {
+            viewer->rendered.reset();
+        }
+    }
     if (std::any_of(viewers_.begin(), viewers_.end(), has_ended)) {
         finish_rendered(); // it may be of one of them
         std::erase_if(viewers_, has_ended);

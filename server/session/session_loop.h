@@ -62,21 +62,23 @@ private:
     bool give_turns(Sessions const& sessions, WallTime now);
     bool give_turn(std::shared_ptr<Session> const& session, Viewer& viewer, WallTime round_began);
     std::size_t sharers(Viewer const& served) const;
-    Viewer& viewer_of(Session const& session);
+    Viewer& viewer_of(std::shared_ptr<Session> const& session);
+    std::unique_ptr<Viewer> new_viewer(std::shared_ptr<Session> const& session) const;
+    std::unique_ptr<Viewer> take_up(Session& session);
     void note_rate(TurnFigures const& figures, double seconds);
     void start_finishing();
     void finish_one(bool learns);
     void wait_for_finishing();
     bool finish_rendered();
     void drop_rendered(Session const& session);
-    void forget_ended(Sessions const& sessions);
+    void forget_ended();
 
     PosedScene scene_;
     SceneClock const& clock_;
     LoopOptions const options_;
     Events const events_;
 
-    std::map<std::uint64_t, std::unique_ptr<Viewer>> viewers_; ///< by session
+    std::map<std::uint64_t, std::unique_ptr<Viewer>> viewers_; ///< by session, parked ones too
     RenderRate rate_;
     struct {
         double samples = 0, seconds = 0;

@@ -52,4 +52,12 @@ void SessionMemory::release(std::uint64_t session) {
     }
 }
 
+void SessionMemory::pass(std::uint64_t from, std::uint64_t to) {
+    auto node = sessions_.extract(from);
+    if (!node.empty()) {
+        node.key() = to;
+        sessions_.insert(std::move(node));
+    }
+}
+
 } // namespace framelet

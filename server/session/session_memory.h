@@ -25,6 +25,8 @@ public:
     /// larger picture stays its own until it ends: memory is used again rather than given back.
     std::optional<std::string> reserve(std::uint64_t session, Viewport viewport, bool predicts);
     void release(std::uint64_t session);
+    /// What one has is from now on the other's, which has nothing yet.
+    void pass(std::uint64_t from, std::uint64_t to);
 
 private:
     std::size_t const budget_;

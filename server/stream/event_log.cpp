@@ -24,7 +24,8 @@ enum Kind : std::uint8_t {
     turn,
     learning,
     batch,
-    let_go
+    let_go,
+    resumed
 };
 
 template <class T>
@@ -117,6 +118,10 @@ void EventLog::add_event(std::uint64_t session, StreamEvent const& event) {
         put(content, sent->batch);
         put(content, sent->bytes);
         write(session, batch_sent, content);
+    } else if (auto const* const back = std::get_if<Resumed>(&event.what)) {
+        put(content, event.seconds);
+        put(content, back->last_batch);
+        write(session, resumed, content);
     } else {
         put(content, event.seconds);
         write(session, clock_changed, content);
@@ -203,6 +208,8 @@ std::optional<LogRecord> EventLogReader::next() {
             auto const number = content.take<std::uint64_t>();
             return BatchSent{number, content.take<std::uint64_t>()};
         });
+    case resumed:
+        return event([&] { return Resumed{content.take<std::uint64_t>()}; });
     case turn: {
         Turn given;
         for (double* const number :

@@ -40,6 +40,11 @@ void FrameletStream::take(StreamEvent const& event) {
         viewer_.refresh.forget(gone->framelets);
     } else if (auto const* const sent = std::get_if<BatchSent>(&event.what)) {
         link_.sent(sent->batch, event.seconds, static_cast<double>(sent->bytes));
+    } else if (auto const* const resumed = std::get_if<Resumed>(&event.what)) {
+        acknowledged_ = std::max(acknowledged_, resumed->last_batch);
+        link_.restart(acknowledged_, static_cast<std::size_t>(viewer_.batches - acknowledged_));
+        moments_.forget();
+        complete_ = false;
     } else {
         moments_.forget();
     }

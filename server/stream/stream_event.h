@@ -21,9 +21,16 @@ struct BatchSent {
     bool operator==(BatchSent const&) const = default;
 };
 
+/// The viewer is back after its connection was cut. It has all batches up to this one, and is sent the later ones once
+/// more. What it looks at follows.
+struct Resumed {
+    std::uint64_t last_batch = 0;
+    bool operator==(Resumed const&) const = default;
+};
+
 struct StreamEvent {
     double seconds = 0; ///< when, on the server's steady clock
-    std::variant<CameraUpdate, ViewerSettings, Ack, LetGo, ClockChanged, BatchSent> what;
+    std::variant<CameraUpdate, ViewerSettings, Ack, LetGo, ClockChanged, BatchSent, Resumed> what;
     bool operator==(StreamEvent const&) const = default;
 };
 

@@ -15,20 +15,31 @@ constexpr std::size_t places = 2;
 /// A viewer of the test's own, whose thread is spared.
 class Looker {
 public:
-    explicit Looker(std::uint16_t port) : viewer_(port) {}
+    explicit Looker(std::uint16_t port) : port_(port), viewer_(std::make_unique<RawViewer>(port, hello_)) {}
 
     /// True once a batch of a new camera has come; false where the session has ended.
     bool look() {
-        viewer_.send(CameraUpdate{{++number_, Camera{}, {64, 48}}, -1});
-        return viewer_.watch([this](Message const& message) {
+        viewer_->send(CameraUpdate{{++number_, Camera{}, {64, 48}}, -1});
+        return viewer_->watch([this](Message const& message) {
+            if (auto const* const welcome = std::get_if<Welcome>(&message)) {
+                hello_.ticket = welcome->ticket;
+            }
             auto const* const batch = std::get_if<EncodedBatch>(&message);
+            hello_.last_batch = batch != nullptr ? batch->number : hello_.last_batch;
             return batch != nullptr && batch->view.number == number_;
         });
     }
-    void set_clock() { viewer_.send(ClockRequest{ClockRequest::time, {0.5, true, 1}}); }
+    /// Its connection is cut, and it resumes its session by another.
+    void come_back() {
+        viewer_.reset();
+        viewer_ = std::make_unique<RawViewer>(port_, hello_);
+    }
+    void set_clock() { viewer_->send(ClockRequest{ClockRequest::time, {0.5, true, 1}}); }
 
 private:
-    RawViewer viewer_;
+    std::uint16_t const port_;
+    Hello hello_{protocol_version, {}, coding::all, {}, 0};
+    std::unique_ptr<RawViewer> viewer_;
     std::uint64_t number_ = 0;
 };
 
@@ -64,6 +75,8 @@ int busy_moment(std::uint16_t port, Looker& earlier) {
     bool later_goes_on = later.look();
     bool earlier_goes_on = earlier.look();
     earlier.set_clock();
+    later_goes_on = later_goes_on && later.look();
+    later.come_back();
     later_goes_on = later_goes_on && later.look();
     earlier_goes_on = earlier_goes_on && earlier.look();
     return (later_goes_on ? 1 : 0) + (earlier_goes_on ? 1 : 0);

@@ -18,11 +18,13 @@ namespace framelet {
 
 class RawViewer {
 public:
-    explicit RawViewer(std::uint16_t port, std::uint32_t codings = coding::all, std::string const& token = {}) {
+    explicit RawViewer(std::uint16_t port, std::uint32_t codings = coding::all, std::string const& token = {})
+        : RawViewer(port, Hello{protocol_version, token, codings}) {}
+    RawViewer(std::uint16_t port, Hello const& hello) {
         socket_.connect({boost::asio::ip::address_v4::loopback(), port});
         timeval const most_wait{30, 0};
         ::setsockopt(socket_.native_handle(), SOL_SOCKET, SO_RCVTIMEO, &most_wait, sizeof most_wait);
-        send(encode_message(Hello{protocol_version, token, codings}));
+        send(encode_message(hello));
     }
 
     /// Does nothing where the server has ended the connection.

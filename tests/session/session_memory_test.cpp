@@ -42,6 +42,17 @@ TEST(SessionMemory, ASmallerPictureGivesNothingBack) {
     EXPECT_TRUE(memory.reserve(2, small, true));
 }
 
+TEST(SessionMemory, WhatIsPassedOnIsCountedOnce) {
+    SessionMemory memory(session_bytes(large, true));
+    EXPECT_FALSE(memory.reserve(1, large, true));
+    memory.pass(1, 2);
+    EXPECT_FALSE(memory.reserve(2, large, true));
+    memory.release(1);
+    EXPECT_TRUE(memory.reserve(3, small, true));
+    memory.release(2);
+    EXPECT_FALSE(memory.reserve(3, small, true));
+}
+
 TEST(SessionMemory, ServerRefusesAPictureThatIsTooLargeForIt) {
     ServerOptions options;
     options.session_megabytes = session_bytes(large, true) / 1'000'000 + 1;

@@ -81,5 +81,74 @@ TEST(Session, HelloCameraAndAckAreOverdueInTheirTurn) {
     EXPECT_EQ(viewer.overdue_after(std::chrono::hours(1)), "");
 }
 
+EncodedBatch batch_of_bytes(std::uint64_t number, std::size_t bytes) {
+    EncodedBatch batch;
+    batch.number = number;
+    batch.payload.resize(bytes);
+    return batch;
+}
+
+TEST(Session, GoesOnAfterACutFromWhateverIsKept) {
+    Viewed viewer;
+    viewer.session->start();
+    viewer.stream->bring(Hello{});
+    for (std::uint64_t number = 1; number <= 5; ++number) {
+        viewer.session->send_batch(batch_of_bytes(number, Session::most_kept_bytes / 3));
+    }
+    viewer.stream->bring(Ack{1, 0, 0});
+    EXPECT_FALSE(viewer.session->can_be_resumed(5)) << "it is open";
+    viewer.session->cut();
+    EXPECT_TRUE(viewer.stream->is_closed);
+    EXPECT_TRUE(viewer.session->is_parked());
+    viewer.session->send_batch(batch_of_bytes(6, 1)); // which was being made
+    EXPECT_FALSE(viewer.session->can_be_resumed(0)) << "it has said that it has more";
+    EXPECT_FALSE(viewer.session->can_be_resumed(1)) << "that would be too much to keep";
+    for (std::uint64_t const last : {3u, 4u, 5u}) {
+        EXPECT_TRUE(viewer.session->can_be_resumed(last)) << last;
+    }
+    EXPECT_FALSE(viewer.session->can_be_resumed(6)) << "that was never sent";
+    viewer.session->end("no memory left");
+    EXPECT_FALSE(viewer.session->can_be_resumed(5));
+}
+
+TEST(Session, TakesOverThroughSeveralCuts) {
+    Viewed first, second, third;
+    for (Viewed* const viewer : {&first, &second, &third}) {
+        viewer->session->start();
+    }
+    first.stream->bring(Hello{});
+    for (std::uint64_t number = 1; number <= 3; ++number) {
+        first.session->send_batch(batch_of_bytes(number, 1));
+    }
+    first.stream->bring(LetGo{});
+    first.session->cut();
+    second.session->resume(first.session, 1);
+    second.stream->bring(Hello{});
+    second.stream->bring(LetGo{});
+    second.session->cut(); // before the loop has come to it
+    EXPECT_FALSE(second.session->can_be_resumed(2)) << "it was not sent there";
+    ASSERT_TRUE(second.session->can_be_resumed(1));
+    third.session->resume(second.session, 1);
+    EXPECT_FALSE(third.session->is_ready());
+    third.stream->bring(Hello{});
+    third.stream->bring(CameraUpdate{{1, Camera{}, {64, 48}}, -1});
+    EXPECT_TRUE(third.session->is_ready());
+    EXPECT_EQ(third.session->status().let_go, 2u);
+    EXPECT_EQ(third.session->status().last_batch, 1u);
+    second.session->take_over();
+    third.session->take_over();
+    EXPECT_EQ(third.session->status().last_batch, 3u) << "the two others are sent";
+    EXPECT_FALSE(first.session->is_parked() || second.session->is_parked());
+    std::vector<StreamEvent> events;
+    third.session->take_events(events);
+    std::vector<std::size_t> kinds;
+    for (StreamEvent const& event : events) {
+        kinds.push_back(event.what.index());
+    }
+    auto const kind = [](auto const& what) { return StreamEvent{0, what}.what.index(); };
+    std::size_t const sent = kind(BatchSent{}), gone = kind(LetGo{}), resumed = kind(Resumed{});
+    EXPECT_EQ(kinds, (std::vector{sent, sent, sent, gone, resumed, gone, resumed, kind(CameraUpdate{}), sent, sent}));
+}
+
 } // namespace
 } // namespace framelet

@@ -215,6 +215,27 @@ TEST(LinkEstimate, NoAnswerBreaksIt) {
     }
 }
 
+TEST(LinkEstimate, AnotherWayIsLearntAnew) {
+    Sender sender;
+    sender.run({.bits_per_second = 2e6, .delay_seconds = 0.02}, 8);
+    LinkEstimate& estimate = sender.estimate;
+    std::uint64_t const sent = sender.log.size();
+    double const bytes_per_sample = estimate.state().bytes_per_sample;
+    ASSERT_TRUE(std::isfinite(estimate.state().bytes_per_second));
+    estimate.restart(sent - 3, 3);
+    LinkState const state = estimate.state();
+    EXPECT_FALSE(std::isfinite(state.bytes_per_second));
+    EXPECT_EQ(state.bytes_per_sample, bytes_per_sample);
+    EXPECT_EQ(estimate.window_bytes(), LinkEstimate().window_bytes());
+    EXPECT_TRUE(estimate.has_room(20));
+    for (std::uint64_t batch = sent - 2; batch <= sent; ++batch) {
+        estimate.sent(batch, 20, 1000);
+    }
+    EXPECT_EQ(estimate.in_flight_bytes(), 3000);
+    estimate.acknowledged(sent, 20.01, 1);
+    EXPECT_EQ(estimate.in_flight_bytes(), 0);
+}
+
 TEST(LinkEstimate, AClockThatIsSetMakesNoQueue) {
     for (double const jump : {-3.0, 3.0}) {
         Sender sender;

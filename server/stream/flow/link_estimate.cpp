@@ -97,6 +97,14 @@ bool LinkEstimate::has_room(double now) const {
     return in_flight_ < window_ && (starting_ || now >= paced_ - slack_seconds);
 }
 
+void LinkEstimate::restart(std::uint64_t acknowledged, std::size_t in_flight) {
+    double const bytes_per_sample = bytes_per_sample_;
+    *this = LinkEstimate();
+    bytes_per_sample_ = bytes_per_sample;
+    acknowledged_ = acknowledged;
+    flights_.resize(in_flight);
+}
+
 void LinkEstimate::begin(double samples) {
     flights_.push_back({samples, bytes_per_sample_ * samples, {}});
     in_flight_ += flights_.back().bytes;

@@ -50,6 +50,10 @@ public:
     /// viewer's own clock, seconds from any moment; what it says is not relied on alone.
     void acknowledged(std::uint64_t batch, double now, std::optional<double> received);
 
+    /// The way to the viewer is another one: nothing is known of it. All batches up to this one are answered; so many
+    /// later ones are sent once more.
+    void restart(std::uint64_t acknowledged, std::size_t in_flight);
+
     /// True when another batch may be sent: less is in flight than the window holds, and what was sent before has had
     /// its time on the link. The batch that fills the window may exceed it.
     bool has_room(double now) const;
