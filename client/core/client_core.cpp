@@ -75,6 +75,7 @@ struct ClientCore::Impl {
     // The connection's thread only; of this session, as all that follows.
     std::optional<BatchCodec> codec{std::in_place};
     std::optional<HeldPicture> held{std::in_place};
+    bool is_whole = true; ///< all that has come is in them and among what has arrived
 
     /// Guards what pictures are made of. Whoever has it may take `mutex` as well, not the other way round.
     std::mutex picture_mutex;
@@ -87,6 +88,10 @@ struct ClientCore::Impl {
     std::vector<Batch> arrived; ///< and not in the maker yet, in order
     std::vector<Batch> spare_batches; ///< for their memory
     std::vector<SentTile> let_go; ///< scratch
+    std::deque<LetGo> told_let_go; ///< and not known to have come to the server, in order
+    std::size_t told_framelets = 0; ///< in these
+    std::uint64_t let_go_come = 0; ///< messages of this kind that have
+    bool lost_let_go = false; ///< there were too many of them to know
     std::optional<CameraUpdate> waiting_view;
     CameraUpdate view; ///< the newest, sent or not
     ViewerSettings viewer_settings;
@@ -125,6 +130,7 @@ struct ClientCore::Impl {
             tell_news();
         };
         handlers.on_interrupted = [this](std::string reason) { pause_session(std::move(reason)); };
+        handlers.on_asking = [this](Hello& hello) { ask_to_go_on(hello); };
         handlers.on_reopened = [this](Welcome news_of_scene) { begin_session(std::move(news_of_scene)); };
         handlers.on_sent = [this] {
             std::lock_guard const lock(mutex);
@@ -158,45 +164,48 @@ struct ClientCore::Impl {
     void pause_session(std::string reason) {
         {
             std::lock_guard const picture_lock(picture_mutex);
-            if (pictures.is_for(wanted_view())) {
-                take_in();
-            }
             std::lock_guard const lock(mutex);
-            arrived.clear();
-            statistics.waiting_bytes = 0;
             interruption = std::move(reason);
             status.clock = clock_at(Clock::now());
             pictures.pause(status.clock.time);
             status.clock.playing = false;
             status.converged = false;
             statistics.converged = false;
-            has_picture = false;
         }
         tell_news();
     }
 
+    /// Where what is held is what the server thinks it is, but for batches that are still to come.
+    void ask_to_go_on(Hello& hello) {
+        std::lock_guard const lock(mutex);
+        if (is_whole && !lost_let_go) {
+            hello.ticket = welcome.ticket;
+            hello.last_batch = last_batch;
+        }
+    }
+
     void begin_session(Welcome greeting) {
-        codec.emplace();
-        held.emplace();
         {
             std::lock_guard const picture_lock(picture_mutex);
-            std::lock_guard const lock(mutex);
-            if (greeting.scene_identity == 0 || greeting.scene_identity != welcome.scene_identity) {
-                pictures.forget_earlier();
-                starts_clean = true;
-                ++scene_number;
+            if (!greeting.resumed) {
+                forget_session(greeting);
             }
+            std::lock_guard const lock(mutex);
+            pictures.resume();
             picture_settings.scene_moves = greeting.animation_duration > 0;
             status = {};
             note_clock(greeting);
             status_time = Clock::now();
-            last_batch = 0;
             sent_cameras.clear();
             welcome = std::move(greeting);
             interruption.reset();
             ++statistics.reconnections;
+            note_let_go_come(welcome.let_go);
             if (connection) {
                 connection->send(viewer_settings);
+                for (LetGo const& told : told_let_go) {
+                    connection->send(told);
+                }
             }
             if (view.view.number > 0) {
                 waiting_view = view;
@@ -204,6 +213,33 @@ struct ClientCore::Impl {
             send_waiting_view();
         }
         tell_news();
+    }
+
+    /// The next one has nothing of it, but shows on what it showed if it is of the same scene. Under the picture's
+    /// lock.
+    void forget_session(Welcome const& next) {
+        is_whole = false;
+        if (pictures.is_for(wanted_view())) {
+            take_in();
+        }
+        codec.emplace();
+        held.emplace();
+        pictures.begin_anew();
+        std::lock_guard const lock(mutex);
+        if (next.scene_identity == 0 || next.scene_identity != welcome.scene_identity) {
+            pictures.forget_earlier();
+            starts_clean = true;
+            ++scene_number;
+        }
+        arrived.clear();
+        statistics.waiting_bytes = 0;
+        has_picture = false;
+        last_batch = 0;
+        told_let_go.clear();
+        told_framelets = 0;
+        let_go_come = 0;
+        lost_let_go = false;
+        is_whole = true;
     }
 
     void tell_news() {
@@ -242,6 +278,7 @@ struct ClientCore::Impl {
             std::lock_guard const lock(mutex);
             status = *news_of_server;
             status_time = Clock::now();
+            note_let_go_come(status.let_go);
             statistics.converged = status.converged;
             statistics.server_samples_per_second = status.samples_per_second;
         } else {
@@ -269,6 +306,7 @@ struct ClientCore::Impl {
                 spare_batches.pop_back();
             }
         }
+        is_whole = false;
         codec->decode(encoded, &*held, batch);
         Clock::time_point const decoded = Clock::now();
         Ack ack{batch.number, 0, 0};
@@ -300,6 +338,7 @@ struct ClientCore::Impl {
             std::lock_guard const lock(picture_mutex);
             take_in();
         }
+        is_whole = true;
     }
 
     /// Puts all that has arrived into what pictures are made of. Under the picture's lock, and not the other one.
@@ -342,8 +381,35 @@ struct ClientCore::Impl {
         std::ranges::sort(let_go);
         for (std::size_t first = 0; first < let_go.size(); first += max_let_go) {
             std::size_t const end = std::min(first + max_let_go, let_go.size());
-            connection->send(LetGo{{let_go.begin() + static_cast<std::ptrdiff_t>(first),
-                                    let_go.begin() + static_cast<std::ptrdiff_t>(end)}});
+            LetGo told{{let_go.begin() + static_cast<std::ptrdiff_t>(first),
+                        let_go.begin() + static_cast<std::ptrdiff_t>(end)}};
+            std::lock_guard const lock(mutex);
+            if (!interruption) {
+                connection->send(told);
+            }
+            keep_told(std::move(told));
+        }
+    }
+
+    /// Until the server says that it has come: it might be lost with the connection. Under the lock.
+    void keep_told(LetGo told) {
+        constexpr std::size_t most_framelets = std::size_t{1} << 18;
+        if (!welcome.ticket || lost_let_go) {
+            return;
+        }
+        told_framelets += told.framelets.size();
+        told_let_go.push_back(std::move(told));
+        if (told_framelets > most_framelets) {
+            told_let_go.clear();
+            lost_let_go = true;
+        }
+    }
+
+    /// As many messages as the server says. Under the lock.
+    void note_let_go_come(std::uint64_t messages) {
+        for (; let_go_come < messages && !told_let_go.empty(); ++let_go_come) {
+            told_framelets -= told_let_go.front().framelets.size();
+            told_let_go.pop_front();
         }
     }
 

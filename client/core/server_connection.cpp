@@ -69,6 +69,7 @@ struct ServerConnection::Impl {
     std::uint64_t attempt = 0;
     std::shared_ptr<FramedStream> attempted; ///< of this attempt, once it is connected
     std::string distrust; ///< why its certificate is refused; empty: it is not
+    bool has_ticket = false; ///< in its Hello
     bool open = false; ///< its Welcome has come
     bool was_open = false; ///< that of an attempt has
     /// Counted in ticks of the watch and not by the clock, so that a machine that slept hears what arrived meanwhile.
@@ -223,7 +224,12 @@ struct ServerConnection::Impl {
         });
         // The greeting is small; batches may be large, once we know who talks to us.
         attempted->start(std::move(events), max_upstream_message_bytes);
-        attempted->send(Hello{protocol_version, token, coding::all});
+        Hello hello{protocol_version, token, coding::all};
+        if (was_open && handlers.on_asking) {
+            handlers.on_asking(hello);
+        }
+        has_ticket = static_cast<bool>(hello.ticket);
+        attempted->send(hello);
     }
 
     /// In the handshake.
@@ -265,6 +271,10 @@ struct ServerConnection::Impl {
                 Retry::never);
             return;
         }
+        if (greeting.resumed && !has_ticket) {
+            end("the server at " + server + " broke the protocol: it resumes what was not asked for", Retry::never);
+            return;
+        }
         open = true;
         opened_at = std::chrono::steady_clock::now();
         deadline.cancel();
@@ -294,6 +304,24 @@ struct ServerConnection::Impl {
                 watch_for_silence();
             }
         }));
+    }
+
+    /// So that the server keeps nothing for a viewer that does not come back. Nothing depends on it, and it takes no
+    /// longer than a user waits for a window to close.
+    void say_goodbye() {
+        constexpr auto most_time = std::chrono::milliseconds(200);
+        ++attempt; // no callback is heard any more
+        try {
+            for (asio::steady_timer* const timer : {&deadline, &watch, &pause}) {
+                timer->cancel();
+            }
+            resolver.cancel();
+            attempted->send(Failure{"it was closed"});
+            attempted->close_after_sending();
+            io.restart();
+            io.run_for(most_time);
+        } catch (std::bad_alloc const&) { // the server notices by itself
+        }
     }
 
     std::shared_ptr<FramedStream> open_stream() const {
@@ -326,6 +354,9 @@ ServerConnection::ServerConnection(ConnectionOptions const& options, Handlers ha
 ServerConnection::~ServerConnection() {
     impl_->io.stop();
     impl_->thread.join();
+    if (impl_->open) {
+        impl_->say_goodbye();
+    }
     if (impl_->attempted) {
         impl_->attempted->close();
     }

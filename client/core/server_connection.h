@@ -21,8 +21,10 @@ public:
         std::function<void(std::string reason)> on_lost;
         /// An open session has ended, and another is tried for, for as long as nobody refuses it for good.
         std::function<void(std::string reason)> on_interrupted;
-        /// Another session is open, of which nothing has been delivered or sent yet. Where this is empty, none is tried
-        /// for, whatever the options say.
+        /// Another session is about to be asked for: what goes on with the one before. Empty: nothing does.
+        std::function<void(Hello&)> on_asking;
+        /// Another session is open, of which nothing has been delivered or sent yet; `Welcome::resumed` only where
+        /// `on_asking` gave a ticket. Where this is empty, none is tried for, whatever the options say.
         std::function<void(Welcome)> on_reopened;
         /// Something that was queued has been sent.
         std::function<void()> on_sent;
@@ -31,7 +33,7 @@ public:
     /// Blocks until the session is open. Throws ConnectionError where it cannot be opened, as ConnectionRefusal where
     /// trying again would not help, InputError for a certificate authority file that cannot be used.
     ServerConnection(ConnectionOptions const& options, Handlers handlers);
-    /// Ends the session. No handler is called afterwards. Not to be called from a handler.
+    /// Ends the session, and tells the server so. No handler is called afterwards. Not to be called from a handler.
     ~ServerConnection();
     ServerConnection(ServerConnection const&) = delete;
     ServerConnection& operator=(ServerConnection const&) = delete;

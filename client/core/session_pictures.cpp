@@ -8,6 +8,9 @@ namespace framelet {
 
 PictureMaker& SessionPictures::prepare(NumberedView const& wanted, PictureSettings const& settings) {
     if (!is_for(wanted)) {
+        if (is_paused_) { // nothing comes for the new one yet
+            keep_as_earlier();
+        }
         current_ = std::make_unique<PictureMaker>(wanted.viewport, settings);
         since_ = wanted.held_since;
     }
@@ -19,12 +22,21 @@ PictureMaker& SessionPictures::prepare(NumberedView const& wanted, PictureSettin
 }
 
 void SessionPictures::pause(SceneTime present) {
+    is_paused_ = true;
+    paused_ = present;
+}
+
+void SessionPictures::begin_anew() {
+    is_paused_ = false;
+    keep_as_earlier();
+}
+
+void SessionPictures::keep_as_earlier() {
     bool const is_other = current_ && earlier_ && current_->viewport() != earlier_->viewport();
     if (current_ && !current_->is_empty() && (!earlier_ || is_other)) {
         earlier_ = std::move(current_);
     }
     current_.reset();
-    paused_ = present;
 }
 
 void SessionPictures::forget_earlier() {

@@ -19,8 +19,12 @@ public:
     /// Whether that is for this view.
     bool is_for(NumberedView const& view) const { return current_ && since_ == view.held_since; }
 
-    /// This session has ended: what it showed is shown on, at this time of the scene.
+    /// This session has ended: what it showed is shown on, at this time of the scene, until one of the next two.
     void pause(SceneTime present);
+    /// It goes on.
+    void resume() { is_paused_ = false; }
+    /// Another one begins, which has sent nothing yet.
+    void begin_anew();
     /// What is held of the session before is of another scene.
     void forget_earlier();
 
@@ -32,12 +36,14 @@ public:
     std::size_t memory_bytes() const;
 
 private:
+    void keep_as_earlier();
     bool replaces_earlier(PictureRequest const& request);
 
     std::unique_ptr<PictureMaker> current_;
     std::uint64_t since_ = 0; ///< as `held_since` of its views
     std::unique_ptr<PictureMaker> earlier_;
-    SceneTime paused_ = 0; ///< which that one shows
+    bool is_paused_ = false;
+    SceneTime paused_ = 0; ///< which the earlier one shows
     Picture unseen_; ///< of this session, while the one before is shown
     std::vector<PixelRect> unseen_changes_; ///< scratch
 };

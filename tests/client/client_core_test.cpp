@@ -455,7 +455,7 @@ struct Returning {
     Picture picture;
     std::vector<PixelRect> changed;
 
-    Returning() {
+    explicit Returning(FakeServer::Script script = {}) : server(std::move(script)) {
         ConnectionOptions options = options_for(server);
         options.reconnect = true;
         core = std::make_unique<ClientCore>(options);
@@ -540,6 +540,96 @@ TEST(ClientCore, AnotherSceneStartsClean) {
     EXPECT_TRUE(viewer.update());
     EXPECT_EQ(viewer.picture, bare_picture(viewer.plane.viewport()));
     viewer.show(90);
+}
+
+FakeServer::Script with_ticket(bool resumed, std::uint64_t let_go = 0) {
+    FakeServer::Script script;
+    script.welcome.ticket = {3, 4};
+    script.welcome.resumed = resumed;
+    script.welcome.let_go = let_go;
+    return script;
+}
+
+TEST(ClientCore, GoesOnWhereItWasCut) {
+    Returning viewer(with_ticket(false));
+    EXPECT_FALSE(viewer.server.received<Hello>().front().ticket);
+    viewer.server.cut(with_ticket(true));
+    ASSERT_TRUE(viewer.is_back());
+    Hello const hello = viewer.server.received<Hello>().back();
+    EXPECT_EQ(hello.ticket, (Ticket{3, 4}));
+    EXPECT_EQ(hello.last_batch, 1u);
+    EXPECT_EQ(viewer.core->scene_number(), 1u);
+    Batch part =
+        make_batch(viewer.plane, 0, {constant_framelet(viewer.plane, make_tile(viewer.plane.pixel_depth(), 0, 0), 90)});
+    part.view.number = 1;
+    viewer.server.send(part);
+    ASSERT_TRUE(wait_for(*viewer.core, [&] { return viewer.update() && viewer.picture.row(3)[4 * 3] == 90; }))
+        << "what comes joins what is held";
+    EXPECT_EQ(viewer.picture.row(30)[4 * 50], 50);
+    ASSERT_TRUE(viewer.server.wait_for_some<Ack>(2));
+    viewer.server.cut(with_ticket(true));
+    ASSERT_TRUE(viewer.server.wait_for_some<Hello>(3));
+    EXPECT_EQ(viewer.server.received<Hello>().back().last_batch, 2u);
+}
+
+TEST(ClientCore, BeginsAnewWhereTheServerDoesNotGoOn) {
+    Returning viewer(with_ticket(false));
+    viewer.server.start_anew(with_ticket(false));
+    ASSERT_TRUE(viewer.is_back());
+    EXPECT_TRUE(viewer.server.received<Hello>().back().ticket);
+    viewer.show(70);
+    viewer.server.cut(with_ticket(true));
+    ASSERT_TRUE(viewer.server.wait_for_some<Hello>(3));
+    EXPECT_EQ(viewer.server.received<Hello>().back().last_batch, 1u) << "of the newest session";
+}
+
+TEST(ClientCore, LeavesAServerThatGoesOnUnasked) {
+    Returning viewer;
+    viewer.server.cut(with_ticket(true));
+    ASSERT_TRUE(wait_for(*viewer.core, [&] { return viewer.core->end_reason().has_value(); }));
+    EXPECT_TRUE(one_line_with(*viewer.core->end_reason(), {"protocol"})) << *viewer.core->end_reason();
+}
+
+TEST(ClientCore, SaysOnceMoreWhatItLetGoAndTheServerHasNotHeard) {
+    Returning viewer(with_ticket(false));
+    std::uint64_t camera = 1;
+    auto const look_elsewhere = [&] {
+        for (std::size_t i = 0; i < FrameletPool::most_moments; ++i) {
+            viewer.look(0.01f * static_cast<float>(++camera));
+            Batch batch = constant_batch(viewer.plane, viewer.plane.min_depth(), 70, camera);
+            batch.view.camera.position.x = static_cast<float>(camera);
+            viewer.server.send(std::move(batch));
+            EXPECT_TRUE(wait_for(*viewer.core, [&] { return viewer.core->statistics().batches == camera; }));
+            viewer.update();
+        }
+    };
+    look_elsewhere();
+    ASSERT_TRUE(viewer.server.wait_for_some<LetGo>());
+    look_elsewhere();
+    viewer.core->set_view({}, viewer.plane.viewport()); // so that all before it has come
+    ++camera;
+    ASSERT_TRUE(viewer.server.wait_for([&](std::vector<Message> const& messages) {
+        auto const* const last = std::get_if<CameraUpdate>(&messages.back());
+        return last != nullptr && last->view.number == camera;
+    }));
+    std::vector<LetGo> const told = viewer.server.received<LetGo>();
+    ASSERT_GT(told.size(), 3u);
+    viewer.server.cut(with_ticket(true, 2)); // it has heard two of them
+    ASSERT_TRUE(viewer.is_back());
+    ASSERT_TRUE(viewer.server.wait_for_some<LetGo>(2 * told.size() - 2));
+    std::vector<LetGo> const all = viewer.server.received<LetGo>();
+    EXPECT_TRUE(std::equal(told.begin() + 2, told.end(), all.begin() + static_cast<std::ptrdiff_t>(told.size())));
+    FakeServer::Script script = with_ticket(true, told.size());
+    viewer.server.cut(script);
+    ASSERT_TRUE(wait_for(*viewer.core, [&] { return viewer.core->statistics().reconnections == 2; }));
+    ASSERT_TRUE(viewer.server.wait_for_some<ViewerSettings>(3));
+    EXPECT_EQ(viewer.server.received<LetGo>().size(), all.size()) << "it has heard all";
+}
+
+TEST(ClientCore, SaysFarewell) {
+    FakeServer server;
+    { ClientCore const core(options_for(server)); }
+    ASSERT_TRUE(server.wait_for_some<Failure>());
 }
 
 TEST(ClientCore, ARefusalIsFinalUnlessItSaysOtherwise) {

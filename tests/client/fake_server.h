@@ -110,6 +110,16 @@ public:
             streams_.clear();
         });
     }
+    /// The same, as a server does to which a viewer comes back.
+    void cut(Script script) {
+        boost::asio::post(io_, [this, script = std::move(script)] {
+            script_ = script;
+            for (auto const& stream : streams_) {
+                stream->close();
+            }
+            streams_.clear();
+        });
+    }
     /// Keeps the connections but says nothing any more.
     void fall_silent() {
         boost::asio::post(io_, [this] { script_.heartbeat_seconds = 0; });

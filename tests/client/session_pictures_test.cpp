@@ -37,7 +37,11 @@ struct Shown {
     void begin_after(Batch const& batch) {
         insert(batch);
         EXPECT_EQ(at(10), batch.framelets[0].red[0]);
+        begin_anew();
+    }
+    void begin_anew() {
         pictures.pause(0);
+        pictures.begin_anew();
     }
     int at(int x) {
         pictures.prepare(view, {});
@@ -50,7 +54,7 @@ TEST(SessionPictures, TheEarlierIsShownUntilTheNewHasNoMoreHoles) {
     Shown shown;
     shown.insert(left_of(100, 50));
     EXPECT_EQ(shown.at(90), 50);
-    shown.pictures.pause(0);
+    shown.begin_anew();
     EXPECT_EQ(shown.at(90), 50) << "nothing has come yet";
     shown.insert(left_of(64, 70));
     EXPECT_EQ(shown.at(10), 50) << "they are not mixed";
@@ -81,7 +85,7 @@ TEST(SessionPictures, ManyInterruptionsKeepTheLastPictureThatWasShown) {
     shown.begin_after(left_of(100, 50));
     shown.insert(left_of(64, 70));
     EXPECT_EQ(shown.at(10), 50);
-    shown.pictures.pause(0);
+    shown.begin_anew();
     EXPECT_EQ(shown.at(90), 50);
     EXPECT_EQ(shown.at(10), 50);
     shown.insert(left_of(100, 80));
@@ -96,6 +100,29 @@ TEST(SessionPictures, OfAnEarlierThatIsForgottenNothingIsKept) {
     shown.pictures.forget_earlier();
     EXPECT_EQ(shown.pictures.memory_bytes(), shown.pictures.current()->memory_bytes());
     EXPECT_EQ(shown.at(10), 70);
+}
+
+TEST(SessionPictures, WhatGoesOnIsShownOnAndAddedTo) {
+    Shown shown;
+    shown.insert(left_of(100, 50));
+    EXPECT_EQ(shown.at(90), 50);
+    shown.pictures.pause(0);
+    EXPECT_EQ(shown.at(90), 50);
+    shown.pictures.resume();
+    shown.insert(left_of(64, 70));
+    EXPECT_EQ(shown.at(10), 70);
+    EXPECT_EQ(shown.at(90), 50);
+}
+
+TEST(SessionPictures, OfAnotherSizeMeanwhileTheOldOneIsShown) {
+    Shown shown;
+    shown.insert(left_of(100, 50));
+    EXPECT_EQ(shown.at(90), 50);
+    shown.pictures.pause(0);
+    shown.view = {2, {}, {64, 60}, 2};
+    shown.request.camera.position.x = 1;
+    EXPECT_EQ(shown.at(10), 50);
+    EXPECT_EQ(shown.picture.width, 100);
 }
 
 TEST(SessionPictures, OfAnotherSizeTheFirstThatComesIsShown) {
