@@ -1,11 +1,14 @@
 // A session of the real programs, recorded, through the same pipeline once more: the same bytes come out.
 #include <csignal>
+#include <thread>
 
 #include <gtest/gtest.h>
 
+#include "client/core/server_address.h"
 #include "common/error.h"
 #include "server/scene/scene_import.h"
 #include "server/stream/replay.h"
+#include "tests/evaluation/codecs/link_emulator.h"
 #include "tests/loopback/process.h"
 
 namespace framelet::test {
@@ -20,16 +23,31 @@ struct RecordedSession {
     std::filesystem::path const file = folder.path() / "events";
 
     RecordedSession(std::string const& scene, std::vector<std::string> const& server_options,
-                    std::vector<std::string> const& client_options) {
+                    std::vector<std::string> const& client_options, bool is_cut = false) {
         std::vector<std::string> options{"--record-events", file.string()};
         options.insert(options.end(), server_options.begin(), server_options.end());
         ServerProcess server(scene, options);
-        std::vector<std::string> arguments{server.address(), "--size", "320x180", "--duration", "2"};
+        bench::LinkEmulator link(parse_server_address(server.address()).port, {});
+        std::string const address = is_cut ? "127.0.0.1:" + std::to_string(link.port()) : server.address();
+        std::vector<std::string> arguments{address, "--size", "320x180", "--duration", "2"};
         arguments.insert(arguments.end(), client_options.begin(), client_options.end());
         Process client(FRAMELET_CLIENT, arguments);
+        if (is_cut) {
+            std::this_thread::sleep_for(1s);
+            link.cut();
+        }
         EXPECT_EQ(client.wait(patience), 0) << client.errors();
         server.process().signal(SIGTERM);
         EXPECT_EQ(server.process().wait(patience), 0);
+    }
+
+    std::size_t viewers() const {
+        EventLogReader log(file);
+        std::size_t count = 0;
+        while (auto const record = log.next()) {
+            count += std::holds_alternative<ViewerCame>(record->what) ? 1 : 0;
+        }
+        return count;
     }
 
     ReplayFigures replayed() const {
@@ -65,6 +83,12 @@ TEST(Replay, SoIsOneWhoseViewerFliesThroughAStillScene) {
 /// With so many threads a batch is planned before the last one is learnt.
 TEST(Replay, SoIsOneThatLearnsWhileItRenders) {
     RecordedSession const session(FRAMELET_SOURCE_DIR "/scenes/globe.glb", {"--threads", "8"}, {});
+    expect_identical(session.replayed());
+}
+
+TEST(Replay, SoIsOneThatWasCutAndResumed) {
+    RecordedSession const session(FRAMELET_SOURCE_DIR "/scenes/vehicle_chase.glb", {"--insecure"}, {}, true);
+    EXPECT_EQ(session.viewers(), 1u);
     expect_identical(session.replayed());
 }
 
