@@ -137,6 +137,20 @@ bool BodyMotions::rests(BodyNumber body, SceneTime from, SceneTime to) const {
     return std::ranges::all_of(keys, [&](BodyPose const& pose) { return pose == keys.front(); });
 }
 
+void BodyMotions::jump_at(SceneTime time) {
+    if (jumps_[1] != time) {
+        jumps_ = {jumps_[1], time};
+    }
+}
+
+SceneTime BodyMotions::last_jump(SceneTime time) const {
+    SceneTime last = -INFINITY;
+    for (SceneTime const jump : jumps_) {
+        last = jump <= time ? std::max(last, jump) : last;
+    }
+    return last;
+}
+
 bool is_at_rest(FrameletShape const& shape, SceneTime scene_time, BodyMotions const& motions) {
     auto const rests = [&](auto const& one) {
         return one.velocity == Vec3(0) &&

@@ -1,6 +1,9 @@
 // Where bodies are at any scene time, from their tracks, and how each has moved between two times.
 #pragma once
 
+#include <array>
+#include <cmath>
+
 #include <glm/ext/matrix_double3x3.hpp>
 #include <glm/ext/vector_double3.hpp>
 #include <unordered_map>
@@ -57,11 +60,18 @@ public:
     /// Null where nothing is known of it.
     BodyTrack const* find(BodyNumber body) const;
 
+    /// All may look otherwise from this scene time on: what was rendered before is out of date after it. Two such times
+    /// are known, one of which may still be to come.
+    void jump_at(SceneTime time);
+    /// The latest one that is not after `time`; less than any time where there is none.
+    SceneTime last_jump(SceneTime time) const;
+
 private:
     void drop_surplus();
 
     bool knows_rest_ = true;
     std::unordered_map<BodyNumber, BodyTrack> tracks_;
+    std::array<SceneTime, 2> jumps_{-INFINITY, -INFINITY}; ///< the older one first
 };
 
 /// What rests for so long before and after it was rendered, seconds of scene time, is held as what stands.

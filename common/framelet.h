@@ -67,6 +67,8 @@ struct Batch {
     std::uint64_t number = 0; ///< counts up by one within a session, from 1
     NumberedView view;
     SceneTime scene_time = 0;
+    /// The scene time before which its framelets are not to be shown: it jumps then. In the past: at once.
+    SceneTime shown_from = 0;
     std::vector<DisplayFramelet> framelets;
     std::vector<std::uint8_t> quality{}; ///< of each framelet, 0..coarsest_quality; empty: all are exact
     /// One for each framelet; none at all where the viewer has no use for them.

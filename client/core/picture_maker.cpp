@@ -1,5 +1,6 @@
 #include "client/core/picture_maker.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "client/core/camera_track.h"
@@ -40,24 +41,51 @@ void PictureMaker::start_smoothing() {
 }
 
 void PictureMaker::insert(Batch const& batch) {
+    for (BodyTrack const& track : batch.tracks) {
+        motions_.extend(track);
+    }
+    if (batch.camera_track) {
+        cameras_.extend(*batch.camera_track);
+    }
+    if (batch.shown_from > 0) {
+        motions_.jump_at(batch.shown_from);
+    }
+    if (shown_pixels_ == nullptr || !settings_.reproject || batch.shown_from <= shown_time_) {
+        take_waiting(waiting_.size());
+        take(batch);
+        return;
+    }
+    waiting_.push_back(batch);
+    waiting_framelets_ += batch.framelets.size();
+    constexpr std::size_t most_samples = 4; // a pixel, as no moment before a jump is rendered with
+    auto const pixels = static_cast<std::size_t>(viewport().width) * static_cast<std::size_t>(viewport().height);
+    if (waiting_framelets_ * framelet_samples > most_samples * pixels) {
+        take_waiting(waiting_.size());
+    }
+}
+
+/// The first of those that wait.
+void PictureMaker::take_waiting(std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+        take(waiting_[i]);
+        waiting_framelets_ -= waiting_[i].framelets.size();
+    }
+    waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(count));
+}
+
+void PictureMaker::take(Batch const& batch) {
     if (shown_pixels_ == nullptr) {
         shown_camera_ = batch.view.camera;
         shown_time_ = batch.scene_time;
     }
     batch_view_ = batch.view;
     batch_time_ = batch.scene_time;
-    for (BodyTrack const& track : batch.tracks) {
-        motions_.extend(track);
-    }
     if (settings_.reproject && pool_.begins_moment(batch, motions_)) {
         let_go();
     }
     pool_.insert(batch, motions_, settings_.reproject);
     if (smoother_) {
         smoother_->insert(batch, motions_);
-    }
-    if (batch.camera_track) {
-        cameras_.extend(*batch.camera_track);
     }
 }
 
@@ -78,18 +106,19 @@ void PictureMaker::settle() {
     }
 }
 
-/// The camera of the request and the present, or what is late by the lag.
-std::pair<Camera, SceneTime> PictureMaker::wanted(PictureRequest const& request) {
-    SceneTime time = settings_.scene_moves ? request.present : 0;
-    if (smoother_) {
-        time = late_clock_.read(request.now, time);
-    }
+/// The present, or what is late by the lag.
+SceneTime PictureMaker::wanted_time(PictureRequest const& request) {
+    SceneTime const time = settings_.scene_moves ? request.present : 0;
+    return smoother_ ? late_clock_.read(request.now, time) : time;
+}
+
+Camera PictureMaker::wanted_camera(PictureRequest const& request, SceneTime time) const {
     if (request.scene_camera < 0) {
-        return {request.camera, time};
+        return request.camera;
     }
     BodyTrack const* const track = cameras_.find(camera_body(request.scene_camera));
     Camera const& newest = batch_view_.camera;
-    return {track == nullptr ? newest : camera_at(*track, time, newest), time};
+    return track == nullptr ? newest : camera_at(*track, time, newest);
 }
 
 bool PictureMaker::show(PictureRequest const& request, Picture& picture, std::vector<PixelRect>& changed) {
@@ -97,7 +126,11 @@ bool PictureMaker::show(PictureRequest const& request, Picture& picture, std::ve
     if (is_empty()) {
         return false;
     }
-    if (request.is_settled || !settings_.reproject) {
+    SceneTime const time = wanted_time(request);
+    bool const shows_all = request.is_settled || !settings_.reproject;
+    auto const waits = [&](Batch const& batch) { return !shows_all && batch.shown_from > time; };
+    take_waiting(static_cast<std::size_t>(std::ranges::find_if(waiting_, waits) - waiting_.begin()));
+    if (shows_all) {
         settle();
     }
     Viewport const size = viewport();
@@ -120,7 +153,7 @@ bool PictureMaker::show(PictureRequest const& request, Picture& picture, std::ve
         reconstruct(pool_.newest(), changed, picture);
         return !changed.empty();
     }
-    auto const [camera, time] = wanted(request);
+    Camera const camera = wanted_camera(request, time);
     shown_camera_ = camera;
     shown_camera_number_ = request.camera_number;
     shown_time_ = time;
@@ -159,7 +192,8 @@ double PictureMaker::coverage() const {
 }
 
 std::size_t PictureMaker::memory_bytes() const {
-    return pool_.memory_bytes() + (smoother_ ? smoother_->memory_bytes() : 0);
+    return pool_.memory_bytes() + (smoother_ ? smoother_->memory_bytes() : 0) +
+           waiting_framelets_ * sizeof(DisplayFramelet);
 }
 
 } // namespace framelet

@@ -50,7 +50,8 @@ public:
     /// The next picture is made as a whole where they differ from what they were.
     void set(PictureSettings const& settings);
 
-    /// The batch must be of this viewport.
+    /// The batch must be of this viewport. What is not to be shown yet waits, unless something comes after it that is,
+    /// or it gets too much.
     void insert(Batch const& batch);
     bool is_empty() const { return pool_.framelet_count() == 0; }
     FrameletPool const& pool() const { return pool_; }
@@ -80,13 +81,18 @@ public:
 
 private:
     void start_smoothing();
+    void take(Batch const& batch);
+    void take_waiting(std::size_t count);
     void let_go();
     void settle();
-    std::pair<Camera, SceneTime> wanted(PictureRequest const& request);
+    SceneTime wanted_time(PictureRequest const& request);
+    Camera wanted_camera(PictureRequest const& request, SceneTime time) const;
 
     PictureSettings settings_;
     FrameletPool pool_;
     BodyMotions motions_;
+    std::vector<Batch> waiting_; ///< for their time to be shown, in the order in which they came
+    std::size_t waiting_framelets_ = 0;
     BodyMotions cameras_; ///< tracks of the scene's, as `camera_body`
     Reprojector reprojector_;
     LateClock late_clock_{0};

@@ -25,6 +25,8 @@ constexpr double largest = 1e18;
 
 /// Of the worn spacing of what leads: nothing else is as good.
 constexpr float ahead_of_all = 1.0f / 64;
+/// Of the worn spacing of what is out of date: all that is not is better.
+constexpr float behind_all = 2 * worst_worn;
 
 /// Order-dependent hash of what a patch is made of.
 class Signature {
@@ -82,7 +84,7 @@ bool is_usable(WarpPatch const& patch) {
 FrameletWarp::FrameletWarp(FrameletCache const& cache, std::size_t slot, Camera const& display, SceneTime time,
                            BodyMotions const& motions)
     : cache_(cache), slot_(slot), display_(display), display_rays_(make_view_rays(display, cache.plane().viewport())),
-      time_(time), motions_(motions) {}
+      time_(time), last_jump_(motions.last_jump(time)), motions_(motions) {}
 
 void FrameletWarp::add(CachedFramelet const& framelet, unsigned parts, std::vector<WarpPatch>& patches,
                        std::vector<Splat>& splats) {
@@ -166,7 +168,7 @@ float FrameletWarp::worn(std::uint32_t view, FadingCode fading, float spacing, f
         lasts_.first = std::max(lasts_.first, rendered + (both || time_ < rendered ? -until : since));
         lasts_.last = std::min(lasts_.last, rendered + (both || time_ >= rendered ? until : -since));
     }
-    return step;
+    return rendered < last_jump_ ? behind_all * step : step;
 }
 
 void FrameletWarp::rate(std::uint32_t view, FadingCode fading, Layer const& layer, WarpPatch& patch) {

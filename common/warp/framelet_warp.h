@@ -64,6 +64,7 @@ private:
     Camera const& display_;
     ViewRays display_rays_;
     SceneTime time_;
+    SceneTime last_jump_;
     BodyMotions const& motions_;
 
     TimeSpan lasts_{-INFINITY, INFINITY};

@@ -94,6 +94,7 @@ private:
     std::unique_ptr<Joinings> joinings_; ///< scratch
     Camera display_; ///< of the plan
     bool loose_ = false; ///< whether what is loose is in it
+    SceneTime last_jump_ = -INFINITY; ///< of the scene, before what is displayed
     bool is_limited_ = false; ///< not all of it has room
     std::vector<std::uint32_t> first_entry_; ///< by block; one more at the end
     std::vector<std::uint32_t> next_entry_;

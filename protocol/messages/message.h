@@ -131,6 +131,7 @@ struct EncodedBatch {
     std::uint64_t number = 0;
     NumberedView view;
     SceneTime scene_time = 0;
+    SceneTime shown_from = 0; ///< as of a Batch
     std::vector<Tile> tiles;
     Bytes payload;
     SampleEncoding encoding = SampleEncoding::exact;

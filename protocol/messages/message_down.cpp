@@ -118,7 +118,7 @@ Offset<wire::Batch> write(Builder& builder, EncodedBatch const& value) {
     auto const tiles = builder.CreateUninitializedVector(value.tiles.size(), &codes);
     std::transform(value.tiles.begin(), value.tiles.end(), codes, [](Tile tile) { return tile.code; });
     auto const view = write(builder, value.view);
-    return wire::CreateBatch(builder, value.number, view, value.scene_time, tiles, sections);
+    return wire::CreateBatch(builder, value.number, view, value.scene_time, tiles, sections, value.shown_from);
 }
 
 namespace {
@@ -174,6 +174,7 @@ EncodedBatch read(wire::Batch const& wire) {
     value.number = wire.number();
     value.view = read(*wire.view());
     value.scene_time = wire.scene_time();
+    value.shown_from = wire.shown_from();
     value.tiles.reserve(wire.tiles()->size());
     for (std::uint32_t const code : *wire.tiles()) {
         value.tiles.push_back({code});
@@ -190,6 +191,9 @@ char const* problem(EncodedBatch const& value) {
     }
     if (!is_time(value.scene_time)) {
         return "a batch's scene time is not within 0..1e9";
+    }
+    if (!is_time(value.shown_from)) {
+        return "the time from which a batch is shown is not within 0..1e9";
     }
     if (value.tiles.size() > max_batch_framelets) {
         return "a batch has more than 32768 framelets";

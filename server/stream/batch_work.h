@@ -30,6 +30,7 @@ struct BatchOrder {
     ViewState state; ///< what is rendered
     ViewState present; ///< what is to be seen
     int scene_camera = -1; ///< >= 0: the viewer looks through that one
+    SceneTime shown_from = 0; ///< as of a Batch
     RefreshPlan plan;
     std::uint8_t quality = exact_quality;
     bool takes_shapes = false;

@@ -107,23 +107,46 @@ Step FrameletStream::plan(Turn const& turn, PosedScene& scene) {
     return has_room(turn.now) ? plan_batch(turn, present, scene) : Step::wait;
 }
 
+/// When the scene will jump, where that is soon enough to be prepared for: within two moments, since what comes after
+/// the jump shares nothing with what is held.
+std::optional<SceneTime> FrameletStream::next_switch(Turn const& turn, PosedScene const& scene) const {
+    if (!options_.awaits_switches || !(turn.clock_speed > 0)) {
+        return std::nullopt;
+    }
+    double const ahead = 2 * options_.moment_seconds * turn.clock_speed;
+    return lone_switch(scene.switches(), turn.present, std::min(turn.present + ahead, max_scene_time));
+}
+
 /// A moment is of what is to be seen when it ends, if the scene's clock and the viewer's camera go on as they do: most
-/// of it is shown about then, and lamps, cuts and what enters the picture are there when they come. Its camera is ahead
-/// of that by what the first batch of the next moment takes until it is shown: till then what newly comes into view has
-/// to be there. The scene is not: what is switched shows nothing of it before its time.
+/// of it is shown about then, and what enters the picture is there when it comes. Its camera is ahead of that by what
+/// the first batch of the next moment takes until it is shown: till then what newly comes into view has to be there.
+/// The scene is not. Where it is about to jump, the moment is of what comes after that, and waits with the viewer.
+HeldMoment FrameletStream::new_moment(Turn const& turn, PosedScene& scene) const {
+    double const batch_seconds = 0.5 * cycle_length(false, turn.plan_seconds);
+    double const lead = turn.plan_seconds + batch_seconds + link_.state().delivery_seconds;
+    double until_end = options_.looks_ahead ? options_.moment_seconds : 0;
+    double ahead = until_end + (options_.camera_leads ? std::min(lead, options_.moment_seconds) : 0);
+    SceneTime shown_from = 0;
+    if (auto const jump = next_switch(turn, scene)) {
+        constexpr SceneTime just_after = 1e-4; // more than rounding
+        until_end = ahead = (*jump + just_after - turn.present) / turn.clock_speed;
+        shown_from = *jump;
+    }
+    auto const scene_time = [&](double seconds) {
+        return std::clamp(turn.present + turn.clock_speed * seconds, 0.0, max_scene_time);
+    };
+    ViewState state = state_at(scene_time(until_end), scene);
+    state.view.camera =
+        camera_->scene_camera < 0 ? forecast_.at(turn.now, ahead) : state_at(scene_time(ahead), scene).view.camera;
+    return {state, turn.now, shown_from};
+}
+
 std::optional<HeldMoment> FrameletStream::moment_at(Turn const& turn, ViewState const& present, PosedScene& scene) {
     if (moments_.observe(present, turn.now, takes_shapes())) {
-        double const batch_seconds = 0.5 * cycle_length(false, turn.plan_seconds);
-        double const lead = turn.plan_seconds + batch_seconds + link_.state().delivery_seconds;
-        double const until_end = options_.looks_ahead ? options_.moment_seconds : 0;
-        double const ahead = until_end + (options_.camera_leads ? std::min(lead, options_.moment_seconds) : 0);
-        auto const scene_time = [&](double seconds) {
-            return std::clamp(turn.present + turn.clock_speed * seconds, 0.0, max_scene_time);
-        };
-        ViewState state = state_at(scene_time(until_end), scene);
-        state.view.camera =
-            camera_->scene_camera < 0 ? forecast_.at(turn.now, ahead) : state_at(scene_time(ahead), scene).view.camera;
-        moments_.begin(state, turn.now);
+        moments_.begin(new_moment(turn, scene));
+        if (moments_.held()->shown_from > 0) {
+            viewer_.motions.jump_at(moments_.held()->shown_from);
+        }
     }
     return moments_.held();
 }
@@ -150,6 +173,7 @@ Step FrameletStream::plan_batch(Turn const& turn, ViewState const& present, Pose
     order.state = wanted.moment ? wanted.moment->state : present;
     order.present = present;
     order.scene_camera = moving_camera(scene);
+    order.shown_from = wanted.moment ? wanted.moment->shown_from : 0;
     order.quality = exact_quality;
     if (takes_loss()) {
         order.quality = choice_.choose(link, sent_share_.value() * rendered, turn.now, wanted.moment.has_value());
@@ -180,7 +204,7 @@ Step FrameletStream::plan_batch(Turn const& turn, ViewState const& present, Pose
 void FrameletStream::plan_exactly(ViewState const& present, PosedScene const& scene) {
     constexpr std::size_t most_framelets = 1024;
     BatchWork& work = free_work();
-    work.order = {present, present, moving_camera(scene), {}, exact_quality, takes_shapes(), true, true, true};
+    work.order = {present, present, moving_camera(scene), 0, {}, exact_quality, takes_shapes(), true, true, true};
     viewer_.lossy.list(std::min(bounded_batch(link_.state()), most_framelets), work.order.plan.tiles);
     work.figures = {};
     work.figures.framelets = work.order.plan.tiles.size();

@@ -24,6 +24,7 @@ struct StreamOptions {
     bool prices_bytes = true; ///< where the link is scarce samples cost by the bytes that they take
     double moment_seconds = framelet::moment_seconds; ///< that a moment lasts
     bool looks_ahead = true; ///< a moment is of when it ends, not of when it begins
+    bool awaits_switches = true; ///< where the scene is about to jump it is of what comes after, and shown from then on
     bool camera_leads = true; ///< its camera is ahead of that by what its first batch takes until it is shown
     bool knows_rest = true; ///< what rests is held as what stands
 };
@@ -62,6 +63,8 @@ private:
     ViewState state_at(SceneTime clock, PosedScene& scene) const;
     int moving_camera(PosedScene const& scene) const;
     bool has_room(double now) const;
+    std::optional<SceneTime> next_switch(Turn const& turn, PosedScene const& scene) const;
+    HeldMoment new_moment(Turn const& turn, PosedScene& scene) const;
     std::optional<HeldMoment> moment_at(Turn const& turn, ViewState const& present, PosedScene& scene);
     Step plan_batch(Turn const& turn, ViewState const& present, PosedScene& scene);
     void plan_exactly(ViewState const& present, PosedScene const& scene);

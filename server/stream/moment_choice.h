@@ -21,7 +21,7 @@ public:
     /// enough, the picture has another size, projection or exposure, or something begins to move. Never at rest, nor
     /// for a viewer that moves nothing. `now`: seconds, steady.
     bool observe(ViewState const& present, double now, bool viewer_moves_samples);
-    void begin(ViewState const& state, double now) { held_ = HeldMoment{state, now}; }
+    void begin(HeldMoment const& moment) { held_ = moment; }
     /// The moment to render; nothing where the present is.
     std::optional<HeldMoment> const& held() const { return held_; }
     /// The next moment begins anew: the scene's clock was set.

@@ -8,6 +8,7 @@
 
 #include "server/render/render_scene.h"
 #include "server/scene/animation.h"
+#include "server/scene/switches.h"
 
 namespace framelet {
 
@@ -20,6 +21,8 @@ public:
     std::span<Index const> clips() const { return clips_; }
     RenderScene const& render_scene() const { return render_scene_; }
     bool is_animated() const { return animated_; }
+    /// Where its clips jump.
+    std::span<ClipSwitches const> switches() const { return switches_; }
 
     /// Moves everything that is rendered to where it is at `time`; nothing where it is there already.
     void pose(SceneTime time);
@@ -35,6 +38,7 @@ private:
     std::vector<Index> const clips_;
     RenderScene& render_scene_;
     bool const animated_;
+    std::vector<ClipSwitches> const switches_;
     std::vector<bool> moving_cameras_;
     ScenePose pose_; ///< evaluated last
     std::optional<SceneTime> rendered_ = 0; ///< as which it is to be rendered; nothing: not before it is posed

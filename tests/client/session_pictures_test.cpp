@@ -50,6 +50,65 @@ struct Shown {
     }
 };
 
+/// As the picture is to be seen at a scene time.
+int at_time(Shown& shown, SceneTime time) {
+    shown.request.present = time;
+    return shown.at(10);
+}
+
+TEST(PictureMaker, WhatIsNotToBeShownYetWaits) {
+    Shown shown;
+    shown.insert(left_of(100, 50));
+    EXPECT_EQ(at_time(shown, 1), 50);
+    Batch later = left_of(100, 80);
+    later.scene_time = 1.5;
+    later.shown_from = 1.4;
+    shown.insert(later);
+    EXPECT_EQ(at_time(shown, 1.3), 50);
+    EXPECT_EQ(at_time(shown, 1.4), 80);
+    shown.insert(later); // late
+    EXPECT_EQ(at_time(shown, 1.4), 80);
+}
+
+TEST(PictureMaker, WhatWaitsIsShownBeforeWhatComesAfterIt) {
+    Shown shown;
+    shown.insert(left_of(100, 50));
+    EXPECT_EQ(at_time(shown, 1), 50);
+    Batch later = left_of(100, 80);
+    later.shown_from = 9;
+    shown.insert(later);
+    EXPECT_EQ(at_time(shown, 1), 50);
+    shown.insert(left_of(64, 70));
+    EXPECT_EQ(at_time(shown, 1), 70);
+    EXPECT_EQ(shown.at(90), 80);
+}
+
+TEST(PictureMaker, WhatWaitsIsShownOnceNothingElseIsToCome) {
+    Shown shown;
+    shown.insert(left_of(100, 50));
+    Batch later = left_of(100, 80);
+    later.shown_from = 9;
+    EXPECT_EQ(at_time(shown, 1), 50);
+    shown.insert(later);
+    shown.request.is_settled = true;
+    EXPECT_EQ(at_time(shown, 1), 80);
+}
+
+TEST(PictureMaker, AServerThatMakesItWaitForEverDoesNotFillIt) {
+    Shown shown;
+    shown.insert(left_of(100, 50));
+    EXPECT_EQ(at_time(shown, 1), 50);
+    Batch later = left_of(100, 80);
+    later.shown_from = 1e9;
+    std::size_t most = 0;
+    for (int i = 0; i < 200; ++i) {
+        shown.insert(later);
+        most = std::max(most, shown.pictures.memory_bytes());
+    }
+    EXPECT_LT(most, std::size_t{1} << 20);
+    EXPECT_EQ(at_time(shown, 1), 80) << "rather too early";
+}
+
 TEST(SessionPictures, TheEarlierIsShownUntilTheNewHasNoMoreHoles) {
     Shown shown;
     shown.insert(left_of(100, 50));

@@ -41,6 +41,7 @@ constexpr Part parts[] = {
     {"reprojection", &FrameletParts::reprojection},
     {"few moments", &FrameletParts::few_moments},
     {"look ahead", &FrameletParts::look_ahead},
+    {"awaited switches", &FrameletParts::awaited_switches},
     {"camera lead", &FrameletParts::camera_lead},
     {"mirror", &FrameletParts::mirror},
     {"visibility", &FrameletParts::visibility},

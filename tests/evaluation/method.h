@@ -46,6 +46,7 @@ struct FrameletParts {
     // What the server does for a viewer that moves what it holds.
     bool few_moments = true; ///< else every cycle is of another one
     bool look_ahead = true; ///< a moment is of when it ends, and not of when it begins
+    bool awaited_switches = true; ///< where the scene will jump it is of what comes after, and shown from then on
     bool camera_lead = true; ///< its camera is ahead of that
     bool mirror = true; ///< what the viewer shows says what is rendered, and not the field
     bool visibility = true; ///< of what the mirror does not know, by rays that are not shaded

@@ -214,6 +214,11 @@ TEST(MessageRange, Batch) {
     batch.scene_time = 8e16;
     expect_refused(unchecked(batch), "scene time");
     batch.scene_time = 0;
+    batch.shown_from = static_cast<double>(nan);
+    expect_refused(unchecked(batch), "shown");
+    batch.shown_from = 8e16;
+    expect_refused(unchecked(batch), "shown");
+    batch.shown_from = 0;
     batch.view.camera.vertical_extent = 9;
     expect_refused(unchecked(batch), "camera");
 }

@@ -178,6 +178,25 @@ TEST(Mirror, TheLeastWornShows) {
     EXPECT_NEAR(summary_of(mirror).worn, 2, 1e-3);
 }
 
+TEST(Mirror, WhatIsOlderThanAJumpShowsBehindWhatIsNot) {
+    for (bool const jumps : {false, true}) {
+        BodyMotions motions;
+        if (jumps) {
+            motions.jump_at(1);
+        }
+        Mirror mirror(viewport);
+        mirror.look(view_at(Vec3(0)), motions);
+        mirror.add(view_at(Vec3(0), 0).rays, motions, render_pieces(plane, plane.pixel_depth(), wall));
+        Vec3 const aside(1e-5f, 0, 0);
+        mirror.look(view_at(aside, 0.9), motions);
+        EXPECT_FALSE(mirror.gives_way(mirror.cell(3, 3)));
+        mirror.look(view_at(aside, 1), motions);
+        EXPECT_EQ(mirror.gives_way(mirror.cell(3, 3)), jumps);
+        mirror.add(view_at(aside, 1).rays, motions, render_pieces(plane, plane.pixel_depth() - 2, wall, 1));
+        EXPECT_NEAR(summary_of(mirror).worn, jumps ? 4 : 1, 1e-3);
+    }
+}
+
 TEST(Mirror, OfOneCameraTheNewestIsHeld) {
     Mirror mirror(viewport);
     mirror.look(view_at(Vec3(0), 0), no_motions);

@@ -9,12 +9,13 @@ namespace framelet {
 namespace {
 
 struct Served {
-    Scene scene = moving_scene();
+    Scene scene;
     RenderScene render_scene{scene, std::nullopt};
     PosedScene posed{scene, {0}, render_scene};
     FrameletStream stream;
 
-    explicit Served(StreamOptions const& options = {}) : stream(options, coding::all) {
+    explicit Served(StreamOptions const& options = {}, Scene const& what = moving_scene())
+        : scene(what), stream(options, coding::all) {
         stream.take({0, ViewerSettings{0, 0, true}});
     }
     void look(Camera const& camera, std::uint64_t number, double now) {
@@ -36,6 +37,41 @@ TEST(FrameletStream, AMomentIsOfTheTimeAtWhichItEnds) {
     served.look({}, 1, 10);
     ASSERT_EQ(served.plan(10, 0.01, -1), Step::render);
     EXPECT_EQ(served.stream.moment(), 0) << "the clock stands there";
+}
+
+/// The triangle stays where it is but for the seconds from 1 to 1.5.
+Scene jumping_scene() {
+    Scene scene = moving_scene();
+    scene.clips[0].channels[0].interpolation = Interpolation::step;
+    scene.clips[0].channels[0].times = {0, 1, 1.5f};
+    return scene;
+}
+
+SceneTime shown_from(Served& served) {
+    served.stream.render(served.posed);
+    EXPECT_TRUE(served.stream.learn(served.posed));
+    return served.stream.learnt_batch().shown_from;
+}
+
+TEST(FrameletStream, BeforeAJumpAMomentIsOfWhatComesAfterAndWaits) {
+    struct Case {
+        SceneTime present;
+        double speed;
+        SceneTime moment, shown_from;
+    };
+    for (Case const& wanted : {Case{0.5, 1, 0.6, 0}, {0.85, 1, 1, 1}, {0.99, 1, 1, 1}, {1, 1, 1.1, 0}, {0.75, 2, 1, 1},
+                               {0.85, 0, 0.85, 0}, {0.95, -1, 0.85, 0}, {0.3, 8, 1.1, 0}}) {
+        Served served({}, jumping_scene());
+        served.look({}, 1, 10);
+        ASSERT_EQ(served.plan(10, wanted.present, wanted.speed), Step::render);
+        EXPECT_NEAR(served.stream.moment(), wanted.moment, 2e-4) << wanted.present;
+        EXPECT_EQ(shown_from(served), wanted.shown_from) << wanted.present;
+    }
+    Served served({.awaits_switches = false}, jumping_scene());
+    served.look({}, 1, 10);
+    ASSERT_EQ(served.plan(10, 0.85, 1), Step::render);
+    EXPECT_NEAR(served.stream.moment(), 0.95, 1e-9);
+    EXPECT_EQ(shown_from(served), 0);
 }
 
 /// Where a camera is that goes 1 m a second when the first moment begins that it is rendered for.

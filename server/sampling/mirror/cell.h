@@ -25,6 +25,7 @@ struct Cell {
     std::uint8_t moment = 0; ///< slot
     std::uint8_t share = 0; ///< of its pixels that what shows covers, of 16
     bool leads = false; ///< as the viewer has it, before what is better
+    bool is_outdated = false; ///< the scene has jumped since: whatever comes shows before it
     bool is_wrong = false; ///< something nearer is there, which the viewer does not hold
     float stale = 0; ///< squared luma by which the moment was found to look otherwise
 

@@ -355,6 +355,7 @@ void Mirror::put(Moment const& moment, std::size_t index, float inverse_depth, i
     cell.inverse_depth = inverse_depth;
     cell.worn = reprojected.worn;
     cell.leads = reprojected.leads;
+    cell.is_outdated = reprojected.is_outdated;
     cell.detail = moment.pieces[index].detail / reprojected.scale;
     cell.piece = static_cast<std::uint32_t>(index);
     cell.moment = static_cast<std::uint8_t>(&moment - moments_.data());
@@ -371,6 +372,9 @@ bool Mirror::is_better(Moment const& moment, ReprojectedPiece const& reprojected
     float const limit = same_surface * std::max(inverse_depth, cell.inverse_depth) + reprojected.tolerance;
     if (std::abs(difference) > limit) {
         return difference > 0;
+    }
+    if (reprojected.is_outdated != cell.is_outdated) {
+        return cell.is_outdated;
     }
     if (reprojected.leads != cell.leads) {
         return reprojected.leads;

@@ -39,8 +39,10 @@ public:
     float luma_of(Cell const& cell, Vec2 at) const;
     SceneTime time_of(Cell const& cell) const { return piece_of(cell).scene_time; }
     /// True where a new framelet takes the place of what shows, be it better or not: it is of the base of the camera
-    /// that is looked through.
-    bool gives_way(Cell const& cell) const { return cell.moment == base_ && moments_[base_].is_of_camera; }
+    /// that is looked through, or out of date.
+    bool gives_way(Cell const& cell) const {
+        return cell.is_outdated || (cell.moment == base_ && moments_[base_].is_of_camera);
+    }
     /// True where what shows was rendered as another camera saw it: it is interpolated between its samples.
     bool is_moved(Cell const& cell) const { return !moments_[cell.moment].is_of_camera; }
     /// True when the picture is from where the newest that had come by then was rendered, or nothing had: the camera

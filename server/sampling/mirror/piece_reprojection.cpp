@@ -115,6 +115,7 @@ bool same_camera(ViewRays const& a, ViewRays const& b) {
 void reproject(PieceReprojection const& reprojection, std::span<Piece const> pieces, PieceKinds kinds,
                BodyTransforms& transforms, std::vector<ReprojectedPiece>& reprojected) {
     ++transforms.stamp;
+    SceneTime const last_jump = reprojection.motions->last_jump(reprojection.display.scene_time);
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         Piece const& piece = pieces[i];
         if (i > 0 && piece.scene_time != pieces[i - 1].scene_time) {
@@ -125,6 +126,7 @@ void reproject(PieceReprojection const& reprojection, std::span<Piece const> pie
         reprojected.push_back(
             wanted ? reproject(piece, transform_of(reprojection, piece, transforms), reprojection.display_size, age)
                    : ReprojectedPiece{});
+        reprojected.back().is_outdated = piece.scene_time < last_jump;
     }
 }
 

@@ -33,6 +33,7 @@ struct ReprojectedPiece {
     float worn = 0; ///< spacing, pixels
     bool leads = false; ///< a shadow that shows before what it comes over
     bool is_still = false; ///< its pixels are where they were rendered
+    bool is_outdated = false; ///< the scene has jumped since
 
     bool is_in_picture() const { return inverse_depth >= 0; }
 };

@@ -36,7 +36,7 @@ struct Comparison {
 
 /// `at`: the middle of the cell, pixels.
 void Comparison::add(Mirror const& mirror, Cell const& cell, Vec2 at, Piece const& piece, SceneTime scene_time) {
-    if (cell.share < cell_pixels) {
+    if (cell.share < cell_pixels || cell.is_outdated) { // a jump tells nothing of how fast looks change
         return;
     }
     Piece const& old = mirror.piece_of(cell);

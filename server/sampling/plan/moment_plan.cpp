@@ -62,7 +62,8 @@ bool shows_means(Piece const& piece, bool stands) {
 /// wear by less than what they are finer.
 bool stays(Mirror const& mirror, Cell const& cell) {
     constexpr float most_fading = 0.25f; // pixels a second
-    if (!mirror.camera_stands() || !cell.is_shown() || !mirror.gives_way(cell) || cell.is_wrong || cell.stale > 0) {
+    if (!mirror.camera_stands() || !cell.is_shown() || !mirror.gives_way(cell) || cell.is_outdated ||
+        cell.is_wrong || cell.stale > 0) {
         return false;
     }
     Piece const& piece = mirror.piece_of(cell);

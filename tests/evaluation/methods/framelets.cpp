@@ -131,6 +131,7 @@ private:
         options.prices_bytes = parts.byte_prices;
         options.moment_seconds = parts.few_moments ? options.moment_seconds : double{least_cycle_seconds};
         options.looks_ahead = parts.look_ahead;
+        options.awaits_switches = parts.awaited_switches;
         options.camera_leads = parts.camera_lead;
         options.knows_rest = parts.rest;
         stream_.emplace(options, codings_of(parts));

@@ -1,0 +1,82 @@
+#include "server/scene/switches.h"
+
+#include <gtest/gtest.h>
+
+#include "server/scene/animation.h"
+#include "server/scene/scene_import.h"
+
+namespace framelet {
+namespace {
+
+AnimationChannel channel(Interpolation interpolation, std::vector<float> times, std::vector<float> const& x) {
+    AnimationChannel out;
+    out.node = 0;
+    out.interpolation = interpolation;
+    out.times = std::move(times);
+    for (float const value : x) {
+        out.values.insert(out.values.end(), {value, 0, 0});
+    }
+    return out;
+}
+
+Scene scene_of(std::vector<AnimationClip> clips) {
+    Scene scene;
+    scene.nodes.resize(1);
+    scene.clips = std::move(clips);
+    return scene;
+}
+
+TEST(Switches, AreWhereStepsTakeOtherValuesAndWhereLoopsDoNotClose) {
+    Scene const scene = scene_of({
+        {"steps", 4, {channel(Interpolation::step, {0, 1, 2, 3}, {5, 5, 7, 5})}},
+        {"closed", 2, {channel(Interpolation::linear, {0, 1, 2}, {0, 1, 0})}},
+        {"open", 2, {channel(Interpolation::linear, {0, 2}, {0, 1})}},
+        {"none", 0, {channel(Interpolation::step, {0}, {0})}},
+    });
+    std::vector<Index> const clips{0, 1, 2, 3};
+    auto const found = find_switches(scene, clips);
+    ASSERT_EQ(found.size(), 2u);
+    EXPECT_EQ(found[0].duration, 4);
+    EXPECT_EQ(found[0].times, (std::vector<double>{2, 3})); // the end is as the beginning
+    EXPECT_EQ(found[1].times, (std::vector<double>{0}));
+}
+
+TEST(Switches, AQuaternionAndItsNegativeAreOne) {
+    AnimationChannel turn;
+    turn.node = 0;
+    turn.property = AnimatedProperty::rotation;
+    turn.components = 4;
+    turn.times = {0, 1, 2};
+    turn.values = {0, 0, 0, 1, 0, 1, 0, 0, 0, 0, 0, -1};
+    Scene const scene = scene_of({{"turn", 2, {turn}}});
+    EXPECT_TRUE(find_switches(scene, std::vector<Index>{0}).empty());
+}
+
+TEST(Switches, OnlyALoneOneIsFoundWhateverTurnOfTheLoopItIsIn) {
+    std::vector<ClipSwitches> const clips{{4, {0, 1.5}}, {3, {1.5004}}};
+    EXPECT_EQ(lone_switch(clips, 1.4, 1.6), 1.5); // both clips at once
+    EXPECT_EQ(lone_switch(clips, 1.5, 1.6), 1.5004);
+    EXPECT_EQ(lone_switch(clips, 1.0, 1.2), std::nullopt);
+    EXPECT_EQ(lone_switch(clips, 3.9, 4.1), 4);
+    EXPECT_EQ(lone_switch(clips, 399.95, 400.05), 400);
+    EXPECT_EQ(lone_switch(clips, 3.9, 4.6), std::nullopt); // 4 and 4.5004
+    EXPECT_EQ(lone_switch(clips, 0, 5), std::nullopt);
+    EXPECT_EQ(lone_switch({}, 0, 5), std::nullopt);
+}
+
+/// The values that the scene takes say the same.
+TEST(Switches, OfABundledSceneAreWhereItsPoseJumps) {
+    Scene const scene = import_scene(FRAMELET_SOURCE_DIR "/scenes/flicker.glb");
+    std::vector<Index> const clips = default_clips(scene);
+    auto const found = find_switches(scene, clips);
+    ASSERT_EQ(found.size(), 1u);
+    ASSERT_FALSE(found[0].times.empty());
+    for (double time = 0.005; time < found[0].duration; time += 0.01) {
+        bool const jumps = evaluate_pose(scene, clips, time).world_from_node !=
+                           evaluate_pose(scene, clips, time + 0.01).world_from_node;
+        EXPECT_EQ(lone_switch(found, time, time + 0.01).has_value(), jumps) << time;
+    }
+}
+
+} // namespace
+} // namespace framelet
