@@ -111,7 +111,7 @@ void choose_programs(VerbOptions& options) {
     report.live.methods = {"framelet", "framelet-unwarped", "framed+h264", "framed+warp"};
     report.live.samples_per_side = 2;
     report.live.seconds = 3;
-    report.live.moments = 3;
+    report.live.moments = 8;
     report.clock_sizes = {{256, 256}, {1280, 720}};
     report.quick = options.quick;
     if (options.quick) {

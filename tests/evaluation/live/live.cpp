@@ -51,10 +51,14 @@ std::vector<std::string> joined(std::vector<std::string> words, std::vector<std:
 /// Through an emulated link the client comes by another port, for which it finds no token: everybody is let in.
 Programs programs_of(std::string const& method, RivalParts const& rivals, std::string const& scene) {
     if (method == "framelet") {
-        return {FRAMELET_SERVER, FRAMELET_CLIENT, {scene, "--port", "0", "--insecure"}, {}, {}};
+        return {FRAMELET_SERVER, FRAMELET_CLIENT, {scene, "--port", "0", "--insecure"}, {}, {"--json"}};
     }
     if (method == "framelet-unwarped") {
-        return {FRAMELET_SERVER, FRAMELET_CLIENT, {scene, "--port", "0", "--insecure"}, {}, {"--no-reprojection"}};
+        return {FRAMELET_SERVER,
+                FRAMELET_CLIENT,
+                {scene, "--port", "0", "--insecure"},
+                {},
+                {"--json", "--no-reprojection"}};
     }
     std::string const self = std::filesystem::read_symlink("/proc/self/exe").string();
     std::vector<std::string> const parts{"--spacing", std::to_string(rivals.spacing), "--margin",
@@ -93,6 +97,7 @@ struct LiveRun {
     double server_cores = 0; ///< that it used while both were at work
     double server_seconds = 0; ///< that it used since the viewer came, until `watched_until`
     double watched_until = 0; ///< Unix
+    json statistics; ///< as the client prints them; discarded where another program looks
 
     std::filesystem::path picture_file(std::uint64_t frame) const {
         char name[40];
@@ -172,6 +177,7 @@ void run_programs(BenchScene const& scene, std::string const& method, RivalParts
     if (int const code = client.wait(patience); code != 0) {
         throw ConnectionError(method + ": the viewer ended with " + std::to_string(code) + ": " + client.errors());
     }
+    run.statistics = json::parse(client.output(), nullptr, false);
     run.frames = read_frames(run.folder.path() / "frames.jsonl");
     if (run.frames.size() < 10) {
         throw ConnectionError(method + ": the viewer showed " + std::to_string(run.frames.size()) + " pictures");
@@ -236,6 +242,7 @@ json run_figures(LiveRun const& run) {
               {"samples_per_second", (last.samples - steady->samples) / steady_span},
               {"server_cores", run.server_cores},
               {"viewer_cores", (last.cpu_seconds - steady->cpu_seconds) / steady_span}}},
+            {"paint_ns_per_pixel", run.statistics.is_object() ? run.statistics["reconstruct_ns_per_pixel"] : json()},
             {"photon_ms", photons.empty() ? json() : json(1e3 * percentile(photons, 0.5))}};
 }
 
@@ -246,6 +253,7 @@ struct Measured {
 };
 
 constexpr std::size_t shown_between = FrameChoice::frames_at_once / 2;
+constexpr std::size_t trial_moments = 3;
 
 /// Of the frames in a row from `first` on the one that was shown most nearly at the moment that it is of. On the
 /// virtual clock every one that is compared is: a millisecond of the operating system's decides where a car passes by.
@@ -255,8 +263,13 @@ std::size_t most_punctual(std::vector<LiveFrame> const& frames, std::size_t firs
     return static_cast<std::size_t>(std::ranges::min_element(row, {}, off) - row.begin());
 }
 
-/// Errors at some moments, spread over the run. Where the virtual clock is compared with it there are many of them: how
-/// steady the error is, for which each takes three references, is not looked at then.
+/// How steady the error is takes three references a moment: it is looked at in every other one, and, where the virtual
+/// clock is compared with the run, in none.
+bool looks_at_steadiness(LiveOptions const& options, std::size_t moment) {
+    return !options.predicts && moment % 2 == 0;
+}
+
+/// Errors at some moments, spread over the run.
 Measured error_figures(BenchScene& scene, std::string const& method, LiveRun const& run, LiveOptions const& options) {
     std::vector<std::size_t> const written = run.written_frames();
     json figures{{"mse", 0.0}, {"ssim", 0.0}, {"flip", 0.0}, {"steadiness", 0.0}};
@@ -267,20 +280,20 @@ Measured error_figures(BenchScene& scene, std::string const& method, LiveRun con
         std::size_t const chosen = options.predicts ? most_punctual(run.frames, first) : shown_between;
         std::array<Picture, FrameChoice::frames_at_once> shown, reference;
         for (std::size_t i = 0; i < shown.size(); ++i) {
-            if (i == chosen || !options.predicts) {
+            if (i == chosen || looks_at_steadiness(options, k)) {
                 shown[i] = run.picture(first + i);
                 reference[i] = reference_of(scene, run.frames[first + i], options);
             }
         }
         Measures const measures = measure(shown[chosen], reference[chosen]);
-        auto const add = [&](char const* name, double value) {
-            figures[name] = figures[name].get<double>() + value / static_cast<double>(count);
+        auto const add = [&](char const* name, double value, std::size_t of) {
+            figures[name] = figures[name].get<double>() + value / static_cast<double>(of);
         };
-        add("mse", measures.mse);
-        add("ssim", measures.ssim);
-        add("flip", measures.flip);
-        if (!options.predicts) {
-            add("steadiness", unsteadiness(shown, reference));
+        add("mse", measures.mse, count);
+        add("ssim", measures.ssim, count);
+        add("flip", measures.flip, count);
+        if (looks_at_steadiness(options, k)) {
+            add("steadiness", unsteadiness(shown, reference), (count + 1) / 2);
         }
         figures["moment_mse"].push_back(measures.mse);
         if (!options.charts.empty()) {
@@ -293,17 +306,19 @@ Measured error_figures(BenchScene& scene, std::string const& method, LiveRun con
     return {std::move(figures), std::move(moments)};
 }
 
-/// Mean squared error at the moments, nearly: enough to tell a rival's choices apart.
+/// Mean squared error at a few of the moments, nearly: enough to tell a rival's choices apart.
 double trial_error(BenchScene& scene, LiveRun const& run, LiveOptions options) {
     options.samples_per_side = std::min(options.samples_per_side, 2);
     std::vector<std::size_t> const written = run.written_frames();
     std::size_t const count = written.size() / FrameChoice::frames_at_once;
+    std::size_t const looks = std::min(count, trial_moments);
     double sum = 0;
-    for (std::size_t k = 0; k < count; ++k) {
-        std::size_t const frame = written[k * FrameChoice::frames_at_once] + shown_between;
+    for (std::size_t k = 0; k < looks; ++k) {
+        std::size_t const moment = (2 * k + 1) * count / (2 * looks); // amid each part of the run
+        std::size_t const frame = written[moment * FrameChoice::frames_at_once] + shown_between;
         sum += mean_squared_error(run.picture(frame), reference_of(scene, run.frames[frame], options));
     }
-    return sum / static_cast<double>(count);
+    return sum / static_cast<double>(looks);
 }
 
 /// Of all choices that a rival has, each run by itself, the one that errs least.
