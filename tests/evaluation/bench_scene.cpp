@@ -4,11 +4,14 @@
 
 namespace framelet::bench {
 
-std::unique_ptr<BenchScene> load_bench_scene(std::filesystem::path const& file) {
+std::unique_ptr<BenchScene> load_bench_scene(std::filesystem::path const& file, Clips clips) {
     auto loaded = std::make_unique<BenchScene>();
     loaded->file = file;
     loaded->name = file.stem().string();
     loaded->scene = import_scene(file);
+    if (clips == Clips::none) {
+        loaded->scene.clips.clear();
+    }
     loaded->clips = default_clips(loaded->scene);
     loaded->duration = animation_duration(loaded->scene, loaded->clips);
     loaded->render_scene = std::make_unique<RenderScene>(loaded->scene, std::nullopt);
@@ -34,7 +37,7 @@ bool same_pose(ScenePose const& a, ScenePose const& b) {
 }
 
 Camera camera_at(BenchScene const& scene, SceneTime time) {
-    return turned(own_camera_at(scene, time), scene.turn, time);
+    return scene.flown ? scene.flown(time) : turned(own_camera_at(scene, time), scene.turn, time);
 }
 
 Camera own_camera_at(BenchScene const& scene, SceneTime time) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -23,18 +24,22 @@ struct BenchScene {
     Index scene_camera = none; ///< looked through; none: `default_camera`
     Camera default_camera;
     CameraTurn turn; ///< of whichever camera
+    std::function<Camera(SceneTime)> flown; ///< where there is one: the viewer's own camera, that goes by itself
     Camera camera; ///< at the time that the scene was posed for last
     float exposure = 1;
     double duration = 0; ///< seconds of animation; 0: nothing moves
     ScenePose pose; ///< that the scene was posed for last
 
     /// The camera of the scene that is looked through as it goes; -1: the camera is the viewer's own.
-    int followed_camera() const { return turn.turns() ? -1 : static_cast<int>(scene_camera); }
+    int followed_camera() const { return turn.turns() || flown ? -1 : static_cast<int>(scene_camera); }
 };
+
+/// Which animations play: `none`, and it stands still.
+enum class Clips { usual, none };
 
 /// Loads the scene and poses it at time 0. It is seen by its first camera, or by the default one where it has none.
 /// Throws InputError.
-std::unique_ptr<BenchScene> load_bench_scene(std::filesystem::path const& file);
+std::unique_ptr<BenchScene> load_bench_scene(std::filesystem::path const& file, Clips clips = Clips::usual);
 
 /// Moves everything, the camera included, to where it is at `time`.
 void pose_at(BenchScene& scene, SceneTime time);

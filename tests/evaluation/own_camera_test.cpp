@@ -1,0 +1,41 @@
+// A camera of the viewer's own in a scene that stands still. Nothing here is about how fast.
+#include "tests/evaluation/own_camera.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/evaluation/small_run.h"
+
+namespace framelet::bench {
+namespace {
+
+TEST(OwnCamera, ARiseIsAboveTheLeastBefore) {
+    EXPECT_TRUE(never_rises({}));
+    EXPECT_TRUE(never_rises({3, 3, 2, 2.03, 1}));
+    EXPECT_FALSE(never_rises({3, 2, 2.03, 2.05}));
+}
+
+TEST(OwnCamera, StandingIsBetterThanWalking) {
+    OwnCameraOptions options;
+    options.viewport = {96, 54};
+    options.jumps = 2;
+    options.costs = usual_costs();
+    auto const figures =
+        measure_own_camera(bundled("foliage"), source / "tests/evaluation/flights/foliage.json", options);
+    EXPECT_EQ(figures["scene"], "foliage");
+    EXPECT_GT(figures["standing_psnr"], figures["walking_psnr"]);
+    EXPECT_GT(figures["walking_psnr"], 12);
+    EXPECT_EQ(figures["jumps"], 2);
+}
+
+TEST(OwnCamera, WithoutClipsNothingMoves) {
+    auto const scene = load_bench_scene(bundled("stop"), Clips::none);
+    pose_at(*scene, 0);
+    ScenePose const first = scene->pose;
+    pose_at(*scene, 1);
+    EXPECT_TRUE(same_pose(first, scene->pose));
+    EXPECT_EQ(scene->duration, 0);
+}
+
+} // namespace
+} // namespace framelet::bench
