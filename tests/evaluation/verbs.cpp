@@ -120,6 +120,7 @@ void choose_programs(VerbOptions& options) {
         report.live.seconds = 2;
         report.live.moments = 1;
         report.clock_sizes = {{256, 144}};
+        report.walk_viewport = {128, 72};
         fall_back(options.live_scenes, {"vehicle_chase"});
     }
     if (options.live_scenes.empty()) {
@@ -128,16 +129,25 @@ void choose_programs(VerbOptions& options) {
     std::ranges::transform(options.live_scenes, std::back_inserter(report.live_scenes), scene_file);
     for (std::filesystem::path const& camera : files_in(source_folder / "tests/evaluation/flights", ".json")) {
         std::string const model = camera.stem().string();
-        auto const file = options.assets / model / (model + ".glb");
-        if (!options.assets.empty() && std::filesystem::exists(file)) {
-            report.flights.push_back({file, camera});
+        auto const asset = options.assets / model / (model + ".glb");
+        bool const is_asset = !options.assets.empty() && std::filesystem::exists(asset);
+        auto const scene = is_asset ? asset : model == "terrain" ? FRAMELET_TERRAIN : scene_file(model);
+        if (is_asset) {
+            report.flights.push_back({scene, camera});
+        }
+        if (std::filesystem::exists(scene)) {
+            report.walks.push_back({scene, camera});
         }
     }
+    report.turns = {30, 90};
+    std::ranges::transform(std::vector<std::string>{"vehicle_chase", "stop", "globe"},
+                           std::back_inserter(report.narrow_scenes), scene_file);
     std::ranges::transform(options.clock_scenes, std::back_inserter(report.clock_scenes), scene_file);
     fall_back(report.clock_scenes, report.live_scenes);
     if (options.without_live) {
         report.live_scenes.clear();
         report.clock_scenes.clear();
+        report.narrow_scenes.clear();
         report.flights.clear();
     }
     for (char const* const name : {"stop", "globe", "vehicle_chase"}) {

@@ -105,18 +105,21 @@ Scene with(Scene scene, Features const& features) {
 /// Sums over all turns of a session that is never held up.
 struct Cost {
     double render = 0, other = 0; ///< seconds of one thread
+    double response = 0; ///< of `other`: planning by the mirror, learning
     double samples = 0, segments = 0, bytes = 0;
 
     json to_json(char const* what) const {
         return {{"what", what},
                 {"render_ns", 1e9 * render / samples},
                 {"other_ns", 1e9 * other / samples},
+                {"response_share", response / (render + other)},
                 {"rays", segments / samples},
                 {"bytes", bytes / samples}};
     }
 };
 
-Cost serve(Scene const& scene, Viewport viewport, double seconds) {
+/// `shape_sample`: what fitting shapes takes, nanoseconds a sample; it is a part of learning.
+Cost serve(Scene const& scene, Viewport viewport, double seconds, double shape_sample) {
     tbb::global_control const one_thread(tbb::global_control::max_allowed_parallelism, 1);
     std::vector<Index> const clips = default_clips(scene);
     RenderScene render_scene(scene, std::nullopt);
@@ -132,7 +135,9 @@ Cost serve(Scene const& scene, Viewport viewport, double seconds) {
     std::uint64_t answered = 0;
     for (double now = 0; now < seconds;) {
         Step step = Step::nothing;
-        cost.other += processor_seconds_of([&] { step = stream.plan({now, now, 1, rate, 0}, posed); });
+        double const planned = processor_seconds_of([&] { step = stream.plan({now, now, 1, rate, 0}, posed); });
+        cost.other += planned;
+        cost.response += planned;
         if (step != Step::render) {
             now += 0.002;
             continue;
@@ -140,8 +145,11 @@ Cost serve(Scene const& scene, Viewport viewport, double seconds) {
         posed.pose(stream.moment());
         cost.render += processor_seconds_of([&] { stream.render(posed); });
         bool sends = false;
-        cost.other += processor_seconds_of([&] { sends = stream.learn(posed); });
+        double const learnt = processor_seconds_of([&] { sends = stream.learn(posed); });
         TurnFigures const& figures = stream.learnt_figures();
+        double const shaped = 1e-9 * shape_sample * static_cast<double>(figures.shaped_samples);
+        cost.other += learnt;
+        cost.response += std::max(0.0, learnt - shaped);
         cost.samples += static_cast<double>(figures.rays);
         cost.segments += static_cast<double>(figures.segments);
         now += static_cast<double>(figures.rays) / rate;
@@ -159,12 +167,13 @@ Cost serve(Scene const& scene, Viewport viewport, double seconds) {
 
 } // namespace
 
-json measure_feature_costs(std::filesystem::path const& scene_file, Viewport viewport, double seconds) {
+json measure_feature_costs(std::filesystem::path const& scene_file, Viewport viewport, double seconds,
+                           CostTable const& costs) {
     Scene const whole = import_scene(scene_file);
     Features features;
     json rows = json::array();
     auto const add = [&](char const* what) {
-        rows.push_back(serve(with(whole, features), viewport, seconds).to_json(what));
+        rows.push_back(serve(with(whole, features), viewport, seconds, costs.shape_sample).to_json(what));
     };
     add("nothing moves, all matt and whole");
     features.motion = true;

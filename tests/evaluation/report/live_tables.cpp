@@ -12,18 +12,6 @@ namespace {
 
 using nlohmann::json;
 
-/// The least of all rivals' figures in a scene, times `sign` (-1: the most is best), and whose that is; infinite and
-/// empty where none ran.
-std::pair<double, std::string> best_rival(json const& scene, char const* figure, double sign) {
-    std::pair<double, std::string> best{INFINITY, ""};
-    for (auto const& [method, figures] : scene["methods"].items()) {
-        if (is_rival(method)) {
-            best = std::min(best, {sign * figures[figure].get<double>(), method});
-        }
-    }
-    return best;
-}
-
 /// In how many scenes the project is not worse than the best rival, by each measure.
 std::string live_summary(std::vector<json> const& live) {
     auto const wins = [&](char const* figure, double sign) {
@@ -63,6 +51,16 @@ std::string side_by_side(std::vector<json> const& runs, char const* figure, char
 }
 
 } // namespace
+
+std::pair<double, std::string> best_rival(json const& scene, char const* figure, double sign) {
+    std::pair<double, std::string> best{INFINITY, ""};
+    for (auto const& [method, figures] : scene["methods"].items()) {
+        if (is_rival(method)) {
+            best = std::min(best, {sign * figures[figure].get<double>(), method});
+        }
+    }
+    return best;
+}
 
 std::string live_table(std::vector<json> const& live) {
     std::string text = "| scene | best rival | PSNR | SSIM | FLIP | unsteady, 1e-3 | pictures/s | gap p99, ms | "

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "common/error.h"
+#include "tests/evaluation/report/goals.h"
 #include "tests/evaluation/report/live_tables.h"
 #include "tests/evaluation/report/report_charts.h"
 #include "tests/evaluation/report/report_text.h"
@@ -124,16 +125,12 @@ std::string names_of(std::set<std::string> const& commits) {
     return text;
 }
 
-double nearest(std::vector<double> const& values, double wanted) {
-    return *std::ranges::min_element(values, {}, [&](double value) { return std::abs(std::log(value / wanted)); });
-}
-
 } // namespace
 
 std::string report_page(ReportFigures const& figures, ReportOptions const& options, StudyOptions const& study,
                         std::string const& command) {
     RunParameters const& run = study.run;
-    double const machine = nearest(options.machines, 2 * core_rate / screen_pixels);
+    double const machine = usual_machine(options);
     auto const at = [&](double wanted_machine, double link) {
         return part(figures.runs, [=](ReportRun const& r) { return r.machine == wanted_machine && r.link == link; });
     };
@@ -147,6 +144,9 @@ std::string report_page(ReportFigures const& figures, ReportOptions const& optio
         "Methods, machine, link and measures are explained in [tests/evaluation](../tests/evaluation/README.md); each "
         "rival has the spacing and margin\nwith which it errs least. ";
     page += options.quick ? "This is the quick run: it shows that the report works, and nothing else.\n" : "\n";
+
+    page += "\n## Goals\n\n" + goals_table(goals_of(figures)) +
+            "\nWhat stands in the way of those that are not met: [SHORTFALLS.md](SHORTFALLS.md).\n";
 
     page += "\n## Speed against accuracy\n\n![error against speed](pictures/speed.png)\n\n" + speed_table(figures);
     page +=
@@ -181,6 +181,11 @@ std::string report_page(ReportFigures const& figures, ReportOptions const& optio
             "bold.\n\n![error against pictures a second](pictures/live.png)\n\n",
             options.live.viewport.width, options.live.viewport.height, options.live.seconds, options.live.moments);
         page += live_table(figures.live);
+    }
+    if (!figures.narrow.empty()) {
+        page += printed("\n### Over %g Mbit/s, %g ms each way\n\n", options.narrow.bits_per_second / 1e6,
+                        1e3 * options.narrow.delay_seconds) +
+                live_table(figures.narrow);
     }
     if (!figures.clocks.empty()) {
         page += "\n### The same sessions on the virtual clock\n\n`framelet` with a core for the server and one for the "

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <optional>
 
 #include "common/files/picture_writer.h"
 #include "tests/evaluation/comparison.h"
+#include "tests/evaluation/own_camera.h"
 #include "tests/evaluation/report/feature_cost.h"
 #include "tests/evaluation/report/report_text.h"
 #include "tests/evaluation/report/run_store.h"
@@ -51,10 +53,11 @@ public:
 
     ReportRun run(std::string const& method, double machine, double link, double delay) {
         RunParameters const& p = study_.run;
+        std::string const turn = study_.turn > 0 ? printed("-t%g", study_.turn) : "";
         std::string const name = scene() + "-" + method + "-" + text_of(p.viewport) +
-                                 printed("-%gs-%ghz-m%g-l%g", p.seconds, p.reference_rate, machine, link);
+                                 printed("-%gs-%ghz-m%g-l%g", p.seconds, p.reference_rate, machine, link) + turn;
         json const figures = store_.get(name, [&] { return measure_run(method, machine, link, delay); });
-        ReportRun result{scene(), method, machine, link, noise(), 0, 0, 0, 0, {}};
+        ReportRun result{scene() + turn, method, machine, link, noise(), 0, 0, 0, 0, {}};
         result.mse = figures["mean"]["mse"];
         result.flip = figures["mean"]["flip"];
         result.unsteadiness = figures["mean"]["unsteadiness"];
@@ -164,15 +167,36 @@ json live_run(std::filesystem::path const& file, LiveOptions const& options, Run
                               : options.pinned ? "-pinned-"
                                                : "-live-") +
                              text_of(options.viewport) + printed("-%gs-%d", options.seconds, options.moments) +
-                             (options.camera_file.empty() ? "" : "-flown");
+                             (options.camera_file.empty() ? "" : "-flown") +
+                             (options.link.bits_per_second > 0 ? "-narrow" : "");
     return store.get(name, [&] {
         auto const scene = load_bench_scene(file);
         scene->name += options.camera_file.empty() ? "" : ", flown";
+        scene->name += options.link.bits_per_second > 0 ? ", narrow link" : "";
         return measure_live(*scene, options);
     });
 }
 
+/// While the camera turns, without a link's limit.
+void measure_turns(ReportOptions const& options, StudyOptions study, RunStore& store, std::vector<ReportRun>& runs) {
+    for (double const turn : options.turns) {
+        study.turn = turn;
+        for (auto const& file : study.scenes) {
+            SceneRuns scene(file, study, store);
+            for (char const* const method : {"framed+h264", "framed+warp", "framelet"}) {
+                runs.push_back(scene.run(method, usual_machine(options), 0, 0));
+            }
+        }
+    }
+}
+
 } // namespace
+
+double usual_machine(ReportOptions const& options) {
+    double const usual = 2 * core_rate / screen_pixels;
+    return *std::ranges::min_element(options.machines, {},
+                                     [&](double machine) { return std::abs(std::log(machine / usual)); });
+}
 
 ReportFigures measure_report(ReportOptions const& options, StudyOptions const& study) {
     ReportFigures figures;
@@ -180,8 +204,9 @@ ReportFigures measure_report(ReportOptions const& options, StudyOptions const& s
     std::size_t const runs_a_scene =
         1 + options.machines.size() * study.methods.size() + options.links.size() * options.linked_methods.size();
     // The noise is asked for with each run.
-    std::size_t const expected = study.scenes.size() * (2 * runs_a_scene - 2) + options.pictured_scenes.size() +
-                                 options.live_scenes.size() + options.flights.size() +
+    std::size_t const expected = study.scenes.size() * (2 * runs_a_scene - 2 + 4 + 6 * options.turns.size()) +
+                                 options.pictured_scenes.size() + options.live_scenes.size() + options.flights.size() +
+                                 options.narrow_scenes.size() + options.walks.size() +
                                  2 * options.clock_scenes.size() * options.clock_sizes.size() + 1;
     RunStore store(options.folder, figures.commit, expected);
     for (auto const& file : study.scenes) {
@@ -196,6 +221,18 @@ ReportFigures measure_report(ReportOptions const& options, StudyOptions const& s
                 figures.runs.push_back(scene.run(method, options.link_machine, link, options.link_delay));
             }
         }
+        for (char const* const method : {"oracle", "framelet"}) {
+            figures.oracle.push_back(scene.run(method, usual_machine(options), 0, 0));
+        }
+    }
+    measure_turns(options, study, store, figures.turns);
+    for (Flight const& walk : options.walks) {
+        OwnCameraOptions own;
+        own.viewport = options.walk_viewport;
+        own.jumps = options.quick ? 4 : own.jumps;
+        own.costs = study.costs;
+        figures.walks.push_back(store.get(walk.scene.stem().string() + "-walk-" + text_of(own.viewport),
+                                          [&] { return measure_own_camera(walk.scene, walk.camera, own); }));
     }
     for (auto const& file : options.pictured_scenes) {
         figures.pictures.push_back(take_screenshot(file, options, study, store));
@@ -207,6 +244,12 @@ ReportFigures measure_report(ReportOptions const& options, StudyOptions const& s
         LiveOptions live = options.live;
         live.camera_file = flight.camera;
         figures.live.push_back(live_run(flight.scene, live, store));
+    }
+    for (auto const& file : options.narrow_scenes) {
+        LiveOptions live = options.live;
+        live.methods = {"framelet", "framed+h264", "framed+warp"};
+        live.link = options.narrow;
+        figures.narrow.push_back(live_run(file, live, store));
     }
     for (Viewport const size : options.clock_sizes) {
         for (auto const& file : options.clock_scenes) {
@@ -226,7 +269,7 @@ ReportFigures measure_report(ReportOptions const& options, StudyOptions const& s
     }
     figures.features = store.get("features-" + text_of(options.feature_viewport), [&] {
         return measure_feature_costs(FRAMELET_SOURCE_DIR "/scenes/stop.glb", options.feature_viewport,
-                                     options.quick ? 0.3 : 2);
+                                     options.quick ? 0.3 : 2, study.costs);
     });
     figures.commits = store.commits();
     return figures;

@@ -29,6 +29,11 @@ struct ReportOptions {
     std::vector<std::string> linked_methods; ///< of those of the study, which go over links
     std::vector<std::filesystem::path> live_scenes, clock_scenes, pictured_scenes; ///< files
     std::vector<Flight> flights; ///< that the real programs go on as well
+    std::vector<std::filesystem::path> narrow_scenes; ///< that they run over `narrow` too
+    LinkParameters narrow{.bits_per_second = 20e6, .delay_seconds = 0.05};
+    std::vector<Flight> walks; ///< through scenes that stand still, on the virtual clock
+    Viewport walk_viewport{640, 360};
+    std::vector<double> turns; ///< of the camera, degrees a second
     std::vector<Viewport> clock_sizes; ///< at which the virtual clock is held against the wall's
     LiveOptions live;
     Viewport feature_viewport{1280, 720};
@@ -48,12 +53,18 @@ struct ReportRun {
 
 struct ReportFigures {
     std::vector<ReportRun> runs;
-    std::vector<nlohmann::json> live, clocks; ///< as measure_live returns them
+    std::vector<ReportRun> turns; ///< while the camera turns: a "scene" is one at one speed
+    std::vector<ReportRun> oracle; ///< of `oracle`, and of `framelet` beside it
+    std::vector<nlohmann::json> live, narrow, clocks; ///< as measure_live returns them
+    std::vector<nlohmann::json> walks; ///< as measure_own_camera returns them
     nlohmann::json features; ///< as measure_feature_costs returns them
     std::vector<std::string> pictures; ///< stems in the documents' pictures/
     std::string commit; ///< of this program
     std::set<std::string> commits; ///< of all figures
 };
+
+/// Of the machines that is which is most like two cores at 1920x1080.
+double usual_machine(ReportOptions const& options);
 
 /// Runs what `options.folder` does not have. Of `study`, scenes, methods, size, seconds and rate count.
 ReportFigures measure_report(ReportOptions const& options, StudyOptions const& study);

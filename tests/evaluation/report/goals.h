@@ -1,0 +1,26 @@
+// The goals that the project has set itself, and how far it is. In: the report's figures. Out: a table in Markdown.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tests/evaluation/report/report_runs.h"
+
+namespace framelet::bench {
+
+struct Goal {
+    std::string what, goal, figure; ///< as the table says them
+    bool met = false; ///< what was not measured is not
+};
+
+/// Each goal, in the order of the table.
+std::vector<Goal> goals_of(ReportFigures const& figures);
+
+std::string goals_table(std::vector<Goal> const& goals);
+
+/// Bits that `framelet` sends over those that `rival` does for the same error, in one scene over links; the error is in
+/// the middle of those that both reach. Where the two reach none in common: at those of each that are nearest, so that
+/// the truth is farther from 1. NaN where one has no runs.
+double bits_at_equal_error(std::vector<ReportRun> const& linked, std::string const& scene, std::string const& rival);
+
+} // namespace framelet::bench
