@@ -139,9 +139,11 @@ void choose_programs(VerbOptions& options) {
             report.walks.push_back({scene, camera});
         }
     }
-    report.turns = {30, 90};
-    std::ranges::transform(std::vector<std::string>{"vehicle_chase", "stop", "globe"},
-                           std::back_inserter(report.narrow_scenes), scene_file);
+    report.turns = options.quick ? std::vector<double>{90} : std::vector<double>{30, 90};
+    for (char const* const name : {"vehicle_chase", "stop", "globe"}) {
+        report.narrow_scenes.push_back(scene_file(name));
+    }
+    report.narrow_scenes.resize(options.quick ? 1 : report.narrow_scenes.size());
     std::ranges::transform(options.clock_scenes, std::back_inserter(report.clock_scenes), scene_file);
     fall_back(report.clock_scenes, report.live_scenes);
     if (options.without_live) {
