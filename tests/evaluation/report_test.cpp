@@ -174,6 +174,8 @@ TEST(Goals, BitsAreComparedWhereBothErrAlike) {
     runs[0].mse = 1e-5; // now all of its errors are below all of the other's
     runs[1].mse = 1e-6;
     EXPECT_NEAR(bits_at_equal_error(runs, "stop", "framed+warp"), 0.5, 1e-9) << "8, at most, over 16, at least";
+    runs[0].mse = runs[1].mse = 0.1; // now all of them are above
+    EXPECT_TRUE(std::isinf(bits_at_equal_error(runs, "stop", "framed+warp")));
 }
 
 TEST(RunStore, WhatWasRunIsNotRunAgain) {

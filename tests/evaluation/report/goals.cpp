@@ -170,7 +170,7 @@ std::vector<Value> bits(std::vector<ReportRun> const& linked) {
     std::vector<Value> values;
     for (std::string const& scene : distinct(linked, &ReportRun::scene)) {
         double const ratio = bits_at_equal_error(linked, scene, "framed+warp");
-        if (std::isfinite(ratio)) {
+        if (!std::isnan(ratio)) {
             values.push_back({scene, ratio});
         }
     }
@@ -213,6 +213,9 @@ double bits_at_equal_error(std::vector<ReportRun> const& linked, std::string con
     }
     double const least = std::max(own.errors.back(), other.errors.back());
     double const most = std::min(own.errors.front(), other.errors.front());
+    if (own.errors.back() > other.errors.front()) {
+        return INFINITY;
+    }
     double const error = (least + most) / 2;
     return std::exp(own.bits_for(error) - other.bits_for(error));
 }

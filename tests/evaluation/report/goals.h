@@ -19,8 +19,9 @@ std::vector<Goal> goals_of(ReportFigures const& figures);
 std::string goals_table(std::vector<Goal> const& goals);
 
 /// Bits that `framelet` sends over those that `rival` does for the same error, in one scene over links; the error is in
-/// the middle of those that both reach. Where the two reach none in common: at those of each that are nearest, so that
-/// the truth is farther from 1. NaN where one has no runs.
+/// the middle of those that both reach. Infinite where `framelet` never errs as little as `rival` at its worst; where
+/// it always errs less: its fewest bits over those with which `rival` is at its best, no less than the truth. NaN where
+/// one has no runs.
 double bits_at_equal_error(std::vector<ReportRun> const& linked, std::string const& scene, std::string const& rival);
 
 } // namespace framelet::bench
