@@ -6,9 +6,10 @@
 namespace framelet {
 namespace {
 
-constexpr float dark = 40, bright = 200;
+constexpr int dark = 40, bright = 200;
 
-AnalyticScene lit_floor(float light) {
+AnalyticScene lit_floor(int level) {
+    auto const light = static_cast<float>(level);
     AnalyticScene scene;
     scene.quads.push_back({{-8, 0, -8}, {16, 0, 0}, {0, 0, 16}, plain(light, light, light)});
     return scene;

@@ -20,7 +20,7 @@ ViewState state_at(SceneTime time, float x = 0) {
 std::optional<HeldMoment> choose(MomentChoice& moments, ViewState const& present, double now,
                                  bool viewer_moves_samples) {
     if (moments.observe(present, now, viewer_moves_samples)) {
-        moments.begin(present, now);
+        moments.begin({present, now});
     }
     return moments.held();
 }
