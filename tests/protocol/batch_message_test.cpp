@@ -17,7 +17,6 @@ Batch plain_batch(std::size_t count) {
     batch.number = 7;
     batch.view.viewport = {1280, 720};
     batch.scene_time = 1.5;
-    batch.shown_from = 1.25;
     for (std::size_t i = 0; i < count; ++i) {
         DisplayFramelet& framelet = batch.framelets.emplace_back();
         framelet.tile = make_tile(7, static_cast<std::uint32_t>(i % 80), static_cast<std::uint32_t>(i / 80));
