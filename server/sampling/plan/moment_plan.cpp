@@ -13,6 +13,8 @@ namespace {
 
 /// Of what nothing is known: as `unknown_place` has it.
 constexpr float unknown_detail = 0.0025f;
+/// What was rendered before the scene jumped looks otherwise by so much, squared luma, where no probe has told.
+constexpr float outdated_error = 2e-4f;
 /// However coarse samples are, their mean is about right.
 constexpr float most_error = 0.1f;
 /// As if they lay so much farther apart, pixels, are samples that are interpolated, beside those that come to lie on
@@ -174,7 +176,7 @@ void MomentPlan::add_gains(Mirror const& mirror, PlaceField const& field, std::u
             float const detail = cell.is_shown() ? cell.detail : hidden_detail;
             float worn = cell.is_shown() ? cell.worn : INFINITY;
             worn += cell.is_shown() && mirror.camera_stands() && mirror.is_moved(cell) ? interpolated_wear : 0;
-            float stale = cell.stale;
+            float stale = cell.is_outdated ? std::max(cell.stale, outdated_error) : cell.stale;
             bool const stands = stays(mirror, cell);
             float const supersampled = stands ? standing_supersampled : moved_supersampled;
             if (stands && worn <= finest_shown_spacing) {
