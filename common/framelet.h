@@ -69,6 +69,7 @@ struct Batch {
     SceneTime scene_time = 0;
     /// The scene time before which its framelets are not to be shown: it jumps then. In the past: at once.
     SceneTime shown_from = 0;
+    bool outdates = false; ///< what was rendered for before that looks otherwise from then on
     std::vector<DisplayFramelet> framelets;
     std::vector<std::uint8_t> quality{}; ///< of each framelet, 0..coarsest_quality; empty: all are exact
     /// One for each framelet; none at all where the viewer has no use for them.

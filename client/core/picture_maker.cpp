@@ -47,7 +47,7 @@ void PictureMaker::insert(Batch const& batch) {
     if (batch.camera_track) {
         cameras_.extend(*batch.camera_track);
     }
-    if (batch.shown_from > 0) {
+    if (batch.outdates) {
         motions_.jump_at(batch.shown_from);
     }
     if (shown_pixels_ == nullptr || !settings_.reproject || batch.shown_from <= shown_time_) {

@@ -142,7 +142,8 @@ EncodedBatch BatchCodec::encode(Batch const& batch, HeldPicture* held) {
         held->take(is_predicted ? std::span<DisplayFramelet const>(decoded) : batch.framelets);
     }
 
-    EncodedBatch encoded{batch.number, batch.view, batch.scene_time, batch.shown_from, {}, join_frames(frames)};
+    EncodedBatch encoded{batch.number, batch.view, batch.scene_time, batch.shown_from,
+                         batch.outdates, {}, join_frames(frames)};
     encoded.encoding = is_predicted      ? SampleEncoding::predicted
                        : quality.empty() ? SampleEncoding::exact
                                          : SampleEncoding::haar;
@@ -207,6 +208,7 @@ void BatchCodec::decode(EncodedBatch const& encoded, HeldPicture* held, Batch& b
     batch.view = encoded.view;
     batch.scene_time = encoded.scene_time;
     batch.shown_from = encoded.shown_from;
+    batch.outdates = encoded.outdates;
     batch.framelets.resize(count);
     batch.quality.resize(is_exact ? 0 : count);
     if (is_predicted) {

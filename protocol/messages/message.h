@@ -132,6 +132,7 @@ struct EncodedBatch {
     NumberedView view;
     SceneTime scene_time = 0;
     SceneTime shown_from = 0; ///< as of a Batch
+    bool outdates = false; ///< as of a Batch
     std::vector<Tile> tiles;
     Bytes payload;
     SampleEncoding encoding = SampleEncoding::exact;

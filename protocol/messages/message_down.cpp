@@ -118,7 +118,8 @@ Offset<wire::Batch> write(Builder& builder, EncodedBatch const& value) {
     auto const tiles = builder.CreateUninitializedVector(value.tiles.size(), &codes);
     std::transform(value.tiles.begin(), value.tiles.end(), codes, [](Tile tile) { return tile.code; });
     auto const view = write(builder, value.view);
-    return wire::CreateBatch(builder, value.number, view, value.scene_time, tiles, sections, value.shown_from);
+    return wire::CreateBatch(builder, value.number, view, value.scene_time, tiles, sections, value.shown_from,
+                             value.outdates);
 }
 
 namespace {
@@ -175,6 +176,7 @@ EncodedBatch read(wire::Batch const& wire) {
     value.view = read(*wire.view());
     value.scene_time = wire.scene_time();
     value.shown_from = wire.shown_from();
+    value.outdates = wire.outdates();
     value.tiles.reserve(wire.tiles()->size());
     for (std::uint32_t const code : *wire.tiles()) {
         value.tiles.push_back({code});

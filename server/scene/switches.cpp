@@ -35,23 +35,58 @@ private:
     std::vector<float> before_, after_;
 };
 
-void add_switches(AnimationChannel const& channel, float duration, std::vector<double>& times) {
+void add_switches(AnimationChannel const& channel, float duration, bool is_seen, std::vector<SceneSwitch>& switches) {
     Comparison comparison;
     if (comparison.jumps(channel, duration, 0)) {
-        times.push_back(0);
+        switches.push_back({0, is_seen});
     }
     if (channel.interpolation == Interpolation::step) {
         for (std::size_t i = 1; i < channel.times.size() && channel.times[i] < duration; ++i) {
             if (comparison.jumps(channel, channel.times[i - 1], channel.times[i])) {
-                times.push_back(channel.times[i]);
+                switches.push_back({channel.times[i], is_seen});
             }
         }
     }
 }
 
+/// Nodes of what is drawn or shines, and all that carry one.
+std::vector<bool> seen_nodes(Scene const& scene) {
+    std::vector<bool> seen(scene.nodes.size());
+    auto const mark = [&](Index node) {
+        if (node != none) {
+            seen[static_cast<std::size_t>(node)] = true;
+        }
+    };
+    for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
+        seen[i] = scene.nodes[i].mesh != none;
+    }
+    for (Light const& light : scene.lights) {
+        mark(light.node);
+    }
+    for (Skin const& skin : scene.skins) {
+        std::ranges::for_each(skin.joints, mark);
+    }
+    for (std::size_t i = scene.nodes.size(); i-- > 0;) {
+        if (seen[i]) {
+            mark(scene.nodes[i].parent);
+        }
+    }
+    return seen;
+}
+
+/// In order of time; of those of one time one.
+void sort(std::vector<SceneSwitch>& switches) {
+    std::ranges::sort(switches, [](SceneSwitch const& a, SceneSwitch const& b) {
+        return a.time != b.time ? a.time < b.time : a.is_seen && !b.is_seen;
+    });
+    auto const doubles = std::ranges::unique(switches, {}, &SceneSwitch::time);
+    switches.erase(doubles.begin(), doubles.end());
+}
+
 } // namespace
 
 std::vector<ClipSwitches> find_switches(Scene const& scene, std::span<Index const> clips) {
+    std::vector<bool> const seen = seen_nodes(scene);
     std::vector<ClipSwitches> out;
     for (Index const index : clips) {
         AnimationClip const& clip = scene.clips[static_cast<std::size_t>(index)];
@@ -60,37 +95,36 @@ std::vector<ClipSwitches> find_switches(Scene const& scene, std::span<Index cons
         }
         ClipSwitches found{clip.duration, {}};
         for (AnimationChannel const& channel : clip.channels) {
-            add_switches(channel, clip.duration, found.times);
+            add_switches(channel, clip.duration, seen[static_cast<std::size_t>(channel.node)], found.switches);
         }
-        std::ranges::sort(found.times);
-        auto const doubles = std::ranges::unique(found.times);
-        found.times.erase(doubles.begin(), doubles.end());
-        if (!found.times.empty()) {
+        sort(found.switches);
+        if (!found.switches.empty()) {
             out.push_back(std::move(found));
         }
     }
     return out;
 }
 
-std::optional<SceneTime> lone_switch(std::span<ClipSwitches const> clips, SceneTime from, SceneTime to) {
+std::optional<SceneSwitch> lone_switch(std::span<ClipSwitches const> clips, SceneTime from, SceneTime to) {
     constexpr double together = 1e-3;
-    std::optional<SceneTime> first, last;
+    std::optional<SceneSwitch> first;
+    SceneTime last = 0;
     for (ClipSwitches const& clip : clips) {
         double const turn = std::floor(from / clip.duration) * clip.duration;
         if (to - from >= clip.duration) {
             return std::nullopt; // it comes round more than once
         }
         for (double const begun : {turn, turn + clip.duration}) {
-            for (double const time : clip.times) {
-                double const at = begun + time;
+            for (SceneSwitch const& jump : clip.switches) {
+                double const at = begun + jump.time;
                 if (at > from && at <= to) {
-                    first = std::min(first.value_or(at), at);
-                    last = std::max(last.value_or(at), at);
+                    last = first ? std::max(last, at) : at;
+                    first = {first ? std::min(first->time, at) : at, jump.is_seen || (first && first->is_seen)};
                 }
             }
         }
     }
-    return first && *last - *first < together ? first : std::nullopt;
+    return first && last - first->time < together ? first : std::nullopt;
 }
 
 } // namespace framelet

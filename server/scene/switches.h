@@ -11,18 +11,25 @@
 
 namespace framelet {
 
+struct SceneSwitch {
+    SceneTime time = 0; ///< seconds
+    bool is_seen = true; ///< something drawn or a light jumps, and not cameras alone
+
+    bool operator==(SceneSwitch const&) const = default;
+};
+
 /// Where one clip, which loops, jumps.
 struct ClipSwitches {
     double duration = 0; ///< seconds, > 0
-    std::vector<double> times; ///< seconds into the clip, ascending, [0, duration)
+    std::vector<SceneSwitch> switches; ///< by their seconds into the clip, ascending, [0, duration)
 };
 
 /// Of those clips that jump anywhere: where a channel of steps takes another value, and where the clip's end is not
 /// its beginning.
 std::vector<ClipSwitches> find_switches(Scene const& scene, std::span<Index const> clips);
 
-/// The scene time in (from, to] at which it jumps; nothing where it does not, or more than once: what jumps all the
-/// time is motion. What is less than a millisecond apart is one jump, at the first of its times.
-std::optional<SceneTime> lone_switch(std::span<ClipSwitches const> clips, SceneTime from, SceneTime to);
+/// The one in (from, to], by its scene time; nothing where there is none or several: what jumps all the time is motion.
+/// What is less than a millisecond apart is one jump, at the first of its times.
+std::optional<SceneSwitch> lone_switch(std::span<ClipSwitches const> clips, SceneTime from, SceneTime to);
 
 } // namespace framelet

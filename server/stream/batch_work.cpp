@@ -92,6 +92,7 @@ void BatchWork::fill_batch(ViewerKnowledge& viewer) {
     batch_.view = order.state.view;
     batch_.scene_time = order.state.scene_time;
     batch_.shown_from = order.shown_from;
+    batch_.outdates = order.outdates;
     batch_.number = batch_.framelets.empty() ? 0 : ++viewer.batches;
 }
 

@@ -31,6 +31,7 @@ struct BatchOrder {
     ViewState present; ///< what is to be seen
     int scene_camera = -1; ///< >= 0: the viewer looks through that one
     SceneTime shown_from = 0; ///< as of a Batch
+    bool outdates = false; ///< as of a Batch
     RefreshPlan plan;
     std::uint8_t quality = exact_quality;
     bool takes_shapes = false;

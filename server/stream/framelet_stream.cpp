@@ -109,7 +109,7 @@ Step FrameletStream::plan(Turn const& turn, PosedScene& scene) {
 
 /// When the scene will jump, where that is soon enough to be prepared for: within two moments, since what comes after
 /// the jump shares nothing with what is held.
-std::optional<SceneTime> FrameletStream::next_switch(Turn const& turn, PosedScene const& scene) const {
+std::optional<SceneSwitch> FrameletStream::next_switch(Turn const& turn, PosedScene const& scene) const {
     if (!options_.awaits_switches || !(turn.clock_speed > 0)) {
         return std::nullopt;
     }
@@ -126,11 +126,10 @@ HeldMoment FrameletStream::new_moment(Turn const& turn, PosedScene& scene) const
     double const lead = turn.plan_seconds + batch_seconds + link_.state().delivery_seconds;
     double until_end = options_.looks_ahead ? options_.moment_seconds : 0;
     double ahead = until_end + (options_.camera_leads ? std::min(lead, options_.moment_seconds) : 0);
-    SceneTime shown_from = 0;
-    if (auto const jump = next_switch(turn, scene)) {
+    auto const jump = next_switch(turn, scene);
+    if (jump) {
         constexpr SceneTime just_after = 1e-4; // more than rounding
-        until_end = ahead = (*jump + just_after - turn.present) / turn.clock_speed;
-        shown_from = *jump;
+        until_end = ahead = (jump->time + just_after - turn.present) / turn.clock_speed;
     }
     auto const scene_time = [&](double seconds) {
         return std::clamp(turn.present + turn.clock_speed * seconds, 0.0, max_scene_time);
@@ -138,13 +137,13 @@ HeldMoment FrameletStream::new_moment(Turn const& turn, PosedScene& scene) const
     ViewState state = state_at(scene_time(until_end), scene);
     state.view.camera =
         camera_->scene_camera < 0 ? forecast_.at(turn.now, ahead) : state_at(scene_time(ahead), scene).view.camera;
-    return {state, turn.now, shown_from};
+    return {state, turn.now, jump ? jump->time : 0, jump && jump->is_seen};
 }
 
 std::optional<HeldMoment> FrameletStream::moment_at(Turn const& turn, ViewState const& present, PosedScene& scene) {
     if (moments_.observe(present, turn.now, takes_shapes())) {
         moments_.begin(new_moment(turn, scene));
-        if (moments_.held()->shown_from > 0) {
+        if (moments_.held()->outdates) {
             viewer_.motions.jump_at(moments_.held()->shown_from);
         }
     }
@@ -174,6 +173,7 @@ Step FrameletStream::plan_batch(Turn const& turn, ViewState const& present, Pose
     order.present = present;
     order.scene_camera = moving_camera(scene);
     order.shown_from = wanted.moment ? wanted.moment->shown_from : 0;
+    order.outdates = wanted.moment && wanted.moment->outdates;
     order.quality = exact_quality;
     if (takes_loss()) {
         order.quality = choice_.choose(link, sent_share_.value() * rendered, turn.now, wanted.moment.has_value());
@@ -204,7 +204,7 @@ Step FrameletStream::plan_batch(Turn const& turn, ViewState const& present, Pose
 void FrameletStream::plan_exactly(ViewState const& present, PosedScene const& scene) {
     constexpr std::size_t most_framelets = 1024;
     BatchWork& work = free_work();
-    work.order = {present, present, moving_camera(scene), 0, {}, exact_quality, takes_shapes(), true, true, true};
+    work.order = {present, present, moving_camera(scene), 0, false, {}, exact_quality, takes_shapes(), true, true, true};
     viewer_.lossy.list(std::min(bounded_batch(link_.state()), most_framelets), work.order.plan.tiles);
     work.figures = {};
     work.figures.framelets = work.order.plan.tiles.size();

@@ -63,7 +63,7 @@ private:
     ViewState state_at(SceneTime clock, PosedScene& scene) const;
     int moving_camera(PosedScene const& scene) const;
     bool has_room(double now) const;
-    std::optional<SceneTime> next_switch(Turn const& turn, PosedScene const& scene) const;
+    std::optional<SceneSwitch> next_switch(Turn const& turn, PosedScene const& scene) const;
     HeldMoment new_moment(Turn const& turn, PosedScene& scene) const;
     std::optional<HeldMoment> moment_at(Turn const& turn, ViewState const& present, PosedScene& scene);
     Step plan_batch(Turn const& turn, ViewState const& present, PosedScene& scene);

@@ -34,6 +34,7 @@ Batch make_batch(std::size_t count, Sample sample) {
     batch.view.viewport = {2048, 4096};
     batch.scene_time = 1.5;
     batch.shown_from = 1.25;
+    batch.outdates = true;
     batch.framelets.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
         DisplayFramelet& framelet = batch.framelets[i];
@@ -113,6 +114,7 @@ TEST(BatchCodec, RoundTrip) {
             EXPECT_EQ(encoded.view, batch.view);
             EXPECT_EQ(encoded.scene_time, batch.scene_time);
             EXPECT_EQ(encoded.shown_from, batch.shown_from);
+            EXPECT_EQ(encoded.outdates, batch.outdates);
             EXPECT_TRUE(codec.decode(encoded) == batch) << count;
         }
     }
@@ -195,7 +197,7 @@ TEST(BatchCodec, GoldenPayload) {
         0x02, 0x00, 0x7b, 0x6a, 0x5f, 0xdd, 0x53, 0xb2, 0x2c, 0xcb, 0xb2, 0x2c, 0xcb, 0xb2, 0x2c, 0xcb,
         0xb2, 0x2c, 0xcb, 0xb2, 0x2c, 0xcb, 0xb2, 0x2c, 0xcb, 0xb2, 0x2c, 0xcb, 0xb2, 0x2c, 0xcb, 0x01};
     Batch const batch = documented_batch();
-    EncodedBatch encoded{batch.number, batch.view, batch.scene_time, batch.shown_from, {}, Bytes(golden.size())};
+    EncodedBatch encoded{batch.number, batch.view, batch.scene_time, batch.shown_from, batch.outdates, {}, Bytes(golden.size())};
     encoded.tiles = {batch.framelets[0].tile, batch.framelets[1].tile};
     std::transform(golden.begin(), golden.end(), encoded.payload.begin(),
                    [](unsigned b) { return static_cast<std::byte>(b); });

@@ -53,6 +53,7 @@ Batch through_the_wire(Batch const& batch) {
 TEST(BatchMessage, ShapesAndTracksArrive) {
     Batch batch = small_batch();
     batch.shown_from = 1.25;
+    batch.outdates = true;
     batch.shapes[1].layers[1].error = 0x1p-9f; // the unit of what a writer makes of its plane
     EXPECT_TRUE(through_the_wire(batch) == batch);
 }

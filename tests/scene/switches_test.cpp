@@ -37,8 +37,8 @@ TEST(Switches, AreWhereStepsTakeOtherValuesAndWhereLoopsDoNotClose) {
     auto const found = find_switches(scene, clips);
     ASSERT_EQ(found.size(), 2u);
     EXPECT_EQ(found[0].duration, 4);
-    EXPECT_EQ(found[0].times, (std::vector<double>{2, 3})); // the end is as the beginning
-    EXPECT_EQ(found[1].times, (std::vector<double>{0}));
+    EXPECT_EQ(found[0].switches, (std::vector<SceneSwitch>{{2, false}, {3, false}})); // the end is as the beginning
+    EXPECT_EQ(found[1].switches, (std::vector<SceneSwitch>{{0, false}}));
 }
 
 TEST(Switches, AQuaternionAndItsNegativeAreOne) {
@@ -52,13 +52,33 @@ TEST(Switches, AQuaternionAndItsNegativeAreOne) {
     EXPECT_TRUE(find_switches(scene, std::vector<Index>{0}).empty());
 }
 
+TEST(Switches, OfCamerasAloneAreNotSeen) {
+    Scene scene = scene_of({{"steps", 2, {channel(Interpolation::step, {0, 1}, {0, 1})}}});
+    scene.nodes.resize(3);
+    auto const seen = [&] { return find_switches(scene, std::vector<Index>{0}).at(0).switches.at(1).is_seen; };
+    EXPECT_FALSE(seen());
+    scene.nodes[2].mesh = 0;
+    EXPECT_FALSE(seen()) << "what is drawn does not go with it";
+    scene.nodes[2].parent = 1;
+    scene.nodes[1].parent = 0;
+    EXPECT_TRUE(seen());
+    scene.nodes[2].mesh = none;
+    scene.lights.emplace_back();
+    scene.lights[0].node = 1;
+    EXPECT_TRUE(seen());
+    scene.lights.clear();
+    scene.skins.push_back({{2}, {}});
+    EXPECT_TRUE(seen());
+}
+
 TEST(Switches, OnlyALoneOneIsFoundWhateverTurnOfTheLoopItIsIn) {
-    std::vector<ClipSwitches> const clips{{4, {0, 1.5}}, {3, {1.5004}}};
-    EXPECT_EQ(lone_switch(clips, 1.4, 1.6), 1.5); // both clips at once
-    EXPECT_EQ(lone_switch(clips, 1.5, 1.6), 1.5004);
+    std::vector<ClipSwitches> const clips{{4, {{0, true}, {1.5, false}}}, {3, {{1.5004, true}}}};
+    EXPECT_EQ(lone_switch(clips, 1.4, 1.6), (SceneSwitch{1.5, true})); // both clips at once
+    EXPECT_EQ(lone_switch(clips, 1.5, 1.6), (SceneSwitch{1.5004, true}));
+    EXPECT_EQ(lone_switch(clips, 5.4, 5.6), (SceneSwitch{5.5, false}));
     EXPECT_EQ(lone_switch(clips, 1.0, 1.2), std::nullopt);
-    EXPECT_EQ(lone_switch(clips, 3.9, 4.1), 4);
-    EXPECT_EQ(lone_switch(clips, 399.95, 400.05), 400);
+    EXPECT_EQ(lone_switch(clips, 3.9, 4.1), (SceneSwitch{4, true}));
+    EXPECT_EQ(lone_switch(clips, 399.95, 400.05), (SceneSwitch{400, true}));
     EXPECT_EQ(lone_switch(clips, 3.9, 4.6), std::nullopt); // 4 and 4.5004
     EXPECT_EQ(lone_switch(clips, 0, 5), std::nullopt);
     EXPECT_EQ(lone_switch({}, 0, 5), std::nullopt);
@@ -70,7 +90,7 @@ TEST(Switches, OfABundledSceneAreWhereItsPoseJumps) {
     std::vector<Index> const clips = default_clips(scene);
     auto const found = find_switches(scene, clips);
     ASSERT_EQ(found.size(), 1u);
-    ASSERT_FALSE(found[0].times.empty());
+    ASSERT_FALSE(found[0].switches.empty());
     for (double time = 0.005; time < found[0].duration; time += 0.01) {
         bool const jumps = evaluate_pose(scene, clips, time).world_from_node !=
                            evaluate_pose(scene, clips, time + 0.01).world_from_node;

@@ -66,6 +66,7 @@ TEST(FrameletStream, BeforeAJumpAMomentIsOfWhatComesAfterAndWaits) {
         ASSERT_EQ(served.plan(10, wanted.present, wanted.speed), Step::render);
         EXPECT_NEAR(served.stream.moment(), wanted.moment, 2e-4) << wanted.present;
         EXPECT_EQ(shown_from(served), wanted.shown_from) << wanted.present;
+        EXPECT_EQ(served.stream.learnt_batch().outdates, wanted.shown_from > 0);
     }
     Served served({.awaits_switches = false}, jumping_scene());
     served.look({}, 1, 10);

@@ -20,6 +20,7 @@ struct HeldMoment {
     ViewState state;
     double begun = 0; ///< when it was the present, seconds, steady
     SceneTime shown_from = 0; ///< as of a Batch
+    bool outdates = false; ///< as of a Batch
 };
 
 /// True when both show the same picture: the number of the camera apart.
