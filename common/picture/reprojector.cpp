@@ -9,6 +9,7 @@
 
 #include "common/error.h"
 #include "common/held/block_flags.h"
+#include "common/mix_bits.h"
 #include "common/picture/pixel_filter.h"
 #include "common/picture/reconstruction.h"
 #include "common/reprojection.h"
@@ -81,11 +82,6 @@ FrameletCache const& fullest_of(FrameletPool const& pool) {
     return pool.slot(most);
 }
 
-std::uint64_t combine(std::uint64_t state, std::uint64_t value) {
-    state = (state ^ value) * 0x9e3779b97f4a7c15u;
-    return state ^ state >> 32;
-}
-
 /// Of pixels of a block: a bit for each slot of which something shows.
 std::uint32_t slots_of(WarpedBlock const& block) {
     std::uint32_t slots = 0;
@@ -98,7 +94,7 @@ std::uint32_t slots_of(WarpedBlock const& block) {
 std::uint64_t signature_of(std::span<PatchView const> patches, bool in_place) {
     std::uint64_t state = in_place ? 2 : 1;
     for (PatchView const& view : patches) {
-        state = combine(state, view.patch->signature);
+        state = mix_in(state, view.patch->signature);
     }
     return state;
 }

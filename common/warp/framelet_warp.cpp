@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "common/mix_bits.h"
 #include "common/sample_worth.h"
 
 namespace framelet {
@@ -31,10 +32,7 @@ constexpr float behind_all = 2 * worst_worn;
 /// Order-dependent hash of what a patch is made of.
 class Signature {
 public:
-    void add(std::uint64_t value) {
-        state_ = (state_ ^ value) * 0x9e3779b97f4a7c15u;
-        state_ ^= state_ >> 32;
-    }
+    void add(std::uint64_t value) { state_ = mix_in(state_, value); }
     void add(float a, float b) {
         add(std::uint64_t{std::bit_cast<std::uint32_t>(a)} << 32 | std::bit_cast<std::uint32_t>(b));
     }

@@ -4,6 +4,7 @@
 #include <bit>
 #include <span>
 
+#include "common/mix_bits.h"
 #include "common/morton.h"
 #include "common/simd/lanes.h"
 
@@ -22,10 +23,6 @@ PackedSample const* samples_of(CachedFramelet const& framelet, int side) {
 
 Tile tile_below(Tile tile, int levels, std::size_t part) {
     return {(tile.code << 2 * levels) + static_cast<std::uint32_t>(part)};
-}
-
-std::uint64_t combine(std::uint64_t signature, std::uint64_t part) {
-    return (signature + part) * 0x9e3779b97f4a7c15u;
 }
 
 /// Of a layer among all those of a square.
@@ -209,7 +206,7 @@ MergedLayer MergedSquare::merge(JoinedLayer const& joined) const {
             layer.error = std::max(layer.error, rows.error[place]);
             out.newest_batch = std::max(out.newest_batch, layers_->batch(place));
             out.fading = std::max(out.fading, children_[place].framelet->shape.fading);
-            out.signature = combine(out.signature, layers_->batch(place) * 256 + number);
+            out.signature = mix_in(out.signature, layers_->batch(place) * 256 + number);
         }
     }
     layer.error += static_cast<float>(joined.difference);

@@ -6,6 +6,7 @@
 #include <tbb/parallel_for.h>
 
 #include "common/error.h"
+#include "common/mix_bits.h"
 #include "server/render/flush_denormals.h"
 #include "server/render/sample_motion.h"
 #include "server/render/shadow_motion.h"
@@ -18,20 +19,13 @@ namespace {
 /// Mirror reflections of mirror reflections end in the environment.
 constexpr int mirror_bounces = 1;
 
-/// A good mix of the bits (Wellons, "lowbias32", 2018).
-std::uint32_t mixed(std::uint32_t x) {
-    x = (x ^ (x >> 16)) * 0x21f0aaadu;
-    x = (x ^ (x >> 15)) * 0x735a2d97u;
-    return x ^ (x >> 15);
-}
-
 /// Place of a sample in its cell, [0, 1)^2.
 Vec2 place_in_cell(Seed seed, Tile tile, std::uint32_t sample) {
     if (seed == 0) {
         return Vec2(0.5f);
     }
-    std::uint32_t const x = mixed(mixed(mixed(seed) ^ tile.code) + sample);
-    std::uint32_t const y = mixed(x ^ 0x9e3779b9u);
+    std::uint32_t const x = mix_bits(mix_bits(mix_bits(seed) ^ tile.code) + sample);
+    std::uint32_t const y = mix_bits(x ^ 0x9e3779b9u);
     return {static_cast<float>(x >> 8) * 0x1p-24f, static_cast<float>(y >> 8) * 0x1p-24f};
 }
 

@@ -5,15 +5,15 @@
 #include <string_view>
 #include <type_traits>
 
+#include "common/mix_bits.h"
+
 namespace framelet {
 namespace {
 
 class Digest {
 public:
     void add(std::string_view bytes) {
-        constexpr std::uint64_t odd = 0x9e3779b97f4a7c15; // of the golden ratio: its bits look random
-        value_ = (value_ ^ std::hash<std::string_view>{}(bytes) ^ bytes.size()) * odd;
-        value_ ^= value_ >> 32;
+        value_ = mix_in(value_, std::hash<std::string_view>{}(bytes) ^ bytes.size());
     }
     template <typename Value>
     void add(std::vector<Value> const& values) {

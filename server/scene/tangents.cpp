@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "common/error.h"
+#include "common/mix_bits.h"
 #include "server/scene/primitive_ops.h"
 #include "server/scene/vector_math.h"
 
@@ -28,8 +29,7 @@ std::size_t hash_of(VertexKey const& key) {
     std::memcpy(words.data(), values.data(), sizeof(words));
     std::uint64_t hash = 0;
     for (std::uint32_t const word : words) {
-        hash = (hash ^ word) * 0x9e3779b97f4a7c15u;
-        hash ^= hash >> 32;
+        hash = mix_in(hash, word);
     }
     return hash;
 }

@@ -11,18 +11,13 @@
 #include "common/color.h"
 #include "common/files/image_io.h"
 #include "common/files/picture_writer.h"
+#include "common/mix_bits.h"
 
 namespace framelet::bench {
 namespace {
 
 /// Pixels that are rendered together: as many as a packet has lanes, close to each other.
 constexpr int block = 4;
-
-std::uint32_t mixed(std::uint32_t x) {
-    x = (x ^ (x >> 16)) * 0x21f0aaadu;
-    x = (x ^ (x >> 15)) * 0x735a2d97u;
-    return x ^ (x >> 15);
-}
 
 float fraction(std::uint32_t bits) {
     return static_cast<float>(bits >> 8) * 0x1p-24f;
@@ -69,9 +64,9 @@ Picture render_reference(BenchScene const& scene, Viewport viewport, int samples
                 for (int i = 0; i < block * block; ++i) {
                     int const x = column * block + i % block;
                     int const y = row * block + i / block;
-                    std::uint32_t const h = mixed(mixed(static_cast<std::uint32_t>(y * viewport.width + x)) +
-                                                  static_cast<std::uint32_t>(s));
-                    Vec2 const in_stratum(fraction(h), fraction(mixed(h ^ 0x9e3779b9u)));
+                    std::uint32_t const h = mix_bits(mix_bits(static_cast<std::uint32_t>(y * viewport.width + x)) +
+                                                        static_cast<std::uint32_t>(s));
+                    Vec2 const in_stratum(fraction(h), fraction(mix_bits(h ^ 0x9e3779b9u)));
                     Vec2 const corner(s % samples_per_side, s / samples_per_side);
                     places[next++] = Vec2(x, y) + (corner + in_stratum) * stratum;
                 }

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "common/error.h"
+#include "common/mix_bits.h"
 
 namespace framelet {
 
@@ -20,8 +21,7 @@ std::size_t LumaHistory::ways() const {
 
 std::size_t LumaHistory::first_slot(Tile tile) const {
     // Fibonacci hashing: neighbours along the Morton curve land far apart, and so do tiles and their parents.
-    std::uint64_t const mixed = std::uint64_t{tile.code} * 0x9e3779b97f4a7c15u;
-    return (static_cast<std::size_t>(mixed >> 32) * ways()) & (entries_.size() - 1);
+    return (static_cast<std::size_t>(mix_in(0, tile.code) >> 32) * ways()) & (entries_.size() - 1);
 }
 
 LumaHistory::Entry const* LumaHistory::find(Tile tile) const {
@@ -58,8 +58,7 @@ void fill_entry(LumaHistory::Entry& entry, DisplayFramelet const& framelet, doub
         for (std::size_t i = 0; i < framelet_samples; i += sizeof(std::uint64_t)) {
             std::uint64_t word = 0;
             std::memcpy(&word, plane->data() + i, sizeof(word));
-            entry.content = (entry.content ^ word) * 0xff51afd7ed558ccdu;
-            entry.content ^= entry.content >> 32;
+            entry.content = mix_in(entry.content, word);
         }
     }
 }
