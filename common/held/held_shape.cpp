@@ -6,6 +6,7 @@
 
 #include "common/color.h"
 #include "common/error.h"
+#include "common/held/box_sums.h"
 
 namespace framelet {
 
@@ -85,26 +86,6 @@ void choose_layers(Samples const& samples, std::size_t n, ReducedSamples& layers
                     weights[at] = layer_of(samples[at]) == most ? 1.0f : 0.0f;
                 }
             }
-        }
-    }
-}
-
-/// Sums of n x n values.
-void box_sums(Weights const& values, std::size_t n, ReducedSums& sums) {
-    std::size_t const pixels = side / n;
-    for (std::size_t y = 0; y < pixels; ++y) {
-        std::array<float, side> columns{};
-        for (std::size_t j = 0; j < n; ++j) {
-            for (std::size_t i = 0; i < side; ++i) {
-                columns[i] += values[(y * n + j) * side + i];
-            }
-        }
-        for (std::size_t x = 0; x < pixels; ++x) {
-            float sum = 0;
-            for (std::size_t i = 0; i < n; ++i) {
-                sum += columns[x * n + i];
-            }
-            sums[y * pixels + x] = sum;
         }
     }
 }

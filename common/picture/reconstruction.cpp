@@ -8,6 +8,7 @@
 
 #include "common/color.h"
 #include "common/error.h"
+#include "common/held/box_sums.h"
 
 namespace framelet {
 
@@ -198,22 +199,12 @@ void paint_fine(TransferTables const& tables, CachedFramelet const& framelet, in
     constexpr float scale = 1.0f / (n * n);
     std::array<std::array<std::int32_t, pixels * pixels>, 3> steps;
     std::array<float, framelet_samples> linear;
+    std::array<float, framelet_samples / 4> sums;
     for (std::size_t color = 0; color < 3; ++color) {
         to_linear(tables, framelet.samples, color, linear);
-        for (std::size_t y = 0; y < pixels; ++y) {
-            std::array<float, side> columns{}; // sums of the n rows
-            for (std::size_t j = 0; j < n; ++j) {
-                for (std::size_t i = 0; i < side; ++i) {
-                    columns[i] += linear[(y * n + j) * side + i];
-                }
-            }
-            for (std::size_t x = 0; x < pixels; ++x) {
-                float sum = 0;
-                for (std::size_t i = 0; i < n; ++i) {
-                    sum += columns[x * n + i];
-                }
-                steps[color][y * pixels + x] = step_of(sum * scale);
-            }
+        box_sums(linear, n, sums);
+        for (std::size_t i = 0; i < pixels * pixels; ++i) {
+            steps[color][i] = step_of(sums[i] * scale);
         }
     }
     std::uint32_t* row = &block[static_cast<std::size_t>(top) * row_stride + static_cast<std::size_t>(left)];
