@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include <assimp/material.h>
 #include <assimp/scene.h>

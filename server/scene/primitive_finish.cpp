@@ -1,6 +1,7 @@
 #include "server/scene/primitive_finish.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "common/error.h"
 #include "server/scene/normals.h"

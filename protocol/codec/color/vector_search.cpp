@@ -1,6 +1,7 @@
 #include "protocol/codec/color/vector_search.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <limits>
