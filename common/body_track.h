@@ -37,7 +37,5 @@ struct BodyTrack {
 constexpr BodyNumber camera_body(int scene_camera) {
     return static_cast<BodyNumber>(scene_camera + 1);
 }
-/// So that each has a number.
-inline constexpr int most_scene_cameras = 65534;
 
 } // namespace framelet

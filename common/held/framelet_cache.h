@@ -116,8 +116,6 @@ public:
     /// Replaces `changed` by the rectangles whose pixels may differ since the last call: disjoint, each one block high
     /// (fewer pixels at the viewport's lower edge), rows from the top.
     void take_changed(std::vector<PixelRect>& changed);
-    /// True when `take_changed` would return something.
-    bool has_changes() const { return has_changes_; }
 
     /// Share of the viewport's area that some framelet covers, [0, 1].
     double coverage() const;

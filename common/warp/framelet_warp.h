@@ -25,8 +25,6 @@ struct TimeSpan {
 /// single precision does not show.
 class FrameletWarp {
 public:
-    static constexpr unsigned all_parts = (2u << FrameletShape::loose) - 1;
-
     /// `slot`: of the cache in its pool.
     FrameletWarp(FrameletCache const& cache, std::size_t slot, Camera const& display, SceneTime time,
                  BodyMotions const& motions);

@@ -54,7 +54,6 @@ public:
     LinkState link() const { return link_.state(); }
     /// Of the batch that was learnt last.
     Batch const& learnt_batch() const { return learnt_->batch(); }
-    RefreshPlan const& learnt_plan() const { return learnt_->order.plan; }
 
 private:
     bool takes_loss() const { return (codings_ & coding::haar_colour) != 0; }

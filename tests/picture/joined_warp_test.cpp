@@ -13,13 +13,15 @@
 namespace framelet {
 namespace {
 
+constexpr unsigned all_parts = (2u << FrameletShape::loose) - 1;
+
 /// Each framelet alone, in the order of the plan.
 void alone(FrameletCache const& cache, Camera const& display, SceneTime time, BodyMotions const& motions,
            std::vector<WarpPatch>& patches, std::vector<Splat>& splats) {
     FrameletWarp warp(cache, 0, display, time, motions);
     for (std::size_t slot = 0; slot < cache.slot_count(); ++slot) {
         if (CachedFramelet const* const framelet = cache.at_slot(slot)) {
-            warp.add(*framelet, FrameletWarp::all_parts, patches, splats);
+            warp.add(*framelet, all_parts, patches, splats);
         }
     }
     std::ranges::sort(patches, [](WarpPatch const& a, WarpPatch const& b) {

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "server/sampling/field/tiling.h"
 #include "tests/sampling/synthetic_refresh.h"
 
 namespace framelet {

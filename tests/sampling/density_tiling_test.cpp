@@ -6,6 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include "common/morton.h"
+#include "server/sampling/field/tiling.h"
+
 namespace framelet {
 namespace {
 
@@ -17,6 +20,18 @@ std::vector<float> random_density(ImagePlane const& plane, std::mt19937& random)
         value = random() % 8 == 0 ? 0 : std::exp2(std::uniform_real_distribution<float>(-9, 6)(random));
     }
     return density;
+}
+
+/// All tiles of the cut.
+Tiling make_density_tiling(ImagePlane const& plane, std::vector<float> const& density) {
+    TilingScratch scratch;
+    std::vector<Patch> patches;
+    make_density_patches(plane, density, field_depth(plane), scratch, patches);
+    Tiling tiling{plane, {}};
+    for (Patch const& patch : patches) {
+        append_tiles(plane, patch, tiling.tiles);
+    }
+    return tiling;
 }
 
 /// Every cell of the finest tiles' size that shows something is covered once.
@@ -55,7 +70,7 @@ TEST(DensityTiling, CoversEveryPixelOnce) {
     for (Viewport const viewport : viewports) {
         ImagePlane const plane(viewport);
         for (int n = 0; n < 3; ++n) {
-            Tiling const tiling = make_density_tiling(plane, random_density(plane, random), field_depth(plane));
+            Tiling const tiling = make_density_tiling(plane, random_density(plane, random));
             expect_covered_once(plane, tiling.tiles);
         }
     }
@@ -82,29 +97,13 @@ TEST(DensityTiling, ATileIsWorthAboutAFramelet) {
             return sum;
         };
         double const step = 1; // rounding of elements
-        for (Tile const tile : make_density_tiling(plane, density, depth).tiles) {
+        for (Tile const tile : make_density_tiling(plane, density).tiles) {
             if (tile.depth() < plane.max_depth()) {
                 ASSERT_LE(integral(tile), 2 * framelet_samples + step) << tile.code;
             }
             if (tile.depth() > plane.min_depth()) { // its parent would have been too much
                 ASSERT_GT(integral(tile.parent()), 2 * framelet_samples - 4 * step) << tile.code;
             }
-        }
-    }
-}
-
-TEST(DensityTiling, ParallelIsTheSame) {
-    std::mt19937 random(3);
-    TilingScratch scratch;
-    std::vector<Patch> serial;
-    std::vector<Patch> parallel;
-    for (Viewport const viewport : viewports) {
-        ImagePlane const plane(viewport);
-        for (int n = 0; n < 10; ++n) {
-            auto const density = random_density(plane, random);
-            make_density_patches(plane, density, field_depth(plane), scratch, serial);
-            make_density_patches_parallel(plane, density, field_depth(plane), scratch, parallel);
-            EXPECT_EQ(serial, parallel);
         }
     }
 }
@@ -116,7 +115,7 @@ TEST(DensityTiling, UniformDensityIsTheUniformTiling) {
         for (int level = plane.min_depth(); level <= std::min(plane.max_depth(), plane.pixel_depth() + 1); ++level) {
             std::vector<float> const density(std::size_t{1} << (2 * depth),
                                              std::ldexp(1.0f, 2 * (level - plane.pixel_depth())));
-            Tiling const tiling = make_density_tiling(plane, density, depth);
+            Tiling const tiling = make_density_tiling(plane, density);
             Tiling const uniform = make_uniform_tiling(plane, level);
             // A coarse node that reaches out of the viewport is worth less, and may be one tile for four.
             if (viewport.width == plane.side() && viewport.height == plane.side()) {

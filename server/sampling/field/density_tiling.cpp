@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <tbb/parallel_for.h>
-
 #include "common/error.h"
 
 namespace framelet {
@@ -81,20 +79,6 @@ void make_density_patches(ImagePlane const& plane, std::span<float const> sample
     Cut(plane, depth, scratch.sums).descend(Tile{1}, patches);
 }
 
-void make_density_patches_parallel(ImagePlane const& plane, std::span<float const> samples_per_pixel, int depth,
-                                   TilingScratch& scratch, std::vector<Patch>& patches) {
-    sum_up(plane, samples_per_pixel, depth, scratch.sums);
-    int const top = std::min(plane.min_depth(), depth);
-    std::vector<std::vector<Patch>> parts(std::size_t{1} << (2 * top));
-    Cut const cut(plane, depth, scratch.sums);
-    tbb::parallel_for(std::size_t{0}, parts.size(),
-                      [&](std::size_t i) { cut.descend({static_cast<std::uint32_t>(parts.size() + i)}, parts[i]); });
-    patches.clear();
-    for (auto const& part : parts) {
-        patches.insert(patches.end(), part.begin(), part.end());
-    }
-}
-
 void append_tiles(ImagePlane const& plane, Patch const& patch, std::vector<Tile>& tiles) {
     int const shift = 2 * (patch.depth - patch.node.depth());
     std::uint32_t const first = patch.node.code << shift;
@@ -103,17 +87,6 @@ void append_tiles(ImagePlane const& plane, Patch const& patch, std::vector<Tile>
             tiles.push_back({first + i});
         }
     }
-}
-
-Tiling make_density_tiling(ImagePlane const& plane, std::span<float const> samples_per_pixel, int depth) {
-    TilingScratch scratch;
-    std::vector<Patch> patches;
-    make_density_patches(plane, samples_per_pixel, depth, scratch, patches);
-    Tiling tiling{plane, {}};
-    for (Patch const& patch : patches) {
-        append_tiles(plane, patch, tiling.tiles);
-    }
-    return tiling;
 }
 
 } // namespace framelet

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "server/sampling/field/tiling.h"
+#include "common/tile.h"
 
 namespace framelet {
 
@@ -42,14 +42,8 @@ struct TilingScratch {
 /// whole steps of 1/256 sample, so that the cut does not depend on the order of summation.
 void make_density_patches(ImagePlane const& plane, std::span<float const> samples_per_pixel, int depth,
                           TilingScratch& scratch, std::vector<Patch>& patches);
-/// The same cut, in parallel over the coarsest nodes.
-void make_density_patches_parallel(ImagePlane const& plane, std::span<float const> samples_per_pixel, int depth,
-                                   TilingScratch& scratch, std::vector<Patch>& patches);
 
 /// Appends the patch's visible tiles, along the Morton curve.
 void append_tiles(ImagePlane const& plane, Patch const& patch, std::vector<Tile>& tiles);
-
-/// All tiles of the cut.
-Tiling make_density_tiling(ImagePlane const& plane, std::span<float const> samples_per_pixel, int depth);
 
 } // namespace framelet

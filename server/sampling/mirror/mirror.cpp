@@ -37,14 +37,6 @@ bool Mirror::looks_at(MirrorView const& view) const {
     return target_.scene_time == view.scene_time && same_camera(target_.rays, view.rays);
 }
 
-std::size_t Mirror::piece_count() const {
-    std::size_t count = 0;
-    for (Moment const& moment : moments_) {
-        count += moment.pieces.size();
-    }
-    return count;
-}
-
 std::size_t Mirror::moment_count() const {
     return static_cast<std::size_t>(
         std::ranges::count_if(moments_, [](Moment const& moment) { return moment.number > 0; }));

@@ -65,9 +65,7 @@ public:
     /// The viewer has let go of these; from the next look on.
     void forget(std::span<SentTile const> framelets);
 
-    std::size_t piece_count() const;
     std::size_t moment_count() const;
-    bool is_empty() const { return piece_count() == 0; }
 
 private:
     struct Moment {
