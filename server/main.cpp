@@ -21,25 +21,13 @@
 #include "server/options.h"
 #include "server/progress_bar.h"
 #include "server/render/framelet_renderer.h"
+#include "server/scene/scene_summary.h"
 #include "server/scene/visibility.h"
 #include "server/session/listener.h"
 #include "server/stream/event_log.h"
 
 namespace framelet {
 namespace {
-
-/// Those of a mesh count for each node that shows it.
-std::size_t count_triangles(Scene const& scene) {
-    std::size_t count = 0;
-    for (Node const& node : scene.nodes) {
-        if (node.mesh != none) {
-            for (Primitive const& primitive : scene.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
-                count += primitive.triangles.size();
-            }
-        }
-    }
-    return count;
-}
 
 /// Reads the tokens. Throws InputError where a file is of no use; to find that out only when it is needed could take as
 /// long as the scene does.
@@ -58,6 +46,17 @@ void read_files(Options& options) {
         throw InputError("cannot write '" + options.record_events.string() +
                          "': give --record-events a file in a folder that exists");
     }
+}
+
+std::vector<Index> chosen_clips(Scene const& scene, ImportOptions const& import) {
+    return import.clips.empty() ? default_clips(scene) : clips_named(scene, import.clips);
+}
+
+/// Of a scene that a server would refuse because there is nothing to see in it, too: that is what one asks about.
+void print_info(Options const& options) {
+    Scene const scene = import_scene(options.scene, make_progress_bar(options.quiet), options.import);
+    std::vector<Index> const clips = chosen_clips(scene, options.import);
+    std::cout << (options.json ? scene_summary_json(scene, clips) : scene_summary_text(scene, clips)) << std::flush;
 }
 
 void serve(Options& options) {
@@ -90,8 +89,7 @@ void serve(Options& options) {
         throw InputError("there is nothing to see in scene '" + options.scene.string() +
                          "': it has no triangles, or none with an area");
     }
-    std::vector<Index> const clips =
-        options.import.clips.empty() ? default_clips(scene) : clips_named(scene, options.import.clips);
+    std::vector<Index> const clips = chosen_clips(scene, options.import);
     RenderScene render_scene(scene, std::move(environment), progress);
     ScenePose const pose = evaluate_pose(scene, clips, 0);
     render_scene.set_pose(pose);
@@ -140,7 +138,7 @@ int main(int argc, char** argv) {
     spdlog::set_pattern("%H:%M:%S.%e %^%l%$ %v");
     spdlog::set_level(options.quiet ? spdlog::level::warn : spdlog::level::info);
     try {
-        framelet::serve(options);
+        options.info ? framelet::print_info(options) : framelet::serve(options);
         return 0;
     } catch (std::exception const& error) {
         std::cerr << "framelet-server: " << framelet::failure_text(error) << '\n';

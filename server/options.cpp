@@ -59,6 +59,9 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
     app.add_option("--clip", options.import.clips, "Animation clip to play, by name; may be given several times")
         ->type_name("NAME")
         ->default_str("all that fit together");
+    CLI::Option* const info =
+        app.add_flag("--info", options.info, "Print what is in the scene and what was passed over, and exit");
+    app.add_flag("--json", options.json, "With --info: as JSON")->needs(info);
     app.add_flag("--paused", options.server.paused, "Start with the scene clock standing");
 
     app.option_defaults()->group("Connections");

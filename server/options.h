@@ -18,6 +18,8 @@ struct Options {
     std::optional<float> exposure_ev; ///< stops; empty: from the scene
     int threads = 0; ///< 0: all cores
     bool quiet = false;
+    bool info = false; ///< print what is in the scene, and serve nothing
+    bool json = false; ///< that as JSON
     std::filesystem::path record; ///< folder for what the server thought; empty: nothing is recorded
     double record_rate = 4; ///< sets of pictures a second and session
     std::filesystem::path record_events; ///< file for what came to the streams; empty: none

@@ -1,0 +1,22 @@
+// What is in a scene and what of its file was passed over, for people and for programs. In: a finished scene, the clips
+// that play. Out: text, JSON.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+
+#include "server/scene/scene.h"
+
+namespace framelet {
+
+/// Of what the scene shows: those of a mesh count for each node that has it.
+std::size_t count_triangles(Scene const& scene);
+
+/// Lines for a terminal, the last one with its end of line.
+std::string scene_summary_text(Scene const& scene, std::span<Index const> clips);
+
+/// One object.
+std::string scene_summary_json(Scene const& scene, std::span<Index const> clips);
+
+} // namespace framelet
