@@ -12,7 +12,8 @@ CLI::Option* add_connection_options(CLI::App& app, ConnectionArguments& argument
     CLI::Option* const server =
         app.add_option("HOST[:PORT]", arguments.server,
                        "Where framelet-server listens; without a port at port " + std::to_string(default_port) +
-                           ". An IPv6 address needs brackets: [::1]:7070");
+                           ". An IPv6 address needs brackets: [::1]:7070")
+            ->check(readable_by(parse_server_address));
     app.add_option("--token-file", arguments.token_file,
                    "File whose first line is the server's token; not needed on the same machine as the same user")
         ->type_name("FILE");

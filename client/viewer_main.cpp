@@ -26,9 +26,13 @@ int main(int argc, char** argv) {
                "has\n     vanished\n  2  bad usage");
     add_connection_options(app, arguments)->capture_default_str();
     app.option_defaults()->group("Window");
-    app.add_option("--size", size, "Size of the window in pixels")->type_name("WIDTHxHEIGHT")->capture_default_str();
+    app.add_option("--size", size, "Size of the window in pixels")
+        ->type_name("WIDTHxHEIGHT")
+        ->check(readable_by(parse_size))
+        ->capture_default_str();
     app.add_flag("--fullscreen", fullscreen, "Fill the screen");
     add_display_options(app, display);
+    add_config_option(app);
 
     Viewport viewport;
     ConnectionOptions connection;

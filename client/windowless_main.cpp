@@ -272,6 +272,7 @@ int main(int argc, char** argv) {
     app.option_defaults()->group("Run");
     app.add_option("--size", options.size, "Size of the picture in pixels")
         ->type_name("WIDTHxHEIGHT")
+        ->check(readable_by(parse_size))
         ->capture_default_str();
     app.add_option("--duration", options.duration, "Seconds after which to end")
         ->type_name("SECONDS")
@@ -286,7 +287,8 @@ int main(int argc, char** argv) {
     app.add_option("--output", options.output,
                    "Picture file for each frame, as in frames/%04d.png (or .ppm: larger, quicker); without a number: "
                    "for the last frame")
-        ->type_name("FILE");
+        ->type_name("FILE")
+        ->check(readable_by([](std::string const& text) { FramePattern{text}; }));
     app.add_option("--rate", options.rate, "Display frames a second")
         ->type_name("HZ")
         ->default_str("60, with numbered files 10")
@@ -312,6 +314,7 @@ int main(int argc, char** argv) {
     app.add_option("--seek", options.seek, "Set the scene's clock to this second")
         ->type_name("SECONDS")
         ->check(number_in(0.0, max_scene_time));
+    add_config_option(app);
 
     Viewport viewport;
     ConnectionOptions connection;

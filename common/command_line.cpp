@@ -43,6 +43,90 @@ bool has_optional_value(CLI::Option const* option) {
     return option != nullptr && !option->get_fnames().empty();
 }
 
+/// What is on a line of the file, as CLI11 reads it, which takes up what it finds without a word about the file: this
+/// looks at each key and value before, so that what is wrong can be told with both.
+class ConfigFile : public CLI::ConfigTOML {
+public:
+    explicit ConfigFile(CLI::App* app) : app_(app) {}
+
+    std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
+        std::vector<CLI::ConfigItem> checked;
+        for (CLI::ConfigItem& item : CLI::ConfigTOML::from_config(input)) {
+            if (!item.parents.empty()) {
+                throw complaint("it has a section or a key with a dot in it, '" + item.parents.front() +
+                                "': write options alone, one a line, as port = 7070");
+            }
+            std::string const key = item.name;
+            CLI::Option* const option = find(item);
+            if (option == nullptr || !option->get_configurable()) {
+                throw complaint("there is no option '" + key + "' for it to set");
+            }
+            if (check(*option, key + ": ", item)) {
+                checked.push_back(std::move(item));
+            }
+        }
+        return checked;
+    }
+
+private:
+    CLI::ConfigError complaint(std::string const& text) const {
+        return {"configuration file '" + app_->get_config_ptr()->as<std::string>() + "': " + text,
+                CLI::ExitCodes::ConfigError};
+    }
+
+    /// Gives the item the name by which CLI11 finds the same option.
+    CLI::Option* find(CLI::ConfigItem& item) const {
+        for (CLI::Option* const option : app_->get_options()) {
+            std::string const& alone = option->get_positional() ? option->get_name(true) : "";
+            std::string const word = CLI::detail::to_lower(alone.substr(0, alone.find('[')));
+            if (!word.empty() && word == item.name) {
+                item.name = alone;
+                return option;
+            }
+        }
+        return app_->get_option_no_throw("--" + item.name);
+    }
+
+    /// False where it says no more than nothing would: a flag that is not set.
+    bool check(CLI::Option& option, std::string const& key, CLI::ConfigItem& item) const {
+        if (item.inputs.size() != 1 && option.get_items_expected_max() <= 1) {
+            throw complaint(key + "it takes one value; a text with spaces or commas stands in quotes");
+        }
+        bool const is_flag = option.get_items_expected_min() == 0;
+        if (is_flag && item.inputs.front() == "false") {
+            return false;
+        }
+        if (is_flag && !has_optional_value(&option)) {
+            if (item.inputs.front() != "true") {
+                throw complaint(key + "'" + item.inputs.front() + "' is neither true nor false");
+            }
+            return true;
+        }
+        if (is_flag && item.inputs.front() == "true") {
+            item.inputs.front().clear(); // for CLI11 the value that the flag has by itself
+            return true;
+        }
+        for (std::string input : item.inputs) {
+            for (int i = 0; auto const* const validator = validator_of(option, i); ++i) {
+                if (std::string const problem = (*validator)(input); !problem.empty()) {
+                    throw complaint(key + problem);
+                }
+            }
+        }
+        return true;
+    }
+
+    static CLI::Validator const* validator_of(CLI::Option& option, int index) {
+        try {
+            return option.get_validator(index);
+        } catch (CLI::OptionNotFound const&) { // there are no more
+            return nullptr;
+        }
+    }
+
+    CLI::App* app_;
+};
+
 bool could_be_value(CLI::Option* option, std::string word) {
     return option->get_validator(0)->operator()(word).empty();
 }
@@ -99,6 +183,16 @@ void prepare_command_line(CLI::App& app) {
         ->group("Help");
 }
 
+void add_config_option(CLI::App& app) {
+    app.set_config(
+           "--config", "",
+           "Take options from this file that are not on the command line: a line OPTION = VALUE each, the option "
+           "without dashes, a flag = true")
+        ->type_name("FILE")
+        ->group("Help");
+    app.config_formatter(std::make_shared<ConfigFile>(&app));
+}
+
 void parse_command_line(CLI::App& app, int argc, char const* const* argv) {
     std::vector<std::string> const words(argv + std::min(argc, 1), argv + argc);
     std::size_t alone = 0;
@@ -125,6 +219,11 @@ void parse_command_line(CLI::App& app, int argc, char const* const* argv) {
 }
 
 int exit_usage(CLI::App const& app, CLI::ParseError const& error) {
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::FileError)) {
+        std::cerr << app.get_name() << ": configuration file '" << app.get_config_ptr()->as<std::string>()
+                  << "' cannot be read\n";
+        return 1;
+    }
     return error.get_exit_code() == 0 ? app.exit(error) : exit_usage(app, error.what());
 }
 

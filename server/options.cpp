@@ -60,8 +60,9 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
         ->type_name("NAME")
         ->default_str("all that fit together");
     CLI::Option* const info =
-        app.add_flag("--info", options.info, "Print what is in the scene and what was passed over, and exit");
-    app.add_flag("--json", options.json, "With --info: as JSON")->needs(info);
+        app.add_flag("--info", options.info, "Print what is in the scene and what was passed over, and exit")
+            ->configurable(false);
+    app.add_flag("--json", options.json, "With --info: as JSON")->needs(info)->configurable(false);
     app.add_flag("--paused", options.server.paused, "Start with the scene clock standing");
 
     app.option_defaults()->group("Connections");
@@ -76,12 +77,13 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
                    "same user on this machine are let in, and find a token by themselves")
         ->type_name("FILE");
     app.add_flag_callback(
-        "--make-token",
-        [] {
-            std::cout << make_token() << '\n';
-            throw CLI::Success();
-        },
-        "Print a token that nobody can guess, and exit");
+           "--make-token",
+           [] {
+               std::cout << make_token() << '\n';
+               throw CLI::Success();
+           },
+           "Print a token that nobody can guess, and exit")
+        ->configurable(false);
     app.add_option("--tls-cert", options.server.tls_certificate, "Certificate chain (PEM): encrypt connections")
         ->type_name("FILE");
     app.add_option("--tls-key", options.server.tls_key, "Private key (PEM) of the certificate")->type_name("FILE");
@@ -131,6 +133,7 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
                    "Write to this file what comes from each viewer, and when, and what was answered: framelet-bench "
                    "replay makes the same of it")
         ->type_name("FILE");
+    add_config_option(app);
     try {
         parse_command_line(app, argc, argv);
         require_protection(options, insecure);

@@ -1,8 +1,12 @@
 #include "common/command_line.h"
 
+#include <filesystem>
+#include <fstream>
 #include <sstream>
+#include <utility>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "common/counted.h"
 #include "common/number_range.h"
@@ -85,6 +89,53 @@ TEST(CommandLine, HelpHasGroupsAndDefaultsAndFitsTheScreen) {
                                    "\n  --lag [MS]                  Late (0 to 1000; not with --plain)\n",
                                    "Usage: program [OPTIONS] HOST[:PORT]\n"}) {
         EXPECT_NE(help.str().find(part), std::string::npos) << part << " in\n" << help.str();
+    }
+}
+
+/// Reads this as --config, beside these words.
+std::string complaint_of_file(Line& line, std::string const& text, std::vector<char const*> words = {}) {
+    std::string const file =
+        testing::TempDir() + "framelet_options" + std::to_string(::getpid()) + ".toml"; // the cases run side by side
+    std::ofstream(file) << text;
+    add_config_option(line.app);
+    words.insert(words.end(), {"--config", file.c_str()});
+    std::string const complaint = line.complaint(words);
+    std::filesystem::remove(file);
+    return complaint;
+}
+
+TEST(CommandLine, AFileSetsWhatTheLineDoesNot) {
+    Line line;
+    EXPECT_EQ(complaint_of_file(line, "# a remark\nhost = \"over there\"\nport = 9\nplain = true\n", {"--port", "8"}),
+              "");
+    EXPECT_EQ(line.host, "over there");
+    EXPECT_EQ(line.port, 8);
+    EXPECT_TRUE(line.plain);
+    for (auto const& [value, lag] : {std::pair("50", 50.0), std::pair("true", 100.0), std::pair("false", 0.0)}) {
+        Line flag;
+        EXPECT_EQ(complaint_of_file(flag, std::string("plain = false\nlag = ") + value, {"here"}), "");
+        EXPECT_EQ(flag.lag, lag);
+        EXPECT_FALSE(flag.plain);
+    }
+    Line off;
+    EXPECT_EQ(complaint_of_file(off, "plain = true", {"here", "--plain=false"}), "");
+    EXPECT_FALSE(off.plain);
+}
+
+TEST(CommandLine, WhatIsWrongInAFileIsNamedWithFileAndKey) {
+    struct Case {
+        char const* text;
+        char const* says;
+    };
+    for (auto const& [text, says] :
+         {Case{"prot = 1", "no option 'prot'"}, Case{"port = 99999", "port: '99999' is not a whole number"},
+          Case{"port = 1 2", "port: it takes one value"}, Case{"port", "port: 'true' is not"},
+          Case{"plain = perhaps", "plain: 'perhaps' is neither"}, Case{"[places]\nport = 1", "'places'"},
+          Case{"help = true", "no option 'help'"}, Case{"config = \"other\"", "no option 'config'"}}) {
+        Line line;
+        std::string const complaint = complaint_of_file(line, text, {"here"});
+        EXPECT_NE(complaint.find(says), std::string::npos) << complaint;
+        EXPECT_NE(complaint.find(".toml'"), std::string::npos) << complaint;
     }
 }
 

@@ -1,4 +1,4 @@
-// What those who run the programs meet: what is asked of a scene without serving it.
+// What those who run the programs meet: what is asked of a scene without serving it, options in a file.
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -30,6 +30,25 @@ TEST(Operation, InfoSaysWhatIsInASceneAndServesNothing) {
     Process alone(FRAMELET_SERVER, {"--json", scene_file});
     EXPECT_EQ(alone.wait(patience), 2);
     EXPECT_TRUE(has(alone.errors(), "--info")) << alone.errors();
+}
+
+TEST(Operation, OptionsComeFromAFileToo) {
+    TemporaryFolder const folder;
+    std::string const file = folder.write("server.toml", "scene = \"" + scene_file + "\"\nport = 1\npaused = true\n");
+    ServerProcess const server =
+        ServerProcess::of_program(FRAMELET_SERVER, {"--config", file, "--port", "0", "--insecure"});
+    std::string const client_file =
+        folder.write("client.toml", "host = \"" + server.address() + "\"\nsize = \"64x64\"\njson = true\n");
+    Process client(FRAMELET_CLIENT, {"--config", client_file, "--until-converged"});
+    EXPECT_EQ(client.wait(patience), 0) << client.errors();
+    EXPECT_EQ(nlohmann::json::parse(client.output())["width"], 64);
+
+    Process wrong(FRAMELET_SERVER, {scene_file, "--config", folder.write("wrong.toml", "prot = 7070\n")});
+    EXPECT_EQ(wrong.wait(patience), 2);
+    EXPECT_TRUE(has(wrong.errors(), "wrong.toml") && has(wrong.errors(), "'prot'")) << wrong.errors();
+    Process absent(FRAMELET_CLIENT, {"--config", (folder.path() / "absent.toml").string()});
+    EXPECT_EQ(absent.wait(patience), 1);
+    EXPECT_TRUE(has(absent.errors(), "absent.toml")) << absent.errors();
 }
 
 } // namespace
