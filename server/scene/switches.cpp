@@ -79,8 +79,8 @@ void sort(std::vector<SceneSwitch>& switches) {
     std::ranges::sort(switches, [](SceneSwitch const& a, SceneSwitch const& b) {
         return a.time != b.time ? a.time < b.time : a.is_seen && !b.is_seen;
     });
-    auto const doubles = std::ranges::unique(switches, {}, &SceneSwitch::time);
-    switches.erase(doubles.begin(), doubles.end());
+    auto const is_double = [](SceneSwitch const& a, SceneSwitch const& b) { return a.time == b.time; };
+    switches.erase(std::unique(switches.begin(), switches.end(), is_double), switches.end());
 }
 
 } // namespace
