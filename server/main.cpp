@@ -8,9 +8,11 @@
 #include <iostream>
 #include <iterator>
 
+#include <fcntl.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 #include <tbb/global_control.h>
+#include <unistd.h>
 
 #include "common/counted.h"
 #include "common/error.h"
@@ -20,10 +22,11 @@
 #include "protocol/stream/token.h"
 #include "server/options.h"
 #include "server/progress_bar.h"
-#include "server/render/framelet_renderer.h"
 #include "server/scene/scene_summary.h"
 #include "server/scene/visibility.h"
+#include "server/scene_reloader.h"
 #include "server/session/listener.h"
+#include "server/session/loaded_scene.h"
 #include "server/stream/event_log.h"
 
 namespace framelet {
@@ -59,6 +62,39 @@ void print_info(Options const& options) {
     std::cout << (options.json ? scene_summary_json(scene, clips) : scene_summary_text(scene, clips)) << std::flush;
 }
 
+/// Throws InputError where the files are of no use.
+std::unique_ptr<LoadedScene> load_scene(Options const& options, Progress const& progress) {
+    std::optional<Environment> environment; // first: it takes less time to find out what is wrong with it
+    if (options.environment) {
+        environment = Environment::load(*options.environment);
+    }
+    Scene scene = import_scene(options.scene, progress, options.import);
+    for (std::string const& warning : scene.warnings) {
+        spdlog::warn("{}", warning);
+    }
+    if (!has_anything_to_see(scene)) {
+        throw InputError("there is nothing to see in scene '" + options.scene.string() +
+                         "': it has no triangles, or none with an area");
+    }
+    std::vector<Index> clips = chosen_clips(scene, options.import);
+    auto loaded = std::make_unique<LoadedScene>(std::move(scene), std::move(clips), std::move(environment),
+                                                options.exposure_ev, progress);
+    Scene const& s = loaded->scene;
+    spdlog::info("{}: {}, {}, {}, {}, {}; exposure {:+.1f} stops", s.name, counted(s.nodes.size(), "node"),
+                 counted(count_triangles(s), "triangle"), counted(s.clips.size(), "clip"),
+                 counted(s.lights.size(), "light"), counted(s.cameras.size(), "camera"), std::log2(loaded->exposure));
+    return loaded;
+}
+
+/// Whether the terminal that it was started in, if any, is still there.
+bool has_terminal() {
+    int const terminal = ::open("/dev/tty", O_RDWR | O_CLOEXEC | O_NOCTTY);
+    if (terminal >= 0) {
+        ::close(terminal);
+    }
+    return terminal >= 0;
+}
+
 void serve(Options& options) {
     auto listener = std::make_unique<Listener>(options.server.bind, options.server.port);
     read_files(options);
@@ -76,32 +112,10 @@ void serve(Options& options) {
     if (!options.record.empty()) {
         recorder.emplace(options.record, options.record_rate);
     }
-    std::optional<Environment> environment;
-    if (options.environment) {
-        environment = Environment::load(*options.environment);
-    }
-    Progress const progress = make_progress_bar(options.quiet);
-    Scene const scene = import_scene(options.scene, progress, options.import);
-    for (std::string const& warning : scene.warnings) {
-        spdlog::warn("{}", warning);
-    }
-    if (!has_anything_to_see(scene)) {
-        throw InputError("there is nothing to see in scene '" + options.scene.string() +
-                         "': it has no triangles, or none with an area");
-    }
-    std::vector<Index> const clips = chosen_clips(scene, options.import);
-    RenderScene render_scene(scene, std::move(environment), progress);
-    ScenePose const pose = evaluate_pose(scene, clips, 0);
-    render_scene.set_pose(pose);
-
-    Camera const start =
-        scene.cameras.empty() ? default_camera(scene_bounds(scene, pose)) : scene_camera(scene, pose, 0);
-    options.server.loop.stream.exposure =
-        options.exposure_ev ? std::exp2(*options.exposure_ev) : auto_exposure(render_scene, start);
-    spdlog::info("{}: {}, {}, {}, {}, {}; exposure {:+.1f} stops", scene.name, counted(scene.nodes.size(), "node"),
-                 counted(count_triangles(scene), "triangle"), counted(scene.clips.size(), "clip"),
-                 counted(scene.lights.size(), "light"), counted(scene.cameras.size(), "camera"),
-                 std::log2(options.server.loop.stream.exposure));
+    bool const had_terminal = has_terminal();
+    SceneReloader reloader(options.watch, options.scene, options.environment.value_or(""));
+    std::unique_ptr<LoadedScene> loaded = load_scene(options, make_progress_bar(options.quiet));
+    std::vector<std::filesystem::path> const files = loaded->scene.files;
 
     options.server.loop.recorder = recorder ? &*recorder : nullptr;
     std::optional<EventLog> event_log;
@@ -110,18 +124,31 @@ void serve(Options& options) {
         event_log.emplace(
             options.record_events,
             ServedScene{std::filesystem::absolute(options.scene).string(),
-                        options.environment ? std::filesystem::absolute(*options.environment).string() : "", clips,
-                        stream.exposure, stream.bias, stream.batch_framelets});
+                        options.environment ? std::filesystem::absolute(*options.environment).string() : "",
+                        loaded->clips, loaded->exposure, stream.bias, stream.batch_framelets});
         options.server.loop.event_log = &*event_log;
     }
-    Server server(scene, clips, render_scene, options.server, std::move(listener));
+    Server server(std::move(loaded), options.server, std::move(listener));
     for (std::string const& address : server.addresses()) {
         std::cout << "listening on " << address << std::endl;
     }
     if (!options.server.tls_certificate.empty()) {
         std::cout << "certificate SHA-256 " << certificate_fingerprint(options.server.tls_certificate) << std::endl;
     }
-    server.run(true);
+    reloader.start(
+        files, [&options] { return load_scene(options, {}); },
+        [&server](std::shared_ptr<LoadedScene> scene) { server.replace_scene(std::move(scene)); });
+    server.run(true, [&] {
+        if (had_terminal && !has_terminal()) { // that is why the signal came: nobody is there to end the server later
+            return false;
+        }
+        if (event_log) {
+            spdlog::warn("the scene is not loaded again: a recording of --record-events is of one scene");
+        } else {
+            reloader.ask();
+        }
+        return true;
+    });
 }
 
 } // namespace

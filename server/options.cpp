@@ -11,7 +11,8 @@ namespace framelet {
 namespace {
 
 constexpr char const* footer = R"(Port, certificate and all other files are looked at before the scene is loaded.
-SIGINT (Ctrl-C), SIGTERM and SIGHUP end the server, and its viewers are told.
+SIGINT (Ctrl-C) and SIGTERM end the server, and its viewers are told. SIGHUP loads the scene again;
+where its terminal is gone it ends the server too.
 
 Exit codes:
   0  fine
@@ -59,6 +60,8 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
     app.add_option("--clip", options.import.clips, "Animation clip to play, by name; may be given several times")
         ->type_name("NAME")
         ->default_str("all that fit together");
+    CLI::Option* const watch =
+        app.add_flag("--watch", options.watch, "Load the scene again when its files have changed; viewers stay");
     CLI::Option* const info =
         app.add_flag("--info", options.info, "Print what is in the scene and what was passed over, and exit")
             ->configurable(false);
@@ -132,7 +135,8 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
     app.add_option("--record-events", options.record_events,
                    "Write to this file what comes from each viewer, and when, and what was answered: framelet-bench "
                    "replay makes the same of it")
-        ->type_name("FILE");
+        ->type_name("FILE")
+        ->excludes(watch);
     add_config_option(app);
     try {
         parse_command_line(app, argc, argv);

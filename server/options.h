@@ -18,6 +18,7 @@ struct Options {
     std::optional<float> exposure_ev; ///< stops; empty: from the scene
     int threads = 0; ///< 0: all cores
     bool quiet = false;
+    bool watch = false; ///< load the scene again when its files change
     bool info = false; ///< print what is in the scene, and serve nothing
     bool json = false; ///< that as JSON
     std::filesystem::path record; ///< folder for what the server thought; empty: nothing is recorded

@@ -62,12 +62,21 @@ void Viewer::adopt(std::unique_ptr<ClientCore> core) {
     }
 }
 
-/// As one looks at a scene at first.
+/// As one looks at a scene at first. One of the same name is the same after a change: one goes on looking from where
+/// one is.
 void Viewer::look_at_scene() {
     Welcome const welcome = core_->welcome();
     scene_number_ = core_->scene_number();
+    bool const is_changed = controller_ && welcome.scene_name == scene_name_;
+    std::optional<Camera> const before = is_changed ? std::optional(controller_->camera()) : std::nullopt;
+    scene_name_ = welcome.scene_name;
     controller_.emplace(welcome.start_camera, welcome.scene_bounds);
-    scene_camera_ = start_scene_camera(welcome);
+    if (before) {
+        controller_->set_camera(*before);
+    }
+    if (!before || scene_camera_ >= static_cast<int>(welcome.cameras.size())) {
+        scene_camera_ = start_scene_camera(welcome);
+    }
     window_.set_title(welcome.scene_name + " - framelet-viewer");
 }
 

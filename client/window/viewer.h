@@ -58,6 +58,7 @@ private:
     std::uint64_t scene_number_ = 0; ///< of the core's; 0: none yet
     bool interrupted_ = false; ///< the core tries for another session
     bool controlled_ = true; ///< what `ClientCore::controls` said last
+    std::string scene_name_;
     std::optional<CameraController> controller_;
     int scene_camera_ = -1;
     std::optional<Vec3> grabbed_; ///< what the hands have taken hold of, until the camera moves

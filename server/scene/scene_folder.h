@@ -3,7 +3,9 @@
 #pragma once
 
 #include <filesystem>
+#include <set>
 #include <string>
+#include <vector>
 
 namespace framelet {
 
@@ -17,6 +19,11 @@ public:
     /// False for what lies outside, there or not: a scene learns nothing of other folders.
     bool permits(std::filesystem::path const& file) const;
 
+    /// What was asked for and permitted, in the order of names, whether it is there or not: what the scene depends on.
+    /// Importers ask on one thread. Of more than `most_files` some are left out.
+    std::vector<std::filesystem::path> asked_for() const { return {asked_for_.begin(), asked_for_.end()}; }
+    static constexpr std::size_t most_files = 4096;
+
     /// Why a file that is not permitted is not read, for messages: "file 'name' lies ...".
     static std::string refusal(char const* kind, std::string const& name) {
         return std::string(kind) + " '" + name + "' lies outside the scene's folder (--allow-outside permits that)";
@@ -26,6 +33,9 @@ private:
     std::filesystem::path path_;
     std::filesystem::path canonical_;
     bool allow_outside_;
+    mutable std::set<std::filesystem::path> asked_for_;
+
+    bool note(std::filesystem::path const& file) const;
 };
 
 } // namespace framelet

@@ -76,6 +76,8 @@ Scene import_scene(std::filesystem::path const& file, Progress const& progress, 
             scene.name = file.stem().string();
         }
         scene.warnings = condensed(scene.warnings);
+        scene.files = folder.asked_for();
+        scene.files.insert(scene.files.begin(), std::filesystem::absolute(file));
         return scene;
     } catch (InputError const& error) {
         throw InputError(one_line("cannot load scene '" + file.string() + "': " + error.what()));

@@ -23,6 +23,7 @@
 #include "server/session/clock_requests.h"
 #include "server/session/farewells.h"
 #include "server/session/listener.h"
+#include "server/session/loaded_scene.h"
 #include "server/session/log_limit.h"
 #include "server/session/scene_control.h"
 #include "server/session/session_memory.h"
@@ -80,7 +81,7 @@ struct Server::Impl {
     asio::signal_set signals{io};
     ServerOptions const options;
     std::shared_ptr<asio::ssl::context> tls;
-    Welcome const welcome;
+    Welcome welcome;
     SceneClock clock;
     SceneControl control;
     ClockRequests clock_requests; ///< for the io thread only, as all down to the sessions
@@ -106,19 +107,60 @@ struct Server::Impl {
     bool beats = false; ///< the next heartbeat is on its way
     bool ends = false; ///< and then none is
 
-    SessionLoop loop;
+    std::shared_ptr<LoadedScene> loaded; ///< that the loop looks at; null: it is the caller's
+    std::unique_ptr<SessionLoop> loop; ///< replaced on the io thread only, while `loop_thread` is none
+    std::thread loop_thread;
 
     Impl(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene, ServerOptions const& given,
          std::unique_ptr<Listener> bound)
         : listener(std::move(bound)), options(given), welcome(make_welcome(scene, clips)),
           clock(!given.paused, steady_clock::now()), control(control_rule(given)),
           memory(given.session_megabytes * 1'000'000),
-          loop(scene, std::move(clips), render_scene, clock, given.loop,
-               {[this] { return open_sessions(); }, [this] { post_status(); }}) {
+          loop(make_loop(scene, std::move(clips), render_scene, given.loop)) {
         if (!options.tls_certificate.empty()) {
             tls = make_tls_server_context(options.tls_certificate, options.tls_key);
         }
         listener->listen();
+    }
+
+    std::unique_ptr<SessionLoop> make_loop(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene,
+                                           LoopOptions const& loop_options) {
+        SessionLoop::Events events{[this] { return open_sessions(); }, [this] { post_status(); }};
+        return std::make_unique<SessionLoop>(scene, std::move(clips), render_scene, clock, loop_options,
+                                             std::move(events));
+    }
+
+    void start_loop() {
+        loop_thread = std::thread([serving = loop.get()] { serving->run(); });
+    }
+
+    void stop_loop() {
+        if (loop_thread.joinable()) {
+            loop->stop();
+            loop_thread.join();
+        }
+    }
+
+    void replace_scene(std::shared_ptr<LoadedScene> next) {
+        if (ends) {
+            return;
+        }
+        // All that may want for memory comes first: then either scene is served as a whole.
+        LoopOptions loop_options = options.loop;
+        loop_options.stream.exposure = next->exposure;
+        Welcome next_welcome = make_welcome(next->scene, next->clips);
+        auto next_loop = make_loop(next->scene, next->clips, next->render_scene, loop_options);
+        SessionLoop::Sessions const sessions = open_sessions();
+        stop_loop();
+        for (auto const& session : sessions) {
+            session->end("the scene is loaded again", true);
+        }
+        while (give_up_longest_parked()) {
+        }
+        welcome = std::move(next_welcome);
+        loop = std::move(next_loop);
+        loaded = std::move(next);
+        start_loop();
     }
 
     SessionLoop::Sessions open_sessions() const {
@@ -199,7 +241,7 @@ struct Server::Impl {
             }
         };
         events.resize = [this, id](Viewport viewport, bool predicts) { return reserve(id, viewport, predicts); };
-        events.changed = [this] { loop.wake(); };
+        events.changed = [this] { loop->wake(); };
         events.ended = [this, id](std::string const& reason) { end_session(id, reason); };
         return events;
     }
@@ -229,7 +271,7 @@ struct Server::Impl {
         tickets.erase(&holder);
         session->abandon();
         memory.release(session->id());
-        loop.wake();
+        loop->wake();
     }
 
     std::variant<Welcome, Failure> admit(std::uint64_t id, Hello const& hello) {
@@ -326,14 +368,14 @@ struct Server::Impl {
         for (auto const& session : open_sessions()) {
             session->note_clock_change();
         }
-        loop.wake();
+        loop->wake();
         send_status();
     }
 
     void end_session(std::uint64_t id, std::string const& reason) {
         // Later: the session is still on the stack.
         asio::post(io, [this, id, reason] { remove(id, reason); });
-        loop.wake();
+        loop->wake();
     }
 
     void remove(std::uint64_t id, std::string const& reason) {
@@ -392,7 +434,7 @@ struct Server::Impl {
             Status status = session->status();
             status.clock = clock.state(steady_clock::now());
             status.converged = status.converged && !(status.clock.playing && welcome.animation_duration > 0);
-            status.samples_per_second = loop.samples_per_second();
+            status.samples_per_second = loop->samples_per_second();
             status.sessions = static_cast<std::uint32_t>(sessions.size());
             status.controls = control.controls(session->id());
             session->send(status);
@@ -482,6 +524,20 @@ struct Server::Impl {
         }
     }
 
+    void wait_for_signal(std::function<bool()> hang_up) {
+        signals.async_wait([this, hang_up = std::move(hang_up)](boost::system::error_code error, int signal) {
+            if (error) {
+                return;
+            }
+            if (signal == SIGHUP && hang_up && hang_up()) {
+                wait_for_signal(hang_up);
+                return;
+            }
+            spdlog::info("ending on signal {}", signal);
+            shut_down();
+        });
+    }
+
     void shut_down() {
         boost::system::error_code ignored;
         ends = true;
@@ -502,6 +558,13 @@ Server::Server(Scene const& scene, std::vector<Index> clips, RenderScene& render
                std::unique_ptr<Listener> listener)
     : impl_(std::make_unique<Impl>(scene, std::move(clips), render_scene, options, std::move(listener))) {}
 
+Server::Server(std::unique_ptr<LoadedScene> scene, ServerOptions const& options, std::unique_ptr<Listener> listener) {
+    ServerOptions exposed = options;
+    exposed.loop.stream.exposure = scene->exposure;
+    impl_ = std::make_unique<Impl>(scene->scene, scene->clips, scene->render_scene, exposed, std::move(listener));
+    impl_->loaded = std::move(scene);
+}
+
 Server::Server(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene, ServerOptions const& options)
     : Server(scene, std::move(clips), render_scene, options, std::make_unique<Listener>(options.bind, options.port)) {}
 
@@ -519,31 +582,30 @@ std::vector<std::string> Server::addresses() const {
     return texts;
 }
 
-void Server::run(bool handle_signals) {
+void Server::run(bool handle_signals, std::function<bool()> hang_up) {
     if (handle_signals) {
         impl_->signals.add(SIGINT);
         impl_->signals.add(SIGTERM);
-        struct sigaction hang_up {};
-        if (::sigaction(SIGHUP, nullptr, &hang_up) == 0 && hang_up.sa_handler != SIG_IGN) { // as nohup does
+        struct sigaction at_hang_up {};
+        if (::sigaction(SIGHUP, nullptr, &at_hang_up) == 0 && at_hang_up.sa_handler != SIG_IGN) { // as nohup does
             impl_->signals.add(SIGHUP);
         }
-        impl_->signals.async_wait([this](boost::system::error_code error, int signal) {
-            if (!error) {
-                spdlog::info("ending on signal {}", signal);
-                impl_->shut_down();
-            }
-        });
+        impl_->wait_for_signal(std::move(hang_up));
     }
     impl_->listener->accept([this](tcp::socket socket) { impl_->add_connection(std::move(socket)); });
     impl_->beat();
-    std::jthread const loop([this] { impl_->loop.run(); });
+    impl_->start_loop();
     try {
         impl_->run_io();
     } catch (...) {
-        impl_->loop.stop();
+        impl_->stop_loop();
         throw;
     }
-    impl_->loop.stop();
+    impl_->stop_loop();
+}
+
+void Server::replace_scene(std::shared_ptr<LoadedScene> next) {
+    asio::post(impl_->io, [this, next = std::move(next)]() mutable { impl_->replace_scene(std::move(next)); });
 }
 
 void Server::stop() {

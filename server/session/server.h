@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -14,6 +15,7 @@
 namespace framelet {
 
 class Listener;
+struct LoadedScene;
 
 struct ServerOptions {
     std::string bind = "127.0.0.1"; ///< address, or a name: all that it stands for
@@ -36,6 +38,8 @@ public:
     /// `render_scene` must outlive the server.
     Server(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene, ServerOptions const& options,
            std::unique_ptr<Listener> listener);
+    /// Its own scene, with its exposure, which another one can replace.
+    Server(std::unique_ptr<LoadedScene> scene, ServerOptions const& options, std::unique_ptr<Listener> listener);
     /// Binds by itself. Throws InputError where the address cannot be had.
     Server(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene, ServerOptions const& options);
     ~Server();
@@ -45,8 +49,12 @@ public:
     std::uint16_t port() const;
 
     /// Serves until `stop` or, when asked for, SIGINT, SIGTERM or SIGHUP (which whoever started the program may have
-    /// told it to ignore). The calling thread does the network, one other the loop.
-    void run(bool handle_signals);
+    /// told it to ignore). After SIGHUP it goes on where `hang_up`, called on this thread, says so. The calling thread
+    /// does the network, one other the loop.
+    void run(bool handle_signals, std::function<bool()> hang_up = {});
+    /// From any thread: serves this scene instead of the one before. All viewers are told to connect again, which those
+    /// that look at a scene for longer do by themselves; the scene's clock goes on.
+    void replace_scene(std::shared_ptr<LoadedScene> next);
     /// From any thread.
     void stop();
 

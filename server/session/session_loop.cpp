@@ -75,7 +75,7 @@ void SessionLoop::run() {
         {
             std::unique_lock lock(mutex_);
             if (stop_) {
-                return;
+                break;
             }
             wake_ = false;
         }
@@ -85,6 +85,7 @@ void SessionLoop::run() {
             std::this_thread::sleep_for(short_pause);
         }
     }
+    pipeline_->finishing.wait(); // it tells the sessions' events, which may wake this loop
 }
 
 /// A turn for each, and where there was nothing to do in them a wait.

@@ -45,7 +45,7 @@ public:
                 LoopOptions options, Events events);
     ~SessionLoop();
 
-    /// Until `stop`; on the calling thread, with the worker threads of its TBB arena.
+    /// Until `stop`; on the calling thread, with the worker threads of its TBB arena. None of these goes on after that.
     void run();
     void stop();
     /// Something changed that may be worth a turn. From any thread.

@@ -223,11 +223,11 @@ TEST(Unwelcome, ALogThatNobodyReadsEndsNothing) {
     EXPECT_TRUE(server.process().running());
 }
 
-TEST(Unwelcome, WhenTheTerminalIsGoneViewersHearOfIt) {
+TEST(Unwelcome, WhenTheServerIsToldToEndViewersHearOfIt) {
     ServerProcess server(scene_file, {"--paused", "--insecure"});
     RawViewer viewer(port_of(server));
     ASSERT_TRUE(viewer.watch([](Message const& message) { return std::holds_alternative<Welcome>(message); }));
-    server.process().signal(SIGHUP);
+    server.process().signal(SIGTERM);
     EXPECT_EQ(viewer.failure(), "the server shuts down");
     EXPECT_EQ(server.process().wait(30s), 0);
 }
