@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <memory>
 
 #include <fcntl.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
@@ -27,6 +28,7 @@
 #include "server/scene_reloader.h"
 #include "server/session/listener.h"
 #include "server/session/loaded_scene.h"
+#include "server/session/metrics_port.h"
 #include "server/stream/event_log.h"
 
 namespace framelet {
@@ -97,6 +99,8 @@ bool has_terminal() {
 
 void serve(Options& options) {
     auto listener = std::make_unique<Listener>(options.server.bind, options.server.port);
+    std::unique_ptr<MetricsPort> metrics =
+        options.metrics_port ? std::make_unique<MetricsPort>(options.metrics_bind, *options.metrics_port) : nullptr;
     read_files(options);
     std::optional<LocalToken> local_token;
     if (options.local_token) {
@@ -113,7 +117,11 @@ void serve(Options& options) {
         recorder.emplace(options.record, options.record_rate);
     }
     bool const had_terminal = has_terminal();
-    SceneReloader reloader(options.watch, options.scene, options.environment.value_or(""));
+    std::filesystem::path const environment_file = options.environment.value_or("");
+    std::optional<FileWatch> watch;
+    if (options.watch) { // from before the scene is loaded: what changes meanwhile counts
+        watch.emplace().watch(std::vector{std::filesystem::absolute(options.scene), environment_file});
+    }
     std::unique_ptr<LoadedScene> loaded = load_scene(options, make_progress_bar(options.quiet));
     std::vector<std::filesystem::path> const files = loaded->scene.files;
 
@@ -135,8 +143,14 @@ void serve(Options& options) {
     if (!options.server.tls_certificate.empty()) {
         std::cout << "certificate SHA-256 " << certificate_fingerprint(options.server.tls_certificate) << std::endl;
     }
-    reloader.start(
-        files, [&options] { return load_scene(options, {}); },
+    // What asks the server, or tells it something, ends before it.
+    std::unique_ptr<MetricsPort> const answering = std::move(metrics);
+    if (answering) {
+        answering->start([&server] { return server.figures(); });
+        std::cout << "metrics at http://" << answering->address() << "/metrics" << std::endl;
+    }
+    SceneReloader reloader(
+        std::move(watch), options.scene, environment_file, files, [&options] { return load_scene(options, {}); },
         [&server](std::shared_ptr<LoadedScene> scene) { server.replace_scene(std::move(scene)); });
     server.run(true, [&] {
         if (had_terminal && !has_terminal()) { // that is why the signal came: nobody is there to end the server later

@@ -123,6 +123,16 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
         ->capture_default_str();
 
     app.option_defaults()->group("Log and recordings");
+    CLI::Option* const metrics =
+        app.add_option("--metrics", options.metrics_port,
+                       "Answer HTTP at this port: /metrics for Prometheus, /health; 0 picks a free one")
+            ->type_name("PORT")
+            ->check(number_in(0, 65535));
+    app.add_option("--metrics-bind", options.metrics_bind,
+                   "Address of that port. Whoever reaches it may ask, without token or TLS")
+        ->type_name("ADDRESS")
+        ->needs(metrics)
+        ->capture_default_str();
     app.add_flag("--quiet", options.quiet, "Print warnings and errors only");
     app.add_option(
            "--record", options.record,

@@ -26,6 +26,8 @@ struct Options {
     std::filesystem::path record_events; ///< file for what came to the streams; empty: none
     std::filesystem::path token_file, control_token_file; ///< empty: none
     bool local_token = false; ///< viewers of this user on this machine get one by themselves, others none
+    std::optional<std::uint16_t> metrics_port; ///< nothing: none
+    std::string metrics_bind = "127.0.0.1";
     ServerOptions server;
 };
 

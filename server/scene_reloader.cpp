@@ -9,17 +9,13 @@
 
 namespace framelet {
 
-SceneReloader::SceneReloader(bool watches, std::filesystem::path scene_file, std::filesystem::path environment_file)
-    : watches_(watches), scene_file_(std::filesystem::absolute(scene_file)),
-      environment_file_(std::move(environment_file)) {
-    watch();
-}
-
-void SceneReloader::start(std::vector<std::filesystem::path> files, Load load, Take take) {
-    files_ = std::move(files);
-    load_ = std::move(load);
-    take_ = std::move(take);
-    watch();
+SceneReloader::SceneReloader(std::optional<FileWatch> watch, std::filesystem::path const& scene_file,
+                             std::filesystem::path environment_file, std::vector<std::filesystem::path> files,
+                             Load load, Take take)
+    : file_watch_(std::move(watch)), scene_file_(std::filesystem::absolute(scene_file)),
+      environment_file_(std::move(environment_file)), files_(std::move(files)), load_(std::move(load)),
+      take_(std::move(take)) {
+    this->watch();
     thread_ = std::jthread([this](std::stop_token const& stop) { run(stop); });
 }
 
@@ -32,7 +28,7 @@ void SceneReloader::ask() {
 }
 
 void SceneReloader::watch() {
-    if (!watches_) {
+    if (!file_watch_) {
         return;
     }
     std::vector<std::filesystem::path> all = files_;
@@ -43,7 +39,7 @@ void SceneReloader::watch() {
     if (failed_) {
         all.push_back(scene_file_.parent_path());
     }
-    file_watch_.watch(all);
+    file_watch_->watch(all);
 }
 
 void SceneReloader::run(std::stop_token const& stop) {
@@ -58,11 +54,12 @@ bool SceneReloader::wait(std::stop_token const& stop) {
     std::unique_lock lock(mutex_);
     auto const is_asked = [this] { return asked_; };
     for (;;) {
-        bool const asked = watches_ ? told_.wait_for(lock, stop, interval, is_asked) : told_.wait(lock, stop, is_asked);
+        bool const asked =
+            file_watch_ ? told_.wait_for(lock, stop, interval, is_asked) : told_.wait(lock, stop, is_asked);
         if (stop.stop_requested()) {
             return false;
         }
-        bool const changed = watches_ && file_watch_.look(std::chrono::steady_clock::now());
+        bool const changed = file_watch_ && file_watch_->look(std::chrono::steady_clock::now());
         if (asked || changed) {
             asked_ = false;
             return true;

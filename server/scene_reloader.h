@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -20,11 +21,11 @@ public:
     using Load = std::function<std::shared_ptr<LoadedScene>()>;
     using Take = std::function<void(std::shared_ptr<LoadedScene>)>;
 
-    /// Has to be told to look before the scene is loaded for the first time, so that nothing is missed meanwhile.
-    SceneReloader(bool watches, std::filesystem::path scene_file, std::filesystem::path environment_file);
-
-    /// From now on scenes are loaded, until the end of its life. `load` throws where that fails.
-    void start(std::vector<std::filesystem::path> files, Load load, Take take);
+    /// Scenes are loaded until the end of its life. Without `watch` only where it is asked. `files` are what the scene
+    /// was made of that is served; `load` throws where it fails.
+    SceneReloader(std::optional<FileWatch> watch, std::filesystem::path const& scene_file,
+                  std::filesystem::path environment_file, std::vector<std::filesystem::path> files, Load load,
+                  Take take);
     /// From any thread: whether anything has changed or not.
     void ask();
 
@@ -36,11 +37,10 @@ private:
     bool wait(std::stop_token const& stop);
     void reload();
 
-    bool const watches_;
+    std::optional<FileWatch> file_watch_;
     std::filesystem::path const scene_file_, environment_file_;
     std::vector<std::filesystem::path> files_; ///< that the scene was made of
     bool failed_ = false; ///< the last time: what was missing may be any file of the folder
-    FileWatch file_watch_;
     Load load_;
     Take take_;
     std::mutex mutex_;

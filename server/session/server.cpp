@@ -1,5 +1,6 @@
 #include "server/session/server.h"
 
+#include <atomic>
 #include <csignal>
 #include <map>
 #include <mutex>
@@ -41,6 +42,8 @@ using std::chrono::steady_clock;
 namespace {
 
 constexpr std::chrono::seconds heartbeat{1};
+/// Without a heartbeat for so long something is wrong: a scene that is replaced holds it up for a moment.
+constexpr std::chrono::seconds healthy_pause{10};
 /// A connection whose bytes nobody confirms for so long is dropped by the kernel, milliseconds.
 constexpr unsigned user_timeout_ms = 15000;
 
@@ -107,8 +110,13 @@ struct Server::Impl {
     bool beats = false; ///< the next heartbeat is on its way
     bool ends = false; ///< and then none is
 
+    std::atomic<std::uint64_t> sent_bytes = 0, viewers = 0, scenes = 1; ///< counted for those who watch over the server
+    std::atomic<steady_clock::time_point> last_beat = steady_clock::now();
+    double earlier_rays = 0, earlier_busy_seconds = 0; ///< of loops before this one; under `sessions_mutex`
+
     std::shared_ptr<LoadedScene> loaded; ///< that the loop looks at; null: it is the caller's
-    std::unique_ptr<SessionLoop> loop; ///< replaced on the io thread only, while `loop_thread` is none
+    std::unique_ptr<SessionLoop>
+        loop; ///< replaced on the io thread only, under `sessions_mutex`, without `loop_thread`
     std::thread loop_thread;
 
     Impl(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene, ServerOptions const& given,
@@ -158,7 +166,14 @@ struct Server::Impl {
         while (give_up_longest_parked()) {
         }
         welcome = std::move(next_welcome);
-        loop = std::move(next_loop);
+        {
+            std::scoped_lock const lock(sessions_mutex);
+            earlier_rays += loop->rays();
+            earlier_busy_seconds += loop->busy_seconds();
+            std::swap(loop, next_loop);
+        }
+        next_loop.reset(); // before the scene that it looks at
+        ++scenes;
         loaded = std::move(next);
         start_loop();
     }
@@ -243,6 +258,7 @@ struct Server::Impl {
         events.resize = [this, id](Viewport viewport, bool predicts) { return reserve(id, viewport, predicts); };
         events.changed = [this] { loop->wake(); };
         events.ended = [this, id](std::string const& reason) { end_session(id, reason); };
+        events.sent = [this](std::size_t bytes) { sent_bytes += bytes; };
         return events;
     }
 
@@ -303,6 +319,7 @@ struct Server::Impl {
         }
         spdlog::info("viewer {} connects from {}", id, connection.session->peer());
         connection.admitted = true;
+        ++viewers;
         waiting.leave(id);
         control.enter(id, knows_control_token);
         Welcome answer = welcome;
@@ -489,6 +506,7 @@ struct Server::Impl {
         timer.async_wait([this](boost::system::error_code error) {
             beats = false;
             if (!error) {
+                last_beat = steady_clock::now();
                 drop_stuck_connections();
                 drop_remains();
                 drop_overdue_connections();
@@ -522,6 +540,21 @@ struct Server::Impl {
                 std::this_thread::sleep_for(std::chrono::milliseconds(5));
             }
         }
+    }
+
+    ServerFigures figures() const {
+        ServerFigures now;
+        now.healthy = steady_clock::now() - last_beat.load() < healthy_pause;
+        now.sessions = open_sessions().size();
+        now.viewers = viewers;
+        now.scenes = scenes;
+        now.sent_bytes = sent_bytes;
+        now.resident_bytes = resident_bytes();
+        std::scoped_lock const lock(sessions_mutex);
+        now.rays = earlier_rays + loop->rays();
+        now.busy_seconds = earlier_busy_seconds + loop->busy_seconds();
+        now.rays_per_second = loop->samples_per_second();
+        return now;
     }
 
     void wait_for_signal(std::function<bool()> hang_up) {
@@ -606,6 +639,10 @@ void Server::run(bool handle_signals, std::function<bool()> hang_up) {
 
 void Server::replace_scene(std::shared_ptr<LoadedScene> next) {
     asio::post(impl_->io, [this, next = std::move(next)]() mutable { impl_->replace_scene(std::move(next)); });
+}
+
+ServerFigures Server::figures() const {
+    return impl_->figures();
 }
 
 void Server::stop() {

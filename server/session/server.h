@@ -10,6 +10,7 @@
 
 #include "server/render/render_scene.h"
 #include "server/scene/scene.h"
+#include "server/session/server_figures.h"
 #include "server/session/session_loop.h"
 
 namespace framelet {
@@ -57,6 +58,8 @@ public:
     void replace_scene(std::shared_ptr<LoadedScene> next);
     /// From any thread.
     void stop();
+    /// What has been going on. From any thread.
+    ServerFigures figures() const;
 
 private:
     struct Impl;

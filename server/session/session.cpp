@@ -194,6 +194,9 @@ void Session::send_batch(std::shared_ptr<Message const> const& batch) {
     }
     double const now = seconds_of(std::chrono::steady_clock::now());
     std::size_t const bytes = stream_->send(*batch);
+    if (events_.sent) {
+        events_.sent(bytes);
+    }
     std::scoped_lock const lock(mutex_);
     waiting_events_.push_back({now, BatchSent{number, bytes}});
 }

@@ -30,8 +30,10 @@ public:
         std::function<std::optional<std::string>(Viewport, bool predicts)> resize;
         /// There is new input, or room for another batch.
         std::function<void()> changed;
-        /// Once, when the connection is over; `reason` is one line. The only one that may come from any thread.
+        /// Once, when the connection is over; `reason` is one line. This one and the next may come from any thread.
         std::function<void(std::string const& reason)> ended;
+        /// A batch of so many bytes was handed to the connection; empty: nobody counts them.
+        std::function<void(std::size_t bytes)> sent = {};
     };
 
     /// From the start of reading to Hello, a TLS handshake between them.

@@ -91,8 +91,10 @@ void SessionLoop::run() {
 /// A turn for each, and where there was nothing to do in them a wait.
 void SessionLoop::serve_once() {
     Sessions const sessions = events_.open_sessions();
-    bool const rendered = give_turns(sessions, std::chrono::steady_clock::now());
-    if (rendered || finish_rendered()) {
+    WallTime const began = std::chrono::steady_clock::now();
+    bool const worked = give_turns(sessions, began) || finish_rendered();
+    busy_seconds_ = busy_seconds_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    if (worked) {
         return;
     }
     // Nothing to do until a viewer or the clock says so. While the clock runs every display frame is worth a look.
@@ -252,6 +254,7 @@ bool SessionLoop::give_turn(std::shared_ptr<Session> const& session, Viewer& vie
 /// viewer's small batch that was interrupted: what a round rendered counts together.
 void SessionLoop::note_rate(TurnFigures const& figures, double seconds) {
     if (figures.rays > 0) {
+        rays_ = rays_ + static_cast<double>(figures.rays);
         round_.samples += static_cast<double>(figures.rays);
         round_.seconds += seconds;
     }

@@ -53,6 +53,9 @@ public:
 
     /// Counters for the status message. From any thread.
     double samples_per_second() const { return samples_per_second_; }
+    /// Likewise, since the loop's beginning: what was rendered for framelets, and how long there was something to do.
+    double rays() const { return rays_; }
+    double busy_seconds() const { return busy_seconds_; }
 
 private:
     struct Viewer;
@@ -92,6 +95,7 @@ private:
     bool wake_ = false;
     bool stop_ = false;
     std::atomic<double> samples_per_second_ = 0;
+    std::atomic<double> rays_ = 0, busy_seconds_ = 0; ///< written by the loop's thread alone
 };
 
 } // namespace framelet

@@ -1,4 +1,13 @@
-// What those who run the programs meet: what is asked of a scene without serving it, options in a file.
+// What those who run the programs meet: what is asked of a scene without serving it, options in a file, and the
+// port for those who watch over a server.
+#include <csignal>
+#include <thread>
+
+#include <boost/asio/connect.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -49,6 +58,108 @@ TEST(Operation, OptionsComeFromAFileToo) {
     Process absent(FRAMELET_CLIENT, {"--config", (folder.path() / "absent.toml").string()});
     EXPECT_EQ(absent.wait(patience), 1);
     EXPECT_TRUE(has(absent.errors(), "absent.toml")) << absent.errors();
+}
+
+namespace http = boost::beast::http;
+using boost::asio::ip::tcp;
+
+tcp::socket connected(boost::asio::io_context& io, std::string const& address) {
+    auto const colon = static_cast<std::ptrdiff_t>(address.rfind(':'));
+    tcp::socket socket(io);
+    boost::asio::connect(socket, tcp::resolver(io).resolve(std::string(address.begin(), address.begin() + colon),
+                                                           std::string(address.begin() + colon + 1, address.end())));
+    return socket;
+}
+
+http::response<http::string_body> ask(std::string const& address, std::string const& target,
+                                      http::verb verb = http::verb::get) {
+    boost::asio::io_context io;
+    tcp::socket socket = connected(io, address);
+    http::request<http::empty_body> request(verb, target, 11);
+    request.set(http::field::host, address);
+    http::write(socket, request);
+    boost::beast::flat_buffer buffer;
+    http::response<http::string_body> answer;
+    http::read(socket, buffer, answer);
+    return answer;
+}
+
+double metric(std::string const& page, std::string const& name) {
+    std::size_t const at = page.find("\n" + name + " ");
+    return at == std::string::npos ? -1 : std::stod(page.substr(at + name.size() + 2));
+}
+
+/// Where it answers, as it says it.
+std::string metrics_address(ServerProcess& server) {
+    std::string const before = "metrics at http://";
+    for (auto const end = std::chrono::steady_clock::now() + patience; std::chrono::steady_clock::now() < end;) {
+        std::string const told = server.process().output();
+        std::size_t const at = told.find(before);
+        if (std::size_t const slash = told.find("/metrics", at);
+            at != std::string::npos && slash != std::string::npos) {
+            return told.substr(at + before.size(), slash - at - before.size());
+        }
+    }
+    return "";
+}
+
+TEST(Operation, PrometheusAndHealthChecksAreAnswered) {
+    ServerProcess server(scene_file, {"--paused", "--insecure", "--metrics", "0"});
+    std::string const address = metrics_address(server);
+    ASSERT_TRUE(address.starts_with("127.0.0.1:")) << address;
+    EXPECT_EQ(ask(address, "/health").body(), "ok\n");
+    std::string const before = ask(address, "/metrics").body();
+    EXPECT_EQ(metric(before, "framelet_sent_bytes_total"), 0) << before;
+    Process client(FRAMELET_CLIENT, {server.address(), "--size", "64x64", "--until-converged"});
+    ASSERT_EQ(client.wait(patience), 0) << client.errors();
+    auto const page = ask(address, "/metrics");
+    EXPECT_TRUE(has(std::string(page[http::field::content_type]), "version=0.0.4"));
+    for (char const* const name : {"framelet_sent_bytes_total", "framelet_rays_total", "framelet_rays_per_second",
+                                   "framelet_busy_seconds_total", "process_resident_memory_bytes"}) {
+        EXPECT_GT(metric(page.body(), name), 0) << name << " in\n" << page.body();
+        EXPECT_TRUE(has(page.body(), std::string("# TYPE ") + name)) << name;
+    }
+    EXPECT_EQ(metric(page.body(), "framelet_viewers_total"), 1);
+    EXPECT_EQ(metric(page.body(), "framelet_scene_loads_total"), 1);
+    EXPECT_EQ(ask(address, "/").result(), http::status::not_found);
+    EXPECT_EQ(ask(address, "/metrics", http::verb::post).result(), http::status::method_not_allowed);
+}
+
+TEST(Operation, WhoAsksWithoutEndKeepsNobodyFromTheScene) {
+    ServerProcess server(scene_file, {"--paused", "--insecure", "--metrics", "0"});
+    std::string const address = metrics_address(server);
+    boost::asio::io_context io;
+    std::vector<tcp::socket> silent;
+    for (int i = 0; i < 40; ++i) {
+        silent.push_back(connected(io, address));
+    }
+    boost::system::error_code error;
+    silent.front().send(boost::asio::buffer(std::string(100000, 'x')), 0, error);
+    Process client(FRAMELET_CLIENT, {server.address(), "--size", "64x64", "--until-converged"});
+    EXPECT_EQ(client.wait(patience), 0) << client.errors();
+    silent.clear();
+    bool answers = false; // once it has seen that the others are gone
+    for (auto const end = std::chrono::steady_clock::now() + patience;
+         !answers && std::chrono::steady_clock::now() < end;) {
+        try {
+            answers = ask(address, "/health").result() == http::status::ok;
+        } catch (boost::system::system_error const&) {
+            std::this_thread::sleep_for(20ms);
+        }
+    }
+    EXPECT_TRUE(answers);
+    server.process().signal(SIGTERM);
+    EXPECT_EQ(server.process().wait(30s), 0);
+}
+
+TEST(Operation, AMetricsPortThatCannotBeHadIsSaidAtOnce) {
+    ServerProcess first(scene_file, {"--paused", "--metrics", "0"});
+    std::string const address = metrics_address(first);
+    Process second(FRAMELET_SERVER, {"absent.glb", "--port", "0", "--metrics", address.substr(address.rfind(':') + 1)});
+    EXPECT_EQ(second.wait(patience), 1);
+    EXPECT_TRUE(has(second.errors(), "--metrics")) << second.errors();
+    Process alone(FRAMELET_SERVER, {scene_file, "--metrics-bind", "127.0.0.1"});
+    EXPECT_EQ(alone.wait(patience), 2);
 }
 
 } // namespace
