@@ -52,11 +52,12 @@ struct Viewer {
     }
 
     bool sees(std::function<bool()> const& wanted) {
-        return eventually([&] {
-                   core->update_picture(picture, changed);
-                   return core->end_reason() || wanted();
-               }) &&
-               !core->end_reason();
+        bool const seen = eventually([&] {
+            core->update_picture(picture, changed);
+            return core->end_reason() || wanted();
+        });
+        core->update_picture(picture, changed); // what came between the picture and the answer
+        return seen && !core->end_reason();
     }
     bool comes_to_rest() {
         return sees([this] { return core->is_complete() && !core->interruption(); });
