@@ -48,7 +48,6 @@ constexpr Part parts[] = {
     {"planned together", &FrameletParts::planned_together},
     {"coarse first", &FrameletParts::coarse_first},
     {"four rays", &FrameletParts::four_rays},
-    {"looks", &FrameletParts::looks},
     {"restlessness", &FrameletParts::restlessness},
     {"rest", &FrameletParts::rest},
     {"held moments", &FrameletParts::held_moments},

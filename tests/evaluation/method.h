@@ -53,7 +53,6 @@ struct FrameletParts {
     bool planned_together = true; ///< samples of several cycles
     bool coarse_first = true; ///< after a change of light
     bool four_rays = true; ///< a sample, while anything moves
-    bool looks = true; ///< how fast they change is learnt
     bool restlessness = true; ///< what turns, outlines and reflections are expected to change
     // What the viewer does that moves what it holds.
     bool rest = true; ///< of bodies: they are held as what stands, by the server's knowledge too

@@ -202,7 +202,7 @@ TEST(AdaptiveRefresh, OfAMomentNoTileIsRenderedTwiceWithAsManyRays) {
             ++tiles;
         }
     });
-    EXPECT_GT(tiles, 1000u);
+    EXPECT_GT(tiles, 500u);
     synthetic.stop();
     EXPECT_LT(synthetic.finish(30), 30);
     EXPECT_TRUE(is_all_finest(synthetic.refresh));

@@ -404,41 +404,6 @@ TEST(Mirror, WhatLooksOtherwiseIsStaleUntilItComes) {
     EXPECT_TRUE(std::ranges::all_of(mirror.cells(), [](Cell const& cell) { return cell.stale == 0; }));
 }
 
-TEST(Mirror, WhatWasLooseIsMissedWhereOlderThingsShowThroughIt) {
-    auto const moved = [](int moment) { return view_at(Vec3(1e-4f * static_cast<float>(moment), 0, 0)); };
-    Tile const crown = make_tile(plane.pixel_depth(), 2, 3);
-    PixelRect const rect = plane.tile_rect(crown);
-    auto const piece_of = [](Tile tile, float depth) {
-        std::vector<Piece> pieces;
-        cut_pieces(render_tile(plane, tile, [depth](float, float) { return Seen{depth}; }), plane, 0, pieces);
-        return pieces;
-    };
-    for (bool const seen_again : {false, true}) {
-        Mirror mirror(viewport);
-        mirror.look(moved(0), no_motions);
-        mirror.add(moved(0).rays, no_motions, render_pieces(plane, plane.pixel_depth(), wall));
-        mirror.look(moved(1), no_motions);
-        std::vector<Piece> loose = piece_of(crown, 2.5f);
-        for (Piece& piece : loose) {
-            piece.is_loose = true;
-        }
-        mirror.add(moved(1).rays, no_motions, loose);
-        auto const wrong = [&] {
-            return std::ranges::count_if(mirror.cells(), [](Cell const& cell) { return cell.is_wrong; });
-        };
-        int moment = 2;
-        for (std::uint64_t i = 0; i + 1 < FrameletPool::recent_moments; ++i, ++moment) {
-            mirror.look(moved(moment), no_motions);
-            EXPECT_EQ(wrong(), 0);
-            mirror.add(moved(moment).rays, no_motions,
-                       piece_of(seen_again ? crown : make_tile(plane.pixel_depth(), 0, 0), 10));
-        }
-        mirror.look(moved(moment), no_motions);
-        EXPECT_EQ(mirror.cell((rect.left + 8) / cell_side, (rect.top + 8) / cell_side).is_wrong, !seen_again);
-        EXPECT_EQ(wrong(), seen_again ? 0 : 16) << "of the tile's cells";
-    }
-}
-
 TEST(PlaceGrid, EveryCellHasItsTurn) {
     for (int const spacing : {4, 8, 16}) {
         std::set<std::pair<float, float>> firsts;

@@ -21,8 +21,7 @@ struct ResponseLimits {
     // Of moments, for a viewer that moves what it holds:
     bool mirrors = true; ///< what the viewer shows says what is rendered; else what the places were last
     double visibility_share = 0.02; ///< of the samples, for rays that are not shaded
-    bool learns_looks = true; ///< how fast they change; else only what is expected to change fades
-    bool expects_change = true; ///< of what turns, of outlines and of reflections, though none was seen
+    bool expects_change = true; ///< of what turns, of outlines and of reflections
     bool plans_together = true; ///< the samples of several cycles; else of each on its own
     bool coarse_first = true; ///< where much is stale
     int most_rays = four_rays; ///< of a sample

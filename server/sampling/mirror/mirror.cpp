@@ -10,8 +10,6 @@ namespace {
 
 /// Inverse depths that differ by less than this share belong to one surface, besides by what pieces may be off.
 constexpr float same_surface = 0.02f;
-/// What is loose and has stopped showing is missed for so many moments more.
-constexpr std::uint64_t missed_moments = 3;
 /// A piece that covers less of a cell than this is not what it shows, where there is another.
 constexpr int least_share = cell_pixels / 2;
 /// More than a viewer can hold is not worth remembering as gone.
@@ -55,11 +53,6 @@ void Mirror::look(MirrorView const& view, BodyMotions const& motions) {
     for (Moment& moment : moments_) {
         draw(moment, 0, motions);
     }
-    for (Moment const& moment : moments_) {
-        if (!shows_loose(moment) && is_missed(moment)) {
-            miss(moment, motions);
-        }
-    }
 }
 
 float Mirror::luma_of(Cell const& cell, Vec2 at) const {
@@ -96,7 +89,7 @@ void Mirror::forget(std::span<SentTile const> framelets) {
 
 void Mirror::erase_forgotten() {
     for (Moment& moment : moments_) {
-        bool const loose = shows_loose(moment) || is_missed(moment);
+        bool const loose = shows_loose(moment);
         std::uint64_t last = 0; // pieces of a framelet follow each other
         bool is_gone = false;
         std::erase_if(moment.pieces, [&](Piece const& piece) {
@@ -245,35 +238,6 @@ bool Mirror::shows_loose(Moment const& moment) const {
            moment.number + FrameletPool::recent_moments > last_number_ + (awaits_moment_ ? 1 : 0);
 }
 
-/// What is loose in it may be behind nothing that shows, though it shows no longer.
-bool Mirror::is_missed(Moment const& moment) const {
-    return moment.number + FrameletPool::recent_moments + missed_moments > last_number_;
-}
-
-/// Where what is loose in a moment no longer shows, and only what is farther and was rendered before it does, the
-/// viewer shows that through it: crowns are full of such holes, and rays that are not shaded tell little of leaves.
-void Mirror::miss(Moment const& moment, BodyMotions const& motions) {
-    missed_.clear();
-    reproject(to_picture(moment, motions), moment.pieces, PieceKinds::loose, transforms_, missed_);
-    for (ReprojectedPiece const& missed : missed_) {
-        if (!missed.is_in_picture()) {
-            continue;
-        }
-        Vec2 const low = glm::max(missed.at - missed.half_side, Vec2(0)) / float{cell_side};
-        Vec2 const high = (missed.at + missed.half_side) / float{cell_side};
-        // Cells of which it covers the middle.
-        for (int row = static_cast<int>(low.y + 0.5f); row < std::min(static_cast<int>(high.y + 0.5f), rows_); ++row) {
-            for (int column = static_cast<int>(low.x + 0.5f);
-                 column < std::min(static_cast<int>(high.x + 0.5f), columns_); ++column) {
-                Cell& cell = cells_[index_of(column, row)];
-                bool const was_before = cell.is_shown() && moments_[cell.moment].number < moment.number;
-                cell.is_wrong =
-                    cell.is_wrong || (was_before && cell.inverse_depth < missed.inverse_depth * (1 - nearer_share));
-            }
-        }
-    }
-}
-
 PieceReprojection Mirror::to_picture(Moment const& moment, BodyMotions const& motions) const {
     return {moment.rays, target_, Vec2(columns_, rows_) * float{cell_side}, &motions}; // the last cells are whole, too
 }
@@ -282,8 +246,8 @@ PieceReprojection Mirror::to_picture(Moment const& moment, BodyMotions const& mo
 void Mirror::draw(Moment& moment, std::size_t first, BodyMotions const& motions) {
     moment.is_of_camera = same_camera(moment.rays, target_.rays);
     moment.reprojected.resize(first);
-    reproject(to_picture(moment, motions), std::span(moment.pieces).subspan(first),
-              shows_loose(moment) ? PieceKinds::all : PieceKinds::layered, transforms_, moment.reprojected);
+    reproject(to_picture(moment, motions), std::span(moment.pieces).subspan(first), shows_loose(moment), transforms_,
+              moment.reprojected);
     for (std::size_t i = first; i < moment.pieces.size(); ++i) {
         if (moment.reprojected[i].is_in_picture()) {
             ReprojectedPiece const& piece = moment.reprojected[i];

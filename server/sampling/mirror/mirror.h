@@ -15,9 +15,6 @@
 
 namespace framelet {
 
-/// What is nearer by less than this share of its inverse depth is not worth looking for: crowns are full of it.
-inline constexpr float nearer_share = 0.25f;
-
 class Mirror {
 public:
     explicit Mirror(Viewport viewport = {});
@@ -99,8 +96,6 @@ private:
     bool is_better(Moment const& moment, ReprojectedPiece const& reprojected, float inverse_depth, int share,
                    Cell const& cell) const;
     bool shows_loose(Moment const& moment) const;
-    bool is_missed(Moment const& moment) const;
-    void miss(Moment const& moment, BodyMotions const& motions);
 
     Viewport viewport_;
     int columns_, rows_;
@@ -117,7 +112,6 @@ private:
 
     std::vector<std::uint64_t> newest_batch_; ///< by cell
     std::vector<Piece> standing_, moving_; ///< scratch
-    std::vector<ReprojectedPiece> missed_; ///< scratch
     BodyTransforms transforms_; ///< scratch
 };
 

@@ -7,6 +7,8 @@
 namespace framelet {
 namespace {
 
+/// What is nearer by less than this share of its inverse depth is not worth looking for: crowns are full of it.
+constexpr float nearer_share = 0.25f;
 /// Beyond so many standard deviations it is a change, or where all probes around it together are.
 constexpr float doubt = 4;
 
@@ -48,6 +50,14 @@ struct Difference {
 
     bool beyond(float deviations) const { return luma * luma > deviations * deviations * chance; }
 };
+
+/// The squared luma by which two looks at one surface may differ by chance: of its detail what lies between the samples
+/// of both (`blur`: the sum of their spacings), a share that grows with the side of the piece of what is no slope;
+/// display steps. `detail` as of a piece, lengths in pixels of the same picture.
+float chance_difference(float detail, float blur, float side) {
+    constexpr float bend_share = 0.3f, rounding = 4e-6f;
+    return detail * (blur + bend_share * side) + rounding;
+}
 
 /// What a probe really shows with what the viewer does.
 Difference compare(Mirror const& mirror, Probe const& probe, float luma) {

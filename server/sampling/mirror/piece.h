@@ -24,7 +24,6 @@ struct Piece {
     /// it is of edges, which are most of a picture. Mean squared luma.
     float detail = 0;
     float fading = 0; ///< pixels of spacing a second: see `common/sample_worth.h`
-    float change = 0; ///< how fast its looks are known to change, mean squared luma a second
     SceneTime scene_time = 0; ///< when it was rendered
     Vec3 velocity{0}; ///< of what deforms, metres a second in the world at its scene time
     BodyNumber body = static_body;
@@ -40,16 +39,8 @@ struct Piece {
 /// Inverse depths of one surface differ by less than this share of the greater one.
 inline constexpr float surface_tolerance = 0.05f;
 
-/// The squared luma by which two looks at one surface may differ by chance: of its detail what lies between the samples
-/// of both (`blur`: the sum over both of their spacing, for each sample that is averaged), a share that grows with the
-/// side of the piece of what is no slope; display steps. `detail` as of a piece, lengths in pixels of the same picture.
-inline float chance_difference(float detail, float blur, float side) {
-    constexpr float bend_share = 0.3f, rounding = 4e-6f;
-    return detail * (blur + bend_share * side) + rounding;
-}
-
 /// Appends the pieces of a framelet of a scene time and a batch: for each layer, squares of 4 .. 16 pixels or what of
-/// them lies on it; what is loose in a square is split in a near and a far part. `fading` and `change` stay 0. All
+/// them lies on it; what is loose in a square is split in a near and a far part. `fading` stays 0. All
 /// numbers are finite where those of the shape are.
 void cut_pieces(Framelet const& rendered, DisplayFramelet const& shown, FrameletShape const& shape,
                 ImagePlane const& plane, SceneTime scene_time, std::uint64_t batch, std::vector<Piece>& pieces);

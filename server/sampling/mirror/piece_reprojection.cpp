@@ -112,7 +112,7 @@ bool same_camera(ViewRays const& a, ViewRays const& b) {
            a.direction_dy == b.direction_dy;
 }
 
-void reproject(PieceReprojection const& reprojection, std::span<Piece const> pieces, PieceKinds kinds,
+void reproject(PieceReprojection const& reprojection, std::span<Piece const> pieces, bool with_loose,
                BodyTransforms& transforms, std::vector<ReprojectedPiece>& reprojected) {
     ++transforms.stamp;
     SceneTime const last_jump = reprojection.motions->last_jump(reprojection.display.scene_time);
@@ -121,11 +121,11 @@ void reproject(PieceReprojection const& reprojection, std::span<Piece const> pie
         if (i > 0 && piece.scene_time != pieces[i - 1].scene_time) {
             ++transforms.stamp; // bodies were elsewhere
         }
-        bool const wanted = kinds == PieceKinds::all || piece.is_loose == (kinds == PieceKinds::loose);
         auto const age = static_cast<float>(reprojection.display.scene_time - piece.scene_time);
         reprojected.push_back(
-            wanted ? reproject(piece, transform_of(reprojection, piece, transforms), reprojection.display_size, age)
-                   : ReprojectedPiece{});
+            with_loose || !piece.is_loose
+                ? reproject(piece, transform_of(reprojection, piece, transforms), reprojection.display_size, age)
+                : ReprojectedPiece{});
         reprojected.back().is_outdated = piece.scene_time < last_jump;
     }
 }

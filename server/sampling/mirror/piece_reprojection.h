@@ -62,11 +62,9 @@ struct PieceReprojection {
     BodyMotions const* motions = nullptr; ///< not null
 };
 
-enum class PieceKinds { all, layered, loose };
-
-/// Appends one to `reprojected` for each piece; those of other kinds, what lies outside the picture and what is too
-/// coarse or too uncertain to hide anything are not in the picture.
-void reproject(PieceReprojection const& reprojection, std::span<Piece const> pieces, PieceKinds kinds,
+/// Appends one to `reprojected` for each piece; what is loose unless `with_loose`, what lies outside the picture and
+/// what is too coarse or too uncertain to hide anything are not in the picture.
+void reproject(PieceReprojection const& reprojection, std::span<Piece const> pieces, bool with_loose,
                BodyTransforms& transforms, std::vector<ReprojectedPiece>& reprojected);
 
 } // namespace framelet

@@ -335,8 +335,7 @@ void AdaptiveRefresh::note_sent(RefreshPlan const& plan, std::uint64_t batch,
                                 std::span<DisplayFramelet const> framelets, std::span<Framelet const> rendered,
                                 std::span<std::uint8_t const> sent, std::span<FrameletShape> shapes) {
     if (plan.moment.motions != nullptr && plan.viewport == field_.plane().viewport()) {
-        moments_.note_sent(plan.moment, batch, framelets, rendered, sent, shapes,
-                           plan.is_mirrored && plan.limits.learns_looks, plan.limits.expects_change);
+        moments_.note_sent(plan.moment, batch, framelets, rendered, sent, shapes, plan.limits.expects_change);
     }
 }
 

@@ -64,12 +64,12 @@ bool shows_means(Piece const& piece, bool stands) {
 /// wear by less than what they are finer.
 bool stays(Mirror const& mirror, Cell const& cell) {
     constexpr float most_fading = 0.25f; // pixels a second
-    if (!mirror.camera_stands() || !cell.is_shown() || !mirror.gives_way(cell) || cell.is_outdated ||
-        cell.is_wrong || cell.stale > 0) {
+    if (!mirror.camera_stands() || !cell.is_shown() || !mirror.gives_way(cell) || cell.is_outdated || cell.is_wrong ||
+        cell.stale > 0) {
         return false;
     }
     Piece const& piece = mirror.piece_of(cell);
-    return (!piece.moves || piece.rests) && piece.change == 0 && piece.fading < most_fading;
+    return (!piece.moves || piece.rests) && piece.fading < most_fading;
 }
 
 /// Mean squared error of samples `spacing` pixels apart (worn), of a surface of such `detail` (see `Piece`): what is

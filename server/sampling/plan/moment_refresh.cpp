@@ -2,6 +2,7 @@
 
 #include "common/error.h"
 #include "server/sampling/mirror/mirror_checks.h"
+#include "server/sampling/plan/fading.h"
 
 namespace framelet {
 namespace {
@@ -68,10 +69,9 @@ void MomentRefresh::note_looks(RenderedMoment const& moment, std::span<Probe con
 
 void MomentRefresh::note_sent(RenderedMoment const& moment, std::uint64_t batch,
                               std::span<DisplayFramelet const> framelets, std::span<Framelet const> rendered,
-                              std::span<std::uint8_t const> sent, std::span<FrameletShape> shapes, bool compares,
+                              std::span<std::uint8_t const> sent, std::span<FrameletShape> shapes,
                               bool expects_change) {
     FRAMELET_CHECK(framelets.size() == sent.size() && rendered.size() == sent.size());
-    bool const comparable = compares && mirror_.looks_at(view_of(moment));
     ImagePlane const plane(mirror_.viewport());
     pieces_.clear();
     auto shape = shapes.begin();
@@ -82,8 +82,9 @@ void MomentRefresh::note_sent(RenderedMoment const& moment, std::uint64_t batch,
             std::span<Piece> const pieces = std::span(pieces_).subspan(first);
             bool const rests = is_at_rest(*shape, moment.scene_time, *moment.motions);
             std::ranges::for_each(pieces, [&](Piece& piece) { piece.rests = rests; });
-            shape->fading = learn_fading(mirror_, pieces, moment.scene_time, comparable,
-                                         shape->layer_count > 1 || !shape->loose_samples.empty(), expects_change);
+            bool const has_outline = shape->layer_count > 1 || !shape->loose_samples.empty();
+            shape->fading =
+                expects_change ? expect_fading(pieces, mirror_.camera_stands(), has_outline) : FadingCode{0};
             ++shape;
         }
     }

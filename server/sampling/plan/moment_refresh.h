@@ -11,7 +11,6 @@
 #include "server/render/probe.h"
 #include "server/sampling/field/meeting_bodies.h"
 #include "server/sampling/mirror/mirror.h"
-#include "server/sampling/plan/looks.h"
 #include "server/sampling/plan/moment_plan.h"
 
 namespace framelet {
@@ -51,11 +50,10 @@ public:
                     int probe_spacing);
 
     /// The viewer gets those framelets for which `sent` is not 0, in a batch of this number, with these shapes, in
-    /// order; sets how soon what they show fades. `compares`: what shows of the moment tells how its looks change.
-    /// `expects_change`: as of `learn_fading`.
+    /// order; sets how soon what they show fades, unless nothing is expected to change.
     void note_sent(RenderedMoment const& moment, std::uint64_t batch, std::span<DisplayFramelet const> framelets,
                    std::span<Framelet const> rendered, std::span<std::uint8_t const> sent,
-                   std::span<FrameletShape> shapes, bool compares, bool expects_change = true);
+                   std::span<FrameletShape> shapes, bool expects_change = true);
     /// The viewer no longer holds these.
     void forget(std::span<SentTile const> framelets) { mirror_.forget(framelets); }
     /// The viewer is told that it holds all of the picture.

@@ -169,7 +169,6 @@ private:
         limits.plans_together = parts.planned_together;
         limits.coarse_first = parts.coarse_first;
         limits.most_rays = parts.four_rays ? four_rays : single_ray;
-        limits.learns_looks = parts.looks;
         limits.expects_change = parts.restlessness;
         return limits;
     }

@@ -1,0 +1,17 @@
+// How soon what a framelet shows is expected to fade. Motion is no change, the viewer has moved what it holds; but what
+// turns looks otherwise in the light, and so do outlines and reflections before a camera that moves. What else changes,
+// as a shadow does that passes, is found by probes. In: the pieces of a framelet. Out: how soon they fade.
+#pragma once
+
+#include <span>
+
+#include "common/sample_worth.h"
+#include "server/sampling/mirror/piece.h"
+
+namespace framelet {
+
+/// Sets the pieces' `fading` and returns its code. `camera_stands`: it does not move; `has_outline`: the framelet shows
+/// more than one surface.
+FadingCode expect_fading(std::span<Piece> pieces, bool camera_stands, bool has_outline);
+
+} // namespace framelet
