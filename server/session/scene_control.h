@@ -2,6 +2,8 @@
 // whether one may. A value.
 #pragma once
 
+#include <algorithm>
+#include <compare>
 #include <cstdint>
 #include <set>
 
@@ -14,20 +16,22 @@ class SceneControl {
 public:
     explicit SceneControl(ControlRule rule) : rule_(rule) {}
 
-    /// `id` counts up from viewer to viewer.
-    void enter(std::uint64_t id, bool knows_token) {
+    /// `seat` counts up from viewer to viewer; one that comes back has the seat that it had.
+    void enter(std::uint64_t id, std::uint64_t seat, bool knows_token) {
         if (rule_ == ControlRule::first || knows_token) {
-            candidates_.insert(id);
+            candidates_.insert({seat, id});
         }
     }
-    void leave(std::uint64_t id) { candidates_.erase(id); }
+    void leave(std::uint64_t id) {
+        std::erase_if(candidates_, [id](Candidate const& candidate) { return candidate.id == id; });
+    }
 
     bool controls(std::uint64_t id) const {
         switch (rule_) {
         case ControlRule::first:
-            return !candidates_.empty() && *candidates_.begin() == id;
+            return !candidates_.empty() && candidates_.begin()->id == id;
         case ControlRule::token:
-            return candidates_.contains(id);
+            return std::ranges::find(candidates_, id, &Candidate::id) != candidates_.end();
         case ControlRule::everybody:
             break;
         }
@@ -36,7 +40,11 @@ public:
 
 private:
     ControlRule rule_;
-    std::set<std::uint64_t> candidates_;
+    struct Candidate {
+        std::uint64_t seat = 0, id = 0;
+        auto operator<=>(Candidate const&) const = default;
+    };
+    std::set<Candidate> candidates_;
 };
 
 } // namespace framelet

@@ -321,10 +321,8 @@ struct Server::Impl {
         connection.admitted = true;
         ++viewers;
         waiting.leave(id);
-        control.enter(id, knows_control_token);
         Welcome answer = welcome;
         answer.clock = clock.state(steady_clock::now());
-        answer.controls = control.controls(id);
         if (holder != nullptr && !resume(*holder, connection.session, hello, knows_control_token)) {
             give_up(*holder);
             holder = nullptr;
@@ -333,9 +331,12 @@ struct Server::Impl {
             answer.resumed = true;
             answer.let_go = connection.session->status().let_go;
         } else {
-            tickets.issue({make_ticket(), connection.session, hello.codings, knows_control_token, std::nullopt});
+            tickets.issue({make_ticket(), connection.session, id, hello.codings, knows_control_token, std::nullopt});
+            holder = tickets.of(*connection.session);
         }
-        answer.ticket = tickets.of(*connection.session)->ticket;
+        answer.ticket = holder->ticket;
+        control.enter(id, holder->seat, knows_control_token);
+        answer.controls = control.controls(id);
         return answer;
     }
 

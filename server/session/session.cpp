@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "common/error.h"
+#include "server/session/session_memory.h"
 
 namespace framelet {
 namespace {
@@ -184,7 +185,7 @@ void Session::send_batch(std::shared_ptr<Message const> const& batch) {
         if (!open_) {
             return;
         }
-        while (kept_bytes_ > most_kept_bytes) {
+        while (kept_bytes_ > most_kept_bytes) { // who lacks the oldest cannot go on
             drop_kept();
         }
         if (last_batch_ == last_ack_) {

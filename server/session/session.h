@@ -42,8 +42,6 @@ public:
     static constexpr std::chrono::seconds camera_timeout{10};
     /// A viewer that owes an acknowledgement for so long is taken for gone.
     static constexpr std::chrono::seconds ack_timeout{30};
-    /// What is kept of batches that have no answer. Of more the oldest are not, and who lacks those cannot go on.
-    static constexpr std::size_t most_kept_bytes = std::size_t{16} << 20;
 
     Session(std::uint64_t id, std::shared_ptr<FramedStream> stream, Events events);
 

@@ -12,8 +12,12 @@
 
 namespace framelet {
 
-/// What the server keeps for one viewer, about: what it knows of its picture, and what the viewer holds. `predicts`:
-/// whether framelets are predicted. What waits for its socket is bounded by `max_unsent_bytes`, and not in here.
+/// At most so much is kept of batches that a viewer has not answered, for when it comes back.
+inline constexpr std::size_t most_kept_bytes = std::size_t{16} << 20;
+
+/// What the server keeps for one viewer, about: what it knows of its picture, what the viewer holds, and batches
+/// without an answer. `predicts`: whether framelets are predicted. What waits for its socket is bounded by
+/// `max_unsent_bytes`, and not in here.
 std::size_t session_bytes(Viewport viewport, bool predicts);
 
 class SessionMemory {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -21,6 +22,7 @@ public:
     struct Holder {
         Ticket ticket{};
         std::shared_ptr<Session> session; ///< the newest of this viewer
+        std::uint64_t seat = 0; ///< the number of its first session
         std::uint32_t codings = 0;
         bool knows_control_token = false;
         std::optional<Time> parked; ///< since when it is; nothing: it is here

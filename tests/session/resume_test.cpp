@@ -43,6 +43,7 @@ public:
             return false;
         }
         is_resumed = welcome->resumed;
+        controls = welcome->controls;
         let_go = welcome->let_go;
         hello.ticket = welcome->ticket;
         if (!is_resumed) {
@@ -98,6 +99,7 @@ public:
 
     Hello hello; ///< of the next connection
     bool is_resumed = false;
+    bool controls = false; ///< the clock, as its Welcome says
     std::uint64_t let_go = 0; ///< as the server says
     std::uint64_t framelets = 0;
     std::vector<EncodedBatch> batches;
@@ -272,6 +274,18 @@ TEST(ResumeTicket, WhatDoesNotFitBeginsAnew) {
         viewer.look(1);
         ASSERT_TRUE(viewer.watch());
     }
+}
+
+TEST(ResumeTicket, WhoHadTheClockHasItAgain) {
+    RunningServer const server(still());
+    Returning first(server.port()), second(server.port());
+    EXPECT_TRUE(first.controls);
+    EXPECT_FALSE(second.controls);
+    ASSERT_TRUE(first.connect());
+    ASSERT_TRUE(first.is_resumed);
+    EXPECT_TRUE(first.controls);
+    ASSERT_TRUE(second.connect());
+    EXPECT_FALSE(second.controls);
 }
 
 TEST(ResumeTicket, IsOfThoseWhoKnowTheSameToken) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "fake_stream.h"
+#include "server/session/session_memory.h"
 
 namespace framelet {
 namespace {
@@ -93,7 +94,7 @@ TEST(Session, GoesOnAfterACutFromWhateverIsKept) {
     viewer.session->start();
     viewer.stream->bring(Hello{});
     for (std::uint64_t number = 1; number <= 5; ++number) {
-        viewer.session->send_batch(batch_of_bytes(number, Session::most_kept_bytes / 3));
+        viewer.session->send_batch(batch_of_bytes(number, most_kept_bytes / 3));
     }
     viewer.stream->bring(Ack{1, 0, 0});
     EXPECT_FALSE(viewer.session->can_be_resumed(5)) << "it is open";

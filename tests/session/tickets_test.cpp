@@ -10,8 +10,9 @@ namespace {
 using namespace std::chrono_literals;
 
 Tickets::Holder holder(std::uint64_t number) {
-    return {
-        {number, 7}, std::make_shared<Session>(number, std::make_shared<FakeStream>(), Session::Events{}), {}, {}, {}};
+    return {{number, 7}, std::make_shared<Session>(number, std::make_shared<FakeStream>(), Session::Events{}),
+            number,      {},
+            {},          {}};
 }
 
 TEST(Tickets, WhoIsAwayForTooLongIsGivenUpTheFirstFirst) {
