@@ -1,5 +1,5 @@
-// Mixing of bits: for fingerprints of what is compared only with what the same program saw before, for places in tables and
-// for numbers that look random. No protection from somebody who wants two values to be alike.
+// Mixing of bits: for fingerprints of what is compared only with what the same program saw before, for places in tables
+// and for numbers that look random. No protection from somebody who wants two values to be alike.
 #pragma once
 
 #include <cstdint>

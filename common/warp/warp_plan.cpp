@@ -89,8 +89,7 @@ void WarpPlan::make(FrameletCache const& cache, std::size_t slot, bool loose, Ca
     set_size(cache.plane().viewport());
     set_squares(cache);
     SceneTime const last_jump = motions.last_jump(display_time);
-    bool const is_new =
-        is_limited_ || loose != loose_ || !(display == display_) || last_jump != last_jump_;
+    bool const is_new = is_limited_ || loose != loose_ || !(display == display_) || last_jump != last_jump_;
     last_jump_ = last_jump;
     display_ = display;
     loose_ = loose;

@@ -142,8 +142,8 @@ EncodedBatch BatchCodec::encode(Batch const& batch, HeldPicture* held) {
         held->take(is_predicted ? std::span<DisplayFramelet const>(decoded) : batch.framelets);
     }
 
-    EncodedBatch encoded{batch.number, batch.view, batch.scene_time, batch.shown_from,
-                         batch.outdates, {}, join_frames(frames)};
+    EncodedBatch encoded{batch.number,   batch.view, batch.scene_time,   batch.shown_from,
+                         batch.outdates, {},         join_frames(frames)};
     encoded.encoding = is_predicted      ? SampleEncoding::predicted
                        : quality.empty() ? SampleEncoding::exact
                                          : SampleEncoding::haar;

@@ -181,7 +181,8 @@ struct Scene {
     std::vector<Light> lights;
     std::vector<SceneCamera> cameras;
     std::vector<std::string> warnings; ///< one line each: what of the file was passed over
-    std::vector<std::filesystem::path> files; ///< that it was made of, or would be were they there; the scene file first
+    std::vector<std::filesystem::path>
+        files; ///< that it was made of, or would be were they there; the scene file first
 };
 
 } // namespace framelet

@@ -12,9 +12,7 @@ namespace {
 
 class Digest {
 public:
-    void add(std::string_view bytes) {
-        value_ = mix_in(value_, std::hash<std::string_view>{}(bytes) ^ bytes.size());
-    }
+    void add(std::string_view bytes) { value_ = mix_in(value_, std::hash<std::string_view>{}(bytes) ^ bytes.size()); }
     template <typename Value>
     void add(std::vector<Value> const& values) {
         static_assert(std::is_trivially_copyable_v<Value>);

@@ -65,7 +65,7 @@ Picture render_reference(BenchScene const& scene, Viewport viewport, int samples
                     int const x = column * block + i % block;
                     int const y = row * block + i / block;
                     std::uint32_t const h = mix_bits(mix_bits(static_cast<std::uint32_t>(y * viewport.width + x)) +
-                                                        static_cast<std::uint32_t>(s));
+                                                     static_cast<std::uint32_t>(s));
                     Vec2 const in_stratum(fraction(h), fraction(mix_bits(h ^ 0x9e3779b9u)));
                     Vec2 const corner(s % samples_per_side, s / samples_per_side);
                     places[next++] = Vec2(x, y) + (corner + in_stratum) * stratum;

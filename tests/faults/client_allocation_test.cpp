@@ -1,5 +1,5 @@
-// Memory that runs out anywhere in a viewer: a call throws, or the session ends and another begins, or nothing is missed;
-// what goes on comes to the exact picture.
+// Memory that runs out anywhere in a viewer: a call throws, or the session ends and another begins, or nothing is
+// missed; what goes on comes to the exact picture.
 #include <gtest/gtest.h>
 
 #include "client/core/client_core.h"

@@ -58,7 +58,8 @@ TEST(ClockJump, ASessionGoesOn) {
     auto const real_time = std::chrono::system_clock::now();
     for (time_t const seconds : {86'400, -86'400, 400'000'000, -400'000'000, 0}) {
         jump = seconds;
-        auto const jumped = std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now() - real_time);
+        auto const jumped =
+            std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now() - real_time);
         ASSERT_LT(std::abs(jumped.count() - seconds), 60) << "the clock has been set";
         EXPECT_TRUE(batches_come());
         EXPECT_EQ(core.statistics().reconnections, 0u);
@@ -71,8 +72,8 @@ TEST(ClockJump, ASessionGoesOn) {
 /// Of all that is delivered: a certificate's dates are OpenSSL's, names of files and lines of logs decide nothing.
 TEST(ClockJump, NobodyReadsTheSystemsClockButForNamesAndLogs) {
     std::set<std::string> const names_and_logs{"client/window/viewer.cpp", "client/windowless_main.cpp"};
-    char const* const words[] = {"system_clock", "std::time(", "::time(", "gettimeofday", "CLOCK_REALTIME",
-                                 "utc_clock",    "file_clock", "localtime"};
+    char const* const words[] = {"system_clock",   "std::time(", "::time(",    "gettimeofday",
+                                 "CLOCK_REALTIME", "utc_clock",  "file_clock", "localtime"};
     std::filesystem::path const source = FRAMELET_SOURCE_DIR;
     std::set<std::string> readers;
     std::size_t files = 0;

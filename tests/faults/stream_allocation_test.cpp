@@ -25,8 +25,8 @@ public:
     /// `offset`: by which its camera is apart from another's.
     explicit PlayedStream(float offset) : offset_(offset), stream_(StreamOptions{}, coding::all) {}
 
-    /// What comes before the turn, and the turn as a whole; what it sends goes into `bytes`. A narrow link, so that there
-    /// is loss, prediction, and something to send once more.
+    /// What comes before the turn, and the turn as a whole; what it sends goes into `bytes`. A narrow link, so that
+    /// there is loss, prediction, and something to send once more.
     void play(int turn, PosedScene& scene, Bytes& bytes) {
         double const now = 0.02 * turn;
         if (turn == 0) {

@@ -1,5 +1,5 @@
-// Programs that stand still for a while, as under a debugger, on a machine that sleeps or in a container that is frozen:
-// what was going on goes on.
+// Programs that stand still for a while, as under a debugger, on a machine that sleeps or in a container that is
+// frozen: what was going on goes on.
 #include <csignal>
 #include <thread>
 

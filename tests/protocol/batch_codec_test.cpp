@@ -197,7 +197,8 @@ TEST(BatchCodec, GoldenPayload) {
         0x02, 0x00, 0x7b, 0x6a, 0x5f, 0xdd, 0x53, 0xb2, 0x2c, 0xcb, 0xb2, 0x2c, 0xcb, 0xb2, 0x2c, 0xcb,
         0xb2, 0x2c, 0xcb, 0xb2, 0x2c, 0xcb, 0xb2, 0x2c, 0xcb, 0xb2, 0x2c, 0xcb, 0xb2, 0x2c, 0xcb, 0x01};
     Batch const batch = documented_batch();
-    EncodedBatch encoded{batch.number, batch.view, batch.scene_time, batch.shown_from, batch.outdates, {}, Bytes(golden.size())};
+    EncodedBatch encoded{batch.number,   batch.view, batch.scene_time,    batch.shown_from,
+                         batch.outdates, {},         Bytes(golden.size())};
     encoded.tiles = {batch.framelets[0].tile, batch.framelets[1].tile};
     std::transform(golden.begin(), golden.end(), encoded.payload.begin(),
                    [](unsigned b) { return static_cast<std::byte>(b); });

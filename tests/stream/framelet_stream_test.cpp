@@ -59,8 +59,14 @@ TEST(FrameletStream, BeforeAJumpAMomentIsOfWhatComesAfterAndWaits) {
         double speed;
         SceneTime moment, shown_from;
     };
-    for (Case const& wanted : {Case{0.5, 1, 0.6, 0}, {0.85, 1, 1, 1}, {0.99, 1, 1, 1}, {1, 1, 1.1, 0}, {0.75, 2, 1, 1},
-                               {0.85, 0, 0.85, 0}, {0.95, -1, 0.85, 0}, {0.3, 8, 1.1, 0}}) {
+    for (Case const& wanted : {Case{0.5, 1, 0.6, 0},
+                               {0.85, 1, 1, 1},
+                               {0.99, 1, 1, 1},
+                               {1, 1, 1.1, 0},
+                               {0.75, 2, 1, 1},
+                               {0.85, 0, 0.85, 0},
+                               {0.95, -1, 0.85, 0},
+                               {0.3, 8, 1.1, 0}}) {
         Served served({}, jumping_scene());
         served.look({}, 1, 10);
         ASSERT_EQ(served.plan(10, wanted.present, wanted.speed), Step::render);

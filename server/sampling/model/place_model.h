@@ -2,11 +2,11 @@
 // that detail passes. In: rendered framelets, beside what the same tile showed before. Out: the error that a viewer
 // would see, in mean squared difference of display-encoded luma, for any spacing and any age.
 //
-// The model (of our own, in no paper): detail is kept by bands, each of them what one more level of the quadtree resolves. A
-// band that is not sampled is missing from the picture and costs its energy E. A band that is sampled but no longer
-// true costs up to twice its energy, 2 E (1 - exp(-drift w)), where drift is how far the content has moved since, in
-// units common to all bands, and w is how much sooner than others the band passes. Where that has not been seen, w
-// doubles from a band to the next finer one.
+// The model (of our own, in no paper): detail is kept by bands, each of them what one more level of the quadtree
+// resolves. A band that is not sampled is missing from the picture and costs its energy E. A band that is sampled but
+// no longer true costs up to twice its energy, 2 E (1 - exp(-drift w)), where drift is how far the content has moved
+// since, in units common to all bands, and w is how much sooner than others the band passes. Where that has not been
+// seen, w doubles from a band to the next finer one.
 #pragma once
 
 #include <array>

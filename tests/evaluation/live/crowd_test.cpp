@@ -1,5 +1,5 @@
-// Some viewers of one server, once by themselves and once beside one that reads nothing: that all of them are served and
-// counted. How well is what `framelet-bench live --viewers` is run for.
+// Some viewers of one server, once by themselves and once beside one that reads nothing: that all of them are served
+// and counted. How well is what `framelet-bench live --viewers` is run for.
 #include "tests/evaluation/live/crowd.h"
 
 #include <gtest/gtest.h>

@@ -53,7 +53,8 @@ Trend trend_of(std::span<double const> times, std::span<double const> values) {
 }
 
 bool grows(Trend const& trend, double span, double share) {
-    // The quantile of Student's t, to some percent from four degrees of freedom on: 7.17, 4.14 with ten, 3.09 with many.
+    // The quantile of Student's t, to some percent from four degrees of freedom on: 7.17, 4.14 with ten, 3.09 with
+    // many.
     double const freedom = static_cast<double>(trend.points) - 2;
     double const most_by_chance = 3.09 + 9.2 / freedom + 28 / (freedom * freedom);
     return trend.slope > most_by_chance * trend.slope_error && trend.slope * span > share * trend.mean;
