@@ -4,7 +4,6 @@
 #include <string>
 
 #include "client/core/server_address.h"
-#include "common/camera.h"
 #include "common/command_line.h"
 
 namespace framelet {
@@ -28,8 +27,5 @@ ConnectionOptions make_connection_options(ConnectionArguments const& arguments);
 
 /// From --token-file; empty without one. Throws InputError.
 std::string read_token(ConnectionArguments const& arguments);
-
-/// Reads WIDTHxHEIGHT. Throws InputError.
-Viewport parse_size(std::string const& text);
 
 } // namespace framelet

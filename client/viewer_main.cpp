@@ -5,10 +5,25 @@
 
 #include "client/connection_arguments.h"
 #include "client/display_arguments.h"
+#include "client/picture_size.h"
 #include "client/window/first_connection.h"
 #include "client/window/viewer.h"
 #include "common/error.h"
 #include "common/program_failure.h"
+
+namespace {
+
+framelet::ProgramNotes notes() {
+    return {
+        "Where the server is not there yet the window waits for it. Where it is gone for a while, what is held goes on "
+        "being shown, and the session goes on when it is back; see --no-reconnect.",
+        {{0, "fine"},
+         {1, "no display, a file cannot be used, or the server cannot be reached, refused the viewer or has vanished"},
+         {2, "bad usage"}},
+        {"framelet", "framelet-server", "framelet-client"}};
+}
+
+} // namespace
 
 int main(int argc, char** argv) {
     using namespace framelet;
@@ -19,11 +34,7 @@ int main(int argc, char** argv) {
     DisplayArguments display;
 
     CLI::App app("Shows a scene that framelet-server renders. F1 in the window lists the keys.", "framelet-viewer");
-    prepare_command_line(app);
-    app.footer("Where the server is not there yet the window waits for it. Where it is gone for a while, what is\nheld "
-               "goes on being shown, and the session goes on when it is back; see --no-reconnect.\n\nExit codes:\n  0  "
-               "fine\n  1  no display, a file cannot be used, or the server cannot be reached, refused the viewer or "
-               "has\n     vanished\n  2  bad usage");
+    prepare_command_line(app, notes());
     add_connection_options(app, arguments)->capture_default_str();
     app.option_defaults()->group("Window");
     app.add_option("--size", size, "Size of the window in pixels")

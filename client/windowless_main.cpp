@@ -14,6 +14,7 @@
 #include "client/frame_choice.h"
 #include "client/frame_log.h"
 #include "client/frame_writer.h"
+#include "client/picture_size.h"
 #include "client/statistics_text.h"
 #include "common/color.h"
 #include "common/cpu_clock.h"
@@ -45,24 +46,25 @@ struct Options {
     std::optional<double> seek;
 };
 
-constexpr char const* footer = R"(The camera file is JSON: {"position": [x,y,z], "target": [x,y,z], "up": [0,1,0],
-"fov_degrees": 45} stands still ("up" and "fov_degrees" may be left out);
-{"keys": [{"time": seconds, "position": ..., "target": ...}, ...]} flies smoothly
-through the keys; {"scene_camera": 0} looks through a camera of the scene.
+ProgramNotes notes() {
+    return {
+        R"(The camera file is JSON: {"position": [x,y,z], "target": [x,y,z], "up": [0,1,0], "fov_degrees": 45} stands still
+("up" and "fov_degrees" may be left out); {"keys": [{"time": seconds, "position": ..., "target": ...}, ...]} flies
+smoothly through the keys; {"scene_camera": 0} looks through a camera of the scene.
 
-Frames are compressed and written by a thread of their own while batches go on
-arriving; where it cannot keep up, frames are shown later, none is left out.
+Frames are compressed and written by a thread of their own while batches go on arriving; where it cannot keep up, frames
+are shown later, none is left out.
 
-Where the server is gone for a while, what is held goes on being shown, and the
-session goes on when it is back; see --no-reconnect.
+Where the server is gone for a while, what is held goes on being shown, and the session goes on when it is back; see
+--no-reconnect.
 
-SIGINT (Ctrl-C) and SIGTERM end it as the end of --duration does.
-
-Exit codes:
-  0  fine
-  1  a file cannot be used, the server cannot be reached, refused the client or was gone at the
-     end, or the picture did not converge in time
-  2  bad usage)";
+SIGINT (Ctrl-C) and SIGTERM end it as the end of --duration does.)",
+        {{0, "fine"},
+         {1, "a file cannot be used, the server cannot be reached, refused the client or was gone at the end, or the "
+             "picture did not converge in time"},
+         {2, "bad usage"}},
+        {"framelet-server", "framelet-viewer", "framelet"}};
+}
 
 /// The number of the kind in place of its name, which is what CLI11 reads an enumeration from.
 CLI::Validator overlay_kind() {
@@ -266,8 +268,7 @@ int main(int argc, char** argv) {
     Options options;
     CLI::App app("Looks at a scene that framelet-server renders, without a window: writes pictures and statistics.",
                  "framelet-client");
-    prepare_command_line(app);
-    app.footer(footer);
+    prepare_command_line(app, notes());
     add_connection_options(app, options.connection)->required();
     app.option_defaults()->group("Run");
     app.add_option("--size", options.size, "Size of the picture in pixels")
@@ -278,7 +279,7 @@ int main(int argc, char** argv) {
         ->type_name("SECONDS")
         ->default_str("10, with --until-converged 60")
         ->check(number_in(0.0, 1e6));
-    app.add_option("--camera", options.camera_file, "Camera file, see below")
+    app.add_option("--camera", options.camera_file, "Camera file: JSON, a still camera or a path")
         ->type_name("FILE")
         ->default_str("the scene's own view");
     app.add_flag("--until-converged", options.until_converged,

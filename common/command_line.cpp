@@ -5,6 +5,10 @@
 #include <memory>
 #include <sstream>
 
+#include "common/bash_completion.h"
+#include "common/man_page.h"
+#include "common/option_text.h"
+
 namespace framelet {
 
 namespace {
@@ -36,11 +40,6 @@ std::string in_columns(std::string const& left, std::string const& text) {
 
 bool is_option(std::string const& word) {
     return word.size() > 1 && word.front() == '-';
-}
-
-/// Flags have a name here where they stand for a value.
-bool has_optional_value(CLI::Option const* option) {
-    return option != nullptr && !option->get_fnames().empty();
 }
 
 /// What is on a line of the file, as CLI11 reads it, which takes up what it finds without a word about the file: this
@@ -131,6 +130,22 @@ bool could_be_value(CLI::Option* option, std::string word) {
     return option->get_validator(0)->operator()(word).empty();
 }
 
+std::string footer_of(ProgramNotes const& notes) {
+    std::string out;
+    for (std::size_t start = 0; start < notes.text.size();) {
+        std::size_t const end = std::min(notes.text.find("\n\n", start), notes.text.size());
+        out += wrapped(notes.text.substr(start, end - start), help_columns) + "\n";
+        start = end + 2;
+    }
+    out += notes.exit_codes.empty() ? "" : "Exit codes:\n";
+    for (ExitCode const& exit : notes.exit_codes) {
+        std::string lines = wrapped(exit.means, help_columns, "     ");
+        std::string const code = std::to_string(exit.code);
+        out += lines.replace(2, code.size(), code);
+    }
+    return out.substr(0, out.find_last_not_of('\n') + 1); // CLI11 ends the line
+}
+
 } // namespace
 
 std::string HelpFormatter::make_group(std::string name, bool positional,
@@ -142,45 +157,26 @@ std::string HelpFormatter::make_group(std::string name, bool positional,
     return positional ? "\n" + out + "\n" : out;
 }
 
-std::string HelpFormatter::make_option(CLI::Option const* option, bool positional) const {
-    std::vector<std::string> names;
-    for (std::string const& name : option->get_snames()) {
-        names.push_back("-" + name);
-    }
-    for (std::string const& name : option->get_lnames()) {
-        names.push_back("--" + name);
-    }
-    // "KIND:RANGE", where either may be missing.
-    std::string const type = option->get_type_name();
-    std::size_t const colon = std::min(type.find(':'), type.size());
-    std::string kind = type.substr(0, colon);
-    kind = kind == "INT" || kind == "UINT" || kind == "FLOAT" ? "NUMBER" : kind;
-
-    std::string left = "  " + (positional ? option->get_name(true) : CLI::detail::join(names, ", "));
-    if (!positional && has_optional_value(option)) {
-        left += " [" + option->get_option_text() + "]";
-    } else if (!positional && option->get_type_size() != 0) {
-        left += " " + kind;
-    }
-    std::vector<std::string> notes;
-    if (colon + 1 < type.size()) {
-        notes.push_back(type.substr(colon + 1));
-    }
-    if (!option->get_default_str().empty()) {
-        notes.push_back("default: " + option->get_default_str());
-    }
-    for (CLI::Option const* const other : option->get_excludes()) {
-        notes.push_back("not with " + other->get_name());
-    }
-    std::string const note = notes.empty() ? "" : " (" + CLI::detail::join(notes, "; ") + ")";
-    return in_columns(left, option->get_description() + note);
+std::string HelpFormatter::make_option(CLI::Option const* option, bool) const {
+    OptionText const text = option_text(*option);
+    std::string const value = text.value.empty() ? "" : " " + text.value;
+    return in_columns("  " + CLI::detail::join(text.names, ", ") + value, text.description);
 }
 
-void prepare_command_line(CLI::App& app) {
+void prepare_command_line(CLI::App& app, ProgramNotes const& notes) {
     app.formatter(std::make_shared<HelpFormatter>());
     app.set_help_flag("-h,--help", "Print this help and exit")->group("Help");
     app.set_version_flag("--version", app.get_name() + " " FRAMELET_VERSION, "Print the version and exit")
         ->group("Help");
+    app.footer(footer_of(notes));
+    app.add_option_function<std::string>("--help-as",
+                                         [&app, notes](std::string const& kind) {
+                                             std::cout << (kind == "man" ? man_page(app, notes) : bash_completion(app));
+                                             throw CLI::Success();
+                                         })
+        ->check(CLI::IsMember({"man", "bash"}))
+        ->group("")
+        ->configurable(false);
 }
 
 void add_config_option(CLI::App& app) {

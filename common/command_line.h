@@ -21,8 +21,19 @@ public:
 };
 inline constexpr std::size_t help_columns = 100;
 
-/// Sets the formatter and --version.
-void prepare_command_line(CLI::App& app);
+struct ExitCode {
+    int code;
+    std::string means;
+};
+/// What is said of a program beside its options.
+struct ProgramNotes {
+    std::string text; ///< paragraphs, with an empty line between them
+    std::vector<ExitCode> exit_codes;
+    std::vector<std::string> see_also; ///< other programs
+};
+
+/// Sets the formatter, --help, --version and, for the build alone, --help-as: the manual page or bash's completion.
+void prepare_command_line(CLI::App& app, ProgramNotes const& notes = {});
 
 /// Adds --config: a file in the TOML that CLI11 reads, whose keys are the options without their dashes, and what stands
 /// alone on the command line by its name in lower case. To be called after all other options; what the command line

@@ -10,14 +10,16 @@
 namespace framelet {
 namespace {
 
-constexpr char const* footer = R"(Port, certificate and all other files are looked at before the scene is loaded.
-SIGINT (Ctrl-C) and SIGTERM end the server, and its viewers are told. SIGHUP loads the scene again;
-where its terminal is gone it ends the server too.
-
-Exit codes:
-  0  fine
-  1  the scene or another file cannot be used, or the address cannot be listened on
-  2  bad usage)";
+ProgramNotes notes() {
+    return {
+        "Port, certificate and all other files are looked at before the scene is loaded. SIGINT (Ctrl-C) and SIGTERM "
+        "end the server, and its viewers are told. SIGHUP loads the scene again; where its terminal is gone it ends "
+        "the server too.",
+        {{0, "fine"},
+         {1, "the scene or another file cannot be used, or the address cannot be listened on"},
+         {2, "bad usage"}},
+        {"framelet", "framelet-viewer", "framelet-client"}};
+}
 
 void require_protection(Options const& options, bool insecure) {
     ServerOptions const& server = options.server;
@@ -40,8 +42,7 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
     std::uint64_t scene_megabytes = options.import.memory_bytes >> 20;
 
     CLI::App app("Renders a scene for remote viewers: every ray where their pictures gain most.", "framelet-server");
-    prepare_command_line(app);
-    app.footer(footer);
+    prepare_command_line(app, notes());
     app.option_defaults()->group("Scene");
     app.add_option("SCENE", options.scene, "Scene file: .gltf, .glb, .obj and what else the import library reads")
         ->required();

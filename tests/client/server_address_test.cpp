@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "client/connection_arguments.h"
+#include "client/picture_size.h"
 #include "common/error.h"
 
 namespace framelet {

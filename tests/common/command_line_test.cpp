@@ -8,7 +8,9 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "common/bash_completion.h"
 #include "common/counted.h"
+#include "common/man_page.h"
 #include "common/number_range.h"
 
 namespace framelet {
@@ -137,6 +139,49 @@ TEST(CommandLine, WhatIsWrongInAFileIsNamedWithFileAndKey) {
         EXPECT_NE(complaint.find(says), std::string::npos) << complaint;
         EXPECT_NE(complaint.find(".toml'"), std::string::npos) << complaint;
     }
+}
+
+/// One with a command, and texts that roff and the shell would take for their own.
+struct Commands {
+    CLI::App app{"Does 'this'. And that.", "framelet-program"};
+    ProgramNotes notes{"One.\n\n.Two \\three --four ~.", {{0, "fine"}, {2, "bad usage"}}, {"other"}};
+    std::string file;
+
+    Commands() {
+        prepare_command_line(app, notes);
+        CLI::App* const command = app.add_subcommand("show", "Show it");
+        command->option_defaults()->group("Places");
+        command->add_option("SCENE", file, "What to show")->required();
+        command->add_option("--from", file, "Where from")->type_name("FILE")->default_str("here");
+    }
+};
+
+TEST(ManPage, HasTheSectionsAndEscapesWhatIsNotRoff) {
+    Commands const program;
+    std::string const page = man_page(program.app, program.notes);
+    for (char const* const part :
+         {".TH \"FRAMELET-PROGRAM\" 1 ", ".SH NAME\nframelet\\-program \\-\ndoes \\&'this'\n",
+          "\\fBframelet\\-program show\\fR [\\fIOPTIONS\\fR] \\fISCENE\\fR\n",
+          "One.\n.PP\n\\&.Two \\ethree \\-\\-four \\(ti.\n",
+          ".SS Of show: Places\n.TP\n\\fB\\-\\-from\\fR \\fIFILE\\fR\nWhere from (default: here)\n",
+          ".SH \"EXIT STATUS\"\n.TP\n.B 0\nfine\n", ".SH \"SEE ALSO\"\n.BR other (1)\n"}) {
+        EXPECT_NE(page.find(part), std::string::npos) << part << " in\n" << page;
+    }
+    EXPECT_EQ(page.find("help-as"), std::string::npos);
+    std::istringstream lines(page);
+    for (std::string line; std::getline(lines, line);) {
+        EXPECT_LE(line.size(), 80u) << line;
+    }
+}
+
+TEST(Completion, KnowsCommandsOptionsAndFiles) {
+    Commands const program;
+    std::string const script = bash_completion(program.app);
+    for (char const* const part : {"complete -F _framelet_program framelet-program\n", "--from) _filedir; return ;;\n",
+                                   "compgen -W 'show' ", "compgen -W '--from -h --help' ", "== *\" show \"*"}) {
+        EXPECT_NE(script.find(part), std::string::npos) << part << " in\n" << script;
+    }
+    EXPECT_NE(bash_completion(Line().app).find("--port) return ;;\n"), std::string::npos);
 }
 
 TEST(Counted, OneIsNoPlural) {

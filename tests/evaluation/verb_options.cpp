@@ -2,7 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "client/connection_arguments.h"
+#include "client/picture_size.h"
 #include "common/error.h"
 #include "common/number_range.h"
 #include "tests/evaluation/ablation.h"

@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "client/connection_arguments.h"
+#include "client/picture_size.h"
 #include "common/error.h"
 #include "common/number_range.h"
 #include "server/scene/scene_import.h"

@@ -1,0 +1,13 @@
+// What bash completes of a program's command line, from what its --help is made of.
+#pragma once
+
+#include <string>
+
+#include <CLI/App.hpp>
+
+namespace framelet {
+
+/// A script for /usr/share/bash-completion/completions.
+std::string bash_completion(CLI::App const& app);
+
+} // namespace framelet

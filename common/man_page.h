@@ -1,0 +1,13 @@
+// A program's manual page, in roff, from what its --help is made of.
+#pragma once
+
+#include <string>
+
+#include "common/command_line.h"
+
+namespace framelet {
+
+/// Of section 1. What the commands of the program take is in it, too.
+std::string man_page(CLI::App const& app, ProgramNotes const& notes);
+
+} // namespace framelet
