@@ -1,0 +1,20 @@
+// framelet: shows a scene on this machine, by the two programs that do it across a network.
+#include <exception>
+#include <iostream>
+
+#include "common/program_failure.h"
+#include "launcher/options.h"
+#include "launcher/view.h"
+
+int main(int argc, char** argv) {
+    auto const parsed = framelet::parse_options(argc, argv);
+    if (int const* const exit_code = std::get_if<int>(&parsed)) {
+        return *exit_code;
+    }
+    try {
+        return framelet::view(std::get<framelet::ViewOptions>(parsed));
+    } catch (std::exception const& error) {
+        std::cerr << "framelet: " << framelet::failure_text(error) << '\n';
+        return 1;
+    }
+}

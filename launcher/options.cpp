@@ -1,0 +1,85 @@
+#include "launcher/options.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include "client/picture_size.h"
+#include "common/command_line.h"
+#include "common/option_text.h"
+
+namespace framelet {
+namespace {
+
+constexpr char const* scene_group = "Scene, for framelet-server";
+constexpr char const* window_group = "Window, for framelet-viewer";
+
+ProgramNotes notes() {
+    return {
+        "What follows a -- is for framelet-server, as in framelet view scene.glb -- --exposure 1. All other options "
+        "of both programs can be set in files: see --server-config and --viewer-config.\n\n"
+        "The server listens on a free port of this machine and lets in viewers of the same user alone. The programs "
+        "are looked for where framelet is, then in PATH. They end with the window, with SIGINT (Ctrl-C), SIGTERM or "
+        "SIGHUP, and with framelet, however that ends.",
+        {{0, "fine: the window was closed, or a signal ended it"},
+         {1, "no display, a program is missing, the scene or another file cannot be used, or server or viewer failed"},
+         {2, "bad usage"}},
+        {"framelet-server", "framelet-viewer", "framelet-client"}};
+}
+
+/// As it was written, for another program. `--server-config` and the like stand for that program's `--config`.
+void pass_on(CLI::App const& app, std::string const& group, std::vector<std::string>& to) {
+    for (CLI::Option const* const option : options_of_group(app, group)) {
+        std::string const name = option->get_name().ends_with("-config") ? "--config" : option->get_name();
+        for (std::string const& value : option->results()) {
+            to.push_back(option->get_items_expected_min() == 0 ? name : name + "=" + value);
+        }
+    }
+}
+
+} // namespace
+
+std::variant<ViewOptions, int> parse_options(int argc, char const* const* argv) {
+    ViewOptions out;
+    char const* const* const end = argv + argc;
+    char const* const* const separator = std::find(argv, end, std::string("--"));
+
+    CLI::App app("Shows a scene on this machine: server and window with one command.", "framelet");
+    prepare_command_line(app, notes());
+    app.require_subcommand(1);
+    CLI::App* const view =
+        app.add_subcommand("view", "Serve a scene, open a window on it, and end both when it is closed");
+    view->get_help_ptr()->group(app.get_help_ptr()->get_group());
+    // Their values are taken from CLI11 as they were written.
+    auto const option = [&](char const* name, std::string const& text) { return view->add_option(name, text); };
+    auto const flag = [&](char const* name, std::string const& text) { view->add_flag(name, text); };
+    std::string scene;
+    view->option_defaults()->group(scene_group);
+    view->add_option("SCENE", scene, "Scene file: .gltf, .glb, .obj and what else framelet-server reads")->required();
+    option("--environment", "Environment map (.hdr, .exr) that lights the scene")->type_name("FILE");
+    option("--clip", "Animation clip to play, by name; may be given several times")
+        ->type_name("NAME")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    flag("--allow-outside", "Read files that the scene names outside its own folder as well");
+    flag("--watch", "Load the scene again when its files have changed");
+    flag("--paused", "Start with the scene clock standing");
+    option("--threads", "Threads to render with; 0: one a core")->type_name("NUMBER");
+    option("--server-config", "Take further options of framelet-server from this file")->type_name("FILE");
+    view->option_defaults()->group(window_group);
+    option("--size", "Size of the window in pixels")->type_name("WIDTHxHEIGHT")->check(readable_by(parse_size));
+    flag("--fullscreen", "Fill the screen");
+    option("--viewer-config", "Take further options of framelet-viewer from this file")->type_name("FILE");
+    try {
+        parse_command_line(app, static_cast<int>(separator - argv), argv);
+    } catch (CLI::ParseError const& error) {
+        return exit_usage(app, error);
+    }
+    // Behind it, what looks like an option is none.
+    pass_on(*view, scene_group, out.server);
+    std::copy(separator == end ? end : separator + 1, end, std::back_inserter(out.server));
+    out.server.insert(out.server.end(), {"--", scene});
+    pass_on(*view, window_group, out.viewer);
+    return out;
+}
+
+} // namespace framelet

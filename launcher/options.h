@@ -1,0 +1,20 @@
+// The command line of framelet, as a value.
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace framelet {
+
+/// What the two programs are to be started with.
+struct ViewOptions {
+    std::vector<std::string> server; ///< all but the port
+    std::vector<std::string> viewer; ///< all but the server's address
+};
+
+/// The options, or the exit code where there is nothing to run (help, version: 0; bad usage: 2, with one line on
+/// stderr).
+std::variant<ViewOptions, int> parse_options(int argc, char const* const* argv);
+
+} // namespace framelet

@@ -1,0 +1,11 @@
+// A private server for a scene and a window on it, from the start of the one to the end of both.
+#pragma once
+
+#include "launcher/options.h"
+
+namespace framelet {
+
+/// Returns the exit code. Throws InputError where there is no display or a program is missing.
+int view(ViewOptions const& options);
+
+} // namespace framelet
