@@ -39,8 +39,8 @@ std::filesystem::path find_program(std::string const& name) {
     throw InputError("cannot find " + name + ", neither beside framelet nor in PATH: install it");
 }
 
-Child::Child(std::filesystem::path const& program, std::vector<std::string> const& arguments, std::optional<int> output)
-    : name_(program.filename().string()) {
+Child::Child(std::filesystem::path const& program, std::vector<std::string> const& arguments,
+             std::optional<int> output) {
     std::vector<char*> argv{const_cast<char*>(program.c_str())};
     for (std::string const& argument : arguments) {
         argv.push_back(const_cast<char*>(argument.c_str()));
@@ -85,18 +85,22 @@ void Child::signal(int number) {
     }
 }
 
-bool Child::was_told_to_end() const {
-    int const signal = WIFSIGNALED(*status_) ? WTERMSIG(*status_) : 0;
-    return signal == SIGINT || signal == SIGTERM || signal == SIGHUP;
+bool Child::ended_by_signal() const {
+    return WIFSIGNALED(*status_);
+}
+
+bool Child::failed() const {
+    int const signal = ended_by_signal() ? WTERMSIG(*status_) : 0;
+    return exit_code() != 0 && signal != SIGINT && signal != SIGTERM && signal != SIGHUP;
 }
 
 int Child::exit_code() const {
-    return WIFSIGNALED(*status_) ? 128 + WTERMSIG(*status_) : WEXITSTATUS(*status_);
+    return ended_by_signal() ? 128 + WTERMSIG(*status_) : WEXITSTATUS(*status_);
 }
 
 std::string Child::how_it_ended() const {
-    return WIFSIGNALED(*status_) ? std::string("was ended by a signal: ") + ::strsignal(WTERMSIG(*status_))
-                                 : "has ended with exit code " + std::to_string(exit_code());
+    return ended_by_signal() ? std::string("was ended by a signal: ") + ::strsignal(WTERMSIG(*status_))
+                             : "has ended with exit code " + std::to_string(exit_code());
 }
 
 } // namespace framelet

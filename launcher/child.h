@@ -23,22 +23,19 @@ public:
     Child(Child const&) = delete;
     Child& operator=(Child const&) = delete;
 
-    std::string const& name() const { return name_; }
     /// Looks whether it has ended.
     bool running();
     void signal(int number);
 
     // Of one that has ended.
-    bool failed() const { return exit_code() != 0 && !was_told_to_end(); }
-    /// By the terminal's Ctrl-C or by us.
-    bool was_told_to_end() const;
+    bool failed() const; ///< neither well nor because the terminal's Ctrl-C or somebody else told it to end
+    bool ended_by_signal() const;
     /// That of a shell: 128 and the signal's number where one ended it.
     int exit_code() const;
     /// As "has ended with exit code 1".
     std::string how_it_ended() const;
 
 private:
-    std::string const name_;
     pid_t pid_;
     std::optional<int> status_; ///< of waitpid; nothing while it runs
 };

@@ -103,20 +103,8 @@ private:
     bool look_after_children() {
         bool const serving = server_ && server_->running();
         bool const viewing = viewer_ && viewer_->running();
-        if (!ending_ && viewer_ && !viewing) {
-            if (viewer_->exit_code() > 128 && viewer_->failed()) { // otherwise it has said why
-                std::cerr << "framelet: framelet-viewer " << viewer_->how_it_ended() << std::endl;
-            }
-            exit_code_ = viewer_->failed() ? viewer_->exit_code() : 0;
-            end_both();
-        } else if (!ending_ && !serving) {
-            if (!server_->was_told_to_end() && (viewing || server_->exit_code() > 128)) {
-                std::cerr << "framelet: framelet-server " << server_->how_it_ended() << std::endl;
-            }
-            exit_code_ = server_->exit_code();
-            if (exit_code_ == 0 && viewing) { // somebody else has told it to end
-                exit_code_ = 1;
-            }
+        if (!ending_ && (!serving || (viewer_ && !viewing))) {
+            exit_code_ = viewer_ && !viewing ? code_of_ended_viewer() : code_of_ended_server();
             end_both();
         }
         if (serving || viewing) {
@@ -125,6 +113,23 @@ private:
         signals_.cancel();
         hurry_.cancel();
         return false;
+    }
+
+    int code_of_ended_viewer() const {
+        if (!viewer_->failed()) {
+            return 0;
+        }
+        if (viewer_->ended_by_signal()) { // otherwise it has said why
+            std::cerr << "framelet: framelet-viewer " << viewer_->how_it_ended() << std::endl;
+        }
+        return viewer_->exit_code();
+    }
+
+    int code_of_ended_server() const {
+        if (viewer_ || server_->ended_by_signal()) { // otherwise it has said why
+            std::cerr << "framelet: framelet-server " << server_->how_it_ended() << std::endl;
+        }
+        return viewer_ && server_->exit_code() == 0 ? 1 : server_->exit_code(); // 0: somebody has told it to end
     }
 
     void end_both() {
