@@ -8,6 +8,7 @@
 #include "client/picture_size.h"
 #include "client/window/first_connection.h"
 #include "client/window/viewer.h"
+#include "client/window/viewer_memory.h"
 #include "common/error.h"
 #include "common/program_failure.h"
 
@@ -37,38 +38,59 @@ int main(int argc, char** argv) {
     prepare_command_line(app, notes());
     add_connection_options(app, arguments)->capture_default_str();
     app.option_defaults()->group("Window");
-    app.add_option("--size", size, "Size of the window in pixels")
-        ->type_name("WIDTHxHEIGHT")
-        ->check(readable_by(parse_size))
-        ->capture_default_str();
-    app.add_flag("--fullscreen", fullscreen, "Fill the screen");
+    CLI::Option const* const sized =
+        app.add_option("--size", size, "Size of the window in pixels; without it as it was last time")
+            ->type_name("WIDTHxHEIGHT")
+            ->check(readable_by(parse_size))
+            ->capture_default_str();
+    app.add_flag("--fullscreen", fullscreen, "Fill the screen, as it also does where it did last time");
     add_display_options(app, display);
     add_config_option(app);
 
     Viewport viewport;
-    ConnectionOptions connection;
+    // A token is of one server: it is looked for anew for each that is named.
+    OptionsFor const options_for = [&arguments](std::string const& address) {
+        ConnectionArguments named = arguments;
+        named.server = address;
+        ConnectionOptions options = make_connection_options(named);
+        options.token = read_token(named);
+        return options;
+    };
     try {
         parse_command_line(app, argc, argv);
         viewport = parse_size(size);
-        connection = make_connection_options(arguments);
+        make_connection_options(arguments);
     } catch (CLI::ParseError const& error) {
         return exit_usage(app, error);
     } catch (InputError const& error) {
         return exit_usage(app, error.what());
     }
     try {
-        connection.token = read_token(arguments);
+        ConnectionOptions const options = options_for(arguments.server);
+        ViewerMemory memory = read_viewer_memory();
+        if (sized->empty()) {
+            viewport = memory.size.value_or(viewport);
+        }
         Window window("framelet-viewer", viewport);
-        std::unique_ptr<ClientCore> core = connection.reconnect ? nullptr : Viewer::connect(connection);
+        FirstConnection first;
+        if (!options.reconnect) {
+            first = {Viewer::connect(options), options};
+        }
         window.show();
-        if (fullscreen) {
+        if (fullscreen || (memory.fullscreen && sized->empty())) {
             window.toggle_fullscreen();
         }
-        core = core ? std::move(core) : wait_for_server(window, connection);
-        if (!core) {
+        if (!first.core) {
+            first = wait_for_server(window, arguments.server, options_for, memory.servers);
+        }
+        if (!first.core) {
             return 1;
         }
-        return Viewer(window, connection, std::move(core), display.settings(), display.lag_seconds()).run();
+        int const result =
+            Viewer(window, first.options, std::move(first.core), display.settings(), display.lag_seconds(), memory)
+                .run();
+        write_viewer_memory(memory);
+        return result;
     } catch (std::exception const& error) {
         std::cerr << "framelet-viewer: " << failure_text(error) << "\n";
         return 1;

@@ -1,11 +1,14 @@
 // What the user may ask of the viewer, other than by moving the camera.
 #pragma once
 
+#include <cstdint>
+
 namespace framelet {
 
 /// What a key, or a button of the overlay, stands for.
-enum class Command {
+enum class Command : std::uint8_t {
     quit,
+    escape, ///< close a menu, or else quit
     reset,
     reconnect,
     play_or_pause,
@@ -20,15 +23,31 @@ enum class Command {
     darker,
     free_camera,
     fit_scene,
+    add_bookmark,
+    remove_bookmark,
+    copy_camera,
+    save_camera,
     toggle_fullscreen,
     toggle_help,
     toggle_statistics,
+    toggle_details,
     toggle_time_line,
     next_overlay,
     toggle_reprojection,
     toggle_smoothing,
     screenshot,
+    toggle_recording,
     scene_camera, ///< the first; `scene_camera` + n is the n-th more, up to 8 more
+    bookmark = scene_camera + 9, ///< likewise
+    last = bookmark + 8,
 };
+
+/// How many cameras of each kind have a key.
+inline constexpr int numbered_cameras = 9;
+
+/// The n-th of those that are numbered.
+constexpr Command numbered(Command first, int n) {
+    return static_cast<Command>(static_cast<int>(first) + n);
+}
 
 } // namespace framelet

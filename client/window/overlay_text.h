@@ -1,10 +1,13 @@
-// The words of the overlay. In: statistics now and a moment ago. Out: rows of text.
+// The words and plots of the overlay. In: statistics now and a moment ago. Out: rows of text, figures and how they
+// went.
 #pragma once
 
-#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <vector>
 
 #include "client/core/client_core.h"
-#include "client/window/overlay.h"
+#include "client/window/overlay_content.h"
 
 namespace framelet {
 
@@ -13,30 +16,52 @@ class RateMeter {
 public:
     /// A display frame was shown, which took so long to make.
     void frame(double seconds_taken);
+    /// What is shown has changed; `photon_seconds` as in ClientStatistics.
+    void picture(double photon_seconds);
     /// Closes the interval where it is at least half a second old; true when the figures are new.
     bool update(double now_seconds, std::uint64_t bytes);
 
     double frames_per_second() const { return frames_per_second_; }
+    double pictures_per_second() const { return pictures_per_second_; }
     double frame_seconds() const { return frame_seconds_; } ///< mean
+    double photon_seconds() const { return photon_seconds_; } ///< median; -1: nothing newer was shown
     double bytes_per_second() const { return bytes_per_second_; }
 
 private:
     double start_ = 0;
     std::uint64_t start_bytes_ = 0;
     int frames_ = 0;
+    int pictures_ = 0;
     double taken_ = 0;
+    std::vector<double> photons_;
     double frames_per_second_ = 0;
+    double pictures_per_second_ = 0;
     double frame_seconds_ = 0;
+    double photon_seconds_ = -1;
     double bytes_per_second_ = 0;
 };
 
-/// What is said where another viewer has the scene's clock at its disposal.
-inline constexpr char const* watching_text = "another viewer controls the scene's clock";
+/// How the figures went in the last minute.
+class StatisticsHistory {
+public:
+    /// For each interval of the meter.
+    void add(RateMeter const& meter, double samples_per_second);
+    /// With the figures of the newest interval beside them.
+    std::vector<Plot> plots() const;
 
-/// `controls`: the keys that set the scene's clock have an effect.
-TextRows help_rows(bool controls);
-TextRows statistics_rows(ClientStatistics const& statistics, RateMeter const& meter, ClockState const& clock,
-                         bool controls, Viewport viewport);
+private:
+    struct Interval {
+        double pictures_per_second, photon_seconds, bits_per_second, samples_per_second;
+    };
+    std::vector<Interval> intervals_; ///< the oldest first
+};
+
+/// What most people want to know.
+TextRows figure_rows(ClientStatistics const& statistics, ClockState const& clock, bool controls);
+/// For who looks into what it costs.
+TextRows detail_rows(ClientStatistics const& statistics, RateMeter const& meter, Viewport viewport);
+/// Of what is drawn over the picture; nothing where it needs none.
+std::optional<Legend> legend_of(DrawnOver drawn);
 /// "12.34 s, playing at 1x".
 std::string clock_text(ClockState const& clock);
 /// "the scene 100 ms late".

@@ -1,39 +1,32 @@
 #include "client/window/viewer.h"
 
 #include <algorithm>
-#include <cmath>
-#include <ctime>
-#include <iomanip>
 #include <iostream>
-#include <sstream>
 #include <utility>
 
 #include "client/core/display_pace.h"
-#include "common/counted.h"
-#include "common/error.h"
-#include "common/files/picture_writer.h"
+#include "client/window/help_text.h"
+#include "client/window/key_table.h"
 
 namespace framelet {
 
 namespace {
 
-constexpr double clock_step = 1.0 / 30;
-constexpr float exposure_step = 0.25f;
-constexpr float largest_exposure = 16;
-constexpr double seek_step = 1;
-constexpr double note_seconds = 2;
 /// How often to look around while nothing happens: figures on the overlay, a note to take away.
 constexpr double idle_seconds = 0.25;
 
 } // namespace
 
 Viewer::Viewer(Window& window, ConnectionOptions connection, std::unique_ptr<ClientCore> core,
-               ViewerSettings const& settings, double lag_seconds)
-    : window_(window), connection_(std::move(connection)), overlay_(window.handle(), window.content_scale()),
-      settings_(settings), lag_seconds_(lag_seconds),
-      chosen_lag_seconds_(lag_seconds > 0 ? lag_seconds : usual_lag_seconds) {
+               ViewerSettings const& settings, double lag_seconds, ViewerMemory& memory)
+    : window_(window), connection_(std::move(connection)), memory_(memory),
+      overlay_(window.handle(), window.content_scale()), settings_(settings), lag_seconds_(lag_seconds),
+      chosen_lag_seconds_(lag_seconds > 0 ? lag_seconds : usual_lag_seconds), steady_size_(window.framebuffer_size()) {
     adopt(std::move(core));
-    say(core_->notice().empty() ? "F1: help" : core_->notice());
+    if (note_.empty()) {
+        say(core_->notice().empty() ? "F1: help" : core_->notice());
+    }
+    memory_.note_server(connection_.server.text());
 }
 
 std::unique_ptr<ClientCore> Viewer::connect(ConnectionOptions const& connection) {
@@ -69,6 +62,15 @@ void Viewer::look_at_scene() {
     scene_number_ = core_->scene_number();
     bool const is_changed = controller_ && welcome.scene_name == scene_name_;
     std::optional<Camera> const before = is_changed ? std::optional(controller_->camera()) : std::nullopt;
+    if (!bookmarks_ || !is_changed) {
+        bookmarks_.emplace(bookmarks_file(welcome.scene_name));
+        bookmark_ = -1;
+        is_at_bookmark_ = false;
+        if (!bookmarks_->complaint().empty()) {
+            std::cerr << "framelet-viewer: " << bookmarks_->complaint() << std::endl;
+            say(bookmarks_->complaint(), long_note_seconds);
+        }
+    }
     scene_name_ = welcome.scene_name;
     controller_.emplace(welcome.start_camera, welcome.scene_bounds);
     if (before) {
@@ -95,7 +97,8 @@ int Viewer::run() {
             core_->set_settings(settings_);
             redraw = true;
         }
-        WindowInput const input = window_.wait(pending && !hidden ? next_frame - seconds_now() : idle_seconds);
+        double const idle = steady_size_.waits() ? SteadySize::rest_seconds : idle_seconds;
+        WindowInput const input = window_.wait(pending && !hidden ? next_frame - seconds_now() : idle);
         double const now = seconds_now();
         moving = apply(input, moving ? now - last_look : 0);
         last_look = now;
@@ -103,21 +106,24 @@ int Viewer::run() {
         // What the mouse presses is seen in one frame, what it releases in the next, and what came of it in a third.
         overlay_frames = input.touched_overlay ? 3 : overlay_frames;
         watch_connection();
+        watch_recording();
         if (lost_.empty()) {
-            core_->set_view(controller_->camera(), window_.framebuffer_size(), scene_camera_);
+            core_->set_view(controller_->camera(), steady_size_.update(window_.framebuffer_size(), now), scene_camera_);
         }
         pending = true;
         if (hidden || now < next_frame) {
             continue; // what has come is shown in the next display frame
         }
         redraw = update_shown_picture() || redraw;
+        take_figures();
         OverlayContent content = overlay_content();
         redraw = redraw || moving || overlay_frames > 0 || content != shown;
         pending = redraw;
         if (redraw) {
             window_.draw_picture();
             OverlayActions const asked = overlay_.draw(content);
-            window_.set_overlay_area(overlay_.mouse_area());
+            window_.set_overlay_areas(overlay_.mouse_areas());
+            window_.set_typing(overlay_.is_typed_into());
             apply(asked);
             meter_.frame(seconds_now() - now);
             window_.present();
@@ -129,7 +135,13 @@ int Viewer::run() {
             overlay_frames = std::max(overlay_frames - 1, 0);
         }
     }
+    remember();
     return lost_.empty() ? 0 : 1;
+}
+
+void Viewer::remember() {
+    memory_.size = window_.windowed_size();
+    memory_.fullscreen = window_.is_fullscreen();
 }
 
 /// Uploads what has changed; true when something has.
@@ -137,8 +149,16 @@ bool Viewer::update_shown_picture() {
     double const until_seen = core_->making_seconds() + showing_.expected();
     bool const changed = core_->update_picture(picture_, changed_, Clock::now() + DisplayPace::duration(until_seen));
     made_ = seconds_now();
+    if (changed) {
+        meter_.picture(core_->statistics().photon_seconds);
+    }
+    Viewport const size{picture_.width, picture_.height};
+    bool const has_other_size = uploaded_size_ && *uploaded_size_ != size;
+    if (old_picture_.is_better(has_other_size, has_other_size ? core_->statistics().coverage : 1, made_)) {
+        return false;
+    }
     bool const toggled = std::exchange(overlay_toggled_, false) && !picture_.rgba.empty();
-    if (!changed && !toggled) {
+    if (!changed && !toggled && !has_other_size) {
         return false;
     }
     bool const draws = drawn_over_ != DrawnOver::nothing;
@@ -150,230 +170,16 @@ bool Viewer::update_shown_picture() {
         core_->draw_overlay(drawn_over_, overlaid_);
     }
     window_.upload(draws ? overlaid_ : picture_, changed_);
+    uploaded_size_ = size;
+    if (recorder_ && !toggled) {
+        recorder_->add(picture_, made_ - recording_since_);
+    }
     return true;
 }
 
-/// Returns true while a key keeps the camera moving.
-bool Viewer::apply(WindowInput const& input, double seconds) {
-    for (Command const command : input.commands) {
-        apply(command);
-    }
-    take_pivot(input);
-    if (input.moved_camera()) {
-        leave_scene_camera();
-        if (std::optional<Vec3> const point = std::exchange(grabbed_, std::nullopt)) {
-            controller_->set_pivot(*point);
-        }
-        Viewport const viewport = window_.framebuffer_size();
-        controller_->orbit(input.orbit, viewport);
-        controller_->pan(input.pan, viewport);
-        controller_->dolly(input.dolly);
-        controller_->fly(input.fly, seconds);
-    }
-    return input.fly.moving();
-}
-
-/// What lies under the pointer is what the hands take hold of; where that is not known the pivot stays.
-void Viewer::take_pivot(WindowInput const& input) {
-    std::optional<Vec2> const place = input.focused ? input.focused : input.grabbed;
-    if (!place) {
-        return;
-    }
-    grabbed_ = core_->point_at(*place);
-    if (!input.focused) {
-        return;
-    }
-    if (std::optional<Vec3> const point = std::exchange(grabbed_, std::nullopt)) {
-        leave_scene_camera();
-        controller_->focus(*point);
-    } else {
-        say("nothing is there to look at");
-    }
-}
-
-void Viewer::apply(OverlayActions const& asked) {
-    for (Command const command : asked.commands) {
-        apply(command);
-    }
-    if (asked.seek) {
-        ClockState clock = core_->clock();
-        clock.time = *asked.seek;
-        ask_clock(ClockRequest::time, clock);
-    }
-}
-
-void Viewer::apply(Command command) {
-    ClockState clock = core_->clock();
-    switch (command) {
-    case Command::quit:
-        quit_ = true;
-        break;
-    case Command::reset:
-    case Command::reconnect:
-        if (!lost_.empty()) {
-            if (!reconnecting_.valid()) {
-                reconnecting_ = std::async(std::launch::async, [options = connection_] {
-                    auto core = connect(options);
-                    Window::wake();
-                    return core;
-                });
-            }
-        } else if (command == Command::reset) {
-            scene_camera_ = start_scene_camera(core_->welcome());
-            controller_->reset();
-        }
-        break;
-    case Command::play_or_pause:
-        clock.playing = !clock.playing;
-        ask_clock(ClockRequest::playing, clock);
-        break;
-    case Command::step_forward:
-        step_clock(clock_step);
-        break;
-    case Command::step_back:
-        step_clock(-clock_step);
-        break;
-    case Command::seek_start:
-        clock.time = 0;
-        ask_clock(ClockRequest::time, clock);
-        break;
-    case Command::seek_forward:
-    case Command::seek_back:
-        clock.time =
-            std::clamp(clock.time + (command == Command::seek_forward ? seek_step : -seek_step), 0.0, max_scene_time);
-        ask_clock(ClockRequest::time, clock);
-        break;
-    case Command::faster:
-    case Command::slower:
-        clock.speed =
-            std::clamp(clock.speed * (command == Command::faster ? 2 : 0.5f), -max_clock_speed, max_clock_speed);
-        ask_clock(ClockRequest::speed, clock);
-        break;
-    case Command::brighter:
-        change_exposure(exposure_step);
-        break;
-    case Command::darker:
-        change_exposure(-exposure_step);
-        break;
-    case Command::fit_scene:
-        leave_scene_camera();
-        controller_->fit(window_.framebuffer_size());
-        break;
-    case Command::free_camera:
-        leave_scene_camera();
-        break;
-    case Command::toggle_fullscreen:
-        window_.toggle_fullscreen();
-        break;
-    case Command::toggle_help:
-        show_help_ = !show_help_;
-        break;
-    case Command::toggle_statistics:
-        show_statistics_ = !show_statistics_;
-        statistics_.clear();
-        break;
-    case Command::toggle_time_line:
-        show_time_line_ = !show_time_line_;
-        break;
-    case Command::next_overlay:
-        drawn_over_ = drawn_over_ == DrawnOver::nothing    ? DrawnOver::outlines
-                      : drawn_over_ == DrawnOver::outlines ? DrawnOver::confidence
-                                                           : DrawnOver::nothing;
-        overlay_toggled_ = true;
-        break;
-    case Command::toggle_reprojection:
-        settings_.reproject = !settings_.reproject;
-        core_->set_settings(settings_);
-        say(settings_.reproject ? "moved to where it is now" : "shown where it was rendered");
-        break;
-    case Command::toggle_smoothing:
-        toggle_smoothing();
-        break;
-    case Command::screenshot:
-        save_screenshot();
-        break;
-    default:
-        choose_scene_camera(static_cast<int>(command) - static_cast<int>(Command::scene_camera));
-    }
-}
-
-/// Empty: it is ours to set.
-std::string Viewer::clock_fixed_because() const {
-    bool const is_gone = interrupted_ || !lost_.empty();
-    return is_gone ? "the server is gone: its clock cannot be set" : core_->controls() ? "" : watching_text;
-}
-
-void Viewer::ask_clock(std::uint8_t fields, ClockState const& state) {
-    if (std::string reason = clock_fixed_because(); !reason.empty()) {
-        say(std::move(reason));
-        return;
-    }
-    core_->request_clock({fields, state});
-    say("clock " + clock_text(core_->clock()));
-}
-
-void Viewer::step_clock(double seconds) {
-    ClockState clock = core_->clock();
-    clock.time = std::clamp(clock.time + seconds, 0.0, max_scene_time);
-    clock.playing = false;
-    ask_clock(ClockRequest::time | ClockRequest::playing, clock);
-}
-
-void Viewer::choose_scene_camera(int number) {
-    std::vector<SceneCameraInfo> const cameras = core_->welcome().cameras;
-    if (number >= static_cast<int>(cameras.size())) {
-        say(cameras.empty() ? "the scene has no cameras of its own"
-                            : "the scene has only " + counted(cameras.size(), "camera"));
-        return;
-    }
-    scene_camera_ = number;
-    std::string const& name = cameras[static_cast<std::size_t>(number)].name;
-    say("camera " + std::to_string(number + 1) + (name.empty() ? "" : ": " + name));
-}
-
-void Viewer::leave_scene_camera() {
-    if (scene_camera_ >= 0) {
-        scene_camera_ = -1;
-        controller_->set_camera(core_->shown_camera());
-        say("free camera");
-    }
-}
-
-void Viewer::change_exposure(float stops) {
-    settings_.exposure_ev = std::clamp(settings_.exposure_ev + stops, -largest_exposure, largest_exposure);
-    core_->set_settings(settings_);
-    std::ostringstream text;
-    text << "exposure " << std::showpos << settings_.exposure_ev << " EV";
-    say(text.str());
-}
-
-void Viewer::toggle_smoothing() {
-    lag_seconds_ = lag_seconds_ > 0 ? 0 : chosen_lag_seconds_;
-    core_->set_smoothing(lag_seconds_);
-    say(lag_seconds_ > 0 ? "smooth, " + lag_text(lag_seconds_) : "going on from what is newest");
-}
-
-void Viewer::save_screenshot() {
-    if (picture_.rgba.empty()) {
-        say("there is no picture yet");
-        return;
-    }
-    std::time_t const now = std::time(nullptr);
-    std::tm local{};
-    localtime_r(&now, &local);
-    std::ostringstream name;
-    name << "framelet-" << std::put_time(&local, "%Y%m%d-%H%M%S") << ".png";
-    try {
-        write_png(name.str(), picture_);
-        say("saved " + name.str());
-    } catch (InputError const& error) {
-        say(error.what());
-    }
-}
-
-void Viewer::say(std::string note) {
+void Viewer::say(std::string note, double seconds) {
     note_ = std::move(note);
-    note_until_ = seconds_now() + note_seconds;
+    note_until_ = seconds_now() + seconds;
 }
 
 void Viewer::watch_connection() {
@@ -406,28 +212,62 @@ void Viewer::watch_connection() {
     controlled_ = controls;
 }
 
+/// Also while nobody looks at them: plots show what was before.
+void Viewer::take_figures() {
+    ClientStatistics const statistics = core_->statistics();
+    if (!meter_.update(seconds_now(), statistics.bytes) && !figures_.plots.empty()) {
+        return;
+    }
+    history_.add(meter_, statistics.server_samples_per_second);
+    figures_.plots = history_.plots();
+    figures_.rows = figure_rows(statistics, core_->clock(), core_->controls());
+    figures_.details = detail_rows(statistics, meter_, window_.framebuffer_size());
+}
+
+CameraMenu Viewer::camera_menu(Welcome const& welcome) const {
+    CameraMenu out;
+    for (std::size_t i = 0; i < welcome.cameras.size(); ++i) {
+        std::string const& own = welcome.cameras[i].name;
+        out.scene_cameras.push_back(own.empty() ? "camera " + std::to_string(i + 1) : own);
+    }
+    for (Bookmark const& bookmark : bookmarks_->all()) {
+        out.bookmarks.push_back(bookmark.name);
+    }
+    auto const name = [](std::vector<std::string> const& names, int number) {
+        return number >= 0 && number < static_cast<int>(names.size()) ? names[static_cast<std::size_t>(number)]
+                                                                      : std::string("free camera");
+    };
+    out.current = scene_camera_ >= 0 ? name(out.scene_cameras, scene_camera_)
+                                     : name(out.bookmarks, is_at_bookmark_ ? bookmark_ : -1);
+    return out;
+}
+
 OverlayContent Viewer::overlay_content() {
     OverlayContent out;
     if (show_help_) {
         out.help = help_rows(core_->controls());
     }
-    if (show_statistics_) {
-        ClientStatistics const statistics = core_->statistics();
-        if (meter_.update(seconds_now(), statistics.bytes) || statistics_.empty()) {
-            statistics_ =
-                statistics_rows(statistics, meter_, core_->clock(), core_->controls(), window_.framebuffer_size());
-        }
-        out.statistics = statistics_;
+    if (memory_.shows_statistics) {
+        out.statistics = figures_;
+        out.statistics->shows_details = memory_.shows_details;
     }
-    if (show_time_line_) {
-        out.time_line = {core_->clock(), core_->welcome().animation_duration, clock_fixed_because(),
-                         settings_.exposure_ev};
+    if (memory_.shows_bar) {
+        Welcome const welcome = core_->welcome();
+        out.time_line = {core_->clock(), welcome.animation_duration, clock_fixed_because(), settings_.exposure_ev};
+        out.cameras = camera_menu(welcome);
     }
+    // Where nothing is moved, the core draws outlines instead.
+    out.legend =
+        legend_of(drawn_over_ == DrawnOver::confidence && !settings_.reproject ? DrawnOver::outlines : drawn_over_);
     if (seconds_now() < note_until_) {
         out.note = note_;
     }
     if (interrupted_) {
         out.sign = "no connection: trying again";
+    }
+    if (recorder_) {
+        out.sign +=
+            (out.sign.empty() ? "" : "\n") + with_keys(progress_text(recorder_->progress()), Command::toggle_recording);
     }
     if (reconnecting_.valid()) {
         out.message = "connecting to " + connection_.server.text() + " ...";

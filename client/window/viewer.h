@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <future>
 #include <memory>
 #include <optional>
@@ -10,8 +11,12 @@
 #include "client/core/camera_controller.h"
 #include "client/core/client_core.h"
 #include "client/core/making_time.h"
+#include "client/window/bookmarks.h"
 #include "client/window/overlay.h"
 #include "client/window/overlay_text.h"
+#include "client/window/recorder.h"
+#include "client/window/resize.h"
+#include "client/window/viewer_memory.h"
 #include "client/window/window.h"
 
 namespace framelet {
@@ -19,8 +24,9 @@ namespace framelet {
 class Viewer {
 public:
     /// `core` is connected and wakes the window on news. `lag_seconds` as in `ClientCore::set_smoothing`.
+    /// What is to be remembered goes into `memory`, which must outlive this.
     Viewer(Window& window, ConnectionOptions connection, std::unique_ptr<ClientCore> core,
-           ViewerSettings const& settings, double lag_seconds);
+           ViewerSettings const& settings, double lag_seconds, ViewerMemory& memory);
 
     /// Until the user quits. Returns the program's exit code: 1 where the server was gone.
     int run();
@@ -30,6 +36,8 @@ public:
 
 private:
     using Clock = std::chrono::steady_clock;
+    static constexpr double note_seconds = 2;
+    static constexpr double long_note_seconds = 6; ///< of what is to be read
 
     void adopt(std::unique_ptr<ClientCore> core);
     void look_at_scene();
@@ -45,14 +53,26 @@ private:
     void change_exposure(float stops);
     void toggle_smoothing();
     void save_screenshot();
-    void say(std::string note);
+    void toggle_recording();
+    void watch_recording();
+    Camera present_camera() const;
+    void change_bookmarks(std::function<void()> const& change);
+    void add_bookmark();
+    void remove_bookmark(int number);
+    void go_to_bookmark(int number);
+    void copy_camera(bool saves);
+    void say(std::string note, double seconds = note_seconds);
     void watch_connection();
     bool update_shown_picture();
+    void take_figures();
+    CameraMenu camera_menu(Welcome const& welcome) const;
     OverlayContent overlay_content();
+    void remember();
     double seconds_now() const;
 
     Window& window_;
     ConnectionOptions connection_;
+    ViewerMemory& memory_;
     Overlay overlay_;
     std::unique_ptr<ClientCore> core_;
     std::uint64_t scene_number_ = 0; ///< of the core's; 0: none yet
@@ -61,6 +81,9 @@ private:
     std::string scene_name_;
     std::optional<CameraController> controller_;
     int scene_camera_ = -1;
+    std::optional<Bookmarks> bookmarks_; ///< the scene's
+    int bookmark_ = -1; ///< gone to last
+    bool is_at_bookmark_ = false; ///< and the camera has not been moved since
     std::optional<Vec3> grabbed_; ///< what the hands have taken hold of, until the camera moves
     ViewerSettings settings_;
     double lag_seconds_; ///< 0: the scene is not smoothed
@@ -72,14 +95,18 @@ private:
     double made_ = 0; ///< when
     MakingTime showing_; ///< from then until it is on the display
     std::vector<PixelRect> changed_;
+    SteadySize steady_size_;
+    OldPicture old_picture_;
+    std::optional<Viewport> uploaded_size_; ///< of the picture that the window has
     bool show_help_ = false;
-    bool show_statistics_ = false;
-    bool show_time_line_ = true;
     DrawnOver drawn_over_ = DrawnOver::nothing;
     bool overlay_toggled_ = false; ///< since the picture was uploaded
     Picture overlaid_; ///< the picture and what is drawn over it, if anything
-    TextRows statistics_;
     RateMeter meter_;
+    StatisticsHistory history_;
+    StatisticsPanel figures_;
+    std::optional<Recorder> recorder_; ///< until its film is written
+    double recording_since_ = 0;
     std::string note_;
     double note_until_ = 0;
     bool quit_ = false;

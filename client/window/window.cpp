@@ -9,48 +9,13 @@
 #include <GLFW/glfw3.h>
 #include <glm/geometric.hpp>
 
+#include "client/window/key_table.h"
 #include "client/window/picture_texture.h"
 #include "common/error.h"
 
 namespace framelet {
 
 namespace {
-
-struct KeyMeaning {
-    int key;
-    Command command;
-    bool repeats; ///< while held
-};
-
-constexpr KeyMeaning meanings[] = {
-    {GLFW_KEY_ESCAPE, Command::quit, false},
-    {GLFW_KEY_R, Command::reset, false},
-    {GLFW_KEY_ENTER, Command::reconnect, false},
-    {GLFW_KEY_KP_ENTER, Command::reconnect, false},
-    {GLFW_KEY_SPACE, Command::play_or_pause, false},
-    {GLFW_KEY_PERIOD, Command::step_forward, true},
-    {GLFW_KEY_COMMA, Command::step_back, true},
-    {GLFW_KEY_HOME, Command::seek_start, false},
-    {GLFW_KEY_EQUAL, Command::faster, false},
-    {GLFW_KEY_KP_ADD, Command::faster, false},
-    {GLFW_KEY_MINUS, Command::slower, false},
-    {GLFW_KEY_KP_SUBTRACT, Command::slower, false},
-    {GLFW_KEY_RIGHT_BRACKET, Command::brighter, true},
-    {GLFW_KEY_LEFT_BRACKET, Command::darker, true},
-    {GLFW_KEY_0, Command::free_camera, false},
-    {GLFW_KEY_F, Command::fit_scene, false},
-    {GLFW_KEY_F11, Command::toggle_fullscreen, false},
-    {GLFW_KEY_F1, Command::toggle_help, false},
-    {GLFW_KEY_F2, Command::toggle_statistics, false},
-    {GLFW_KEY_TAB, Command::toggle_statistics, false},
-    {GLFW_KEY_F12, Command::screenshot, false},
-    {GLFW_KEY_F3, Command::next_overlay, false},
-    {GLFW_KEY_F4, Command::toggle_reprojection, false},
-    {GLFW_KEY_F5, Command::toggle_smoothing, false},
-    {GLFW_KEY_F6, Command::toggle_time_line, false},
-    {GLFW_KEY_RIGHT, Command::seek_forward, true},
-    {GLFW_KEY_LEFT, Command::seek_back, true},
-};
 
 constexpr double double_click_seconds = 0.4;
 constexpr float double_click_pixels = 6;
@@ -85,7 +50,8 @@ struct Window::Impl {
     bool zooms = false; ///< the wheel has turned since the pointer moved
     Vec2 click{0, 0}; ///< where the left button was pressed last
     double click_time = -1; ///< and when; < 0: what comes next is no double click
-    PixelRect overlay{}; ///< its area
+    std::vector<PixelRect> overlay; ///< its areas
+    bool is_typing = false;
     bool overlay_drag = false; ///< a button was pressed there
     Viewport size;
     struct {
@@ -108,18 +74,14 @@ struct Window::Impl {
         if (action == GLFW_RELEASE) {
             return;
         }
-        if (code == GLFW_KEY_ENTER && (mods & GLFW_MOD_ALT) != 0) {
-            input.commands.push_back(Command::toggle_fullscreen);
+        if (is_typing) {
+            input.touched_overlay = true;
             return;
         }
-        if (code >= GLFW_KEY_1 && code <= GLFW_KEY_9) {
-            input.commands.push_back(static_cast<Command>(static_cast<int>(Command::scene_camera) + code - GLFW_KEY_1));
-            return;
-        }
-        for (KeyMeaning const& meaning : meanings) {
-            if (meaning.key == code && (action == GLFW_PRESS || meaning.repeats)) {
-                input.commands.push_back(meaning.command);
-            }
+        KeyModifiers const with{(mods & GLFW_MOD_SHIFT) != 0, (mods & GLFW_MOD_CONTROL) != 0,
+                                (mods & GLFW_MOD_ALT) != 0};
+        if (auto const command = command_of_key(code, with, action == GLFW_REPEAT)) {
+            input.commands.push_back(*command);
         }
     }
 
@@ -154,8 +116,10 @@ struct Window::Impl {
     }
 
     bool is_over_overlay(Vec2 place) const {
-        return place.x >= static_cast<float>(overlay.left) && place.x < static_cast<float>(overlay.right) &&
-               place.y >= static_cast<float>(overlay.top) && place.y < static_cast<float>(overlay.bottom);
+        return std::ranges::any_of(overlay, [place](PixelRect const& area) {
+            return place.x >= static_cast<float>(area.left) && place.x < static_cast<float>(area.right) &&
+                   place.y >= static_cast<float>(area.top) && place.y < static_cast<float>(area.bottom);
+        });
     }
     void touch_overlay(bool was_there = false) {
         input.touched_overlay = input.touched_overlay || overlay_drag || was_there || is_over_overlay(cursor);
@@ -211,6 +175,10 @@ struct Window::Impl {
     }
 
     void read_held_keys() {
+        if (is_typing) {
+            input.fly = {};
+            return;
+        }
         auto const axis = [&](int more, int less) {
             return static_cast<float>(held(more) ? 1 : 0) - static_cast<float>(held(less) ? 1 : 0);
         };
@@ -327,8 +295,29 @@ void Window::present() {
     glfwSwapBuffers(impl_->window);
 }
 
-void Window::set_overlay_area(PixelRect const& area) {
-    impl_->overlay = area;
+void Window::set_overlay_areas(std::span<PixelRect const> areas) {
+    impl_->overlay.assign(areas.begin(), areas.end());
+}
+
+void Window::set_typing(bool is_typing) {
+    impl_->is_typing = is_typing;
+}
+
+void Window::set_clipboard(std::string const& text) {
+    glfwSetClipboardString(impl_->window, text.c_str());
+}
+
+bool Window::is_fullscreen() const {
+    return glfwGetWindowMonitor(impl_->window) != nullptr;
+}
+
+Viewport Window::windowed_size() const {
+    if (is_fullscreen()) {
+        return {impl_->windowed.width, impl_->windowed.height};
+    }
+    Viewport out;
+    glfwGetWindowSize(impl_->window, &out.width, &out.height);
+    return out;
 }
 
 GLFWwindow* Window::handle() const {

@@ -27,7 +27,7 @@ struct WindowInput {
     std::optional<Vec2> focused; ///< likewise: where a double click was
     FlyInput fly; ///< held now
     bool redraw = false; ///< exposed or resized
-    bool touched_overlay = false; ///< the pointer did something in its area, or has left it
+    bool touched_overlay = false; ///< the pointer did something in its area, or has left it, or a key was typed into it
 
     bool moved_camera() const { return orbit != Vec2(0, 0) || pan != Vec2(0, 0) || dolly != 0 || fly.moving(); }
 };
@@ -47,6 +47,9 @@ public:
     double refresh_rate() const;
     /// Iconified, or on no screen at all: nobody sees what is drawn. A window that others cover is not told of it.
     bool is_hidden() const;
+    bool is_fullscreen() const;
+    /// The window's size, or where it would go back to from the full screen; in the units of the constructor.
+    Viewport windowed_size() const;
     void set_title(std::string const& title);
     void show();
     void toggle_fullscreen();
@@ -65,7 +68,10 @@ public:
 
     /// Pixels of the framebuffer in which the mouse is the overlay's and not the camera's; a drag belongs to where it
     /// began.
-    void set_overlay_area(PixelRect const& area);
+    void set_overlay_areas(std::span<PixelRect const> areas);
+    /// The keys are the overlay's, and neither commands nor ways to fly.
+    void set_typing(bool is_typing);
+    void set_clipboard(std::string const& text);
     /// For the overlay's backend.
     GLFWwindow* handle() const;
 

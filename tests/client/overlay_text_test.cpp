@@ -28,28 +28,77 @@ TEST(RateMeter, ANewConnectionCountsFromZeroAgain) {
     EXPECT_EQ(meter.bytes_per_second(), 0);
 }
 
+TEST(RateMeter, MotionToPhotonIsTheMedianOfWhatWasMeasured) {
+    RateMeter meter;
+    for (double const seconds : {0.02, -1.0, 0.9, 0.03}) {
+        meter.picture(seconds);
+    }
+    ASSERT_TRUE(meter.update(1, 0));
+    EXPECT_DOUBLE_EQ(meter.pictures_per_second(), 4);
+    EXPECT_DOUBLE_EQ(meter.photon_seconds(), 0.03);
+    ASSERT_TRUE(meter.update(2, 0));
+    EXPECT_DOUBLE_EQ(meter.photon_seconds(), -1);
+}
+
+std::string value_of(TextRows const& rows, std::string const& name) {
+    for (auto const& [left, right] : rows) {
+        if (left == name) {
+            return right;
+        }
+    }
+    return "no such row";
+}
+
 TEST(OverlayText, ClockAndStatisticsReadWell) {
     EXPECT_EQ(clock_text({12.345, true, 2}), "12.35 s, playing at 2x");
     EXPECT_EQ(clock_text({0, false, 0.5f}), "0.00 s, paused at 0.5x");
     ClientStatistics statistics;
     statistics.samples = 1000;
     statistics.bytes = 250;
-    TextRows const rows = statistics_rows(statistics, RateMeter(), {}, true, {640, 360});
-    auto const value = [&](std::string const& name) {
-        for (auto const& [left, right] : rows) {
-            if (left == name) {
-                return right;
-            }
-        }
-        return std::string("no such row");
-    };
-    EXPECT_EQ(value("picture"), "640x360, covered 0%");
-    EXPECT_EQ(value("network"), "0.00 Mbit/s, 0.25 B/sample");
-    EXPECT_EQ(value("round trip"), "not measured");
-    EXPECT_EQ(value("clock"), "0.00 s, paused at 1x");
+    statistics.batches = 1;
+    TextRows const rows = figure_rows(statistics, {}, true);
+    EXPECT_EQ(value_of(rows, "done"), "0% of the picture");
+    EXPECT_EQ(value_of(rows, "clock"), "0.00 s, paused at 1x");
+    TextRows const details = detail_rows(statistics, RateMeter(), {640, 360});
+    EXPECT_EQ(value_of(details, "picture"), "640x360");
+    EXPECT_EQ(value_of(details, "received"), "1 batch, 0 framelets, 0.25 B/sample");
+    EXPECT_EQ(value_of(details, "round trip"), "not measured");
     statistics.lag_seconds = 0.1;
-    TextRows const late = statistics_rows(statistics, RateMeter(), {}, true, {640, 360});
-    EXPECT_EQ(late.back().second, "0.00 s, paused at 1x; the scene 100 ms late");
+    statistics.coverage = 1;
+    statistics.converged = true;
+    TextRows const late = figure_rows(statistics, {}, true);
+    EXPECT_EQ(value_of(late, "clock"), "0.00 s, paused at 1x; the scene 100 ms late");
+    EXPECT_EQ(value_of(late, "done"), "100% of the picture, as good as it gets");
+}
+
+TEST(StatisticsHistory, HasTheNewestFigureAndAMinuteOfOlderOnes) {
+    StatisticsHistory history;
+    EXPECT_EQ(history.plots().front().value, "0 a second");
+    RateMeter meter;
+    for (int i = 1; i <= 200; ++i) {
+        for (int picture = 0; picture < i; ++picture) {
+            meter.picture(0.016);
+        }
+        ASSERT_TRUE(meter.update(i, 125000 * static_cast<std::uint64_t>(i)));
+        history.add(meter, 2.5e6);
+    }
+    std::vector<Plot> const plots = history.plots();
+    ASSERT_EQ(plots.size(), 4u);
+    EXPECT_EQ(plots[0].value, "200 a second");
+    EXPECT_EQ(plots[1].value, "16 ms");
+    EXPECT_EQ(plots[2].value, "1.0 Mbit/s");
+    EXPECT_EQ(plots[3].value, "2.50 million samples/s");
+    for (Plot const& plot : plots) {
+        EXPECT_EQ(plot.values.size(), 120u);
+    }
+    EXPECT_EQ(plots[0].values.front(), 81);
+    EXPECT_EQ(plots[0].values.back(), 200);
+}
+
+TEST(OverlayText, ColoursHaveALegend) {
+    EXPECT_FALSE(legend_of(DrawnOver::nothing));
+    EXPECT_TRUE(legend_of(DrawnOver::outlines));
+    EXPECT_TRUE(legend_of(DrawnOver::confidence));
 }
 
 TEST(OverlayText, SaysThatAnotherControlsTheClock) {
@@ -60,8 +109,8 @@ TEST(OverlayText, SaysThatAnotherControlsTheClock) {
     EXPECT_FALSE(says_so(help_rows(true)));
     EXPECT_TRUE(says_so(help_rows(false)));
     EXPECT_LT(help_rows(false).size(), help_rows(true).size());
-    EXPECT_FALSE(says_so(statistics_rows({}, RateMeter(), {}, true, {640, 360})));
-    EXPECT_TRUE(says_so(statistics_rows({}, RateMeter(), {}, false, {640, 360})));
+    EXPECT_FALSE(says_so(figure_rows({}, {}, true)));
+    EXPECT_TRUE(says_so(figure_rows({}, {}, false)));
 }
 
 } // namespace

@@ -1,0 +1,163 @@
+#include "client/window/bookmarks.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <numbers>
+
+#include <nlohmann/json.hpp>
+
+#include "client/core/camera_path.h"
+#include "client/window/user_files.h"
+#include "common/error.h"
+
+namespace framelet {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double degrees = 180 / std::numbers::pi;
+constexpr std::size_t longest_name = 60;
+
+/// With no more digits than it takes to read the same number again.
+double shortest(float value) {
+    std::array<char, 32> text{};
+    auto const written = std::to_chars(text.data(), text.data() + text.size(), value);
+    double out = value;
+    std::from_chars(text.data(), written.ptr, out);
+    return out;
+}
+
+Json vector_json(Vec3 const& v) {
+    return {shortest(v.x), shortest(v.y), shortest(v.z)};
+}
+
+Json pose_json(Camera const& camera) {
+    return {{"position", vector_json(camera.position)},
+            {"target", vector_json(camera.position + camera.forward())},
+            {"up", vector_json(camera.up())}};
+}
+
+Json camera_json(Camera const& camera) {
+    Json out = pose_json(camera);
+    if (camera.projection == Projection::orthographic) {
+        out["orthographic_height"] = shortest(camera.vertical_extent);
+    } else {
+        out["fov_degrees"] = shortest(static_cast<float>(camera.vertical_extent * degrees));
+    }
+    return out;
+}
+
+/// What is not of camera files is taken out before it is read as one.
+Bookmark read_bookmark(Json entry, std::string const& file) {
+    Bookmark out;
+    if (entry.is_object() && entry.contains("name") && entry["name"].is_string()) {
+        out.name = entry["name"].get<std::string>().substr(0, longest_name);
+        entry.erase("name");
+    }
+    double height = 0;
+    if (entry.is_object() && entry.contains("orthographic_height") && entry["orthographic_height"].is_number()) {
+        height = entry["orthographic_height"].get<double>();
+        entry.erase("orthographic_height");
+    }
+    CameraPath const path = parse_camera_path(entry.dump(), file);
+    if (path.keys.size() != 1) {
+        throw InputError("camera file " + file + ": a bookmark must be a still camera");
+    }
+    out.camera = path.at(0);
+    if (height > 0) {
+        out.camera.projection = Projection::orthographic;
+        out.camera.vertical_extent =
+            static_cast<float>(std::clamp<double>(height, least_view_height, most_view_height));
+    }
+    return out;
+}
+
+} // namespace
+
+std::string camera_file_text(Camera const& camera) {
+    if (camera.projection == Projection::orthographic) {
+        throw InputError("a camera file cannot hold an orthographic camera");
+    }
+    return camera_json(camera).dump() + "\n";
+}
+
+std::string bookmarks_text(std::vector<Bookmark> const& bookmarks) {
+    Json cameras = Json::array();
+    for (Bookmark const& bookmark : bookmarks) {
+        Json entry{{"name", bookmark.name}};
+        entry.update(camera_json(bookmark.camera));
+        cameras.push_back(std::move(entry));
+    }
+    return Json{{"cameras", std::move(cameras)}}.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::vector<Bookmark> parse_bookmarks(std::string const& text, std::string const& name) {
+    Json const document = Json::parse(text, nullptr, false);
+    if (!document.is_object() || !document.contains("cameras") || !document["cameras"].is_array() ||
+        document["cameras"].size() > Bookmarks::most) {
+        throw InputError("camera file " + name + ": there must be an object with an array \"cameras\"");
+    }
+    std::vector<Bookmark> out;
+    for (Json const& entry : document["cameras"]) {
+        out.push_back(read_bookmark(entry, name));
+    }
+    return out;
+}
+
+Bookmarks::Bookmarks(std::filesystem::path file) : file_(std::move(file)) {
+    try {
+        if (auto const text = read_user_file(file_)) {
+            all_ = parse_bookmarks(*text, file_.string());
+        }
+    } catch (InputError const& error) {
+        complaint_ = std::string(error.what()) + "; bookmarks are left out";
+        is_broken_ = true;
+    }
+}
+
+void Bookmarks::add(Camera const& camera) {
+    if (all_.size() >= most) {
+        throw InputError("there are " + std::to_string(most) + " bookmarks already: remove one first");
+    }
+    // The least number that is free: names stay unlike each other after some have been removed.
+    int number = 1;
+    auto const name = [&] { return "view " + std::to_string(number); };
+    while (std::ranges::any_of(all_, [&](Bookmark const& b) { return b.name == name(); })) {
+        ++number;
+    }
+    all_.push_back({name(), camera});
+    save();
+}
+
+void Bookmarks::rename(std::size_t number, std::string name) {
+    if (number < all_.size()) {
+        all_[number].name = std::move(name);
+        save();
+    }
+}
+
+void Bookmarks::remove(std::size_t number) {
+    if (number < all_.size()) {
+        all_.erase(all_.begin() + static_cast<std::ptrdiff_t>(number));
+        save();
+    }
+}
+
+void Bookmarks::save() {
+    if (std::exchange(is_broken_, false)) {
+        std::filesystem::path kept = file_;
+        kept += ".broken";
+        std::error_code ignored; // what cannot be kept is written over
+        std::filesystem::rename(file_, kept, ignored);
+    }
+    write_user_file(file_, bookmarks_text(all_));
+}
+
+std::filesystem::path bookmarks_file(std::string const& scene_name) {
+    std::filesystem::path const folder = config_folder();
+    return folder.empty() ? folder : folder / "cameras" / (file_stem_for(scene_name) + ".json");
+}
+
+} // namespace framelet

@@ -1,0 +1,57 @@
+// Views of one's own in a scene, by name. In: cameras. Out: a file of camera files, and back.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "common/camera.h"
+
+namespace framelet {
+
+struct Bookmark {
+    std::string name;
+    Camera camera;
+    bool operator==(Bookmark const&) const = default;
+};
+
+/// The camera as --camera reads it, with a line's end. Throws InputError for an orthographic one, which such files do
+/// not know.
+std::string camera_file_text(Camera const& camera);
+
+/// {"cameras": [{"name": ..., and as in a camera file, "orthographic_height" in place of "fov_degrees" where it is
+/// that}, ...]}.
+std::string bookmarks_text(std::vector<Bookmark> const& bookmarks);
+/// Throws InputError; `name` of the file is for its message.
+std::vector<Bookmark> parse_bookmarks(std::string const& text, std::string const& name);
+
+/// Those of one scene, kept in a file.
+class Bookmarks {
+public:
+    static constexpr std::size_t most = 1000;
+
+    /// What is in the file, if there is one. Where it cannot be used there are none, and `complaint` is one line.
+    explicit Bookmarks(std::filesystem::path file);
+
+    std::vector<Bookmark> const& all() const { return all_; }
+    std::string const& complaint() const { return complaint_; }
+
+    /// Its name is "view N", and it is the last. These throw InputError where the file cannot be written; what they
+    /// change is changed for this run all the same. A file that could not be used is kept beside it, as FILE.broken.
+    void add(Camera const& camera);
+    void rename(std::size_t number, std::string name);
+    void remove(std::size_t number);
+
+private:
+    void save();
+
+    std::filesystem::path file_;
+    std::vector<Bookmark> all_;
+    std::string complaint_;
+    bool is_broken_ = false; ///< the file
+};
+
+/// Where those of the scene of that name are kept.
+std::filesystem::path bookmarks_file(std::string const& scene_name);
+
+} // namespace framelet

@@ -1,0 +1,23 @@
+// What F1 shows. In: which commands have an effect now. Out: rows of keys and what they do, in two columns.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "client/window/command.h"
+
+namespace framelet {
+
+using TextRows = std::vector<std::pair<std::string, std::string>>; ///< name and value
+
+/// What is said where another viewer has the scene's clock at its disposal.
+inline constexpr char const* watching_text = "another viewer controls the scene's clock";
+
+/// `controls`: the keys that set the scene's clock have an effect.
+TextRows help_rows(bool controls);
+
+/// The same words, for the tooltip of what does the same by mouse. Of the numbered cameras: of them all.
+std::string help_text(Command command);
+
+} // namespace framelet

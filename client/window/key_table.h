@@ -1,0 +1,42 @@
+// Which key does what, and what it is called: the one table from which the window takes its keys, the help its lines
+// and the tooltips theirs. In: a key. Out: a command. It names GLFW's keys and needs no window.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "client/window/command.h"
+
+namespace framelet {
+
+/// What is held with a key.
+struct KeyModifiers {
+    bool shift = false;
+    bool control = false;
+    bool alt = false;
+
+    bool operator==(KeyModifiers const&) const = default;
+};
+
+struct KeyMeaning {
+    int key; ///< GLFW's
+    KeyModifiers with;
+    Command command;
+    bool repeats; ///< while it is held
+};
+
+/// All of them; of the numbered cameras each has its own.
+std::span<KeyMeaning const> key_meanings();
+
+/// `held_down`: the key repeats itself. Shift counts only where the table has another meaning with it: which keys want
+/// it for a + is the keyboard's business.
+std::optional<Command> command_of_key(int key, KeyModifiers with, bool held_down);
+
+/// As on a keyboard: "Space", "Shift+B", "F9"; several are "F2 or Tab".
+std::string key_names(Command command);
+
+/// What it does and its key, as a tooltip says it: "play or pause (Space)".
+std::string with_keys(std::string const& what, Command command);
+
+} // namespace framelet

@@ -1,0 +1,178 @@
+#include "client/window/overlay_parts.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <utility>
+
+#include "client/window/key_table.h"
+
+namespace framelet {
+
+namespace {
+
+void label(char const* text) {
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(text);
+    ImGui::SameLine();
+}
+
+template <class... Values>
+std::string formatted(char const* format, Values... values) {
+    char text[64];
+    std::snprintf(text, sizeof text, format, values...);
+    return text;
+}
+
+std::string tip_of(Command command) {
+    return with_keys(help_text(command), command);
+}
+
+void clock_controls(TimeLine const& line, float right_width, OverlayFrame& frame) {
+    // What cannot be used says why instead of what it does.
+    auto const tip = [&](Command command) { return line.fixed_because.empty() ? tip_of(command) : line.fixed_because; };
+    ImGui::BeginDisabled(!line.fixed_because.empty());
+    button("|<", Command::seek_start, tip(Command::seek_start), frame);
+    button("<", Command::step_back, tip(Command::step_back), frame);
+    button(line.clock.playing ? "pause###play" : "play ###play", Command::play_or_pause, tip(Command::play_or_pause),
+           frame);
+    button(">", Command::step_forward, tip(Command::step_forward), frame);
+    double place = line.place();
+    double const least = 0;
+    std::string const format = formatted("%%.2f of %.2f s", line.duration);
+    ImGui::SetNextItemWidth(std::max(ImGui::GetContentRegionAvail().x - right_width, 6 * ImGui::GetFontSize()));
+    if (ImGui::SliderScalar("##time", ImGuiDataType_Double, &place, &least, &line.duration, format.c_str(),
+                            ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoInput)) {
+        frame.actions.seek = line.time_at(place);
+    }
+    tooltip(line.fixed_because.empty() ? "time of the animation: drag, or Left and Right for a second"
+                                       : line.fixed_because);
+    ImGui::SameLine();
+    button("-##speed", Command::slower, tip(Command::slower), frame);
+    label(formatted("%gx", static_cast<double>(line.clock.speed)).c_str());
+    button("+##speed", Command::faster, tip(Command::faster), frame);
+    ImGui::EndDisabled();
+}
+
+constexpr char const* shown_buttons[] = {"photo", "rec", "stats", "ages", "?"};
+
+float width_of_buttons() {
+    ImGuiStyle const& style = ImGui::GetStyle();
+    float width = 0;
+    for (char const* const text : shown_buttons) {
+        width += ImGui::CalcTextSize(text).x + 2 * style.FramePadding.x + style.ItemSpacing.x;
+    }
+    return width;
+}
+
+/// What was typed becomes the name, unless it is cancelled.
+void end_edit(bool is_cancelled, OverlayFrame& frame) {
+    NameEdit const edit = std::exchange(frame.edit, NameEdit());
+    if (edit.bookmark >= 0 && !is_cancelled) {
+        frame.actions.renamed = {edit.bookmark, edit.text};
+    }
+}
+
+/// One of the bookmarks: go there, its name, take it away.
+void bookmark_row(int number, std::string const& name, OverlayFrame& frame) {
+    ImGui::PushID(number);
+    if (ImGui::Button("go")) {
+        frame.actions.bookmark = number;
+        ImGui::CloseCurrentPopup();
+    }
+    tooltip(number < numbered_cameras ? with_keys("go there", numbered(Command::bookmark, number)) : "go there");
+    ImGui::SameLine();
+    NameEdit& edit = frame.edit;
+    std::string const& shown = edit.bookmark == number ? edit.text : name;
+    std::array<char, 64> text{};
+    std::copy_n(shown.begin(), std::min(shown.size(), text.size() - 1), text.begin());
+    ImGui::SetNextItemWidth(14 * ImGui::GetFontSize());
+    ImGui::InputText("##name", text.data(), text.size());
+    if (ImGui::IsItemActive()) {
+        edit = {number, text.data()};
+    } else if (edit.bookmark == number) {
+        end_edit(ImGui::IsKeyDown(ImGui::GetKeyIndex(ImGuiKey_Escape)), frame);
+    }
+    tooltip("its name: click to change it");
+    ImGui::SameLine();
+    if (ImGui::Button("x")) {
+        frame.actions.removed_bookmark = number;
+    }
+    tooltip("remove this bookmark");
+    ImGui::PopID();
+}
+
+} // namespace
+
+void draw_camera_menu(CameraMenu const& menu, OverlayFrame& frame) {
+    if (ImGui::Button((menu.current + "###camera").c_str(), ImVec2(9 * ImGui::GetFontSize(), 0))) {
+        ImGui::OpenPopup("cameras");
+    }
+    tooltip("what one looks through: cameras of the scene (1 .. 9), bookmarks of your own (Shift+1 .. 9)");
+    ImGui::SameLine();
+    if (!ImGui::BeginPopup("cameras")) {
+        end_edit(false, frame); // by a click beside the menu
+        return;
+    }
+    if (frame.closes_menu) {
+        ImGui::CloseCurrentPopup();
+    }
+    if (ImGui::Selectable("free camera")) {
+        frame.actions.commands.push_back(Command::free_camera);
+    }
+    tooltip(tip_of(Command::free_camera));
+    for (std::size_t i = 0; i < menu.scene_cameras.size(); ++i) {
+        ImGui::PushID(static_cast<int>(i));
+        if (ImGui::Selectable(menu.scene_cameras[i].c_str())) {
+            frame.actions.scene_camera = static_cast<int>(i);
+        }
+        tooltip(i < numbered_cameras ? tip_of(numbered(Command::scene_camera, static_cast<int>(i)))
+                                     : help_text(Command::scene_camera));
+        ImGui::PopID();
+    }
+    ImGui::Separator();
+    ImGui::PushID("bookmarks");
+    for (std::size_t i = 0; i < menu.bookmarks.size(); ++i) {
+        bookmark_row(static_cast<int>(i), menu.bookmarks[i], frame);
+    }
+    ImGui::PopID();
+    for (Command const command : {Command::add_bookmark, Command::copy_camera, Command::save_camera}) {
+        if (ImGui::Selectable(tip_of(command).c_str(), false, ImGuiSelectableFlags_DontClosePopups)) {
+            frame.actions.commands.push_back(command);
+        }
+    }
+    ImGui::EndPopup();
+}
+
+void draw_bar(OverlayContent const& content, OverlayFrame& frame) {
+    TimeLine const& line = *content.time_line;
+    ImVec2 const size = ImGui::GetIO().DisplaySize;
+    ImGuiStyle const& style = ImGui::GetStyle();
+    frame.bar_height = ImGui::GetFrameHeight() + 2 * style.WindowPadding.y;
+    ImGui::SetNextWindowPos(ImVec2(0, size.y - frame.bar_height));
+    ImGui::SetNextWindowSize(ImVec2(size.x, frame.bar_height));
+    ImGui::SetNextWindowBgAlpha(0.75f);
+    ImGui::Begin("time line", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav |
+                     ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoFocusOnAppearing |
+                     ImGuiWindowFlags_NoScrollWithMouse);
+    take_area(frame);
+    draw_camera_menu(content.cameras, frame);
+    if (line.duration > 0) {
+        float const button_width = ImGui::CalcTextSize("+").x + 2 * style.FramePadding.x;
+        float const right_width =
+            ImGui::CalcTextSize("0.0625x-16.00 EV").x + 4 * button_width + 7 * style.ItemSpacing.x + width_of_buttons();
+        clock_controls(line, right_width, frame);
+    }
+    button("-##exposure", Command::darker, tip_of(Command::darker), frame);
+    label(formatted("%+.2f EV", static_cast<double>(line.exposure_ev)).c_str());
+    button("+##exposure", Command::brighter, tip_of(Command::brighter), frame);
+    constexpr Command shown_commands[] = {Command::screenshot, Command::toggle_recording, Command::toggle_statistics,
+                                          Command::next_overlay, Command::toggle_help};
+    for (std::size_t i = 0; i < std::size(shown_commands); ++i) {
+        button(shown_buttons[i], shown_commands[i], tip_of(shown_commands[i]), frame);
+    }
+    ImGui::End();
+}
+
+} // namespace framelet

@@ -1,0 +1,91 @@
+// What lies over the picture, as plain values, and what the mouse and the keyboard did to it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "client/window/command.h"
+#include "client/window/help_text.h"
+#include "client/window/time_line.h"
+
+namespace framelet {
+
+/// A figure, and how it went.
+struct Plot {
+    std::string name;
+    std::string value; ///< now
+    std::vector<float> values; ///< the oldest first; a negative one was not measured
+    bool operator==(Plot const&) const = default;
+};
+
+struct StatisticsPanel {
+    std::vector<Plot> plots;
+    TextRows rows; ///< below them
+    bool shows_details = false;
+    TextRows details;
+    bool operator==(StatisticsPanel const&) const = default;
+};
+
+/// What the colours of age mean.
+struct Legend {
+    std::string title;
+    std::string newest, oldest; ///< of both ends of the colours
+    std::string remark;
+    bool operator==(Legend const&) const = default;
+};
+
+/// What one can look through.
+struct CameraMenu {
+    std::string current;
+    std::vector<std::string> scene_cameras; ///< names, for people
+    std::vector<std::string> bookmarks; ///< likewise
+    bool operator==(CameraMenu const&) const = default;
+};
+
+/// A name while it is being typed: ImGui keeps the field's text only as long as nothing else is clicked.
+struct NameEdit {
+    int bookmark = -1; ///< whose; -1: none
+    std::string text{};
+};
+
+/// Where another server may be named.
+struct AddressField {
+    std::string proposed;
+    std::vector<std::string> recent;
+    bool operator==(AddressField const&) const = default;
+};
+
+struct OverlayContent {
+    TextRows help; ///< empty: not shown
+    std::optional<StatisticsPanel> statistics;
+    std::optional<Legend> legend;
+    std::string sign; ///< small, at the upper edge; empty: none
+    std::string note; ///< at the lower edge; empty: none
+    std::string message; ///< in the middle; empty: none
+    std::optional<AddressField> address; ///< below the message
+    std::optional<TimeLine> time_line; ///< along the lower edge
+    CameraMenu cameras; ///< in it
+
+    bool operator==(OverlayContent const&) const = default;
+    bool empty() const {
+        return help.empty() && !statistics && !legend && note.empty() && sign.empty() && message.empty() && !time_line;
+    }
+};
+
+/// What the hands asked for.
+struct OverlayActions {
+    std::vector<Command> commands; ///< in order
+    std::optional<SceneTime> seek; ///< where the clock is to stand
+    std::optional<int> scene_camera; ///< to look through
+    std::optional<int> bookmark; ///< to go to
+    std::optional<int> removed_bookmark;
+    struct Renamed {
+        int bookmark;
+        std::string name;
+    };
+    std::optional<Renamed> renamed;
+    std::optional<std::string> address; ///< to connect to
+};
+
+} // namespace framelet

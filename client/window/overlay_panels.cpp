@@ -1,0 +1,194 @@
+#include "client/window/overlay_parts.h"
+
+#include <algorithm>
+#include <array>
+
+#include "client/core/age_colors.h"
+#include "client/window/key_table.h"
+
+namespace framelet {
+
+namespace {
+
+ImVec4 const name_color(0.7f, 0.8f, 1, 1);
+
+void cell(std::string const& text) {
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(text.c_str());
+}
+
+void name_cell(std::string const& text) {
+    ImGui::TableNextColumn();
+    ImGui::TextColored(name_color, "%s", text.c_str());
+}
+
+void table(char const* name, TextRows const& rows) {
+    if (ImGui::BeginTable(name, 2, ImGuiTableFlags_SizingFixedFit)) {
+        for (auto const& [left, right] : rows) {
+            name_cell(left);
+            cell(right);
+        }
+        ImGui::EndTable();
+    }
+}
+
+void plot(Plot const& figure) {
+    // From nought, so that heights can be compared, and with some room above.
+    float const highest = figure.values.empty() ? 0 : *std::ranges::max_element(figure.values);
+    float const font = ImGui::GetFontSize();
+    ImGui::TableNextColumn();
+    ImGui::PlotLines(("##" + figure.name).c_str(), figure.values.data(), static_cast<int>(figure.values.size()), 0,
+                     nullptr, 0, std::max(1.1f * highest, 1e-6f), ImVec2(9 * font, 1.3f * font));
+}
+
+} // namespace
+
+bool begin_panel(char const* name, ImVec2 anchor, float opacity, OverlayFrame const& frame, bool takes_mouse) {
+    ImVec2 const size = ImGui::GetIO().DisplaySize;
+    float const margin = ImGui::GetFontSize();
+    ImVec2 const place(margin + anchor.x * (size.x - 2 * margin),
+                       margin + anchor.y * (size.y - frame.bar_height - 2 * margin));
+    ImGui::SetNextWindowPos(place, ImGuiCond_Always, anchor);
+    ImGui::SetNextWindowBgAlpha(opacity);
+    ImGuiWindowFlags const inputs = takes_mouse ? ImGuiWindowFlags_NoMove : ImGuiWindowFlags_NoInputs;
+    return ImGui::Begin(name, nullptr,
+                        ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
+                            ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
+                            ImGuiWindowFlags_NoNav | inputs);
+}
+
+void take_area(OverlayFrame& frame) {
+    ImVec2 const from = ImGui::GetWindowPos();
+    ImVec2 const size = ImGui::GetWindowSize();
+    frame.areas.push_back({from, ImVec2(from.x + size.x, from.y + size.y)});
+}
+
+void tooltip(std::string const& text) {
+    if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) {
+        ImGui::PushStyleVar(ImGuiStyleVar_Alpha, 1); // not as pale as what cannot be used
+        ImGui::SetTooltip("%s", text.c_str());
+        ImGui::PopStyleVar();
+    }
+}
+
+void button(char const* label, Command command, std::string const& tip, OverlayFrame& frame) {
+    if (ImGui::Button(label)) {
+        frame.actions.commands.push_back(command);
+    }
+    tooltip(tip);
+    ImGui::SameLine();
+}
+
+void draw_statistics(StatisticsPanel const& panel, OverlayFrame& frame) {
+    if (begin_panel("statistics", {0, 0}, 0.75f, frame, true)) {
+        if (ImGui::BeginTable("figures", 3, ImGuiTableFlags_SizingFixedFit)) {
+            for (Plot const& figure : panel.plots) {
+                name_cell(figure.name);
+                cell(figure.value);
+                plot(figure);
+            }
+            ImGui::EndTable();
+        }
+        table("rows", panel.rows);
+        if (ImGui::SmallButton(panel.shows_details ? "- details###details" : "+ details###details")) {
+            frame.actions.commands.push_back(Command::toggle_details);
+        }
+        tooltip(with_keys("figures for who looks into what it costs", Command::toggle_details));
+        if (panel.shows_details) {
+            table("details", panel.details);
+        }
+        take_area(frame);
+    }
+    ImGui::End();
+}
+
+void draw_legend(Legend const& legend, OverlayFrame& frame) {
+    if (begin_panel("legend", {1, 1}, 0.75f, frame)) {
+        ImGui::TextUnformatted(legend.title.c_str());
+        float const font = ImGui::GetFontSize();
+        ImVec2 const from = ImGui::GetCursorScreenPos();
+        constexpr int steps = 48;
+        float const step = 18 * font / steps;
+        for (int i = 0; i < steps; ++i) {
+            OverlayColor const color = age_color(static_cast<float>(i) / (steps - 1));
+            std::array<int, 3> rgb{};
+            std::ranges::transform(color, rgb.begin(), [](float value) { return static_cast<int>(value); });
+            float const left = from.x + step * static_cast<float>(i);
+            ImGui::GetWindowDrawList()->AddRectFilled(ImVec2(left, from.y), ImVec2(left + step, from.y + font),
+                                                      IM_COL32(rgb[0], rgb[1], rgb[2], 255));
+        }
+        ImGui::Dummy(ImVec2(18 * font, font));
+        ImGui::TextUnformatted(legend.newest.c_str());
+        ImGui::SameLine(18 * font + ImGui::GetStyle().WindowPadding.x - ImGui::CalcTextSize(legend.oldest.c_str()).x);
+        ImGui::TextUnformatted(legend.oldest.c_str());
+        if (!legend.remark.empty()) {
+            ImGui::TextUnformatted(legend.remark.c_str());
+        }
+    }
+    ImGui::End();
+}
+
+void draw_help(TextRows const& rows, OverlayFrame& frame) {
+    if (begin_panel("help", {0.5f, 0}, 0.9f, frame)) {
+        // Two rows side by side: in one column they would be higher than small windows.
+        std::size_t const half = (rows.size() + 1) / 2;
+        if (ImGui::BeginTable("help table", 4, ImGuiTableFlags_SizingFixedFit)) {
+            for (std::size_t i = 0; i < half; ++i) {
+                for (std::size_t const k : {i, i + half}) {
+                    if (k < rows.size()) {
+                        name_cell(rows[k].first);
+                        cell(rows[k].second);
+                    }
+                }
+                if (i + half >= rows.size()) {
+                    ImGui::TableNextRow();
+                }
+            }
+            ImGui::EndTable();
+        }
+    }
+    ImGui::End();
+}
+
+void draw_text(char const* name, ImVec2 anchor, std::string const& text, OverlayFrame const& frame) {
+    if (begin_panel(name, anchor, 0.9f, frame)) {
+        ImGui::PushTextWrapPos(ImGui::GetIO().DisplaySize.x * 0.8f);
+        ImGui::TextUnformatted(text.c_str());
+        ImGui::PopTextWrapPos();
+    }
+    ImGui::End();
+}
+
+void draw_message(std::string const& text, AddressField const* field, std::string& typed, OverlayFrame& frame) {
+    if (begin_panel("message", {0.5f, 0.5f}, 0.9f, frame, field != nullptr)) {
+        ImGui::PushTextWrapPos(ImGui::GetIO().DisplaySize.x * 0.8f);
+        ImGui::TextUnformatted(text.c_str());
+        ImGui::PopTextWrapPos();
+        if (field != nullptr) {
+            ImGui::Separator();
+            std::array<char, 300> buffer{};
+            std::copy_n(typed.begin(), std::min(typed.size(), buffer.size() - 1), buffer.begin());
+            ImGui::TextUnformatted("another server:");
+            ImGui::SameLine();
+            ImGui::SetNextItemWidth(20 * ImGui::GetFontSize());
+            bool const entered =
+                ImGui::InputText("##address", buffer.data(), buffer.size(), ImGuiInputTextFlags_EnterReturnsTrue);
+            typed = buffer.data();
+            tooltip("HOST or HOST:PORT, where framelet-server listens");
+            ImGui::SameLine();
+            if ((ImGui::Button("connect") || entered) && !typed.empty()) {
+                frame.actions.address = typed;
+            }
+            for (std::string const& address : field->recent) {
+                if (ImGui::SmallButton(address.c_str())) {
+                    frame.actions.address = address;
+                }
+                tooltip("connect to it as before");
+            }
+            take_area(frame);
+        }
+    }
+    ImGui::End();
+}
+
+} // namespace framelet

@@ -1,0 +1,88 @@
+// Writes what is seen to a film, on a thread of its own. In: pictures, and when each was shown. Out: a file; where it
+// is, how far it has got.
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "common/image.h"
+
+namespace framelet {
+
+/// Where the pictures go. All calls come from one thread, and may take long.
+class FilmWriter {
+public:
+    virtual ~FilmWriter() = default;
+    /// `seconds` since the film began, never less than the time before. Pictures of other sizes than the first are
+    /// scaled to it. Throws InputError, one line.
+    virtual void add(Picture const& picture, double seconds) = 0;
+    /// After the last one. Throws likewise.
+    virtual void finish() = 0;
+    /// The file, or the folder of many.
+    virtual std::filesystem::path path() const = 0;
+};
+
+/// H.264 in an MP4 file in that folder, where the program was built with the libraries for that and they can; else PNG
+/// files in a folder of their own there.
+std::unique_ptr<FilmWriter> make_film_writer(std::filesystem::path const& folder);
+
+class Recorder {
+public:
+    explicit Recorder(std::unique_ptr<FilmWriter> writer);
+    /// Waits until what was taken is written.
+    ~Recorder();
+    Recorder(Recorder const&) = delete;
+    Recorder& operator=(Recorder const&) = delete;
+
+    /// Takes a copy; never waits. While many wait to be written the picture is left out.
+    void add(Picture const& picture, double seconds);
+    /// The film ends at that time, with what was added last: the thread writes what still waits, and is done then.
+    void stop(double seconds);
+
+    struct Progress {
+        std::uint64_t pictures = 0; ///< taken
+        std::uint64_t left_out = 0;
+        double seconds = 0; ///< the film's length by now
+        bool is_stopped = false;
+        bool is_done = false; ///< nothing will be written any more
+        std::optional<std::string> failure; ///< one line
+    };
+    Progress progress() const;
+    std::filesystem::path path() const { return path_; }
+
+    static constexpr std::size_t most_waiting = 6;
+
+private:
+    struct Frame {
+        Picture picture;
+        double seconds;
+    };
+    void run();
+
+    std::unique_ptr<FilmWriter> writer_; ///< the thread's
+    std::filesystem::path const path_;
+
+    mutable std::mutex mutex_; // guards what follows
+    std::condition_variable changed_;
+    std::deque<Frame> waiting_;
+    std::vector<Picture> spare_; ///< whose memory is used again
+    Progress progress_;
+    std::optional<double> end_;
+
+    std::thread thread_;
+};
+
+/// "recording 12 s, 360 pictures" for people.
+std::string progress_text(Recorder::Progress const& progress);
+/// "saved PATH: 12.3 s, 4.1 MB", or why not.
+std::string result_text(Recorder::Progress const& progress, std::filesystem::path const& path);
+
+} // namespace framelet

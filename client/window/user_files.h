@@ -1,0 +1,26 @@
+// Small files that the window keeps for its user. In: a text. Out: a file that is whole, whenever one looks.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace framelet {
+
+/// framelet/ in $XDG_CONFIG_HOME or ~/.config; empty where there is neither.
+std::filesystem::path config_folder();
+
+/// Nothing where there is no such file. Throws InputError, one line, where there is one that cannot be read, or one of
+/// more than a megabyte.
+std::optional<std::string> read_user_file(std::filesystem::path const& file);
+
+/// Makes the folder as well. The file of before stays until the new one is complete. Throws InputError, one line.
+void write_user_file(std::filesystem::path const& file, std::string const& text);
+
+/// A name of a file for what is called so: never one of another folder, never a hidden one, never too long.
+std::string file_stem_for(std::string const& name);
+
+/// "framelet-20240131-235959" and what follows, such as ".png"; with a number before that where there is such a file.
+std::filesystem::path new_file_name(std::filesystem::path const& folder, std::string const& extension);
+
+} // namespace framelet

@@ -1,0 +1,296 @@
+// What the hands and the keys do to a viewer.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <sstream>
+#include <utility>
+
+#include "client/window/help_text.h"
+#include "client/window/key_table.h"
+#include "client/window/user_files.h"
+#include "client/window/viewer.h"
+#include "common/counted.h"
+#include "common/error.h"
+#include "common/files/picture_writer.h"
+
+namespace framelet {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double clock_step = 1.0 / 30;
+constexpr float exposure_step = 0.25f;
+constexpr float largest_exposure = 16;
+constexpr double seek_step = 1;
+
+} // namespace
+
+/// Returns true while a key keeps the camera moving.
+bool Viewer::apply(WindowInput const& input, double seconds) {
+    for (Command const command : input.commands) {
+        apply(command);
+    }
+    take_pivot(input);
+    if (input.moved_camera()) {
+        leave_scene_camera();
+        is_at_bookmark_ = false;
+        if (std::optional<Vec3> const point = std::exchange(grabbed_, std::nullopt)) {
+            controller_->set_pivot(*point);
+        }
+        Viewport const viewport = window_.framebuffer_size();
+        controller_->orbit(input.orbit, viewport);
+        controller_->pan(input.pan, viewport);
+        controller_->dolly(input.dolly);
+        controller_->fly(input.fly, seconds);
+    }
+    return input.fly.moving();
+}
+
+/// What lies under the pointer is what the hands take hold of; where that is not known the pivot stays.
+void Viewer::take_pivot(WindowInput const& input) {
+    std::optional<Vec2> const place = input.focused ? input.focused : input.grabbed;
+    if (!place) {
+        return;
+    }
+    // The picture may be shown stretched, while the window changes its size.
+    Viewport const window = window_.framebuffer_size();
+    grabbed_ = core_->point_at(*place * Vec2(static_cast<float>(picture_.width) / static_cast<float>(window.width),
+                                             static_cast<float>(picture_.height) / static_cast<float>(window.height)));
+    if (!input.focused) {
+        return;
+    }
+    if (std::optional<Vec3> const point = std::exchange(grabbed_, std::nullopt)) {
+        leave_scene_camera();
+        is_at_bookmark_ = false;
+        controller_->focus(*point);
+    } else {
+        say("nothing is there to look at");
+    }
+}
+
+void Viewer::apply(OverlayActions const& asked) {
+    for (Command const command : asked.commands) {
+        apply(command);
+    }
+    if (asked.seek) {
+        ClockState clock = core_->clock();
+        clock.time = *asked.seek;
+        ask_clock(ClockRequest::time, clock);
+    }
+    if (asked.scene_camera) {
+        choose_scene_camera(*asked.scene_camera);
+    }
+    if (asked.bookmark) {
+        go_to_bookmark(*asked.bookmark);
+    }
+    if (asked.renamed) {
+        change_bookmarks(
+            [&] { bookmarks_->rename(static_cast<std::size_t>(asked.renamed->bookmark), asked.renamed->name); });
+    }
+    if (asked.removed_bookmark) {
+        remove_bookmark(*asked.removed_bookmark);
+    }
+}
+
+void Viewer::apply(Command command) {
+    ClockState clock = core_->clock();
+    switch (command) {
+    case Command::quit:
+        quit_ = true;
+        break;
+    case Command::escape:
+        quit_ = !overlay_.has_menu();
+        overlay_.close_menu();
+        break;
+    case Command::reset:
+    case Command::reconnect:
+        if (!lost_.empty()) {
+            if (!reconnecting_.valid()) {
+                reconnecting_ = std::async(std::launch::async, [options = connection_] {
+                    auto core = connect(options);
+                    Window::wake();
+                    return core;
+                });
+            }
+        } else if (command == Command::reset) {
+            scene_camera_ = start_scene_camera(core_->welcome());
+            is_at_bookmark_ = false;
+            controller_->reset();
+        }
+        break;
+    case Command::play_or_pause:
+        clock.playing = !clock.playing;
+        ask_clock(ClockRequest::playing, clock);
+        break;
+    case Command::step_forward:
+        step_clock(clock_step);
+        break;
+    case Command::step_back:
+        step_clock(-clock_step);
+        break;
+    case Command::seek_start:
+        clock.time = 0;
+        ask_clock(ClockRequest::time, clock);
+        break;
+    case Command::seek_forward:
+    case Command::seek_back:
+        clock.time =
+            std::clamp(clock.time + (command == Command::seek_forward ? seek_step : -seek_step), 0.0, max_scene_time);
+        ask_clock(ClockRequest::time, clock);
+        break;
+    case Command::faster:
+    case Command::slower:
+        clock.speed =
+            std::clamp(clock.speed * (command == Command::faster ? 2 : 0.5f), -max_clock_speed, max_clock_speed);
+        ask_clock(ClockRequest::speed, clock);
+        break;
+    case Command::brighter:
+        change_exposure(exposure_step);
+        break;
+    case Command::darker:
+        change_exposure(-exposure_step);
+        break;
+    case Command::fit_scene:
+        leave_scene_camera();
+        is_at_bookmark_ = false;
+        controller_->fit(window_.framebuffer_size());
+        break;
+    case Command::free_camera:
+        leave_scene_camera();
+        break;
+    case Command::toggle_fullscreen:
+        window_.toggle_fullscreen();
+        break;
+    case Command::toggle_help:
+        show_help_ = !show_help_;
+        break;
+    case Command::toggle_statistics:
+        memory_.shows_statistics = !memory_.shows_statistics;
+        break;
+    case Command::toggle_details:
+        memory_.shows_details = !memory_.shows_details;
+        memory_.shows_statistics = memory_.shows_statistics || memory_.shows_details;
+        break;
+    case Command::toggle_time_line:
+        memory_.shows_bar = !memory_.shows_bar;
+        break;
+    case Command::next_overlay:
+        drawn_over_ = drawn_over_ == DrawnOver::nothing    ? DrawnOver::outlines
+                      : drawn_over_ == DrawnOver::outlines ? DrawnOver::confidence
+                                                           : DrawnOver::nothing;
+        overlay_toggled_ = true;
+        break;
+    case Command::toggle_reprojection:
+        settings_.reproject = !settings_.reproject;
+        core_->set_settings(settings_);
+        say(settings_.reproject ? "moved to where it is now" : "shown where it was rendered");
+        break;
+    case Command::toggle_smoothing:
+        toggle_smoothing();
+        break;
+    case Command::screenshot:
+        save_screenshot();
+        break;
+    case Command::toggle_recording:
+        toggle_recording();
+        break;
+    case Command::add_bookmark:
+        add_bookmark();
+        break;
+    case Command::remove_bookmark:
+        remove_bookmark(bookmark_);
+        break;
+    case Command::copy_camera:
+        copy_camera(false);
+        break;
+    case Command::save_camera:
+        copy_camera(true);
+        break;
+    default:
+        if (command >= Command::bookmark) {
+            go_to_bookmark(static_cast<int>(command) - static_cast<int>(Command::bookmark));
+        } else {
+            choose_scene_camera(static_cast<int>(command) - static_cast<int>(Command::scene_camera));
+        }
+    }
+}
+
+/// Empty: it is ours to set.
+std::string Viewer::clock_fixed_because() const {
+    bool const is_gone = interrupted_ || !lost_.empty();
+    return is_gone ? "the server is gone: its clock cannot be set" : core_->controls() ? "" : watching_text;
+}
+
+void Viewer::ask_clock(std::uint8_t fields, ClockState const& state) {
+    if (std::string reason = clock_fixed_because(); !reason.empty()) {
+        say(std::move(reason));
+        return;
+    }
+    core_->request_clock({fields, state});
+    say("clock " + clock_text(core_->clock()));
+}
+
+void Viewer::step_clock(double seconds) {
+    ClockState clock = core_->clock();
+    clock.time = std::clamp(clock.time + seconds, 0.0, max_scene_time);
+    clock.playing = false;
+    ask_clock(ClockRequest::time | ClockRequest::playing, clock);
+}
+
+void Viewer::change_exposure(float stops) {
+    settings_.exposure_ev = std::clamp(settings_.exposure_ev + stops, -largest_exposure, largest_exposure);
+    core_->set_settings(settings_);
+    std::ostringstream text;
+    text << "exposure " << std::showpos << settings_.exposure_ev << " EV";
+    say(text.str());
+}
+
+void Viewer::toggle_smoothing() {
+    lag_seconds_ = lag_seconds_ > 0 ? 0 : chosen_lag_seconds_;
+    core_->set_smoothing(lag_seconds_);
+    say(lag_seconds_ > 0 ? "smooth, " + lag_text(lag_seconds_) : "going on from what is newest");
+}
+
+void Viewer::save_screenshot() {
+    if (picture_.rgba.empty()) {
+        say("there is no picture yet");
+        return;
+    }
+    std::error_code error;
+    fs::path const file = new_file_name(fs::current_path(error), ".png");
+    try {
+        write_png(file, picture_);
+        say("saved " + file.string(), long_note_seconds);
+    } catch (InputError const& failure) {
+        say(failure.what(), long_note_seconds);
+    }
+}
+
+void Viewer::toggle_recording() {
+    if (recorder_) {
+        recorder_->stop(seconds_now() - recording_since_);
+        return;
+    }
+    if (picture_.rgba.empty()) {
+        say("there is no picture yet");
+        return;
+    }
+    std::error_code error;
+    recorder_.emplace(make_film_writer(fs::current_path(error)));
+    recording_since_ = seconds_now();
+    recorder_->add(picture_, 0);
+    say("recording to " + recorder_->path().string(), long_note_seconds);
+}
+
+void Viewer::watch_recording() {
+    if (recorder_ && recorder_->progress().is_done) {
+        std::string const result = result_text(recorder_->progress(), recorder_->path());
+        std::cerr << "framelet-viewer: " << result << std::endl;
+        say(result, long_note_seconds);
+        recorder_.reset();
+    }
+}
+
+} // namespace framelet

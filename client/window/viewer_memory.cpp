@@ -1,0 +1,102 @@
+#include "client/window/viewer_memory.h"
+
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include "client/core/server_address.h"
+#include "client/window/user_files.h"
+#include "common/error.h"
+#include "protocol/stream/user_folders.h"
+
+namespace framelet {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::filesystem::path memory_file() {
+    return state_folders().front() / "viewer.json";
+}
+
+bool flag(Json const& document, char const* name, bool otherwise) {
+    auto const found = document.find(name);
+    return found != document.end() && found->is_boolean() ? found->get<bool>() : otherwise;
+}
+
+std::optional<Viewport> size_of(Json const& value) {
+    if (!value.is_array() || value.size() != 2 || !value[0].is_number_integer() || !value[1].is_number_integer()) {
+        return std::nullopt;
+    }
+    // Smaller ones cannot be taken hold of any more.
+    constexpr std::int64_t least = 100;
+    auto const width = value[0].get<std::int64_t>();
+    auto const height = value[1].get<std::int64_t>();
+    if (width < least || height < least || width > max_viewport_side || height > max_viewport_side) {
+        return std::nullopt;
+    }
+    return Viewport{static_cast<int>(width), static_cast<int>(height)};
+}
+
+} // namespace
+
+void ViewerMemory::note_server(std::string const& address) {
+    std::erase(servers, address);
+    servers.insert(servers.begin(), address);
+    servers.resize(std::min(servers.size(), most_servers));
+}
+
+std::string viewer_memory_text(ViewerMemory const& memory) {
+    Json out;
+    if (memory.size) {
+        out["size"] = {memory.size->width, memory.size->height};
+    }
+    out["fullscreen"] = memory.fullscreen;
+    out["statistics"] = memory.shows_statistics;
+    out["details"] = memory.shows_details;
+    out["bar"] = memory.shows_bar;
+    out["servers"] = memory.servers;
+    return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+ViewerMemory parse_viewer_memory(std::string const& text) {
+    ViewerMemory out;
+    Json const document = Json::parse(text, nullptr, false);
+    if (!document.is_object()) {
+        return out;
+    }
+    out.size = size_of(document.value("size", Json()));
+    out.fullscreen = flag(document, "fullscreen", out.fullscreen);
+    out.shows_statistics = flag(document, "statistics", out.shows_statistics);
+    out.shows_details = flag(document, "details", out.shows_details);
+    out.shows_bar = flag(document, "bar", out.shows_bar);
+    Json const servers = document.value("servers", Json());
+    for (Json const& server : servers.is_array() ? servers : Json::array()) {
+        try {
+            if (server.is_string() && out.servers.size() < ViewerMemory::most_servers) {
+                out.servers.push_back(parse_server_address(server.get<std::string>()).text());
+            }
+        } catch (InputError const&) { // left out
+        }
+    }
+    return out;
+}
+
+ViewerMemory read_viewer_memory() {
+    try {
+        return parse_viewer_memory(read_user_file(memory_file()).value_or(""));
+    } catch (InputError const&) {
+        return {};
+    }
+}
+
+void write_viewer_memory(ViewerMemory const& memory) {
+    try {
+        if (make_private_folder(memory_file().parent_path())) {
+            write_user_file(memory_file(), viewer_memory_text(memory));
+        }
+    } catch (InputError const&) { // as the header says
+    }
+}
+
+} // namespace framelet

@@ -1,0 +1,122 @@
+#include "client/window/bookmarks.h"
+
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "client/core/camera_path.h"
+#include "client/window/user_files.h"
+#include "common/error.h"
+#include "tests/client/own_folder.h"
+
+namespace framelet {
+namespace {
+
+Camera some_camera() {
+    return look_at({9.1f, 4, 12}, {0, 1, 0.3f}, {0, 1, 0}, 0.7f);
+}
+
+void expect_near(Camera const& a, Camera const& b) {
+    EXPECT_LT(glm::distance(a.position, b.position), 1e-5f);
+    EXPECT_LT(glm::distance(a.forward(), b.forward()), 1e-5f);
+    EXPECT_LT(glm::distance(a.up(), b.up()), 1e-5f);
+    EXPECT_EQ(a.projection, b.projection);
+    EXPECT_NEAR(a.vertical_extent, b.vertical_extent, 1e-5f);
+}
+
+TEST(CameraFile, IsReadByThePrograms) {
+    Camera camera = some_camera();
+    camera.orientation = glm::normalize(camera.orientation * Quat(0.9f, 0, 0, 0.3f)); // rolled
+    CameraPath const path = parse_camera_path(camera_file_text(camera), "test");
+    ASSERT_EQ(path.keys.size(), 1u);
+    expect_near(path.at(0), camera);
+    camera.projection = Projection::orthographic;
+    EXPECT_THROW(camera_file_text(camera), InputError);
+}
+
+TEST(Bookmarks, SurviveARestart) {
+    OwnFolder const folder;
+    auto const file = folder.path() / "deep" / "scene.json";
+    {
+        Bookmarks bookmarks(file);
+        EXPECT_TRUE(bookmarks.all().empty());
+        EXPECT_EQ(bookmarks.complaint(), "");
+        bookmarks.add(some_camera());
+        Camera flat = some_camera();
+        flat.projection = Projection::orthographic;
+        flat.vertical_extent = 12.5f;
+        bookmarks.add(flat);
+        bookmarks.rename(0, "from the \"roof\" \xc3\xa4");
+    }
+    Bookmarks again(file);
+    EXPECT_EQ(again.complaint(), "");
+    ASSERT_EQ(again.all().size(), 2u);
+    EXPECT_EQ(again.all()[0].name, "from the \"roof\" \xc3\xa4");
+    EXPECT_EQ(again.all()[1].name, "view 2");
+    expect_near(again.all()[0].camera, some_camera());
+    EXPECT_EQ(again.all()[1].camera.projection, Projection::orthographic);
+    EXPECT_EQ(again.all()[1].camera.vertical_extent, 12.5f);
+    again.remove(0);
+    again.remove(7); // there is none
+    EXPECT_EQ(Bookmarks(file).all().size(), 1u);
+}
+
+TEST(Bookmarks, NamesStayUnlikeEachOther) {
+    OwnFolder const folder;
+    Bookmarks bookmarks(folder.path() / "a.json");
+    bookmarks.add(some_camera());
+    bookmarks.add(some_camera());
+    bookmarks.remove(0);
+    bookmarks.add(some_camera());
+    EXPECT_EQ(bookmarks.all()[0].name, "view 2");
+    EXPECT_EQ(bookmarks.all()[1].name, "view 1");
+}
+
+TEST(Bookmarks, ABrokenFileIsOneLineAndIsKept) {
+    OwnFolder const folder;
+    auto const file = folder.path() / "scene.json";
+    for (std::string const text : {"", "{", "[]", R"({"cameras": 3})", R"({"cameras": [{"name": "a"}]})",
+                                   R"({"cameras": [{"scene_camera": 0}]})",
+                                   R"({"cameras": [{"name": 3, "position": [0,0,1], "target": [0,0,0]}]})",
+                                   R"({"cameras": [{"position": [0,0,1e400], "target": [0,0,0]}]})"}) {
+        std::ofstream(file) << text;
+        Bookmarks bookmarks(file);
+        EXPECT_TRUE(bookmarks.all().empty());
+        EXPECT_NE(bookmarks.complaint().find(file.string()), std::string::npos) << text;
+        EXPECT_EQ(bookmarks.complaint().find('\n'), std::string::npos);
+        bookmarks.add(some_camera());
+        std::ostringstream kept;
+        kept << std::ifstream(file.string() + ".broken").rdbuf();
+        EXPECT_EQ(kept.str(), text);
+        EXPECT_EQ(Bookmarks(file).all().size(), 1u);
+    }
+}
+
+TEST(Bookmarks, AFolderThatCannotBeWrittenIsALine) {
+    OwnFolder const folder;
+    std::ofstream(folder.path() / "file") << "in the way";
+    Bookmarks bookmarks(folder.path() / "file" / "scene.json");
+    EXPECT_THROW(bookmarks.add(some_camera()), InputError);
+    EXPECT_EQ(bookmarks.all().size(), 1u); // for this run
+    EXPECT_THROW(Bookmarks("").add(some_camera()), InputError);
+}
+
+TEST(UserFiles, NamesOfScenesAreNoWaysToOtherFolders) {
+    EXPECT_EQ(file_stem_for("wind mill-2"), "wind mill-2");
+    EXPECT_EQ(file_stem_for("../../etc/passwd"), "_.._.._etc_passwd");
+    EXPECT_EQ(file_stem_for(""), "_");
+    EXPECT_EQ(file_stem_for(std::string(500, 'a')).size(), 100u);
+}
+
+TEST(UserFiles, NewFilesNeverReplaceOthers) {
+    OwnFolder const folder;
+    auto const first = new_file_name(folder.path(), ".png");
+    std::ofstream(first) << "a picture";
+    EXPECT_NE(new_file_name(folder.path(), ".png"), first);
+}
+
+} // namespace
+} // namespace framelet

@@ -1,0 +1,64 @@
+#include "client/window/key_table.h"
+
+#include <set>
+#include <tuple>
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <gtest/gtest.h>
+
+#include "client/window/help_text.h"
+
+namespace framelet {
+namespace {
+
+TEST(KeyTable, NoKeyMeansTwoThings) {
+    std::set<std::tuple<int, bool, bool, bool>> seen;
+    for (KeyMeaning const& meaning : key_meanings()) {
+        EXPECT_TRUE(seen.insert({meaning.key, meaning.with.shift, meaning.with.control, meaning.with.alt}).second)
+            << key_names(meaning.command);
+    }
+}
+
+TEST(KeyTable, EveryCommandHasAKeyAndAWordInTheHelp) {
+    TextRows const help = help_rows(true);
+    for (int i = 0; i <= static_cast<int>(Command::last); ++i) {
+        auto const command = static_cast<Command>(i);
+        if (command == Command::quit) { // the window's own button, beside Esc
+            continue;
+        }
+        std::string const keys = key_names(command);
+        EXPECT_FALSE(keys.empty()) << i;
+        if (command >= Command::scene_camera || command == Command::reconnect) {
+            continue; // the numbered ones are one line; to connect is told where it can be done
+        }
+        EXPECT_NE(std::find(help.begin(), help.end(), std::pair(keys, help_text(command))), help.end()) << keys;
+    }
+}
+
+TEST(KeyTable, ShiftCountsWhereItMeansSomething) {
+    EXPECT_EQ(command_of_key(GLFW_KEY_B, {}, false), Command::add_bookmark);
+    EXPECT_EQ(command_of_key(GLFW_KEY_B, {.shift = true}, false), Command::remove_bookmark);
+    EXPECT_EQ(command_of_key(GLFW_KEY_EQUAL, {.shift = true}, false), Command::faster);
+    EXPECT_EQ(command_of_key(GLFW_KEY_3, {}, false), numbered(Command::scene_camera, 2));
+    EXPECT_EQ(command_of_key(GLFW_KEY_3, {.shift = true}, false), numbered(Command::bookmark, 2));
+    EXPECT_EQ(command_of_key(GLFW_KEY_ENTER, {.alt = true}, false), Command::toggle_fullscreen);
+    EXPECT_EQ(command_of_key(GLFW_KEY_R, {.control = true}, false), std::nullopt);
+    EXPECT_EQ(command_of_key(GLFW_KEY_F12 + 1, {}, false), std::nullopt);
+}
+
+TEST(KeyTable, OnlyStepsRepeat) {
+    EXPECT_EQ(command_of_key(GLFW_KEY_PERIOD, {}, true), Command::step_forward);
+    EXPECT_EQ(command_of_key(GLFW_KEY_F9, {}, true), std::nullopt);
+}
+
+TEST(KeyTable, NamesAreThoseOnTheKeyboard) {
+    EXPECT_EQ(key_names(Command::toggle_statistics), "F2 or Tab");
+    EXPECT_EQ(key_names(Command::toggle_fullscreen), "F11 or Alt+Enter");
+    EXPECT_EQ(key_names(Command::faster), "+");
+    EXPECT_EQ(with_keys("record", Command::toggle_recording), "record (F9)");
+    EXPECT_EQ(with_keys("close", Command::quit), "close");
+}
+
+} // namespace
+} // namespace framelet
