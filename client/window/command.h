@@ -21,6 +21,8 @@ enum class Command : std::uint8_t {
     slower,
     brighter,
     darker,
+    sharper,
+    fresher,
     free_camera,
     fit_scene,
     add_bookmark,

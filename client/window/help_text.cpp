@@ -32,6 +32,8 @@ constexpr Line clock[] = {
 constexpr Line others[] = {
     {Command::brighter, "brighter by 1/4 EV"},
     {Command::darker, "darker by 1/4 EV"},
+    {Command::sharper, "while things move: more detail"},
+    {Command::fresher, "while things move: newer pixels"},
     {Command::screenshot, "screenshot, a PNG in the current folder"},
     {Command::toggle_recording, "record what is seen, or stop"},
     {Command::toggle_statistics, "statistics"},

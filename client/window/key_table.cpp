@@ -32,6 +32,8 @@ constexpr std::array unnumbered{
     KeyMeaning{GLFW_KEY_KP_SUBTRACT, alone, Command::slower, false},
     KeyMeaning{GLFW_KEY_RIGHT_BRACKET, alone, Command::brighter, true},
     KeyMeaning{GLFW_KEY_LEFT_BRACKET, alone, Command::darker, true},
+    KeyMeaning{GLFW_KEY_K, alone, Command::sharper, true},
+    KeyMeaning{GLFW_KEY_L, alone, Command::fresher, true},
     KeyMeaning{GLFW_KEY_0, alone, Command::free_camera, false},
     KeyMeaning{GLFW_KEY_F, alone, Command::fit_scene, false},
     KeyMeaning{GLFW_KEY_B, alone, Command::add_bookmark, false},

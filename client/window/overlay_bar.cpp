@@ -56,11 +56,19 @@ void clock_controls(TimeLine const& line, float right_width, OverlayFrame& frame
 
 constexpr char const* shown_buttons[] = {"photo", "rec", "stats", "ages", "?"};
 
+/// Small windows have the keys for it.
+bool has_room_for_bias() {
+    return ImGui::GetIO().DisplaySize.x > 70 * ImGui::GetFontSize();
+}
+
 float width_of_buttons() {
     ImGuiStyle const& style = ImGui::GetStyle();
     float width = 0;
     for (char const* const text : shown_buttons) {
         width += ImGui::CalcTextSize(text).x + 2 * style.FramePadding.x + style.ItemSpacing.x;
+    }
+    if (has_room_for_bias()) {
+        width += ImGui::CalcTextSize("sharp+0.00fresh").x + 4 * style.FramePadding.x + 3 * style.ItemSpacing.x;
     }
     return width;
 }
@@ -105,7 +113,9 @@ void bookmark_row(int number, std::string const& name, OverlayFrame& frame) {
 } // namespace
 
 void draw_camera_menu(CameraMenu const& menu, OverlayFrame& frame) {
-    if (ImGui::Button((menu.current + "###camera").c_str(), ImVec2(9 * ImGui::GetFontSize(), 0))) {
+    float const font = ImGui::GetFontSize();
+    float const width = std::clamp(ImGui::GetIO().DisplaySize.x / 10, 5 * font, 9 * font);
+    if (ImGui::Button((menu.current + "###camera").c_str(), ImVec2(width, 0))) {
         ImGui::OpenPopup("cameras");
     }
     tooltip("what one looks through: cameras of the scene (1 .. 9), bookmarks of your own (Shift+1 .. 9)");
@@ -167,6 +177,11 @@ void draw_bar(OverlayContent const& content, OverlayFrame& frame) {
     button("-##exposure", Command::darker, tip_of(Command::darker), frame);
     label(formatted("%+.2f EV", static_cast<double>(line.exposure_ev)).c_str());
     button("+##exposure", Command::brighter, tip_of(Command::brighter), frame);
+    if (has_room_for_bias()) {
+        button("sharp", Command::sharper, tip_of(Command::sharper), frame);
+        label(formatted("%+.2f", static_cast<double>(content.bias)).c_str());
+        button("fresh", Command::fresher, tip_of(Command::fresher), frame);
+    }
     constexpr Command shown_commands[] = {Command::screenshot, Command::toggle_recording, Command::toggle_statistics,
                                           Command::next_overlay, Command::toggle_help};
     for (std::size_t i = 0; i < std::size(shown_commands); ++i) {

@@ -66,6 +66,7 @@ struct OverlayContent {
     std::optional<AddressField> address; ///< below the message
     std::optional<TimeLine> time_line; ///< along the lower edge
     CameraMenu cameras; ///< in it
+    float bias = 0; ///< likewise, -1: sharp, 1: fresh
 
     bool operator==(OverlayContent const&) const = default;
     bool empty() const {

@@ -63,8 +63,8 @@ Recorder::Progress Recorder::progress() const {
 
 void Recorder::run() {
     // Linux has a priority for each thread: what is shown goes before what is written.
-    constexpr int nice = 5;
-    ::setpriority(PRIO_PROCESS, 0, nice);
+    constexpr int nicer = 5;
+    ::setpriority(PRIO_PROCESS, 0, ::getpriority(PRIO_PROCESS, 0) + nicer);
     Frame last{{}, -1};
     std::optional<std::string> failure;
     try {

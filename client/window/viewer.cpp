@@ -255,6 +255,7 @@ OverlayContent Viewer::overlay_content() {
         Welcome const welcome = core_->welcome();
         out.time_line = {core_->clock(), welcome.animation_duration, clock_fixed_because(), settings_.exposure_ev};
         out.cameras = camera_menu(welcome);
+        out.bias = settings_.bias;
     }
     // Where nothing is moved, the core draws outlines instead.
     out.legend =

@@ -51,6 +51,7 @@ private:
     void choose_scene_camera(int number);
     void leave_scene_camera();
     void change_exposure(float stops);
+    void change_bias(float step);
     void toggle_smoothing();
     void save_screenshot();
     void toggle_recording();

@@ -24,6 +24,7 @@ constexpr double clock_step = 1.0 / 30;
 constexpr float exposure_step = 0.25f;
 constexpr float largest_exposure = 16;
 constexpr double seek_step = 1;
+constexpr float bias_step = 0.25f;
 
 } // namespace
 
@@ -152,6 +153,12 @@ void Viewer::apply(Command command) {
     case Command::darker:
         change_exposure(-exposure_step);
         break;
+    case Command::sharper:
+        change_bias(-bias_step);
+        break;
+    case Command::fresher:
+        change_bias(bias_step);
+        break;
     case Command::fit_scene:
         leave_scene_camera();
         is_at_bookmark_ = false;
@@ -244,6 +251,17 @@ void Viewer::change_exposure(float stops) {
     core_->set_settings(settings_);
     std::ostringstream text;
     text << "exposure " << std::showpos << settings_.exposure_ev << " EV";
+    say(text.str());
+}
+
+void Viewer::change_bias(float step) {
+    settings_.bias = std::clamp(settings_.bias + step, -1.0f, 1.0f);
+    core_->set_settings(settings_);
+    std::ostringstream text;
+    text << (settings_.bias < 0   ? "sharper while things move, "
+             : settings_.bias > 0 ? "newer while things move, "
+                                  : "detail and newness alike, ")
+         << std::showpos << settings_.bias;
     say(text.str());
 }
 
