@@ -56,6 +56,11 @@ void Recorder::stop(double seconds) {
     }
 }
 
+void Recorder::wait() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return progress_.is_done; });
+}
+
 Recorder::Progress Recorder::progress() const {
     std::lock_guard const lock(mutex_);
     return progress_;
@@ -96,6 +101,7 @@ void Recorder::run() {
     progress_.failure = std::move(failure);
     progress_.is_done = true;
     waiting_.clear();
+    changed_.notify_all();
 }
 
 std::string progress_text(Recorder::Progress const& progress) {

@@ -47,6 +47,9 @@ public:
     /// The film ends at that time, with what was added last: the thread writes what still waits, and is done then.
     void stop(double seconds);
 
+    /// After `stop`: until it is done.
+    void wait();
+
     struct Progress {
         std::uint64_t pictures = 0; ///< taken
         std::uint64_t left_out = 0;

@@ -135,6 +135,11 @@ int Viewer::run() {
             overlay_frames = std::max(overlay_frames - 1, 0);
         }
     }
+    if (recorder_) {
+        recorder_->stop(seconds_now() - recording_since_);
+        recorder_->wait();
+        watch_recording();
+    }
     remember();
     return lost_.empty() ? 0 : 1;
 }

@@ -90,9 +90,7 @@ TEST(Recorder, AFailureEndsItWithALine) {
     log.fails = true;
     Recorder recorder(std::make_unique<LoggingWriter>(log));
     recorder.add(Picture(1, 1), 0);
-    while (!recorder.progress().is_done) {
-        std::this_thread::yield();
-    }
+    recorder.wait();
     recorder.add(Picture(1, 1), 1);
     EXPECT_EQ(result_text(recorder.progress(), recorder.path()), "the film is not written: the disk is full");
 }
@@ -106,9 +104,7 @@ TEST(Recorder, MakesAFilm) {
         recorder.add(picture, 0.1 * i);
     }
     recorder.stop(0.5);
-    while (!recorder.progress().is_done) {
-        std::this_thread::yield();
-    }
+    recorder.wait();
     EXPECT_EQ(recorder.progress().failure, std::nullopt);
     if (recorder.path().extension() == ".mp4") {
         EXPECT_GT(std::filesystem::file_size(recorder.path()), 500u);
@@ -125,9 +121,7 @@ TEST(Recorder, AFolderThatCannotBeWrittenIsALine) {
     Recorder recorder(make_film_writer("/dev/null/nowhere"));
     recorder.add(Picture(64, 64), 0);
     recorder.stop(1);
-    while (!recorder.progress().is_done) {
-        std::this_thread::yield();
-    }
+    recorder.wait();
     ASSERT_TRUE(recorder.progress().failure);
     EXPECT_NE(recorder.progress().failure->find("/dev/null/nowhere"), std::string::npos);
 }
