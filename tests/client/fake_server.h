@@ -6,6 +6,7 @@
 #include <condition_variable>
 #include <functional>
 #include <mutex>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -95,6 +96,7 @@ public:
                 stream->close();
             }
             streams_.clear();
+            greeted_.clear();
             raw_sockets_.clear();
         });
     }
@@ -108,6 +110,7 @@ public:
                 stream->close();
             }
             streams_.clear();
+            greeted_.clear();
         });
     }
     /// The same, as a server does to which a viewer comes back.
@@ -118,6 +121,7 @@ public:
                 stream->close();
             }
             streams_.clear();
+            greeted_.clear();
         });
     }
     /// Keeps the connections but says nothing any more.
@@ -193,6 +197,7 @@ private:
                 stream.close_after_sending();
             } else {
                 stream.send(script_.welcome);
+                greeted_.insert(&stream);
                 beat();
             }
         }
@@ -220,7 +225,9 @@ private:
         }
         status.last_batch = last_batch_;
         for (auto const& stream : streams_) {
-            stream->send(status);
+            if (greeted_.contains(stream.get())) {
+                stream->send(status);
+            }
         }
         heart_.expires_after(std::chrono::milliseconds(static_cast<int>(1000 * script_.heartbeat_seconds)));
         heart_.async_wait([this](boost::system::error_code error) {
@@ -236,6 +243,7 @@ private:
     std::uint16_t const port_ = acceptor_.local_endpoint().port();
     boost::asio::steady_timer heart_{io_};
     std::vector<std::shared_ptr<FramedStream>> streams_;
+    std::set<FramedStream const*> greeted_; ///< of these, who hear heartbeats
     std::vector<std::shared_ptr<Tcp::socket>> raw_sockets_;
     BatchCodec codec_;
     std::uint64_t last_batch_ = 0;
