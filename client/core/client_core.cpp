@@ -3,14 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <condition_variable>
-#include <deque>
 #include <mutex>
 #include <thread>
 #include <utility>
 
+#include "client/core/camera_times.h"
 #include "client/core/making_time.h"
 #include "client/core/server_connection.h"
 #include "client/core/session_pictures.h"
+#include "client/core/told_let_go.h"
 #include "common/error.h"
 #include "protocol/codec/batch_codec.h"
 
@@ -26,10 +27,6 @@ double seconds_between(Clock::time_point from, Clock::time_point to) {
 
 Clock::duration clock_duration(double seconds) {
     return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
-}
-
-double ratio(double amount, std::uint64_t count) {
-    return count == 0 ? 0 : amount / static_cast<double>(count);
 }
 
 /// A batch's number, view, scene time and length prefix on the wire, about.
@@ -51,25 +48,7 @@ std::size_t bytes_of(Batch const& batch) {
 
 } // namespace
 
-double ClientStatistics::bytes_per_sample() const {
-    return ratio(static_cast<double>(bytes), samples);
-}
-
-double ClientStatistics::decode_ns_per_sample() const {
-    return ratio(decode_seconds * 1e9, samples);
-}
-
-double ClientStatistics::reconstruct_ns_per_pixel() const {
-    return ratio(reconstruct_seconds * 1e9, pixels);
-}
-
 struct ClientCore::Impl {
-    struct SentCamera {
-        std::uint64_t number;
-        Clock::time_point time;
-    };
-    static constexpr std::size_t most_sent_cameras = 256;
-
     std::function<void()> on_news;
     Clock::time_point const start = Clock::now();
     // The connection's thread only; of this session, as all that follows.
@@ -88,15 +67,11 @@ struct ClientCore::Impl {
     std::vector<Batch> arrived; ///< and not in the maker yet, in order
     std::vector<Batch> spare_batches; ///< for their memory
     std::vector<SentTile> let_go; ///< scratch
-    std::deque<LetGo> told_let_go; ///< and not known to have come to the server, in order
-    std::size_t told_framelets = 0; ///< in these
-    std::uint64_t let_go_come = 0; ///< messages of this kind that have
-    bool lost_let_go = false; ///< there were too many of them to know
+    ToldLetGo told_let_go;
     std::optional<CameraUpdate> waiting_view;
     CameraUpdate view; ///< the newest, sent or not
     ViewerSettings viewer_settings;
-    std::deque<SentCamera> sent_cameras;
-    std::deque<SentCamera> set_cameras; ///< and not shown yet
+    CameraTimes camera_times;
     std::optional<Clock::time_point> first_camera_time;
     PictureSettings picture_settings;
     bool has_picture = false; ///< something is held of the newest viewport
@@ -178,7 +153,7 @@ struct ClientCore::Impl {
     /// Where what is held is what the server thinks it is, but for batches that are still to come.
     void ask_to_go_on(Hello& hello) {
         std::lock_guard const lock(mutex);
-        if (is_whole && !lost_let_go) {
+        if (is_whole && !told_let_go.is_lost()) {
             hello.ticket = welcome.ticket;
             hello.last_batch = last_batch;
         }
@@ -196,14 +171,14 @@ struct ClientCore::Impl {
             status = {};
             note_clock(greeting);
             status_time = Clock::now();
-            sent_cameras.clear();
+            camera_times.forget_sent();
             welcome = std::move(greeting);
             interruption.reset();
             ++statistics.reconnections;
-            note_let_go_come(welcome.let_go);
+            told_let_go.note_come(welcome.let_go);
             if (connection) {
                 connection->send(viewer_settings);
-                for (LetGo const& told : told_let_go) {
+                for (LetGo const& told : told_let_go.messages()) {
                     connection->send(told);
                 }
             }
@@ -235,10 +210,7 @@ struct ClientCore::Impl {
         statistics.waiting_bytes = 0;
         has_picture = false;
         last_batch = 0;
-        told_let_go.clear();
-        told_framelets = 0;
-        let_go_come = 0;
-        lost_let_go = false;
+        told_let_go = {};
         is_whole = true;
     }
 
@@ -262,10 +234,7 @@ struct ClientCore::Impl {
         if (!first_camera_time) {
             first_camera_time = now;
         }
-        sent_cameras.push_back({waiting_view->view.number, now});
-        if (sent_cameras.size() > most_sent_cameras) {
-            sent_cameras.pop_front();
-        }
+        camera_times.note_sent(waiting_view->view.number, now);
         ++statistics.cameras_sent;
         connection->send(*waiting_view);
         waiting_view.reset();
@@ -278,7 +247,7 @@ struct ClientCore::Impl {
             std::lock_guard const lock(mutex);
             status = *news_of_server;
             status_time = Clock::now();
-            note_let_go_come(status.let_go);
+            told_let_go.note_come(status.let_go);
             statistics.converged = status.converged;
             statistics.server_samples_per_second = status.samples_per_second;
         } else {
@@ -387,29 +356,9 @@ struct ClientCore::Impl {
             if (!interruption) {
                 connection->send(told);
             }
-            keep_told(std::move(told));
-        }
-    }
-
-    /// Until the server says that it has come: it might be lost with the connection. Under the lock.
-    void keep_told(LetGo told) {
-        constexpr std::size_t most_framelets = std::size_t{1} << 18;
-        if (!welcome.ticket || lost_let_go) {
-            return;
-        }
-        told_framelets += told.framelets.size();
-        told_let_go.push_back(std::move(told));
-        if (told_framelets > most_framelets) {
-            told_let_go.clear();
-            lost_let_go = true;
-        }
-    }
-
-    /// As many messages as the server says. Under the lock.
-    void note_let_go_come(std::uint64_t messages) {
-        for (; let_go_come < messages && !told_let_go.empty(); ++let_go_come) {
-            told_framelets -= told_let_go.front().framelets.size();
-            told_let_go.pop_front();
+            if (welcome.ticket) {
+                told_let_go.keep(std::move(told));
+            }
         }
     }
 
@@ -469,24 +418,12 @@ struct ClientCore::Impl {
             bool const moves = clock.playing && clock.speed != 0 && picture_settings.scene_moves;
             return moves ? (clock.time - shown_time) / static_cast<double>(clock.speed) : -1;
         }
-        double seconds = -1;
-        while (!set_cameras.empty() && set_cameras.front().number <= number) {
-            seconds = set_cameras.front().number == number ? seconds_between(set_cameras.front().time, seen) : seconds;
-            set_cameras.pop_front();
-        }
-        return seconds;
+        return camera_times.since_set(number, seen).value_or(-1);
     }
 
     /// Under the lock.
     void note_round_trip(std::uint64_t camera_number, Clock::time_point received) {
-        std::optional<double> seconds;
-        while (!sent_cameras.empty() && sent_cameras.front().number <= camera_number) {
-            if (sent_cameras.front().number == camera_number) {
-                seconds = seconds_between(sent_cameras.front().time, received);
-            }
-            sent_cameras.pop_front();
-        }
-        if (seconds) {
+        if (auto const seconds = camera_times.since_sent(camera_number, received)) {
             double& smoothed = statistics.round_trip_seconds;
             double& least = statistics.least_round_trip_seconds;
             smoothed = smoothed < 0 ? *seconds : 0.8 * smoothed + 0.2 * *seconds;
@@ -528,10 +465,7 @@ void ClientCore::set_view(Camera const& wanted, Viewport viewport, int scene_cam
     std::uint64_t const number = view.view.number + 1;
     view = {{number, camera, viewport, is_held ? view.view.held_since : number}, scene_camera};
     impl_->statistics.converged = false;
-    impl_->set_cameras.push_back({view.view.number, Clock::now()});
-    if (impl_->set_cameras.size() > Impl::most_sent_cameras) {
-        impl_->set_cameras.pop_front();
-    }
+    impl_->camera_times.note_set(view.view.number, Clock::now());
     impl_->waiting_view = view;
     impl_->send_waiting_view();
 }

@@ -1,0 +1,43 @@
+// Figures of a viewer's session. A value.
+#pragma once
+
+#include <cstdint>
+
+namespace framelet {
+
+/// What has happened since the session was opened.
+struct ClientStatistics {
+    double seconds = 0;
+    std::uint64_t pictures = 0; ///< calls of `update_picture` that changed something
+    std::uint64_t batches = 0;
+    std::uint64_t stale_batches = 0; ///< for a viewport that is no longer current; not shown
+    std::uint64_t framelets = 0;
+    std::uint64_t samples = 0;
+    std::uint64_t bytes = 0; ///< of batches: samples, shapes, tracks, tiles and headers
+    std::uint64_t pixels = 0; ///< reconstructed
+    double decode_seconds = 0;
+    double insert_seconds = 0;
+    double reconstruct_seconds = 0;
+    double first_picture_seconds = -1; ///< from the first camera to the first picture; -1: not yet
+    double full_picture_seconds = -1; ///< until no pixel was bare any more
+    double round_trip_seconds = -1; ///< camera sent -> first batch seen from it received; smoothed
+    double least_round_trip_seconds = -1;
+    double coverage = 0; ///< of the viewport now, [0, 1]
+    std::uint64_t cached_framelets = 0;
+    std::uint64_t cached_bytes = 0;
+    std::uint64_t waiting_bytes = 0; ///< of batches that have been decoded, for the next picture
+    std::uint64_t cameras_sent = 0;
+    double server_samples_per_second = 0;
+    bool converged = false;
+    /// From when the camera of the last picture was set, or the moment that it shows was the present, until the picture
+    /// was seen; -1: it shows no new one.
+    double photon_seconds = -1;
+    double lag_seconds = 0; ///< by which the scene is shown late, as asked for; 0: it is not
+    std::uint64_t reconnections = 0;
+
+    double bytes_per_sample() const;
+    double decode_ns_per_sample() const;
+    double reconstruct_ns_per_pixel() const;
+};
+
+} // namespace framelet

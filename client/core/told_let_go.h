@@ -1,0 +1,50 @@
+// What the viewer has told the server of framelets that it holds no longer, for as long as it might be lost with the
+// connection. In: messages, how many of them have come. Out: those to send again. A value.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <utility>
+
+#include "protocol/messages/message.h"
+
+namespace framelet {
+
+class ToldLetGo {
+public:
+    /// Of more framelets it is no longer known which have come.
+    static constexpr std::size_t most_framelets = std::size_t{1} << 18;
+
+    void keep(LetGo told) {
+        if (is_lost_) {
+            return;
+        }
+        framelets_ += told.framelets.size();
+        messages_.push_back(std::move(told));
+        if (framelets_ > most_framelets) {
+            messages_.clear();
+            is_lost_ = true;
+        }
+    }
+    /// The server has so many of all messages, as it says.
+    void note_come(std::uint64_t messages) {
+        for (; come_ < messages && !messages_.empty(); ++come_) {
+            framelets_ -= messages_.front().framelets.size();
+            messages_.pop_front();
+        }
+    }
+
+    /// In order.
+    std::deque<LetGo> const& messages() const { return messages_; }
+    /// There were too many: no session can go on with what is held.
+    bool is_lost() const { return is_lost_; }
+
+private:
+    std::deque<LetGo> messages_;
+    std::size_t framelets_ = 0; ///< in these
+    std::uint64_t come_ = 0; ///< messages that have
+    bool is_lost_ = false;
+};
+
+} // namespace framelet
