@@ -7,8 +7,8 @@
 #include "client/display_arguments.h"
 #include "client/picture_size.h"
 #include "client/window/first_connection.h"
+#include "client/window/kept/viewer_memory.h"
 #include "client/window/viewer.h"
-#include "client/window/viewer_memory.h"
 #include "common/error.h"
 #include "common/program_failure.h"
 

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "client/core/back_off.h"
-#include "client/window/overlay.h"
+#include "client/window/overlay/overlay.h"
 #include "client/window/viewer.h"
 #include "common/error.h"
 

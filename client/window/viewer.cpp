@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "client/core/display_pace.h"
-#include "client/window/help_text.h"
-#include "client/window/key_table.h"
+#include "client/window/overlay/help_text.h"
+#include "client/window/overlay/key_table.h"
 
 namespace framelet {
 

@@ -11,12 +11,12 @@
 #include "client/core/camera_controller.h"
 #include "client/core/client_core.h"
 #include "client/core/making_time.h"
-#include "client/window/bookmarks.h"
-#include "client/window/overlay.h"
-#include "client/window/overlay_text.h"
-#include "client/window/recorder.h"
+#include "client/window/kept/bookmarks.h"
+#include "client/window/kept/recorder.h"
+#include "client/window/kept/viewer_memory.h"
+#include "client/window/overlay/overlay.h"
+#include "client/window/overlay/overlay_text.h"
 #include "client/window/resize.h"
-#include "client/window/viewer_memory.h"
 #include "client/window/window.h"
 
 namespace framelet {

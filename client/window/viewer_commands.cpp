@@ -6,9 +6,9 @@
 #include <sstream>
 #include <utility>
 
-#include "client/window/help_text.h"
-#include "client/window/key_table.h"
-#include "client/window/user_files.h"
+#include "client/window/kept/user_files.h"
+#include "client/window/overlay/help_text.h"
+#include "client/window/overlay/key_table.h"
 #include "client/window/viewer.h"
 #include "common/counted.h"
 #include "common/error.h"

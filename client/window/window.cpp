@@ -9,7 +9,7 @@
 #include <GLFW/glfw3.h>
 #include <glm/geometric.hpp>
 
-#include "client/window/key_table.h"
+#include "client/window/overlay/key_table.h"
 #include "client/window/picture_texture.h"
 #include "common/error.h"
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "client/core/camera_controller.h"
-#include "client/window/command.h"
+#include "client/window/overlay/command.h"
 #include "common/image.h"
 #include "common/tile.h"
 

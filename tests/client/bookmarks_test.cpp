@@ -1,4 +1,4 @@
-#include "client/window/bookmarks.h"
+#include "client/window/kept/bookmarks.h"
 
 #include <cstdlib>
 #include <fstream>
@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "client/core/camera_path.h"
-#include "client/window/user_files.h"
+#include "client/window/kept/user_files.h"
 #include "common/error.h"
 #include "tests/client/own_folder.h"
 

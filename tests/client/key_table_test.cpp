@@ -1,4 +1,4 @@
-#include "client/window/key_table.h"
+#include "client/window/overlay/key_table.h"
 
 #include <set>
 #include <tuple>
@@ -7,7 +7,7 @@
 #include <GLFW/glfw3.h>
 #include <gtest/gtest.h>
 
-#include "client/window/help_text.h"
+#include "client/window/overlay/help_text.h"
 
 namespace framelet {
 namespace {

@@ -1,4 +1,4 @@
-#include "client/window/time_line.h"
+#include "client/window/overlay/time_line.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "client/window/viewer_memory.h"
+#include "client/window/kept/viewer_memory.h"
 
 #include <cstdlib>
 #include <fstream>

@@ -1,11 +1,11 @@
-#include "client/window/viewer_memory.h"
+#include "client/window/kept/viewer_memory.h"
 
 #include <algorithm>
 
 #include <nlohmann/json.hpp>
 
 #include "client/core/server_address.h"
-#include "client/window/user_files.h"
+#include "client/window/kept/user_files.h"
 #include "common/error.h"
 #include "protocol/stream/user_folders.h"
 

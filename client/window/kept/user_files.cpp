@@ -1,4 +1,4 @@
-#include "client/window/user_files.h"
+#include "client/window/kept/user_files.h"
 
 #include <cctype>
 #include <cstdlib>

@@ -1,10 +1,10 @@
-#include "client/window/overlay_parts.h"
+#include "client/window/overlay/overlay_parts.h"
 
 #include <algorithm>
 #include <array>
 
 #include "client/core/age_colors.h"
-#include "client/window/key_table.h"
+#include "client/window/overlay/key_table.h"
 
 namespace framelet {
 

@@ -1,4 +1,4 @@
-#include "client/window/key_table.h"
+#include "client/window/overlay/key_table.h"
 
 #include <algorithm>
 #include <array>

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "client/window/command.h"
+#include "client/window/overlay/command.h"
 
 namespace framelet {
 

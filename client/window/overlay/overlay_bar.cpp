@@ -1,11 +1,11 @@
-#include "client/window/overlay_parts.h"
+#include "client/window/overlay/overlay_parts.h"
 
 #include <algorithm>
 #include <array>
 #include <cstdio>
 #include <utility>
 
-#include "client/window/key_table.h"
+#include "client/window/overlay/key_table.h"
 
 namespace framelet {
 

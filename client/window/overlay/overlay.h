@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "client/window/overlay_content.h"
+#include "client/window/overlay/overlay_content.h"
 #include "common/tile.h"
 
 struct GLFWwindow;

@@ -1,4 +1,4 @@
-#include "client/window/overlay.h"
+#include "client/window/overlay/overlay.h"
 
 #include <utility>
 
@@ -6,7 +6,7 @@
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 
-#include "client/window/overlay_parts.h"
+#include "client/window/overlay/overlay_parts.h"
 
 namespace framelet {
 

@@ -1,4 +1,4 @@
-#include "client/window/bookmarks.h"
+#include "client/window/kept/bookmarks.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "client/core/camera_path.h"
-#include "client/window/user_files.h"
+#include "client/window/kept/user_files.h"
 #include "common/error.h"
 
 namespace framelet {

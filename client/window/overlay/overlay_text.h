@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "client/core/client_core.h"
-#include "client/window/overlay_content.h"
+#include "client/window/overlay/overlay_content.h"
 
 namespace framelet {
 

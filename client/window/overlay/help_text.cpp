@@ -1,9 +1,9 @@
-#include "client/window/help_text.h"
+#include "client/window/overlay/help_text.h"
 
 #include <initializer_list>
 #include <span>
 
-#include "client/window/key_table.h"
+#include "client/window/overlay/key_table.h"
 
 namespace framelet {
 

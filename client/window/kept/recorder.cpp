@@ -1,4 +1,4 @@
-#include "client/window/recorder.h"
+#include "client/window/kept/recorder.h"
 
 #include <algorithm>
 #include <iomanip>

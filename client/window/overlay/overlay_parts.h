@@ -7,7 +7,7 @@
 
 #include <imgui.h>
 
-#include "client/window/overlay_content.h"
+#include "client/window/overlay/overlay_content.h"
 
 namespace framelet {
 

@@ -5,8 +5,8 @@
 #include <memory>
 #include <utility>
 
-#include "client/window/recorder.h"
-#include "client/window/user_files.h"
+#include "client/window/kept/recorder.h"
+#include "client/window/kept/user_files.h"
 #include "common/error.h"
 #include "common/files/picture_writer.h"
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "client/window/command.h"
-#include "client/window/help_text.h"
-#include "client/window/time_line.h"
+#include "client/window/overlay/command.h"
+#include "client/window/overlay/help_text.h"
+#include "client/window/overlay/time_line.h"
 
 namespace framelet {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "client/window/command.h"
+#include "client/window/overlay/command.h"
 
 namespace framelet {
 

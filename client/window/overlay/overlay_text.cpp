@@ -1,4 +1,4 @@
-#include "client/window/overlay_text.h"
+#include "client/window/overlay/overlay_text.h"
 
 #include <algorithm>
 #include <iomanip>
