@@ -1,4 +1,4 @@
-#include "launcher/view.h"
+#include "client/launcher/view.h"
 
 #include <array>
 #include <chrono>
@@ -17,8 +17,8 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include "client/launcher/child.h"
 #include "common/error.h"
-#include "launcher/child.h"
 
 namespace framelet {
 namespace {

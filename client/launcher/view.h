@@ -1,7 +1,7 @@
 // A private server for a scene and a window on it, from the start of the one to the end of both.
 #pragma once
 
-#include "launcher/options.h"
+#include "client/launcher/options.h"
 
 namespace framelet {
 

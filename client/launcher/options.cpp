@@ -1,4 +1,4 @@
-#include "launcher/options.h"
+#include "client/launcher/options.h"
 
 #include <algorithm>
 #include <iterator>

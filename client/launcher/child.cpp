@@ -1,4 +1,4 @@
-#include "launcher/child.h"
+#include "client/launcher/child.h"
 
 #include <csignal>
 #include <cstdlib>

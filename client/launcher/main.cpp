@@ -2,9 +2,9 @@
 #include <exception>
 #include <iostream>
 
+#include "client/launcher/options.h"
+#include "client/launcher/view.h"
 #include "common/program_failure.h"
-#include "launcher/options.h"
-#include "launcher/view.h"
 
 int main(int argc, char** argv) {
     auto const parsed = framelet::parse_options(argc, argv);
