@@ -10,6 +10,7 @@
 #include <memory>
 
 #include <fcntl.h>
+#include <malloc.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 #include <tbb/global_control.h>
@@ -51,6 +52,16 @@ void read_files(Options& options) {
         throw InputError("cannot write '" + options.record_events.string() +
                          "': give --record-events a file in a folder that exists");
     }
+}
+
+/// What viewers had that have left goes back to the system. Left to itself the allocator of glibc keeps such blocks
+/// once one has been freed, between smaller ones, and a server takes twice the memory after a while.
+void give_back_large_blocks() {
+#ifdef __GLIBC__
+    constexpr int least_bytes = 256 << 10, most_free_bytes = 16 << 20;
+    mallopt(M_MMAP_THRESHOLD, least_bytes);
+    mallopt(M_TRIM_THRESHOLD, most_free_bytes); // less would be given back and asked for again with each batch
+#endif
 }
 
 std::vector<Index> chosen_clips(Scene const& scene, ImportOptions const& import) {
@@ -169,6 +180,7 @@ void serve(Options& options) {
 } // namespace framelet
 
 int main(int argc, char** argv) {
+    framelet::give_back_large_blocks();
     std::signal(SIGPIPE, SIG_IGN); // whoever reads the log may go away; viewers stay
     auto parsed = framelet::parse_options(argc, argv);
     if (int const* const exit_code = std::get_if<int>(&parsed)) {

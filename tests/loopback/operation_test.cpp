@@ -1,6 +1,8 @@
 // What those who run the programs meet: what is asked of a scene without serving it, options in a file, and the
 // port for those who watch over a server.
 #include <csignal>
+#include <deque>
+#include <fstream>
 #include <thread>
 
 #include <boost/asio/connect.hpp>
@@ -58,6 +60,39 @@ TEST(Operation, OptionsComeFromAFileToo) {
     Process absent(FRAMELET_CLIENT, {"--config", (folder.path() / "absent.toml").string()});
     EXPECT_EQ(absent.wait(patience), 1);
     EXPECT_TRUE(has(absent.errors(), "absent.toml")) << absent.errors();
+}
+
+/// That a process has in memory, MB.
+double resident_megabytes(pid_t pid) {
+    std::ifstream file("/proc/" + std::to_string(pid) + "/status");
+    for (std::string line; std::getline(file, line);) {
+        if (line.starts_with("VmRSS:")) {
+            return std::stod(line.substr(6)) / 1000;
+        }
+    }
+    return 0;
+}
+
+TEST(Operation, WhatViewersHadThatHaveLeftIsGivenBack) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "the sanitizer keeps what is freed";
+#endif
+    ServerProcess server(scene_file, {"--paused"});
+    auto const after_viewers = [&](std::size_t count) {
+        std::deque<Process> viewers;
+        for (std::size_t i = 0; i < count; ++i) {
+            viewers.emplace_back(FRAMELET_CLIENT,
+                                 std::vector<std::string>{server.address(), "--size", "640x360", "--duration", "3"});
+        }
+        for (Process& viewer : viewers) {
+            EXPECT_EQ(viewer.wait(patience), 0) << viewer.errors();
+        }
+        return resident_megabytes(server.process().pid());
+    };
+    double const one = after_viewers(1);
+    EXPECT_GT(one, 10);
+    after_viewers(8);
+    EXPECT_LT(after_viewers(8), one + 40);
 }
 
 namespace http = boost::beast::http;
