@@ -23,17 +23,6 @@ bool has(std::string const& text, std::string const& part) {
     return text.find(part) != std::string::npos;
 }
 
-bool comes_true(std::function<bool()> const& condition) {
-    auto const deadline = std::chrono::steady_clock::now() + patience;
-    while (!condition()) {
-        if (std::chrono::steady_clock::now() > deadline) {
-            return false;
-        }
-        std::this_thread::sleep_for(10ms);
-    }
-    return true;
-}
-
 bool lives(pid_t pid) {
     return ::kill(pid, 0) == 0;
 }
@@ -64,7 +53,7 @@ public:
     }
 
     bool viewer_runs() const {
-        return comes_true([&] { return std::filesystem::exists(folder_.path() / "pids"); });
+        return eventually([&] { return std::filesystem::exists(folder_.path() / "pids"); });
     }
     /// Of viewer and server.
     std::pair<pid_t, pid_t> pids() const {
@@ -131,7 +120,7 @@ TEST(View, LeavesNobodyBehindWhenItIsKilled) {
     auto const pids = programs.pids();
     view.signal(SIGKILL);
     view.wait(patience);
-    EXPECT_TRUE(comes_true([&pids] { return !lives(pids.first) && !lives(pids.second); }));
+    EXPECT_TRUE(eventually([&pids] { return !lives(pids.first) && !lives(pids.second); }));
 }
 
 TEST(View, WhatCannotBeUsedIsOneLineAndAnExitCode) {
@@ -169,11 +158,11 @@ TEST(View, ShowsTheRealWindow) {
         GTEST_SKIP() << "there is no Xvfb";
     }
     Process screen("/usr/bin/Xvfb", {"-displayfd", "1", "-screen", "0", "640x480x24"});
-    ASSERT_TRUE(comes_true([&] { return has(screen.output(), "\n") || !screen.running(); }));
+    ASSERT_TRUE(eventually([&] { return has(screen.output(), "\n") || !screen.running(); }));
     ::setenv("DISPLAY", (":" + screen.output().substr(0, screen.output().find('\n'))).c_str(), 1);
     ::unsetenv("WAYLAND_DISPLAY");
     Process view(FRAMELET_LAUNCHER, {"view", scene_file, "--size", "320x200"});
-    EXPECT_TRUE(comes_true([&] { return has(view.errors(), "viewer") || !view.running(); })) << view.errors();
+    EXPECT_TRUE(eventually([&] { return has(view.errors(), "viewer") || !view.running(); })) << view.errors();
     view.signal(SIGINT);
     EXPECT_EQ(view.wait(patience), 0) << view.errors();
 }

@@ -135,4 +135,15 @@ ServerProcess::ServerProcess(std::unique_ptr<Process> process) : process_(std::m
     }
 }
 
+bool eventually(std::function<bool()> const& holds) {
+    auto const deadline = std::chrono::steady_clock::now() + std::chrono::minutes(2);
+    while (!holds()) {
+        if (std::chrono::steady_clock::now() > deadline) {
+            return false;
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return true;
+}
+
 } // namespace framelet::test

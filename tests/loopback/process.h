@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -33,6 +34,9 @@ private:
     bool reaped_ = false;
     std::filesystem::path directory_;
 };
+
+/// Waits until that holds; false where it does not within two minutes.
+bool eventually(std::function<bool()> const& holds);
 
 /// A fresh folder under the system's temporary one, removed with its content at the end of its scope.
 class TemporaryFolder {

@@ -22,17 +22,6 @@ namespace fs = std::filesystem;
 fs::path const scenes = FRAMELET_SOURCE_DIR "/scenes";
 constexpr auto patience = 120s;
 
-bool eventually(std::function<bool()> const& holds) {
-    auto const deadline = std::chrono::steady_clock::now() + patience;
-    while (!holds()) {
-        if (std::chrono::steady_clock::now() > deadline) {
-            return false;
-        }
-        std::this_thread::sleep_for(20ms);
-    }
-    return true;
-}
-
 std::size_t times(std::string const& text, std::string const& part) {
     std::size_t count = 0;
     for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) {

@@ -56,17 +56,6 @@ ServerProcess server_after(std::string const& shell, std::vector<std::string> co
     return ServerProcess::of_program("/bin/sh", arguments);
 }
 
-bool eventually(std::function<bool()> const& holds) {
-    auto const deadline = std::chrono::steady_clock::now() + patience;
-    while (!holds()) {
-        if (std::chrono::steady_clock::now() > deadline) {
-            return false;
-        }
-        std::this_thread::sleep_for(20ms);
-    }
-    return true;
-}
-
 std::size_t lines_in(std::string const& text) {
     return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
 }
