@@ -20,12 +20,15 @@ struct Cell {
     float inverse_depth = -1; ///< of the nearest surface that covers most of it, in its middle, 1 / metres
     float worn = 0; ///< least worn spacing on it, pixels; 0 where nothing shows
     float detail = 0; ///< as of a piece, in this picture's pixels
+    float spacing = 0, fading = 0; ///< of the piece
     std::uint32_t piece = 0; ///< of its moment
     std::uint16_t covered = 0; ///< by anything: a bit for each pixel, row by row
     std::uint8_t moment = 0; ///< slot
     std::uint8_t share = 0; ///< of its pixels that what shows covers, of 16
     bool leads = false; ///< as the viewer has it, before what is better
     bool is_outdated = false; ///< the scene has jumped since: whatever comes shows before it
+    bool moves = false; ///< something of its framelet may, and does not rest
+    bool is_supersampled = false; ///< as of a piece
     bool is_wrong = false; ///< something nearer is there, which the viewer does not hold
     float stale = 0; ///< squared luma by which the moment was found to look otherwise
 

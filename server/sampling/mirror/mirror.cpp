@@ -26,11 +26,6 @@ Mirror::Mirror(Viewport viewport)
       rows_((viewport.height + cell_side - 1) / cell_side),
       cells_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_)) {}
 
-int Mirror::pixels_of(int column, int row) const {
-    return std::min(cell_side, viewport_.width - column * cell_side) *
-           std::min(cell_side, viewport_.height - row * cell_side);
-}
-
 bool Mirror::looks_at(MirrorView const& view) const {
     return target_.scene_time == view.scene_time && same_camera(target_.rays, view.rays);
 }
@@ -307,12 +302,17 @@ void Mirror::show(Moment const& moment, std::size_t index, unsigned mask, int co
 
 /// A piece is what a cell shows.
 void Mirror::put(Moment const& moment, std::size_t index, float inverse_depth, int share, Cell& cell) const {
+    Piece const& piece = moment.pieces[index];
     ReprojectedPiece const& reprojected = moment.reprojected[index];
     cell.inverse_depth = inverse_depth;
     cell.worn = reprojected.worn;
     cell.leads = reprojected.leads;
     cell.is_outdated = reprojected.is_outdated;
-    cell.detail = moment.pieces[index].detail / reprojected.scale;
+    cell.detail = piece.detail / reprojected.scale;
+    cell.spacing = piece.spacing;
+    cell.fading = piece.fading;
+    cell.moves = piece.moves && !piece.rests;
+    cell.is_supersampled = piece.is_supersampled;
     cell.piece = static_cast<std::uint32_t>(index);
     cell.moment = static_cast<std::uint8_t>(&moment - moments_.data());
     cell.share = static_cast<std::uint8_t>(share);

@@ -3,6 +3,7 @@
 // of that picture how good what the viewer shows there is.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -26,7 +27,10 @@ public:
     std::span<Cell const> cells() const { return cells_; }
     Cell const& cell(int column, int row) const { return cells_[index_of(column, row)]; }
     /// Pixels of a cell that lie in the viewport.
-    int pixels_of(int column, int row) const;
+    int pixels_of(int column, int row) const {
+        return std::min(cell_side, viewport_.width - column * cell_side) *
+               std::min(cell_side, viewport_.height - row * cell_side);
+    }
     Piece const& piece_of(Cell const& cell) const { return moments_[cell.moment].pieces[cell.piece]; }
     /// Where the middle of that piece is in the picture of the cell, pixels; how much larger it is than it was
     /// rendered; of when it is.

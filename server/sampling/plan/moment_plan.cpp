@@ -23,6 +23,9 @@ constexpr float interpolated_wear = 1;
 /// Prices outside are of no use: of a sample, squared error summed over pixels.
 constexpr float least_price = 5e-6f, most_price = 1e2f;
 
+constexpr std::size_t supersampled = MomentPlan::supersampled;
+using ChoiceFigures = MomentPlan::ChoiceFigures;
+
 constexpr float spacing_of(int level) {
     return level <= pixel_level ? static_cast<float>(1 << (pixel_level - level))
                                 : 1.0f / static_cast<float>(1 << (level - pixel_level));
@@ -36,28 +39,27 @@ constexpr float missed_share(float s) {
                     : error_growth * s - 1;
 }
 
-/// The same of levels. `finest`: what is finer shows no better, pixels.
-constexpr std::array<float, sampling_levels> missed_shares(float finest) {
-    std::array<float, sampling_levels> shares{};
+/// Means of four rays are as good as samples so many times closer to each other: by the mean's definition where they
+/// stay on their own pixels, by measurement once moved, where they blur and wear out before they have repaid four rays.
+constexpr float standing_supersampled = 0.5f, moved_supersampled = 0.95f;
+
+/// What each choice misses. `finest`: what is finer shows no better, pixels; `means`: how much closer means seem to be.
+constexpr ChoiceFigures missed_shares(float finest, float means) {
+    ChoiceFigures shares{};
     for (int level = 0; level < sampling_levels; ++level) {
         shares[static_cast<std::size_t>(level)] = missed_share(std::max(spacing_of(level), finest));
     }
+    shares[supersampled] = missed_share(means);
     return shares;
 }
 
 /// Of what the viewer moves, and of samples that stay on their own pixels, which show the mean of all.
-constexpr std::array<float, sampling_levels> moved_shares = missed_shares(finest_shown_spacing),
-                                             standing_shares = missed_shares(0);
+constexpr ChoiceFigures moved_shares = missed_shares(finest_shown_spacing, moved_supersampled),
+                        standing_shares = missed_shares(0, standing_supersampled);
 
-/// Means of four rays are as good as samples so many times closer to each other: by the mean's definition where they
-/// stay on their own pixels, by measurement once moved, where they blur and wear out before they have repaid four rays.
-constexpr float standing_supersampled = 0.5f, moved_supersampled = 0.95f;
-constexpr float standing_supersampled_share = missed_share(standing_supersampled),
-                moved_supersampled_share = missed_share(moved_supersampled);
-
-/// Whether what shows of a piece are means of rays; of samples finer than pixels the viewer moves their means.
-bool shows_means(Piece const& piece, bool stands) {
-    return piece.is_supersampled || (!stands && piece.spacing < 1);
+/// Whether what shows are means of rays; of samples finer than pixels the viewer moves their means.
+bool shows_means(Cell const& cell, bool stands) {
+    return cell.is_supersampled || (!stands && cell.spacing < 1);
 }
 
 /// Whether a cell is worth the finest samples: as far as is known it will show the same for a second, in which they
@@ -68,14 +70,25 @@ bool stays(Mirror const& mirror, Cell const& cell) {
         cell.stale > 0) {
         return false;
     }
-    Piece const& piece = mirror.piece_of(cell);
-    return (!piece.moves || piece.rests) && piece.fading < most_fading;
+    return !cell.moves && cell.fading < most_fading;
 }
 
 /// Mean squared error of samples `spacing` pixels apart (worn), of a surface of such `detail` (see `Piece`): what is
 /// missing and what aliases, as `unresolved_error` has it where each band has half the energy of the coarser one.
 float spacing_error(float detail, float spacing) {
     return std::min(detail * missed_share(spacing), most_error);
+}
+
+/// Calls `visit` with each cell of a rectangle and its pixels.
+template <class Visit>
+void for_each_cell(Mirror const& mirror, PixelRect const& rect, Visit visit) {
+    int const last_column = std::min(rect.right / cell_side, mirror.columns());
+    int const last_row = std::min(rect.bottom / cell_side, mirror.rows());
+    for (int row = rect.top / cell_side; row < last_row; ++row) {
+        for (int column = rect.left / cell_side; column < last_column; ++column) {
+            visit(mirror.cell(column, row), static_cast<float>(mirror.pixels_of(column, row)));
+        }
+    }
 }
 
 } // namespace
@@ -127,15 +140,15 @@ void MomentPlan::choose_horizon(PlaceField const& field, MomentBudget const& bud
 }
 
 void MomentPlan::find_gains(Mirror const& mirror, PlaceField const& field, MomentBudget const& budget) {
-    double detail = 0;
-    std::size_t shown = 0;
-    for (Cell const& cell : mirror.cells()) {
-        detail += cell.is_shown() ? static_cast<double>(cell.detail) : 0;
-        shown += cell.is_shown() ? 1 : 0;
-    }
-    mean_detail_ = shown > 0 ? static_cast<float>(detail / static_cast<double>(shown)) : unknown_detail;
     leaves_.assign(field.size(), Leaf{});
     std::span<std::uint32_t const> const places = field.visible();
+    tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) { add_detail(mirror, field, places[i]); });
+    float detail = 0, shown = 0;
+    for (std::uint32_t const index : places) {
+        detail += leaves_[index].detail;
+        shown += leaves_[index].shown;
+    }
+    mean_detail_ = shown > 0 ? detail / shown : unknown_detail;
     tbb::parallel_for(std::size_t{0}, places.size(),
                       [&](std::size_t i) { add_gains(mirror, field, places[i], budget); });
     stale_ = wrong_ = 0;
@@ -143,6 +156,15 @@ void MomentPlan::find_gains(Mirror const& mirror, PlaceField const& field, Momen
         stale_ += leaves_[index].stale;
         wrong_ += leaves_[index].wrong;
     }
+}
+
+/// Of one place.
+void MomentPlan::add_detail(Mirror const& mirror, PlaceField const& field, std::uint32_t index) {
+    Leaf& leaf = leaves_[index];
+    for_each_cell(mirror, field.rect_of(index), [&](Cell const& cell, float) {
+        leaf.detail += cell.is_shown() ? cell.detail : 0;
+        leaf.shown += cell.is_shown() ? 1.0f : 0.0f;
+    });
 }
 
 /// Of one place.
@@ -155,62 +177,47 @@ void MomentPlan::add_gains(Mirror const& mirror, PlaceField const& field, std::u
     if (place.rendered >= budget.moment_begun) {
         had = std::max(had, place.level + (place.supersampled >= budget.moment_begun ? 1 : 0));
     }
-    PixelRect const rect = field.rect_of(index);
-    int const last_column = std::min(rect.right / cell_side, mirror.columns());
-    int const last_row = std::min(rect.bottom / cell_side, mirror.rows());
-    float place_detail = 0;
-    int shown = 0;
-    for (int row = rect.top / cell_side; row < last_row; ++row) {
-        for (int column = rect.left / cell_side; column < last_column; ++column) {
-            Cell const& cell = mirror.cell(column, row);
-            place_detail += cell.is_shown() ? cell.detail : 0;
-            shown += cell.is_shown() ? 1 : 0;
+    float const hidden_detail = leaf.shown > 0 ? leaf.detail / leaf.shown : mean_detail_;
+    FloatLanes gains{};
+    float stale_sum = 0, wrong_sum = 0;
+    for_each_cell(mirror, field.rect_of(index), [&](Cell const& cell, float pixels) {
+        float covered = cell.is_wrong ? 0 : cell.covered_share() * pixels;
+        float const detail = cell.is_shown() ? cell.detail : hidden_detail;
+        float worn = cell.is_shown() ? cell.worn : INFINITY;
+        worn += cell.is_shown() && mirror.camera_stands() && mirror.is_moved(cell) ? interpolated_wear : 0;
+        float stale = cell.is_outdated ? std::max(cell.stale, outdated_error) : cell.stale;
+        bool const stands = stays(mirror, cell);
+        if (stands && worn <= finest_shown_spacing) {
+            worn = std::min(worn, cell.spacing);
         }
-    }
-    float const hidden_detail = shown > 0 ? place_detail / static_cast<float>(shown) : mean_detail_;
-    for (int row = rect.top / cell_side; row < last_row; ++row) {
-        for (int column = rect.left / cell_side; column < last_column; ++column) {
-            Cell const& cell = mirror.cell(column, row);
-            auto const pixels = static_cast<float>(mirror.pixels_of(column, row));
-            float covered = cell.is_wrong ? 0 : cell.covered_share() * pixels;
-            float const detail = cell.is_shown() ? cell.detail : hidden_detail;
-            float worn = cell.is_shown() ? cell.worn : INFINITY;
-            worn += cell.is_shown() && mirror.camera_stands() && mirror.is_moved(cell) ? interpolated_wear : 0;
-            float stale = cell.is_outdated ? std::max(cell.stale, outdated_error) : cell.stale;
-            bool const stands = stays(mirror, cell);
-            float const supersampled = stands ? standing_supersampled : moved_supersampled;
-            if (stands && worn <= finest_shown_spacing) {
-                worn = std::min(worn, mirror.piece_of(cell).spacing);
-            }
-            worn *= cell.is_shown() && shows_means(mirror.piece_of(cell), stands) ? supersampled : 1;
-            if (had >= 0) {
-                covered = pixels;
-                worn = std::min(worn, spacing_of(had));
-                stale = 0;
-            }
-            // What comes is shown although it is worse, or only where it is better.
-            float const least = cell.is_shown() && mirror.gives_way(cell) ? -most_error : 0.0f;
-            float const now = covered > 0 ? spacing_error(detail, worn) + stale : 0;
-            std::array<float, sampling_levels> const& shares = stands ? standing_shares : moved_shares;
-            leaf.stale += covered * stale;
-            leaf.wrong += covered * now + (pixels - covered) * hole_error;
-            auto const gain = [&](float share) {
-                float const then = std::min(detail * share, most_error);
-                return covered * std::max(now - then, least) + (pixels - covered) * std::max(hole_error - then, 0.0f);
-            };
-            for (std::size_t level = 0; level < leaf.gain.size(); ++level) {
-                leaf.gain[level] += gain(shares[level]);
-            }
-            leaf.supersampled_gain += gain(stands ? standing_supersampled_share : moved_supersampled_share);
+        if (cell.is_shown() && shows_means(cell, stands)) {
+            worn *= stands ? standing_supersampled : moved_supersampled;
         }
-    }
+        if (had >= 0) {
+            covered = pixels;
+            worn = std::min(worn, spacing_of(had));
+            stale = 0;
+        }
+        // What comes is shown although it is worse, or only where it is better.
+        float const least = cell.is_shown() && mirror.gives_way(cell) ? -most_error : 0.0f;
+        float const now = covered > 0 ? spacing_error(detail, worn) + stale : 0;
+        float const bare = pixels - covered;
+        stale_sum += covered * stale;
+        wrong_sum += covered * now + bare * hole_error;
+        FloatLanes const shares = load_lanes((stands ? standing_shares : moved_shares).data());
+        FloatLanes const then = smaller(detail * shares, FloatLanes{} + most_error);
+        gains += covered * larger(now - then, FloatLanes{} + least) + bare * larger(hole_error - then, FloatLanes{});
+    });
+    store_lanes(gains, leaf.gain.data());
+    leaf.stale = stale_sum;
+    leaf.wrong = wrong_sum;
     for (int level = field.least_level(); level < sampling_levels; ++level) {
         auto const l = static_cast<std::size_t>(level);
         float const factor = budget.costs.empty() ? 1.0f : budget.costs[index][l];
         leaf.cost[l] = samples_per_pixel(level) * field.pixels_of(index) * factor;
     }
     // Rays are cheaper than samples as far as the link leaves time for them.
-    leaf.supersampled_cost = leaf.cost[pixel_level] * std::max(1.0f, four_rays / budget.rays);
+    leaf.cost[supersampled] = leaf.cost[pixel_level] * std::max(1.0f, four_rays / budget.rays);
 }
 
 /// Gains of tiles that are larger than a place.
@@ -246,26 +253,22 @@ double MomentPlan::solve(PlaceField const& field, MomentBudget const& budget, fl
     gain_ = 0;
     for (std::uint32_t const index : field.visible()) {
         Leaf& leaf = leaves_[index];
-        leaf.level = -1;
-        leaf.is_supersampled = false;
+        leaf.choice = no_choice;
         float best = 0;
         float spent = 0;
-        for (int level = first; level <= budget.limits.most_level; ++level) {
-            auto const l = static_cast<std::size_t>(level);
-            float const value = leaf.gain[l] - price * leaf.cost[l];
+        auto const rate = [&](std::size_t choice) {
+            float const value = leaf.gain[choice] - price * leaf.cost[choice];
             if (value > best) {
                 best = value;
-                leaf.level = level;
-                spent = leaf.cost[l];
+                leaf.choice = choice;
+                spent = leaf.cost[choice];
             }
+        };
+        for (int level = first; level <= budget.limits.most_level; ++level) {
+            rate(static_cast<std::size_t>(level));
         }
-        float const supersampled = leaf.supersampled_gain - price * leaf.supersampled_cost;
-        if (supersampled > best && budget.limits.most_rays >= four_rays && first <= pixel_level &&
-            pixel_level <= budget.limits.most_level) {
-            best = supersampled;
-            leaf.level = pixel_level;
-            leaf.is_supersampled = true;
-            spent = leaf.supersampled_cost;
+        if (budget.limits.most_rays >= four_rays && first <= pixel_level && pixel_level <= budget.limits.most_level) {
+            rate(supersampled);
         }
         if (deepest > 0) {
             nodes_[deepest - 1][index >> 2].best += best;
@@ -305,11 +308,10 @@ void MomentPlan::collect(PlaceField const& field, int depth, std::uint32_t index
     };
     if (depth == field.depth()) {
         Leaf const& leaf = leaves_[index];
-        if (leaf.is_supersampled) {
-            rate(field.depth_of(pixel_level), leaf.supersampled_gain, leaf.supersampled_cost, four_rays);
-        } else if (leaf.level >= 0) {
-            auto const l = static_cast<std::size_t>(leaf.level);
-            rate(field.depth_of(leaf.level), leaf.gain[l], leaf.cost[l], single_ray);
+        if (leaf.choice != no_choice) {
+            bool const means = leaf.choice == supersampled;
+            int const level = means ? pixel_level : static_cast<int>(leaf.choice);
+            rate(field.depth_of(level), leaf.gain[leaf.choice], leaf.cost[leaf.choice], means ? four_rays : single_ray);
         }
         return;
     }

@@ -10,6 +10,7 @@
 #include <array>
 #include <vector>
 
+#include "common/simd/lanes.h"
 #include "server/sampling/mirror/mirror.h"
 #include "server/sampling/plan/patch_selection.h"
 
@@ -32,6 +33,11 @@ struct MomentBudget {
 
 class MomentPlan {
 public:
+    /// Of each level, then of samples of four rays a pixel; a last one to spare makes them a vector.
+    using ChoiceFigures = std::array<float, lane_count>;
+    static constexpr std::size_t supersampled = sampling_levels, no_choice = supersampled + 1;
+    static_assert(supersampled < std::tuple_size_v<ChoiceFigures>);
+
     /// Replaces `rated` by disjoint patches, unsorted. `mirror` looks at the moment, with the viewport of `field`.
     void find(Mirror const& mirror, PlaceField const& field, MomentBudget const& budget,
               std::vector<RatedPatch>& rated);
@@ -40,7 +46,6 @@ public:
     float price() const { return price_; }
 
 private:
-    using LevelGains = std::array<float, sampling_levels>;
     struct Node {
         float gain = 0, cost = 0; ///< as one tile; cost 0: it may not be one
         float best = 0; ///< gain less price
@@ -48,14 +53,14 @@ private:
         bool whole = false; ///< one tile is best
     };
     struct Leaf {
-        LevelGains gain{}, cost{};
-        float supersampled_gain = 0, supersampled_cost = 0; ///< of a sample of four rays a pixel
+        ChoiceFigures gain{}, cost{};
         float stale = 0, wrong = 0; ///< squared error summed over pixels: by changed looks, all of it
-        int level = -1; ///< best; -1: none
-        bool is_supersampled = false; ///< that is best
+        float detail = 0, shown = 0; ///< summed over cells that show something; their number
+        std::size_t choice = no_choice; ///< best
     };
 
     void find_gains(Mirror const& mirror, PlaceField const& field, MomentBudget const& budget);
+    void add_detail(Mirror const& mirror, PlaceField const& field, std::uint32_t index);
     void add_gains(Mirror const& mirror, PlaceField const& field, std::uint32_t index, MomentBudget const& budget);
     void sum_nodes(PlaceField const& field, MomentBudget const& budget);
     void choose_horizon(PlaceField const& field, MomentBudget const& budget);
