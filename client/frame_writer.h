@@ -11,6 +11,7 @@
 #include <string>
 #include <thread>
 
+#include "client/frame_sink.h"
 #include "common/image.h"
 
 namespace framelet {
@@ -37,23 +38,20 @@ enum class WhenWritten : std::uint8_t {
 };
 
 /// Frames are numbered from 0. A numbered pattern gets a file for each frame, another one only the last.
-class FrameWriter {
+class FrameWriter : public FrameSink {
 public:
     /// Makes the folder where there is none. Throws InputError where that fails.
     explicit FrameWriter(FramePattern pattern, WhenWritten when = WhenWritten::at_once);
-    ~FrameWriter();
-    FrameWriter(FrameWriter const&) = delete;
-    FrameWriter& operator=(FrameWriter const&) = delete;
+    ~FrameWriter() override;
 
     /// Takes a copy of the next frame; `changed` false says that it equals the one before, which costs a copy of the
     /// file. `taken` false leaves it out; the number goes on. Waits while many frames are waiting to be written. Throws
     /// InputError once writing has failed.
     void add(Picture const& picture, bool changed, bool taken = true);
-    /// Waits until everything is written; nothing may be added afterwards. Throws InputError where writing failed.
-    void finish();
+    void show(ShownFrame const& frame) override { add(frame.picture, frame.changed, frame.chosen); }
+    void finish() override;
     std::uint64_t frames() const { return frames_; }
-    /// What compression and disk have cost so far. From any thread.
-    double cpu_seconds() const { return cpu_seconds_; }
+    double cpu_seconds() const override { return cpu_seconds_; }
 
 private:
     struct Frame {

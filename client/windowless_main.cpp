@@ -4,7 +4,11 @@
 #include <cmath>
 #include <csignal>
 #include <iostream>
+#include <memory>
 #include <optional>
+#include <vector>
+
+#include <unistd.h>
 
 #include "client/connection_arguments.h"
 #include "client/core/camera_path.h"
@@ -16,6 +20,7 @@
 #include "client/frame_writer.h"
 #include "client/picture_size.h"
 #include "client/statistics_text.h"
+#include "client/video/video_writer.h"
 #include "common/color.h"
 #include "common/cpu_clock.h"
 #include "common/error.h"
@@ -27,6 +32,9 @@ namespace framelet {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+using FrameSinks = std::vector<std::unique_ptr<FrameSink>>;
+
+constexpr char const* standard_output = "-"; ///< as the value of --output
 
 struct Options {
     ConnectionArguments connection;
@@ -58,7 +66,13 @@ are shown later, none is left out.
 Where the server is gone for a while, what is held goes on being shown, and the session goes on when it is back; see
 --no-reconnect.
 
-SIGINT (Ctrl-C) and SIGTERM end it as the end of --duration does.)",
+With --output - a video goes to standard output (YUV4MPEG2, 4:4:4; BT.709, below 1280x577 BT.601), as long as the run
+however slow its reader is, and the statistics go to standard error; once nobody reads it any more the client ends:
+
+    framelet-client HOST --output - | mpv -
+
+SIGINT (Ctrl-C) and SIGTERM end it as the end of --duration does, once what was shown is written; a second one ends it
+at once.)",
         {{0, "fine"},
          {1, "a file cannot be used, the server cannot be reached, refused the client or was gone at the end, or the "
              "picture did not converge in time"},
@@ -83,7 +97,10 @@ volatile std::sig_atomic_t told_to_end = 0;
 
 void end_on_signals() {
     for (int const number : {SIGINT, SIGTERM}) {
-        std::signal(number, [](int) { told_to_end = 1; });
+        std::signal(number, [](int received) {
+            told_to_end = 1;
+            std::signal(received, SIG_DFL); // who reads the video may have stopped reading: the second one ends that
+        });
     }
 }
 
@@ -146,11 +163,48 @@ double median(std::vector<double> values) {
     return *middle;
 }
 
-/// Shows frames until the time is over, the session has ended or, if wanted, all is there. Returns what it counted.
+double display_rate(Options const& options) {
+    if (options.output == standard_output) {
+        return options.rate.value_or(30);
+    }
+    return options.rate.value_or(options.output.find('%') != std::string::npos ? 10 : 60);
+}
+
+FrameSinks make_sinks(Options const& options, std::optional<FramePattern> const& pattern, Viewport viewport) {
+    FrameSinks sinks;
+    if (options.output == standard_output) {
+        sinks.push_back(std::make_unique<VideoWriter>(STDOUT_FILENO, viewport, PictureRate::of(display_rate(options))));
+    } else if (pattern) {
+        sinks.push_back(std::make_unique<FrameWriter>(
+            *pattern, options.output_times.empty() ? WhenWritten::at_once : WhenWritten::at_the_end));
+    }
+    return sinks;
+}
+
+double cpu_seconds_of_sinks(FrameSinks const& sinks) {
+    double sum = 0;
+    for (std::unique_ptr<FrameSink> const& sink : sinks) {
+        sum += sink->cpu_seconds();
+    }
+    return sum;
+}
+
+/// Says on stderr why somebody who was shown the frames has gone; false where nobody has.
+bool tell_end_of_sinks(FrameSinks const& sinks) {
+    for (std::unique_ptr<FrameSink> const& sink : sinks) {
+        if (std::string const reason = sink->end_reason(); !reason.empty()) {
+            std::cerr << "framelet-client: " << reason << std::endl;
+            return true;
+        }
+    }
+    return false;
+}
+
+/// Shows frames until the time is over, the session has ended, somebody whom they are for has gone or, if wanted, all
+/// is there. Returns what it counted.
 RunFigures show(ClientCore& core, Options const& options, std::optional<CameraPath> const& path, Viewport viewport,
-                FrameWriter* writer, FrameLog* log) {
-    double const rate =
-        options.rate.value_or(writer != nullptr && options.output.find('%') != std::string::npos ? 10.0 : 60.0);
+                FrameSinks const& sinks, FrameLog* log) {
+    double const rate = display_rate(options);
     double const duration = options.duration.value_or(options.until_converged ? 60 : 10);
     double const path_duration = path ? path->duration() : 0;
     RunFigures run;
@@ -191,24 +245,27 @@ RunFigures show(ClientCore& core, Options const& options, std::optional<CameraPa
             photon_seconds.push_back(statistics.photon_seconds);
         }
         if (log != nullptr) {
-            double const writing = writer != nullptr ? writer->cpu_seconds() : 0;
             log->add({run.frames, unix_seconds(), core.clock().time, news, core.is_complete(), statistics.bytes,
-                      cpu_seconds_of(CLOCK_PROCESS_CPUTIME_ID) - writing, statistics.samples, statistics.photon_seconds,
-                      path ? path->scene_camera : start_scene_camera(welcome), camera});
+                      cpu_seconds_of(CLOCK_PROCESS_CPUTIME_ID) - cpu_seconds_of_sinks(sinks), statistics.samples,
+                      statistics.photon_seconds, path ? path->scene_camera : start_scene_camera(welcome), camera});
         }
         ++run.frames;
-        if (writer != nullptr) {
+        if (!sinks.empty()) {
             bool const draws = options.overlay != DrawnOver::nothing;
             if (draws) {
                 overlaid = picture;
                 core.draw_overlay(options.overlay, overlaid);
             }
-            writer->add(draws ? overlaid : picture, news, choice.takes(core.clock().time));
+            ShownFrame const frame{draws ? overlaid : picture, news, choice.takes(core.clock().time),
+                                   seconds_since(start)};
+            for (std::unique_ptr<FrameSink> const& sink : sinks) {
+                sink->show(frame);
+            }
         }
         if (run.converged_seconds < 0 && (done || core.is_complete())) {
             run.converged_seconds = now;
         }
-        if (done || Clock::now() >= end || core.end_reason() || told_to_end != 0) {
+        if (done || Clock::now() >= end || core.end_reason() || told_to_end != 0 || tell_end_of_sinks(sinks)) {
             run.photon_seconds = median(std::move(photon_seconds));
             return run;
         }
@@ -216,13 +273,22 @@ RunFigures show(ClientCore& core, Options const& options, std::optional<CameraPa
     }
 }
 
+/// Throws InputError.
+void check_video_options(Options const& options) {
+    if (::isatty(STDOUT_FILENO) == 1) {
+        throw InputError(
+            "--output - writes a video to standard output, which is a terminal: pipe it to a program, as in "
+            "framelet-client HOST --output - | mpv -");
+    }
+    if (!options.output_times.empty()) {
+        throw InputError("--output-times is for numbered files: a video with --output - has all frames");
+    }
+}
+
 int run(Options const& options, ConnectionOptions const& connection, Viewport viewport,
         std::optional<FramePattern> const& pattern) {
     std::optional<CameraPath> const path = read_camera(options);
-    std::optional<FrameWriter> writer;
-    if (pattern) {
-        writer.emplace(*pattern, options.output_times.empty() ? WhenWritten::at_once : WhenWritten::at_the_end);
-    }
+    FrameSinks const sinks = make_sinks(options, pattern, viewport);
     std::optional<FrameLog> log;
     if (!options.frames_file.empty()) {
         log.emplace(options.frames_file);
@@ -240,13 +306,14 @@ int run(Options const& options, ConnectionOptions const& connection, Viewport vi
     core.set_settings(options.display.settings());
     core.set_smoothing(options.display.lag_seconds());
     ask_clock(core, options);
-    RunFigures const figures = show(core, options, path, viewport, writer ? &*writer : nullptr, log ? &*log : nullptr);
-    if (writer) {
-        writer->finish();
+    RunFigures const figures = show(core, options, path, viewport, sinks, log ? &*log : nullptr);
+    for (std::unique_ptr<FrameSink> const& sink : sinks) {
+        sink->finish();
     }
     ClientStatistics const statistics = core.statistics();
-    std::cout << (options.json ? statistics_json(statistics, figures) + "\n" : statistics_summary(statistics, figures))
-              << std::flush;
+    std::ostream& told = options.output == standard_output ? std::cerr : std::cout;
+    told << (options.json ? statistics_json(statistics, figures) + "\n" : statistics_summary(statistics, figures))
+         << std::flush;
     for (std::optional<std::string> const& reason : {core.end_reason(), core.interruption()}) {
         if (reason) {
             throw ConnectionError(*reason);
@@ -287,12 +354,16 @@ int main(int argc, char** argv) {
     app.option_defaults()->group("What is written");
     app.add_option("--output", options.output,
                    "Picture file for each frame, as in frames/%04d.png (or .ppm: larger, quicker); without a number: "
-                   "for the last frame")
+                   "for the last frame; - : a video to standard output")
         ->type_name("FILE")
-        ->check(readable_by([](std::string const& text) { FramePattern{text}; }));
+        ->check(readable_by([](std::string const& text) {
+            if (text != standard_output) {
+                FramePattern{text};
+            }
+        }));
     app.add_option("--rate", options.rate, "Display frames a second")
         ->type_name("HZ")
-        ->default_str("60, with numbered files 10")
+        ->default_str("60, with numbered files 10, with --output - 30")
         ->check(number_in(0.1, 1000.0));
     app.add_option("--output-times", options.output_times,
                    "With numbered files: only the three frames from each of these times of the scene on; the numbers "
@@ -324,7 +395,9 @@ int main(int argc, char** argv) {
         parse_command_line(app, argc, argv);
         viewport = parse_size(options.size);
         connection = make_connection_options(options.connection);
-        if (!options.output.empty()) {
+        if (options.output == standard_output) {
+            check_video_options(options);
+        } else if (!options.output.empty()) {
             pattern.emplace(options.output);
         }
     } catch (CLI::ParseError const& error) {

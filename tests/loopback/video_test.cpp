@@ -1,0 +1,159 @@
+// framelet-client --output -: a video on standard output, read as the program behind the pipe reads it.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <csignal>
+#include <fstream>
+#include <sstream>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "common/files/image_io.h"
+#include "tests/loopback/process.h"
+
+namespace framelet::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+std::string const scene_file = FRAMELET_SOURCE_DIR "/scenes/vehicle_chase.glb";
+constexpr auto patience = 120s;
+
+/// Of 8 bits and 4:4:4.
+struct Video {
+    int width = 0, height = 0;
+    std::string rate;
+    std::vector<std::string> pictures; ///< Y, Cb, Cr
+};
+
+Video parse_video(std::string const& bytes) {
+    Video out;
+    std::size_t at = bytes.find('\n') + 1;
+    std::istringstream header(bytes.substr(0, at));
+    std::string word;
+    EXPECT_TRUE(header >> word && word == "YUV4MPEG2") << bytes.substr(0, 100);
+    while (header >> word) {
+        std::string const value = word.substr(1);
+        switch (word[0]) {
+        case 'W':
+            out.width = std::stoi(value);
+            break;
+        case 'H':
+            out.height = std::stoi(value);
+            break;
+        case 'F':
+            out.rate = value;
+            break;
+        case 'C':
+            EXPECT_EQ(value, "444");
+            break;
+        default:
+            break;
+        }
+    }
+    std::string const mark = "FRAME\n";
+    std::size_t const length = 3 * static_cast<std::size_t>(out.width) * static_cast<std::size_t>(out.height);
+    while (at + mark.size() + length <= bytes.size()) {
+        EXPECT_EQ(bytes.compare(at, mark.size(), mark), 0) << at;
+        out.pictures.push_back(bytes.substr(at + mark.size(), length));
+        at += mark.size() + length;
+    }
+    EXPECT_EQ(at, bytes.size()) << "a picture that is not whole";
+    return out;
+}
+
+/// Red, green and blue of a pixel in BT.601, clamped.
+std::array<double, 3> colour(Video const& video, std::string const& picture, int x, int y) {
+    std::size_t const plane = static_cast<std::size_t>(video.width) * static_cast<std::size_t>(video.height);
+    std::size_t const at = static_cast<std::size_t>(y * video.width + x);
+    auto const byte = [&](std::size_t of) { return static_cast<std::uint8_t>(picture[of * plane + at]); };
+    double const luma = 255.0 / 219 * (byte(0) - 16);
+    double const blue = 255.0 / 224 * (byte(1) - 128), red = 255.0 / 224 * (byte(2) - 128);
+    std::array<double, 3> out{luma + 1.402 * red, luma - 0.344136 * blue - 0.714136 * red, luma + 1.772 * blue};
+    for (double& value : out) {
+        value = std::clamp(value, 0.0, 255.0);
+    }
+    return out;
+}
+
+TEST(Video, IsWhatWasShownAtAConstantRate) {
+    ServerProcess server(scene_file, {"--paused", "--exposure", "0"});
+    Process video(FRAMELET_CLIENT,
+                  {server.address(), "--size", "131x97", "--duration", "3", "--rate", "25", "--output", "-", "--json"});
+    ASSERT_EQ(video.wait(patience), 0) << video.errors();
+    Video const seen = parse_video(video.output());
+    EXPECT_EQ(seen.width, 131);
+    EXPECT_EQ(seen.height, 97);
+    EXPECT_EQ(seen.rate, "25:1");
+    auto const statistics = nlohmann::json::parse(video.errors());
+    // What is shown when the time is over may be so by a little less or more than a picture's time.
+    EXPECT_NEAR(static_cast<double>(seen.pictures.size()), 25 * statistics.at("seconds").get<double>(), 5);
+    ASSERT_GE(seen.pictures.size(), 75u);
+
+    TemporaryFolder folder;
+    std::string const file = (folder.path() / "last.png").string();
+    Process still(FRAMELET_CLIENT,
+                  {server.address(), "--size", "131x97", "--until-converged", "--duration", "100", "--output", file});
+    ASSERT_EQ(still.wait(patience), 0) << still.errors();
+    Picture const picture = read_picture(file);
+    double worst_mean = 0;
+    for (int channel = 0; channel < 3; ++channel) {
+        double sum = 0;
+        for (int y = 0; y < 97; ++y) {
+            for (int x = 0; x < 131; ++x) {
+                sum += std::abs(colour(seen, seen.pictures.back(), x, y)[static_cast<std::size_t>(channel)] -
+                                picture.row(y)[4 * x + channel]);
+            }
+        }
+        worst_mean = std::max(worst_mean, sum / (131 * 97));
+    }
+    EXPECT_LT(worst_mean, 3) << "levels of 255: two roundings, and what had not been refined yet";
+}
+
+TEST(Video, AReaderThatGoesEndsTheClientWithALine) {
+    ServerProcess server(scene_file);
+    Process piped("/bin/bash", {"-c",
+                                "\"$0\" \"$1\" --size 64x64 --duration 100 --output - | head -c 100000 | wc -c; "
+                                "echo \"${PIPESTATUS[0]}\"",
+                                FRAMELET_CLIENT, server.address()});
+    ASSERT_EQ(piped.wait(patience), 0) << piped.errors();
+    EXPECT_EQ(piped.output(), "100000\n0\n");
+    EXPECT_NE(piped.errors().find("framelet-client: nobody reads the video any more\n"), std::string::npos)
+        << piped.errors();
+}
+
+TEST(Video, ASecondSignalEndsAClientWhoseReaderHasStopped) {
+    ServerProcess server(scene_file);
+    TemporaryFolder folder;
+    std::string const pid_file = (folder.path() / "pid").string();
+    Process piped("/bin/bash",
+                  {"-c",
+                   "(echo $BASHPID > \"$2\"; exec \"$0\" \"$1\" --size 640x360 --duration 100 --output -) | "
+                   "(head -c 1000000 > \"$3\"; echo > \"$3.done\"; exec sleep 100)",
+                   FRAMELET_CLIENT, server.address(), pid_file, (folder.path() / "video").string()});
+    ASSERT_TRUE(eventually([&] { return std::filesystem::exists(folder.path() / "video.done"); })) << piped.errors();
+    std::ifstream stream(pid_file);
+    pid_t client = 0;
+    ASSERT_TRUE(stream >> client);
+    ::kill(client, SIGTERM);
+    std::this_thread::sleep_for(1s);
+    EXPECT_EQ(::kill(client, 0), 0) << "what was shown waits for its reader";
+    ::kill(client, SIGTERM);
+    EXPECT_TRUE(eventually([&] { return ::kill(client, 0) != 0; }));
+}
+
+TEST(Video, IsNotWrittenToATerminalNorWithTimes) {
+    Process terminal("/usr/bin/script",
+                     {"-qec", std::string(FRAMELET_CLIENT) + " 127.0.0.1:1 --output -", "/dev/null"});
+    EXPECT_EQ(terminal.wait(30s), 2);
+    EXPECT_NE(terminal.output().find("is a terminal"), std::string::npos) << terminal.output();
+    Process times(FRAMELET_CLIENT, {"127.0.0.1:1", "--output", "-", "--output-times", "1"});
+    EXPECT_EQ(times.wait(30s), 2);
+    EXPECT_NE(times.errors().find("--output-times"), std::string::npos) << times.errors();
+}
+
+} // namespace
+} // namespace framelet::test
