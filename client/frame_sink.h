@@ -1,11 +1,18 @@
 // Where framelet-client puts what it shows: files, a video, another program. In: one picture a display frame.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "common/image.h"
 
 namespace framelet {
+
+enum class WhenWritten : std::uint8_t {
+    at_once,
+    /// As long as there is room for them: writing takes nothing from what is shown.
+    at_the_end,
+};
 
 struct ShownFrame {
     Picture const& picture;

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "client/output_folder.h"
 #include "common/cpu_clock.h"
 #include "common/error.h"
 #include "common/files/picture_writer.h"
@@ -22,8 +23,8 @@ FramePattern::FramePattern(std::string const& text) {
     auto const fail = [&] {
         return InputError(
             "cannot use \"" + text +
-            "\" as output: give the name of a .png or .ppm file; one %04d in it (any number of digits up to 9) "
-            "stands for the frame's number, as in frames/%04d.png");
+            "\" as output: give the name of a .png or .ppm file, or of a film, .webp or .mp4; one %04d in a "
+            "picture's name (any number of digits up to 9) stands for the frame's number, as in frames/%04d.png");
     };
     std::size_t const percent = text.find('%');
     before_ = text.substr(0, percent);
@@ -64,14 +65,7 @@ fs::path FramePattern::path(std::uint64_t frame) const {
 
 FrameWriter::FrameWriter(FramePattern pattern, WhenWritten when)
     : pattern_(std::move(pattern)), writes_(when == WhenWritten::at_once) {
-    fs::path const folder = pattern_.path(0).parent_path();
-    std::error_code error;
-    if (!folder.empty() && !fs::is_directory(folder)) {
-        fs::create_directories(folder, error);
-        if (error) {
-            throw InputError("cannot make the folder " + folder.string() + ": " + error.message());
-        }
-    }
+    make_folder_of(pattern_.path(0));
     thread_ = std::thread([this] { run(); });
 }
 

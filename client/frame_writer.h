@@ -31,12 +31,6 @@ private:
     char fill_ = ' ';
 };
 
-enum class WhenWritten : std::uint8_t {
-    at_once,
-    /// As long as there is room for them: writing takes nothing from what is shown.
-    at_the_end,
-};
-
 /// Frames are numbered from 0. A numbered pattern gets a file for each frame, another one only the last.
 class FrameWriter : public FrameSink {
 public:

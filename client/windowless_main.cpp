@@ -20,6 +20,7 @@
 #include "client/frame_writer.h"
 #include "client/picture_size.h"
 #include "client/statistics_text.h"
+#include "client/video/film_sink.h"
 #include "client/video/video_writer.h"
 #include "common/color.h"
 #include "common/cpu_clock.h"
@@ -61,7 +62,8 @@ ProgramNotes notes() {
 smoothly through the keys; {"scene_camera": 0} looks through a camera of the scene.
 
 Frames are compressed and written by a thread of their own while batches go on arriving; where it cannot keep up, frames
-are shown later, none is left out.
+are shown later, none is left out. A film (.webp or .mp4) is written when the run is over; of a long one 256 MB of
+pictures are kept, and what is too much for the thread then is left out.
 
 Where the server is gone for a while, what is held goes on being shown, and the session goes on when it is back; see
 --no-reconnect.
@@ -163,8 +165,12 @@ double median(std::vector<double> values) {
     return *middle;
 }
 
+bool is_video(Options const& options) {
+    return options.output == standard_output || is_film_name(options.output);
+}
+
 double display_rate(Options const& options) {
-    if (options.output == standard_output) {
+    if (is_video(options)) {
         return options.rate.value_or(30);
     }
     return options.rate.value_or(options.output.find('%') != std::string::npos ? 10 : 60);
@@ -174,6 +180,8 @@ FrameSinks make_sinks(Options const& options, std::optional<FramePattern> const&
     FrameSinks sinks;
     if (options.output == standard_output) {
         sinks.push_back(std::make_unique<VideoWriter>(STDOUT_FILENO, viewport, PictureRate::of(display_rate(options))));
+    } else if (is_film_name(options.output)) {
+        sinks.push_back(std::make_unique<FilmSink>(options.output, viewport));
     } else if (pattern) {
         sinks.push_back(std::make_unique<FrameWriter>(
             *pattern, options.output_times.empty() ? WhenWritten::at_once : WhenWritten::at_the_end));
@@ -275,25 +283,30 @@ RunFigures show(ClientCore& core, Options const& options, std::optional<CameraPa
 
 /// Throws InputError.
 void check_video_options(Options const& options) {
-    if (::isatty(STDOUT_FILENO) == 1) {
+    if (options.output == standard_output && ::isatty(STDOUT_FILENO) == 1) {
         throw InputError(
             "--output - writes a video to standard output, which is a terminal: pipe it to a program, as in "
             "framelet-client HOST --output - | mpv -");
     }
     if (!options.output_times.empty()) {
-        throw InputError("--output-times is for numbered files: a video with --output - has all frames");
+        throw InputError("--output-times is for numbered files: a video has all frames");
     }
 }
 
-int run(Options const& options, ConnectionOptions const& connection, Viewport viewport,
-        std::optional<FramePattern> const& pattern) {
+struct Session {
+    ClientStatistics statistics;
+    RunFigures figures;
+    std::optional<std::string> end_reason; ///< where the server ended it, or was gone at the end
+};
+
+/// The whole session: its figures are of what was shown, whatever is still to be written then. Throws InputError and
+/// ConnectionError.
+Session look(Options const& options, ConnectionOptions const& connection, Viewport viewport, FrameSinks const& sinks) {
     std::optional<CameraPath> const path = read_camera(options);
-    FrameSinks const sinks = make_sinks(options, pattern, viewport);
     std::optional<FrameLog> log;
     if (!options.frames_file.empty()) {
         log.emplace(options.frames_file);
     }
-    end_on_signals();
     ClientCore core(connection);
     if (!core.notice().empty()) {
         std::cerr << "framelet-client: " << core.notice() << std::endl;
@@ -306,20 +319,29 @@ int run(Options const& options, ConnectionOptions const& connection, Viewport vi
     core.set_settings(options.display.settings());
     core.set_smoothing(options.display.lag_seconds());
     ask_clock(core, options);
-    RunFigures const figures = show(core, options, path, viewport, sinks, log ? &*log : nullptr);
+    Session session;
+    session.figures = show(core, options, path, viewport, sinks, log ? &*log : nullptr);
+    session.statistics = core.statistics();
+    session.end_reason = core.end_reason() ? core.end_reason() : core.interruption();
+    return session;
+}
+
+int run(Options const& options, ConnectionOptions const& connection, Viewport viewport,
+        std::optional<FramePattern> const& pattern) {
+    FrameSinks const sinks = make_sinks(options, pattern, viewport);
+    end_on_signals();
+    Session const session = look(options, connection, viewport, sinks);
     for (std::unique_ptr<FrameSink> const& sink : sinks) {
         sink->finish();
     }
-    ClientStatistics const statistics = core.statistics();
     std::ostream& told = options.output == standard_output ? std::cerr : std::cout;
-    told << (options.json ? statistics_json(statistics, figures) + "\n" : statistics_summary(statistics, figures))
+    told << (options.json ? statistics_json(session.statistics, session.figures) + "\n"
+                          : statistics_summary(session.statistics, session.figures))
          << std::flush;
-    for (std::optional<std::string> const& reason : {core.end_reason(), core.interruption()}) {
-        if (reason) {
-            throw ConnectionError(*reason);
-        }
+    if (session.end_reason) {
+        throw ConnectionError(*session.end_reason);
     }
-    if (options.until_converged && figures.converged_seconds < 0) {
+    if (options.until_converged && session.figures.converged_seconds < 0) {
         throw ConnectionError("the picture was not complete when the time was over: give a longer --duration, or "
                               "--pause where the scene moves");
     }
@@ -354,16 +376,16 @@ int main(int argc, char** argv) {
     app.option_defaults()->group("What is written");
     app.add_option("--output", options.output,
                    "Picture file for each frame, as in frames/%04d.png (or .ppm: larger, quicker); without a number: "
-                   "for the last frame; - : a video to standard output")
+                   "for the last frame; .webp or .mp4: a film; - : a video to standard output")
         ->type_name("FILE")
         ->check(readable_by([](std::string const& text) {
-            if (text != standard_output) {
+            if (text != standard_output && !is_film_name(text)) {
                 FramePattern{text};
             }
         }));
     app.add_option("--rate", options.rate, "Display frames a second")
         ->type_name("HZ")
-        ->default_str("60, with numbered files 10, with --output - 30")
+        ->default_str("60, with numbered files 10, of a film or video 30")
         ->check(number_in(0.1, 1000.0));
     app.add_option("--output-times", options.output_times,
                    "With numbered files: only the three frames from each of these times of the scene on; the numbers "
@@ -395,7 +417,7 @@ int main(int argc, char** argv) {
         parse_command_line(app, argc, argv);
         viewport = parse_size(options.size);
         connection = make_connection_options(options.connection);
-        if (options.output == standard_output) {
+        if (is_video(options)) {
             check_video_options(options);
         } else if (!options.output.empty()) {
             pattern.emplace(options.output);

@@ -12,7 +12,7 @@
 #include "client/core/client_core.h"
 #include "client/core/making_time.h"
 #include "client/window/kept/bookmarks.h"
-#include "client/window/kept/recorder.h"
+#include "client/video/recorder.h"
 #include "client/window/kept/viewer_memory.h"
 #include "client/window/overlay/overlay.h"
 #include "client/window/overlay/overlay_text.h"

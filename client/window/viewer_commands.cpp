@@ -6,6 +6,7 @@
 #include <sstream>
 #include <utility>
 
+#include "client/window/kept/film_file.h"
 #include "client/window/kept/user_files.h"
 #include "client/window/overlay/help_text.h"
 #include "client/window/overlay/key_table.h"
@@ -296,7 +297,7 @@ void Viewer::toggle_recording() {
         return;
     }
     std::error_code error;
-    recorder_.emplace(make_film_writer(fs::current_path(error)));
+    recorder_.emplace(make_film_file(fs::current_path(error)));
     recording_since_ = seconds_now();
     recorder_->add(picture_, 0);
     say("recording to " + recorder_->path().string(), long_note_seconds);

@@ -1,10 +1,14 @@
-#include "client/window/kept/recorder.h"
+#include "client/video/recorder.h"
 
+#include <algorithm>
+#include <chrono>
 #include <condition_variable>
 #include <fstream>
 
 #include <gtest/gtest.h>
 
+#include "client/video/film_sink.h"
+#include "client/window/kept/film_file.h"
 #include "common/error.h"
 #include "tests/client/own_folder.h"
 
@@ -69,20 +73,43 @@ TEST(Recorder, WritesInOrderAndHoldsTheLastPictureToTheEnd) {
 TEST(Recorder, NeverWaitsAndLeavesOutWhatIsTooMuch) {
     Log log;
     log.is_held = true;
-    Recorder recorder(std::make_unique<LoggingWriter>(log));
+    constexpr std::size_t most_waiting = 6;
+    Recorder recorder(std::make_unique<LoggingWriter>(log), most_waiting);
     recorder.add(Picture(1, 1), 0);
     log.wait([&] { return log.added.size() == 1; }); // the writer has it, the queue is empty
     for (int i = 0; i < 20; ++i) {
         recorder.add(Picture(2 + i, 1), 1 + i);
     }
     Recorder::Progress const progress = recorder.progress();
-    EXPECT_EQ(progress.pictures, 1 + Recorder::most_waiting);
-    EXPECT_EQ(progress.left_out, 20 - Recorder::most_waiting);
+    EXPECT_EQ(progress.pictures, 1 + most_waiting);
+    EXPECT_EQ(progress.left_out, 20 - most_waiting);
     EXPECT_EQ(progress.seconds, 20);
     EXPECT_NE(progress_text(progress).find("14 left out"), std::string::npos);
     log.release();
-    log.wait([&] { return log.added.size() == 1 + Recorder::most_waiting; });
+    log.wait([&] { return log.added.size() == 1 + most_waiting; });
     EXPECT_EQ(log.added[1], std::pair(2, 1.0));
+}
+
+TEST(Recorder, HoldsBackWhileThereIsRoom) {
+    Log log;
+    Recorder recorder(std::make_unique<LoggingWriter>(log), 3, WhenWritten::at_the_end);
+    auto const added = [&] {
+        std::lock_guard const lock(log.mutex);
+        return log.added.size();
+    };
+    recorder.add(Picture(1, 1), 0);
+    recorder.add(Picture(2, 1), 1);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    EXPECT_EQ(added(), 0u);
+    recorder.add(Picture(3, 1), 2);
+    log.wait([&] { return log.added.size() == 3; });
+
+    Log at_the_end;
+    Recorder kept(std::make_unique<LoggingWriter>(at_the_end), 3, WhenWritten::at_the_end);
+    kept.add(Picture(1, 1), 0);
+    kept.stop(0);
+    kept.wait();
+    EXPECT_EQ(at_the_end.added.size(), 1u);
 }
 
 TEST(Recorder, AFailureEndsItWithALine) {
@@ -97,7 +124,7 @@ TEST(Recorder, AFailureEndsItWithALine) {
 
 TEST(Recorder, MakesAFilm) {
     OwnFolder const folder;
-    Recorder recorder(make_film_writer(folder.path()));
+    Recorder recorder(make_film_file(folder.path()));
     for (int i = 0; i < 4; ++i) {
         Picture picture(i < 2 ? 65 : 81, 49); // odd, and of another size from the third on
         std::ranges::fill(picture.rgba, static_cast<std::uint8_t>(60 * i));
@@ -117,8 +144,48 @@ TEST(Recorder, MakesAFilm) {
     }
 }
 
+std::string read_bytes(std::filesystem::path const& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST(FilmSink, MakesAnAnimation) {
+    OwnFolder const folder;
+    std::filesystem::path const file = folder.path() / "made" / "film.webp";
+    if (!can_write_film(file)) {
+        GTEST_SKIP() << "built without the encoder";
+    }
+    FilmSink sink(file, {65, 49});
+    Picture picture(65, 49);
+    for (int i = 0; i < 6; ++i) {
+        std::ranges::fill(picture.rgba, static_cast<std::uint8_t>(40 * i));
+        sink.show({picture, i != 3, true, 0.1 * i}); // the one that has not changed is not written again
+    }
+    sink.finish();
+    std::string const bytes = read_bytes(file);
+    EXPECT_EQ(bytes.substr(0, 4) + bytes.substr(8, 4), "RIFFWEBP");
+    std::size_t frames = 0;
+    for (std::size_t at = bytes.find("ANMF"); at != std::string::npos; at = bytes.find("ANMF", at + 4)) {
+        ++frames;
+    }
+    EXPECT_GE(frames, 5u);
+    EXPECT_LE(frames, 6u) << "and the last one's end";
+}
+
+TEST(FilmSink, WhatCannotBeWrittenIsALine) {
+    EXPECT_THROW(FilmSink("film.avi", {64, 64}), InputError);
+    EXPECT_THROW(FilmSink("/dev/null/nowhere/film.mp4", {64, 64}), InputError);
+    if (can_write_film("/dev/full.webp")) {
+        OwnFolder const folder;
+        std::filesystem::create_symlink("/dev/full", folder.path() / "film.webp");
+        FilmSink sink(folder.path() / "film.webp", {64, 64});
+        sink.show({Picture(64, 64), true, true, 0});
+        EXPECT_THROW(sink.finish(), InputError);
+    }
+}
+
 TEST(Recorder, AFolderThatCannotBeWrittenIsALine) {
-    Recorder recorder(make_film_writer("/dev/null/nowhere"));
+    Recorder recorder(make_film_file("/dev/null/nowhere"));
     recorder.add(Picture(64, 64), 0);
     recorder.stop(1);
     recorder.wait();

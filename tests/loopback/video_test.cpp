@@ -1,4 +1,4 @@
-// framelet-client --output -: a video on standard output, read as the program behind the pipe reads it.
+// framelet-client --output -: a video on standard output, read as the program behind the pipe reads it; and films.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -143,6 +143,22 @@ TEST(Video, ASecondSignalEndsAClientWhoseReaderHasStopped) {
     EXPECT_EQ(::kill(client, 0), 0) << "what was shown waits for its reader";
     ::kill(client, SIGTERM);
     EXPECT_TRUE(eventually([&] { return ::kill(client, 0) != 0; }));
+}
+
+TEST(Video, AFilmOfAMovingSceneIsAnAnimation) {
+    ServerProcess server(scene_file);
+    TemporaryFolder folder;
+    std::filesystem::path const file = folder.path() / "made" / "film.webp";
+    Process client(FRAMELET_CLIENT,
+                   {server.address(), "--size", "160x90", "--duration", "2", "--output", file.string()});
+    ASSERT_EQ(client.wait(patience), 0) << client.errors();
+    std::ifstream stream(file, std::ios::binary);
+    std::string const bytes{std::istreambuf_iterator<char>(stream), {}};
+    EXPECT_EQ(bytes.substr(0, 4) + bytes.substr(8, 4), "RIFFWEBP");
+    std::size_t const first = bytes.find("ANMF");
+    ASSERT_NE(first, std::string::npos) << "one picture, which does not move";
+    EXPECT_NE(bytes.find("ANMF", first + 4), std::string::npos);
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(file.parent_path()), {}), 1);
 }
 
 TEST(Video, IsNotWrittenToATerminalNorWithTimes) {

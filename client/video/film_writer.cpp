@@ -1,14 +1,13 @@
-// The films of the recorder: MP4 through FFmpeg's libraries, or numbered PNG files.
+#include "client/video/film_writer.h"
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <memory>
+#include <cstdint>
+#include <span>
+#include <string>
 #include <utility>
 
-#include "client/window/kept/recorder.h"
-#include "client/window/kept/user_files.h"
 #include "common/error.h"
-#include "common/files/picture_writer.h"
 
 #ifdef FRAMELET_LIBAV
 extern "C" {
@@ -23,54 +22,13 @@ namespace framelet {
 
 namespace fs = std::filesystem;
 
-namespace {
-
-/// A folder of 00000.png and so on, 30 a second: a picture is written for each thirtieth that has begun since the last.
-class PictureSeries final : public FilmWriter {
-public:
-    explicit PictureSeries(fs::path folder) : folder_(std::move(folder)) {}
-
-    void add(Picture const& picture, double seconds) override {
-        constexpr double rate = 30;
-        auto const until = static_cast<std::uint64_t>(std::ceil(seconds * rate));
-        fs::path first;
-        for (; next_ < until && !last_.rgba.empty(); ++next_) {
-            write(first, last_);
-        }
-        last_ = picture;
-    }
-    void finish() override {
-        fs::path first;
-        if (!last_.rgba.empty()) {
-            write(first, last_);
-        }
-    }
-    fs::path path() const override { return folder_; }
-
-private:
-    /// Compressed once, `first`, however often it is shown.
-    void write(fs::path& first, Picture const& picture) {
-        char name[32];
-        std::snprintf(name, sizeof name, "%05llu.png", static_cast<unsigned long long>(next_));
-        std::error_code error;
-        fs::create_directories(folder_, error);
-        if (!first.empty()) {
-            fs::copy_file(first, folder_ / name, fs::copy_options::overwrite_existing, error);
-            if (error) {
-                throw InputError("cannot write " + (folder_ / name).string() + ": " + error.message());
-            }
-            return;
-        }
-        first = folder_ / name;
-        write_png(first, picture);
-    }
-
-    fs::path const folder_;
-    Picture last_; ///< not written yet: how long it is shown is not known
-    std::uint64_t next_ = 0;
-};
+bool is_film_name(fs::path const& file) {
+    return file.extension() == ".mp4" || file.extension() == ".webp";
+}
 
 #ifdef FRAMELET_LIBAV
+
+namespace {
 
 template <auto Free>
 struct Freed {
@@ -91,19 +49,49 @@ struct ClosedFile {
     }
 };
 
-/// Each picture with its own time, so that the film runs as the window did.
+struct Setting {
+    char const* name;
+    char const* value;
+};
+
+constexpr Setting mp4_settings[] = {{"preset", "superfast"}, {"crf", "18"}};
+/// The quickest of those that look alike; a whole second of 1280x720 takes some two of a core.
+constexpr Setting webp_settings[] = {{"compression_level", "2"}, {"quality", "80"}};
+
+struct FilmFormat {
+    char const* extension;
+    char const* encoder;
+    AVPixelFormat pixels;
+    int side; ///< width and height are a multiple of it
+    int ticks; ///< a second: in what its times are counted
+    std::span<Setting const> settings;
+};
+
+constexpr FilmFormat formats[] = {
+    {".mp4", "libx264", AV_PIX_FMT_YUV420P, 2, 90000,
+     mp4_settings}, // colour at half the resolution, as all players want it
+    {".webp", "libwebp_anim", AV_PIX_FMT_RGB32, 1, 1000,
+     webp_settings}, // its encoder makes what colours it likes of that
+};
+
+FilmFormat const& format_of(fs::path const& file) {
+    auto const found =
+        std::ranges::find_if(formats, [&](FilmFormat const& f) { return file.extension() == f.extension; });
+    FRAMELET_CHECK(found != std::end(formats));
+    return *found;
+}
+
+/// Each picture with its own time, so that the film runs as what was shown did.
 class Film final : public FilmWriter {
 public:
-    static bool is_possible() { return encoder() != nullptr; }
-
-    explicit Film(fs::path file) : path_(std::move(file)) { av_log_set_level(AV_LOG_QUIET); }
+    explicit Film(fs::path file) : path_(std::move(file)), format_(format_of(path_)) { av_log_set_level(AV_LOG_QUIET); }
 
     void add(Picture const& picture, double seconds) override {
         if (!context_) {
             open(picture.width, picture.height);
         }
         scale(picture);
-        std::int64_t const time = std::llround(seconds * ticks);
+        std::int64_t const time = std::llround(seconds * format_.ticks);
         frame_->pts = std::max(time, frame_->pts + 1);
         check(avcodec_send_frame(context_.get(), frame_.get()), "encode a picture");
         drain();
@@ -121,10 +109,6 @@ public:
     fs::path path() const override { return path_; }
 
 private:
-    static constexpr int ticks = 90000; ///< a second, as films count
-
-    static AVCodec const* encoder() { return avcodec_find_encoder_by_name("libx264"); }
-
     void check(int result, char const* what) const {
         if (result < 0) {
             char reason[AV_ERROR_MAX_STRING_SIZE] = "";
@@ -135,25 +119,28 @@ private:
 
     void open(int width, int height) {
         AVFormatContext* file = nullptr;
-        check(avformat_alloc_output_context2(&file, nullptr, "mp4", path_.c_str()), "write");
+        check(avformat_alloc_output_context2(&file, nullptr, nullptr, path_.c_str()), "write");
         file_.reset(file);
-        context_.reset(avcodec_alloc_context3(encoder()));
+        context_.reset(avcodec_alloc_context3(avcodec_find_encoder_by_name(format_.encoder)));
         FRAMELET_CHECK(context_);
         AVCodecContext& c = *context_;
-        c.width = std::max(width & ~1, 2); // colour is at half the resolution, as all players want it
-        c.height = std::max(height & ~1, 2);
-        c.pix_fmt = AV_PIX_FMT_YUV420P;
-        c.color_range = AVCOL_RANGE_MPEG;
-        c.colorspace = AVCOL_SPC_BT709;
-        c.color_primaries = AVCOL_PRI_BT709;
-        c.color_trc = AVCOL_TRC_IEC61966_2_1;
-        c.time_base = {1, ticks};
+        c.width = whole_side(width);
+        c.height = whole_side(height);
+        c.pix_fmt = format_.pixels;
+        if (c.pix_fmt == AV_PIX_FMT_YUV420P) {
+            c.color_range = AVCOL_RANGE_MPEG;
+            c.colorspace = AVCOL_SPC_BT709;
+            c.color_primaries = AVCOL_PRI_BT709;
+            c.color_trc = AVCOL_TRC_IEC61966_2_1;
+        }
+        c.time_base = {1, format_.ticks};
         c.framerate = {60, 1}; // a hint: times count
         c.gop_size = 120;
         c.thread_count = 1; // the other processors are for the picture
-        c.flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
-        av_opt_set(c.priv_data, "preset", "superfast", 0);
-        av_opt_set(c.priv_data, "crf", "18", 0);
+        c.flags |= (file->oformat->flags & AVFMT_GLOBALHEADER) != 0 ? AV_CODEC_FLAG_GLOBAL_HEADER : 0;
+        for (Setting const& setting : format_.settings) {
+            check(av_opt_set(&c, setting.name, setting.value, AV_OPT_SEARCH_CHILDREN), "encode");
+        }
         check(avcodec_open2(&c, c.codec, nullptr), "encode");
         stream_ = avformat_new_stream(file, nullptr);
         FRAMELET_CHECK(stream_ != nullptr);
@@ -168,15 +155,17 @@ private:
         check(av_frame_get_buffer(frame_.get(), 0), "encode");
     }
 
+    int whole_side(int length) const { return std::max(length - length % format_.side, format_.side); }
+
     void scale(Picture const& picture) {
         // Of a side that is odd the last line is left out, not squeezed in.
-        bool const is_cropped = (picture.width & ~1) == frame_->width && (picture.height & ~1) == frame_->height;
+        bool const is_cropped =
+            whole_side(picture.width) == frame_->width && whole_side(picture.height) == frame_->height;
         int const width = is_cropped ? frame_->width : picture.width;
         int const height = is_cropped ? frame_->height : picture.height;
         // The one of before where it is for these sizes.
         scaler_.reset(sws_getCachedContext(scaler_.release(), width, height, AV_PIX_FMT_RGBA, frame_->width,
-                                           frame_->height, AV_PIX_FMT_YUV420P, SWS_BILINEAR, nullptr, nullptr,
-                                           nullptr));
+                                           frame_->height, format_.pixels, SWS_BILINEAR, nullptr, nullptr, nullptr));
         FRAMELET_CHECK(scaler_);
         int const* const coefficients = sws_getCoefficients(SWS_CS_ITU709);
         sws_setColorspaceDetails(scaler_.get(), coefficients, 1, coefficients, 0, 0, 1 << 16, 1 << 16);
@@ -200,6 +189,7 @@ private:
     }
 
     fs::path const path_;
+    FilmFormat const& format_;
     std::unique_ptr<AVFormatContext, ClosedFile> file_;
     std::unique_ptr<AVCodecContext, Freed<avcodec_free_context>> context_;
     std::unique_ptr<AVFrame, Freed<av_frame_free>> frame_{av_frame_alloc()};
@@ -208,17 +198,29 @@ private:
     AVStream* stream_ = nullptr; ///< the file's
 };
 
-#endif
-
 } // namespace
 
-std::unique_ptr<FilmWriter> make_film_writer(fs::path const& folder) {
+bool can_write_film(fs::path const& file) {
+    return is_film_name(file) && avcodec_find_encoder_by_name(format_of(file).encoder) != nullptr;
+}
+
+#else
+
+bool can_write_film(fs::path const&) {
+    return false;
+}
+
+#endif
+
+std::unique_ptr<FilmWriter> make_film_writer(fs::path const& file) {
 #ifdef FRAMELET_LIBAV
-    if (Film::is_possible()) {
-        return std::make_unique<Film>(new_file_name(folder, ".mp4"));
+    if (can_write_film(file)) {
+        return std::make_unique<Film>(file);
     }
 #endif
-    return std::make_unique<PictureSeries>(new_file_name(folder, "-film"));
+    throw InputError("cannot write " + file.string() + ": " +
+                     (is_film_name(file) ? "this program was built without FFmpeg's encoder for it"
+                                         : "a film is called .mp4 or .webp"));
 }
 
 } // namespace framelet

@@ -1,4 +1,4 @@
-#include "client/window/kept/recorder.h"
+#include "client/video/recorder.h"
 
 #include <algorithm>
 #include <iomanip>
@@ -8,13 +8,16 @@
 #include <sys/resource.h>
 
 #include "common/counted.h"
+#include "common/cpu_clock.h"
 #include "common/error.h"
 
 namespace framelet {
 
 namespace fs = std::filesystem;
 
-Recorder::Recorder(std::unique_ptr<FilmWriter> writer) : writer_(std::move(writer)), path_(writer_->path()) {
+Recorder::Recorder(std::unique_ptr<FilmWriter> writer, std::size_t most_waiting, WhenWritten begin)
+    : writer_(std::move(writer)), path_(writer_->path()), most_waiting_(most_waiting),
+      writes_(begin == WhenWritten::at_once) {
     thread_ = std::thread([this] { run(); });
 }
 
@@ -29,10 +32,11 @@ void Recorder::add(Picture const& picture, double seconds) {
         return;
     }
     progress_.seconds = std::max(progress_.seconds, seconds);
-    if (waiting_.size() >= most_waiting) {
+    if (waiting_.size() >= most_waiting_) {
         ++progress_.left_out;
         return;
     }
+    writes_ = writes_ || waiting_.size() + 1 == most_waiting_;
     Frame frame{{}, progress_.seconds};
     if (!spare_.empty()) {
         frame.picture = std::move(spare_.back());
@@ -75,17 +79,18 @@ void Recorder::run() {
     try {
         std::unique_lock lock(mutex_);
         for (;;) {
-            changed_.wait(lock, [this] { return end_ || !waiting_.empty(); });
+            changed_.wait(lock, [this] { return end_ || (writes_ && !waiting_.empty()); });
             if (waiting_.empty()) {
                 break;
             }
             std::swap(last, waiting_.front());
-            if (!waiting_.front().picture.rgba.empty() && spare_.size() < most_waiting) {
+            if (!waiting_.front().picture.rgba.empty() && spare_.size() < most_waiting_) {
                 spare_.push_back(std::move(waiting_.front().picture));
             }
             waiting_.pop_front();
             lock.unlock();
             writer_->add(last.picture, last.seconds);
+            cpu_seconds_ = cpu_seconds_of(CLOCK_THREAD_CPUTIME_ID);
             lock.lock();
         }
         double const end = *end_;
@@ -94,6 +99,7 @@ void Recorder::run() {
             writer_->add(last.picture, end);
         }
         writer_->finish();
+        cpu_seconds_ = cpu_seconds_of(CLOCK_THREAD_CPUTIME_ID);
     } catch (std::exception const& error) {
         failure = error.what();
     }

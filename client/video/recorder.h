@@ -2,6 +2,7 @@
 // is, how far it has got.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
@@ -13,30 +14,17 @@
 #include <thread>
 #include <vector>
 
+#include "client/frame_sink.h"
+#include "client/video/film_writer.h"
 #include "common/image.h"
 
 namespace framelet {
 
-/// Where the pictures go. All calls come from one thread, and may take long.
-class FilmWriter {
-public:
-    virtual ~FilmWriter() = default;
-    /// `seconds` since the film began, never less than the time before. Pictures of other sizes than the first are
-    /// scaled to it. Throws InputError, one line.
-    virtual void add(Picture const& picture, double seconds) = 0;
-    /// After the last one. Throws likewise.
-    virtual void finish() = 0;
-    /// The file, or the folder of many.
-    virtual std::filesystem::path path() const = 0;
-};
-
-/// H.264 in an MP4 file in that folder, where the program was built with the libraries for that and they can; else PNG
-/// files in a folder of their own there.
-std::unique_ptr<FilmWriter> make_film_writer(std::filesystem::path const& folder);
-
 class Recorder {
 public:
-    explicit Recorder(std::unique_ptr<FilmWriter> writer);
+    /// `most_waiting`: pictures, at least one. `begin`: when they are written.
+    explicit Recorder(std::unique_ptr<FilmWriter> writer, std::size_t most_waiting = 6,
+                      WhenWritten begin = WhenWritten::at_once);
     /// Waits until what was taken is written.
     ~Recorder();
     Recorder(Recorder const&) = delete;
@@ -60,8 +48,8 @@ public:
     };
     Progress progress() const;
     std::filesystem::path path() const { return path_; }
-
-    static constexpr std::size_t most_waiting = 6;
+    /// What its thread has cost so far. From any thread.
+    double cpu_seconds() const { return cpu_seconds_; }
 
 private:
     struct Frame {
@@ -72,6 +60,7 @@ private:
 
     std::unique_ptr<FilmWriter> writer_; ///< the thread's
     std::filesystem::path const path_;
+    std::size_t const most_waiting_;
 
     mutable std::mutex mutex_; // guards what follows
     std::condition_variable changed_;
@@ -79,7 +68,9 @@ private:
     std::vector<Picture> spare_; ///< whose memory is used again
     Progress progress_;
     std::optional<double> end_;
+    bool writes_; ///< or holds back, while there is room
 
+    std::atomic<double> cpu_seconds_ = 0;
     std::thread thread_;
 };
 
