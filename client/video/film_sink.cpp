@@ -26,10 +26,12 @@ FilmSink::FilmSink(std::filesystem::path const& file, Viewport size)
 
 void FilmSink::show(ShownFrame const& frame) {
     throw_if_failed();
-    seconds_ = frame.seconds;
-    if (frame.changed || is_empty_) {
+    if (!begin_ && frame.changed) {
+        begin_ = frame.seconds;
+    }
+    seconds_ = frame.seconds - begin_.value_or(frame.seconds);
+    if (frame.changed) {
         recorder_.add(frame.picture, seconds_);
-        is_empty_ = false;
     }
 }
 

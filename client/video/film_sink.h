@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "client/frame_sink.h"
 #include "client/video/recorder.h"
@@ -23,8 +24,8 @@ private:
     void throw_if_failed() const;
 
     Recorder recorder_;
-    double seconds_ = 0; ///< of the newest frame
-    bool is_empty_ = true;
+    std::optional<double> begin_; ///< when the first picture was shown: until then there is nothing to see
+    double seconds_ = 0; ///< of the newest frame, since then
 };
 
 } // namespace framelet

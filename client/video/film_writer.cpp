@@ -147,7 +147,11 @@ private:
         stream_->time_base = c.time_base;
         check(avcodec_parameters_from_context(stream_->codecpar, &c), "encode");
         check(avio_open(&file->pb, path_.c_str(), AVIO_FLAG_WRITE), "write");
-        check(avformat_write_header(file, nullptr), "write");
+        AVDictionary* options = nullptr;
+        av_dict_set(&options, "loop", "0", 0); // for ever; what knows no such option leaves it
+        int const written = avformat_write_header(file, &options);
+        av_dict_free(&options);
+        check(written, "write");
         frame_->format = c.pix_fmt;
         frame_->width = c.width;
         frame_->height = c.height;
