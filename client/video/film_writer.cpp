@@ -11,11 +11,11 @@
 
 #ifdef FRAMELET_LIBAV
 extern "C" {
-#include <libavcodec/avcodec.h>
 #include <libavformat/avformat.h>
 #include <libavutil/opt.h>
-#include <libswscale/swscale.h>
 }
+
+#include "client/video/av_pointers.h"
 #endif
 
 namespace framelet {
@@ -30,16 +30,6 @@ bool is_film_name(fs::path const& file) {
 
 namespace {
 
-template <auto Free>
-struct Freed {
-    template <class T>
-    void operator()(T* pointer) const {
-        Free(&pointer);
-    }
-};
-struct FreedScaler {
-    void operator()(SwsContext* scaler) const { sws_freeContext(scaler); }
-};
 struct ClosedFile {
     void operator()(AVFormatContext* file) const {
         if (file->pb != nullptr) {
@@ -195,10 +185,10 @@ private:
     fs::path const path_;
     FilmFormat const& format_;
     std::unique_ptr<AVFormatContext, ClosedFile> file_;
-    std::unique_ptr<AVCodecContext, Freed<avcodec_free_context>> context_;
-    std::unique_ptr<AVFrame, Freed<av_frame_free>> frame_{av_frame_alloc()};
-    std::unique_ptr<AVPacket, Freed<av_packet_free>> packet_{av_packet_alloc()};
-    std::unique_ptr<SwsContext, FreedScaler> scaler_;
+    AvCoder context_;
+    AvPicture frame_{av_frame_alloc()};
+    AvData packet_{av_packet_alloc()};
+    AvScaler scaler_;
     AVStream* stream_ = nullptr; ///< the file's
 };
 

@@ -5,11 +5,10 @@
 #include <cmath>
 
 extern "C" {
-#include <libavcodec/avcodec.h>
 #include <libavutil/opt.h>
-#include <libswscale/swscale.h>
 }
 
+#include "client/video/av_pointers.h"
 #include "common/error.h"
 
 namespace framelet::bench {
@@ -19,38 +18,23 @@ namespace {
 /// at every rate tried.
 constexpr AVPixelFormat coded_format = AV_PIX_FMT_YUV444P;
 
-template <auto Free>
-struct Freed {
-    template <class T>
-    void operator()(T* pointer) const {
-        Free(&pointer);
-    }
-};
-struct FreedScaler {
-    void operator()(SwsContext* scaler) const { sws_freeContext(scaler); }
-};
-using Context = std::unique_ptr<AVCodecContext, Freed<avcodec_free_context>>;
-using Frame = std::unique_ptr<AVFrame, Freed<av_frame_free>>;
-using Packet = std::unique_ptr<AVPacket, Freed<av_packet_free>>;
-using Scaler = std::unique_ptr<SwsContext, FreedScaler>;
-
 /// Between full-range BT.709 YCbCr and the picture's RGB, as exactly as the library can.
-Scaler make_scaler(int width, int height, AVPixelFormat from, AVPixelFormat to) {
-    Scaler scaler(sws_getContext(width, height, from, width, height, to,
-                                 SWS_BILINEAR | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INT | SWS_FULL_CHR_H_INP, nullptr,
-                                 nullptr, nullptr));
+AvScaler make_scaler(int width, int height, AVPixelFormat from, AVPixelFormat to) {
+    AvScaler scaler(sws_getContext(width, height, from, width, height, to,
+                                   SWS_BILINEAR | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INT | SWS_FULL_CHR_H_INP, nullptr,
+                                   nullptr, nullptr));
     FRAMELET_CHECK(scaler);
     int const* const coefficients = sws_getCoefficients(SWS_CS_ITU709);
     sws_setColorspaceDetails(scaler.get(), coefficients, 1, coefficients, 1, 0, 1 << 16, 1 << 16);
     return scaler;
 }
 
-Context make_context(AVCodec const* codec) {
+AvCoder make_context(AVCodec const* codec) {
     av_log_set_level(AV_LOG_QUIET);
     if (!codec) {
         throw InputError("libavcodec here has no H.264 with x264");
     }
-    Context context(avcodec_alloc_context3(codec));
+    AvCoder context(avcodec_alloc_context3(codec));
     FRAMELET_CHECK(context);
     context->thread_count = 1;
     return context;
@@ -59,10 +43,10 @@ Context make_context(AVCodec const* codec) {
 } // namespace
 
 struct H264Encoder::State {
-    Context context;
-    Frame frame{av_frame_alloc()};
-    Packet packet{av_packet_alloc()};
-    Scaler scaler;
+    AvCoder context;
+    AvPicture frame{av_frame_alloc()};
+    AvData packet{av_packet_alloc()};
+    AvScaler scaler;
     double frames_per_second = 0;
     std::int64_t number = 0;
 
@@ -126,10 +110,10 @@ std::vector<std::byte> H264Encoder::encode(Picture const& picture, double most_b
 }
 
 struct H264Decoder::State {
-    Context context;
-    Frame frame{av_frame_alloc()};
-    Packet packet{av_packet_alloc()};
-    Scaler scaler;
+    AvCoder context;
+    AvPicture frame{av_frame_alloc()};
+    AvData packet{av_packet_alloc()};
+    AvScaler scaler;
     int width = 0, height = 0;
     std::vector<std::uint8_t> input; ///< a unit and the padding that the decoder reads over
 };
