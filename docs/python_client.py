@@ -47,15 +47,15 @@ def decode(data, count):
         at += length
 
 def paint(framelets, width, height):
-    """The picture of samples by tile code, finer ones over coarser ones, at four points a pixel: "Tiles"."""
+    """The picture of (batch, samples) by tile code, later and then finer ones over others, at four points a pixel."""
     points = numpy.zeros((4 * height, 4 * width, 3), numpy.uint8)
     k = next(k for k in range(16) if 16 << k >= max(width, height))
-    for code in sorted(framelets):  # a deeper tile has a greater code
+    for code in sorted(framelets, key=lambda code: (framelets[code][0], code)):  # a deeper tile has a greater code
         depth = (code.bit_length() - 1) // 2
         column, row = (sum((code >> 2 * bit + axis & 1) << bit for bit in range(depth)) for axis in (0, 1))
         side = 64 << k >> depth
         tile = points[row * side:(row + 1) * side, column * side:(column + 1) * side]
-        samples = framelets[code].repeat(side // 16, 0).repeat(side // 16, 1)
+        samples = framelets[code][1].repeat(side // 16, 0).repeat(side // 16, 1)
         tile[:] = samples[:tile.shape[0], :tile.shape[1]]
     level = numpy.arange(256, dtype=numpy.float32) / 255
     light = numpy.where(level <= 0.04045, level / 12.92, ((level + 0.055) / 1.055) ** 2.4)  # means are of light
@@ -63,7 +63,7 @@ def paint(framelets, width, height):
     return numpy.interp(means, light, numpy.arange(256)).round().astype(numpy.uint8)
 
 def look(host, port, token, width, height):
-    """Framelets by tile code, once the picture is as good as it gets or ten seconds are over."""
+    """Numbers of batches and framelets by tile code, once the picture is as good as it gets or ten seconds are over."""
     with socket.create_connection((host, port), 10) as connection, connection.makefile("rb") as stream:
         send(connection, Body.Body.Hello, filled(Hello.HelloT(), version=4, token=token, codings=1))
         welcome = receive(stream)
@@ -77,8 +77,8 @@ def look(host, port, token, width, height):
             if hasattr(message, "sections"):  # a Batch
                 received = time.monotonic_ns() // 1000
                 samples = decode(bytes(message.sections[0].data), len(message.tiles))
-                framelets.update(zip(message.tiles.tolist(), samples))
                 newest = message.number
+                framelets.update((code, (newest, one)) for code, one in zip(message.tiles.tolist(), samples))
                 send(connection, Body.Body.Ack, filled(Ack.AckT(), batch=newest, receivedUs=received))
             elif hasattr(message, "converged"):  # a Status, which may come before the Batch that it names
                 last = message.lastBatch if message.converged and message.cameraNumber == 1 else None
