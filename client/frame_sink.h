@@ -1,18 +1,11 @@
 // Where framelet-client puts what it shows: files, a video, another program. In: one picture a display frame.
 #pragma once
 
-#include <cstdint>
 #include <string>
 
 #include "common/image.h"
 
 namespace framelet {
-
-enum class WhenWritten : std::uint8_t {
-    at_once,
-    /// As long as there is room for them: writing takes nothing from what is shown.
-    at_the_end,
-};
 
 struct ShownFrame {
     Picture const& picture;
@@ -32,6 +25,8 @@ public:
     virtual void show(ShownFrame const& frame) = 0;
     /// Waits until everything is written; nothing may be shown afterwards. Throws InputError where writing failed.
     virtual void finish() = 0;
+    /// After `finish`: a line for people about what was written; empty where the names of the files say it all.
+    virtual std::string result() const { return {}; }
     /// Nobody takes any more, for this reason, which is no failure; empty while somebody does.
     virtual std::string end_reason() const { return {}; }
     /// What its threads have cost so far. From any thread.

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "client/frame_sink.h"
+#include "client/when_written.h"
 #include "common/image.h"
 
 namespace framelet {

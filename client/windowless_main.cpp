@@ -301,8 +301,8 @@ struct Session {
 
 /// The whole session: its figures are of what was shown, whatever is still to be written then. Throws InputError and
 /// ConnectionError.
-Session look(Options const& options, ConnectionOptions const& connection, Viewport viewport, FrameSinks const& sinks) {
-    std::optional<CameraPath> const path = read_camera(options);
+Session look(Options const& options, ConnectionOptions const& connection, std::optional<CameraPath> const& path,
+             Viewport viewport, FrameSinks const& sinks) {
     std::optional<FrameLog> log;
     if (!options.frames_file.empty()) {
         log.emplace(options.frames_file);
@@ -328,11 +328,15 @@ Session look(Options const& options, ConnectionOptions const& connection, Viewpo
 
 int run(Options const& options, ConnectionOptions const& connection, Viewport viewport,
         std::optional<FramePattern> const& pattern) {
+    std::optional<CameraPath> const path = read_camera(options);
     FrameSinks const sinks = make_sinks(options, pattern, viewport);
     end_on_signals();
-    Session const session = look(options, connection, viewport, sinks);
+    Session const session = look(options, connection, path, viewport, sinks);
     for (std::unique_ptr<FrameSink> const& sink : sinks) {
         sink->finish();
+        if (std::string const result = sink->result(); !result.empty()) {
+            std::cerr << "framelet-client: " << result << std::endl;
+        }
     }
     std::ostream& told = options.output == standard_output ? std::cerr : std::cout;
     told << (options.json ? statistics_json(session.statistics, session.figures) + "\n"

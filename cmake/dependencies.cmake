@@ -15,7 +15,7 @@ find_package(glfw3 REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(epoxy REQUIRED IMPORTED_TARGET epoxy)
 pkg_check_modules(imgui REQUIRED IMPORTED_TARGET imgui)
-# Without them the window records PNG files.
+# Without them the window records PNG files, and framelet-client makes no films.
 pkg_check_modules(libav_film IMPORTED_TARGET libavformat libavcodec libavutil libswscale)
 
 find_program(FLATC flatc REQUIRED)

@@ -84,20 +84,24 @@ def look(host, port, token, width, height):
                 last = message.lastBatch if message.converged and message.cameraNumber == 1 else None
     return framelets
 
-parser = argparse.ArgumentParser(description="Writes one picture of what a framelet-server shows (PPM).")
-parser.add_argument("server", metavar="HOST:PORT")
-parser.add_argument("picture", help="file to write")
-parser.add_argument("--token-file", metavar="FILE", help="that the server was given, or has written")
-parser.add_argument("--size", default="640x360", metavar="WIDTHxHEIGHT")
-arguments = parser.parse_args()
-if not re.fullmatch(r"\S+:\d{1,5}", arguments.server) or not re.fullmatch(r"[1-9]\d{0,3}x[1-9]\d{0,3}", arguments.size):
-    parser.error("give the server as HOST:PORT, the size as WIDTHxHEIGHT")
-host, port = arguments.server.rsplit(":", 1)
-width, height = map(int, arguments.size.split("x"))
-try:
-    token = pathlib.Path(arguments.token_file).read_text().strip() if arguments.token_file else ""
-    picture = paint(look(host, int(port), token, width, height), width, height)
-    with open(arguments.picture, "wb") as file:
-        file.write(b"P6 %d %d 255\n" % (width, height) + picture.tobytes())
-except (OSError, OverflowError) as error:
-    sys.exit(f"python_client.py: {error}")
+def main():
+    parser = argparse.ArgumentParser(description="Writes one picture of what a framelet-server shows (PPM).")
+    parser.add_argument("server", metavar="HOST:PORT")
+    parser.add_argument("picture", help="file to write")
+    parser.add_argument("--token-file", metavar="FILE", help="that the server was given, or has written")
+    parser.add_argument("--size", default="640x360", metavar="WIDTHxHEIGHT")
+    arguments = parser.parse_args()
+    if not re.fullmatch(r"\S+:\d{1,5}", arguments.server) or not re.fullmatch(r"[1-9]\d{0,3}x[1-9]\d{0,3}", arguments.size):
+        parser.error("give the server as HOST:PORT, the size as WIDTHxHEIGHT")
+    host, port = arguments.server.rsplit(":", 1)
+    width, height = map(int, arguments.size.split("x"))
+    try:
+        token = pathlib.Path(arguments.token_file).read_text().strip() if arguments.token_file else ""
+        picture = paint(look(host, int(port), token, width, height), width, height)
+        with open(arguments.picture, "wb") as file:
+            file.write(b"P6 %d %d 255\n" % (width, height) + picture.tobytes())
+    except (OSError, OverflowError) as error:
+        sys.exit(f"python_client.py: {error}")
+
+if __name__ == "__main__":
+    main()

@@ -18,6 +18,7 @@ public:
 
     void show(ShownFrame const& frame) override;
     void finish() override;
+    std::string result() const override { return result_text(recorder_.progress(), recorder_.path()); }
     double cpu_seconds() const override { return recorder_.cpu_seconds(); }
 
 private:

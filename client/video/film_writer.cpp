@@ -45,7 +45,8 @@ struct Setting {
 };
 
 constexpr Setting mp4_settings[] = {{"preset", "superfast"}, {"crf", "18"}};
-/// The quickest of those that look alike; a whole second of 1280x720 takes some two of a core.
+/// A picture of 1280x720 takes 50 ms of a core; 4 takes twice as long for a twentieth fewer bytes (cwebp -m, two
+/// scenes).
 constexpr Setting webp_settings[] = {{"compression_level", "2"}, {"quality", "80"}};
 
 struct FilmFormat {

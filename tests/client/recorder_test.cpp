@@ -162,6 +162,7 @@ TEST(FilmSink, MakesAnAnimation) {
         sink.show({picture, i != 0 && i != 4, true, 0.1 * i}); // what nobody has seen, and what has not changed
     }
     sink.finish();
+    EXPECT_NE(sink.result().find("film.webp: 0.5 s, 5 pictures"), std::string::npos) << sink.result();
     std::string const bytes = read_bytes(file);
     EXPECT_EQ(bytes.substr(0, 4) + bytes.substr(8, 4), "RIFFWEBP");
     std::size_t frames = 0;

@@ -54,6 +54,20 @@ TEST_F(PythonClient, ShowsWhatFrameletClientShows) {
     EXPECT_LT(sum / static_cast<double>(picture.rgba.size()), 2) << "levels of 255";
 }
 
+TEST_F(PythonClient, WhatIsNewerShowsThenWhatIsFiner) {
+    Process process(python, {"-c", R"(
+import sys; sys.dont_write_bytecode = True; sys.path.insert(0, sys.argv[1])
+from numpy import full, uint8
+from python_client import paint
+grey = lambda value: full((16, 16, 3), value, uint8)
+print([[int(paint({1: (whole, grey(9)), 4: (quarter, grey(7))}, 32, 32)[row, row, 0]) for row in (0, 31)]
+       for whole, quarter in ((1, 1), (1, 2), (2, 1))])
+)",
+                             FRAMELET_SOURCE_DIR "/docs"});
+    ASSERT_EQ(process.wait(patience), 0) << process.errors();
+    EXPECT_EQ(process.output(), "[[7, 9], [7, 9], [9, 9]]\n");
+}
+
 TEST_F(PythonClient, SaysWhatIsWrongInOneLine) {
     ServerProcess server(scene_file, {"--paused", "--token-file", token_});
     struct Case {
