@@ -30,6 +30,7 @@
 #include "server/session/listener.h"
 #include "server/session/loaded_scene.h"
 #include "server/session/metrics_port.h"
+#include "server/session/priority.h"
 #include "server/stream/event_log.h"
 
 namespace framelet {
@@ -190,6 +191,7 @@ int main(int argc, char** argv) {
     spdlog::set_default_logger(spdlog::stderr_color_mt("framelet"));
     spdlog::set_pattern("%H:%M:%S.%e %^%l%$ %v");
     spdlog::set_level(options.quiet ? spdlog::level::warn : spdlog::level::info);
+    framelet::give_way(options.nice); // before there are threads
     try {
         options.info ? framelet::print_info(options) : framelet::serve(options);
         return 0;

@@ -115,6 +115,12 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
     app.add_option("--threads", options.threads, "Threads to render with; 0: one a core")
         ->check(number_in(0, 1024))
         ->capture_default_str();
+    app.add_option(
+           "--nice", options.nice,
+           "Niceness: 0 is that of other programs; with more the server leaves the processors to them, a viewer on "
+           "this machine among them, whenever they want them")
+        ->check(number_in(0, 19))
+        ->capture_default_str();
     app.add_option("--batch", options.server.loop.stream.batch_framelets,
                    "Most framelets a batch; 0: what half a cycle has time for. A place's 16 stay together")
         ->check(number_in(std::size_t(0), max_batch_framelets))

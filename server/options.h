@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "server/scene/scene_import.h"
+#include "server/session/priority.h"
 #include "server/session/server.h"
 
 namespace framelet {
@@ -17,6 +18,7 @@ struct Options {
     std::optional<std::filesystem::path> environment;
     std::optional<float> exposure_ev; ///< stops; empty: from the scene
     int threads = 0; ///< 0: all cores
+    int nice = default_nice; ///< of all threads
     bool quiet = false;
     bool watch = false; ///< load the scene again when its files change
     bool info = false; ///< print what is in the scene, and serve nothing

@@ -1,5 +1,6 @@
 // What those who run the programs meet: what is asked of a scene without serving it, options in a file, and the
 // port for those who watch over a server.
+#include <algorithm>
 #include <csignal>
 #include <deque>
 #include <fstream>
@@ -12,6 +13,7 @@
 #include <boost/beast/http.hpp>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <sys/resource.h>
 
 #include "tests/loopback/process.h"
 
@@ -60,6 +62,22 @@ TEST(Operation, OptionsComeFromAFileToo) {
     Process absent(FRAMELET_CLIENT, {"--config", (folder.path() / "absent.toml").string()});
     EXPECT_EQ(absent.wait(patience), 1);
     EXPECT_TRUE(has(absent.errors(), "absent.toml")) << absent.errors();
+}
+
+/// Of a program's first thread; those that it starts have it from there.
+int niceness(pid_t pid) {
+    return ::getpriority(PRIO_PROCESS, static_cast<id_t>(pid));
+}
+
+TEST(Operation, AServerGivesWayToOtherProgramsUnlessToldOtherwise) {
+    int const own = ::getpriority(PRIO_PROCESS, 0);
+    ServerProcess by_itself(scene_file);
+    EXPECT_EQ(niceness(by_itself.process().pid()), std::max(own, 10));
+    ServerProcess told(scene_file, {"--nice", "0"});
+    EXPECT_EQ(niceness(told.process().pid()), std::max(own, 0));
+    Process wrong(FRAMELET_SERVER, {scene_file, "--nice", "20"});
+    EXPECT_EQ(wrong.wait(patience), 2);
+    EXPECT_TRUE(has(wrong.errors(), "0 to 19")) << wrong.errors();
 }
 
 /// That a process has in memory, MB.

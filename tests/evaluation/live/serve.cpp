@@ -15,6 +15,7 @@
 #include "client/frame_writer.h"
 #include "common/cpu_clock.h"
 #include "common/error.h"
+#include "server/session/priority.h"
 #include "server/session/server.h"
 #include "tests/evaluation/live/method_stream.h"
 
@@ -66,6 +67,7 @@ private:
 } // namespace
 
 void serve_method(ServeOptions const& options) {
+    give_way(default_nice); // as framelet-server does: no method has more of the processors
     std::size_t const threads = options.threads > 0
                                     ? static_cast<std::size_t>(options.threads)
                                     : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);

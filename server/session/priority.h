@@ -1,0 +1,14 @@
+// How a server shares the processors with the other programs of its machine.
+#pragma once
+
+namespace framelet {
+
+/// What a server takes where nothing is said: about a tenth of what a viewer gets that wants the same processor. The
+/// viewer's pictures have to be in time, rendering does not.
+inline constexpr int default_nice = 10;
+
+/// The calling thread, and all threads that it starts from now on, give way to programs of a smaller niceness; what
+/// nobody else wants is theirs as before. 0 to 19, see nice(2); a process that is nicer already stays so.
+void give_way(int nice);
+
+} // namespace framelet
