@@ -72,7 +72,7 @@ int niceness(pid_t pid) {
 TEST(Operation, AServerGivesWayToOtherProgramsUnlessToldOtherwise) {
     int const own = ::getpriority(PRIO_PROCESS, 0);
     ServerProcess by_itself(scene_file);
-    EXPECT_EQ(niceness(by_itself.process().pid()), std::max(own, 10));
+    EXPECT_EQ(niceness(by_itself.process().pid()), std::max(own, 5));
     ServerProcess told(scene_file, {"--nice", "0"});
     EXPECT_EQ(niceness(told.process().pid()), std::max(own, 0));
     Process wrong(FRAMELET_SERVER, {scene_file, "--nice", "20"});
