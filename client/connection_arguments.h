@@ -4,7 +4,7 @@
 #include <string>
 
 #include "client/core/server_address.h"
-#include "common/command_line.h"
+#include "common/command_line/command_line.h"
 
 namespace framelet {
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "client/core/client_core.h"
-#include "common/number_range.h"
+#include "common/command_line/number_range.h"
 
 namespace framelet {
 

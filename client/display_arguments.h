@@ -1,7 +1,7 @@
 // The part of the command line that both programs share: how the scene is to look.
 #pragma once
 
-#include "common/command_line.h"
+#include "common/command_line/command_line.h"
 #include "protocol/messages/message.h"
 
 namespace framelet {

@@ -9,8 +9,8 @@
 #include "client/window/first_connection.h"
 #include "client/window/kept/viewer_memory.h"
 #include "client/window/viewer.h"
+#include "common/command_line/program_failure.h"
 #include "common/error.h"
-#include "common/program_failure.h"
 
 namespace {
 

@@ -23,10 +23,10 @@
 #include "client/video/film_sink.h"
 #include "client/video/video_writer.h"
 #include "common/color.h"
+#include "common/command_line/number_range.h"
+#include "common/command_line/program_failure.h"
 #include "common/cpu_clock.h"
 #include "common/error.h"
-#include "common/number_range.h"
-#include "common/program_failure.h"
 
 namespace framelet {
 

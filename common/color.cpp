@@ -6,41 +6,6 @@
 
 namespace framelet {
 
-namespace {
-
-float smaller(float a, float b) {
-    return a < b ? a : b;
-}
-float larger(float a, float b) {
-    return a > b ? a : b;
-}
-float to_unit(float value) {
-    return larger(smaller(value, 1), 0);
-}
-
-/// The curve itself, without branches, so that a loop over samples becomes vector code.
-inline void tone_map(float& red, float& green, float& blue) {
-    constexpr float start_compression = 0.8f - 0.04f;
-    constexpr float desaturation = 0.15f;
-    constexpr float d = 1 - start_compression;
-    float const low = smaller(smaller(red, green), blue);
-    float const offset = low < 0.08f ? low - 6.25f * low * low : 0.04f;
-    red -= offset;
-    green -= offset;
-    blue -= offset;
-    float const peak = larger(larger(red, green), blue);
-    // Below the start of the compression both factors come out as "change nothing".
-    float const excess = larger(peak - start_compression, 0);
-    float const new_peak = excess > 0 ? 1 - d * d / (excess + d) : peak;
-    float const scale = excess > 0 ? new_peak / larger(peak, start_compression) : 1;
-    float const white = excess > 0 ? 1 - 1 / (desaturation * (peak - new_peak) + 1) : 0;
-    red = to_unit(red * scale * (1 - white) + new_peak * white);
-    green = to_unit(green * scale * (1 - white) + new_peak * white);
-    blue = to_unit(blue * scale * (1 - white) + new_peak * white);
-}
-
-} // namespace
-
 Vec3 tone_map(Vec3 color) {
     tone_map(color.r, color.g, color.b);
     return color;
@@ -84,28 +49,6 @@ std::uint8_t srgb_byte_from_linear(float linear) {
     // Written so that NaN compares false and lands on 0.
     float const clamped = linear > 0 ? (linear < 1 ? linear : 1.0f) : 0.0f;
     return tables.encoded[static_cast<std::size_t>(clamped * TransferTables::steps + 0.5f)];
-}
-
-DisplayFramelet to_display(Framelet const& framelet, float exposure) {
-    std::array<std::array<std::int32_t, framelet_samples>, 3> steps;
-    for (std::size_t i = 0; i < framelet_samples; ++i) {
-        float red = framelet.red[i] * exposure;
-        float green = framelet.green[i] * exposure;
-        float blue = framelet.blue[i] * exposure;
-        tone_map(red, green, blue);
-        steps[0][i] = static_cast<std::int32_t>(red * TransferTables::steps + 0.5f);
-        steps[1][i] = static_cast<std::int32_t>(green * TransferTables::steps + 0.5f);
-        steps[2][i] = static_cast<std::int32_t>(blue * TransferTables::steps + 0.5f);
-    }
-    DisplayFramelet out;
-    out.tile = framelet.tile;
-    std::uint8_t const* const encoded = tables.encoded.data(); // a copy: bytes written below might alias the original
-    for (std::size_t i = 0; i < framelet_samples; ++i) {
-        out.red[i] = encoded[steps[0][i]];
-        out.green[i] = encoded[steps[1][i]];
-        out.blue[i] = encoded[steps[2][i]];
-    }
-    return out;
 }
 
 float display_luma(Vec3 radiance, float exposure) {

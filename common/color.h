@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdint>
 
-#include "common/framelet.h"
 #include "common/math.h"
 
 namespace framelet {
@@ -12,6 +11,29 @@ namespace framelet {
 /// Khronos PBR Neutral tone curve: leaves base colours below 0.8 as they are and rolls highlights off towards white.
 /// In: linear Rec.709 colour, >= 0. Out: [0, 1]. (Khronos Group, "PBR Neutral Tone Mapper", 2024.)
 Vec3 tone_map(Vec3 linear);
+/// The same in place, without branches, so that a loop over samples becomes vector code.
+inline void tone_map(float& red, float& green, float& blue) {
+    auto const smaller = [](float a, float b) { return a < b ? a : b; };
+    auto const larger = [](float a, float b) { return a > b ? a : b; };
+    auto const to_unit = [&](float value) { return larger(smaller(value, 1), 0); };
+    constexpr float start_compression = 0.8f - 0.04f;
+    constexpr float desaturation = 0.15f;
+    constexpr float d = 1 - start_compression;
+    float const low = smaller(smaller(red, green), blue);
+    float const offset = low < 0.08f ? low - 6.25f * low * low : 0.04f;
+    red -= offset;
+    green -= offset;
+    blue -= offset;
+    float const peak = larger(larger(red, green), blue);
+    // Below the start of the compression both factors come out as "change nothing".
+    float const excess = larger(peak - start_compression, 0);
+    float const new_peak = excess > 0 ? 1 - d * d / (excess + d) : peak;
+    float const scale = excess > 0 ? new_peak / larger(peak, start_compression) : 1;
+    float const white = excess > 0 ? 1 - 1 / (desaturation * (peak - new_peak) + 1) : 0;
+    red = to_unit(red * scale * (1 - white) + new_peak * white);
+    green = to_unit(green * scale * (1 - white) + new_peak * white);
+    blue = to_unit(blue * scale * (1 - white) + new_peak * white);
+}
 
 /// sRGB transfer function (IEC 61966-2-1) on [0, 1], and its inverse.
 float srgb_from_linear(float linear);
@@ -31,14 +53,11 @@ struct TransferTables {
 };
 TransferTables const& transfer_tables();
 
-/// What a viewer gets to see of a rendered framelet. `exposure` multiplies radiance (2^EV).
-DisplayFramelet to_display(Framelet const& framelet, float exposure);
-
 /// Luma by which errors are judged: (R + 2 G + B) / 4 of the display-encoded bytes, [0, 1].
 constexpr float display_luma(std::uint8_t red, std::uint8_t green, std::uint8_t blue) {
     return static_cast<float>(red + 2 * green + blue) / (4 * 255.0f);
 }
-/// The same of radiance as `to_display` shows it.
+/// The same of radiance as a viewer sees it. `exposure` multiplies it (2^EV).
 float display_luma(Vec3 radiance, float exposure);
 
 } // namespace framelet

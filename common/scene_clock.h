@@ -1,7 +1,7 @@
 // What the scene clock stands at, and what a viewer may ask of it. The clock is shared by all viewers of a server.
 #pragma once
 
-#include "common/framelet.h"
+#include "common/framelet/framelet.h"
 
 namespace framelet {
 

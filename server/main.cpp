@@ -16,9 +16,9 @@
 #include <tbb/global_control.h>
 #include <unistd.h>
 
+#include "common/command_line/program_failure.h"
 #include "common/counted.h"
 #include "common/error.h"
-#include "common/program_failure.h"
 #include "protocol/stream/local_token.h"
 #include "protocol/stream/stream_opening.h"
 #include "protocol/stream/token.h"

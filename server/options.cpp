@@ -2,9 +2,9 @@
 
 #include <iostream>
 
-#include "common/command_line.h"
+#include "common/command_line/command_line.h"
+#include "common/command_line/number_range.h"
 #include "common/error.h"
-#include "common/number_range.h"
 #include "protocol/stream/token.h"
 
 namespace framelet {

@@ -5,7 +5,7 @@
 
 #include <spdlog/spdlog.h>
 
-#include "common/program_failure.h"
+#include "common/command_line/program_failure.h"
 
 namespace framelet {
 

@@ -5,7 +5,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "common/body_motion.h"
+#include "common/framelet/body_motion.h"
 
 namespace framelet {
 namespace {

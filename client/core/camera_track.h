@@ -1,9 +1,9 @@
 // Where a camera of the scene is at any scene time, from its track. In: keys at a fixed rate, a time. Out: the camera.
 #pragma once
 
-#include "common/body_track.h"
 #include "common/camera.h"
-#include "common/framelet.h"
+#include "common/framelet/body_track.h"
+#include "common/framelet/framelet.h"
 
 namespace framelet {
 

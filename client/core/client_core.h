@@ -14,8 +14,8 @@
 #include "client/core/client_statistics.h"
 #include "client/core/picture_maker.h"
 #include "client/core/server_address.h"
+#include "common/framelet/tile.h"
 #include "common/image.h"
-#include "common/tile.h"
 #include "protocol/messages/message.h"
 
 namespace framelet {

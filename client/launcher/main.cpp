@@ -4,7 +4,7 @@
 
 #include "client/launcher/options.h"
 #include "client/launcher/view.h"
-#include "common/program_failure.h"
+#include "common/command_line/program_failure.h"
 
 int main(int argc, char** argv) {
     auto const parsed = framelet::parse_options(argc, argv);

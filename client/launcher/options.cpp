@@ -4,8 +4,8 @@
 #include <iterator>
 
 #include "client/picture_size.h"
-#include "common/command_line.h"
-#include "common/option_text.h"
+#include "common/command_line/command_line.h"
+#include "common/command_line/option_text.h"
 
 namespace framelet {
 namespace {

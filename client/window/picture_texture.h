@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <span>
 
+#include "common/framelet/tile.h"
 #include "common/image.h"
-#include "common/tile.h"
 
 namespace framelet {
 

@@ -10,8 +10,8 @@
 
 #include "client/core/camera_controller.h"
 #include "client/window/overlay/command.h"
+#include "common/framelet/tile.h"
 #include "common/image.h"
-#include "common/tile.h"
 
 struct GLFWwindow;
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "common/tile.h"
+#include "common/framelet/tile.h"
 
 namespace framelet {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-#include "common/tile.h"
+#include "common/framelet/tile.h"
 
 namespace framelet {
 

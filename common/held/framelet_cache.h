@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/framelet.h"
+#include "common/framelet/framelet.h"
 #include "common/held/held_shape.h"
 
 namespace framelet {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "common/reprojection.h"
+#include "common/framelet/reprojection.h"
 
 namespace framelet {
 

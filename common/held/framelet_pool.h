@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "common/body_motion.h"
+#include "common/framelet/body_motion.h"
 #include "common/held/framelet_cache.h"
 
 namespace framelet {

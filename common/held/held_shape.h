@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/body_motion.h"
-#include "common/framelet.h"
-#include "common/framelet_shape.h"
+#include "common/framelet/body_motion.h"
+#include "common/framelet/framelet.h"
+#include "common/framelet/framelet_shape.h"
 
 namespace framelet {
 

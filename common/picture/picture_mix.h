@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <span>
 
+#include "common/framelet/tile.h"
 #include "common/image.h"
-#include "common/tile.h"
 
 namespace framelet {
 

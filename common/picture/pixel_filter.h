@@ -3,8 +3,8 @@
 // Out: the picture with these filtered.
 #pragma once
 
+#include "common/framelet/tile.h"
 #include "common/image.h"
-#include "common/tile.h"
 
 namespace framelet {
 

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "common/body_motion.h"
+#include "common/framelet/body_motion.h"
 #include "common/held/framelet_pool.h"
 #include "common/warp/warp_block.h"
 #include "common/warp/warp_plan.h"

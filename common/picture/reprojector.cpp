@@ -8,11 +8,11 @@
 #include <tbb/parallel_for.h>
 
 #include "common/error.h"
+#include "common/framelet/reprojection.h"
 #include "common/held/block_flags.h"
 #include "common/mix_bits.h"
 #include "common/picture/pixel_filter.h"
 #include "common/picture/reconstruction.h"
-#include "common/reprojection.h"
 #include "common/simd/lanes.h"
 
 namespace framelet {

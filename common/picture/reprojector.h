@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "common/body_motion.h"
+#include "common/framelet/body_motion.h"
 #include "common/held/framelet_pool.h"
 #include "common/image.h"
 #include "common/picture/hole_fill.h"

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "common/body_motion.h"
+#include "common/framelet/body_motion.h"
 #include "common/held/framelet_pool.h"
 
 namespace framelet {

@@ -7,8 +7,8 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "common/framelet/sample_worth.h"
 #include "common/mix_bits.h"
-#include "common/sample_worth.h"
 
 namespace framelet {
 

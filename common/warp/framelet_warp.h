@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "common/body_motion.h"
-#include "common/reprojection.h"
+#include "common/framelet/body_motion.h"
+#include "common/framelet/reprojection.h"
 #include "common/warp/merged_square.h"
 #include "common/warp/warp_patch.h"
 

@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "common/body_motion.h"
+#include "common/framelet/body_motion.h"
 #include "common/held/framelet_cache.h"
 #include "common/warp/framelet_warp.h"
 #include "common/warp/merged_square.h"

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "common/framelet.h"
+#include "common/framelet/framelet.h"
 #include "protocol/codec/color/held_picture.h"
 #include "protocol/messages/message.h"
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "common/camera.h"
-#include "common/framelet.h"
+#include "common/framelet/framelet.h"
 #include "common/scene_clock.h"
 
 namespace framelet {

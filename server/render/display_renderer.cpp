@@ -6,6 +6,7 @@
 
 #include "common/color.h"
 #include "common/error.h"
+#include "server/render/display_framelet.h"
 
 namespace framelet {
 namespace {

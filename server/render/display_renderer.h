@@ -2,7 +2,7 @@
 // one ray a sample is not enough, each sample is the mean of four.
 #pragma once
 
-#include "common/framelet.h"
+#include "common/framelet/framelet.h"
 #include "server/render/framelet_renderer.h"
 #include "server/render/rays_per_sample.h"
 

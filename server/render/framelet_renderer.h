@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "common/framelet.h"
+#include "common/framelet/framelet.h"
 #include "server/render/render_scene.h"
 
 namespace framelet {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "common/framelet_shape.h"
+#include "common/framelet/framelet_shape.h"
 #include "server/render/material.h"
 #include "server/scene/animation.h"
 

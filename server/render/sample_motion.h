@@ -2,7 +2,7 @@
 // In: traced packets. Out: a framelet's bodies and velocities, which stay empty where nothing moves.
 #pragma once
 
-#include "common/framelet.h"
+#include "common/framelet/framelet.h"
 #include "server/render/tracing.h"
 
 namespace framelet {

@@ -2,7 +2,7 @@
 // as of what deforms: a viewer then moves the shadow and not the surface that it lies on.
 #pragma once
 
-#include "common/framelet.h"
+#include "common/framelet/framelet.h"
 #include "server/render/light.h"
 #include "server/render/tracing.h"
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "common/framelet.h"
+#include "common/framelet/framelet.h"
 #include "server/scene/scene.h"
 
 namespace framelet {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "common/body_track.h"
+#include "common/framelet/body_track.h"
 #include "server/scene/animation.h"
 
 namespace framelet {

@@ -1,4 +1,4 @@
-#include "common/command_line.h"
+#include "common/command_line/command_line.h"
 
 #include <filesystem>
 #include <fstream>
@@ -8,10 +8,10 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "common/bash_completion.h"
+#include "common/command_line/bash_completion.h"
+#include "common/command_line/man_page.h"
+#include "common/command_line/number_range.h"
 #include "common/counted.h"
-#include "common/man_page.h"
-#include "common/number_range.h"
 
 namespace framelet {
 namespace {

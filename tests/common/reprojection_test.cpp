@@ -1,4 +1,4 @@
-#include "common/reprojection.h"
+#include "common/framelet/reprojection.h"
 
 #include <cmath>
 #include <random>

@@ -1,4 +1,4 @@
-#include "common/tile.h"
+#include "common/framelet/tile.h"
 
 #include <gtest/gtest.h>
 

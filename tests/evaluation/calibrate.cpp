@@ -5,12 +5,12 @@
 
 #include <tbb/global_control.h>
 
-#include "common/color.h"
 #include "common/held/framelet_cache.h"
 #include "common/held/framelet_pool.h"
 #include "common/picture/reconstruction.h"
 #include "common/picture/reprojector.h"
 #include "protocol/codec/batch_codec.h"
+#include "server/render/display_framelet.h"
 #include "server/stream/flow/quality_choice.h"
 #include "server/stream/layers/shape_feed.h"
 #include "tests/evaluation/codecs/h264_codec.h"

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "common/camera.h"
-#include "common/framelet.h"
+#include "common/framelet/framelet.h"
 
 namespace framelet::bench {
 

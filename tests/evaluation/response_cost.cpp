@@ -2,7 +2,7 @@
 
 #include <tbb/global_control.h>
 
-#include "common/color.h"
+#include "server/render/display_framelet.h"
 #include "server/render/probe_renderer.h"
 #include "server/sampling/plan/adaptive_refresh.h"
 #include "tests/evaluation/stopwatch.h"

@@ -3,8 +3,8 @@
 #include <CLI/CLI.hpp>
 
 #include "client/picture_size.h"
+#include "common/command_line/number_range.h"
 #include "common/error.h"
-#include "common/number_range.h"
 #include "tests/evaluation/ablation.h"
 #include "tests/evaluation/method.h"
 

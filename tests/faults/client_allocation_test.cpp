@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "client/core/client_core.h"
+#include "common/command_line/program_failure.h"
 #include "common/error.h"
-#include "common/program_failure.h"
 #include "tests/faults/failing_allocations.h"
 #include "tests/loopback/process.h"
 

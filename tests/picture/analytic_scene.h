@@ -11,7 +11,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "common/body_motion.h"
+#include "common/framelet/body_motion.h"
 #include "common/held/framelet_cache.h"
 
 namespace framelet {

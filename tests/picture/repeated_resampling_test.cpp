@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "common/reprojection.h"
+#include "common/framelet/reprojection.h"
 #include "tests/picture/moved_room.h"
 
 namespace framelet {

@@ -8,8 +8,8 @@
 #include <tbb/global_control.h>
 
 #include "common/color.h"
+#include "common/framelet/sample_worth.h"
 #include "common/picture/reconstruction.h"
-#include "common/sample_worth.h"
 #include "tests/picture/moved_room.h"
 
 namespace framelet {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/color.h"
-#include "common/framelet.h"
+#include "common/framelet/framelet.h"
 
 namespace framelet {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "common/framelet_shape.h"
+#include "common/framelet/framelet_shape.h"
 
 namespace framelet {
 

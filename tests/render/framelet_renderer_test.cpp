@@ -10,6 +10,7 @@
 
 #include "common/color.h"
 #include "scene_builder.h"
+#include "server/render/display_framelet.h"
 
 namespace framelet {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "common/sample_worth.h"
+#include "common/framelet/sample_worth.h"
 #include "server/sampling/mirror/mirror_checks.h"
 #include "tests/sampling/rendered_planes.h"
 

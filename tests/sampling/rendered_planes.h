@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "common/framelet.h"
+#include "common/framelet/framelet.h"
 #include "common/morton.h"
 #include "server/sampling/mirror/mirror.h"
 #include "server/stream/layers/layer_fit.h"

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "common/framelet.h"
+#include "common/framelet/framelet.h"
 
 namespace framelet {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "common/body_motion.h"
+#include "common/framelet/body_motion.h"
 #include "common/scene_clock.h"
 
 namespace framelet {

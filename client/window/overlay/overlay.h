@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "client/window/overlay/overlay_content.h"
-#include "common/tile.h"
+#include "common/framelet/tile.h"
 
 struct GLFWwindow;
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "common/framelet.h"
+#include "common/framelet/framelet.h"
 
 namespace framelet {
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "common/framelet.h"
+#include "common/framelet/framelet.h"
 
 namespace framelet {
 

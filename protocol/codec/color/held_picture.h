@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <span>
 
-#include "common/framelet.h"
+#include "common/framelet/framelet.h"
 #include "protocol/codec/color/point_grids.h"
 #include "protocol/codec/color/search_picture.h"
 

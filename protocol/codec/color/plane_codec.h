@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "common/framelet.h"
+#include "common/framelet/framelet.h"
 #include "protocol/codec/color/exact_planes.h"
 #include "protocol/codec/color/prediction.h"
 

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/tile.h"
+#include "common/framelet/tile.h"
 #include "protocol/codec/color/point_grids.h"
 
 namespace framelet {

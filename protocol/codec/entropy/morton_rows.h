@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "common/tile.h"
+#include "common/framelet/tile.h"
 
 namespace framelet {
 

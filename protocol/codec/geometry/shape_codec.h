@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "common/framelet_shape.h"
+#include "common/framelet/framelet_shape.h"
 #include "protocol/codec/geometry/shape_masks.h"
 
 namespace framelet {

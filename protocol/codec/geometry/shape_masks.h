@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "common/framelet_shape.h"
+#include "common/framelet/framelet_shape.h"
 #include "protocol/codec/entropy/byte_cursor.h"
 
 namespace framelet {

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "common/body_track.h"
+#include "common/framelet/body_track.h"
 
 namespace framelet {
 

@@ -5,7 +5,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "common/reprojection.h"
+#include "common/framelet/reprojection.h"
 
 namespace framelet {
 namespace {

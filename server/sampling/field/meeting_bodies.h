@@ -3,9 +3,9 @@
 // bodies move. Out: pixels a second.
 #pragma once
 
-#include "common/body_motion.h"
-#include "common/framelet.h"
-#include "common/tile.h"
+#include "common/framelet/body_motion.h"
+#include "common/framelet/framelet.h"
+#include "common/framelet/tile.h"
 
 namespace framelet {
 

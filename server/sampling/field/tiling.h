@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "common/tile.h"
+#include "common/framelet/tile.h"
 
 namespace framelet {
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/framelet.h"
-#include "common/framelet_shape.h"
+#include "common/framelet/framelet.h"
+#include "common/framelet/framelet_shape.h"
 #include "common/math.h"
 
 namespace framelet {
@@ -23,7 +23,7 @@ struct Piece {
     /// Energy of the detail between samples a pixel apart: of samples `s` pixels apart it is about s times as much, as
     /// it is of edges, which are most of a picture. Mean squared luma.
     float detail = 0;
-    float fading = 0; ///< pixels of spacing a second: see `common/sample_worth.h`
+    float fading = 0; ///< pixels of spacing a second: see `common/framelet/sample_worth.h`
     SceneTime scene_time = 0; ///< when it was rendered
     Vec3 velocity{0}; ///< of what deforms, metres a second in the world at its scene time
     BodyNumber body = static_body;

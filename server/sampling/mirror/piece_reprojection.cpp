@@ -5,8 +5,8 @@
 
 #include <glm/matrix.hpp>
 
-#include "common/reprojection.h"
-#include "common/sample_worth.h"
+#include "common/framelet/reprojection.h"
+#include "common/framelet/sample_worth.h"
 
 namespace framelet {
 namespace {

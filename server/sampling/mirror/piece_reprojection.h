@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "common/body_motion.h"
 #include "common/camera.h"
+#include "common/framelet/body_motion.h"
 #include "server/sampling/mirror/piece.h"
 
 namespace framelet {

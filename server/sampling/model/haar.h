@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <span>
 
-#include "common/tile.h"
+#include "common/framelet/tile.h"
 
 namespace framelet {
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/framelet.h"
+#include "common/framelet/framelet.h"
 
 namespace framelet {
 

@@ -14,7 +14,7 @@
 #include <optional>
 #include <span>
 
-#include "common/tile.h"
+#include "common/framelet/tile.h"
 #include "server/sampling/model/haar.h"
 
 namespace framelet {

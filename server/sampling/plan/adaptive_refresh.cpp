@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "common/error.h"
-#include "common/reprojection.h"
+#include "common/framelet/reprojection.h"
 
 namespace framelet {
 namespace {

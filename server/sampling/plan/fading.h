@@ -5,7 +5,7 @@
 
 #include <span>
 
-#include "common/sample_worth.h"
+#include "common/framelet/sample_worth.h"
 #include "server/sampling/mirror/piece.h"
 
 namespace framelet {

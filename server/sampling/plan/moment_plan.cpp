@@ -6,7 +6,7 @@
 #include <tbb/parallel_for.h>
 
 #include "common/error.h"
-#include "common/sample_worth.h"
+#include "common/framelet/sample_worth.h"
 
 namespace framelet {
 namespace {

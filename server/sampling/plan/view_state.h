@@ -1,7 +1,7 @@
 // What is to be seen, and what is rendered of it.
 #pragma once
 
-#include "common/framelet.h"
+#include "common/framelet/framelet.h"
 
 namespace framelet {
 

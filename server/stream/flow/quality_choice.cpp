@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/framelet.h"
+#include "common/framelet/framelet.h"
 
 namespace framelet {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <span>
 
-#include "common/framelet.h"
-#include "common/framelet_shape.h"
+#include "common/framelet/framelet.h"
+#include "common/framelet/framelet_shape.h"
 
 namespace framelet {
 

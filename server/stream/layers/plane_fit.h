@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "common/tile.h"
+#include "common/framelet/tile.h"
 
 namespace framelet {
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "common/framelet.h"
+#include "common/framelet/framelet.h"
 #include "server/scene/bodies.h"
 #include "server/stream/layers/layer_fit.h"
 

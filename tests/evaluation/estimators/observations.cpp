@@ -6,8 +6,8 @@
 
 #include <tbb/parallel_for.h>
 
-#include "common/color.h"
 #include "common/error.h"
+#include "server/render/display_framelet.h"
 
 namespace framelet::bench {
 namespace {

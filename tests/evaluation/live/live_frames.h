@@ -8,7 +8,7 @@
 #include <sys/types.h>
 
 #include "common/camera.h"
-#include "common/framelet.h"
+#include "common/framelet/framelet.h"
 
 namespace framelet::bench {
 

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "client/picture_size.h"
+#include "common/command_line/number_range.h"
 #include "common/error.h"
-#include "common/number_range.h"
 #include "server/scene/scene_import.h"
 #include "server/stream/replay.h"
 #include "tests/evaluation/method.h"

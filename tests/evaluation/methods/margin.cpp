@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/tile.h"
+#include "common/framelet/tile.h"
 
 namespace framelet::bench {
 

@@ -5,7 +5,7 @@
 
 #include <tbb/parallel_for.h>
 
-#include "common/color.h"
+#include "server/render/display_framelet.h"
 #include "server/sampling/field/tiling.h"
 #include "tests/evaluation/methods/warp_viewer.h"
 #include "tests/evaluation/reference.h"

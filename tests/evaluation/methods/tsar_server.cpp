@@ -7,6 +7,7 @@
 
 #include "common/color.h"
 #include "common/error.h"
+#include "server/render/display_framelet.h"
 #include "server/render/framelet_renderer.h"
 #include "tests/evaluation/methods/response/depth_first_order.h"
 

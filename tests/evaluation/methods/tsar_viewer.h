@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "common/framelet.h"
+#include "common/framelet/framelet.h"
 #include "common/image.h"
 
 namespace framelet::bench {

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "common/tile.h"
+#include "common/framelet/tile.h"
 #include "tests/evaluation/methods/response/density.h"
 
 namespace framelet {

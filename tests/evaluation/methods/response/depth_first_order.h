@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "common/tile.h"
+#include "common/framelet/tile.h"
 
 namespace framelet {
 

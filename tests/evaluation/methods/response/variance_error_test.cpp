@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "common/tile.h"
+#include "common/framelet/tile.h"
 
 namespace framelet {
 namespace {

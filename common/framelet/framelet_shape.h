@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/framelet/tile.h"
 #include "common/math.h"
-#include "common/tile.h"
 
 namespace framelet {
 
@@ -20,7 +20,7 @@ inline constexpr BodyNumber static_body = 0;
 inline constexpr std::size_t max_layers = 3;
 
 /// How soon the looks of a surface are no longer what they were (a shadow passes, a light changes), where it is: see
-/// `common/sample_worth.h`. 0: they do not change.
+/// `common/framelet/sample_worth.h`. 0: they do not change.
 using FadingCode = std::uint8_t;
 
 /// A plane on one body. The inverse of the view depth (1 / metres, 0 at infinity) is affine on the image plane:

@@ -7,10 +7,10 @@
 #include <optional>
 #include <vector>
 
-#include "common/body_track.h"
 #include "common/camera.h"
-#include "common/framelet_shape.h"
-#include "common/tile.h"
+#include "common/framelet/body_track.h"
+#include "common/framelet/framelet_shape.h"
+#include "common/framelet/tile.h"
 
 namespace framelet {
 

@@ -1,9 +1,9 @@
-#include "common/bash_completion.h"
+#include "common/command_line/bash_completion.h"
 
 #include <algorithm>
 #include <map>
 
-#include "common/option_text.h"
+#include "common/command_line/option_text.h"
 
 namespace framelet {
 namespace {

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "common/framelet_shape.h"
+#include "common/framelet/framelet_shape.h"
 
 namespace framelet {
 

@@ -1,9 +1,9 @@
-#include "common/man_page.h"
+#include "common/command_line/man_page.h"
 
 #include <cctype>
 #include <sstream>
 
-#include "common/option_text.h"
+#include "common/command_line/option_text.h"
 
 namespace framelet {
 namespace {

@@ -8,9 +8,9 @@
 #include <glm/ext/vector_double3.hpp>
 #include <unordered_map>
 
-#include "common/body_track.h"
-#include "common/framelet.h"
-#include "common/framelet_shape.h"
+#include "common/framelet/body_track.h"
+#include "common/framelet/framelet.h"
+#include "common/framelet/framelet_shape.h"
 
 namespace framelet {
 

@@ -1,4 +1,4 @@
-#include "common/option_text.h"
+#include "common/command_line/option_text.h"
 
 #include <algorithm>
 #include <sstream>

@@ -1,4 +1,4 @@
-#include "common/body_motion.h"
+#include "common/framelet/body_motion.h"
 
 #include <algorithm>
 #include <bit>

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/framelet_shape.h"
+#include "common/framelet/framelet_shape.h"
 
 namespace framelet {
 

@@ -10,10 +10,10 @@
 #include <glm/ext/vector_double2.hpp>
 #include <glm/ext/vector_double3.hpp>
 
-#include "common/body_motion.h"
 #include "common/camera.h"
-#include "common/framelet_shape.h"
-#include "common/tile.h"
+#include "common/framelet/body_motion.h"
+#include "common/framelet/framelet_shape.h"
+#include "common/framelet/tile.h"
 
 namespace framelet {
 

@@ -1,13 +1,13 @@
-#include "common/command_line.h"
+#include "common/command_line/command_line.h"
 
 #include <algorithm>
 #include <iostream>
 #include <memory>
 #include <sstream>
 
-#include "common/bash_completion.h"
-#include "common/man_page.h"
-#include "common/option_text.h"
+#include "common/command_line/bash_completion.h"
+#include "common/command_line/man_page.h"
+#include "common/command_line/option_text.h"
 
 namespace framelet {
 

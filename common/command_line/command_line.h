@@ -9,6 +9,7 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
+#include "common/command_line/program_notes.h"
 #include "common/error.h"
 
 namespace framelet {
@@ -20,17 +21,6 @@ public:
     std::string make_option(CLI::Option const* option, bool positional) const override;
 };
 inline constexpr std::size_t help_columns = 100;
-
-struct ExitCode {
-    int code;
-    std::string means;
-};
-/// What is said of a program beside its options.
-struct ProgramNotes {
-    std::string text; ///< paragraphs, with an empty line between them
-    std::vector<ExitCode> exit_codes;
-    std::vector<std::string> see_also; ///< other programs
-};
 
 /// Sets the formatter, --help, --version and, for the build alone, --help-as: the manual page or bash's completion.
 void prepare_command_line(CLI::App& app, ProgramNotes const& notes = {});

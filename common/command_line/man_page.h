@@ -3,7 +3,9 @@
 
 #include <string>
 
-#include "common/command_line.h"
+#include <CLI/App.hpp>
+
+#include "common/command_line/program_notes.h"
 
 namespace framelet {
 

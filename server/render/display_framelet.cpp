@@ -1,0 +1,32 @@
+#include "server/render/display_framelet.h"
+
+#include <array>
+
+#include "common/color.h"
+
+namespace framelet {
+
+DisplayFramelet to_display(Framelet const& framelet, float exposure) {
+    std::array<std::array<std::int32_t, framelet_samples>, 3> steps;
+    for (std::size_t i = 0; i < framelet_samples; ++i) {
+        float red = framelet.red[i] * exposure;
+        float green = framelet.green[i] * exposure;
+        float blue = framelet.blue[i] * exposure;
+        tone_map(red, green, blue);
+        steps[0][i] = static_cast<std::int32_t>(red * TransferTables::steps + 0.5f);
+        steps[1][i] = static_cast<std::int32_t>(green * TransferTables::steps + 0.5f);
+        steps[2][i] = static_cast<std::int32_t>(blue * TransferTables::steps + 0.5f);
+    }
+    DisplayFramelet out;
+    out.tile = framelet.tile;
+    // A copy: bytes written below might alias the original.
+    std::uint8_t const* const encoded = transfer_tables().encoded.data();
+    for (std::size_t i = 0; i < framelet_samples; ++i) {
+        out.red[i] = encoded[steps[0][i]];
+        out.green[i] = encoded[steps[1][i]];
+        out.blue[i] = encoded[steps[2][i]];
+    }
+    return out;
+}
+
+} // namespace framelet
