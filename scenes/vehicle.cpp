@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "scenes/mesh_builder.h"
-#include "scenes/vehicle_body.h"
 
 namespace framelet {
 namespace {

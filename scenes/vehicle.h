@@ -4,13 +4,10 @@
 #include <array>
 
 #include "scenes/gltf_document.h"
+#include "scenes/vehicle_body.h"
 
 namespace framelet {
 
-/// Metres. The wheels fit the body's arches.
-inline constexpr double wheel_radius = 0.34;
-inline constexpr double front_axle_z = 1.35;
-inline constexpr double rear_axle_z = -1.32;
 /// A wheel looks the same after each turn by one of so many parts of a circle.
 inline constexpr int wheel_spokes = 5;
 

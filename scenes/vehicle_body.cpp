@@ -8,7 +8,6 @@
 #include <span>
 
 #include "scenes/mesh_builder.h"
-#include "scenes/vehicle.h"
 
 namespace framelet {
 namespace {

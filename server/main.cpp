@@ -20,7 +20,6 @@
 #include "common/counted.h"
 #include "common/error.h"
 #include "protocol/stream/local_token.h"
-#include "protocol/stream/stream_opening.h"
 #include "protocol/stream/token.h"
 #include "server/options.h"
 #include "server/progress_bar.h"
@@ -32,6 +31,7 @@
 #include "server/session/metrics_port.h"
 #include "server/session/priority.h"
 #include "server/stream/event_log.h"
+#include "protocol/stream/tls.h"
 
 namespace framelet {
 namespace {

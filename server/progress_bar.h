@@ -1,7 +1,8 @@
 // Progress of loading on a terminal: one line that is redrawn.
 #pragma once
 
-#include "server/scene/scene_import.h"
+#include "server/scene/progress.h"
+
 
 namespace framelet {
 

@@ -18,6 +18,7 @@
 #include "protocol/stream/known_servers.h"
 #include "protocol/stream/local_token.h"
 #include "protocol/stream/stream_opening.h"
+#include "protocol/stream/tls.h"
 
 namespace framelet {
 

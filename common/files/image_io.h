@@ -2,16 +2,13 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <span>
 #include <string>
 
 #include "common/image.h"
+#include "common/files/size_check.h"
 
 namespace framelet {
-
-/// Told the size that the header gives before memory is taken for so many pixels. May throw; that ends the reading.
-using SizeCheck = std::function<void(int width, int height)>;
 
 /// Reads any format the library knows as 8-bit RGBA, values as stored (no colour conversion, ICC and gAMA ignored).
 /// Grey is replicated to RGB; missing alpha is 255; 16-bit is rounded to 8.

@@ -6,7 +6,8 @@
 #include <span>
 #include <stdexcept>
 
-#include "common/files/image_io.h"
+#include "common/files/size_check.h"
+#include "common/image.h"
 
 namespace framelet {
 

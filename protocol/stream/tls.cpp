@@ -6,12 +6,10 @@
 #include <memory>
 #include <utility>
 
-#include <boost/asio/ssl/context.hpp>
 #include <openssl/pem.h>
 #include <openssl/x509_vfy.h>
 
 #include "common/error.h"
-#include "protocol/stream/stream_opening.h"
 
 namespace framelet {
 namespace {

@@ -9,7 +9,7 @@
 #include "server/scene/animation.h"
 #include "server/scene/bodies.h"
 #include "server/scene/scene.h"
-#include "server/scene/scene_import.h"
+#include "server/scene/progress.h"
 
 namespace framelet {
 

@@ -6,9 +6,6 @@
 
 #include <glm/geometric.hpp>
 
-#include "server/render/brdf.h"
-#include "server/render/tracing.h"
-
 namespace framelet {
 namespace {
 
@@ -30,16 +27,9 @@ Vec3 mirrored(SurfacePacket const& s, int i) {
     return n * (2 * glm::dot(n, v)) - v;
 }
 
-/// Environment light, and the share of the specular part that is to be replaced by a traced reflection.
-struct AmbientPacket {
-    LaneVec3 reflectance; ///< specular share of the mirror direction's light
-    LaneFloats traced; ///< 0..1
-    LaneMask traced_lanes = 0;
-};
-
 void add_environment(PreparedScene const& scene, SurfacePacket const& s, LobePacket const& lobes, LaneMask lit,
-                     bool may_trace, AmbientPacket& ambient, LaneVec3& radiance) {
-    ambient.traced_lanes = 0;
+                     bool may_reflect, MirrorRays& mirror, LaneVec3& radiance) {
+    mirror.lanes = 0;
     for_each_lane(lit, [&](int i) {
         float const roughness = s.roughness[i];
         AmbientShares const shares =
@@ -49,46 +39,34 @@ void add_environment(PreparedScene const& scene, SurfacePacket const& s, LobePac
         Vec3 const diffuse_part = shares.diffuse * irradiance * s.occlusion[i];
         Vec3 const specular = shares.specular * s.occlusion[i];
         float traced = 0;
-        if (may_trace && roughness < filtered_roughness) {
+        if (may_reflect && roughness < filtered_roughness) {
             float const strength = std::max({shares.specular.r, shares.specular.g, shares.specular.b});
             traced = (1 - smooth_step(traced_roughness, filtered_roughness, roughness)) *
                      smooth_step(negligible_reflectance, full_reflectance, strength);
         }
         if (traced > 0) {
-            ambient.traced_lanes |= 1u << i;
-            ambient.traced[i] = traced;
-            ambient.reflectance.set(i, shares.specular);
+            mirror.lanes |= 1u << i;
+            mirror.share.set(i, shares.specular * traced);
         }
         radiance.set(i, radiance.get(i) + diffuse_part + specular * filtered * (1 - traced));
     });
 }
 
-/// The functions that trace return how many rays that took.
-std::uint32_t add_reflections(PreparedScene const& scene, SurfacePacket const& s, AmbientPacket const& ambient,
-                              int bounces, LaneVec3& radiance) {
-    RayPacket rays;
-    Footprint footprint;
-    rays.near.fill(0);
-    rays.far.fill(INFINITY);
-    rays.origin = s.leaving;
-    for_each_lane(ambient.traced_lanes, [&](int i) {
+void aim_reflections(SurfacePacket const& s, MirrorRays& mirror) {
+    mirror.rays.near.fill(0);
+    mirror.rays.far.fill(INFINITY);
+    mirror.rays.origin = s.leaving;
+    for_each_lane(mirror.lanes, [&](int i) {
         Vec3 direction = mirrored(s, i);
         Vec3 const facet = s.geometric_normal.get(i);
         float const above = glm::dot(direction, facet);
         if (above < 0.01f) { // a bent normal sends the ray into the surface: along it instead
             direction = glm::normalize(direction + facet * (0.01f - above));
         }
-        rays.direction.set(i, direction);
-        footprint.width[i] = s.width[i];
-        footprint.slope[i] = s.spread[i] + s.roughness[i] * s.roughness[i];
+        mirror.rays.direction.set(i, direction);
+        mirror.footprint.width[i] = s.width[i];
+        mirror.footprint.slope[i] = s.spread[i] + s.roughness[i] * s.roughness[i];
     });
-    TracedPacket reflected{};
-    trace(scene, rays, ambient.traced_lanes, footprint, bounces - 1, reflected);
-    for_each_lane(ambient.traced_lanes, [&](int i) {
-        Vec3 const share = ambient.reflectance.get(i) * ambient.traced[i];
-        radiance.set(i, radiance.get(i) + share * reflected.radiance.get(i));
-    });
-    return reflected.segments;
 }
 
 /// The light of which each lane would get most if nothing were in its way.
@@ -115,6 +93,7 @@ struct StrongestLight {
     }
 };
 
+/// Returns how many rays that took.
 std::uint32_t add_lights(PreparedScene const& scene, SurfacePacket const& s, LobePacket const& lobes, LaneMask lit,
                          StrongestLight& strongest, LaneVec3& radiance) {
     std::uint32_t segments = 0;
@@ -169,27 +148,29 @@ void split_transmission(SurfacePacket const& s, LaneMask active, LobePacket& lob
 
 } // namespace
 
-void shade(PreparedScene const& scene, SurfacePacket const& s, LaneMask active, int bounces, ShadedPacket& out) {
-    LobePacket lobes;
+void shade_surroundings(PreparedScene const& scene, SurfacePacket const& s, LaneMask active, bool may_reflect,
+                        LobePacket& lobes, MirrorRays& mirror, ShadedPacket& out) {
     make_lobes(s.base_color, s.metallic, s.roughness, s.normal, s.view, lobes);
     if (scene.see_through) {
         split_transmission(s, active, lobes, out);
     }
     out.radiance = s.emissive;
     out.segments = 0;
-    out.reflects = 0;
+    add_environment(scene, s, lobes, active & ~s.unlit, may_reflect, mirror, out.radiance);
+    out.reflects = mirror.lanes;
+    if (mirror.lanes != 0) {
+        aim_reflections(s, mirror);
+    }
+}
+
+void shade_lights(PreparedScene const& scene, SurfacePacket const& s, LaneMask active, LobePacket const& lobes,
+                  ShadedPacket& out) {
     StrongestLight strongest;
     if (scene.moves) {
         strongest.reset();
     }
     LaneMask const lit = active & ~s.unlit;
     if (lit != 0) {
-        AmbientPacket ambient;
-        add_environment(scene, s, lobes, lit, bounces > 0, ambient, out.radiance);
-        out.reflects = ambient.traced_lanes;
-        if (ambient.traced_lanes != 0) {
-            out.segments += add_reflections(scene, s, ambient, bounces, out.radiance);
-        }
         out.segments += add_lights(scene, s, lobes, lit, strongest, out.radiance);
     }
     if (scene.moves) {

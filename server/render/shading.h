@@ -1,6 +1,8 @@
-// Light that leaves surfaces towards the viewer: emission, environment, punctual lights with shadows, reflections.
+// Light that leaves surfaces towards the viewer: emission, environment, punctual lights with shadows. Which mirror
+// reflections it takes, and what they are worth; they are traced elsewhere.
 #pragma once
 
+#include "server/render/brdf.h"
 #include "server/render/packet.h"
 #include "server/render/prepared_scene.h"
 #include "server/render/surface.h"
@@ -19,7 +21,20 @@ struct ShadedPacket {
     std::uint32_t segments; ///< rays traced for it
 };
 
-/// Shades the lanes of `active`. `bounces`: how often light may still be followed along mirror reflections.
-void shade(PreparedScene const& scene, SurfacePacket const& surfaces, LaneMask active, int bounces, ShadedPacket& out);
+/// Mirror reflections that are to be traced: whoever traces adds `share` of the light that they bring.
+struct MirrorRays {
+    RayPacket rays;
+    Footprint footprint;
+    LaneVec3 share;
+    LaneMask lanes = 0;
+};
+
+/// The lanes of `active` are shaded in two halves, between which mirror reflections are added to `out`. The first one
+/// gives `lobes` for the second, emission and the environment's light. `may_reflect`: light may be followed once more.
+void shade_surroundings(PreparedScene const& scene, SurfacePacket const& surfaces, LaneMask active, bool may_reflect,
+                        LobePacket& lobes, MirrorRays& mirror, ShadedPacket& out);
+/// The second one adds punctual lights with their shadows, and weighs all of it.
+void shade_lights(PreparedScene const& scene, SurfacePacket const& surfaces, LaneMask active, LobePacket const& lobes,
+                  ShadedPacket& out);
 
 } // namespace framelet

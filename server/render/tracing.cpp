@@ -90,6 +90,23 @@ LaneMask add_layer(ShadedPacket const& shaded, SurfacePacket const& surfaces, Hi
     return passed;
 }
 
+/// Shades the lanes of `active`. `bounces`: how often light may still be followed along mirror reflections.
+void shade(PreparedScene const& scene, SurfacePacket const& surfaces, LaneMask active, int bounces,
+           ShadedPacket& out) {
+    LobePacket lobes;
+    MirrorRays mirror;
+    shade_surroundings(scene, surfaces, active, bounces > 0, lobes, mirror, out);
+    if (mirror.lanes != 0) {
+        TracedPacket reflected{};
+        trace(scene, mirror.rays, mirror.lanes, mirror.footprint, bounces - 1, reflected);
+        for_each_lane(mirror.lanes, [&](int i) {
+            out.radiance.set(i, out.radiance.get(i) + mirror.share.get(i) * reflected.radiance.get(i));
+        });
+        out.segments += reflected.segments;
+    }
+    shade_lights(scene, surfaces, active, lobes, out);
+}
+
 } // namespace
 
 void trace(PreparedScene const& scene, RayPacket& rays, LaneMask active, Footprint const& footprint, int bounces,

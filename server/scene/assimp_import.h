@@ -4,7 +4,8 @@
 
 #include "server/scene/import_budget.h"
 #include "server/scene/scene_folder.h"
-#include "server/scene/scene_import.h"
+#include "server/scene/progress.h"
+#include "server/scene/scene.h"
 
 namespace framelet {
 

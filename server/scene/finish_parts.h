@@ -7,9 +7,11 @@
 #include <string>
 
 #include "server/scene/scene.h"
-#include "server/scene/scene_finish.h"
 
 namespace framelet {
+
+/// Largest coordinate that a vertex, a node or a key may have, metres: products of several stay finite in a float.
+inline constexpr float max_coordinate = 1e9f;
 
 /// Transforms are finite, rotations unit length, skins usable, morph weights as many as targets.
 void finish_nodes(Scene& scene);

@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "server/scene/scene_import.h"
+#include "server/scene/scene.h"
+
 
 namespace tinygltf {
 class Model;

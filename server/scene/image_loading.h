@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "server/scene/import_budget.h"
-#include "server/scene/scene_import.h"
+#include "server/scene/progress.h"
+#include "server/scene/scene.h"
 
 namespace framelet {
 

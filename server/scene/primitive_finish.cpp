@@ -6,9 +6,9 @@
 #include "common/error.h"
 #include "server/scene/normals.h"
 #include "server/scene/primitive_ops.h"
-#include "server/scene/scene_finish.h"
 #include "server/scene/tangents.h"
 #include "server/scene/vector_math.h"
+#include "server/scene/finish_parts.h"
 
 namespace framelet {
 namespace {

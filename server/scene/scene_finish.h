@@ -3,12 +3,10 @@
 #pragma once
 
 #include "server/scene/import_budget.h"
-#include "server/scene/scene_import.h"
+#include "server/scene/progress.h"
+#include "server/scene/scene.h"
 
 namespace framelet {
-
-/// Largest coordinate that a vertex, a node or a key may have, metres: products of several stay finite in a float.
-inline constexpr float max_coordinate = 1e9f;
 
 void finish_scene(Scene& scene, ImportBudget& budget, Progress const& progress);
 

@@ -9,6 +9,7 @@
 #include "server/scene/import_budget.h"
 #include "server/scene/scene_finish.h"
 #include "server/scene/scene_folder.h"
+#include "server/scene/file_ending.h"
 
 namespace framelet {
 namespace {
@@ -53,13 +54,6 @@ std::vector<std::string> condensed(std::vector<std::string> const& warnings) {
 }
 
 } // namespace
-
-std::string lower_extension(std::filesystem::path const& file) {
-    std::string extension = file.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c | 32) : c; });
-    return extension;
-}
 
 Scene import_scene(std::filesystem::path const& file, Progress const& progress, ImportOptions const& options) {
     Progress const report = progress ? progress : [](std::string_view, double) {};

@@ -4,15 +4,13 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
-#include <string_view>
+#include <string>
+#include <vector>
 
+#include "server/scene/progress.h"
 #include "server/scene/scene.h"
 
 namespace framelet {
-
-/// Told what is being done and how much of it, 0..1. Calls may come from any thread, one at a time.
-using Progress = std::function<void(std::string_view what, double fraction)>;
 
 /// What a scene file may ask for.
 struct ImportOptions {
@@ -31,8 +29,5 @@ struct ImportOptions {
 /// Throws InputError with one line that names the file where it cannot be loaded. The scene it returns is consistent:
 /// every index is in range, every attribute has the right length, every number is finite, skin weights sum to 1.
 Scene import_scene(std::filesystem::path const& file, Progress const& progress = {}, ImportOptions const& options = {});
-
-/// The file name's ending with its dot, in lower case.
-std::string lower_extension(std::filesystem::path const& file);
 
 } // namespace framelet

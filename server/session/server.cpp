@@ -32,6 +32,7 @@
 #include "server/session/tickets.h"
 #include "server/session/token_guesses.h"
 #include "server/session/waiting_room.h"
+#include "protocol/stream/tls.h"
 
 namespace framelet {
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/error.h"
+#include "protocol/messages/message_codec.h"
 
 namespace framelet {
 namespace {

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "common/error.h"
+#include "protocol/messages/message_codec.h"
 
 namespace framelet {
 namespace {

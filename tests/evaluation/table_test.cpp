@@ -6,6 +6,7 @@
 #include "protocol/messages/message.h"
 #include "tests/evaluation/small_run.h"
 #include "tests/evaluation/table.h"
+#include "protocol/messages/message_codec.h"
 
 namespace framelet::bench {
 namespace {

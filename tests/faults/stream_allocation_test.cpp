@@ -6,6 +6,7 @@
 #include "server/scene/scene_import.h"
 #include "server/stream/framelet_stream.h"
 #include "tests/faults/failing_allocations.h"
+#include "protocol/messages/message_codec.h"
 
 namespace framelet::test {
 namespace {

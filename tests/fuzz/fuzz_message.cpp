@@ -1,6 +1,7 @@
 // Bodies of messages.
 #include "common/error.h"
 #include "protocol/messages/message.h"
+#include "protocol/messages/message_codec.h"
 
 extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size) {
     using namespace framelet;

@@ -14,6 +14,7 @@
 #include "server/stream/framelet_stream.h"
 #include "tests/session/fake_stream.h"
 #include "tests/session/triangle_scenes.h"
+#include "protocol/messages/message_codec.h"
 
 namespace {
 

@@ -10,6 +10,7 @@
 #include "protocol/messages/message.h"
 #include "protocol/stream/known_servers.h"
 #include "protocol/stream/token.h"
+#include "protocol/messages/message_codec.h"
 
 namespace {
 

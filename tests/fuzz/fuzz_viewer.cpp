@@ -5,6 +5,7 @@
 #include "common/error.h"
 #include "common/held/framelet_cache.h"
 #include "protocol/codec/batch_codec.h"
+#include "protocol/messages/message_codec.h"
 
 extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size) {
     using namespace framelet;

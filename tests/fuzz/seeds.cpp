@@ -7,6 +7,7 @@
 #include "protocol/codec/batch_codec.h"
 #include "protocol/codec/color/plane_codec.h"
 #include "protocol/codec/geometry/shape_codec.h"
+#include "protocol/messages/message_codec.h"
 
 namespace {
 

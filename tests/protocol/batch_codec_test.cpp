@@ -8,6 +8,7 @@
 #include <zstd.h>
 
 #include "common/error.h"
+#include "protocol/messages/message_codec.h"
 #include "random_shape.h"
 
 namespace framelet {

@@ -7,6 +7,7 @@
 
 #include "common/error.h"
 #include "protocol/codec/batch_codec.h"
+#include "protocol/messages/message_codec.h"
 #include "random_shape.h"
 
 namespace framelet {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "common/error.h"
+#include "protocol/messages/message_codec.h"
 #include "random_message.h"
 #include "stream_pair.h"
 

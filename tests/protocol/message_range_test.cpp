@@ -6,6 +6,7 @@
 
 #include "common/error.h"
 #include "server/render/flush_denormals.h"
+#include "protocol/messages/message_codec.h"
 #include "unchecked_message.h"
 
 namespace framelet {

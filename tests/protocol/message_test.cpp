@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "common/error.h"
+#include "protocol/messages/message_codec.h"
 #include "random_message.h"
 
 namespace framelet {

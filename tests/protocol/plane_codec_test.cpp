@@ -8,6 +8,7 @@
 #include "common/error.h"
 #include "protocol/codec/batch_codec.h"
 #include "protocol/codec/color/haar_transform.h"
+#include "protocol/messages/message_codec.h"
 
 namespace framelet {
 namespace {

@@ -14,6 +14,7 @@
 #include <boost/asio/write.hpp>
 
 #include "protocol/stream/stream_opening.h"
+#include "protocol/messages/message_codec.h"
 
 namespace framelet {
 

@@ -8,6 +8,7 @@
 
 #include "common/error.h"
 #include "protocol/stream/stream_opening.h"
+#include "protocol/stream/tls.h"
 #include "random_message.h"
 #include "stream_pair.h"
 

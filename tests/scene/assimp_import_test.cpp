@@ -7,6 +7,7 @@
 #include "gltf_writer.h"
 #include "server/scene/animation.h"
 #include "server/scene/scene_finish.h"
+#include "server/scene/scene_import.h"
 
 namespace framelet {
 namespace {

@@ -13,6 +13,7 @@
 #include <sys/socket.h>
 
 #include "protocol/messages/message.h"
+#include "protocol/messages/message_codec.h"
 
 namespace framelet {
 

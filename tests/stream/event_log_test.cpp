@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "common/error.h"
+#include "protocol/messages/message_codec.h"
 
 namespace framelet {
 namespace {

@@ -2,6 +2,7 @@
 #include "protocol/codec/batch_codec.h"
 #include "tests/evaluation/methods/methods.h"
 #include "tests/evaluation/methods/whole_frame.h"
+#include "protocol/messages/message_codec.h"
 
 namespace framelet::bench {
 namespace {

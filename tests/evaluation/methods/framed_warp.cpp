@@ -11,6 +11,7 @@
 #include "tests/evaluation/methods/methods.h"
 #include "tests/evaluation/methods/warp_viewer.h"
 #include "tests/evaluation/methods/whole_frame.h"
+#include "protocol/messages/message_codec.h"
 
 namespace framelet::bench {
 namespace {

@@ -9,6 +9,7 @@
 #include "server/stream/framelet_stream.h"
 #include "tests/evaluation/methods/methods.h"
 #include "tests/evaluation/methods/warp_viewer.h"
+#include "protocol/messages/message_codec.h"
 
 namespace framelet::bench {
 namespace {

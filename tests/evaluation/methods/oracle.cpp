@@ -10,6 +10,7 @@
 #include "tests/evaluation/methods/methods.h"
 #include "tests/evaluation/methods/true_gain.h"
 #include "tests/evaluation/methods/warp_viewer.h"
+#include "protocol/messages/message_codec.h"
 
 namespace framelet::bench {
 namespace {

@@ -14,6 +14,7 @@
 #include "server/stream/framelet_stream.h"
 #include "server/stream/posed_scene.h"
 #include "tests/evaluation/stopwatch.h"
+#include "protocol/messages/message_codec.h"
 
 namespace framelet::bench {
 namespace {

@@ -1,4 +1,4 @@
-#include "protocol/stream/framed_stream.h"
+#include "protocol/stream/stream_opening.h"
 
 #include <algorithm>
 #include <array>
@@ -21,9 +21,9 @@
 
 #include "common/error.h"
 #include "protocol/stream/outbox.h"
-#include "protocol/stream/stream_opening.h"
 #include "protocol/stream/stream_reason.h"
 #include "protocol/stream/tls.h"
+#include "protocol/messages/message_codec.h"
 
 namespace framelet {
 namespace {

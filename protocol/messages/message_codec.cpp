@@ -1,4 +1,4 @@
-#include "protocol/messages/message.h"
+#include "protocol/messages/message_codec.h"
 
 #include <cstring>
 
