@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "scenes/gltf_document.h"
+#include "scenes/gltf/gltf_document.h"
 
 namespace framelet {
 

@@ -8,7 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/error.h"
-#include "scenes/gltf_writer.h"
+#include "scenes/gltf/gltf_writer.h"
 #include "scenes/scene_table.h"
 
 namespace {

@@ -1,8 +1,8 @@
-#include "scenes/animations.h"
 #include "scenes/failure_scenes.h"
-#include "scenes/landscape.h"
-#include "scenes/mesh_builder.h"
-#include "scenes/textures.h"
+#include "scenes/gltf/animations.h"
+#include "scenes/mesh/mesh_builder.h"
+#include "scenes/mesh/textures.h"
+#include "scenes/things/landscape.h"
 
 namespace framelet {
 namespace {

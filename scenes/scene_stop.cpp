@@ -1,12 +1,12 @@
 #include <cmath>
 
-#include "scenes/animations.h"
 #include "scenes/failure_scenes.h"
-#include "scenes/landscape.h"
-#include "scenes/mesh_builder.h"
-#include "scenes/props.h"
-#include "scenes/textures.h"
-#include "scenes/vehicle.h"
+#include "scenes/gltf/animations.h"
+#include "scenes/mesh/mesh_builder.h"
+#include "scenes/mesh/textures.h"
+#include "scenes/things/landscape.h"
+#include "scenes/things/props.h"
+#include "scenes/things/vehicle.h"
 
 namespace framelet {
 namespace {

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "scenes/gltf_document.h"
+#include "scenes/gltf/gltf_document.h"
 
 namespace framelet {
 

@@ -1,7 +1,7 @@
-#include "scenes/animations.h"
 #include "scenes/failure_scenes.h"
-#include "scenes/landscape.h"
-#include "scenes/vehicle.h"
+#include "scenes/gltf/animations.h"
+#include "scenes/things/landscape.h"
+#include "scenes/things/vehicle.h"
 
 namespace framelet {
 

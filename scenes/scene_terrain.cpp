@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scenes/animations.h"
 #include "scenes/failure_scenes.h"
-#include "scenes/landscape.h"
+#include "scenes/gltf/animations.h"
+#include "scenes/things/landscape.h"
 
 namespace framelet {
 namespace {

@@ -1,10 +1,10 @@
 #include <array>
 
-#include "scenes/animations.h"
 #include "scenes/failure_scenes.h"
-#include "scenes/landscape.h"
-#include "scenes/mesh_builder.h"
-#include "scenes/props.h"
+#include "scenes/gltf/animations.h"
+#include "scenes/mesh/mesh_builder.h"
+#include "scenes/things/landscape.h"
+#include "scenes/things/props.h"
 
 namespace framelet {
 namespace {

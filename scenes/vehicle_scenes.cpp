@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "scenes/animations.h"
-#include "scenes/props.h"
-#include "scenes/vehicle.h"
+#include "scenes/gltf/animations.h"
+#include "scenes/things/props.h"
+#include "scenes/things/vehicle.h"
 
 namespace framelet {
 namespace {

@@ -1,8 +1,8 @@
 // The five vehicle animations of 004 section 7.1.1.1: one world, one car (or two), different cameras.
 #pragma once
 
-#include "scenes/gltf_document.h"
-#include "scenes/landscape.h"
+#include "scenes/gltf/gltf_document.h"
+#include "scenes/things/landscape.h"
 
 namespace framelet {
 

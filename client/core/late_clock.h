@@ -4,7 +4,7 @@
 
 #include <deque>
 
-#include "common/scene_clock.h"
+#include "common/clock_state.h"
 
 namespace framelet {
 

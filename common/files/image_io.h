@@ -5,8 +5,8 @@
 #include <span>
 #include <string>
 
-#include "common/image.h"
 #include "common/files/size_check.h"
+#include "common/image.h"
 
 namespace framelet {
 

@@ -7,7 +7,7 @@
 #include <tbb/parallel_for.h>
 
 #include "common/per_thread.h"
-#include "common/warp/layer_joining.h"
+#include "common/warp/joining/layer_joining.h"
 
 namespace framelet {
 

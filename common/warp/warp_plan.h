@@ -11,7 +11,7 @@
 #include "common/framelet/body_motion.h"
 #include "common/held/framelet_cache.h"
 #include "common/warp/framelet_warp.h"
-#include "common/warp/merged_square.h"
+#include "common/warp/joining/merged_square.h"
 #include "common/warp/warp_patch.h"
 
 namespace framelet {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "common/camera.h"
+#include "common/clock_state.h"
 #include "common/framelet/framelet.h"
-#include "common/scene_clock.h"
 
 namespace framelet {
 

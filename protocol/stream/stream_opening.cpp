@@ -20,10 +20,10 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include "common/error.h"
+#include "protocol/messages/message_codec.h"
 #include "protocol/stream/outbox.h"
 #include "protocol/stream/stream_reason.h"
 #include "protocol/stream/tls.h"
-#include "protocol/messages/message_codec.h"
 
 namespace framelet {
 namespace {

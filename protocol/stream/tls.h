@@ -1,4 +1,5 @@
-// TLS: what each side shows, and whom to believe. In: files, a connection before its handshake and the name of the host.
+// TLS: what each side shows, and whom to believe. In: files, a connection before its handshake and the name of the
+// host.
 #pragma once
 
 #include <functional>

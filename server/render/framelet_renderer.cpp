@@ -8,9 +8,9 @@
 #include "common/error.h"
 #include "common/mix_bits.h"
 #include "server/render/flush_denormals.h"
-#include "server/render/sample_motion.h"
-#include "server/render/shadow_motion.h"
-#include "server/render/tracing.h"
+#include "server/render/trace/sample_motion.h"
+#include "server/render/trace/shadow_motion.h"
+#include "server/render/trace/tracing.h"
 #include "server/render/view_packet.h"
 
 namespace framelet {

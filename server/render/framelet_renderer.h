@@ -5,7 +5,7 @@
 #include <span>
 
 #include "common/framelet/framelet.h"
-#include "server/render/render_scene.h"
+#include "server/render/prepared/render_scene.h"
 
 namespace framelet {
 

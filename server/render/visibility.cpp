@@ -5,8 +5,8 @@
 #include <tbb/parallel_for.h>
 
 #include "server/render/flush_denormals.h"
-#include "server/render/prepared_scene.h"
-#include "server/render/surface.h"
+#include "server/render/prepared/prepared_scene.h"
+#include "server/render/surface/surface.h"
 #include "server/render/view_packet.h"
 
 namespace framelet {

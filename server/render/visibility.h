@@ -7,7 +7,7 @@
 
 #include "common/camera.h"
 #include "server/render/place_grid.h"
-#include "server/render/render_scene.h"
+#include "server/render/prepared/render_scene.h"
 
 namespace framelet {
 

@@ -1,7 +1,7 @@
 // Where the scene is and how to look at it.
 #include <algorithm>
 
-#include "server/scene/animation.h"
+#include "server/scene/motion/animation.h"
 #include "server/scene/vector_math.h"
 
 namespace framelet {

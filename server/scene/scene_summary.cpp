@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "common/counted.h"
-#include "server/scene/animation.h"
-#include "server/scene/bodies.h"
+#include "server/scene/motion/animation.h"
+#include "server/scene/motion/bodies.h"
 #include "server/scene/visibility.h"
 
 namespace framelet {

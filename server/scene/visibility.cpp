@@ -4,7 +4,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "server/scene/animation.h"
+#include "server/scene/motion/animation.h"
 
 namespace framelet {
 namespace {

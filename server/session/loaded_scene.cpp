@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "server/render/framelet_renderer.h"
-#include "server/scene/animation.h"
+#include "server/scene/motion/animation.h"
 
 namespace framelet {
 

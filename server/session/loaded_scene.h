@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "server/render/render_scene.h"
+#include "server/render/prepared/render_scene.h"
 #include "server/scene/scene.h"
 #include "server/scene/scene_import.h"
 

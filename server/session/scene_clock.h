@@ -4,7 +4,7 @@
 #include <chrono>
 #include <mutex>
 
-#include "common/scene_clock.h"
+#include "common/clock_state.h"
 #include "protocol/messages/message.h"
 
 namespace framelet {

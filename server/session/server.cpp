@@ -18,8 +18,9 @@
 
 #include "common/error.h"
 #include "protocol/stream/stream_opening.h"
+#include "protocol/stream/tls.h"
 #include "protocol/stream/token.h"
-#include "server/scene/animation.h"
+#include "server/scene/motion/animation.h"
 #include "server/scene/scene_identity.h"
 #include "server/session/clock_requests.h"
 #include "server/session/farewells.h"
@@ -32,7 +33,6 @@
 #include "server/session/tickets.h"
 #include "server/session/token_guesses.h"
 #include "server/session/waiting_room.h"
-#include "protocol/stream/tls.h"
 
 namespace framelet {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "server/render/render_scene.h"
+#include "server/render/prepared/render_scene.h"
 #include "server/scene/scene.h"
 #include "server/session/server_figures.h"
 #include "server/session/session_loop.h"

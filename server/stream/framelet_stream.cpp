@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "common/clock_state.h"
 #include "common/error.h"
-#include "common/scene_clock.h"
 
 namespace framelet {
 

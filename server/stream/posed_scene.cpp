@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "server/scene/bodies.h"
+#include "server/scene/motion/bodies.h"
 
 namespace framelet {
 

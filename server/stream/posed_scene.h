@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "server/render/render_scene.h"
-#include "server/scene/animation.h"
-#include "server/scene/switches.h"
+#include "server/render/prepared/render_scene.h"
+#include "server/scene/motion/animation.h"
+#include "server/scene/motion/switches.h"
 
 namespace framelet {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "server/render/framelet_renderer.h"
-#include "server/scene/animation.h"
+#include "server/scene/motion/animation.h"
 #include "server/stream/posed_scene.h"
 #include "tests/evaluation/camera_turn.h"
 

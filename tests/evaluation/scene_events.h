@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "scenes/gltf_document.h"
+#include "scenes/gltf/gltf_document.h"
 
 namespace framelet::bench {
 

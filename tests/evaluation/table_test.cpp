@@ -4,9 +4,9 @@
 
 #include "common/error.h"
 #include "protocol/messages/message.h"
+#include "protocol/messages/message_codec.h"
 #include "tests/evaluation/small_run.h"
 #include "tests/evaluation/table.h"
-#include "protocol/messages/message_codec.h"
 
 namespace framelet::bench {
 namespace {

@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include "protocol/messages/message_codec.h"
 #include "server/scene/scene_import.h"
 #include "server/stream/framelet_stream.h"
 #include "tests/faults/failing_allocations.h"
-#include "protocol/messages/message_codec.h"
 
 namespace framelet::test {
 namespace {

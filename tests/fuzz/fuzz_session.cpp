@@ -6,7 +6,8 @@
 #include <tbb/global_control.h>
 
 #include "common/error.h"
-#include "server/scene/animation.h"
+#include "protocol/messages/message_codec.h"
+#include "server/scene/motion/animation.h"
 #include "server/session/clock_requests.h"
 #include "server/session/contained.h"
 #include "server/session/scene_clock.h"
@@ -14,7 +15,6 @@
 #include "server/stream/framelet_stream.h"
 #include "tests/session/fake_stream.h"
 #include "tests/session/triangle_scenes.h"
-#include "protocol/messages/message_codec.h"
 
 namespace {
 

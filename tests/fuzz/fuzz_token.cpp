@@ -8,9 +8,9 @@
 
 #include "common/error.h"
 #include "protocol/messages/message.h"
+#include "protocol/messages/message_codec.h"
 #include "protocol/stream/known_servers.h"
 #include "protocol/stream/token.h"
-#include "protocol/messages/message_codec.h"
 
 namespace {
 

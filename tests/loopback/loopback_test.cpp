@@ -17,7 +17,7 @@
 
 #include "common/files/image_io.h"
 #include "server/render/framelet_renderer.h"
-#include "server/scene/animation.h"
+#include "server/scene/motion/animation.h"
 #include "server/scene/scene_import.h"
 #include "tests/loopback/process.h"
 

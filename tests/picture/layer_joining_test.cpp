@@ -1,4 +1,4 @@
-#include "common/warp/layer_joining.h"
+#include "common/warp/joining/layer_joining.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,4 +1,4 @@
-#include "common/warp/merged_square.h"
+#include "common/warp/joining/merged_square.h"
 
 #include <algorithm>
 #include <array>

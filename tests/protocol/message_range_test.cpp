@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "common/error.h"
-#include "server/render/flush_denormals.h"
 #include "protocol/messages/message_codec.h"
+#include "server/render/flush_denormals.h"
 #include "unchecked_message.h"
 
 namespace framelet {

@@ -13,8 +13,8 @@
 #include <boost/asio/read.hpp>
 #include <boost/asio/write.hpp>
 
-#include "protocol/stream/stream_opening.h"
 #include "protocol/messages/message_codec.h"
+#include "protocol/stream/stream_opening.h"
 
 namespace framelet {
 

@@ -1,4 +1,4 @@
-#include "server/render/brdf.h"
+#include "server/render/light/brdf.h"
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

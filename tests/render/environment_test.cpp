@@ -1,4 +1,4 @@
-#include "server/render/environment.h"
+#include "server/render/light/environment.h"
 
 #include <cmath>
 
@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "common/error.h"
-#include "server/render/environment_filter.h"
+#include "server/render/light/environment_filter.h"
 
 namespace framelet {
 namespace {

@@ -1,5 +1,5 @@
 // Poses: what moves, what deforms, what vanishes.
-#include "server/render/render_scene.h"
+#include "server/render/prepared/render_scene.h"
 
 #include <gtest/gtest.h>
 

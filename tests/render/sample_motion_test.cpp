@@ -1,4 +1,4 @@
-#include "server/render/sample_motion.h"
+#include "server/render/trace/sample_motion.h"
 
 #include <gtest/gtest.h>
 

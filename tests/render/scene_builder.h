@@ -10,8 +10,8 @@
 #include <glm/geometric.hpp>
 
 #include "server/render/framelet_renderer.h"
-#include "server/render/prepared_scene.h"
-#include "server/render/tracing.h"
+#include "server/render/prepared/prepared_scene.h"
+#include "server/render/trace/tracing.h"
 
 namespace framelet::test {
 

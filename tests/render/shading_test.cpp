@@ -1,5 +1,5 @@
 // Surfaces under known light have known radiance.
-#include "server/render/shading.h"
+#include "server/render/trace/shading.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "server/render/shadow_motion.h"
+#include "server/render/trace/shadow_motion.h"
 
 #include <limits>
 

@@ -1,4 +1,4 @@
-#include "server/render/split_sum.h"
+#include "server/render/light/split_sum.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "server/render/texture.h"
+#include "server/render/surface/texture.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // What rays pass: cut-outs, see-through and single-sided surfaces; and mirrors.
-#include "server/render/tracing.h"
+#include "server/render/trace/tracing.h"
 
 #include <gtest/gtest.h>
 

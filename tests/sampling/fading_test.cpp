@@ -1,4 +1,4 @@
-#include "server/sampling/plan/fading.h"
+#include "server/sampling/plan/moment/fading.h"
 
 #include <array>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "server/sampling/plan/moment_plan.h"
+#include "server/sampling/plan/moment/moment_plan.h"
 
 #include <set>
 

@@ -1,8 +1,8 @@
-#include "server/scene/animation.h"
+#include "server/scene/motion/animation.h"
 
 #include <gtest/gtest.h>
 
-#include "server/scene/keyframes.h"
+#include "server/scene/motion/keyframes.h"
 
 namespace framelet {
 namespace {

@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "common/error.h"
-#include "server/scene/animation.h"
+#include "server/scene/finish/tangents.h"
+#include "server/scene/motion/animation.h"
 #include "server/scene/scene_import.h"
-#include "server/scene/tangents.h"
 
 namespace framelet {
 namespace {

@@ -1,12 +1,12 @@
-#include "server/scene/assimp_import.h"
+#include "server/scene/assimp/assimp_import.h"
 
 #include <gtest/gtest.h>
 
 #include "common/error.h"
 #include "common/files/picture_writer.h"
 #include "gltf_writer.h"
-#include "server/scene/animation.h"
-#include "server/scene/scene_finish.h"
+#include "server/scene/finish/scene_finish.h"
+#include "server/scene/motion/animation.h"
 #include "server/scene/scene_import.h"
 
 namespace framelet {

@@ -8,7 +8,7 @@
 #include "common/error.h"
 #include "common/files/picture_writer.h"
 #include "gltf_writer.h"
-#include "server/scene/animation.h"
+#include "server/scene/motion/animation.h"
 
 namespace framelet {
 namespace {

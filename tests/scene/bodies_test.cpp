@@ -1,4 +1,4 @@
-#include "server/scene/bodies.h"
+#include "server/scene/motion/bodies.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "server/scene/animation.h"
+#include "server/scene/motion/animation.h"
 
 namespace framelet {
 namespace {

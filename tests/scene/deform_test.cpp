@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "server/scene/animation.h"
+#include "server/scene/motion/animation.h"
 
 namespace framelet {
 namespace {

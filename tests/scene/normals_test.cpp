@@ -1,8 +1,8 @@
-#include "server/scene/normals.h"
+#include "server/scene/finish/normals.h"
 
 #include <gtest/gtest.h>
 
-#include "server/scene/primitive_ops.h"
+#include "server/scene/finish/primitive_ops.h"
 
 namespace framelet {
 namespace {

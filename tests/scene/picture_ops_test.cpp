@@ -1,4 +1,4 @@
-#include "server/scene/picture_ops.h"
+#include "server/scene/assimp/picture_ops.h"
 
 #include <gtest/gtest.h>
 

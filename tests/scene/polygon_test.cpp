@@ -1,4 +1,4 @@
-#include "server/scene/polygon.h"
+#include "server/scene/assimp/polygon.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "server/scene/animation.h"
+#include "server/scene/motion/animation.h"
 
 namespace framelet {
 namespace {

@@ -1,8 +1,8 @@
-#include "server/scene/switches.h"
+#include "server/scene/motion/switches.h"
 
 #include <gtest/gtest.h>
 
-#include "server/scene/animation.h"
+#include "server/scene/motion/animation.h"
 #include "server/scene/scene_import.h"
 
 namespace framelet {

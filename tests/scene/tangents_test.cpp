@@ -1,4 +1,4 @@
-#include "server/scene/tangents.h"
+#include "server/scene/finish/tangents.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "scenes/animations.h"
+#include "scenes/gltf/animations.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "scenes/mesh_builder.h"
+#include "scenes/mesh/mesh_builder.h"
 
 #include <array>
 

@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 #include <tiny_gltf.h>
 
-#include "scenes/gltf_writer.h"
+#include "scenes/gltf/gltf_writer.h"
 
 namespace framelet {
 namespace {

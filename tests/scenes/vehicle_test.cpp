@@ -1,8 +1,8 @@
-#include "scenes/vehicle.h"
+#include "scenes/things/vehicle.h"
 
 #include <gtest/gtest.h>
 
-#include "scenes/vehicle_body.h"
+#include "scenes/things/vehicle_body.h"
 #include "scenes/vehicle_scenes.h"
 
 namespace framelet {

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "fake_stream.h"
-#include "server/scene/animation.h"
+#include "server/scene/motion/animation.h"
 #include "triangle_scenes.h"
 
 namespace framelet {

@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "common/clock_state.h"
 #include "common/framelet/body_motion.h"
-#include "common/scene_clock.h"
 
 namespace framelet {
 namespace {

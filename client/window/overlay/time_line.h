@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "common/scene_clock.h"
+#include "common/clock_state.h"
 
 namespace framelet {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "server/render/rays_per_sample.h"
-#include "server/sampling/plan/moment_refresh.h"
+#include "server/sampling/plan/moment/moment_refresh.h"
 #include "server/sampling/plan/view_state.h"
 
 namespace framelet {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/framelet/framelet.h"
-#include "server/scene/bodies.h"
+#include "server/scene/motion/bodies.h"
 #include "server/stream/layers/layer_fit.h"
 
 namespace framelet {

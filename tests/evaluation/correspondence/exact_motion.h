@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/camera.h"
-#include "server/scene/bodies.h"
+#include "server/scene/motion/bodies.h"
 
 namespace framelet::bench {
 

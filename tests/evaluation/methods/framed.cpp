@@ -1,8 +1,8 @@
 // `framed`: whole frames in turn, sent without loss by the same codec as framelets, shown when all of a frame is there.
 #include "protocol/codec/batch_codec.h"
+#include "protocol/messages/message_codec.h"
 #include "tests/evaluation/methods/methods.h"
 #include "tests/evaluation/methods/whole_frame.h"
-#include "protocol/messages/message_codec.h"
 
 namespace framelet::bench {
 namespace {

@@ -6,12 +6,12 @@
 #include <map>
 
 #include "protocol/codec/batch_codec.h"
+#include "protocol/messages/message_codec.h"
 #include "server/stream/layers/shape_feed.h"
 #include "tests/evaluation/methods/h264_frames.h"
 #include "tests/evaluation/methods/methods.h"
 #include "tests/evaluation/methods/warp_viewer.h"
 #include "tests/evaluation/methods/whole_frame.h"
-#include "protocol/messages/message_codec.h"
 
 namespace framelet::bench {
 namespace {

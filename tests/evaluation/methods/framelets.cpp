@@ -5,11 +5,11 @@
 #include <utility>
 
 #include "protocol/codec/batch_codec.h"
+#include "protocol/messages/message_codec.h"
 #include "server/sampling/plan/render_rate.h"
 #include "server/stream/framelet_stream.h"
 #include "tests/evaluation/methods/methods.h"
 #include "tests/evaluation/methods/warp_viewer.h"
-#include "protocol/messages/message_codec.h"
 
 namespace framelet::bench {
 namespace {

@@ -5,12 +5,12 @@
 #include <cmath>
 
 #include "protocol/codec/batch_codec.h"
+#include "protocol/messages/message_codec.h"
 #include "server/stream/layers/shape_feed.h"
 #include "tests/evaluation/methods/frame_forecast.h"
 #include "tests/evaluation/methods/methods.h"
 #include "tests/evaluation/methods/true_gain.h"
 #include "tests/evaluation/methods/warp_viewer.h"
-#include "protocol/messages/message_codec.h"
 
 namespace framelet::bench {
 namespace {

@@ -7,10 +7,10 @@
 
 #include "common/color.h"
 #include "common/error.h"
+#include "protocol/messages/message_codec.h"
 #include "server/render/display_framelet.h"
 #include "server/render/framelet_renderer.h"
 #include "tests/evaluation/methods/response/depth_first_order.h"
-#include "protocol/messages/message_codec.h"
 
 namespace framelet::bench {
 namespace {

@@ -9,12 +9,12 @@
 #include <tbb/global_control.h>
 
 #include "protocol/messages/message.h"
-#include "server/scene/animation.h"
+#include "protocol/messages/message_codec.h"
+#include "server/scene/motion/animation.h"
 #include "server/scene/scene_import.h"
 #include "server/stream/framelet_stream.h"
 #include "server/stream/posed_scene.h"
 #include "tests/evaluation/stopwatch.h"
-#include "protocol/messages/message_codec.h"
 
 namespace framelet::bench {
 namespace {

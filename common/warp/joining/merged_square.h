@@ -1,0 +1,109 @@
+// Neighbouring framelets as one where their layers are about one plane: each one's rim costs what its middle costs when
+// they move, and those finer than pixels are hardly more than rim. In: what is held in a square of 8x8 tiles. Out: its
+// samples in one grid, what of them is joined, and what is left. None of this depends on the camera that shows it, so
+// it is kept as long as what is held stays.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "common/held/framelet_cache.h"
+#include "common/warp/joining/layer_joining.h"
+#include "common/warp/joining/square_layers.h"
+
+namespace framelet {
+
+/// Layers of neighbouring framelets that are about one plane, as one layer of a larger framelet; or one of one framelet
+/// that is joined to none.
+struct MergedLayer {
+    Tile tile; ///< that they are below, or that it is
+    Tile first; ///< of a framelet of theirs
+    std::uint32_t first_layer = 0; ///< its layer
+    std::uint32_t view = 0; ///< of all of them
+    HeldLayer layer; ///< pixels, columns and rows are from the corner of `tile`
+    float difference = 0; ///< at most: of the plane from theirs, 1 / metres; part of the layer's error
+    std::int32_t side = 0; ///< of the samples in `tile`
+    std::int32_t stride = 0; ///< from one of their rows to the next
+    PackedSample const* grid = nullptr;
+    std::uint32_t number = 0; ///< that its samples have in the grid, as it were a layer's
+    LayerSet ends_before{}; ///< as in `WarpPatch`
+    std::uint64_t newest_batch = 0;
+    FadingCode fading = 0; ///< the soonest
+    std::uint64_t signature = 0; ///< differs where what is held differs
+    /// Bit p of word k: layer k of the framelet at place p.
+    std::array<std::uint64_t, max_layers> parts{};
+    std::uint64_t occupied = 0; ///< as in `WarpPatch`
+};
+
+/// Framelets of one depth below a larger tile.
+class MergedSquare {
+public:
+    /// As many levels above framelets; less where there are less.
+    static constexpr int most_levels = SquareLayers::most_levels;
+    static_assert(most_levels == SquareVersions::levels);
+    static constexpr std::size_t most_children = SquareLayers::places;
+
+    /// What is held for a tile.
+    struct Child {
+        CachedFramelet const* framelet = nullptr;
+        std::array<std::uint8_t, max_layers> numbers{}; ///< of its layers in the grid
+        bool has_loose = false;
+        bool is_written = false; ///< to the grid
+    };
+
+    /// Brings it up to date. Always of the same cache, square and depth. Looks at what has changed since the last call
+    /// only; allocates where more is held or joined than ever before. `joining` is scratch.
+    void update(FrameletCache const& cache, Tile square, int depth, LayerJoining& joining);
+
+    /// What is held of that depth below the square, by place (as in `SquareLayers`); empty where nothing ever was. This
+    /// and what follows is valid until the next update.
+    std::span<Child const> children() const { return children_; }
+    /// True where nothing is held of it now.
+    bool is_empty() const {
+        return std::ranges::all_of(children_, [](Child const& child) { return child.framelet == nullptr; });
+    }
+    /// Each layer is part of one of these.
+    std::span<MergedLayer const> merged() const { return merged_; }
+    /// Four framelets each, which are part of one of these.
+    std::span<JoinedLayer const> fours() const { return fours_; }
+    /// One of these, or a four.
+    MergedLayer merge(JoinedLayer const& joined) const;
+    Tile child_tile(std::size_t place) const;
+    /// Bit i: child i has loose samples.
+    std::uint64_t loose_children() const { return loose_children_; }
+
+private:
+    int levels() const { return depth_ - square_.depth(); } ///< of the children below the square
+    std::uint64_t changes(SquareVersions const& versions) const;
+    void load(FrameletCache const& cache, std::uint64_t changed);
+    void make_room(ImagePlane const& plane);
+    bool set_layers(std::uint64_t places);
+    void keep(LayerJoining const& joining);
+    Tile tile_around(std::array<std::uint64_t, max_layers> const& parts) const;
+    void set_tile(JoinedLayer const& joined, Tile tile, MergedLayer& out) const;
+    std::uint64_t occupied_parts(std::array<std::uint64_t, max_layers> const& parts, Tile tile) const;
+    void find_ends();
+    std::size_t offset_of(std::size_t place) const;
+    void write(Child const& child, PackedSample* to) const;
+    template <int side>
+    void write_samples(Child const& child, PackedSample* to) const;
+
+    Tile square_;
+    int depth_ = 0;
+    double spacing_ = 0; ///< of its samples, pixels
+    int child_side_ = 0; ///< of framelets' grids
+    int side_ = 0; ///< of the grid
+    SquareVersions versions_; ///< that it is up to date with
+    std::vector<Child> children_;
+    std::unique_ptr<SquareLayers> layers_;
+    std::vector<MergedLayer> merged_;
+    std::vector<JoinedLayer> fours_;
+    std::uint64_t loose_children_ = 0;
+    std::vector<PackedSample> grid_; ///< of the square, in rows
+};
+
+} // namespace framelet

@@ -1,0 +1,96 @@
+// What a glTF 2.0 file holds, as values: the scenes fill a GltfDocument, gltf_writer puts it into a file.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scenes/mesh/geometry.h"
+
+namespace framelet {
+
+inline constexpr int no_index = -1;
+
+struct GltfMaterial {
+    std::string name;
+    D3 base_color{1, 1, 1}; ///< linear
+    double metallic = 0;
+    double roughness = 1;
+    D3 emissive{0, 0, 0}; ///< above 1 by KHR_materials_emissive_strength
+    int base_color_texture = no_index; ///< index of an image
+    double alpha_cutoff = 0; ///< above 0: alpha mask
+    bool double_sided = false;
+    bool unlit = false; ///< KHR_materials_unlit
+
+    bool operator==(GltfMaterial const&) const = default;
+};
+
+/// A mesh has one primitive a material.
+struct GltfPrimitive {
+    MeshData data;
+    int material = 0;
+};
+
+struct GltfMesh {
+    std::string name;
+    std::vector<GltfPrimitive> primitives;
+};
+
+struct GltfNode {
+    std::string name;
+    Placement place{};
+    int mesh = no_index;
+    int camera = no_index;
+    int light = no_index;
+    std::vector<int> children{};
+};
+
+struct GltfCamera {
+    std::string name;
+    double vertical_fov = 0.7; ///< radians
+};
+
+/// KHR_lights_punctual. Shines along its node's -Z.
+struct GltfLight {
+    std::string type; ///< "directional", "point"
+    D3 color{1, 1, 1};
+    double intensity = 1;
+};
+
+enum class GltfPath : std::uint8_t { translation, rotation, scale };
+
+/// Keys of one property of one or more nodes (which then share the keys). Rotations are x, y, z, w.
+struct GltfTrack {
+    std::vector<int> nodes;
+    GltfPath path = GltfPath::translation;
+    bool step = false; ///< holds each value until the next key; else linear
+    std::vector<double> times; ///< seconds, increasing
+    std::vector<D4> values; ///< w is used by rotations alone
+};
+
+struct GltfDocument {
+    std::string name;
+    std::vector<std::string> images; ///< PNG files
+    std::vector<GltfMaterial> materials;
+    std::vector<GltfMesh> meshes;
+    std::vector<GltfNode> nodes;
+    std::vector<GltfCamera> cameras;
+    std::vector<GltfLight> lights;
+    std::vector<GltfTrack> tracks; ///< one clip
+
+    /// These return an index; an image or a material that is already there is not added again.
+    int add_image(std::string png);
+    int add_material(GltfMaterial material);
+    int add_mesh(std::string name, std::vector<GltfPrimitive> primitives);
+    /// A mesh of one material, shown by one node.
+    int add_object(std::string name, MeshData data, int material, Placement const& place = {}, int parent = no_index);
+    /// Adds the node, to `parent` where one is given.
+    int add_node(GltfNode node, int parent = no_index);
+};
+
+/// Triangles drawn: those of a mesh count once for each node that shows it.
+std::size_t drawn_triangles(GltfDocument const& document);
+
+} // namespace framelet

@@ -1,0 +1,202 @@
+// framelet-server: loads a scene and serves it to viewers.
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <memory>
+
+#include <fcntl.h>
+#include <malloc.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+#include <tbb/global_control.h>
+#include <unistd.h>
+
+#include "common/command_line/program_failure.h"
+#include "common/counted.h"
+#include "common/error.h"
+#include "protocol/stream/local_token.h"
+#include "protocol/stream/tls.h"
+#include "protocol/stream/token.h"
+#include "server/program/options.h"
+#include "server/program/progress_bar.h"
+#include "server/program/scene_reloader.h"
+#include "server/scene/scene_summary.h"
+#include "server/scene/visibility.h"
+#include "server/session/listener.h"
+#include "server/session/loaded_scene.h"
+#include "server/session/metrics_port.h"
+#include "server/session/priority.h"
+#include "server/stream/event_log.h"
+
+namespace framelet {
+namespace {
+
+/// Reads the tokens. Throws InputError where a file is of no use; to find that out only when it is needed could take as
+/// long as the scene does.
+void read_files(Options& options) {
+    ServerOptions& server = options.server;
+    if (!options.token_file.empty()) {
+        server.token = read_token_file(options.token_file);
+    }
+    if (!options.control_token_file.empty()) {
+        server.control_token = read_token_file(options.control_token_file);
+    }
+    if (!server.tls_certificate.empty()) {
+        make_tls_server_context(server.tls_certificate, server.tls_key);
+    }
+    if (!options.record_events.empty() && !std::ofstream(options.record_events, std::ios::app)) {
+        throw InputError("cannot write '" + options.record_events.string() +
+                         "': give --record-events a file in a folder that exists");
+    }
+}
+
+/// What viewers had that have left goes back to the system. Left to itself the allocator of glibc keeps such blocks
+/// once one has been freed, between smaller ones, and a server takes twice the memory after a while.
+void give_back_large_blocks() {
+#ifdef __GLIBC__
+    constexpr int least_bytes = 256 << 10, most_free_bytes = 16 << 20;
+    mallopt(M_MMAP_THRESHOLD, least_bytes);
+    mallopt(M_TRIM_THRESHOLD, most_free_bytes); // less would be given back and asked for again with each batch
+#endif
+}
+
+std::vector<Index> chosen_clips(Scene const& scene, ImportOptions const& import) {
+    return import.clips.empty() ? default_clips(scene) : clips_named(scene, import.clips);
+}
+
+/// Of a scene that a server would refuse because there is nothing to see in it, too: that is what one asks about.
+void print_info(Options const& options) {
+    Scene const scene = import_scene(options.scene, make_progress_bar(options.quiet), options.import);
+    std::vector<Index> const clips = chosen_clips(scene, options.import);
+    std::cout << (options.json ? scene_summary_json(scene, clips) : scene_summary_text(scene, clips)) << std::flush;
+}
+
+/// Throws InputError where the files are of no use.
+std::unique_ptr<LoadedScene> load_scene(Options const& options, Progress const& progress) {
+    std::optional<Environment> environment; // first: it takes less time to find out what is wrong with it
+    if (options.environment) {
+        environment = Environment::load(*options.environment);
+    }
+    Scene scene = import_scene(options.scene, progress, options.import);
+    for (std::string const& warning : scene.warnings) {
+        spdlog::warn("{}", warning);
+    }
+    if (!has_anything_to_see(scene)) {
+        throw InputError("there is nothing to see in scene '" + options.scene.string() +
+                         "': it has no triangles, or none with an area");
+    }
+    std::vector<Index> clips = chosen_clips(scene, options.import);
+    auto loaded = std::make_unique<LoadedScene>(std::move(scene), std::move(clips), std::move(environment),
+                                                options.exposure_ev, progress);
+    Scene const& s = loaded->scene;
+    spdlog::info("{}: {}, {}, {}, {}, {}; exposure {:+.1f} stops", s.name, counted(s.nodes.size(), "node"),
+                 counted(count_triangles(s), "triangle"), counted(s.clips.size(), "clip"),
+                 counted(s.lights.size(), "light"), counted(s.cameras.size(), "camera"), std::log2(loaded->exposure));
+    return loaded;
+}
+
+/// Whether the terminal that it was started in, if any, is still there.
+bool has_terminal() {
+    int const terminal = ::open("/dev/tty", O_RDWR | O_CLOEXEC | O_NOCTTY);
+    if (terminal >= 0) {
+        ::close(terminal);
+    }
+    return terminal >= 0;
+}
+
+void serve(Options& options) {
+    auto listener = std::make_unique<Listener>(options.server.bind, options.server.port);
+    std::unique_ptr<MetricsPort> metrics =
+        options.metrics_port ? std::make_unique<MetricsPort>(options.metrics_bind, *options.metrics_port) : nullptr;
+    read_files(options);
+    std::optional<LocalToken> local_token;
+    if (options.local_token) {
+        std::vector<std::string> addresses;
+        std::ranges::transform(listener->endpoints(), std::back_inserter(addresses), text_of);
+        options.server.token = local_token.emplace(addresses).token();
+    }
+    tbb::global_control const threads(
+        tbb::global_control::max_allowed_parallelism,
+        options.threads > 0 ? static_cast<std::size_t>(options.threads)
+                            : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+    std::optional<Recorder> recorder;
+    if (!options.record.empty()) {
+        recorder.emplace(options.record, options.record_rate);
+    }
+    bool const had_terminal = has_terminal();
+    std::filesystem::path const environment_file = options.environment.value_or("");
+    std::optional<FileWatch> watch;
+    if (options.watch) { // from before the scene is loaded: what changes meanwhile counts
+        watch.emplace().watch(std::vector{std::filesystem::absolute(options.scene), environment_file});
+    }
+    std::unique_ptr<LoadedScene> loaded = load_scene(options, make_progress_bar(options.quiet));
+    std::vector<std::filesystem::path> const files = loaded->scene.files;
+
+    options.server.loop.recorder = recorder ? &*recorder : nullptr;
+    std::optional<EventLog> event_log;
+    if (!options.record_events.empty()) {
+        StreamOptions const& stream = options.server.loop.stream;
+        event_log.emplace(
+            options.record_events,
+            ServedScene{std::filesystem::absolute(options.scene).string(),
+                        options.environment ? std::filesystem::absolute(*options.environment).string() : "",
+                        loaded->clips, loaded->exposure, stream.bias, stream.batch_framelets});
+        options.server.loop.event_log = &*event_log;
+    }
+    Server server(std::move(loaded), options.server, std::move(listener));
+    for (std::string const& address : server.addresses()) {
+        std::cout << "listening on " << address << std::endl;
+    }
+    if (!options.server.tls_certificate.empty()) {
+        std::cout << "certificate SHA-256 " << certificate_fingerprint(options.server.tls_certificate) << std::endl;
+    }
+    // What asks the server, or tells it something, ends before it.
+    std::unique_ptr<MetricsPort> const answering = std::move(metrics);
+    if (answering) {
+        answering->start([&server] { return server.figures(); });
+        std::cout << "metrics at http://" << answering->address() << "/metrics" << std::endl;
+    }
+    SceneReloader reloader(
+        std::move(watch), options.scene, environment_file, files, [&options] { return load_scene(options, {}); },
+        [&server](std::shared_ptr<LoadedScene> scene) { server.replace_scene(std::move(scene)); });
+    server.run(true, [&] {
+        if (had_terminal && !has_terminal()) { // that is why the signal came: nobody is there to end the server later
+            return false;
+        }
+        if (event_log) {
+            spdlog::warn("the scene is not loaded again: a recording of --record-events is of one scene");
+        } else {
+            reloader.ask();
+        }
+        return true;
+    });
+}
+
+} // namespace
+} // namespace framelet
+
+int main(int argc, char** argv) {
+    framelet::give_back_large_blocks();
+    std::signal(SIGPIPE, SIG_IGN); // whoever reads the log may go away; viewers stay
+    auto parsed = framelet::parse_options(argc, argv);
+    if (int const* const exit_code = std::get_if<int>(&parsed)) {
+        return *exit_code;
+    }
+    auto& options = std::get<framelet::Options>(parsed);
+    spdlog::set_default_logger(spdlog::stderr_color_mt("framelet"));
+    spdlog::set_pattern("%H:%M:%S.%e %^%l%$ %v");
+    spdlog::set_level(options.quiet ? spdlog::level::warn : spdlog::level::info);
+    framelet::give_way(options.nice); // before there are threads
+    try {
+        options.info ? framelet::print_info(options) : framelet::serve(options);
+        return 0;
+    } catch (std::exception const& error) {
+        std::cerr << "framelet-server: " << framelet::failure_text(error) << '\n';
+        return 1;
+    }
+}

@@ -1,0 +1,171 @@
+#include "server/program/options.h"
+
+#include <iostream>
+
+#include "common/command_line/command_line.h"
+#include "common/command_line/number_range.h"
+#include "common/error.h"
+#include "protocol/stream/token.h"
+
+namespace framelet {
+namespace {
+
+ProgramNotes notes() {
+    return {
+        "Port, certificate and all other files are looked at before the scene is loaded. SIGINT (Ctrl-C) and SIGTERM "
+        "end the server, and its viewers are told. SIGHUP loads the scene again; where its terminal is gone it ends "
+        "the server too.",
+        {{0, "fine"},
+         {1, "the scene or another file cannot be used, or the address cannot be listened on"},
+         {2, "bad usage"}},
+        {"framelet", "framelet-viewer", "framelet-client"}};
+}
+
+void require_protection(Options const& options, bool insecure) {
+    ServerOptions const& server = options.server;
+    bool const protected_link = !options.token_file.empty() && !server.tls_certificate.empty();
+    if (!is_loopback(server.bind) && !protected_link && !insecure) {
+        throw InputError("--bind " + server.bind +
+                         " can be reached from other machines: give --token-file, --tls-cert and --tls-key, or "
+                         "--insecure if you know that nobody else can reach it");
+    }
+    if (server.tls_certificate.empty() != server.tls_key.empty()) {
+        throw InputError("--tls-cert and --tls-key belong together: give both");
+    }
+}
+
+} // namespace
+
+std::variant<Options, int> parse_options(int argc, char const* const* argv) {
+    Options options;
+    bool insecure = false;
+    std::uint64_t scene_megabytes = options.import.memory_bytes >> 20;
+
+    CLI::App app("Renders a scene for remote viewers: every ray where their pictures gain most.", "framelet-server");
+    prepare_command_line(app, notes());
+    app.option_defaults()->group("Scene");
+    app.add_option("SCENE", options.scene, "Scene file: .gltf, .glb, .obj and what else the import library reads")
+        ->required();
+    app.add_flag("--allow-outside", options.import.allow_outside,
+                 "Read files that the scene names outside its own folder as well");
+    app.add_option("--scene-memory", scene_megabytes, "Most memory for what is made of the scene file")
+        ->type_name("MB")
+        ->check(number_in(1, 1 << 20))
+        ->capture_default_str();
+    app.add_option("--environment", options.environment, "Environment map (.hdr, .exr) that lights the scene")
+        ->type_name("FILE");
+    app.add_option("--exposure", options.exposure_ev, "Exposure")
+        ->type_name("STOPS")
+        ->default_str("chosen for the scene")
+        ->check(number_in(-32.0, 32.0));
+    app.add_option("--clip", options.import.clips, "Animation clip to play, by name; may be given several times")
+        ->type_name("NAME")
+        ->default_str("all that fit together");
+    CLI::Option* const watch =
+        app.add_flag("--watch", options.watch, "Load the scene again when its files have changed; viewers stay");
+    CLI::Option* const info =
+        app.add_flag("--info", options.info, "Print what is in the scene and what was passed over, and exit")
+            ->configurable(false);
+    app.add_flag("--json", options.json, "With --info: as JSON")->needs(info)->configurable(false);
+    app.add_flag("--paused", options.server.paused, "Start with the scene clock standing");
+
+    app.option_defaults()->group("Connections");
+    app.add_option("--bind", options.server.bind, "Address to listen on, or a name: all addresses that it stands for")
+        ->type_name("ADDRESS")
+        ->capture_default_str();
+    app.add_option("--port", options.server.port, "Port to listen on; 0 picks a free one")
+        ->check(number_in(0, 65535))
+        ->capture_default_str();
+    app.add_option("--token-file", options.token_file,
+                   "File whose first line a viewer has to know, at least 16 characters; without it viewers of the "
+                   "same user on this machine are let in, and find a token by themselves")
+        ->type_name("FILE");
+    app.add_flag_callback(
+           "--make-token",
+           [] {
+               std::cout << make_token() << '\n';
+               throw CLI::Success();
+           },
+           "Print a token that nobody can guess, and exit")
+        ->configurable(false);
+    app.add_option("--tls-cert", options.server.tls_certificate, "Certificate chain (PEM): encrypt connections")
+        ->type_name("FILE");
+    app.add_option("--tls-key", options.server.tls_key, "Private key (PEM) of the certificate")->type_name("FILE");
+    app.add_flag("--insecure", insecure, "Let everybody in, and listen beyond this machine without token and TLS");
+
+    app.option_defaults()->group("Viewers");
+    app.add_option("--max-sessions", options.server.max_sessions, "Most viewers at a time")
+        ->check(number_in(1, 1024))
+        ->capture_default_str();
+    app.add_option("--session-memory", options.server.session_megabytes,
+                   "Most memory for the pictures of all viewers together: 20 bytes a pixel each; a viewer whose "
+                   "picture does not fit is refused")
+        ->type_name("MB")
+        ->check(number_in(1, 1 << 20))
+        ->capture_default_str();
+    CLI::Option* const control = app.add_option("--control-token-file", options.control_token_file,
+                                                "File with another such token: who knows it may play, pause and seek, "
+                                                "the others watch")
+                                     ->type_name("FILE")
+                                     ->default_str("the viewer that has been there longest may");
+    app.add_flag("--shared-control", options.server.shared_control, "Every viewer may play, pause and seek, for all")
+        ->excludes(control);
+
+    app.option_defaults()->group("Rendering");
+    app.add_option("--threads", options.threads, "Threads to render with; 0: one a core")
+        ->check(number_in(0, 1024))
+        ->capture_default_str();
+    app.add_option(
+           "--nice", options.nice,
+           "Niceness: 0 is that of other programs; with more the server leaves the processors to them, a viewer on "
+           "this machine among them, whenever they want them")
+        ->check(number_in(0, 19))
+        ->capture_default_str();
+    app.add_option("--batch", options.server.loop.stream.batch_framelets,
+                   "Most framelets a batch; 0: what half a cycle has time for. A place's 16 stay together")
+        ->check(number_in(std::size_t(0), max_batch_framelets))
+        ->capture_default_str();
+    app.add_option("--bias", options.server.loop.stream.bias, "What to favour: -1 detail, 1 freshness")
+        ->check(number_in(-1.0, 1.0))
+        ->capture_default_str();
+
+    app.option_defaults()->group("Log and recordings");
+    CLI::Option* const metrics =
+        app.add_option("--metrics", options.metrics_port,
+                       "Answer HTTP at this port: /metrics for Prometheus, /health; 0 picks a free one")
+            ->type_name("PORT")
+            ->check(number_in(0, 65535));
+    app.add_option("--metrics-bind", options.metrics_bind,
+                   "Address of that port. Whoever reaches it may ask, without token or TLS")
+        ->type_name("ADDRESS")
+        ->needs(metrics)
+        ->capture_default_str();
+    app.add_flag("--quiet", options.quiet, "Print warnings and errors only");
+    app.add_option(
+           "--record", options.record,
+           "Write what is planned for each viewer into this folder: a line of JSON for each batch, and for viewers "
+           "that move nothing pictures of tiles, density, error and motion")
+        ->type_name("FOLDER");
+    app.add_option("--record-rate", options.record_rate, "Sets of such pictures a second, for each viewer")
+        ->check(number_in(0.01, 1000.0))
+        ->capture_default_str();
+    app.add_option("--record-events", options.record_events,
+                   "Write to this file what comes from each viewer, and when, and what was answered: framelet-bench "
+                   "replay makes the same of it")
+        ->type_name("FILE")
+        ->excludes(watch);
+    add_config_option(app);
+    try {
+        parse_command_line(app, argc, argv);
+        require_protection(options, insecure);
+    } catch (CLI::ParseError const& error) {
+        return exit_usage(app, error);
+    } catch (InputError const& error) {
+        return exit_usage(app, error.what());
+    }
+    options.import.memory_bytes = scene_megabytes << 20;
+    options.local_token = options.token_file.empty() && !insecure;
+    return options;
+}
+
+} // namespace framelet

@@ -1,0 +1,47 @@
+#include "server/program/progress_bar.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include <unistd.h>
+
+namespace framelet {
+namespace {
+
+struct Bar {
+    std::mutex mutex; // loading reports from several threads
+    std::string stage;
+    int percent = -1;
+
+    void show(std::string_view what, double fraction) {
+        std::scoped_lock const lock(mutex);
+        bool const new_stage = stage != what;
+        int const now = static_cast<int>(100 * std::clamp(fraction, 0.0, 1.0));
+        if (!new_stage && now <= percent) {
+            return;
+        }
+        if (new_stage && !stage.empty() && percent < 100) {
+            std::fputc('\n', stderr);
+        }
+        stage = what;
+        percent = now;
+        constexpr int width = 40;
+        std::string const done(static_cast<std::size_t>(width * now / 100), '#');
+        std::fprintf(stderr, "\r%-24s [%-*s] %3d%%%s", stage.c_str(), width, done.c_str(), now, now == 100 ? "\n" : "");
+        std::fflush(stderr);
+    }
+};
+
+} // namespace
+
+Progress make_progress_bar(bool quiet) {
+    if (quiet || ::isatty(STDERR_FILENO) == 0) {
+        return [](std::string_view, double) {};
+    }
+    return [bar = std::make_shared<Bar>()](std::string_view what, double fraction) { bar->show(what, fraction); };
+}
+
+} // namespace framelet

@@ -1,0 +1,83 @@
+#include "server/program/scene_reloader.h"
+
+#include <exception>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include "common/command_line/program_failure.h"
+
+namespace framelet {
+
+SceneReloader::SceneReloader(std::optional<FileWatch> watch, std::filesystem::path const& scene_file,
+                             std::filesystem::path environment_file, std::vector<std::filesystem::path> files,
+                             Load load, Take take)
+    : file_watch_(std::move(watch)), scene_file_(std::filesystem::absolute(scene_file)),
+      environment_file_(std::move(environment_file)), files_(std::move(files)), load_(std::move(load)),
+      take_(std::move(take)) {
+    this->watch();
+    thread_ = std::jthread([this](std::stop_token const& stop) { run(stop); });
+}
+
+void SceneReloader::ask() {
+    {
+        std::scoped_lock const lock(mutex_);
+        asked_ = true;
+    }
+    told_.notify_one();
+}
+
+void SceneReloader::watch() {
+    if (!file_watch_) {
+        return;
+    }
+    std::vector<std::filesystem::path> all = files_;
+    all.push_back(scene_file_);
+    if (!environment_file_.empty()) {
+        all.push_back(environment_file_);
+    }
+    if (failed_) {
+        all.push_back(scene_file_.parent_path());
+    }
+    file_watch_->watch(all);
+}
+
+void SceneReloader::run(std::stop_token const& stop) {
+    while (wait(stop)) {
+        reload();
+        watch();
+    }
+}
+
+/// True where there is something to load, false where it is to end.
+bool SceneReloader::wait(std::stop_token const& stop) {
+    std::unique_lock lock(mutex_);
+    auto const is_asked = [this] { return asked_; };
+    for (;;) {
+        bool const asked =
+            file_watch_ ? told_.wait_for(lock, stop, interval, is_asked) : told_.wait(lock, stop, is_asked);
+        if (stop.stop_requested()) {
+            return false;
+        }
+        bool const changed = file_watch_ && file_watch_->look(std::chrono::steady_clock::now());
+        if (asked || changed) {
+            asked_ = false;
+            return true;
+        }
+    }
+}
+
+void SceneReloader::reload() {
+    spdlog::info("loading the scene again");
+    try {
+        auto scene = load_();
+        files_ = scene->scene.files;
+        failed_ = false;
+        take_(std::move(scene));
+    } catch (std::exception const& error) {
+        failed_ = true;
+        spdlog::warn("{}; the scene as it was is served on", failure_text(error));
+    }
+}
+
+} // namespace framelet

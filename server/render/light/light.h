@@ -1,0 +1,36 @@
+// Punctual lights (KHR_lights_punctual): where light comes from at sixteen points, and how much of it.
+#pragma once
+
+#include "server/render/packet.h"
+#include "server/scene/motion/animation.h"
+
+namespace framelet {
+
+struct RenderLight {
+    LightType type = LightType::directional;
+    Vec3 intensity{0}; ///< candela, or lux for directional lights, per colour
+    Vec3 position{0};
+    Vec3 towards{0, 1, 0}; ///< unit; against the direction in which it shines
+    float inverse_range = 0; ///< 0: unlimited
+    Vec3 velocity{0}; ///< of `position`, metres a second
+    float cone_scale = 0, cone_offset = 1; ///< spot: (cosine * scale + offset), clamped and squared, weighs the cone
+};
+
+/// A light of the scene where this pose has it. Numbers beyond any use are limited, so that no sum overflows.
+RenderLight make_light(Light const& light, ScenePose const& pose);
+
+/// The sun of scenes that bring no light: from the upper right, in front.
+RenderLight default_sun();
+
+/// Light arriving at sixteen points.
+struct ArrivingLight {
+    LaneVec3 to_light; ///< unit
+    LaneFloats distance; ///< +infinity for directional lights
+    LaneFloats irradiance; ///< times `intensity`: what falls on the surface, its cosine included
+};
+
+/// Returns the lanes at which the light is above the horizon and in reach.
+LaneMask arriving_light(RenderLight const& light, LaneVec3 const& position, LaneVec3 const& normal, LaneMask active,
+                        ArrivingLight& out);
+
+} // namespace framelet

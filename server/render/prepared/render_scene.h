@@ -1,0 +1,73 @@
+// A scene made ready to be rendered: BVHs, mip chains, materials, lights, environment. A resource; its pose changes
+// between cycles, and everything reads it during one.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "server/render/light/environment.h"
+#include "server/scene/motion/animation.h"
+#include "server/scene/motion/bodies.h"
+#include "server/scene/progress.h"
+#include "server/scene/scene.h"
+
+namespace framelet {
+
+struct PreparedScene;
+
+class RenderScene {
+public:
+    /// Builds every BVH and mip chain, in the pose that the scene has without its clips. `scene` must outlive this.
+    /// Light: an `environment` adds to the scene's lights. Without one, a scene without lights gets the default sky and
+    /// a sun; one with a sun of its own the sky of that brightness; one with other lights only, dim uniform light.
+    RenderScene(Scene const& scene, std::optional<Environment> environment, Progress const& progress = {});
+    ~RenderScene();
+    RenderScene(RenderScene const&) = delete;
+    RenderScene& operator=(RenderScene const&) = delete;
+
+    /// Moves instances, refits what deforms. Costs nothing but a comparison for what does not move. Not while anything
+    /// renders. `pose` must be of this scene. Where it throws, because memory has run out, the scene is not to be
+    /// rendered before a pose has been set, which then moves everything.
+    void set_pose(ScenePose const& pose);
+
+    /// From now on framelets say which bodies carry their samples and how fast those move that no body carries, while
+    /// these clips play. Not while anything renders. At first nothing plays: everything is static.
+    void set_clips(std::span<Index const> clips);
+    SceneBodies const& bodies() const { return bodies_; }
+
+    PreparedScene const& prepared() const { return *prepared_; }
+
+private:
+    /// A node that draws a mesh.
+    struct Placement {
+        std::size_t node;
+        std::uint32_t mesh, instance; ///< of the BVH
+        Skin const* skin;
+        bool morphs;
+        std::size_t deformed; ///< into `deformed_`, where it deforms
+    };
+    using MeshVertices = std::vector<DeformedVertices>; ///< one a primitive
+
+    void add_meshes(Progress const& progress);
+    void place_all();
+    void place(Placement const& placement);
+    void deform_mesh(Placement const& placement);
+    bool moved(Placement const& placement, ScenePose const& pose) const;
+    bool reshaped(Placement const& placement, ScenePose const& pose) const;
+    void update_lights();
+    void update_velocities();
+    void set_vertex_velocities(Placement const& placement, ScenePose const& other, float per_second);
+
+    Scene const& scene_;
+    std::unique_ptr<PreparedScene> prepared_;
+    std::vector<Placement> placements_;
+    std::vector<MeshVertices> deformed_; ///< normals and tangents of deforming meshes live here
+    ScenePose pose_;
+    bool is_placed_ = false; ///< everything stands as `pose_` says
+    std::vector<Index> clips_;
+    SceneBodies bodies_;
+    std::vector<std::vector<std::vector<Vec3>>> velocities_; ///< by deforming mesh, primitive and vertex
+    DeformedVertices elsewhen_; ///< scratch
+};
+
+} // namespace framelet

@@ -1,0 +1,189 @@
+#include "server/render/trace/shading.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+namespace framelet {
+namespace {
+
+/// Reflections are traced below the first roughness and come from the prefiltered environment above the second.
+constexpr float traced_roughness = 0.15f;
+constexpr float filtered_roughness = 0.25f;
+/// Reflecting less than the first share of light no reflection is traced, above the second all of it is.
+constexpr float negligible_reflectance = 0.05f;
+constexpr float full_reflectance = 0.12f;
+
+float smooth_step(float from, float to, float x) {
+    float const t = std::clamp((x - from) / (to - from), 0.0f, 1.0f);
+    return t * t * (3 - 2 * t);
+}
+
+Vec3 mirrored(SurfacePacket const& s, int i) {
+    Vec3 const n = s.normal.get(i);
+    Vec3 const v = s.view.get(i);
+    return n * (2 * glm::dot(n, v)) - v;
+}
+
+void add_environment(PreparedScene const& scene, SurfacePacket const& s, LobePacket const& lobes, LaneMask lit,
+                     bool may_reflect, MirrorRays& mirror, LaneVec3& radiance) {
+    mirror.lanes = 0;
+    for_each_lane(lit, [&](int i) {
+        float const roughness = s.roughness[i];
+        AmbientShares const shares =
+            ambient_shares(scene.split_sum.at(lobes.normal_view[i], roughness), lobes.f0.get(i), lobes.diffuse.get(i));
+        Vec3 const irradiance = scene.environment.diffuse(s.normal.get(i));
+        Vec3 const filtered = scene.environment.specular(mirrored(s, i), roughness);
+        Vec3 const diffuse_part = shares.diffuse * irradiance * s.occlusion[i];
+        Vec3 const specular = shares.specular * s.occlusion[i];
+        float traced = 0;
+        if (may_reflect && roughness < filtered_roughness) {
+            float const strength = std::max({shares.specular.r, shares.specular.g, shares.specular.b});
+            traced = (1 - smooth_step(traced_roughness, filtered_roughness, roughness)) *
+                     smooth_step(negligible_reflectance, full_reflectance, strength);
+        }
+        if (traced > 0) {
+            mirror.lanes |= 1u << i;
+            mirror.share.set(i, shares.specular * traced);
+        }
+        radiance.set(i, radiance.get(i) + diffuse_part + specular * filtered * (1 - traced));
+    });
+}
+
+void aim_reflections(SurfacePacket const& s, MirrorRays& mirror) {
+    mirror.rays.near.fill(0);
+    mirror.rays.far.fill(INFINITY);
+    mirror.rays.origin = s.leaving;
+    for_each_lane(mirror.lanes, [&](int i) {
+        Vec3 direction = mirrored(s, i);
+        Vec3 const facet = s.geometric_normal.get(i);
+        float const above = glm::dot(direction, facet);
+        if (above < 0.01f) { // a bent normal sends the ray into the surface: along it instead
+            direction = glm::normalize(direction + facet * (0.01f - above));
+        }
+        mirror.rays.direction.set(i, direction);
+        mirror.footprint.width[i] = s.width[i];
+        mirror.footprint.slope[i] = s.spread[i] + s.roughness[i] * s.roughness[i];
+    });
+}
+
+/// The light of which each lane would get most if nothing were in its way.
+struct StrongestLight {
+    LaneFloats luminance;
+    LaneIndices lost; ///< its number where it is blocked, else `no_light`
+
+    void reset() {
+        luminance.fill(0);
+        for (std::uint32_t& number : lost.lane) {
+            number = no_light;
+        }
+    }
+    void add(std::uint32_t number, RenderLight const& light, ArrivingLight const& arriving, LaneMask reached,
+             LaneMask blocked) {
+        float const strength = glm::dot(light.intensity, Vec3(0.2126f, 0.7152f, 0.0722f));
+        for_each_lane(reached, [&](int i) {
+            float const arrives = strength * arriving.irradiance[i];
+            if (arrives > luminance[i]) {
+                luminance[i] = arrives;
+                lost[i] = (blocked >> i & 1) != 0 ? number : no_light;
+            }
+        });
+    }
+};
+
+/// Returns how many rays that took.
+std::uint32_t add_lights(PreparedScene const& scene, SurfacePacket const& s, LobePacket const& lobes, LaneMask lit,
+                         StrongestLight& strongest, LaneVec3& radiance) {
+    std::uint32_t segments = 0;
+    ArrivingLight arriving;
+    RayPacket shadow;
+    shadow.origin = s.leaving;
+    shadow.near.fill(0);
+    LaneVec3 irradiance, transmittance;
+    for (std::uint32_t number = 0; number < scene.lights.size(); ++number) {
+        RenderLight const& light = scene.lights[number];
+        LaneMask const reached = arriving_light(light, s.position, s.normal, lit, arriving);
+        if (reached == 0) {
+            continue;
+        }
+        shadow.direction = arriving.to_light;
+        for (int i = 0; i < lanes; ++i) {
+            shadow.far[i] = arriving.distance[i] * 0.999f; // the lamp's own surface casts no shadow
+        }
+        transmittance.fill(Vec3(1));
+        segments += static_cast<std::uint32_t>(std::popcount(reached));
+        LaneMask const blocked = scene.bvh.occluded(shadow, reached, transmittance);
+        if (scene.moves) {
+            strongest.add(number, light, arriving, reached, blocked);
+        }
+        LaneMask const bright = reached & ~blocked;
+        if (bright == 0) {
+            continue;
+        }
+        for (int i = 0; i < lanes; ++i) {
+            float const arrives = (bright >> i & 1) != 0 ? arriving.irradiance[i] : 0.0f;
+            irradiance.x[i] = transmittance.x[i] * (light.intensity.r * arrives);
+            irradiance.y[i] = transmittance.y[i] * (light.intensity.g * arrives);
+            irradiance.z[i] = transmittance.z[i] * (light.intensity.b * arrives);
+        }
+        add_reflected(lobes, s.normal, s.view, arriving.to_light, irradiance, radiance);
+    }
+    return segments;
+}
+
+/// Transmission replaces diffuse reflection by what is seen straight through, tinted by the base colour.
+void split_transmission(SurfacePacket const& s, LaneMask active, LobePacket& lobes, ShadedPacket& out) {
+    for_each_lane(active, [&](int i) {
+        float const transmission = s.transmission[i];
+        float const alpha = s.alpha[i];
+        float const away = 1 - std::min(lobes.normal_view[i], 1.0f);
+        float const entering = 0.96f * (1 - (away * away) * (away * away) * away); // Schlick with f0 = 0.04
+        Vec3 const tint = s.base_color.get(i) * (transmission * entering);
+        out.passed.set(i, Vec3(1 - alpha) + tint * alpha);
+        lobes.diffuse.set(i, lobes.diffuse.get(i) * (1 - transmission));
+    });
+}
+
+} // namespace
+
+void shade_surroundings(PreparedScene const& scene, SurfacePacket const& s, LaneMask active, bool may_reflect,
+                        LobePacket& lobes, MirrorRays& mirror, ShadedPacket& out) {
+    make_lobes(s.base_color, s.metallic, s.roughness, s.normal, s.view, lobes);
+    if (scene.see_through) {
+        split_transmission(s, active, lobes, out);
+    }
+    out.radiance = s.emissive;
+    out.segments = 0;
+    add_environment(scene, s, lobes, active & ~s.unlit, may_reflect, mirror, out.radiance);
+    out.reflects = mirror.lanes;
+    if (mirror.lanes != 0) {
+        aim_reflections(s, mirror);
+    }
+}
+
+void shade_lights(PreparedScene const& scene, SurfacePacket const& s, LaneMask active, LobePacket const& lobes,
+                  ShadedPacket& out) {
+    StrongestLight strongest;
+    if (scene.moves) {
+        strongest.reset();
+    }
+    LaneMask const lit = active & ~s.unlit;
+    if (lit != 0) {
+        out.segments += add_lights(scene, s, lobes, lit, strongest, out.radiance);
+    }
+    if (scene.moves) {
+        out.lost_light = strongest.lost;
+    }
+    for_each_lane(active & s.unlit, [&](int i) { out.radiance.set(i, s.base_color.get(i)); });
+    if (scene.see_through) {
+        for (int i = 0; i < lanes; ++i) {
+            out.radiance.x[i] *= s.alpha[i];
+            out.radiance.y[i] *= s.alpha[i];
+            out.radiance.z[i] *= s.alpha[i];
+        }
+    }
+}
+
+} // namespace framelet

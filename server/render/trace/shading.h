@@ -1,0 +1,40 @@
+// Light that leaves surfaces towards the viewer: emission, environment, punctual lights with shadows. Which mirror
+// reflections it takes, and what they are worth; they are traced elsewhere.
+#pragma once
+
+#include "server/render/light/brdf.h"
+#include "server/render/packet.h"
+#include "server/render/prepared/prepared_scene.h"
+#include "server/render/surface/surface.h"
+
+namespace framelet {
+
+inline constexpr std::uint32_t no_light = ~0u;
+
+struct ShadedPacket {
+    LaneVec3 radiance; ///< of the surface, already weighed by its alpha
+    LaneVec3 passed; ///< share of what lies behind that is seen through it; set only where the scene is see-through
+    /// Number of the light of which a lane would get most, where something opaque blocks that; else `no_light`. Set
+    /// only where something in the scene moves.
+    LaneIndices lost_light;
+    LaneMask reflects; ///< lanes for which a mirror reflection was traced
+    std::uint32_t segments; ///< rays traced for it
+};
+
+/// Mirror reflections that are to be traced: whoever traces adds `share` of the light that they bring.
+struct MirrorRays {
+    RayPacket rays;
+    Footprint footprint;
+    LaneVec3 share;
+    LaneMask lanes = 0;
+};
+
+/// The lanes of `active` are shaded in two halves, between which mirror reflections are added to `out`. The first one
+/// gives `lobes` for the second, emission and the environment's light. `may_reflect`: light may be followed once more.
+void shade_surroundings(PreparedScene const& scene, SurfacePacket const& surfaces, LaneMask active, bool may_reflect,
+                        LobePacket& lobes, MirrorRays& mirror, ShadedPacket& out);
+/// The second one adds punctual lights with their shadows, and weighs all of it.
+void shade_lights(PreparedScene const& scene, SurfacePacket const& surfaces, LaneMask active, LobePacket const& lobes,
+                  ShadedPacket& out);
+
+} // namespace framelet

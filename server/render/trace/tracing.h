@@ -1,0 +1,27 @@
+// Rays in, radiance and depth out: nearest surfaces, shaded, composited front to back.
+#pragma once
+
+#include "server/render/packet.h"
+#include "server/render/prepared/prepared_scene.h"
+
+namespace framelet {
+
+inline constexpr std::uint32_t no_instance = ~0u;
+
+struct TracedPacket {
+    LaneVec3 radiance; ///< finite, >= 0
+    LaneFloats depth; ///< ray parameter of the surface that contributes most; +infinity where that is the background
+    HitPacket surface; ///< that surface, where something in the scene moves; instance `no_instance`: the background
+    /// Of that surface likewise: the light that it has lost to a shadow (as in `ShadedPacket`), and in lanes that have
+    /// lost one where rays leave it and the unit normal of its triangle.
+    LaneIndices lost_light;
+    LaneVec3 leaving, facet;
+    LaneMask reflects = 0; ///< lanes that show a traced mirror reflection
+    std::uint32_t segments = 0; ///< rays traced for it, shadow and mirror rays included
+};
+
+/// Traces the lanes of `active`; the others are left as they are. `rays.near` is moved along where rays continue.
+void trace(PreparedScene const& scene, RayPacket& rays, LaneMask active, Footprint const& footprint, int bounces,
+           TracedPacket& out);
+
+} // namespace framelet

@@ -1,0 +1,328 @@
+#include "server/sampling/plan/moment/moment_plan.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <tbb/parallel_for.h>
+
+#include "common/error.h"
+#include "common/framelet/sample_worth.h"
+
+namespace framelet {
+namespace {
+
+/// Of what nothing is known: as `unknown_place` has it.
+constexpr float unknown_detail = 0.0025f;
+/// What was rendered before the scene jumped looks otherwise by so much, squared luma, where no probe has told.
+constexpr float outdated_error = 2e-4f;
+/// However coarse samples are, their mean is about right.
+constexpr float most_error = 0.1f;
+/// As if they lay so much farther apart, pixels, are samples that are interpolated, beside those that come to lie on
+/// their own pixels before a camera that stands.
+constexpr float interpolated_wear = 1;
+/// Prices outside are of no use: of a sample, squared error summed over pixels.
+constexpr float least_price = 5e-6f, most_price = 1e2f;
+
+constexpr std::size_t supersampled = MomentPlan::supersampled;
+using ChoiceFigures = MomentPlan::ChoiceFigures;
+
+constexpr float spacing_of(int level) {
+    return level <= pixel_level ? static_cast<float>(1 << (pixel_level - level))
+                                : 1.0f / static_cast<float>(1 << (level - pixel_level));
+}
+
+/// What samples so far apart, pixels, miss and make up, of the detail.
+constexpr float missed_share(float s) {
+    constexpr float alias = 4.0f / 9.0f;
+    return s <= 1   ? s * s * s // the mean of 1 / s^2 samples, of what lies between them
+           : s <= 2 ? 1 + (s - 1) * 2 * alias
+                    : error_growth * s - 1;
+}
+
+/// Means of four rays are as good as samples so many times closer to each other: by the mean's definition where they
+/// stay on their own pixels, by measurement once moved, where they blur and wear out before they have repaid four rays.
+constexpr float standing_supersampled = 0.5f, moved_supersampled = 0.95f;
+
+/// What each choice misses. `finest`: what is finer shows no better, pixels; `means`: how much closer means seem to be.
+constexpr ChoiceFigures missed_shares(float finest, float means) {
+    ChoiceFigures shares{};
+    for (int level = 0; level < sampling_levels; ++level) {
+        shares[static_cast<std::size_t>(level)] = missed_share(std::max(spacing_of(level), finest));
+    }
+    shares[supersampled] = missed_share(means);
+    return shares;
+}
+
+/// Of what the viewer moves, and of samples that stay on their own pixels, which show the mean of all.
+constexpr ChoiceFigures moved_shares = missed_shares(finest_shown_spacing, moved_supersampled),
+                        standing_shares = missed_shares(0, standing_supersampled);
+
+/// Whether what shows are means of rays; of samples finer than pixels the viewer moves their means.
+bool shows_means(Cell const& cell, bool stands) {
+    return cell.is_supersampled || (!stands && cell.spacing < 1);
+}
+
+/// Whether a cell is worth the finest samples: as far as is known it will show the same for a second, in which they
+/// wear by less than what they are finer.
+bool stays(Mirror const& mirror, Cell const& cell) {
+    constexpr float most_fading = 0.25f; // pixels a second
+    if (!mirror.camera_stands() || !cell.is_shown() || !mirror.gives_way(cell) || cell.is_outdated || cell.is_wrong ||
+        cell.stale > 0) {
+        return false;
+    }
+    return !cell.moves && cell.fading < most_fading;
+}
+
+/// Mean squared error of samples `spacing` pixels apart (worn), of a surface of such `detail` (see `Piece`): what is
+/// missing and what aliases, as `unresolved_error` has it where each band has half the energy of the coarser one.
+float spacing_error(float detail, float spacing) {
+    return std::min(detail * missed_share(spacing), most_error);
+}
+
+/// Calls `visit` with each cell of a rectangle and its pixels.
+template <class Visit>
+void for_each_cell(Mirror const& mirror, PixelRect const& rect, Visit visit) {
+    int const last_column = std::min(rect.right / cell_side, mirror.columns());
+    int const last_row = std::min(rect.bottom / cell_side, mirror.rows());
+    for (int row = rect.top / cell_side; row < last_row; ++row) {
+        for (int column = rect.left / cell_side; column < last_column; ++column) {
+            visit(mirror.cell(column, row), static_cast<float>(mirror.pixels_of(column, row)));
+        }
+    }
+}
+
+} // namespace
+
+void MomentPlan::find(Mirror const& mirror, PlaceField const& field, MomentBudget const& budget,
+                      std::vector<RatedPatch>& rated) {
+    FRAMELET_CHECK(mirror.viewport() == field.plane().viewport());
+    rated.clear();
+    find_gains(mirror, field, budget);
+    sum_nodes(field, budget);
+    float const least = std::max(least_price, budget.limits.least_price);
+    float low = least, high = most_price;
+    price_ = least;
+    if (solve(field, budget, least) > budget.samples) {
+        for (int step = 0; step < 18; ++step) {
+            float const middle = std::sqrt(low * high);
+            (solve(field, budget, middle) > budget.samples ? low : high) = middle;
+        }
+        price_ = high;
+        if (!(solve(field, budget, high) > 0)) { // rather a little more than none at all
+            price_ = low;
+            solve(field, budget, low);
+        }
+    }
+    if (budget.limits.coarse_first && stale_ > 0.5f * wrong_) {
+        choose_horizon(field, budget);
+    }
+    collect(field, 0, 0, rated);
+}
+
+/// What gains much for few samples is shown before what those lack is refined: of the dearer prices too the one is
+/// taken whose patches gain most a second, where each plan takes `overhead` besides.
+void MomentPlan::choose_horizon(PlaceField const& field, MomentBudget const& budget) {
+    constexpr int most_steps = 12;
+    float const first = price_;
+    float best_rate = -1;
+    float best = first;
+    for (int step = 0; step <= most_steps; ++step) {
+        float const price = std::ldexp(first, step);
+        auto const spent = static_cast<float>(solve(field, budget, price));
+        float const rate = gain_ / (spent + static_cast<float>(budget.overhead));
+        if (rate > best_rate) {
+            best_rate = rate;
+            best = price;
+        }
+    }
+    price_ = best;
+    solve(field, budget, best);
+}
+
+void MomentPlan::find_gains(Mirror const& mirror, PlaceField const& field, MomentBudget const& budget) {
+    leaves_.assign(field.size(), Leaf{});
+    std::span<std::uint32_t const> const places = field.visible();
+    tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) { add_detail(mirror, field, places[i]); });
+    float detail = 0, shown = 0;
+    for (std::uint32_t const index : places) {
+        detail += leaves_[index].detail;
+        shown += leaves_[index].shown;
+    }
+    mean_detail_ = shown > 0 ? detail / shown : unknown_detail;
+    tbb::parallel_for(std::size_t{0}, places.size(),
+                      [&](std::size_t i) { add_gains(mirror, field, places[i], budget); });
+    stale_ = wrong_ = 0;
+    for (std::uint32_t const index : places) {
+        stale_ += leaves_[index].stale;
+        wrong_ += leaves_[index].wrong;
+    }
+}
+
+/// Of one place.
+void MomentPlan::add_detail(Mirror const& mirror, PlaceField const& field, std::uint32_t index) {
+    Leaf& leaf = leaves_[index];
+    for_each_cell(mirror, field.rect_of(index), [&](Cell const& cell, float) {
+        leaf.detail += cell.is_shown() ? cell.detail : 0;
+        leaf.shown += cell.is_shown() ? 1.0f : 0.0f;
+    });
+}
+
+/// Of one place.
+void MomentPlan::add_gains(Mirror const& mirror, PlaceField const& field, std::uint32_t index,
+                           MomentBudget const& budget) {
+    Place const& place = field[index];
+    Leaf& leaf = leaves_[index];
+    // What is on its way, or has been rendered of this moment, the viewer has whatever the mirror makes of it.
+    int had = place.taken.level;
+    if (place.rendered >= budget.moment_begun) {
+        had = std::max(had, place.level + (place.supersampled >= budget.moment_begun ? 1 : 0));
+    }
+    float const hidden_detail = leaf.shown > 0 ? leaf.detail / leaf.shown : mean_detail_;
+    FloatLanes gains{};
+    float stale_sum = 0, wrong_sum = 0;
+    for_each_cell(mirror, field.rect_of(index), [&](Cell const& cell, float pixels) {
+        float covered = cell.is_wrong ? 0 : cell.covered_share() * pixels;
+        float const detail = cell.is_shown() ? cell.detail : hidden_detail;
+        float worn = cell.is_shown() ? cell.worn : INFINITY;
+        worn += cell.is_shown() && mirror.camera_stands() && mirror.is_moved(cell) ? interpolated_wear : 0;
+        float stale = cell.is_outdated ? std::max(cell.stale, outdated_error) : cell.stale;
+        bool const stands = stays(mirror, cell);
+        if (stands && worn <= finest_shown_spacing) {
+            worn = std::min(worn, cell.spacing);
+        }
+        if (cell.is_shown() && shows_means(cell, stands)) {
+            worn *= stands ? standing_supersampled : moved_supersampled;
+        }
+        if (had >= 0) {
+            covered = pixels;
+            worn = std::min(worn, spacing_of(had));
+            stale = 0;
+        }
+        // What comes is shown although it is worse, or only where it is better.
+        float const least = cell.is_shown() && mirror.gives_way(cell) ? -most_error : 0.0f;
+        float const now = covered > 0 ? spacing_error(detail, worn) + stale : 0;
+        float const bare = pixels - covered;
+        stale_sum += covered * stale;
+        wrong_sum += covered * now + bare * hole_error;
+        FloatLanes const shares = load_lanes((stands ? standing_shares : moved_shares).data());
+        FloatLanes const then = smaller(detail * shares, FloatLanes{} + most_error);
+        gains += covered * larger(now - then, FloatLanes{} + least) + bare * larger(hole_error - then, FloatLanes{});
+    });
+    store_lanes(gains, leaf.gain.data());
+    leaf.stale = stale_sum;
+    leaf.wrong = wrong_sum;
+    for (int level = field.least_level(); level < sampling_levels; ++level) {
+        auto const l = static_cast<std::size_t>(level);
+        float const factor = budget.costs.empty() ? 1.0f : budget.costs[index][l];
+        leaf.cost[l] = samples_per_pixel(level) * field.pixels_of(index) * factor;
+    }
+    // Rays are cheaper than samples as far as the link leaves time for them.
+    leaf.cost[supersampled] = leaf.cost[pixel_level] * std::max(1.0f, four_rays / budget.rays);
+}
+
+/// Gains of tiles that are larger than a place.
+void MomentPlan::sum_nodes(PlaceField const& field, MomentBudget const& budget) {
+    nodes_.resize(static_cast<std::size_t>(field.depth()));
+    for (int depth = 0; depth < field.depth(); ++depth) {
+        std::vector<Node>& nodes = nodes_[static_cast<std::size_t>(depth)];
+        nodes.assign(std::size_t{1} << (2 * depth), Node{});
+        int const level = field.level_of(depth);
+        if (level < std::max(field.least_level(), budget.limits.least_level) || level > budget.limits.most_level) {
+            continue;
+        }
+        int const shift = 2 * (field.depth() - depth);
+        for (std::uint32_t const index : field.visible()) {
+            Leaf const& leaf = leaves_[index];
+            Node& node = nodes[index >> shift];
+            node.gain += leaf.gain[static_cast<std::size_t>(level)];
+            node.cost += leaf.cost[static_cast<std::size_t>(level)];
+        }
+    }
+}
+
+/// Chooses what is best for the price; returns what it costs.
+double MomentPlan::solve(PlaceField const& field, MomentBudget const& budget, float price) {
+    int const first = std::max(field.level_of(field.depth()), budget.limits.least_level);
+    auto const deepest = static_cast<std::size_t>(field.depth());
+    for (std::vector<Node>& nodes : nodes_) {
+        for (Node& node : nodes) {
+            node.best = node.spent = 0;
+        }
+    }
+    double all = 0;
+    gain_ = 0;
+    for (std::uint32_t const index : field.visible()) {
+        Leaf& leaf = leaves_[index];
+        leaf.choice = no_choice;
+        float best = 0;
+        float spent = 0;
+        auto const rate = [&](std::size_t choice) {
+            float const value = leaf.gain[choice] - price * leaf.cost[choice];
+            if (value > best) {
+                best = value;
+                leaf.choice = choice;
+                spent = leaf.cost[choice];
+            }
+        };
+        for (int level = first; level <= budget.limits.most_level; ++level) {
+            rate(static_cast<std::size_t>(level));
+        }
+        if (budget.limits.most_rays >= four_rays && first <= pixel_level && pixel_level <= budget.limits.most_level) {
+            rate(supersampled);
+        }
+        if (deepest > 0) {
+            nodes_[deepest - 1][index >> 2].best += best;
+            nodes_[deepest - 1][index >> 2].spent += spent;
+        }
+        all += static_cast<double>(spent);
+        gain_ += best;
+    }
+    for (std::size_t depth = deepest; depth-- > 0;) {
+        for (std::size_t i = 0; i < nodes_[depth].size(); ++i) {
+            Node& node = nodes_[depth][i];
+            float const value = node.gain - price * node.cost;
+            node.whole = node.cost > 0 && value > node.best;
+            if (node.whole) {
+                all += static_cast<double>(node.cost - node.spent);
+                gain_ += value - node.best;
+                node.best = value;
+                node.spent = node.cost;
+            }
+            if (depth > 0) {
+                nodes_[depth - 1][i >> 2].best += node.best;
+                nodes_[depth - 1][i >> 2].spent += node.spent;
+            }
+        }
+    }
+    gain_ += price * static_cast<float>(all);
+    return all;
+}
+
+void MomentPlan::collect(PlaceField const& field, int depth, std::uint32_t index,
+                         std::vector<RatedPatch>& rated) const {
+    Tile const tile{(1u << (2 * depth)) + index};
+    auto const rate = [&](int tile_depth, float gain, float cost, int rays_per_sample) {
+        Patch const patch{tile, tile_depth};
+        rated.push_back({patch, framelet_samples * tile_count(patch) * rays_per_sample, static_cast<double>(cost),
+                         static_cast<double>(gain) / static_cast<double>(cost), rays_per_sample});
+    };
+    if (depth == field.depth()) {
+        Leaf const& leaf = leaves_[index];
+        if (leaf.choice != no_choice) {
+            bool const means = leaf.choice == supersampled;
+            int const level = means ? pixel_level : static_cast<int>(leaf.choice);
+            rate(field.depth_of(level), leaf.gain[leaf.choice], leaf.cost[leaf.choice], means ? four_rays : single_ray);
+        }
+        return;
+    }
+    Node const& node = nodes_[static_cast<std::size_t>(depth)][index];
+    if (node.whole) {
+        rate(depth, node.gain, node.cost, single_ray);
+    } else if (node.best > 0) {
+        for (std::uint32_t child = 0; child < 4; ++child) {
+            collect(field, depth + 1, 4 * index + child, rated);
+        }
+    }
+}
+
+} // namespace framelet

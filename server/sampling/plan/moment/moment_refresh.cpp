@@ -1,0 +1,94 @@
+#include "server/sampling/plan/moment/moment_refresh.h"
+
+#include "common/error.h"
+#include "server/sampling/mirror/mirror_checks.h"
+#include "server/sampling/plan/moment/fading.h"
+
+namespace framelet {
+namespace {
+
+/// The finest grid, a power of two times `least`, whose places cost no more than so many samples at `cost` each; at
+/// most `most` pixels apart.
+int grid_spacing(Viewport viewport, int least, int most, double cost, double samples) {
+    int spacing = least;
+    while (spacing < most && cost * (viewport.width / spacing) * (viewport.height / spacing) > samples) {
+        spacing *= 2;
+    }
+    return spacing;
+}
+
+MirrorView view_of(RenderedMoment const& moment) {
+    return {moment.rays, moment.scene_time};
+}
+
+} // namespace
+
+double MomentChecks::cost(Viewport viewport) const {
+    return visibility ? visibility_cost * visibility->columns(viewport) * visibility->rows(viewport) : 0;
+}
+
+MomentChecks MomentRefresh::look(RenderedMoment const& moment, double begun, double visibility_samples,
+                                 double probe_samples, std::vector<Probe>& probes) {
+    constexpr int most_visibility_spacing = 16, least_probe_spacing = 16, most_probe_spacing = 64;
+    Viewport const viewport = mirror_.viewport();
+    looked_ = begun;
+    ++looks_taken_;
+    mirror_.look(view_of(moment), *moment.motions);
+    MomentChecks checks;
+    if (visibility_samples > 0) {
+        checks.visibility = cell_grid(
+            cell_side, grid_spacing(viewport, cell_side, most_visibility_spacing, visibility_cost, visibility_samples),
+            looks_taken_);
+    }
+    if (probe_samples > 0) {
+        checks.probe_spacing =
+            grid_spacing(viewport, least_probe_spacing, most_probe_spacing, probe_cost, probe_samples);
+        list_probes(mirror_, cell_grid(cell_side, checks.probe_spacing, looks_taken_), probes);
+    }
+    return checks;
+}
+
+void MomentRefresh::plan(PlaceField const& field, MomentBudget const& budget, std::vector<RatedPatch>& rated) {
+    is_checked_ = false;
+    plan_.find(mirror_, field, budget, rated);
+}
+
+void MomentRefresh::note_visibility(RenderedMoment const& moment, PlaceGrid const& grid,
+                                    std::span<float const> inverse_depth) {
+    if (mirror_.looks_at(view_of(moment))) {
+        is_checked_ = mirror_.mark(find_wrong(mirror_, grid, inverse_depth)) || is_checked_;
+    }
+}
+
+void MomentRefresh::note_looks(RenderedMoment const& moment, std::span<Probe const> probes, std::span<float const> luma,
+                               int probe_spacing) {
+    if (mirror_.looks_at(view_of(moment))) {
+        is_checked_ = mirror_.mark(find_stale(mirror_, probes, luma, probe_spacing)) || is_checked_;
+    }
+}
+
+void MomentRefresh::note_sent(RenderedMoment const& moment, std::uint64_t batch,
+                              std::span<DisplayFramelet const> framelets, std::span<Framelet const> rendered,
+                              std::span<std::uint8_t const> sent, std::span<FrameletShape> shapes,
+                              bool expects_change) {
+    FRAMELET_CHECK(framelets.size() == sent.size() && rendered.size() == sent.size());
+    ImagePlane const plane(mirror_.viewport());
+    pieces_.clear();
+    auto shape = shapes.begin();
+    for (std::size_t i = 0; i < framelets.size(); ++i) {
+        if (sent[i] != 0) {
+            std::size_t const first = pieces_.size();
+            cut_pieces(rendered[i], framelets[i], *shape, plane, moment.scene_time, batch, pieces_);
+            std::span<Piece> const pieces = std::span(pieces_).subspan(first);
+            bool const rests = is_at_rest(*shape, moment.scene_time, *moment.motions);
+            std::ranges::for_each(pieces, [&](Piece& piece) { piece.rests = rests; });
+            bool const has_outline = shape->layer_count > 1 || !shape->loose_samples.empty();
+            shape->fading =
+                expects_change ? expect_fading(pieces, mirror_.camera_stands(), has_outline) : FadingCode{0};
+            ++shape;
+        }
+    }
+    mirror_.add(moment.rays, *moment.motions, pieces_);
+}
+
+} // namespace framelet

@@ -1,0 +1,178 @@
+#include "server/scene/assimp/assimp_import.h"
+
+#include <assimp/DefaultIOSystem.h>
+#include <assimp/Importer.hpp>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include "common/error.h"
+#include "server/scene/assimp/assimp_parts.h"
+#include "server/scene/assimp/memory_limit.h"
+#include "server/scene/assimp/mesh_header.h"
+#include "server/scene/assimp/polygon.h"
+
+namespace framelet {
+namespace {
+
+/// What is made of a byte of a mesh file, roughly: six bytes of an OBJ, more of a binary PLY. What cannot fit is so
+/// refused before it is read.
+constexpr std::uint64_t memory_per_file_byte = 8;
+
+/// Normals of a file without any are smooth across edges up to this angle.
+constexpr float crease_degrees = 66;
+
+/// Opens the scene file and what the folder permits. Notes which files could not be opened: Assimp only mentions them
+/// in its log.
+class PermittedFiles : public Assimp::DefaultIOSystem {
+public:
+    PermittedFiles(std::string scene_file, SceneFolder const& folder, std::vector<std::string>& missing)
+        : scene_file_(std::move(scene_file)), folder_(folder), missing_(missing) {}
+
+    bool Exists(char const* file) const override { return permits(file) && DefaultIOSystem::Exists(file); }
+
+    Assimp::IOStream* Open(char const* file, char const* mode) override {
+        Assimp::IOStream* const stream = permits(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
+        if (!stream) {
+            missing_.emplace_back(file);
+        }
+        return stream;
+    }
+
+private:
+    bool permits(char const* file) const { return file == scene_file_ || folder_.permits(file); }
+
+    std::string scene_file_;
+    SceneFolder const& folder_;
+    std::vector<std::string>& missing_;
+};
+
+Vec3 to_vec3(aiVector3D const& v) {
+    return {v.x, v.y, v.z};
+}
+
+/// Replaces polygons by triangles and drops points and lines. Assimp's own step leaves holes in polygons that cross
+/// themselves (24 triangles of 116,501 in one model tried).
+void triangulate_faces(aiMesh& mesh) {
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    std::vector<Vec3> corners;
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+        aiFace const& face = mesh.mFaces[f];
+        corners.clear();
+        for (unsigned i = 0; i < face.mNumIndices; ++i) {
+            corners.push_back(to_vec3(mesh.mVertices[face.mIndices[i]]));
+        }
+        for (auto const& [a, b, c] : triangulate(corners)) {
+            triangles.push_back({face.mIndices[a], face.mIndices[b], face.mIndices[c]});
+        }
+    }
+    delete[] mesh.mFaces;
+    mesh.mFaces = new aiFace[triangles.size()]; // the mesh owns and deletes them
+    mesh.mNumFaces = static_cast<unsigned>(triangles.size());
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        mesh.mFaces[i].mNumIndices = 3;
+        mesh.mFaces[i].mIndices = new unsigned[3]{triangles[i][0], triangles[i][1], triangles[i][2]};
+    }
+    mesh.mPrimitiveTypes = aiPrimitiveType_TRIANGLE;
+}
+
+} // namespace
+
+Primitive import_assimp_primitive(aiMesh const& from) {
+    Primitive primitive;
+    primitive.material = static_cast<Index>(from.mMaterialIndex);
+    std::size_t const count = from.mNumVertices;
+    auto const vectors = [count](aiVector3D const* values) {
+        std::vector<Vec3> result;
+        for (std::size_t i = 0; values && i < count; ++i) {
+            result.push_back(to_vec3(values[i]));
+        }
+        return result;
+    };
+    primitive.positions = vectors(from.mVertices);
+    primitive.normals = vectors(from.mNormals);
+    for (std::size_t set = 0; set < 2; ++set) {
+        for (Vec3 const& uv : vectors(from.mTextureCoords[set])) {
+            primitive.uv[set].emplace_back(uv);
+        }
+    }
+    for (std::size_t i = 0; from.mColors[0] && i < count; ++i) {
+        aiColor4D const& color = from.mColors[0][i];
+        primitive.colors.emplace_back(color.r, color.g, color.b, color.a);
+    }
+    for (unsigned t = 0; t < from.mNumAnimMeshes; ++t) {
+        aiAnimMesh const& shape = *from.mAnimMeshes[t]; // whole positions, not offsets
+        MorphTarget target;
+        if (shape.mNumVertices == from.mNumVertices) {
+            target.positions = vectors(shape.mVertices);
+            target.normals = primitive.normals.empty() ? std::vector<Vec3>() : vectors(shape.mNormals);
+        }
+        for (std::size_t i = 0; i < target.positions.size(); ++i) {
+            target.positions[i] -= primitive.positions[i];
+        }
+        for (std::size_t i = 0; i < target.normals.size(); ++i) {
+            target.normals[i] -= primitive.normals[i];
+        }
+        primitive.morph_targets.push_back(std::move(target));
+    }
+    for (unsigned f = 0; f < from.mNumFaces; ++f) {
+        unsigned const* const index = from.mFaces[f].mIndices;
+        primitive.triangles.push_back({index[0], index[1], index[2]});
+    }
+    return primitive;
+}
+
+Scene import_assimp(std::filesystem::path const& file, SceneFolder const& folder, ImportBudget& budget,
+                    Progress const& progress) {
+    Scene scene;
+    std::vector<std::string> missing;
+    progress("reading", 0);
+    Assimp::Importer importer;
+    std::string const extension = file.extension().string();
+    if (extension.empty() || !importer.IsExtensionSupported(extension)) {
+        throw InputError("the format '" + extension + "' is not known; .gltf, .glb and .obj always work");
+    }
+    check_mesh_header(file);
+    ImportBudget(budget).reserve(std::filesystem::file_size(file), memory_per_file_byte);
+    importer.SetIOHandler(new PermittedFiles(file.string(), folder, missing)); // owned by the importer
+    importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, crease_degrees);
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
+    aiScene const* from = nullptr;
+    try {
+        MemoryLimit const limit(budget.left()); // Assimp takes memory without asking
+        from = importer.ReadFile(file.string(), aiProcess_ValidateDataStructure);
+        if (from) {
+            for (unsigned m = 0; m < from->mNumMeshes; ++m) {
+                triangulate_faces(*from->mMeshes[m]);
+            }
+            from = importer.ApplyPostProcessing(aiProcess_GenSmoothNormals | aiProcess_JoinIdenticalVertices |
+                                                aiProcess_FlipUVs | aiProcess_TransformUVCoords);
+        }
+    } catch (std::bad_alloc const&) {
+        throw budget.too_large();
+    } catch (std::exception const& error) {
+        throw InputError(error.what());
+    }
+    if (!from || !from->mRootNode) {
+        std::string const why = importer.GetErrorString();
+        if (why.find("bad_alloc") != std::string::npos || why.find("bad_array_new_length") != std::string::npos) {
+            throw budget.too_large();
+        }
+        throw InputError(why.empty() ? "it has no content" : why);
+    }
+    // Where an .obj names a material file that is missing, Assimp tries one with the scene's own name after it.
+    std::string const fallback = std::filesystem::path(file).replace_extension(".mtl").string();
+    for (std::string const& name : missing) {
+        if (name == fallback && missing.front() != fallback) {
+            continue;
+        }
+        std::string const problem =
+            folder.permits(name) ? "file '" + name + "' is missing" : SceneFolder::refusal("file", name);
+        scene.warnings.push_back(problem + "; shown without it");
+    }
+    progress("reading", 1);
+    import_assimp_materials(*from, folder, budget, scene, progress);
+    import_assimp_nodes(*from, scene);
+    return scene;
+}
+
+} // namespace framelet

@@ -1,0 +1,15 @@
+// Every format but glTF, through Assimp, to a Scene that still has to be finished (scene_finish.h).
+// In: a path. Out: a Scene, or an InputError without the file's name.
+#pragma once
+
+#include "server/scene/import_budget.h"
+#include "server/scene/progress.h"
+#include "server/scene/scene.h"
+#include "server/scene/scene_folder.h"
+
+namespace framelet {
+
+Scene import_assimp(std::filesystem::path const& file, SceneFolder const& folder, ImportBudget& budget,
+                    Progress const& progress);
+
+} // namespace framelet

@@ -1,0 +1,224 @@
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include <assimp/material.h>
+#include <assimp/scene.h>
+
+#include "server/scene/assimp/assimp_parts.h"
+#include "server/scene/assimp/picture_ops.h"
+#include "server/scene/image_loading.h"
+
+namespace framelet {
+namespace {
+
+std::string with_slashes(std::string name) {
+    std::replace(name.begin(), name.end(), '\\', '/');
+    return name;
+}
+
+/// Collects the images that materials name: each once, whatever the number of uses.
+struct Images {
+    aiScene const& from;
+    SceneFolder const& folder;
+    ImportBudget& budget;
+    std::vector<EncodedImage> encoded;
+    std::map<std::string, Index> index_of;
+
+    /// The file that a material names, which may be written for another system or another folder.
+    std::filesystem::path find_file(std::string const& name) const {
+        std::filesystem::path const path(with_slashes(name));
+        std::error_code code;
+        for (std::filesystem::path const& candidate : {folder.path() / path, folder.path() / path.filename()}) {
+            if (folder.permits(candidate) && std::filesystem::is_regular_file(candidate, code)) {
+                return candidate;
+            }
+        }
+        return {};
+    }
+
+    /// An embedded texture that is stored as texels.
+    Picture make_picture(aiTexture const& texture) const {
+        budget.reserve(std::uint64_t(texture.mWidth) * texture.mHeight, 4);
+        Picture picture(static_cast<int>(texture.mWidth), static_cast<int>(texture.mHeight));
+        for (std::size_t i = 0; i < picture.rgba.size() / 4; ++i) {
+            aiTexel const& texel = texture.pcData[i];
+            std::uint8_t const rgba[4] = {texel.r, texel.g, texel.b, texel.a};
+            std::copy_n(rgba, 4, &picture.rgba[i * 4]);
+        }
+        return picture;
+    }
+
+    Index add(std::string const& name) {
+        auto const [found, added] = index_of.try_emplace(name, static_cast<Index>(encoded.size()));
+        if (added) {
+            EncodedImage image{name, {}, {}, nullptr, {}};
+            aiTexture const* const embedded = from.GetEmbeddedTexture(name.c_str());
+            if (embedded && embedded->mHeight == 0) {
+                image.bytes =
+                    std::as_bytes(std::span(reinterpret_cast<char const*>(embedded->pcData), embedded->mWidth));
+                image.name += std::string(".") + embedded->achFormatHint;
+            } else if (embedded) {
+                image.decoded = std::make_shared<Picture const>(make_picture(*embedded));
+            } else {
+                image.file = find_file(name);
+                std::string const portable = with_slashes(name);
+                if (image.file.empty() && !folder.permits(folder.path() / portable)) {
+                    image.problem = SceneFolder::refusal("image", portable);
+                }
+            }
+            encoded.push_back(std::move(image));
+        }
+        return found->second;
+    }
+};
+
+Wrap wrap_of(aiTextureMapMode mode) {
+    return mode == aiTextureMapMode_Clamp || mode == aiTextureMapMode_Decal ? Wrap::clamp
+           : mode == aiTextureMapMode_Mirror                                ? Wrap::mirror
+                                                                            : Wrap::repeat;
+}
+
+struct MaterialReader {
+    aiMaterial const& from;
+    Images& images;
+    Scene& scene;
+
+    float number(char const* key, unsigned type, unsigned index, float otherwise) const {
+        float value = otherwise;
+        return from.Get(key, type, index, value) == aiReturn_SUCCESS ? value : otherwise;
+    }
+
+    bool has(char const* key, unsigned type, unsigned index) const {
+        float value = 0;
+        return from.Get(key, type, index, value) == aiReturn_SUCCESS;
+    }
+
+    Vec3 color(char const* key, unsigned type, unsigned index, Vec3 const& otherwise) const {
+        aiColor3D value(otherwise.x, otherwise.y, otherwise.z);
+        from.Get(key, type, index, value);
+        return {value.r, value.g, value.b};
+    }
+
+    /// The first texture of the first of the types that the material has.
+    TextureUse texture(std::initializer_list<aiTextureType> types) {
+        TextureUse use;
+        for (aiTextureType const type : types) {
+            aiString path;
+            unsigned uv_set = 0;
+            aiTextureMapMode modes[3] = {aiTextureMapMode_Wrap, aiTextureMapMode_Wrap, aiTextureMapMode_Wrap};
+            if (from.GetTexture(type, 0, &path, nullptr, &uv_set, nullptr, nullptr, modes) != aiReturn_SUCCESS ||
+                path.length == 0) {
+                continue;
+            }
+            Texture texture;
+            texture.image = images.add(path.C_Str());
+            texture.wrap_u = wrap_of(modes[0]);
+            texture.wrap_v = wrap_of(modes[1]);
+            use.texture = static_cast<Index>(scene.textures.size());
+            use.uv_set = static_cast<int>(std::min(uv_set, 1u));
+            scene.textures.push_back(texture);
+            break;
+        }
+        return use;
+    }
+
+    /// Roughness whose microfacets have the highlight of a Blinn-Phong exponent: alpha^2 = 2 / (n + 2) (B. Walter et
+    /// al., "Microfacet Models for Refraction through Rough Surfaces", 2007), alpha = roughness^2.
+    float roughness() const {
+        Vec3 const specular = color(AI_MATKEY_COLOR_SPECULAR, Vec3(0));
+        float const exponent = number(AI_MATKEY_SHININESS, 0);
+        bool const shines = std::max({specular.x, specular.y, specular.z}) > 0 && exponent > 0;
+        return shines ? std::pow(2 / (exponent + 2), 0.25f) : 1.0f;
+    }
+
+    Material read() {
+        Material material;
+        aiString name;
+        from.Get(AI_MATKEY_NAME, name);
+        material.name = name.C_Str();
+        material.double_sided = true; // these formats say nothing of it, and their faces are often wound either way
+        bool const physical = has(AI_MATKEY_METALLIC_FACTOR) || has(AI_MATKEY_ROUGHNESS_FACTOR);
+        material.metallic = number(AI_MATKEY_METALLIC_FACTOR, 0);
+        material.roughness = physical ? number(AI_MATKEY_ROUGHNESS_FACTOR, 1) : roughness();
+        material.base_color_texture = texture({aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE});
+        material.emissive_texture = texture({aiTextureType_EMISSION_COLOR, aiTextureType_EMISSIVE});
+        material.normal_texture = texture({aiTextureType_NORMALS, aiTextureType_NORMAL_CAMERA, aiTextureType_HEIGHT});
+        bool const textured = material.base_color_texture.texture != none;
+        Vec3 diffuse = color(AI_MATKEY_COLOR_DIFFUSE, Vec3(textured ? 1.0f : 0.6f));
+        if (physical) {
+            diffuse = color(AI_MATKEY_BASE_COLOR, diffuse);
+        }
+        if (textured && diffuse == Vec3(0)) { // written by programs for which a texture replaces the colour
+            diffuse = Vec3(1);
+        }
+        float const opacity = number(AI_MATKEY_OPACITY, 1);
+        material.base_color = Vec4(diffuse, opacity);
+        material.alpha_mode = opacity < 1 ? AlphaMode::blend : AlphaMode::opaque;
+        material.emissive = color(AI_MATKEY_COLOR_EMISSIVE, Vec3(0)) * number(AI_MATKEY_EMISSIVE_INTENSITY, 1);
+        if (material.emissive_texture.texture != none && material.emissive == Vec3(0)) {
+            material.emissive = Vec3(1);
+        }
+        return material;
+    }
+};
+
+Index image_of(Scene const& scene, TextureUse const& use) {
+    return use.texture == none ? none : scene.textures[static_cast<std::size_t>(use.texture)].image;
+}
+
+/// Moves a separate opacity map into the alpha of the base colour, where glTF materials have it.
+void apply_opacity(Scene& scene, Material& material, TextureUse const& opacity,
+                   std::map<std::pair<Index, Index>, Index>& merged) {
+    Index const mask = image_of(scene, opacity);
+    if (mask == none || !scene.images[static_cast<std::size_t>(mask)]) {
+        return;
+    }
+    Index const base = image_of(scene, material.base_color_texture);
+    auto const [found, added] = merged.try_emplace({base, mask}, static_cast<Index>(scene.images.size()));
+    Picture const* const color = base == none ? nullptr : scene.images[static_cast<std::size_t>(base)].get();
+    if (added) {
+        scene.images.push_back(
+            std::make_shared<Picture const>(with_opacity(color, *scene.images[static_cast<std::size_t>(mask)])));
+    }
+    Texture texture =
+        scene.textures[static_cast<std::size_t>(base == none ? opacity.texture : material.base_color_texture.texture)];
+    texture.image = found->second;
+    int const uv_set = base == none ? opacity.uv_set : material.base_color_texture.uv_set;
+    material.base_color_texture = {};
+    material.base_color_texture.texture = static_cast<Index>(scene.textures.size());
+    material.base_color_texture.uv_set = uv_set;
+    scene.textures.push_back(texture);
+    if (material.alpha_mode == AlphaMode::opaque) {
+        material.alpha_mode =
+            is_cutout(*scene.images[static_cast<std::size_t>(found->second)]) ? AlphaMode::mask : AlphaMode::blend;
+    }
+}
+
+} // namespace
+
+void import_assimp_materials(aiScene const& from, SceneFolder const& folder, ImportBudget& budget, Scene& scene,
+                             Progress const& progress) {
+    Images images{from, folder, budget, {}, {}};
+    std::vector<TextureUse> opacity;
+    for (unsigned i = 0; i < from.mNumMaterials; ++i) {
+        MaterialReader reader{*from.mMaterials[i], images, scene};
+        scene.materials.push_back(reader.read());
+        opacity.push_back(reader.texture({aiTextureType_OPACITY}));
+    }
+    scene.images = load_images(images.encoded, budget, scene.warnings, progress);
+    std::map<std::pair<Index, Index>, Index> merged;
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        Material& material = scene.materials[i];
+        Index const normal = image_of(scene, material.normal_texture);
+        if (normal != none && scene.images[static_cast<std::size_t>(normal)] &&
+            !is_normal_map(*scene.images[static_cast<std::size_t>(normal)])) {
+            scene.warnings.push_back("bump map '" + images.encoded[static_cast<std::size_t>(normal)].name +
+                                     "' holds heights, not normals; shown without it");
+            material.normal_texture = {};
+        }
+        apply_opacity(scene, material, opacity[i], merged);
+    }
+}
+
+} // namespace framelet

@@ -1,0 +1,25 @@
+// The pieces of the Assimp importer. Each turns one kind of thing of an aiScene into scene values.
+// In: a complete aiScene, triangulated. Out: parts of a Scene.
+#pragma once
+
+#include "server/scene/import_budget.h"
+#include "server/scene/progress.h"
+#include "server/scene/scene.h"
+#include "server/scene/scene_folder.h"
+
+struct aiMesh;
+struct aiScene;
+
+namespace framelet {
+
+/// Images, textures and materials, decoded.
+void import_assimp_materials(aiScene const& from, SceneFolder const& folder, ImportBudget& budget, Scene& scene,
+                             Progress const& progress);
+
+/// A mesh's triangles; its points, lines and bones are left out.
+Primitive import_assimp_primitive(aiMesh const& from);
+
+/// Nodes with their meshes, skins, cameras, lights and animations.
+void import_assimp_nodes(aiScene const& from, Scene& scene);
+
+} // namespace framelet

@@ -1,0 +1,159 @@
+#include "server/scene/finish/scene_finish.h"
+
+#include <algorithm>
+#include <mutex>
+
+#include <tbb/parallel_for.h>
+
+#include "common/counted.h"
+#include "common/error.h"
+#include "server/scene/finish/finish_parts.h"
+#include "server/scene/finish/primitive_finish.h"
+#include "server/scene/finish/primitive_ops.h"
+#include "server/scene/image_loading.h"
+#include "server/scene/motion/animation.h"
+#include "server/scene/vector_math.h"
+
+namespace framelet {
+namespace {
+
+void finish_materials(Scene& scene) {
+    auto const default_material = static_cast<Index>(scene.materials.size());
+    bool needed = false;
+    for (Mesh& mesh : scene.meshes) {
+        for (Primitive& primitive : mesh.primitives) {
+            if (primitive.material < 0) {
+                primitive.material = default_material;
+                needed = true;
+            } else if (primitive.material >= default_material) {
+                throw InputError("material " + std::to_string(primitive.material) + " does not exist");
+            }
+        }
+    }
+    if (needed) {
+        scene.materials.emplace_back();
+    }
+    for (Material& m : scene.materials) {
+        for (int c = 0; c < 4; ++c) {
+            m.base_color[c] = clamped(m.base_color[c], 0, 1, 1);
+        }
+        for (int c = 0; c < 3; ++c) {
+            m.emissive[c] = clamped(m.emissive[c], 0, max_coordinate, 0);
+        }
+        m.metallic = clamped(m.metallic, 0, 1, 1);
+        m.roughness = clamped(m.roughness, 0, 1, 1);
+        m.normal_scale = clamped(m.normal_scale, -max_coordinate, max_coordinate, 1);
+        m.occlusion_strength = clamped(m.occlusion_strength, 0, 1, 1);
+        m.transmission = clamped(m.transmission, 0, 1, 0);
+        m.alpha_cutoff = clamped(m.alpha_cutoff, 0, max_coordinate, 0.5f);
+        for (TextureUse* use : {&m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture,
+                                &m.occlusion_texture, &m.emissive_texture, &m.transmission_texture}) {
+            for (float* value : {&use->offset.x, &use->offset.y, &use->rotation}) {
+                *value = clamped(*value, -max_coordinate, max_coordinate, 0);
+            }
+            use->scale.x = clamped(use->scale.x, -max_coordinate, max_coordinate, 1);
+            use->scale.y = clamped(use->scale.y, -max_coordinate, max_coordinate, 1);
+        }
+    }
+}
+
+void finish_meshes(Scene& scene, ImportBudget& budget, Progress const& progress) {
+    struct Job {
+        std::size_t mesh, primitive;
+        PrimitiveRepairs repairs;
+    };
+    std::vector<Job> jobs;
+    for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+        std::erase_if(scene.meshes[m].primitives, [](Primitive const& p) { return p.triangles.empty(); });
+        for (std::size_t p = 0; p < scene.meshes[m].primitives.size(); ++p) {
+            jobs.push_back({m, p, {}});
+            Primitive const& primitive = scene.meshes[m].primitives[p];
+            if (primitive.normals.empty()) { // flat shading gives every triangle its own vertices
+                budget.reserve(primitive.triangles.size() * 3, bytes_per_vertex(primitive) + sizeof(Vec3));
+            }
+        }
+    }
+    std::mutex report;
+    std::size_t done = 0;
+    tbb::parallel_for(std::size_t(0), jobs.size(), [&](std::size_t i) {
+        Mesh& mesh = scene.meshes[jobs[i].mesh];
+        Primitive& primitive = mesh.primitives[jobs[i].primitive];
+        try {
+            jobs[i].repairs =
+                finish_primitive(primitive, scene.materials[static_cast<std::size_t>(primitive.material)]);
+        } catch (InputError const& error) {
+            throw InputError(named("mesh", jobs[i].mesh, mesh.name) + ": " + error.what());
+        }
+        std::lock_guard const lock(report);
+        progress("meshes", static_cast<double>(++done) / static_cast<double>(jobs.size()));
+    });
+    std::size_t normals = 0;
+    std::size_t other = 0;
+    for (Job const& job : jobs) {
+        normals += job.repairs.normals;
+        other += job.repairs.other;
+    }
+    if (normals > 0) {
+        scene.warnings.push_back(counted(normals, "unusable normal") + " taken from the triangles");
+    }
+    if (other > 0) {
+        scene.warnings.push_back(counted(other, "texture coordinate, colour or morph offset",
+                                         "texture coordinates, colours and morph offsets") +
+                                 " left out for not being numbers");
+    }
+}
+
+void finish_lights(Scene& scene) {
+    constexpr float quarter_turn = 1.5707963f;
+    for (Light& light : scene.lights) {
+        for (int c = 0; c < 3; ++c) {
+            light.color[c] = clamped(light.color[c], 0, max_coordinate, 1);
+        }
+        light.intensity = clamped(light.intensity, 0, max_coordinate, 1);
+        light.range = clamped(light.range, 0, max_coordinate, 0);
+        light.outer_cone = clamped(light.outer_cone, 1e-3f, quarter_turn, 0.7853982f);
+        light.inner_cone = clamped(light.inner_cone, 0, light.outer_cone - 1e-4f, 0);
+    }
+}
+
+void finish_cameras(Scene& scene) {
+    for (SceneCamera& camera : scene.cameras) {
+        bool const perspective = camera.projection == Projection::perspective;
+        float const largest = perspective ? 3.1f : max_coordinate;
+        if (!(camera.vertical_extent > 1e-4f && camera.vertical_extent <= largest)) {
+            scene.warnings.push_back("camera '" + camera.name + "' has an unusable field of view; 0.8 is used");
+            camera.vertical_extent = 0.8f;
+        }
+        camera.aspect_ratio = clamped(camera.aspect_ratio, 0, 1e4f, 0);
+    }
+}
+
+/// Scales that are each in range may still multiply to something that is not.
+void check_placement(Scene const& scene) {
+    std::vector<glm::dmat4> world(scene.nodes.size());
+    for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
+        Node const& node = scene.nodes[i];
+        glm::dmat4 const local(node.matrix ? *node.matrix : matrix_of(node.local));
+        world[i] = node.parent == none ? local : world[static_cast<std::size_t>(node.parent)] * local;
+        for (int c = 0; c < 4; ++c) {
+            if (!(glm::length(glm::dvec3(world[i][c])) <= max_coordinate)) {
+                throw InputError(named("node", i, node.name) + " is placed out of range");
+            }
+        }
+    }
+}
+
+} // namespace
+
+void finish_scene(Scene& scene, ImportBudget& budget, Progress const& progress) {
+    drop_missing_images(scene);
+    finish_materials(scene);
+    finish_meshes(scene, budget, progress);
+    finish_nodes(scene);
+    finish_clips(scene);
+    finish_lights(scene);
+    finish_cameras(scene);
+    check_placement(scene);
+}
+
+} // namespace framelet

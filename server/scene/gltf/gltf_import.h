@@ -1,0 +1,19 @@
+// glTF 2.0 (.gltf, .glb) to a Scene that still has to be finished (scene_finish.h).
+// In: a path. Out: a Scene, or an InputError without the file's name.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "server/scene/import_budget.h"
+#include "server/scene/progress.h"
+#include "server/scene/scene.h"
+#include "server/scene/scene_folder.h"
+
+namespace framelet {
+
+Scene import_gltf(std::filesystem::path const& file, SceneFolder const& folder, ImportBudget& budget,
+                  std::span<std::string const> needed_clips, Progress const& progress);
+
+} // namespace framelet

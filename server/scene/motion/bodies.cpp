@@ -1,0 +1,159 @@
+#include "server/scene/motion/bodies.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "common/error.h"
+
+namespace framelet {
+namespace {
+
+/// Scales that differ by less than this, relatively, are one.
+constexpr float scale_tolerance = 1e-4f;
+
+bool alike(float a, float b) {
+    return std::abs(a - b) <= scale_tolerance * std::max(std::abs(a), std::abs(b));
+}
+
+/// True for a rotation times one scale, mirrored or not: what stands below may turn without being sheared.
+bool keeps_angles(Node const& node) {
+    if (!node.matrix) {
+        Vec3 const size = glm::abs(node.local.scale);
+        return alike(size.x, size.y) && alike(size.y, size.z);
+    }
+    Mat3 const m(*node.matrix);
+    float const x = glm::dot(m[0], m[0]), y = glm::dot(m[1], m[1]), z = glm::dot(m[2], m[2]);
+    float const skew =
+        std::max({std::abs(glm::dot(m[0], m[1])), std::abs(glm::dot(m[1], m[2])), std::abs(glm::dot(m[2], m[0]))});
+    return alike(x, y) && alike(y, z) && skew <= scale_tolerance * x;
+}
+
+/// True when every key of an animated scale, tangents included, is the same along the three axes.
+bool keeps_angles(AnimationChannel const& channel) {
+    for (std::size_t i = 0; i + 2 < channel.values.size(); i += 3) {
+        float const x = channel.values[i], y = channel.values[i + 1], z = channel.values[i + 2];
+        if (!alike(x, y) || !alike(y, z)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/// What the clips do to each node, by its own channels.
+struct NodeMotion {
+    std::vector<bool> moves, keeps_angles, morphs;
+};
+
+NodeMotion node_motion(Scene const& scene, std::span<Index const> clips) {
+    NodeMotion motion{animated_nodes(scene, clips), std::vector<bool>(scene.nodes.size()),
+                      std::vector<bool>(scene.nodes.size())};
+    for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
+        motion.keeps_angles[i] = keeps_angles(scene.nodes[i]);
+    }
+    for (Index const clip : clips) {
+        for (AnimationChannel const& channel : scene.clips[static_cast<std::size_t>(clip)].channels) {
+            auto const node = static_cast<std::size_t>(channel.node);
+            if (channel.property == AnimatedProperty::morph_weights) {
+                motion.morphs[node] = true;
+            } else if (channel.property == AnimatedProperty::scale) {
+                motion.keeps_angles[node] = keeps_angles(channel);
+            }
+        }
+    }
+    return motion;
+}
+
+} // namespace
+
+bool SceneBodies::any_flows() const {
+    return std::ranges::find(flows, true) != flows.end();
+}
+
+SceneBodies find_bodies(Scene const& scene, std::span<Index const> clips, std::size_t most) {
+    FRAMELET_CHECK(most <= most_bodies);
+    std::size_t const count = scene.nodes.size();
+    NodeMotion const motion = node_motion(scene, clips);
+    std::vector<bool> const moving = moving_nodes(scene, clips);
+    SceneBodies bodies;
+    bodies.body_of_node.assign(count, static_body);
+    bodies.flows.assign(count, false);
+    std::vector<Index> frame(count, none); // nearest node that the clips move
+    std::vector<bool> rigid_above(count, true); // nothing above it shears what turns below
+    std::vector<BodyNumber> number(count, static_body); // of the body whose frame it is
+    for (std::size_t i = 0; i < count; ++i) { // parents come first
+        Node const& node = scene.nodes[i];
+        if (node.parent != none) {
+            auto const parent = static_cast<std::size_t>(node.parent);
+            frame[i] = frame[parent];
+            rigid_above[i] = rigid_above[parent] && motion.keeps_angles[parent];
+        }
+        if (motion.moves[i]) {
+            frame[i] = static_cast<Index>(i);
+        }
+        if (node.mesh == none) {
+            continue;
+        }
+        if (node.skin != none) { // in the world as its joints are, wherever its node is
+            auto const& joints = scene.skins[static_cast<std::size_t>(node.skin)].joints;
+            bodies.flows[i] = motion.morphs[i] || std::ranges::any_of(joints, [&](Index joint) {
+                                  return moving[static_cast<std::size_t>(joint)];
+                              });
+        } else if (motion.morphs[i]) {
+            bodies.flows[i] = true;
+        } else if (frame[i] != none) {
+            auto const of = static_cast<std::size_t>(frame[i]);
+            if (number[of] == static_body && rigid_above[of] && bodies.frames.size() <= most) {
+                number[of] = static_cast<BodyNumber>(bodies.frames.size());
+                bodies.frames.push_back(frame[i]);
+            }
+            bodies.body_of_node[i] = number[of];
+            bodies.flows[i] = number[of] == static_body;
+        }
+    }
+    return bodies;
+}
+
+BodyPose body_pose(SceneBodies const& bodies, ScenePose const& pose, BodyNumber body) {
+    Index const frame = bodies.frames[body];
+    if (frame == none) {
+        return {};
+    }
+    Transform const world = transform_of(pose.world_from_node[static_cast<std::size_t>(frame)]);
+    return {world.translation, world.rotation, world.scale};
+}
+
+std::vector<BodyTrack> body_tracks(Scene const& scene, std::span<Index const> clips, SceneBodies const& bodies,
+                                   std::int64_t first_key, std::size_t count) {
+    std::vector<BodyTrack> tracks;
+    for (std::size_t body = 1; body < bodies.frames.size(); ++body) {
+        tracks.push_back({static_cast<BodyNumber>(body), first_key, {}});
+        tracks.back().keys.reserve(count);
+    }
+    for (std::size_t key = 0; key < count && !tracks.empty(); ++key) {
+        double const number = static_cast<double>(first_key) + static_cast<double>(key);
+        ScenePose const pose = evaluate_pose(scene, clips, number / body_keys_per_second);
+        for (BodyTrack& track : tracks) {
+            track.keys.push_back(body_pose(bodies, pose, track.body));
+        }
+    }
+    return tracks;
+}
+
+BodyTrack scene_camera_track(Scene const& scene, std::span<Index const> clips, Index camera, std::int64_t first_key,
+                             std::size_t count) {
+    BodyTrack track{camera_body(camera), first_key, {}};
+    for (std::size_t key = 0; key < count; ++key) {
+        double const number = static_cast<double>(first_key) + static_cast<double>(key);
+        Camera const at = scene_camera(scene, evaluate_pose(scene, clips, number / body_keys_per_second), camera);
+        track.keys.push_back({at.position, at.orientation, Vec3(1)});
+    }
+    return track;
+}
+
+bool camera_moves(Scene const& scene, std::span<Index const> clips, Index camera) {
+    return moving_nodes(scene, clips)[static_cast<std::size_t>(scene.cameras[static_cast<std::size_t>(camera)].node)];
+}
+
+} // namespace framelet

@@ -1,0 +1,48 @@
+// Which rigid body carries every node, and where the bodies are. In: scene, playing clips, times. Out: numbers, poses.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "common/framelet/body_track.h"
+#include "server/scene/motion/animation.h"
+
+namespace framelet {
+
+/// Nodes that keep their places relative to each other, whatever the time, are of one body. Decided by structure: a
+/// node is of the body of the nearest node among itself and its ancestors that the clips move.
+struct SceneBodies {
+    /// Of every node. Those that `flow` are of the static body.
+    std::vector<BodyNumber> body_of_node;
+    /// Nodes whose meshes no body carries: skinned, morphing, carried by a transform that shears in the course of time,
+    /// or too many. Their samples have velocities. Only nodes that draw something.
+    std::vector<bool> flows;
+    /// By body number: the node whose world transform is the body's pose. `none` for the static body.
+    std::vector<Index> frames{none};
+
+    bool any_moves() const { return frames.size() > 1; }
+    bool any_flows() const;
+};
+
+/// The largest body number.
+inline constexpr std::size_t most_bodies = 65535;
+
+/// Numbers the bodies in the order of their nodes; only those that draw something get a number, and no more than
+/// `most` of them.
+SceneBodies find_bodies(Scene const& scene, std::span<Index const> clips, std::size_t most = most_bodies);
+
+/// Where the body is in this pose of its scene. Finite; the rotation has unit length.
+BodyPose body_pose(SceneBodies const& bodies, ScenePose const& pose, BodyNumber body);
+
+/// Tracks of all bodies but the static one, by body number: `count` keys from `first_key` on.
+std::vector<BodyTrack> body_tracks(Scene const& scene, std::span<Index const> clips, SceneBodies const& bodies,
+                                   std::int64_t first_key, std::size_t count);
+
+/// The same of a camera of the scene, as `camera_body` of it: from where it looks at the world.
+BodyTrack scene_camera_track(Scene const& scene, std::span<Index const> clips, Index camera, std::int64_t first_key,
+                             std::size_t count);
+
+/// True for a camera of the scene that goes with something that moves.
+bool camera_moves(Scene const& scene, std::span<Index const> clips, Index camera);
+
+} // namespace framelet
