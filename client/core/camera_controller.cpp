@@ -38,6 +38,9 @@ CameraController::CameraController(Camera const& home, Bounds const& scene)
 
 void CameraController::set_camera(Camera const& camera) {
     camera_ = camera;
+    if (camera.projection == Projection::perspective) {
+        field_of_view_ = camera.vertical_extent;
+    }
     Vec3 const center =
         scene_.empty() || size_ >= largest_scene ? camera.position + camera.forward() * size_ : scene_.center();
     float const along = glm::dot(center - camera.position, camera.forward());
@@ -113,6 +116,27 @@ void CameraController::focus(Vec3 point) {
     pivot_ = Vec3(0, 0, -distance);
     dolly(halfway_steps);
     go_to(target - camera_.orientation * pivot_);
+}
+
+void CameraController::look_along(Vec3 forward, Vec3 up) {
+    Vec3 const center = pivot();
+    camera_.orientation = look_at(Vec3(0, 0, 0), forward, up, 1).orientation;
+    pivot_ = Vec3(0, 0, -glm::length(pivot_));
+    go_to(center - camera_.orientation * pivot_);
+}
+
+void CameraController::toggle_projection() {
+    float const slope = 2 * std::tan(0.5f * field_of_view_); // metres of height in the picture a metre away
+    if (camera_.projection == Projection::perspective) {
+        camera_.projection = Projection::orthographic;
+        camera_.vertical_extent = std::clamp(slope * -pivot_.z, 1e-5f * size_, 1e3f * size_);
+        return;
+    }
+    Vec3 const center = pivot();
+    pivot_.z = -std::clamp(camera_.vertical_extent / slope, 1e-5f * size_, 1e3f * size_);
+    camera_.projection = Projection::perspective;
+    camera_.vertical_extent = field_of_view_;
+    go_to(center - camera_.orientation * pivot_);
 }
 
 void CameraController::fit(Viewport viewport) {

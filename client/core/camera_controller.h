@@ -1,5 +1,6 @@
-// What the hands do to the camera: orbit, pan, dolly, fly, focus. In: pointer movement in pixels, held keys and
-// seconds. Out: a camera. Works alike for scenes of a few centimetres and of kilometres, and at any frame rate.
+// What the hands do to the camera: orbit, pan, dolly, fly, focus, look along an axis. In: pointer movement in pixels,
+// held keys and seconds. Out: a camera. Works alike for scenes of a few centimetres and of kilometres, and at any frame
+// rate.
 #pragma once
 
 #include "common/camera.h"
@@ -32,6 +33,11 @@ public:
     /// Backs off, or nears, until all of the scene is in the picture, seen from the same direction.
     void fit(Viewport viewport);
 
+    /// Turns around the pivot, which comes into the middle of the picture, until it looks along this axis of the world.
+    void look_along(Vec3 forward, Vec3 up);
+    /// From perspective to orthographic or back; what lies as deep as the pivot stays as large as it is.
+    void toggle_projection();
+
     /// Around the pivot, which stays where it is in the picture: the picture's whole height is half a turn. World up
     /// stays up.
     void orbit(Vec2 pixels, Viewport viewport);
@@ -56,6 +62,7 @@ private:
     float size_; ///< the scene's diagonal, metres
     float reach_; ///< how far one goes in a few seconds, metres
     Camera camera_;
+    float field_of_view_ = Camera().vertical_extent; ///< that the last perspective camera had
     Vec3 pivot_{0, 0, -1}; ///< in camera space: it goes with the camera
 };
 

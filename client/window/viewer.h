@@ -50,6 +50,7 @@ private:
     void step_clock(double seconds);
     void choose_scene_camera(int number);
     void leave_scene_camera();
+    void take_view(Command command);
     void change_exposure(float stops);
     void change_bias(float step);
     void toggle_smoothing();

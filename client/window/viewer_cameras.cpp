@@ -34,6 +34,28 @@ void Viewer::leave_scene_camera() {
     }
 }
 
+void Viewer::take_view(Command command) {
+    leave_scene_camera();
+    is_at_bookmark_ = false;
+    switch (command) { // glTF's scenes look towards +Z, and up is +Y
+    case Command::view_front:
+        controller_->look_along({0, 0, -1}, {0, 1, 0});
+        say("from the front");
+        break;
+    case Command::view_right:
+        controller_->look_along({-1, 0, 0}, {0, 1, 0});
+        say("from the right");
+        break;
+    case Command::view_top:
+        controller_->look_along({0, -1, 0}, {0, 0, -1});
+        say("from above");
+        break;
+    default:
+        controller_->toggle_projection();
+        say(controller_->camera().projection == Projection::orthographic ? "orthographic" : "perspective");
+    }
+}
+
 Camera Viewer::present_camera() const {
     return scene_camera_ >= 0 ? core_->shown_camera() : controller_->camera();
 }

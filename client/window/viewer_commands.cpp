@@ -165,6 +165,12 @@ void Viewer::apply(Command command) {
         is_at_bookmark_ = false;
         controller_->fit(window_.framebuffer_size());
         break;
+    case Command::view_front:
+    case Command::view_right:
+    case Command::view_top:
+    case Command::toggle_projection:
+        take_view(command);
+        break;
     case Command::free_camera:
         leave_scene_camera();
         break;

@@ -248,5 +248,50 @@ TEST(CameraController, OrthographicViewsZoom) {
     EXPECT_NEAR(glm::distance(controller.camera().position, camera.position), 0.9f, 1e-3f);
 }
 
+TEST_P(CameraControllerOfSize, LooksAlongAnAxisAtWhatItLookedAt) {
+    float const size = GetParam();
+    Stage const stage(size);
+    CameraController controller(stage.home, stage.scene);
+    Vec3 const point = Vec3(0.1f, 0.05f, 0.02f) * size;
+    controller.set_pivot(point);
+    float const distance = glm::length(point - stage.home.position);
+    struct View {
+        Vec3 forward, up, right;
+    };
+    for (auto const& [forward, up, right] : {View{{0, 0, -1}, {0, 1, 0}, {1, 0, 0}},
+                                             {{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}},
+                                             {{0, -1, 0}, {0, 0, -1}, {1, 0, 0}}}) {
+        controller.look_along(forward, up);
+        Camera const& camera = controller.camera();
+        ASSERT_TRUE(is_valid(camera));
+        EXPECT_LT(glm::length(camera.forward() - forward), 1e-4f);
+        EXPECT_LT(glm::length(camera.right() - right), 1e-4f);
+        EXPECT_LT(glm::length(camera.position + distance * forward - point), 1e-3f * size);
+    }
+}
+
+TEST_P(CameraControllerOfSize, ProjectionsShowThePivotAtItsPlaceAndInItsSize) {
+    float const size = GetParam();
+    Stage const stage(size);
+    CameraController controller(stage.home, stage.scene);
+    controller.set_pivot(Vec3(0.1f, 0.05f, 0.02f) * size);
+    controller.toggle_projection();
+    Camera const flat = controller.camera();
+    ASSERT_TRUE(is_valid(flat));
+    ASSERT_EQ(flat.projection, Projection::orthographic);
+    EXPECT_EQ(flat.position, stage.home.position);
+    float const depth = glm::dot(controller.pivot() - flat.position, flat.forward());
+    EXPECT_NEAR(flat.vertical_extent, 2 * std::tan(0.4f) * depth, 1e-3f * size);
+    controller.toggle_projection();
+    EXPECT_EQ(controller.camera().projection, Projection::perspective);
+    EXPECT_FLOAT_EQ(controller.camera().vertical_extent, 0.8f);
+    EXPECT_LT(glm::length(controller.camera().position - stage.home.position), 1e-3f * size);
+    controller.toggle_projection();
+    controller.dolly(1); // makes the picture's height a tenth less, which perspective does by going nearer
+    controller.toggle_projection();
+    float const nearer = glm::dot(controller.pivot() - controller.camera().position, flat.forward());
+    EXPECT_NEAR(nearer, 0.9f * depth, 1e-3f * size);
+}
+
 } // namespace
 } // namespace framelet

@@ -56,6 +56,7 @@ TEST(KeyTable, NamesAreThoseOnTheKeyboard) {
     EXPECT_EQ(key_names(Command::toggle_statistics), "F2 or Tab");
     EXPECT_EQ(key_names(Command::toggle_fullscreen), "F11 or Alt+Enter");
     EXPECT_EQ(key_names(Command::faster), "+");
+    EXPECT_EQ(key_names(Command::view_front), "Num 1");
     EXPECT_EQ(with_keys("record", Command::toggle_recording), "record (F9)");
     EXPECT_EQ(with_keys("close", Command::quit), "close");
 }

@@ -17,6 +17,10 @@ struct Line {
 constexpr Line cameras[] = {
     {Command::fit_scene, "the whole scene"},
     {Command::reset, "back to the first view"},
+    {Command::view_front, "look at it from the front"},
+    {Command::view_right, "from the right"},
+    {Command::view_top, "from above"},
+    {Command::toggle_projection, "orthographic, or perspective"},
     {Command::free_camera, "leave the camera, go on from there"},
     {Command::add_bookmark, "bookmark this view"},
     {Command::remove_bookmark, "remove the bookmark gone to last"},

@@ -36,6 +36,10 @@ constexpr std::array unnumbered{
     KeyMeaning{GLFW_KEY_L, alone, Command::fresher, true},
     KeyMeaning{GLFW_KEY_0, alone, Command::free_camera, false},
     KeyMeaning{GLFW_KEY_F, alone, Command::fit_scene, false},
+    KeyMeaning{GLFW_KEY_KP_1, alone, Command::view_front, false},
+    KeyMeaning{GLFW_KEY_KP_3, alone, Command::view_right, false},
+    KeyMeaning{GLFW_KEY_KP_7, alone, Command::view_top, false},
+    KeyMeaning{GLFW_KEY_KP_5, alone, Command::toggle_projection, false},
     KeyMeaning{GLFW_KEY_B, alone, Command::add_bookmark, false},
     KeyMeaning{GLFW_KEY_B, shift, Command::remove_bookmark, false},
     KeyMeaning{GLFW_KEY_C, alone, Command::copy_camera, false},
@@ -85,14 +89,18 @@ std::string name_of_key(int key) {
     default:
         break;
     }
+    if (key >= GLFW_KEY_KP_0 && key <= GLFW_KEY_KP_9) {
+        return "Num " + std::to_string(key - GLFW_KEY_KP_0);
+    }
     if (key >= GLFW_KEY_F1 && key <= GLFW_KEY_F25) {
         return "F" + std::to_string(key - GLFW_KEY_F1 + 1);
     }
     return std::string(1, static_cast<char>(key)); // GLFW numbers the others as ASCII does
 }
 
-bool is_on_keypad(int key) {
-    return key >= GLFW_KEY_KP_0 && key <= GLFW_KEY_KP_EQUAL;
+/// Such keys are told of where they are digits; the others do what their like on the main block does.
+bool has_a_double(int key) {
+    return key >= GLFW_KEY_KP_DECIMAL && key <= GLFW_KEY_KP_EQUAL;
 }
 
 } // namespace
@@ -119,7 +127,7 @@ std::optional<Command> command_of_key(int key, KeyModifiers with, bool held_down
 std::string key_names(Command command) {
     std::string out;
     for (KeyMeaning const& meaning : all_meanings) {
-        if (meaning.command != command || is_on_keypad(meaning.key)) {
+        if (meaning.command != command || has_a_double(meaning.key)) {
             continue;
         }
         out += out.empty() ? "" : " or ";

@@ -141,6 +141,13 @@ void draw_camera_menu(CameraMenu const& menu, OverlayFrame& frame) {
         ImGui::PopID();
     }
     ImGui::Separator();
+    for (Command const command :
+         {Command::view_front, Command::view_right, Command::view_top, Command::toggle_projection}) {
+        if (ImGui::Selectable(tip_of(command).c_str(), false, ImGuiSelectableFlags_DontClosePopups)) {
+            frame.actions.commands.push_back(command);
+        }
+    }
+    ImGui::Separator();
     ImGui::PushID("bookmarks");
     for (std::size_t i = 0; i < menu.bookmarks.size(); ++i) {
         bookmark_row(static_cast<int>(i), menu.bookmarks[i], frame);
