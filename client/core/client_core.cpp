@@ -573,6 +573,11 @@ std::optional<Vec3> ClientCore::point_at(Vec2 place) const {
     return impl_->pictures.current() == nullptr ? std::nullopt : impl_->pictures.shown().point_at(place);
 }
 
+std::vector<float> ClientCore::picture_depths() const {
+    std::lock_guard const lock(impl_->picture_mutex);
+    return impl_->pictures.current() == nullptr ? std::vector<float>() : impl_->pictures.shown().depths();
+}
+
 bool ClientCore::wait_for_news(std::chrono::nanoseconds at_most) {
     std::unique_lock lock(impl_->mutex);
     impl_->news_arrived.wait_for(lock, at_most, [this] { return impl_->news; });

@@ -75,6 +75,8 @@ public:
     /// The point of the world that this place of the last picture shows, pixel coordinates; nothing where that is not
     /// known, or infinitely far. Takes about as long as a picture.
     std::optional<Vec3> point_at(Vec2 place) const;
+    /// How deep the pixels of the last picture are, as `find_shown_depths`. Takes longer than a picture.
+    std::vector<float> picture_depths() const;
 
     /// Waits until something has come since the last call, or the time is over; true when something has.
     bool wait_for_news(std::chrono::nanoseconds at_most);

@@ -186,6 +186,10 @@ std::optional<Vec3> PictureMaker::point_at(Vec2 place) const {
     return find_shown_point(pool_, shown_camera_, shown_time_, motions_, place);
 }
 
+std::vector<float> PictureMaker::depths() const {
+    return find_shown_depths(pool_, shown_camera_, shown_time_, motions_);
+}
+
 double PictureMaker::coverage() const {
     bool const moves = settings_.reproject && shown_pixels_ != nullptr && !smoother_ && !reprojector_.is_exact();
     return moves ? 1 - reprojector_.hole_share() : pool_.newest().coverage();

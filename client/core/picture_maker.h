@@ -66,6 +66,8 @@ public:
     void draw_over(DrawnOver what, Picture& picture) const;
     /// The point of the world that this place of it shows, as `find_shown_point`.
     std::optional<Vec3> point_at(Vec2 place) const;
+    /// How deep its pixels are, as `find_shown_depths`.
+    std::vector<float> depths() const;
 
     /// What the last picture shows; before there is one, what the newest batch was seen from.
     Camera const& shown_camera() const { return shown_camera_; }

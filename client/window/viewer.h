@@ -54,7 +54,7 @@ private:
     void change_exposure(float stops);
     void change_bias(float step);
     void toggle_smoothing();
-    void save_screenshot();
+    void save_screenshot(bool with_depth);
     void toggle_recording();
     void watch_recording();
     Camera present_camera() const;

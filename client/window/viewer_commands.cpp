@@ -205,7 +205,10 @@ void Viewer::apply(Command command) {
         toggle_smoothing();
         break;
     case Command::screenshot:
-        save_screenshot();
+        save_screenshot(false);
+        break;
+    case Command::screenshot_with_depth:
+        save_screenshot(true);
         break;
     case Command::toggle_recording:
         toggle_recording();
@@ -278,16 +281,26 @@ void Viewer::toggle_smoothing() {
     say(lag_seconds_ > 0 ? "smooth, " + lag_text(lag_seconds_) : "going on from what is newest");
 }
 
-void Viewer::save_screenshot() {
+void Viewer::save_screenshot(bool with_depth) {
     if (picture_.rgba.empty()) {
         say("there is no picture yet");
         return;
     }
     std::error_code error;
-    fs::path const file = new_file_name(fs::current_path(error), ".png");
+    fs::path const file = new_file_name(fs::current_path(error), with_depth ? ".exr" : ".png");
+    std::string lacks;
     try {
-        write_png(file, picture_);
-        say("saved " + file.string(), long_note_seconds);
+        if (with_depth) {
+            std::vector<float> depths = core_->picture_depths();
+            if (4 * depths.size() != picture_.rgba.size()) { // none, or a picture of another size is shown for a while
+                depths.clear();
+                lacks = ", without depth: it is not known here";
+            }
+            write_exr(file, picture_, depths);
+        } else {
+            write_png(file, picture_);
+        }
+        say("saved " + file.string() + lacks, long_note_seconds);
     } catch (InputError const& failure) {
         say(failure.what(), long_note_seconds);
     }

@@ -10,6 +10,7 @@
 #include <png.h>
 
 #include "common/error.h"
+#include "common/files/exr.h"
 
 namespace framelet {
 namespace {
@@ -83,6 +84,12 @@ void write_file(std::filesystem::path const& file, Write const& write) {
     }
 }
 
+void write_content(std::filesystem::path const& file, std::string const& content) {
+    write_file(file, [&](std::FILE* stream) -> std::string {
+        return std::fwrite(content.data(), 1, content.size(), stream) == content.size() ? "" : std::strerror(errno);
+    });
+}
+
 } // namespace
 
 void write_png(std::filesystem::path const& file, Picture const& picture) {
@@ -98,9 +105,11 @@ void write_ppm(std::filesystem::path const& file, Picture const& picture) {
     for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
         content.append(reinterpret_cast<char const*>(&picture.rgba[i]), 3);
     }
-    write_file(file, [&](std::FILE* stream) -> std::string {
-        return std::fwrite(content.data(), 1, content.size(), stream) == content.size() ? "" : std::strerror(errno);
-    });
+    write_content(file, content);
+}
+
+void write_exr(std::filesystem::path const& file, Picture const& picture, std::span<float const> depths) {
+    write_content(file, exr_bytes(picture, depths));
 }
 
 } // namespace framelet

@@ -1,8 +1,9 @@
-// Pictures out: PNG files through libpng, or PPM files, which cost nothing to make. The thin programs need no more of
-// an image library.
+// Pictures out: PNG files through libpng, PPM files, which cost nothing to make, or EXR files with depth. The thin
+// programs need no more of an image library.
 #pragma once
 
 #include <filesystem>
+#include <span>
 
 #include "common/image.h"
 
@@ -13,5 +14,8 @@ void write_png(std::filesystem::path const& file, Picture const& picture);
 
 /// The same without compression (binary PPM, "P6").
 void write_ppm(std::filesystem::path const& file, Picture const& picture);
+
+/// Linear, with the depth of each pixel, as `exr_bytes` has them. Throws InputError, which names the file.
+void write_exr(std::filesystem::path const& file, Picture const& picture, std::span<float const> depths);
 
 } // namespace framelet

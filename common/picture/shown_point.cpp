@@ -1,6 +1,8 @@
 #include "common/picture/shown_point.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "common/picture/pool_plan.h"
 
@@ -14,6 +16,10 @@ constexpr int most_pixels_away = 4;
 
 /// Of the pixel in that column and row of the block, or of its nearest neighbour in the block; `hole_depth`: none.
 float inverse_depth_near(WarpedBlock const& block, int column, int row) {
+    float const own = block.inverse_depth[static_cast<std::size_t>(row * side + column)];
+    if (own != hole_depth) {
+        return own;
+    }
     int nearest = most_pixels_away * most_pixels_away + 1;
     float out = hole_depth;
     for (int y = 0; y < side; ++y) {
@@ -27,6 +33,11 @@ float inverse_depth_near(WarpedBlock const& block, int column, int row) {
         }
     }
     return out;
+}
+
+/// So far that no camera's numbers reach there.
+bool is_infinitely_far(float inverse_depth) {
+    return !(inverse_depth * max_camera_coordinate > 1);
 }
 
 } // namespace
@@ -45,13 +56,40 @@ std::optional<Vec3> find_shown_point(FrameletPool const& pool, Camera const& cam
     WarpedBlock block;
     plan.paint(x / side, y / side, patches, block);
     float const inverse_depth = inverse_depth_near(block, x % side, y % side);
-    if (!(inverse_depth * max_camera_coordinate > 1)) {
+    if (is_infinitely_far(inverse_depth)) {
         return std::nullopt;
     }
     ViewRays const rays = make_view_rays(camera, viewport);
     Vec3 const origin = rays.origin + place.x * rays.origin_dx + place.y * rays.origin_dy;
     Vec3 const direction = rays.direction + place.x * rays.direction_dx + place.y * rays.direction_dy;
     return origin + direction / inverse_depth;
+}
+
+std::vector<float> find_shown_depths(FrameletPool const& pool, Camera const& camera, SceneTime scene_time,
+                                     BodyMotions const& motions) {
+    Viewport const viewport = pool.plane().viewport();
+    std::vector<float> out(static_cast<std::size_t>(viewport.width) * static_cast<std::size_t>(viewport.height));
+    PoolPlan plan(pool, camera, scene_time, motions);
+    std::vector<PatchView> patches;
+    WarpedBlock block;
+    bool is_known = false;
+    for (int row = 0; row < plan.rows(); ++row) {
+        for (int column = 0; column < plan.columns(); ++column) {
+            plan.paint(column, row, patches, block);
+            for (int y = 0; y < std::min(side, viewport.height - row * side); ++y) {
+                for (int x = 0; x < std::min(side, viewport.width - column * side); ++x) {
+                    float const inverse_depth = inverse_depth_near(block, x, y);
+                    is_known = is_known || inverse_depth != hole_depth;
+                    out[static_cast<std::size_t>(row * side + y) * static_cast<std::size_t>(viewport.width) +
+                        static_cast<std::size_t>(column * side + x)] = inverse_depth == hole_depth ? 0
+                                                                       : is_infinitely_far(inverse_depth)
+                                                                           ? std::numeric_limits<float>::infinity()
+                                                                           : 1 / inverse_depth;
+                }
+            }
+        }
+    }
+    return is_known ? out : std::vector<float>();
 }
 
 } // namespace framelet

@@ -1,5 +1,7 @@
 #include "common/picture/shown_point.h"
 
+#include <cmath>
+
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
@@ -65,6 +67,29 @@ TEST(ShownPoint, OfNothingAndOutsideIsNone) {
     for (Vec2 const place : {Vec2(-1, 5), Vec2(5, -1), Vec2(viewport.width, 5), Vec2(5, viewport.height), Vec2(NAN)}) {
         EXPECT_FALSE(find_shown_point(pool, front(), 0, {}, place));
     }
+}
+
+TEST(ShownDepths, AreThoseOfTheShownPoints) {
+    FrameletPool const pool = filled(room(), front(), 0);
+    for (Camera const& camera : {front(), aside()}) {
+        std::vector<float> const depths = find_shown_depths(pool, camera, 0, {});
+        ASSERT_EQ(depths.size(), static_cast<std::size_t>(viewport.width) * viewport.height);
+        for (int y = 3; y < viewport.height; y += 8) {
+            for (int x = 2; x < viewport.width; x += 5) {
+                std::optional<Vec3> const point = find_shown_point(pool, camera, 0, {}, Vec2(x, y) + 0.5f);
+                float const depth = depths[at(x, y)];
+                if (point) {
+                    EXPECT_NEAR(depth, glm::dot(*point - camera.position, camera.forward()), 1e-3f * depth);
+                } else {
+                    EXPECT_TRUE(depth == 0 || std::isinf(depth)) << x << ' ' << y << ": " << depth;
+                }
+            }
+        }
+    }
+}
+
+TEST(ShownDepths, OfNothingAreNone) {
+    EXPECT_TRUE(find_shown_depths(FrameletPool{ImagePlane(viewport)}, front(), 0, {}).empty());
 }
 
 } // namespace

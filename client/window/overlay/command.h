@@ -42,6 +42,7 @@ enum class Command : std::uint8_t {
     toggle_reprojection,
     toggle_smoothing,
     screenshot,
+    screenshot_with_depth,
     toggle_recording,
     scene_camera, ///< the first; `scene_camera` + n is the n-th more, up to 8 more
     bookmark = scene_camera + 9, ///< likewise

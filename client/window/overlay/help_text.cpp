@@ -39,6 +39,7 @@ constexpr Line others[] = {
     {Command::sharper, "while things move: more detail"},
     {Command::fresher, "while things move: newer pixels"},
     {Command::screenshot, "screenshot, a PNG in the current folder"},
+    {Command::screenshot_with_depth, "the same as EXR, with depth"},
     {Command::toggle_recording, "record what is seen, or stop"},
     {Command::toggle_statistics, "statistics"},
     {Command::toggle_details, "details in them"},

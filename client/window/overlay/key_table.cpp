@@ -54,6 +54,7 @@ constexpr std::array unnumbered{
     KeyMeaning{GLFW_KEY_F6, alone, Command::toggle_time_line, false},
     KeyMeaning{GLFW_KEY_F9, alone, Command::toggle_recording, false},
     KeyMeaning{GLFW_KEY_F12, alone, Command::screenshot, false},
+    KeyMeaning{GLFW_KEY_F12, shift, Command::screenshot_with_depth, false},
     KeyMeaning{GLFW_KEY_F11, alone, Command::toggle_fullscreen, false},
     KeyMeaning{GLFW_KEY_ENTER, alt, Command::toggle_fullscreen, false},
 };

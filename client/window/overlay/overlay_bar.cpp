@@ -25,7 +25,8 @@ std::string formatted(char const* format, Values... values) {
 }
 
 std::string tip_of(Command command) {
-    return with_keys(help_text(command), command);
+    std::string const tip = with_keys(help_text(command), command);
+    return command == Command::screenshot ? tip + "\n" + tip_of(Command::screenshot_with_depth) : tip;
 }
 
 void clock_controls(TimeLine const& line, float right_width, OverlayFrame& frame) {
