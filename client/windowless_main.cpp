@@ -20,6 +20,7 @@
 #include "client/frame_writer.h"
 #include "client/picture_size.h"
 #include "client/statistics_text.h"
+#include "client/tev/tev_sender.h"
 #include "client/video/film_sink.h"
 #include "client/video/video_writer.h"
 #include "common/color.h"
@@ -45,6 +46,7 @@ struct Options {
     std::optional<double> rate;
     std::vector<double> output_times;
     std::string output;
+    std::string tev;
     std::string frames_file;
     bool json = false;
     DrawnOver overlay = DrawnOver::nothing;
@@ -75,9 +77,9 @@ however slow its reader is, and the statistics go to standard error; once nobody
 
 SIGINT (Ctrl-C) and SIGTERM end it as the end of --duration does, once what was shown is written; a second one ends it
 at once.)",
-        {{0, "fine"},
-         {1, "a file cannot be used, the server cannot be reached, refused the client or was gone at the end, or the "
-             "picture did not converge in time"},
+        {{0, "fine; also where nobody reads the video any more, or tev has gone"},
+         {1, "a file cannot be used, tev or the server cannot be reached, the server refused the client or was gone at "
+             "the end, or the picture did not converge in time"},
          {2, "bad usage"}},
         {"framelet-server", "framelet-viewer", "framelet"}};
 }
@@ -185,6 +187,11 @@ FrameSinks make_sinks(Options const& options, std::optional<FramePattern> const&
     } else if (pattern) {
         sinks.push_back(std::make_unique<FrameWriter>(
             *pattern, options.output_times.empty() ? WhenWritten::at_once : WhenWritten::at_the_end));
+    }
+    if (!options.tev.empty()) {
+        // tev keeps images of runs before: each has a name of its own.
+        std::string const name = "framelet " + options.connection.server + " (" + std::to_string(::getpid()) + ")";
+        sinks.push_back(std::make_unique<TevSender>(parse_address(options.tev, default_tev_port), name, viewport));
     }
     return sinks;
 }
@@ -387,6 +394,13 @@ int main(int argc, char** argv) {
                 FramePattern{text};
             }
         }));
+    app.add_option(
+           "--tev", options.tev,
+           "Show the pictures in the image viewer tev as well, which listens at HOST or HOST:PORT; without a port at "
+           "port " +
+               std::to_string(default_tev_port))
+        ->type_name("ADDRESS")
+        ->check(readable_by([](std::string const& text) { parse_address(text, default_tev_port); }));
     app.add_option("--rate", options.rate, "Display frames a second")
         ->type_name("HZ")
         ->default_str("60, with numbered files 10, of a film or video 30")

@@ -13,12 +13,16 @@ std::string ServerAddress::text() const {
 }
 
 ServerAddress parse_server_address(std::string const& text) {
+    return parse_address(text, default_port);
+}
+
+ServerAddress parse_address(std::string const& text, std::uint16_t port_without) {
     auto const fail = [&](char const* what) {
         return InputError("cannot use \"" + text + "\" as a server: " + what +
-                          ": write HOST or HOST:PORT, as in 127.0.0.1:7070");
+                          ": write HOST or HOST:PORT, as in 127.0.0.1:" + std::to_string(port_without));
     };
     ServerAddress out;
-    std::string port = std::to_string(default_port);
+    std::string port = std::to_string(port_without);
     if (text.starts_with('[')) {
         std::size_t const end = text.find(']');
         if (end == std::string::npos || (end + 1 < text.size() && text[end + 1] != ':')) {

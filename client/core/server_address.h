@@ -19,6 +19,8 @@ struct ServerAddress {
 
 /// Reads HOST, HOST:PORT, [IPV6] or [IPV6]:PORT; without a port it is `default_port`. Throws InputError.
 ServerAddress parse_server_address(std::string const& text);
+/// The same of another program, which listens at that port where `text` has none.
+ServerAddress parse_address(std::string const& text, std::uint16_t port_without);
 
 struct ConnectionOptions {
     ServerAddress server;

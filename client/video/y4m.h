@@ -2,6 +2,7 @@
 // pictures; out, bytes as mjpegtools' yuv4mpeg(5) has them. 8 bits, 4:4:4, limited range.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "client/video/video_clock.h"

@@ -16,6 +16,8 @@ TEST(ServerAddress, IsReadAsWritten) {
     EXPECT_EQ(parse_server_address("host:80").text(), "host:80");
     EXPECT_EQ(parse_server_address("localhost"), (ServerAddress{"localhost", 7070}));
     EXPECT_EQ(parse_server_address("[::1]"), (ServerAddress{"::1", 7070}));
+    EXPECT_EQ(parse_address("localhost", 14158), (ServerAddress{"localhost", 14158}));
+    EXPECT_EQ(parse_address("localhost:80", 14158), (ServerAddress{"localhost", 80}));
 }
 
 TEST(ServerAddress, AnythingElseIsRefused) {
