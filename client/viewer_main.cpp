@@ -1,6 +1,6 @@
 // framelet-viewer: a window on a scene that framelet-server renders.
 #include <iostream>
-#include <memory>
+#include <optional>
 #include <utility>
 
 #include "client/connection_arguments.h"
@@ -8,6 +8,7 @@
 #include "client/picture_size.h"
 #include "client/window/first_connection.h"
 #include "client/window/kept/viewer_memory.h"
+#include "client/window/scene_opener.h"
 #include "client/window/viewer.h"
 #include "common/command_line/program_failure.h"
 #include "common/error.h"
@@ -17,7 +18,8 @@ namespace {
 framelet::ProgramNotes notes() {
     return {
         "Where the server is not there yet the window waits for it. Where it is gone for a while, what is held goes on "
-        "being shown, and the session goes on when it is back; see --no-reconnect.",
+        "being shown, and the session goes on when it is back; see --no-reconnect. A scene file that is dropped on the "
+        "window opens there, served by this machine.",
         {{0, "fine"},
          {1, "no display, a file cannot be used, or the server cannot be reached, refused the viewer or has vanished"},
          {2, "bad usage"}},
@@ -33,6 +35,7 @@ int main(int argc, char** argv) {
     std::string size = "1280x720";
     bool fullscreen = false;
     DisplayArguments display;
+    std::optional<int> server_needed;
 
     CLI::App app("Shows a scene that framelet-server renders. F1 in the window lists the keys.", "framelet-viewer");
     prepare_command_line(app, notes());
@@ -45,6 +48,8 @@ int main(int argc, char** argv) {
             ->capture_default_str();
     app.add_flag("--fullscreen", fullscreen, "Fill the screen, as it also does where it did last time");
     add_display_options(app, display);
+    // As framelet starts it: a descriptor for SceneOpener.
+    app.add_option("--server-needed", server_needed)->group("")->configurable(false);
     add_config_option(app);
 
     Viewport viewport;
@@ -72,7 +77,8 @@ int main(int argc, char** argv) {
             viewport = memory.size.value_or(viewport);
         }
         Window window("framelet-viewer", viewport);
-        FirstConnection first;
+        SceneOpener opener(Viewer::connect, Window::wake, server_needed);
+        Connection first;
         if (!options.reconnect) {
             first = {Viewer::connect(options), options};
         }
@@ -81,14 +87,13 @@ int main(int argc, char** argv) {
             window.toggle_fullscreen();
         }
         if (!first.core) {
-            first = wait_for_server(window, arguments.server, options_for, memory.servers);
+            first = wait_for_server(window, arguments.server, options_for, memory.servers, opener);
         }
         if (!first.core) {
             return 1;
         }
         int const result =
-            Viewer(window, first.options, std::move(first.core), display.settings(), display.lag_seconds(), memory)
-                .run();
+            Viewer(window, std::move(first), opener, display.settings(), display.lag_seconds(), memory).run();
         write_viewer_memory(memory);
         return result;
     } catch (std::exception const& error) {

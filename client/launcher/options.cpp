@@ -52,9 +52,9 @@ std::variant<ViewOptions, int> parse_options(int argc, char const* const* argv) 
     // Their values are taken from CLI11 as they were written.
     auto const option = [&](char const* name, std::string const& text) { return view->add_option(name, text); };
     auto const flag = [&](char const* name, std::string const& text) { view->add_flag(name, text); };
-    std::string scene;
     view->option_defaults()->group(scene_group);
-    view->add_option("SCENE", scene, "Scene file: .gltf, .glb, .obj and what else framelet-server reads")->required();
+    view->add_option("SCENE", out.scene, "Scene file: .gltf, .glb, .obj and what else framelet-server reads")
+        ->required();
     option("--environment", "Environment map (.hdr, .exr) that lights the scene")->type_name("FILE");
     option("--clip", "Animation clip to play, by name; may be given several times")
         ->type_name("NAME")
@@ -74,10 +74,8 @@ std::variant<ViewOptions, int> parse_options(int argc, char const* const* argv) 
     } catch (CLI::ParseError const& error) {
         return exit_usage(app, error);
     }
-    // Behind it, what looks like an option is none.
     pass_on(*view, scene_group, out.server);
     std::copy(separator == end ? end : separator + 1, end, std::back_inserter(out.server));
-    out.server.insert(out.server.end(), {"--", scene});
     pass_on(*view, window_group, out.viewer);
     return out;
 }

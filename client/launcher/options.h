@@ -9,7 +9,8 @@ namespace framelet {
 
 /// What the two programs are to be started with.
 struct ViewOptions {
-    std::vector<std::string> server; ///< all but the port
+    std::string scene;
+    std::vector<std::string> server; ///< all but the port and the scene
     std::vector<std::string> viewer; ///< all but the server's address
 };
 

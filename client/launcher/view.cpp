@@ -1,23 +1,24 @@
 #include "client/launcher/view.h"
 
 #include <array>
+#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <iostream>
-#include <istream>
+#include <optional>
 #include <system_error>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>
-#include <boost/asio/read_until.hpp>
+#include <boost/asio/post.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <boost/asio/streambuf.hpp>
 #include <fcntl.h>
 #include <unistd.h>
 
-#include "client/launcher/child.h"
+#include "client/child.h"
+#include "client/private_server.h"
 #include "common/error.h"
 
 namespace framelet {
@@ -30,9 +31,7 @@ constexpr std::chrono::seconds patience(5);
 
 class View {
 public:
-    explicit View(ViewOptions const& options)
-        : options_(options), server_program_(find_program("framelet-server")),
-          viewer_program_(find_program("framelet-viewer")) {}
+    explicit View(ViewOptions const& options) : options_(options), viewer_program_(find_program("framelet-viewer")) {}
 
     View(View const&) = delete;
     View& operator=(View const&) = delete;
@@ -42,47 +41,36 @@ public:
             signals_.add(number);
         }
         wait_for_signal();
-        start_server();
+        server_.emplace(options_.scene, options_.server, ServerErrors::shown, [this] {
+            asio::post(io_, [this] {
+                if (auto const address = server_->address(); address && !viewer_ && !ending_) {
+                    start_viewer(*address);
+                }
+            });
+        });
         io_.run();
         return exit_code_;
     }
 
 private:
-    void start_server() {
-        std::array<int, 2> pipe{};
-        if (::pipe2(pipe.data(), O_CLOEXEC) != 0) {
+    void start_viewer(std::string const& address) {
+        // While its other end is open the server is needed: the viewer closes it where it opens another scene.
+        std::array<int, 2> needed{};
+        if (::pipe2(needed.data(), O_CLOEXEC) != 0) {
             throw std::system_error(errno, std::generic_category(), "cannot make a pipe");
         }
-        server_says_.assign(pipe[0]);
-        std::vector<std::string> arguments{"--port", "0"};
-        arguments.insert(arguments.end(), options_.server.begin(), options_.server.end());
-        server_.emplace(server_program_, arguments, pipe[1]);
-        ::close(pipe[1]);
-        read_server();
-    }
-
-    /// What it prints is passed on, and its address is among it.
-    void read_server() {
-        asio::async_read_until(server_says_, said_, '\n', [this](boost::system::error_code error, std::size_t) {
-            if (error) { // it has ended, as SIGCHLD says too
-                return;
-            }
-            std::string line;
-            std::istream stream(&said_);
-            std::getline(stream, line);
-            std::cout << line << std::endl;
-            constexpr std::string_view ready = "listening on ";
-            if (line.starts_with(ready) && !viewer_ && !ending_) {
-                start_viewer(line.substr(ready.size()));
-            }
-            read_server();
-        });
-    }
-
-    void start_viewer(std::string const& address) {
+        server_needed_.assign(needed[0]);
+        ::fcntl(needed[1], F_SETFD, 0);
         std::vector<std::string> arguments = options_.viewer;
-        arguments.push_back(address);
+        arguments.insert(arguments.end(), {address, "--server-needed=" + std::to_string(needed[1])});
         viewer_.emplace(viewer_program_, arguments);
+        ::close(needed[1]);
+        server_needed_.async_wait(asio::posix::stream_descriptor::wait_read, [this](boost::system::error_code error) {
+            if (!error && !ending_) {
+                is_server_needed_ = false;
+                server_->process().signal(SIGTERM);
+            }
+        });
     }
 
     void wait_for_signal() {
@@ -101,9 +89,9 @@ private:
 
     /// False when both have ended.
     bool look_after_children() {
-        bool const serving = server_ && server_->running();
+        bool const serving = server_->process().running();
         bool const viewing = viewer_ && viewer_->running();
-        if (!ending_ && (!serving || (viewer_ && !viewing))) {
+        if (!ending_ && ((!serving && is_server_needed_) || (viewer_ && !viewing))) {
             exit_code_ = viewer_ && !viewing ? code_of_ended_viewer() : code_of_ended_server();
             end_both();
         }
@@ -112,6 +100,7 @@ private:
         }
         signals_.cancel();
         hurry_.cancel();
+        server_needed_.close();
         return false;
     }
 
@@ -125,38 +114,41 @@ private:
         return viewer_->exit_code();
     }
 
-    int code_of_ended_server() const {
-        if (viewer_ || server_->ended_by_signal()) { // otherwise it has said why
-            std::cerr << "framelet: framelet-server " << server_->how_it_ended() << std::endl;
+    int code_of_ended_server() {
+        Child const& server = server_->process();
+        if (viewer_ || server.ended_by_signal()) { // otherwise it has said why
+            std::cerr << "framelet: framelet-server " << server.how_it_ended() << std::endl;
         }
-        return viewer_ && server_->exit_code() == 0 ? 1 : server_->exit_code(); // 0: somebody has told it to end
+        return viewer_ && server.exit_code() == 0 ? 1 : server.exit_code(); // 0: somebody has told it to end
     }
 
     void end_both() {
         ending_ = true;
-        for (std::optional<Child>* const child : {&viewer_, &server_}) {
-            if (*child) {
-                (*child)->signal(SIGTERM);
-            }
-        }
+        signal_both(SIGTERM);
         hurry_.expires_after(patience);
         hurry_.async_wait([this](boost::system::error_code error) {
-            for (std::optional<Child>* const child : {&viewer_, &server_}) {
-                if (!error && *child) {
-                    (*child)->signal(SIGKILL);
-                }
+            if (!error) {
+                signal_both(SIGKILL);
             }
         });
     }
 
+    void signal_both(int number) {
+        if (viewer_) {
+            viewer_->signal(number);
+        }
+        server_->process().signal(number);
+    }
+
     ViewOptions const& options_;
-    std::filesystem::path const server_program_, viewer_program_;
+    std::filesystem::path const viewer_program_;
     asio::io_context io_{1};
     asio::signal_set signals_{io_};
-    asio::posix::stream_descriptor server_says_{io_};
-    asio::streambuf said_;
+    asio::posix::stream_descriptor server_needed_{io_};
     asio::steady_timer hurry_{io_};
-    std::optional<Child> server_, viewer_;
+    std::optional<PrivateServer> server_;
+    std::optional<Child> viewer_;
+    bool is_server_needed_ = true; ///< by the viewer
     bool ending_ = false; ///< both have been told to end, and how they do is of no interest
     int exit_code_ = 0;
 };

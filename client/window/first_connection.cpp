@@ -10,6 +10,7 @@
 
 #include "client/core/back_off.h"
 #include "client/window/overlay/overlay.h"
+#include "client/window/overlay/overlay_text.h"
 #include "client/window/viewer.h"
 #include "common/error.h"
 
@@ -94,19 +95,26 @@ std::string message_of(Attempts const& attempts) {
 
 } // namespace
 
-FirstConnection wait_for_server(Window& window, std::string const& address, OptionsFor const& options_for,
-                                std::vector<std::string> const& recent) {
+Connection wait_for_server(Window& window, std::string const& address, OptionsFor const& options_for,
+                           std::vector<std::string> const& recent, SceneOpener& opener) {
     Overlay overlay(window.handle(), window.content_scale());
     std::optional<Attempts> attempts(options_for(address));
     bool is_from_command_line = true;
-    std::string complaint; // of an address that was typed
+    std::string complaint; // of an address that was typed, or a file that was dropped
     OverlayContent shown;
     int frames = 1; // to be drawn; what the mouse presses is seen in one, what it releases in the next
     for (;;) {
         if (auto core = attempts->poll(is_from_command_line)) {
             return {std::move(core), attempts->options()};
         }
+        if (std::optional<Connection> opened = opener.poll()) {
+            return std::move(*opened);
+        }
+        if (std::string why = opener.take_complaint(); !why.empty()) {
+            complaint = std::move(why);
+        }
         OverlayContent content;
+        content.sign = opening_text(opener.opening());
         content.message = message_of(*attempts) + (complaint.empty() ? "" : "\n\n" + complaint);
         if (!attempts->failure().empty() || !is_from_command_line) {
             content.address = {address, recent};
@@ -134,6 +142,10 @@ FirstConnection wait_for_server(Window& window, std::string const& address, Opti
         // Whether it is time for another attempt, or one has ended, is looked at so often.
         constexpr double look_seconds = 0.1;
         WindowInput const input = window.wait(frames > 0 ? 0 : look_seconds);
+        if (!input.dropped.empty()) {
+            complaint.clear();
+            opener.open(input.dropped);
+        }
         frames = input.touched_overlay ? 3 : input.redraw ? 1 : frames;
         for (Command const command : input.commands) {
             if (command == Command::quit || command == Command::escape) {

@@ -17,16 +17,18 @@ constexpr double idle_seconds = 0.25;
 
 } // namespace
 
-Viewer::Viewer(Window& window, ConnectionOptions connection, std::unique_ptr<ClientCore> core,
-               ViewerSettings const& settings, double lag_seconds, ViewerMemory& memory)
-    : window_(window), connection_(std::move(connection)), memory_(memory),
+Viewer::Viewer(Window& window, Connection connection, SceneOpener& opener, ViewerSettings const& settings,
+               double lag_seconds, ViewerMemory& memory)
+    : window_(window), connection_(std::move(connection.options)), opener_(opener), memory_(memory),
       overlay_(window.handle(), window.content_scale()), settings_(settings), lag_seconds_(lag_seconds),
       chosen_lag_seconds_(lag_seconds > 0 ? lag_seconds : usual_lag_seconds), steady_size_(window.framebuffer_size()) {
-    adopt(std::move(core));
+    adopt(std::move(connection.core));
     if (note_.empty()) {
         say(core_->notice().empty() ? "F1: help" : core_->notice());
     }
-    memory_.note_server(connection_.server.text());
+    if (!opener_.has_open()) { // a private server will not be there next time
+        memory_.note_server(connection_.server.text());
+    }
 }
 
 std::unique_ptr<ClientCore> Viewer::connect(ConnectionOptions const& connection) {
@@ -105,6 +107,8 @@ int Viewer::run() {
         redraw = redraw || input.redraw;
         // What the mouse presses is seen in one frame, what it releases in the next, and what came of it in a third.
         overlay_frames = input.touched_overlay ? 3 : overlay_frames;
+        opener_.open(input.dropped);
+        watch_opener();
         watch_connection();
         watch_recording();
         if (lost_.empty()) {
@@ -197,8 +201,11 @@ void Viewer::watch_connection() {
         }
     }
     if (lost_.empty()) {
-        if (std::optional<std::string> reason = core_->end_reason()) {
+        lost_ = opener_.end_reason();
+        if (std::optional<std::string> reason = core_->end_reason(); reason && lost_.empty()) {
             lost_ = std::move(*reason);
+        }
+        if (!lost_.empty()) {
             std::cerr << "framelet-viewer: " << lost_ << std::endl;
         }
     }
@@ -215,6 +222,20 @@ void Viewer::watch_connection() {
         say(controls ? "you control the scene's clock now" : watching_text);
     }
     controlled_ = controls;
+}
+
+/// What is shown stays where a scene cannot be opened.
+void Viewer::watch_opener() {
+    if (reconnecting_.valid()) { // whose session would take the place of the new one
+        return;
+    }
+    if (std::optional<Connection> opened = opener_.poll()) {
+        connection_ = opened->options;
+        adopt(std::move(opened->core));
+    }
+    if (std::string const complaint = opener_.take_complaint(); !complaint.empty()) {
+        say(complaint, long_note_seconds);
+    }
 }
 
 /// Also while nobody looks at them: plots show what was before.
@@ -268,8 +289,9 @@ OverlayContent Viewer::overlay_content() {
     if (seconds_now() < note_until_) {
         out.note = note_;
     }
-    if (interrupted_) {
-        out.sign = "no connection: trying again";
+    out.sign = opening_text(opener_.opening());
+    if (interrupted_ && lost_.empty()) {
+        out.sign += (out.sign.empty() ? "" : "\n") + std::string("no connection: trying again");
     }
     if (recorder_) {
         out.sign +=

@@ -12,21 +12,23 @@
 #include "client/core/client_core.h"
 #include "client/core/making_time.h"
 #include "client/video/recorder.h"
+#include "client/window/connection.h"
 #include "client/window/kept/bookmarks.h"
 #include "client/window/kept/viewer_memory.h"
 #include "client/window/overlay/overlay.h"
 #include "client/window/overlay/overlay_text.h"
 #include "client/window/resize.h"
+#include "client/window/scene_opener.h"
 #include "client/window/window.h"
 
 namespace framelet {
 
 class Viewer {
 public:
-    /// `core` is connected and wakes the window on news. `lag_seconds` as in `ClientCore::set_smoothing`.
-    /// What is to be remembered goes into `memory`, which must outlive this.
-    Viewer(Window& window, ConnectionOptions connection, std::unique_ptr<ClientCore> core,
-           ViewerSettings const& settings, double lag_seconds, ViewerMemory& memory);
+    /// `connection` wakes the window on news. `lag_seconds` as in `ClientCore::set_smoothing`. Scenes that are dropped
+    /// are opened by `opener`, what is to be remembered goes into `memory`; both must outlive this.
+    Viewer(Window& window, Connection connection, SceneOpener& opener, ViewerSettings const& settings,
+           double lag_seconds, ViewerMemory& memory);
 
     /// Until the user quits. Returns the program's exit code: 1 where the server was gone.
     int run();
@@ -65,6 +67,7 @@ private:
     void copy_camera(bool saves);
     void say(std::string note, double seconds = note_seconds);
     void watch_connection();
+    void watch_opener();
     bool update_shown_picture();
     void take_figures();
     CameraMenu camera_menu(Welcome const& welcome) const;
@@ -74,6 +77,7 @@ private:
 
     Window& window_;
     ConnectionOptions connection_;
+    SceneOpener& opener_;
     ViewerMemory& memory_;
     Overlay overlay_;
     std::unique_ptr<ClientCore> core_;

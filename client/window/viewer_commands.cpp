@@ -108,7 +108,9 @@ void Viewer::apply(Command command) {
         break;
     case Command::reset:
     case Command::reconnect:
-        if (!lost_.empty()) {
+        if (!opener_.end_reason().empty()) {
+            opener_.reopen();
+        } else if (!lost_.empty()) {
             if (!reconnecting_.valid()) {
                 reconnecting_ = std::async(std::launch::async, [options = connection_] {
                     auto core = connect(options);

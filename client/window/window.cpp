@@ -196,6 +196,9 @@ struct Window::Impl {
             action == GLFW_PRESS ? of(w).pressed(number) : of(w).released();
         });
         glfwSetScrollCallback(window, [](GLFWwindow* w, double, double y) { of(w).scrolled(static_cast<float>(y)); });
+        glfwSetDropCallback(window, [](GLFWwindow* w, int count, char const** files) {
+            of(w).input.dropped.assign(files, files + count);
+        });
         glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { of(w).read_size(); });
         glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { of(w).input.redraw = true; });
         glfwSetWindowCloseCallback(window, [](GLFWwindow* w) { of(w).input.commands.push_back(Command::quit); });

@@ -26,6 +26,7 @@ struct WindowInput {
     std::optional<Vec2> grabbed; ///< where a drag has begun, or the wheel has turned first; pixels of the framebuffer
     std::optional<Vec2> focused; ///< likewise: where a double click was
     FlyInput fly; ///< held now
+    std::vector<std::string> dropped; ///< names of files
     bool redraw = false; ///< exposed or resized
     bool touched_overlay = false; ///< the pointer did something in its area, or has left it, or a key was typed into it
 

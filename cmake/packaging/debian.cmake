@@ -28,12 +28,12 @@ add_custom_target(framelet_change_log ALL DEPENDS ${change_log})
 
 # BUILT_IN: of these libraries code is in the programs, so their licences go with them.
 function(framelet_package component name)
-  cmake_parse_arguments(PARSE_ARGV 2 package "" "SUMMARY;DESCRIPTION;DEPENDS;RECOMMENDS;ARCHITECTURE" "BUILT_IN")
+  cmake_parse_arguments(PARSE_ARGV 2 package "" "SUMMARY;DESCRIPTION;DEPENDS;RECOMMENDS;SUGGESTS;ARCHITECTURE" "BUILT_IN")
   string(TOUPPER ${component} key)
   set(CPACK_COMPONENTS_ALL ${CPACK_COMPONENTS_ALL} ${component} PARENT_SCOPE)
   set(CPACK_DEBIAN_${key}_PACKAGE_NAME ${name} PARENT_SCOPE)
   set(CPACK_DEBIAN_${key}_DESCRIPTION "${package_SUMMARY}\n${package_DESCRIPTION}" PARENT_SCOPE)
-  foreach(relation DEPENDS RECOMMENDS ARCHITECTURE)
+  foreach(relation DEPENDS RECOMMENDS SUGGESTS ARCHITECTURE)
     if(package_${relation})
       set(CPACK_DEBIAN_${key}_PACKAGE_${relation} "${package_${relation}}" PARENT_SCOPE)
     endif()
@@ -54,6 +54,7 @@ framelet_package(viewer framelet-viewer
 framelet-viewer in a window that keeps up with the display however slow the
 link is, framelet-client as pictures and figures."
   DEPENDS libgl1 # looked for when a window is opened
+  SUGGESTS framelet-server # started for a scene that is dropped on the window
   BUILT_IN ${headers} ${connection} libimgui-dev)
 framelet_package(launcher framelet
   SUMMARY "remote adaptive renderer: view a scene with one command"

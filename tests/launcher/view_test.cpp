@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>
+#include <fstream>
 #include <functional>
 #include <sstream>
 #include <thread>
@@ -111,6 +112,19 @@ TEST(View, ASignalEndsAllThree) {
         EXPECT_EQ(view.wait(patience), 0) << view.errors();
         EXPECT_FALSE(lives(viewer) || lives(server));
     }
+}
+
+TEST(View, EndsAServerThatItsViewerNeedsNoMore) {
+    Programs const programs("exec /bin/bash -c 'needed=${2#--server-needed=}; exec {needed}>&-; "
+                            "until [ -e $here/end ]; do sleep 0.1; done; exit 5' bash \"$@\"");
+    ::setenv("here", programs.folder().c_str(), 1);
+    Process view(programs.framelet(), {"view", scene_file});
+    ASSERT_TRUE(programs.viewer_runs());
+    auto const [viewer, server] = programs.pids();
+    EXPECT_TRUE(eventually([server = server] { return !lives(server); }));
+    EXPECT_TRUE(lives(viewer) && view.running());
+    std::ofstream(programs.folder() / "end");
+    EXPECT_EQ(view.wait(patience), 5) << view.errors();
 }
 
 TEST(View, LeavesNobodyBehindWhenItIsKilled) {

@@ -124,6 +124,10 @@ std::optional<Legend> legend_of(DrawnOver drawn) {
     return std::nullopt;
 }
 
+std::string opening_text(std::string const& scene) {
+    return scene.empty() ? "" : "opening " + scene + " ...";
+}
+
 std::string clock_text(ClockState const& clock) {
     std::ostringstream out;
     out << std::fixed << std::setprecision(2) << clock.time << " s, " << (clock.playing ? "playing" : "paused");

@@ -62,6 +62,8 @@ TextRows figure_rows(ClientStatistics const& statistics, ClockState const& clock
 TextRows detail_rows(ClientStatistics const& statistics, RateMeter const& meter, Viewport viewport);
 /// Of what is drawn over the picture; nothing where it needs none.
 std::optional<Legend> legend_of(DrawnOver drawn);
+/// Of a scene that is being opened; nothing of nothing.
+std::string opening_text(std::string const& scene);
 /// "12.34 s, playing at 1x".
 std::string clock_text(ClockState const& clock);
 /// "the scene 100 ms late".

@@ -1,10 +1,11 @@
-#include "client/launcher/child.h"
+#include "client/child.h"
 
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <sstream>
 #include <system_error>
+#include <thread>
 
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -36,11 +37,10 @@ std::filesystem::path find_program(std::string const& name) {
             return std::filesystem::path(folder) / name;
         }
     }
-    throw InputError("cannot find " + name + ", neither beside framelet nor in PATH: install it");
+    throw InputError("cannot find " + name + ", neither beside this program nor in PATH: install it");
 }
 
-Child::Child(std::filesystem::path const& program, std::vector<std::string> const& arguments,
-             std::optional<int> output) {
+Child::Child(std::filesystem::path const& program, std::vector<std::string> const& arguments, ChildFiles const& files) {
     std::vector<char*> argv{const_cast<char*>(program.c_str())};
     for (std::string const& argument : arguments) {
         argv.push_back(const_cast<char*>(argument.c_str()));
@@ -56,8 +56,14 @@ Child::Child(std::filesystem::path const& program, std::vector<std::string> cons
         if (::getppid() != parent) { // it has ended before that
             ::_exit(1);
         }
-        if (output) {
-            ::dup2(*output, STDOUT_FILENO);
+        if (files.output) {
+            ::dup2(*files.output, STDOUT_FILENO);
+        }
+        if (files.errors) {
+            ::dup2(*files.errors, STDERR_FILENO);
+        }
+        if (files.is_alone) {
+            ::close_range(STDERR_FILENO + 1, ~0u, CLOSE_RANGE_CLOEXEC);
         }
         ::execv(program.c_str(), argv.data());
         ::_exit(127);
@@ -65,10 +71,7 @@ Child::Child(std::filesystem::path const& program, std::vector<std::string> cons
 }
 
 Child::~Child() {
-    if (running()) {
-        signal(SIGKILL);
-        ::waitpid(pid_, nullptr, 0);
-    }
+    end(std::chrono::milliseconds(0));
 }
 
 bool Child::running() {
@@ -82,6 +85,20 @@ bool Child::running() {
 void Child::signal(int number) {
     if (running()) {
         ::kill(pid_, number);
+    }
+}
+
+void Child::end(std::chrono::milliseconds patience) {
+    signal(SIGTERM);
+    auto const deadline = std::chrono::steady_clock::now() + patience;
+    while (running() && std::chrono::steady_clock::now() < deadline) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    if (running()) {
+        signal(SIGKILL);
+        int status = 0;
+        ::waitpid(pid_, &status, 0);
+        status_ = status;
     }
 }
 

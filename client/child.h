@@ -1,6 +1,7 @@
 // Another program: where it is, and one of them at work.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -13,12 +14,19 @@ namespace framelet {
 /// Beside this program, else in PATH. Throws InputError where it is in neither.
 std::filesystem::path find_program(std::string const& name);
 
-/// Ended with this program, however that ends, and when it goes out of scope.
+/// Descriptors; nothing: where this program's goes.
+struct ChildFiles {
+    std::optional<int> output, errors;
+    bool is_alone = false; ///< whatever else this program has open is not handed on
+};
+
+/// Ended with the thread that started it, which is this program's main thread, however that ends, and when it goes out
+/// of scope.
 class Child {
 public:
-    /// `output`: a descriptor for what it prints; nothing: where this program's goes. Throws std::system_error.
+    /// Throws std::system_error.
     Child(std::filesystem::path const& program, std::vector<std::string> const& arguments,
-          std::optional<int> output = {});
+          ChildFiles const& files = {});
     ~Child();
     Child(Child const&) = delete;
     Child& operator=(Child const&) = delete;
@@ -26,6 +34,8 @@ public:
     /// Looks whether it has ended.
     bool running();
     void signal(int number);
+    /// Tells it to end, waits so long and then kills it.
+    void end(std::chrono::milliseconds patience);
 
     // Of one that has ended.
     bool failed() const; ///< neither well nor because the terminal's Ctrl-C or somebody else told it to end

@@ -1,0 +1,87 @@
+#include "client/window/scene_opener.h"
+
+#include <chrono>
+#include <exception>
+#include <utility>
+
+#include <unistd.h>
+
+#include "common/error.h"
+
+namespace framelet {
+
+SceneOpener::SceneOpener(Connect connect, std::function<void()> wake, std::optional<int> server_needed)
+    : connect_(std::move(connect)), wake_(std::move(wake)), server_needed_(server_needed) {}
+
+void SceneOpener::open(std::vector<std::string> const& files) {
+    if (files.empty()) {
+        return;
+    }
+    if (files.size() > 1) {
+        complaint_ = "one scene at a time is shown: drop a single file";
+        return;
+    }
+    opening_.reset();
+    connecting_ = {};
+    try {
+        opening_ =
+            std::make_unique<PrivateServer>(files.front(), std::vector<std::string>(), ServerErrors::kept, wake_);
+    } catch (std::exception const& error) {
+        complaint_ = error.what();
+    }
+}
+
+std::optional<Connection> SceneOpener::poll() {
+    if (!opening_) {
+        return {};
+    }
+    try {
+        std::optional<Connection> out = session();
+        if (out) {
+            open_ = std::exchange(opening_, nullptr);
+            if (std::optional<int> const needed = std::exchange(server_needed_, std::nullopt)) {
+                ::close(*needed);
+            }
+        }
+        return out;
+    } catch (std::exception const& error) {
+        complaint_ = error.what();
+        opening_.reset();
+        return {};
+    }
+}
+
+/// Throws where it will not come to be.
+std::optional<Connection> SceneOpener::session() {
+    if (connecting_.valid()) {
+        bool const is_ready = connecting_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+        return is_ready ? std::optional(connecting_.get()) : std::nullopt;
+    }
+    if (std::optional<std::string> const address = opening_->address()) {
+        ConnectionOptions options;
+        options.server = parse_server_address(*address);
+        options.reconnect = true; // this machine may sleep for a while
+        connecting_ = std::async(std::launch::async, [options, connect = connect_, wake = wake_] {
+            Connection out{connect(options), options};
+            wake();
+            return out;
+        });
+    } else if (!opening_->process().running()) {
+        throw InputError(opening_->end_reason());
+    }
+    return {};
+}
+
+std::string SceneOpener::opening() const {
+    return opening_ ? opening_->scene().filename().string() : "";
+}
+
+std::string SceneOpener::end_reason() {
+    return open_ && !open_->process().running() ? open_->end_reason() : "";
+}
+
+void SceneOpener::reopen() {
+    open({open_->scene().string()});
+}
+
+} // namespace framelet

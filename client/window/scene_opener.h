@@ -1,0 +1,57 @@
+// Scene files that the user opens in the window: a private server for the newest, as `framelet view` starts one. In:
+// names of files. Out: a session where that came to be, else a line that says why not, and what was served before goes
+// on being served.
+#pragma once
+
+#include <functional>
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "client/private_server.h"
+#include "client/window/connection.h"
+
+namespace framelet {
+
+class SceneOpener {
+public:
+    using Connect = std::function<std::unique_ptr<ClientCore>(ConnectionOptions const&)>;
+
+    /// `connect` (blocks) and `wake` are called from other threads; `wake` whenever `poll` may have something to say.
+    /// `server_needed`: a descriptor that is closed once another scene is open, which tells who started this program
+    /// that the server it was started for is not needed any more.
+    SceneOpener(Connect connect, std::function<void()> wake, std::optional<int> server_needed = {});
+    SceneOpener(SceneOpener const&) = delete;
+    SceneOpener& operator=(SceneOpener const&) = delete;
+
+    /// What was dropped on the window: one file. One that is still being opened is given up.
+    void open(std::vector<std::string> const& files);
+    /// A session with the new scene; the server of the one that was open before has ended then.
+    std::optional<Connection> poll();
+    /// Why nothing was opened, once.
+    std::string take_complaint() { return std::exchange(complaint_, {}); }
+    /// The file that is being opened, without its folder; empty while none is.
+    std::string opening() const;
+
+    bool has_open() const { return open_ != nullptr; }
+    /// Of the server of the scene that is open, where it has ended by itself: why. Empty: it runs, or is not ours.
+    std::string end_reason();
+    /// Opens the scene again whose server has ended.
+    void reopen();
+
+private:
+    std::optional<Connection> session();
+
+    Connect const connect_;
+    std::function<void()> const wake_;
+    std::optional<int> server_needed_;
+    std::string complaint_;
+    std::unique_ptr<PrivateServer> open_;
+    std::future<Connection> connecting_; ///< to what follows, whose end ends the attempt
+    std::unique_ptr<PrivateServer> opening_;
+};
+
+} // namespace framelet

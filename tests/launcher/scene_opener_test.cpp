@@ -1,0 +1,133 @@
+// What the window does with files that are dropped on it, with the real server.
+#include "client/window/scene_opener.h"
+
+#include <algorithm>
+#include <array>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "common/error.h"
+#include "tests/loopback/process.h"
+
+namespace framelet::test {
+namespace {
+
+std::string const windmill = FRAMELET_SOURCE_DIR "/scenes/windmill.glb";
+std::string const chase = FRAMELET_SOURCE_DIR "/scenes/vehicle_chase.glb";
+
+std::unique_ptr<ClientCore> connect(ConnectionOptions const& options) {
+    return std::make_unique<ClientCore>(options);
+}
+
+/// Nothing where the file is not opened.
+std::optional<Connection> opened(SceneOpener& opener, std::string const& file) {
+    opener.open({file});
+    std::optional<Connection> out;
+    EXPECT_TRUE(eventually([&] { return (out = opener.poll()) || opener.opening().empty(); }));
+    return out;
+}
+
+/// The only child of this process.
+pid_t server_process() {
+    pid_t out = 0;
+    std::ifstream("/proc/self/task/" + std::to_string(::getpid()) + "/children") >> out;
+    return out;
+}
+
+TEST(SceneOpener, OpensOneSceneAfterAnother) {
+    SceneOpener opener(connect, [] {});
+    std::optional<Connection> const first = opened(opener, windmill);
+    ASSERT_TRUE(first) << opener.take_complaint();
+    EXPECT_EQ(first->core->welcome().scene_name, "windmill");
+    EXPECT_TRUE(opener.has_open());
+    EXPECT_EQ(opener.end_reason(), "");
+    pid_t const former = server_process();
+    std::optional<Connection> const second = opened(opener, chase);
+    ASSERT_TRUE(second) << opener.take_complaint();
+    EXPECT_EQ(second->core->welcome().scene_name, "vehicle_chase");
+    EXPECT_NE(::kill(former, 0), 0);
+    EXPECT_THROW(connect(first->options), ConnectionError);
+    EXPECT_EQ(opener.take_complaint(), "");
+}
+
+TEST(SceneOpener, WhatIsNoSceneIsOneLineAndChangesNothing) {
+    TemporaryFolder const folder;
+    SceneOpener opener(connect, [] {});
+    std::optional<Connection> const open = opened(opener, windmill);
+    ASSERT_TRUE(open) << opener.take_complaint();
+    for (std::string const& file : {folder.write("wrong.glb", "nonsense"), folder.write("wrong.txt", "nonsense"),
+                                    (folder.path() / "absent.glb").string(), std::string("--help")}) {
+        EXPECT_FALSE(opened(opener, file)) << file;
+        std::string const complaint = opener.take_complaint();
+        EXPECT_NE(complaint.find("'" + file + "'"), std::string::npos) << complaint;
+        EXPECT_EQ(std::ranges::count(complaint, '\n'), 0) << complaint;
+        EXPECT_EQ(opener.take_complaint(), "");
+    }
+    opener.open({windmill, chase});
+    EXPECT_NE(opener.take_complaint().find("a single file"), std::string::npos);
+    EXPECT_EQ(opener.opening(), "");
+    EXPECT_FALSE(open->core->end_reason() || open->core->interruption());
+    EXPECT_EQ(opener.end_reason(), "");
+}
+
+TEST(SceneOpener, TheNewestCounts) {
+    SceneOpener opener(connect, [] {});
+    opener.open({chase});
+    EXPECT_EQ(opener.opening(), "vehicle_chase.glb");
+    std::optional<Connection> const open = opened(opener, windmill);
+    ASSERT_TRUE(open) << opener.take_complaint();
+    EXPECT_EQ(open->core->welcome().scene_name, "windmill");
+    EXPECT_EQ(opener.opening(), "");
+    EXPECT_FALSE(opener.poll());
+}
+
+TEST(SceneOpener, SaysThatItsServerHasGoneAndStartsAnother) {
+    SceneOpener opener(connect, [] {});
+    std::optional<Connection> open = opened(opener, windmill);
+    ASSERT_TRUE(open) << opener.take_complaint();
+    ::kill(server_process(), SIGKILL);
+    EXPECT_TRUE(eventually([&] { return !opener.end_reason().empty(); }));
+    EXPECT_EQ(opener.end_reason(), "framelet-server was ended by a signal: Killed");
+    opener.reopen();
+    EXPECT_TRUE(eventually([&] { return (open = opener.poll()) || opener.opening().empty(); }));
+    EXPECT_TRUE(open) << opener.take_complaint();
+    EXPECT_EQ(opener.end_reason(), "");
+}
+
+TEST(SceneOpener, TellsWhenTheServerOfBeforeIsNotNeeded) {
+    std::array<int, 2> needed{};
+    ASSERT_EQ(::pipe2(needed.data(), O_NONBLOCK), 0);
+    SceneOpener opener(
+        connect, [] {}, needed[1]);
+    char byte = 0;
+    EXPECT_FALSE(opened(opener, "absent.glb"));
+    EXPECT_EQ(::read(needed[0], &byte, 1), -1); // it is still needed
+    std::optional<Connection> const open = opened(opener, windmill); // whose server has not been handed the pipe
+    ASSERT_TRUE(open) << opener.take_complaint();
+    EXPECT_EQ(::read(needed[0], &byte, 1), 0);
+    ::close(needed[0]);
+}
+
+TEST(SceneOpener, SaysThatThereIsNoServerToStart) {
+    TemporaryFolder const folder;
+    std::filesystem::path const alone = folder.path() / "launcher_test";
+    std::filesystem::copy_file("/proc/self/exe", alone);
+    if (!std::getenv("FRAMELET_TEST_ALONE")) {
+        ::setenv("FRAMELET_TEST_ALONE", "1", 1); // beside the tests is the server
+        Process process(alone, {"--gtest_filter=SceneOpener.SaysThatThereIsNoServerToStart"});
+        EXPECT_EQ(process.wait(std::chrono::seconds(120)), 0) << process.output();
+        return;
+    }
+    ::setenv("PATH", "/nonexistent", 1);
+    SceneOpener opener(connect, [] {});
+    EXPECT_FALSE(opened(opener, windmill));
+    EXPECT_NE(opener.take_complaint().find("cannot find framelet-server"), std::string::npos);
+}
+
+} // namespace
+} // namespace framelet::test
