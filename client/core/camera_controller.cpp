@@ -166,9 +166,12 @@ void CameraController::fly(FlyInput const& input, double seconds) {
     if (!input.moving()) {
         return;
     }
+    auto const time = static_cast<float>(seconds);
+    Vec2 const angle = input.turn * (pi / 2 * time / std::max(glm::length(input.turn), 1.0f));
+    turn(-angle.x, -angle.y);
     float const speed = reach_ / 8 * (input.fast ? fast_factor : 1);
-    Vec3 const direction = glm::normalize(input.direction);
-    go_to(camera_.position + camera_.orientation * direction * (speed * static_cast<float>(seconds)));
+    Vec3 const direction = input.direction / std::max(glm::length(input.direction), 1.0f);
+    go_to(camera_.position + camera_.orientation * direction * (speed * time));
 }
 
 } // namespace framelet

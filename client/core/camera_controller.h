@@ -7,12 +7,13 @@
 
 namespace framelet {
 
-/// Which way the flying keys point, in camera space: x right, y up, z backwards. Each component -1, 0 or 1.
+/// Which way the flying keys and the gamepad's sticks point.
 struct FlyInput {
-    Vec3 direction{0, 0, 0};
-    bool fast = false; ///< four times the speed
+    Vec3 direction{0, 0, 0}; ///< in camera space: x right, y up, z backwards; a length of 1 or more is the whole speed
+    Vec2 turn{0, 0}; ///< of the head: x right, y down; likewise
+    bool fast = false; ///< four times the speed; the head turns no faster
 
-    bool moving() const { return direction != Vec3(0, 0, 0); }
+    bool moving() const { return direction != Vec3(0, 0, 0) || turn != Vec2(0, 0); }
 };
 
 class CameraController {
@@ -46,7 +47,8 @@ public:
     /// Towards (positive) or away from the pivot, which stays where it is in the picture: a step is a tenth of the way;
     /// never through it.
     void dolly(float steps);
-    /// Through the scene: an eighth of its diagonal a second, in large scenes less (2 km: 30 m/s).
+    /// Through the scene: an eighth of its diagonal a second, in large scenes less (2 km: 30 m/s). The head turns a
+    /// quarter a second.
     void fly(FlyInput const& input, double seconds);
     /// Turns the head in place: the picture's whole height is the vertical field of view.
     void look(Vec2 pixels, Viewport viewport);

@@ -9,6 +9,7 @@
 #include <GLFW/glfw3.h>
 #include <glm/geometric.hpp>
 
+#include "client/window/gamepad.h"
 #include "client/window/overlay/key_table.h"
 #include "client/window/picture_texture.h"
 #include "common/error.h"
@@ -17,6 +18,8 @@ namespace framelet {
 
 namespace {
 
+/// A gamepad wakes nobody: while one is connected, it is looked at so often.
+constexpr double gamepad_seconds = 1.0 / 60;
 constexpr double double_click_seconds = 0.4;
 constexpr float double_click_pixels = 6;
 
@@ -24,6 +27,22 @@ std::string last_glfw_error() {
     char const* text = nullptr;
     glfwGetError(&text);
     return text == nullptr ? "no reason given" : text;
+}
+
+/// Of the first gamepad; nothing where none is connected.
+std::optional<GamepadAxes> read_gamepad() {
+    GLFWgamepadstate state;
+    for (int number = GLFW_JOYSTICK_1; number <= GLFW_JOYSTICK_LAST; ++number) {
+        if (glfwJoystickIsGamepad(number) == GLFW_TRUE && glfwGetGamepadState(number, &state) == GLFW_TRUE) {
+            return GamepadAxes{{state.axes[GLFW_GAMEPAD_AXIS_LEFT_X], state.axes[GLFW_GAMEPAD_AXIS_LEFT_Y]},
+                               {state.axes[GLFW_GAMEPAD_AXIS_RIGHT_X], state.axes[GLFW_GAMEPAD_AXIS_RIGHT_Y]},
+                               state.axes[GLFW_GAMEPAD_AXIS_LEFT_TRIGGER],
+                               state.axes[GLFW_GAMEPAD_AXIS_RIGHT_TRIGGER],
+                               state.buttons[GLFW_GAMEPAD_BUTTON_LEFT_BUMPER] == GLFW_PRESS ||
+                                   state.buttons[GLFW_GAMEPAD_BUTTON_RIGHT_BUMPER] == GLFW_PRESS};
+        }
+    }
+    return {};
 }
 
 /// GLFW for as long as this lives.
@@ -53,6 +72,7 @@ struct Window::Impl {
     std::vector<PixelRect> overlay; ///< its areas
     bool is_typing = false;
     bool overlay_drag = false; ///< a button was pressed there
+    bool has_gamepad = false;
     Viewport size;
     struct {
         int x = 0, y = 0, width = 0, height = 0;
@@ -187,6 +207,16 @@ struct Window::Impl {
         input.fly.fast = shift();
     }
 
+    /// Other windows may be flown by it: it is this one's that has the keys.
+    void add_gamepad() {
+        bool const has_keys = glfwGetWindowAttrib(window, GLFW_FOCUSED) != 0;
+        std::optional<GamepadAxes> const axes = has_keys ? read_gamepad() : std::nullopt;
+        has_gamepad = axes.has_value();
+        if (axes) {
+            input.fly = input.fly + fly_input(*axes);
+        }
+    }
+
     void listen() {
         glfwSetWindowUserPointer(window, this);
         glfwSetKeyCallback(window,
@@ -274,11 +304,12 @@ void Window::toggle_fullscreen() {
 
 WindowInput Window::wait(double at_most_seconds) {
     if (at_most_seconds > 0) {
-        glfwWaitEventsTimeout(at_most_seconds);
+        glfwWaitEventsTimeout(impl_->has_gamepad ? std::min(at_most_seconds, gamepad_seconds) : at_most_seconds);
     } else {
         glfwPollEvents();
     }
     impl_->read_held_keys();
+    impl_->add_gamepad();
     return std::exchange(impl_->input, WindowInput{});
 }
 

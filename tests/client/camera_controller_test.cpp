@@ -1,5 +1,7 @@
 #include "client/core/camera_controller.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include <glm/geometric.hpp>
@@ -80,7 +82,7 @@ TEST_P(CameraControllerOfSize, FlyingIsIndependentOfTheFrameRateAndScalesWithThe
     Stage const stage(size);
     CameraController once(stage.home, stage.scene);
     CameraController often(stage.home, stage.scene);
-    FlyInput const forward{{0, 0, -1}, false};
+    FlyInput const forward{{0, 0, -1}, {0, 0}, false};
     once.fly(forward, 1);
     for (int i = 0; i < 60; ++i) {
         often.fly(forward, 1.0 / 60);
@@ -90,6 +92,32 @@ TEST_P(CameraControllerOfSize, FlyingIsIndependentOfTheFrameRateAndScalesWithThe
     EXPECT_NEAR(glm::length(way), expected, 1e-3f * size);
     EXPECT_GT(glm::dot(glm::normalize(way), stage.home.forward()), 0.9999f);
     EXPECT_LT(glm::distance(once.camera().position, often.camera().position), 1e-4f * size);
+}
+
+TEST_P(CameraControllerOfSize, TheHeadTurnsInPlaceIndependentlyOfTheFrameRate) {
+    Stage const stage(GetParam());
+    CameraController once(stage.home, stage.scene);
+    CameraController often(stage.home, stage.scene);
+    FlyInput const right{{0, 0, 0}, {0.5f, 0}, true};
+    once.fly(right, 1);
+    for (int i = 0; i < 60; ++i) {
+        often.fly(right, 1.0 / 60);
+    }
+    EXPECT_EQ(once.camera().position, stage.home.position);
+    EXPECT_GT(glm::dot(once.camera().forward(), stage.home.right()), 0.6f); // an eighth of a turn
+    EXPECT_GT(glm::dot(once.camera().forward(), stage.home.forward()), 0.6f);
+    EXPECT_GT(glm::dot(once.camera().forward(), often.camera().forward()), 0.9999f);
+    once.fly({{0, 0, 0}, {0, 2}, false}, 0.1); // as fast as at 1
+    EXPECT_NEAR(std::asin(once.camera().forward().y) - std::asin(often.camera().forward().y), -0.157f, 1e-3f);
+}
+
+TEST_P(CameraControllerOfSize, HalfADeflectionFliesHalfAsFast) {
+    Stage const stage(GetParam());
+    CameraController whole(stage.home, stage.scene);
+    CameraController half(stage.home, stage.scene);
+    whole.fly({{0, 0, -1}, {0, 0}, false}, 1);
+    half.fly({{0, 0, -0.5f}, {0, 0}, false}, 2);
+    EXPECT_LT(glm::distance(whole.camera().position, half.camera().position), 1e-4f * GetParam());
 }
 
 /// In camera space.
@@ -149,7 +177,7 @@ TEST_P(CameraControllerOfSize, FitShowsAllOfTheSceneAndNoMoreThanThat) {
         Camera home = stage.home;
         home.projection = projection;
         CameraController controller(home, stage.scene);
-        controller.fly({{1, 1, -1}, true}, 3);
+        controller.fly({{1, 1, -1}, {0, 0}, true}, 3);
         for (Viewport const size : {viewport, Viewport{200, 600}}) {
             controller.fit(size);
             Camera const& camera = controller.camera();
@@ -185,7 +213,7 @@ TEST(CameraController, ResetGoesHome) {
     controller.orbit({30, 20}, viewport);
     controller.pan({30, 20}, viewport);
     controller.dolly(3);
-    controller.fly({{1, 1, 1}, true}, 2);
+    controller.fly({{1, 1, 1}, {0, 0}, true}, 2);
     EXPECT_NE(controller.camera(), stage.home);
     controller.reset();
     EXPECT_EQ(controller.camera(), stage.home);
@@ -206,7 +234,7 @@ TEST(CameraController, ASceneWithoutExtentIsNoTrouble) {
     controller.orbit({50, 50}, viewport);
     controller.dolly(2);
     controller.pan({5, 5}, viewport);
-    controller.fly({{0, 0, -1}, false}, 1);
+    controller.fly({{0, 0, -1}, {0, 0}, false}, 1);
     EXPECT_TRUE(is_valid(controller.camera()));
 }
 
@@ -216,7 +244,7 @@ TEST(CameraController, HoweverFarItGoesItStaysACamera) {
     huge.include(Vec3(3e38f));
     CameraController controller(Camera{}, huge);
     for (int i = 0; i < 1000; ++i) {
-        controller.fly({{1, 0.5f, -1}, true}, 1e6);
+        controller.fly({{1, 0.5f, -1}, {0, 0}, true}, 1e6);
         controller.dolly(-20);
         controller.pan({1e6f, 1e6f}, viewport);
         controller.orbit({31, 7}, viewport);

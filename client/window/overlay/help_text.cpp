@@ -67,6 +67,7 @@ TextRows help_rows(bool controls) {
         {"wheel or right drag", "nearer, farther"},
         {"double click", "look at that point, from half as far"},
         {"W A S D, Q E", "fly; down, up (Shift: faster)"},
+        {"gamepad", "sticks: fly, look; triggers: down, up"},
         {"dropping a scene file", "opens it here, served by this machine"},
         {"1 .. 9", help_text(Command::scene_camera)},
         {"Shift+1 .. 9", help_text(Command::bookmark)},

@@ -1,0 +1,21 @@
+// How a gamepad flies the camera. In: its axes, as GLFW gives them. Out: what the flying keys are replaced by.
+#pragma once
+
+#include "client/core/camera_controller.h"
+
+namespace framelet {
+
+struct GamepadAxes {
+    Vec2 left_stick{0, 0}, right_stick{0, 0}; ///< each -1 to 1; x right, y down
+    float left_trigger = -1, right_trigger = -1; ///< -1 (let go) to 1
+    bool bumper = false; ///< one of the two is held
+};
+
+/// The left stick moves, the right one turns the head, the right trigger goes up and the left one down, a bumper is
+/// Shift. Sticks and triggers that are let go are never quite in their middle: what is near it is nothing.
+FlyInput fly_input(GamepadAxes const& axes);
+
+/// Of keys and gamepad at once.
+FlyInput operator+(FlyInput const& a, FlyInput const& b);
+
+} // namespace framelet
