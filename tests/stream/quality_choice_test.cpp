@@ -55,14 +55,16 @@ TEST(QualityChoice, ExactWhereTheLinkTakesIt) {
     EXPECT_EQ(outcome_of(2e6, 1e6).quality, 0);
 }
 
-TEST(QualityChoice, WithALossWhileSomethingMoves) {
-    constexpr double endless = std::numeric_limits<double>::infinity();
-    EXPECT_EQ(outcome_of(endless, 1e7, true).quality, moving_loss);
-    EXPECT_EQ(outcome_of(0.3e6, 1e6, true).quality, outcome_of(0.3e6, 1e6).quality) << "a narrow link asks for more";
+TEST(QualityChoice, AtFirstWithALossWhereSomethingMoves) {
+    LinkState const link{.bytes_per_second = std::numeric_limits<double>::infinity(), .bytes_per_sample = 1};
     QualityChoice choice;
-    LinkState link{.bytes_per_second = endless, .bytes_per_sample = 1};
-    EXPECT_EQ(choice.choose(link, 1e7, 1, true), moving_loss);
-    EXPECT_EQ(choice.choose(link, 1e7, 1, false), 0) << "exact as soon as it stands";
+    EXPECT_GT(choice.choose(link, 1e7, 7, true), 0) << "nobody knows yet what the link carries";
+    EXPECT_GT(choice.choose(link, 1e7, 7.4, true), 0);
+    EXPECT_EQ(choice.choose(link, 1e7, 7.6, true), 0);
+    QualityChoice still;
+    EXPECT_EQ(still.choose(link, 1e7, 7, false), 0);
+    EXPECT_EQ(outcome_of(link.bytes_per_second, 1e7, true).quality, 0);
+    EXPECT_EQ(outcome_of(0.3e6, 1e6, true).quality, outcome_of(0.3e6, 1e6).quality);
 }
 
 TEST(QualityChoice, CoarserTheSlowerTheLinkAndSteady) {

@@ -16,6 +16,8 @@ constexpr double too_much = 1.1, too_little = 0.8;
 constexpr std::uint8_t least_loss = 4;
 /// Exact samples take about so much more than those of `least_loss`.
 constexpr double exact_cost = 3.5;
+/// For so long a link may yet turn out to be narrow: what moves would be late on it without loss.
+constexpr double finding_seconds = 0.5;
 /// At most one step in so many seconds.
 constexpr double step_seconds = 0.03;
 
@@ -30,13 +32,14 @@ void SentShare::add(double rays, double sent_samples) {
 }
 
 std::uint8_t QualityChoice::choose(LinkState const& link, double samples_per_second, double now, bool moves) {
-    if (now - changed_ >= step_seconds) {
-        follow(link, samples_per_second, now);
+    begun_ = begun_.value_or(now);
+    bool const may_be_exact = !moves || now - *begun_ >= finding_seconds;
+    if (!may_be_exact) {
+        quality_ = std::max(quality_, least_loss);
     }
-    return moves ? std::max(quality_, moving_loss) : quality_;
-}
-
-void QualityChoice::follow(LinkState const& link, double samples_per_second, double now) {
+    if (now - changed_ < step_seconds) {
+        return quality_;
+    }
     double const wanted = samples_per_second * link.bytes_per_sample / (link_share * link.bytes_per_second);
     std::uint8_t const before = quality_;
     if (wanted > too_much) {
@@ -44,10 +47,11 @@ void QualityChoice::follow(LinkState const& link, double samples_per_second, dou
         quality_ = static_cast<std::uint8_t>(std::clamp(quality_ + steps, int{least_loss}, int{most_loss}));
     } else if (quality_ > least_loss && wanted < too_little) {
         --quality_;
-    } else if (quality_ > 0 && wanted * exact_cost < too_little) {
+    } else if (quality_ > 0 && may_be_exact && wanted * exact_cost < too_little) {
         quality_ = 0;
     }
     changed_ = quality_ == before ? changed_ : now;
+    return quality_;
 }
 
 double bounded_rate(LinkState const& link, double samples_per_second) {

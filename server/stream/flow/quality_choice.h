@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "server/stream/flow/link_estimate.h"
 
@@ -11,9 +12,6 @@ namespace framelet {
 
 /// The coarsest quality that is chosen: its loss, about 32 dB, is what sampling leaves of a picture that moves anyway.
 inline constexpr std::uint8_t most_loss = 24;
-/// The finest quality of what is rendered while anything moves, however wide the link: it is replaced within moments,
-/// and exact samples of it take 2.5 times the bytes for 0.2 dB of the picture that is shown.
-inline constexpr std::uint8_t moving_loss = 3;
 
 /// How many samples are sent for each ray that is rendered, lately: fewer where rays go into probes, into several a
 /// sample, and into what the viewer has already.
@@ -29,14 +27,13 @@ private:
 /// Goes step by step, so that one odd measurement does not show.
 class QualityChoice {
 public:
-    /// `samples_per_second`: what would be sent if the link took it. 0: exact, wherever the link takes all of that and
-    /// nothing moves.
+    /// `samples_per_second`: what would be sent if the link took it. 0: exact, wherever the link takes all of that;
+    /// where anything moves in the picture not within the first half second, when little is known of the link.
     std::uint8_t choose(LinkState const& link, double samples_per_second, double now, bool moves);
 
 private:
-    void follow(LinkState const& link, double samples_per_second, double now);
-
-    std::uint8_t quality_ = 0; ///< that the link asks for
+    std::uint8_t quality_ = 0; ///< chosen last
+    std::optional<double> begun_; ///< when it was asked first, seconds
     double changed_ = 0; ///< when, seconds
 };
 
