@@ -72,7 +72,8 @@ std::vector<std::string> option_groups(CLI::App const& app) {
     std::erase_if(groups, [&](std::string const& group) { return options_of_group(app, group).empty(); });
     // The first option of all is --help: what it stands with comes last.
     if (CLI::Option const* const help = app.get_help_ptr()) {
-        std::ranges::stable_partition(groups, [&](std::string const& group) { return group != help->get_group(); });
+        std::stable_partition(groups.begin(), groups.end(),
+                              [&](std::string const& group) { return group != help->get_group(); });
     }
     return groups;
 }

@@ -32,7 +32,7 @@ TEST(FrameletOutlines, FreshOnesAreBright) {
     FrameletCache cache(plane);
     int last = 1000;
     std::uint32_t column = 0;
-    for (std::uint64_t const batch : {1000, 999, 900, 100}) {
+    for (std::uint64_t const batch : {1000u, 999u, 900u, 100u}) {
         Tile const tile = make_tile(plane.pixel_depth(), column++, 0);
         cache.insert(make_batch(plane, batch, {constant_framelet(plane, tile, 9)}));
     }

@@ -303,12 +303,12 @@ TEST(SquareLayers, MotionsAreNumbered) {
     shape.layer_count = 1;
     shape.layers[0].last_column = shape.layers[0].last_row = 3;
     std::uint32_t view = 0;
-    int sets = 0;
+    std::uint32_t sets = 0;
     for (; square.set(sets % 64, view, 1, shape); ++sets) {
-        view = static_cast<std::uint32_t>(sets);
+        view = sets;
     }
-    EXPECT_GT(sets, 192); // all that can be held at once
-    EXPECT_LT(sets, 1000);
+    EXPECT_GT(sets, 192u); // all that can be held at once
+    EXPECT_LT(sets, 1000u);
     square.forget_motions();
     for (std::size_t place = 0; place < SquareLayers::places; ++place) {
         ASSERT_TRUE(square.set(place, 7 + static_cast<std::uint32_t>(place % 2), 1, shape));

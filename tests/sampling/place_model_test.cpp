@@ -50,7 +50,7 @@ bool is_sound(PlaceModel const& place) {
 TEST(PlaceModel, AnOctaveOfALevelIsItsBand) {
     for (int level = 0; level < sampling_levels; ++level) {
         for (unsigned octave = 0; octave < framelet_octaves; ++octave) {
-            for (std::size_t const count : {4, 16, 64, 256}) {
+            for (std::size_t const count : {4u, 16u, 64u, 256u}) {
                 PlaceModel place = unknown_place();
                 learn(place, observe(level, checkerboard(octave), std::nullopt, 0, 256 - count, count));
                 EXPECT_EQ(place.finest_seen, level);

@@ -8,7 +8,7 @@ namespace {
 TEST(SceneControl, TheFirstHasItAndThenTheNext) {
     SceneControl control(ControlRule::first);
     EXPECT_FALSE(control.controls(1));
-    for (std::uint64_t id : {3, 4, 7}) {
+    for (std::uint64_t id : {3u, 4u, 7u}) {
         control.enter(id, id, false);
     }
     EXPECT_TRUE(control.controls(3));
