@@ -7,14 +7,14 @@ namespace {
 
 TEST(SteadySize, AsksForASizeOnceTheWindowRests) {
     SteadySize size({640, 360});
-    EXPECT_EQ(size.update({640, 360}, 5), Viewport(640, 360));
+    EXPECT_EQ(size.update({640, 360}, 5), (Viewport{640, 360}));
     EXPECT_FALSE(size.waits());
     for (int i = 1; i <= 20; ++i) { // it is being dragged
-        EXPECT_EQ(size.update({640 + i, 360}, 5 + 0.05 * i), Viewport(640, 360));
+        EXPECT_EQ(size.update({640 + i, 360}, 5 + 0.05 * i), (Viewport{640, 360}));
         EXPECT_TRUE(size.waits());
     }
-    EXPECT_EQ(size.update({660, 360}, 6.05), Viewport(640, 360));
-    EXPECT_EQ(size.update({660, 360}, 6.2), Viewport(660, 360));
+    EXPECT_EQ(size.update({660, 360}, 6.05), (Viewport{640, 360}));
+    EXPECT_EQ(size.update({660, 360}, 6.2), (Viewport{660, 360}));
     EXPECT_FALSE(size.waits());
 }
 

@@ -163,10 +163,10 @@ struct FlatPicture {
         for (int y = 0; y < place.side; ++y) {
             for (int x = 0; x < place.side; ++x) {
                 int const i = x * framelet_side / place.side, j = y * framelet_side / place.side;
-                unsigned const mean =
-                    (sample(i, j) + sample(i + 1, j) + sample(i, j + 1) + sample(i + 1, j + 1) + 2) / 4;
-                at(place.left + x, place.top + y) =
-                    static_cast<std::uint8_t>(place.side < framelet_side ? mean : sample(i, j));
+                at(place.left + x, place.top + y) = static_cast<std::uint8_t>(
+                    place.side < framelet_side
+                        ? (sample(i, j) + sample(i + 1, j) + sample(i, j + 1) + sample(i + 1, j + 1) + 2) / 4
+                        : sample(i, j));
             }
         }
     }

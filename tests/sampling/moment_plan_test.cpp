@@ -130,7 +130,7 @@ TEST(MomentPlan, NothingIsPlannedTwiceAndInTheEndNothing) {
     Planner planner;
     std::set<Tile> rendered;
     constexpr double share = 0.3;
-    constexpr int most_rounds = 1.5 * (1 + 4 + 16) / share; // of every level all
+    constexpr double most_rounds = 1.5 * (1 + 4 + 16) / share; // of every level all
     int rounds = 0;
     for (; rounds < most_rounds; ++rounds) {
         planner.mirror.look(view_at(0), no_motions);
