@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
-#if defined(__SANITIZE_ADDRESS__)
+#ifdef FRAMELET_SANITIZE_ADDRESS
 #include <sanitizer/lsan_interface.h>
 #endif
 
@@ -28,7 +28,7 @@ TEST(PerThread, ThreadsDoNotShareAndKeepWhatTheyHave) {
     EXPECT_EQ(std::vector<bool>(count, true), found);
 }
 
-#if defined(__SANITIZE_ADDRESS__)
+#ifdef FRAMELET_SANITIZE_ADDRESS
 TEST(PerThread, LeakCheckersSeeWhatAValueHolds) {
     PerThread<std::vector<char>> buffers;
     buffers.prepare();

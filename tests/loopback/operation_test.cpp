@@ -92,7 +92,7 @@ double resident_megabytes(pid_t pid) {
 }
 
 TEST(Operation, WhatViewersHadThatHaveLeftIsGivenBack) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef FRAMELET_SANITIZE
     GTEST_SKIP() << "the sanitizer keeps what is freed";
 #endif
     ServerProcess server(scene_file, {"--paused"});

@@ -163,7 +163,7 @@ TEST(AssimpImport, FilesTooLargeForTheBudgetAreNotRead) {
 
 /// Counts that no header has, or that its check does not find: what Assimp takes for them is bounded all the same.
 TEST(AssimpImport, SmallFilesCannotTakeMuchMemory) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef FRAMELET_SANITIZE
     GTEST_SKIP() << "the sanitizer ends a program that is refused memory";
 #endif
     TemporaryFolder const folder;
