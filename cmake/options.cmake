@@ -8,7 +8,8 @@ target_compile_options(framelet_options INTERFACE
   # No code relies on the value of errno, on trapping or on the sign of zero; NaN and infinity keep their meaning.
   -fno-math-errno -fno-trapping-math)
 if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
-  target_compile_options(framelet_options INTERFACE -Wno-unknown-pragmas) # GCC's own, such as ivdep
+  # GCC's own pragmas, such as ivdep; what GCC, with which one works, does not count as a conversion.
+  target_compile_options(framelet_options INTERFACE -Wno-unknown-pragmas -Wno-sign-conversion)
 endif()
 if(FRAMELET_NATIVE)
   target_compile_options(framelet_options INTERFACE -march=native)

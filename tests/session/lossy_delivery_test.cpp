@@ -89,7 +89,7 @@ class LossyDelivery : public testing::TestWithParam<std::size_t> {};
 INSTANTIATE_TEST_SUITE_P(Threads, LossyDelivery, testing::Values(1, 2, 8));
 
 TEST_P(LossyDelivery, ConvergesToTheExactPicture) {
-#ifdef FRAMELET_SANITIZE_THREAD
+#ifdef FRAMELET_SANITIZE
     GTEST_SKIP() << "a server that is as slow as this has a link that is fast enough for all to be exact";
 #endif
     tbb::global_control const threads(tbb::global_control::max_allowed_parallelism, GetParam());
