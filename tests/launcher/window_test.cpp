@@ -97,12 +97,12 @@ TEST_F(WindowTest, TheKeypadLooksAlongAxes) {
         std::string key;
         std::array<double, 3> axis;
     };
-    for (auto const& [key, axis] : {View{"KP_3", {-1, 0, 0}}, View{"KP_7", {0, -1, 0}}, View{"KP_1", {0, 0, -1}}}) {
+    for (View const& view : {View{"KP_3", {-1, 0, 0}}, View{"KP_7", {0, -1, 0}}, View{"KP_1", {0, 0, -1}}}) {
         EXPECT_TRUE(eventually([&] {
-            press(key);
+            press(view.key);
             press("shift+c");
-            return has_looked_along(axis);
-        })) << key;
+            return has_looked_along(view.axis);
+        })) << view.key;
     }
 }
 
