@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #include "client/connection_arguments.h"
-#include "client/core/camera_path.h"
+#include "client/core/camera/camera_path.h"
 #include "client/core/client_core.h"
 #include "client/core/display_pace.h"
 #include "client/display_arguments.h"

@@ -7,7 +7,7 @@
 #include <thread>
 #include <utility>
 
-#include "client/core/camera_times.h"
+#include "client/core/camera/camera_times.h"
 #include "client/core/making_time.h"
 #include "client/core/server_connection.h"
 #include "client/core/session_pictures.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "client/core/camera_track.h"
+#include "client/core/camera/camera_track.h"
 #include "client/core/confidence_colors.h"
 #include "client/core/framelet_outlines.h"
 #include "common/picture/reconstruction.h"

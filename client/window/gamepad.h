@@ -1,7 +1,7 @@
 // How a gamepad flies the camera. In: its axes, as GLFW gives them. Out: what the flying keys are replaced by.
 #pragma once
 
-#include "client/core/camera_controller.h"
+#include "client/core/camera/camera_controller.h"
 
 namespace framelet {
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "client/core/camera_controller.h"
+#include "client/core/camera/camera_controller.h"
 #include "client/core/client_core.h"
 #include "client/core/making_time.h"
 #include "client/video/recorder.h"

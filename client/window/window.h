@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "client/core/camera_controller.h"
+#include "client/core/camera/camera_controller.h"
 #include "client/window/overlay/command.h"
 #include "common/framelet/tile.h"
 #include "common/image.h"

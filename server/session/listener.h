@@ -12,7 +12,7 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
 
-#include "server/session/log_limit.h"
+#include "server/session/limits/log_limit.h"
 
 namespace framelet {
 

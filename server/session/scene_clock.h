@@ -1,15 +1,13 @@
 // The scene clock that all viewers share. In: wall time and requests; out: what time it is in the scene.
 #pragma once
 
-#include <chrono>
 #include <mutex>
 
 #include "common/clock_state.h"
 #include "protocol/messages/message.h"
+#include "server/session/limits/wall_time.h"
 
 namespace framelet {
-
-using WallTime = std::chrono::steady_clock::time_point;
 
 /// Runs at `speed` scene seconds per wall second while it plays, from 0 to `max_scene_time`. From any thread.
 class SceneClock {

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "common/error.h"
-#include "server/session/session_memory.h"
+#include "server/session/limits/session_memory.h"
 
 namespace framelet {
 namespace {

@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "client/core/camera_path.h"
+#include "client/core/camera/camera_path.h"
 #include "client/window/kept/user_files.h"
 #include "common/error.h"
 #include "tests/client/own_folder.h"

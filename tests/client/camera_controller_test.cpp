@@ -1,4 +1,4 @@
-#include "client/core/camera_controller.h"
+#include "client/core/camera/camera_controller.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "client/core/camera_times.h"
+#include "client/core/camera/camera_times.h"
 
 #include <gtest/gtest.h>
 

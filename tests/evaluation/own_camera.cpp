@@ -7,7 +7,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <nlohmann/json.hpp>
 
-#include "client/core/camera_path.h"
+#include "client/core/camera/camera_path.h"
 #include "common/error.h"
 #include "tests/evaluation/measures/measures.h"
 #include "tests/evaluation/reference.h"

@@ -1,7 +1,7 @@
 // Camera files: what is taken is a camera at any time.
 #include <string>
 
-#include "client/core/camera_path.h"
+#include "client/core/camera/camera_path.h"
 #include "common/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size) {

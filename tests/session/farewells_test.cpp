@@ -1,4 +1,4 @@
-#include "server/session/farewells.h"
+#include "server/session/limits/farewells.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "server/session/log_limit.h"
+#include "server/session/limits/log_limit.h"
 
 #include <gtest/gtest.h>
 

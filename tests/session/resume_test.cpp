@@ -10,7 +10,7 @@
 #include "common/picture/reconstruction.h"
 #include "protocol/codec/batch_codec.h"
 #include "server/scene/scene_import.h"
-#include "server/session/session_memory.h"
+#include "server/session/limits/session_memory.h"
 #include "tests/evaluation/codecs/link_emulator.h"
 #include "tests/session/raw_viewer.h"
 #include "tests/session/running_server.h"

@@ -1,4 +1,4 @@
-#include "server/session/session_memory.h"
+#include "server/session/limits/session_memory.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "fake_stream.h"
-#include "server/session/session_memory.h"
+#include "server/session/limits/session_memory.h"
 
 namespace framelet {
 namespace {

@@ -1,4 +1,4 @@
-#include "server/session/source.h"
+#include "server/session/limits/source.h"
 
 #include <gtest/gtest.h>
 

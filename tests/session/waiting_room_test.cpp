@@ -1,4 +1,4 @@
-#include "server/session/waiting_room.h"
+#include "server/session/limits/waiting_room.h"
 
 #include <random>
 #include <set>

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "client/core/camera_path.h"
+#include "client/core/camera/camera_path.h"
 #include "client/window/kept/user_files.h"
 #include "common/error.h"
 

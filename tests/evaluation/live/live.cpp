@@ -14,7 +14,7 @@
 #include <nlohmann/json.hpp>
 #include <tbb/parallel_for.h>
 
-#include "client/core/camera_path.h"
+#include "client/core/camera/camera_path.h"
 #include "client/frame_choice.h"
 #include "common/error.h"
 #include "common/files/image_io.h"

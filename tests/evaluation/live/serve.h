@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "client/core/camera_path.h"
+#include "client/core/camera/camera_path.h"
 #include "client/core/server_address.h"
 #include "tests/evaluation/method.h"
 

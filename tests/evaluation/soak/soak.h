@@ -8,7 +8,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "client/core/camera_path.h"
+#include "client/core/camera/camera_path.h"
 #include "tests/evaluation/bench_scene.h"
 
 namespace framelet::bench {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "client/core/camera_path.h"
+#include "client/core/camera/camera_path.h"
 #include "client/core/client_core.h"
 #include "tests/evaluation/codecs/link_emulator.h"
 #include "tests/evaluation/soak/storm.h"

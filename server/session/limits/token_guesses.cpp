@@ -1,4 +1,4 @@
-#include "server/session/token_guesses.h"
+#include "server/session/limits/token_guesses.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "client/core/camera_path.h"
+#include "client/core/camera/camera_path.h"
 
 #include <algorithm>
 #include <cmath>

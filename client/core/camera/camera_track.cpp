@@ -1,4 +1,4 @@
-#include "client/core/camera_track.h"
+#include "client/core/camera/camera_track.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "protocol/messages/message.h"
-#include "server/session/scene_clock.h"
+#include "server/session/limits/wall_time.h"
 
 namespace framelet {
 

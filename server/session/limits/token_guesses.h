@@ -7,7 +7,7 @@
 #include <map>
 #include <string>
 
-#include "server/session/scene_clock.h"
+#include "server/session/limits/wall_time.h"
 
 namespace framelet {
 

@@ -1,4 +1,4 @@
-#include "server/session/session_memory.h"
+#include "server/session/limits/session_memory.h"
 
 #include "protocol/codec/color/held_picture.h"
 #include "server/sampling/plan/adaptive_refresh.h"

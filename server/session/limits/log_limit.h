@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "server/session/scene_clock.h"
+#include "server/session/limits/wall_time.h"
 
 namespace framelet {
 
