@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -141,7 +142,7 @@ TEST(FrameletCache, SamplesAreInRows) {
     Tile const tile = make_tile(plane.pixel_depth(), 0, 0);
     cache.insert(make_batch(plane, 1, {shade_framelet(plane, tile, [](float x, float y) {
                                 return std::array{static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y),
-                                                  static_cast<std::uint8_t>(x + 16 * y)};
+                                                  static_cast<std::uint8_t>(std::floor(x) + 16 * std::floor(y))};
                             })}));
     CachedFramelet const* const held = cache.find(plane.pixel_depth(), 0, 0);
     ASSERT_NE(held, nullptr);

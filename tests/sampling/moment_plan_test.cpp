@@ -191,7 +191,8 @@ TEST(MomentPlan, SamplesThatAreLeftOverBecomeMeansOfFourRays) {
         return rays;
     };
     constexpr double pixels = viewport.width * viewport.height;
-    EXPECT_EQ(planned(0.02 * pixels, false), 0) << "what comes into view is first";
+    EXPECT_LE(planned(0.02 * pixels, false), four_rays * framelet_samples)
+        << "what comes into view is first, but for a tile where rounding decides";
     EXPECT_GT(planned(4 * pixels, false), pixels) << "half of them are of detail";
     EXPECT_LT(planned(4 * pixels, true), 0.5 * pixels) << "they are held";
 }

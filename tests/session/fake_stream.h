@@ -1,6 +1,8 @@
 // A connection without a socket. For tests only.
 #pragma once
 
+#include <memory>
+
 #include "protocol/stream/framed_stream.h"
 
 namespace framelet {
@@ -24,6 +26,22 @@ public:
 
 private:
     Handlers handlers_;
+};
+
+/// One of a test. A session and the callbacks of its connection hold each other until the connection ends: this is its
+/// end.
+class FakeConnection {
+public:
+    FakeConnection() = default;
+    ~FakeConnection() { stream_->forget_handlers(); }
+    FakeConnection(FakeConnection const&) = delete;
+    FakeConnection& operator=(FakeConnection const&) = delete;
+
+    FakeStream* operator->() const { return stream_.get(); }
+    std::shared_ptr<FakeStream> const& stream() const { return stream_; }
+
+private:
+    std::shared_ptr<FakeStream> const stream_ = std::make_shared<FakeStream>();
 };
 
 } // namespace framelet

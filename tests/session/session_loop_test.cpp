@@ -3,6 +3,7 @@
 #include "server/session/session_loop.h"
 
 #include <atomic>
+#include <deque>
 #include <functional>
 #include <thread>
 
@@ -97,15 +98,15 @@ public:
     }
 
 private:
-    static std::shared_ptr<Session> open_session(std::size_t index) {
-        auto const stream = std::make_shared<FakeStream>();
+    std::shared_ptr<Session> open_session(std::size_t index) {
+        FakeConnection const& connection = connections_.emplace_back();
         Session::Events events;
         events.admit = [](Hello const&) { return Welcome{}; };
         events.changed = [] {};
         events.ended = [](std::string const&) {};
-        auto session = std::make_shared<Session>(index + 1, stream, std::move(events));
+        auto session = std::make_shared<Session>(index + 1, connection.stream(), std::move(events));
         session->start();
-        stream->bring(Hello{protocol_version, {}, coding::all});
+        connection->bring(Hello{protocol_version, {}, coding::all});
         return session;
     }
 
@@ -121,6 +122,7 @@ private:
     SceneClock clock_{false, std::chrono::steady_clock::now()};
     std::atomic<double> set_time_ = -1;
     std::vector<Script> scripts_;
+    std::deque<FakeConnection> connections_;
     SessionLoop::Sessions sessions_;
     std::unique_ptr<SessionLoop> loop_;
     std::thread thread_;

@@ -12,12 +12,12 @@ namespace {
 
 TEST(Session, AFloodOfWhatAViewerLetsGoOfIsBounded) {
     constexpr std::size_t most_waiting = std::size_t{1} << 18;
-    auto const stream = std::make_shared<FakeStream>();
+    FakeConnection const stream;
     Session::Events events;
     events.admit = [](Hello const&) { return Welcome{}; };
     events.changed = [] {};
     events.ended = [](std::string const& reason) { FAIL() << reason; };
-    auto const session = std::make_shared<Session>(1, stream, events);
+    auto const session = std::make_shared<Session>(1, stream.stream(), events);
     session->start();
     stream->bring(Hello{protocol_version, {}, coding::all});
     LetGo const full{std::vector<SentTile>(max_let_go, {1, Tile{5}})};
@@ -41,7 +41,7 @@ TEST(Session, AFloodOfWhatAViewerLetsGoOfIsBounded) {
 
 /// A viewer whose server lets it in.
 struct Viewed {
-    std::shared_ptr<FakeStream> stream = std::make_shared<FakeStream>();
+    FakeConnection stream;
     std::shared_ptr<Session> session;
 
     Viewed() {
@@ -50,7 +50,7 @@ struct Viewed {
         events.resize = [](Viewport, bool) { return std::nullopt; };
         events.changed = [] {};
         events.ended = [](std::string const& reason) { FAIL() << reason; };
-        session = std::make_shared<Session>(1, stream, std::move(events));
+        session = std::make_shared<Session>(1, stream.stream(), std::move(events));
     }
     /// What is overdue when nothing comes for so long from now on.
     std::string overdue_after(std::chrono::steady_clock::duration wait) const {
