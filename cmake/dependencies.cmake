@@ -15,6 +15,9 @@ find_package(glfw3 REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(epoxy REQUIRED IMPORTED_TARGET epoxy)
 pkg_check_modules(imgui REQUIRED IMPORTED_TARGET imgui)
+pkg_check_modules(OpenEXR REQUIRED IMPORTED_TARGET OpenEXR)
+# It says -pthread, which changes nothing but whether precompiled headers fit.
+set_property(TARGET PkgConfig::OpenEXR PROPERTY INTERFACE_COMPILE_OPTIONS "")
 # Without them the window records PNG files, and framelet-client makes no films.
 pkg_check_modules(libav_film IMPORTED_TARGET libavformat libavcodec libavutil libswscale)
 

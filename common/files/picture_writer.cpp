@@ -108,7 +108,7 @@ void write_ppm(std::filesystem::path const& file, Picture const& picture) {
     write_content(file, content);
 }
 
-void write_exr(std::filesystem::path const& file, Picture const& picture, std::span<float const> depths) {
+void write_exr(std::filesystem::path const& file, Picture const& picture, std::vector<float> const& depths) {
     write_content(file, exr_bytes(picture, depths));
 }
 

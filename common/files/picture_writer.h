@@ -3,7 +3,7 @@
 #pragma once
 
 #include <filesystem>
-#include <span>
+#include <vector>
 
 #include "common/image.h"
 
@@ -16,6 +16,6 @@ void write_png(std::filesystem::path const& file, Picture const& picture);
 void write_ppm(std::filesystem::path const& file, Picture const& picture);
 
 /// Linear, with the depth of each pixel, as `exr_bytes` has them. Throws InputError, which names the file.
-void write_exr(std::filesystem::path const& file, Picture const& picture, std::span<float const> depths);
+void write_exr(std::filesystem::path const& file, Picture const& picture, std::vector<float> const& depths);
 
 } // namespace framelet
