@@ -149,22 +149,12 @@ void serve(Options& options) {
         options.server.loop.event_log = &*event_log;
     }
     Server server(std::move(loaded), options.server, std::move(listener));
-    for (std::string const& address : server.addresses()) {
-        std::cout << "listening on " << address << std::endl;
-    }
-    if (!options.server.tls_certificate.empty()) {
-        std::cout << "certificate SHA-256 " << certificate_fingerprint(options.server.tls_certificate) << std::endl;
-    }
     // What asks the server, or tells it something, ends before it.
     std::unique_ptr<MetricsPort> const answering = std::move(metrics);
-    if (answering) {
-        answering->start([&server] { return server.figures(); });
-        std::cout << "metrics at http://" << answering->address() << "/metrics" << std::endl;
-    }
     SceneReloader reloader(
         std::move(watch), options.scene, environment_file, files, [&options] { return load_scene(options, {}); },
         [&server](std::shared_ptr<LoadedScene> scene) { server.replace_scene(std::move(scene)); });
-    server.run(true, [&] {
+    server.take_signals([&] { // before anybody is told that there is a server to signal to
         if (had_terminal && !has_terminal()) { // that is why the signal came: nobody is there to end the server later
             return false;
         }
@@ -175,6 +165,17 @@ void serve(Options& options) {
         }
         return true;
     });
+    for (std::string const& address : server.addresses()) {
+        std::cout << "listening on " << address << std::endl;
+    }
+    if (!options.server.tls_certificate.empty()) {
+        std::cout << "certificate SHA-256 " << certificate_fingerprint(options.server.tls_certificate) << std::endl;
+    }
+    if (answering) {
+        answering->start([&server] { return server.figures(); });
+        std::cout << "metrics at http://" << answering->address() << "/metrics" << std::endl;
+    }
+    server.run();
 }
 
 } // namespace

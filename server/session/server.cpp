@@ -617,16 +617,17 @@ std::vector<std::string> Server::addresses() const {
     return texts;
 }
 
-void Server::run(bool handle_signals, std::function<bool()> hang_up) {
-    if (handle_signals) {
-        impl_->signals.add(SIGINT);
-        impl_->signals.add(SIGTERM);
-        struct sigaction at_hang_up {};
-        if (::sigaction(SIGHUP, nullptr, &at_hang_up) == 0 && at_hang_up.sa_handler != SIG_IGN) { // as nohup does
-            impl_->signals.add(SIGHUP);
-        }
-        impl_->wait_for_signal(std::move(hang_up));
+void Server::take_signals(std::function<bool()> hang_up) {
+    impl_->signals.add(SIGINT);
+    impl_->signals.add(SIGTERM);
+    struct sigaction at_hang_up {};
+    if (::sigaction(SIGHUP, nullptr, &at_hang_up) == 0 && at_hang_up.sa_handler != SIG_IGN) { // as nohup does
+        impl_->signals.add(SIGHUP);
     }
+    impl_->wait_for_signal(std::move(hang_up));
+}
+
+void Server::run() {
     impl_->listener->accept([this](tcp::socket socket) { impl_->add_connection(std::move(socket)); });
     impl_->beat();
     impl_->start_loop();

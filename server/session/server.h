@@ -49,10 +49,11 @@ public:
     std::vector<std::string> addresses() const;
     std::uint16_t port() const;
 
-    /// Serves until `stop` or, when asked for, SIGINT, SIGTERM or SIGHUP (which whoever started the program may have
-    /// told it to ignore). After SIGHUP it goes on where `hang_up`, called on this thread, says so. The calling thread
-    /// does the network, one other the loop.
-    void run(bool handle_signals, std::function<bool()> hang_up = {});
+    /// From now on SIGINT, SIGTERM and SIGHUP (which whoever started the program may have told it to ignore) end `run`,
+    /// those too that come before it. After SIGHUP it goes on where `hang_up`, called on its thread, says so.
+    void take_signals(std::function<bool()> hang_up = {});
+    /// Serves until `stop` or a signal. The calling thread does the network, one other the loop.
+    void run();
     /// From any thread: serves this scene instead of the one before. All viewers are told to connect again, which those
     /// that look at a scene for longer do by themselves; the scene's clock goes on.
     void replace_scene(std::shared_ptr<LoadedScene> next);

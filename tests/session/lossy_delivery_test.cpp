@@ -99,7 +99,7 @@ TEST_P(LossyDelivery, ConvergesToTheExactPicture) {
     options.port = 0;
     options.paused = true;
     Server server(scene, {}, render_scene, options);
-    std::jthread const running([&server] { server.run(false); });
+    std::jthread const running([&server] { server.run(); });
     Shown const exact = watch(server.port(), coding::exact_colour);
     bench::LinkEmulator const link(server.port(), {.bits_per_second = 1.5e6, .delay_seconds = 0.002});
     EXPECT_TRUE(exact.converged);

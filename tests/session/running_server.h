@@ -13,7 +13,7 @@ public:
     explicit RunningServer(ServerOptions options = {}, Scene scene = triangle_scene())
         : scene_(std::move(scene)), render_scene_(scene_, std::nullopt),
           server_(scene_, default_clips(scene_), render_scene_, on_free_port(options)),
-          thread_([this] { server_.run(false); }) {}
+          thread_([this] { server_.run(); }) {}
     ~RunningServer() { server_.stop(); }
 
     std::uint16_t port() const { return server_.port(); }

@@ -83,8 +83,9 @@ void serve_method(ServeOptions const& options) {
         return std::make_unique<MethodStream>(options.method, *scene, setup);
     };
     Server server(scene->scene, scene->clips, *scene->render_scene, server_options);
+    server.take_signals();
     std::cout << "listening on " << server.addresses().front() << std::endl;
-    server.run(true);
+    server.run();
 }
 
 void look_at_method(LookOptions const& options) {
