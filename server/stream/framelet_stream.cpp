@@ -161,6 +161,9 @@ Step FrameletStream::plan_batch(Turn const& turn, ViewState const& present, Pose
     wanted.samples_per_second = options_.follows_link ? bounded_rate(link, rendered) : rendered;
     wanted.rendered_per_second = options_.prices_bytes ? rendered : wanted.samples_per_second;
     wanted.cycle_seconds = cycle_length(still, turn.plan_seconds);
+    if (options_.follows_link) { // half a cycle is a batch
+        wanted.cycle_seconds = std::max(wanted.cycle_seconds, static_cast<float>(2 * worthwhile_seconds(link)));
+    }
     wanted.delivery_seconds = static_cast<float>(link.delivery_seconds);
     wanted.bias = std::clamp(static_cast<float>(options_.bias) + settings_.bias, -1.0f, 1.0f);
     wanted.batch_framelets = options_.batch_framelets;
@@ -248,7 +251,7 @@ bool FrameletStream::learn(PosedScene const& scene) {
 }
 
 EncodedBatch FrameletStream::encode() {
-    return learnt_->encode(codec_, takes_predictions() ? &held_ : nullptr);
+    return learnt_->encode(codec_, memory_, takes_predictions());
 }
 
 } // namespace framelet

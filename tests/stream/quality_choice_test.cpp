@@ -105,7 +105,14 @@ TEST(QualityChoice, RateAndBatchAreBounded) {
     EXPECT_EQ(bounded_batch(link), 100u);
     link.bytes_per_second = 1e6;
     EXPECT_NEAR(bounded_rate(link, 5e6), 2e6, 2e5);
+    EXPECT_EQ(worthwhile_seconds(LinkState{}), 0);
     link.batch_bytes = 0;
+    EXPECT_EQ(bounded_batch(link), 16u) << "what is worth the head of a batch";
+    EXPECT_NEAR(worthwhile_seconds(link), 16 * 128 / 1e6, 1e-9);
+    link.bytes_per_second = 1e4;
+    EXPECT_EQ(bounded_batch(link), 3u) << "in 50 ms";
+    EXPECT_NEAR(worthwhile_seconds(link), 0.05, 1e-9);
+    link.bytes_per_second = 1;
     EXPECT_EQ(bounded_batch(link), 1u);
     link.batch_bytes = 1e30;
     EXPECT_EQ(bounded_batch(link), max_batch_framelets);

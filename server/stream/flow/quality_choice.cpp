@@ -18,8 +18,16 @@ constexpr std::uint8_t least_loss = 4;
 constexpr double exact_cost = 3.5;
 /// For so long a link may yet turn out to be narrow: what moves would be late on it without loss.
 constexpr double finding_seconds = 0.5;
+/// So many framelets are worth what a batch takes besides them (camera, tiles, envelope: some hundred bytes), but for a
+/// batch that takes longer than this on the link.
+constexpr double worthwhile_framelets = 16, most_batch_seconds = 0.05;
 /// At most one step in so many seconds.
 constexpr double step_seconds = 0.03;
+
+double worthwhile_bytes(LinkState const& link) {
+    return std::min(worthwhile_framelets * framelet_samples * link.bytes_per_sample,
+                    most_batch_seconds * link.bytes_per_second);
+}
 
 } // namespace
 
@@ -61,10 +69,15 @@ double bounded_rate(LinkState const& link, double samples_per_second) {
     return std::min(samples_per_second, std::max(1.0, link_share * link.bytes_per_second / link.bytes_per_sample));
 }
 
+double worthwhile_seconds(LinkState const& link) {
+    return worthwhile_bytes(link) / link.bytes_per_second;
+}
+
 std::size_t bounded_batch(LinkState const& link) {
     double const most = static_cast<double>(max_batch_framelets);
-    double const bytes = link.bytes_per_sample * framelet_samples;
-    return static_cast<std::size_t>(bytes > 0 ? std::clamp(link.batch_bytes / bytes, 1.0, most) : most);
+    double const framelet = link.bytes_per_sample * framelet_samples;
+    double const bytes = std::max(link.batch_bytes, worthwhile_bytes(link));
+    return static_cast<std::size_t>(framelet > 0 ? std::clamp(bytes / framelet, 1.0, most) : most);
 }
 
 } // namespace framelet

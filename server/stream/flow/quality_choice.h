@@ -40,6 +40,10 @@ private:
 /// Samples a second that renderer and link both have time for.
 double bounded_rate(LinkState const& link, double samples_per_second);
 
+/// How long the link takes for a batch that is worth what it takes besides its framelets, seconds; 0 where nothing is
+/// known of the link.
+double worthwhile_seconds(LinkState const& link);
+
 /// Most framelets of a batch that the link takes at once, at least one.
 std::size_t bounded_batch(LinkState const& link);
 
