@@ -53,7 +53,7 @@ struct ClientCore::Impl {
     Clock::time_point const start = Clock::now();
     // The connection's thread only; of this session, as all that follows.
     std::optional<BatchCodec> codec{std::in_place};
-    std::optional<HeldPicture> held{std::in_place};
+    std::optional<BatchMemory> memory{std::in_place};
     bool is_whole = true; ///< all that has come is in them and among what has arrived
 
     /// Guards what pictures are made of. Whoever has it may take `mutex` as well, not the other way round.
@@ -198,7 +198,7 @@ struct ClientCore::Impl {
             take_in();
         }
         codec.emplace();
-        held.emplace();
+        memory.emplace();
         pictures.begin_anew();
         std::lock_guard const lock(mutex);
         if (next.scene_identity == 0 || next.scene_identity != welcome.scene_identity) {
@@ -276,7 +276,7 @@ struct ClientCore::Impl {
             }
         }
         is_whole = false;
-        codec->decode(encoded, &*held, batch);
+        codec->decode(encoded, &*memory, batch);
         Clock::time_point const decoded = Clock::now();
         Ack ack{batch.number, 0, 0};
         ack.received_us = static_cast<std::uint64_t>(

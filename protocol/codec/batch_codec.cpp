@@ -3,31 +3,37 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <functional>
 
 #include "common/error.h"
 #include "common/per_thread.h"
+#include "protocol/codec/color/exact_planes.h"
 #include "protocol/codec/color/plane_codec.h"
-#include "protocol/codec/geometry/shape_codec.h"
+#include "protocol/codec/geometry/shape_coding.h"
 #include "protocol/codec/geometry/track_codec.h"
 #include "protocol/codec/zstd_frames.h"
 
 namespace framelet {
+
+struct BatchModels {
+    PlaneModel planes;
+    ShapeModel shapes;
+};
+
+BatchMemory::BatchMemory() : models(std::make_unique<BatchModels>()) {}
+BatchMemory::~BatchMemory() = default;
+BatchMemory::BatchMemory(BatchMemory&&) noexcept = default;
+BatchMemory& BatchMemory::operator=(BatchMemory&&) noexcept = default;
+
 namespace {
 
 struct Worker {
     FrameCodec frames;
     std::vector<std::uint8_t> content;
     PlaneCodec planes;
-    ShapeCodec shapes;
+    RangeWriter shapes;
 
-    /// Returns the length of the frame written to `out`. `quality` may be empty: without loss, in encoding 1. `held`
-    /// and `decoded` as of PlaneCodec.
-    std::size_t encode(std::span<DisplayFramelet const> group, std::span<std::uint8_t const> quality,
-                       HeldPicture const* held, std::span<DisplayFramelet> decoded, std::span<std::byte> out) {
-        if (!quality.empty()) {
-            return frames.compress(planes.encode(group, quality, held, decoded), out);
-        }
+    /// Without loss, in encoding 1.
+    void encode(std::span<DisplayFramelet const> group, Bytes& frame) {
         content.resize(group.size() * exact_framelet_bytes);
         std::uint8_t* to = content.data();
         for_each_plane([&](auto const plane) {
@@ -36,18 +42,12 @@ struct Worker {
                 to += framelet_samples;
             }
         });
-        return frames.compress(std::array{std::span<std::uint8_t const>(content)}, out);
+        frames.compress(content, frame);
     }
 
-    /// `quality` may be empty, as above. The frame has been checked.
-    void decode(ByteView frame, std::span<DisplayFramelet> group, std::span<std::uint8_t> quality,
-                HeldPicture const* held) {
-        auto const bytes = frames.decompress(frame);
-        if (!quality.empty()) {
-            planes.decode(bytes, group, quality, held);
-            return;
-        }
-        std::uint8_t const* from = bytes.data();
+    /// The frame has been checked.
+    void decode(ByteView frame, std::span<DisplayFramelet> group) {
+        std::uint8_t const* from = frames.decompress(frame).data();
         for_each_plane([&](auto const plane) {
             for (DisplayFramelet& framelet : group) {
                 undo_difference(from, framelet.*plane);
@@ -57,34 +57,26 @@ struct Worker {
     }
 
     Bytes encode_tracks(Batch const& batch) {
-        content = framelet::encode_tracks(batch.tracks, batch.camera_track);
-        Bytes frame(most_frame_bytes(content.size()));
-        frame.resize(frames.compress(std::array{std::span<std::uint8_t const>(content)}, frame));
-        return frame;
-    }
-
-    Bytes encode_shapes(std::span<FrameletShape const> group, std::span<std::uint8_t const> side_bits) {
-        ShapeParts const parts = shapes.encode(group, side_bits);
-        std::size_t size = 0;
-        for (auto const part : parts) {
-            size += part.size();
-        }
-        Bytes frame(most_frame_bytes(size));
-        frame.resize(frames.compress(parts, frame));
+        Bytes frame;
+        frames.compress(framelet::encode_tracks(batch.tracks, batch.camera_track), frame);
         return frame;
     }
 };
 
-/// Logarithms of the tiles' sides in pixels, to base 2; 0 where that is less than one.
-template <typename Range, typename TileOf>
-std::vector<std::uint8_t> side_bits_of(Range const& range, Viewport viewport, TileOf const& tile_of) {
-    ImagePlane const plane(viewport);
-    std::vector<std::uint8_t> bits(range.size());
-    std::transform(range.begin(), range.end(), bits.begin(), [&](auto const& one) {
-        auto const side = static_cast<unsigned>(plane.tile_side(tile_of(one)));
-        return static_cast<std::uint8_t>(std::bit_width(side | 1u) - 1);
-    });
-    return bits;
+/// To bytes that are reused.
+void copy(std::span<std::uint8_t const> from, Bytes& to) {
+    auto const bytes = std::as_bytes(from);
+    to.assign(bytes.begin(), bytes.end());
+}
+
+std::span<std::uint8_t const> numbers(ByteView bytes) {
+    return {reinterpret_cast<std::uint8_t const*>(bytes.data()), bytes.size()};
+}
+
+TilePlace place_of(ImagePlane const& plane, Tile tile) {
+    PixelRect const rect = plane.tile_rect(tile);
+    auto const side = static_cast<unsigned>(plane.tile_side(tile));
+    return {rect.left, rect.top, static_cast<std::int32_t>(std::bit_width(side | 1u)) - 1};
 }
 
 /// Of a list that has something for every framelet or for none.
@@ -93,12 +85,37 @@ std::span<Value> part_of(std::span<Value> all, std::size_t first, std::size_t si
     return all.empty() ? all : all.subspan(first, size);
 }
 
+/// What each group knows before it: the same. What the first one has learnt stays.
+template <class Model>
+class GroupModels {
+public:
+    GroupModels(Model& model, std::size_t groups) : model_(model), others_(groups > 1 ? groups - 1 : 0, model) {}
+    Model& operator[](std::size_t group) { return group == 0 ? model_ : others_[group - 1]; }
+
+private:
+    Model& model_;
+    std::vector<Model> others_;
+};
+
 } // namespace
 
 struct BatchCodec::Scratch {
     PerThread<Worker> workers;
-    std::vector<std::byte> frames; ///< of all groups, each in a slot of the largest size it may need
+    std::vector<Bytes> frames; ///< of each group
     std::vector<DisplayFramelet> decoded; ///< of a batch that is encoded
+    std::unique_ptr<BatchModels> alone; ///< of a batch without a memory
+
+    std::span<Bytes> frames_of(std::size_t groups) {
+        frames.resize(std::max(frames.size(), groups));
+        return std::span(frames).first(groups);
+    }
+    BatchModels& models_of(BatchMemory* memory) {
+        if (memory != nullptr) {
+            return *memory->models;
+        }
+        alone = std::make_unique<BatchModels>();
+        return *alone;
+    }
 };
 
 BatchCodec::BatchCodec() : scratch_(std::make_unique<Scratch>()) {}
@@ -106,7 +123,7 @@ BatchCodec::~BatchCodec() = default;
 BatchCodec::BatchCodec(BatchCodec&&) noexcept = default;
 BatchCodec& BatchCodec::operator=(BatchCodec&&) noexcept = default;
 
-EncodedBatch BatchCodec::encode(Batch const& batch, HeldPicture* held) {
+EncodedBatch BatchCodec::encode(Batch const& batch, BatchMemory* memory, bool predicts) {
     scratch_->workers.prepare();
     std::size_t const count = batch.framelets.size();
     FRAMELET_CHECK(count <= max_batch_framelets);
@@ -114,32 +131,34 @@ EncodedBatch BatchCodec::encode(Batch const& batch, HeldPicture* held) {
     FRAMELET_CHECK(batch.shapes.empty() || batch.shapes.size() == count);
     std::span<std::uint8_t const> const quality = batch.quality;
     Viewport const viewport = batch.view.viewport;
-    bool const is_predicted = held != nullptr && !quality.empty() && HeldPicture::holds(viewport);
+    bool const is_predicted = memory != nullptr && predicts && !quality.empty() && HeldPicture::holds(viewport);
     std::span<DisplayFramelet> decoded;
     if (is_predicted) {
-        held->show(viewport);
-        held->prepare_search(batch.framelets);
+        memory->picture.show(viewport);
+        memory->picture.prepare_search(batch.framelets);
         scratch_->decoded.resize(std::max(scratch_->decoded.size(), count));
         decoded = std::span(scratch_->decoded).first(count);
         for (std::size_t i = 0; i < count; ++i) {
             decoded[i].tile = batch.framelets[i].tile;
         }
     }
+    BatchModels& models = scratch_->models_of(memory);
     std::size_t const groups = group_count(count);
-    std::size_t const slot = most_frame_bytes(quality.empty() ? group_framelets * exact_framelet_bytes
-                                                              : most_predicted_bytes(group_framelets));
-    if (scratch_->frames.size() < groups * slot) {
-        scratch_->frames.resize(groups * slot);
-    }
-    std::vector<ByteView> frames(groups);
+    GroupModels<PlaneModel> planes(models.planes, quality.empty() ? 0 : groups);
+    std::span<Bytes> const frames = scratch_->frames_of(groups);
     for_each_group(count, [&](std::size_t group, std::size_t first, std::size_t size) {
-        std::span const out = std::span(scratch_->frames).subspan(group * slot, slot);
-        frames[group] = out.first(scratch_->workers.local().encode(
-            std::span(batch.framelets).subspan(first, size), part_of(quality, first, size),
-            is_predicted ? held : nullptr, part_of(decoded, first, size), out));
+        Worker& worker = scratch_->workers.local();
+        std::span const framelets = std::span(batch.framelets).subspan(first, size);
+        if (quality.empty()) {
+            worker.encode(framelets, frames[group]);
+        } else {
+            copy(worker.planes.encode(framelets, quality.subspan(first, size), planes[group],
+                                      is_predicted ? &memory->picture : nullptr, part_of(decoded, first, size)),
+                 frames[group]);
+        }
     });
-    if (held != nullptr && held->shows(viewport)) {
-        held->take(is_predicted ? std::span<DisplayFramelet const>(decoded) : batch.framelets);
+    if (memory != nullptr && memory->picture.shows(viewport)) {
+        memory->picture.take(is_predicted ? std::span<DisplayFramelet const>(decoded) : batch.framelets);
     }
 
     EncodedBatch encoded{batch.number,   batch.view, batch.scene_time,   batch.shown_from,
@@ -152,7 +171,7 @@ EncodedBatch BatchCodec::encode(Batch const& batch, HeldPicture* held) {
         encoded.tiles.push_back(framelet.tile);
     }
     if (!batch.shapes.empty()) {
-        encoded.shapes = encode_shapes(batch);
+        encoded.shapes = encode_shapes(batch, models);
     }
     if (!batch.tracks.empty() || batch.camera_track) {
         encoded.tracks = scratch_->workers.local().encode_tracks(batch);
@@ -160,24 +179,29 @@ EncodedBatch BatchCodec::encode(Batch const& batch, HeldPicture* held) {
     return encoded;
 }
 
-Bytes BatchCodec::encode_shapes(Batch const& batch) {
-    auto const side_bits = side_bits_of(batch.framelets, batch.view.viewport,
-                                        [](DisplayFramelet const& framelet) { return framelet.tile; });
-    std::vector<Bytes> contents(group_count(batch.shapes.size()));
-    for_each_group(batch.shapes.size(), [&](std::size_t group, std::size_t first, std::size_t size) {
-        contents[group] = scratch_->workers.local().encode_shapes(std::span(batch.shapes).subspan(first, size),
-                                                                  std::span(side_bits).subspan(first, size));
+Bytes BatchCodec::encode_shapes(Batch const& batch, BatchModels& models) {
+    ImagePlane const plane(batch.view.viewport);
+    std::size_t const count = batch.shapes.size();
+    GroupModels<ShapeModel> shapes(models.shapes, group_count(count));
+    std::span<Bytes> const frames = scratch_->frames_of(group_count(count));
+    for_each_group(count, [&](std::size_t group, std::size_t first, std::size_t size) {
+        RangeWriter& writer = scratch_->workers.local().shapes;
+        writer.begin();
+        for (std::size_t i = first; i < first + size; ++i) {
+            shapes[group].write(writer, place_of(plane, batch.framelets[i].tile), batch.shapes[i]);
+        }
+        copy(writer.finish(), frames[group]);
     });
-    return join_frames(std::vector<ByteView>(contents.begin(), contents.end()));
+    return join_frames(frames);
 }
 
-Batch BatchCodec::decode(EncodedBatch const& encoded, HeldPicture* held) {
+Batch BatchCodec::decode(EncodedBatch const& encoded, BatchMemory* memory) {
     Batch batch;
-    decode(encoded, held, batch);
+    decode(encoded, memory, batch);
     return batch;
 }
 
-void BatchCodec::decode(EncodedBatch const& encoded, HeldPicture* held, Batch& batch) {
+void BatchCodec::decode(EncodedBatch const& encoded, BatchMemory* memory, Batch& batch) {
     scratch_->workers.prepare();
     std::size_t const count = encoded.tiles.size();
     if (count > max_batch_framelets) {
@@ -186,24 +210,22 @@ void BatchCodec::decode(EncodedBatch const& encoded, HeldPicture* held, Batch& b
     bool const is_exact = encoded.encoding == SampleEncoding::exact;
     bool const is_predicted = encoded.encoding == SampleEncoding::predicted;
     Viewport const viewport = encoded.view.viewport;
-    if (is_predicted && (held == nullptr || !HeldPicture::holds(viewport))) {
+    if (is_predicted && (memory == nullptr || !HeldPicture::holds(viewport))) {
         throw ProtocolError("a batch is predicted from what this viewer does not hold");
     }
-    bool const is_held = is_predicted || (held != nullptr && held->shows(viewport));
+    bool const is_held = is_predicted || (memory != nullptr && memory->picture.shows(viewport));
     ImagePlane const plane(viewport);
     if ((is_held || !encoded.shapes.empty()) &&
         !std::ranges::all_of(encoded.tiles, [&](Tile tile) { return plane.accepts(tile); })) {
         throw ProtocolError("a batch has a tile that its viewport does not have");
     }
     std::vector<ByteView> const frames = split_frames(encoded.payload, group_count(count));
-    for (std::size_t group = 0; group < frames.size(); ++group) {
+    for (std::size_t group = 0; group < frames.size() && is_exact; ++group) {
         std::size_t const first = group * group_framelets;
-        std::size_t const size = std::min(group_framelets, count - first);
-        std::size_t const exact = size * exact_framelet_bytes;
-        std::size_t const lossy = is_predicted ? most_predicted_bytes(size) : most_plane_bytes(size);
-        check_frame(frames[group], is_exact ? exact : 0, is_exact ? exact : lossy);
+        std::size_t const exact = std::min(group_framelets, count - first) * exact_framelet_bytes;
+        check_frame(frames[group], exact, exact);
     }
-    // Memory is asked for only now: the frames have said that they fill it, or how much less they hold.
+    BatchModels& models = scratch_->models_of(memory);
     batch.number = encoded.number;
     batch.view = encoded.view;
     batch.scene_time = encoded.scene_time;
@@ -212,20 +234,25 @@ void BatchCodec::decode(EncodedBatch const& encoded, HeldPicture* held, Batch& b
     batch.framelets.resize(count);
     batch.quality.resize(is_exact ? 0 : count);
     if (is_predicted) {
-        held->show(viewport);
+        memory->picture.show(viewport);
     }
+    GroupModels<PlaneModel> planes(models.planes, is_exact ? 0 : frames.size());
     for_each_group(count, [&](std::size_t group, std::size_t first, std::size_t size) {
         std::span const framelets = std::span(batch.framelets).subspan(first, size);
         for (std::size_t i = 0; i < size; ++i) {
             framelets[i].tile = encoded.tiles[first + i];
         }
-        scratch_->workers.local().decode(frames[group], framelets, part_of(std::span(batch.quality), first, size),
-                                         is_predicted ? held : nullptr);
+        if (is_exact) {
+            scratch_->workers.local().decode(frames[group], framelets);
+        } else {
+            PlaneCodec::decode(numbers(frames[group]), framelets, std::span(batch.quality).subspan(first, size),
+                               planes[group], is_predicted ? &memory->picture : nullptr);
+        }
     });
     if (is_held) {
-        held->take(batch.framelets);
+        memory->picture.take(batch.framelets);
     }
-    decode_shapes(encoded, batch.shapes);
+    decode_shapes(encoded, models, batch.shapes);
     batch.tracks.clear();
     batch.camera_track.reset();
     if (!encoded.tracks.empty()) {
@@ -234,21 +261,24 @@ void BatchCodec::decode(EncodedBatch const& encoded, HeldPicture* held, Batch& b
     }
 }
 
-void BatchCodec::decode_shapes(EncodedBatch const& encoded, std::vector<FrameletShape>& shapes) {
+void BatchCodec::decode_shapes(EncodedBatch const& encoded, BatchModels& models, std::vector<FrameletShape>& shapes) {
     if (encoded.shapes.empty()) {
         shapes.clear();
         return;
     }
+    ImagePlane const plane(encoded.view.viewport);
     std::size_t const count = encoded.tiles.size();
     std::vector<ByteView> const frames = split_frames(encoded.shapes, group_count(count));
-    for (std::size_t group = 0; group < frames.size(); ++group) {
-        check_frame(frames[group], 0, most_shape_bytes(std::min(group_framelets, count - group * group_framelets)));
-    }
-    auto const side_bits = side_bits_of(encoded.tiles, encoded.view.viewport, std::identity{});
+    GroupModels<ShapeModel> group_models(models.shapes, frames.size());
     shapes.resize(count);
     for_each_group(count, [&](std::size_t group, std::size_t first, std::size_t size) {
-        ShapeCodec::decode(scratch_->workers.local().frames.decompress(frames[group]),
-                           std::span(side_bits).subspan(first, size), std::span(shapes).subspan(first, size));
+        RangeReader reader(numbers(frames[group]));
+        for (std::size_t i = first; i < first + size; ++i) {
+            group_models[group].read(reader, place_of(plane, encoded.tiles[i]), shapes[i]);
+        }
+        if (!reader.is_at_end()) {
+            throw ProtocolError("the shapes of a group are longer than its framelets");
+        }
     });
 }
 

@@ -11,8 +11,6 @@ namespace {
 constexpr int compression_level = 1;
 /// Shorter repetitions, bytes, are left to the entropy stage: in differences of neighbours they are chance.
 constexpr int least_match = 7;
-/// Parts that are fewer bytes together share their tables: to write some for each takes more than these save.
-constexpr std::size_t few_bytes = 10'000;
 constexpr std::size_t length_bytes = 4;
 /// First bytes of a zstd frame (RFC 8878); other kinds of frames that the library knows are not part of the format.
 constexpr std::array<std::uint8_t, 4> zstd_magic{0x28, 0xb5, 0x2f, 0xfd};
@@ -33,9 +31,9 @@ std::size_t get_length(std::byte const* in) {
 
 } // namespace
 
-Bytes join_frames(std::span<ByteView const> frames) {
+Bytes join_frames(std::span<Bytes const> frames) {
     std::size_t total = frames.size() * length_bytes;
-    for (ByteView const frame : frames) {
+    for (Bytes const& frame : frames) {
         total += frame.size();
     }
     Bytes payload;
@@ -82,34 +80,18 @@ void check_frame(ByteView frame, std::size_t least, std::size_t most) {
     }
 }
 
-std::size_t FrameCodec::compress(std::span<std::span<std::uint8_t const> const> parts, std::span<std::byte> out) {
+void FrameCodec::compress(std::span<std::uint8_t const> content, Bytes& frame) {
     if (!compressor_) {
         compressor_.reset(ZSTD_createCCtx());
         FRAMELET_CHECK(compressor_ != nullptr);
         ZSTD_CCtx_setParameter(compressor_.get(), ZSTD_c_compressionLevel, compression_level);
         ZSTD_CCtx_setParameter(compressor_.get(), ZSTD_c_minMatch, least_match);
     }
-    if (parts.size() == 1) { // in one call it copies nothing
-        std::size_t const written =
-            ZSTD_compress2(compressor_.get(), out.data(), out.size(), parts[0].data(), parts[0].size());
-        FRAMELET_CHECK(!ZSTD_isError(written));
-        return written;
-    }
-    std::size_t size = 0;
-    for (auto const part : parts) {
-        size += part.size();
-    }
-    ZSTD_CCtx_reset(compressor_.get(), ZSTD_reset_session_only);
-    ZSTD_CCtx_setPledgedSrcSize(compressor_.get(), size);
-    ZSTD_EndDirective const between = size < few_bytes ? ZSTD_e_continue : ZSTD_e_flush;
-    ZSTD_outBuffer to{out.data(), out.size(), 0};
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-        ZSTD_inBuffer from{parts[i].data(), parts[i].size(), 0};
-        std::size_t const left =
-            ZSTD_compressStream2(compressor_.get(), &to, &from, i + 1 == parts.size() ? ZSTD_e_end : between);
-        FRAMELET_CHECK(left == 0);
-    }
-    return to.pos;
+    frame.resize(ZSTD_compressBound(content.size()));
+    std::size_t const written =
+        ZSTD_compress2(compressor_.get(), frame.data(), frame.size(), content.data(), content.size());
+    FRAMELET_CHECK(!ZSTD_isError(written));
+    frame.resize(written);
 }
 
 std::span<std::uint8_t const> FrameCodec::decompress(ByteView frame) {
@@ -123,11 +105,6 @@ std::span<std::uint8_t const> FrameCodec::decompress(ByteView frame) {
         throw ProtocolError("a group of a batch cannot be decompressed");
     }
     return content_;
-}
-
-std::size_t most_frame_bytes(std::size_t content_bytes) {
-    constexpr std::size_t three_blocks = 64; // more than one pass needs
-    return ZSTD_compressBound(content_bytes) + three_blocks;
 }
 
 } // namespace framelet

@@ -1,5 +1,5 @@
-// What the sections of a batch have in common: groups of framelets, each one zstd frame, and the lengths of the frames
-// in front of them. PROTOCOL.md has the layout.
+// What the sections of a batch have in common: groups of framelets, a frame of bytes each, and the lengths of the
+// frames in front of them; and frames of zstd. PROTOCOL.md has the layout.
 #pragma once
 
 #include <algorithm>
@@ -33,7 +33,7 @@ void for_each_group(std::size_t framelets, Body const& body) {
 }
 
 /// Lengths and frames, one behind the other.
-Bytes join_frames(std::span<ByteView const> frames);
+Bytes join_frames(std::span<Bytes const> frames);
 
 /// The frames, where the lengths in front of them say they are. Nothing is decompressed yet. ProtocolError where the
 /// payload is not exactly so many.
@@ -45,9 +45,8 @@ void check_frame(ByteView frame, std::size_t least, std::size_t most);
 /// Scratch of the compressor and the decompressor, which is reused.
 class FrameCodec {
 public:
-    /// One frame, written to `out`; returns its length. Each part begins a block of its own, so that it has its own
-    /// statistics.
-    std::size_t compress(std::span<std::span<std::uint8_t const> const> parts, std::span<std::byte> out);
+    /// One frame, in memory that is reused.
+    void compress(std::span<std::uint8_t const> content, Bytes& frame);
 
     /// What a checked frame holds; valid until the next call. ProtocolError where it is damaged.
     std::span<std::uint8_t const> decompress(ByteView frame);
@@ -57,8 +56,5 @@ private:
     std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> decompressor_{nullptr, ZSTD_freeDCtx};
     std::vector<std::uint8_t> content_;
 };
-
-/// Bytes that a frame of some parts with so many bytes may need.
-std::size_t most_frame_bytes(std::size_t content_bytes);
 
 } // namespace framelet

@@ -18,7 +18,7 @@ namespace framelet {
 using Bytes = std::vector<std::byte>;
 using ByteView = std::span<std::byte const>;
 
-inline constexpr std::uint16_t protocol_version = 4;
+inline constexpr std::uint16_t protocol_version = 5;
 
 /// What lets a viewer go on where its connection was cut: 128 random bits. All of them 0: none.
 struct Ticket {
@@ -122,8 +122,8 @@ struct Welcome {
 /// How the samples of a batch are coded.
 enum class SampleEncoding : std::uint8_t {
     exact = 1, ///< all without loss
-    haar = 2, ///< each with a quality of its own
-    predicted = 4, ///< the same, beside what the viewer holds
+    haar = 7, ///< each with a quality of its own
+    predicted = 8, ///< the same, beside what the viewer holds
 };
 
 /// A batch as it travels: tiles in the clear, samples, shapes and tracks compressed by `batch_codec`.

@@ -108,7 +108,7 @@ Offset<wire::Batch> write(Builder& builder, EncodedBatch const& value) {
     std::vector<Offset<wire::Section>> list{
         write_section(builder, wire::Content::colour, static_cast<wire::Encoding>(value.encoding), value.payload)};
     if (!value.shapes.empty()) {
-        list.push_back(write_section(builder, wire::Content::shape, wire::Encoding::fading_layers_zstd, value.shapes));
+        list.push_back(write_section(builder, wire::Content::shape, wire::Encoding::layers_ranges, value.shapes));
     }
     if (!value.tracks.empty()) {
         list.push_back(write_section(builder, wire::Content::track, wire::Encoding::tracks_zstd, value.tracks));
@@ -128,15 +128,15 @@ void take(wire::Section const& section, EncodedBatch& batch) {
     wire::Encoding const encoding = section.encoding();
     switch (section.content()) {
     case wire::Content::colour:
-        if (encoding != wire::Encoding::planes_left_zstd && encoding != wire::Encoding::haar_zstd &&
-            encoding != wire::Encoding::predicted_haar_zstd) {
+        if (encoding != wire::Encoding::planes_left_zstd && encoding != wire::Encoding::haar_ranges &&
+            encoding != wire::Encoding::predicted_haar_ranges) {
             throw ProtocolError("a batch's samples are in an unknown encoding");
         }
         batch.encoding = static_cast<SampleEncoding>(encoding);
         batch.payload = read_bytes(section);
         return;
     case wire::Content::shape:
-        if (encoding != wire::Encoding::fading_layers_zstd) {
+        if (encoding != wire::Encoding::layers_ranges) {
             throw ProtocolError("a batch's shapes are in an unknown encoding");
         }
         batch.shapes = read_bytes(section);

@@ -50,8 +50,10 @@ public:
     /// What was rendered: learning, choice of quality, shapes. Not while the viewer's knowledge is used otherwise.
     /// False where there is nothing to send.
     bool learn(PosedScene const& scene, ViewerKnowledge& viewer);
-    /// What was learnt. `codec` may keep scratch from batch to batch; `held`: as for `BatchCodec::encode`.
-    EncodedBatch encode(BatchCodec& codec, HeldPicture* held) { return codec.encode(batch_, held); }
+    /// What was learnt. `codec` may keep scratch from batch to batch; the rest as of `BatchCodec::encode`.
+    EncodedBatch encode(BatchCodec& codec, BatchMemory& memory, bool predicts) {
+        return codec.encode(batch_, &memory, predicts);
+    }
 
     std::span<Framelet const> rendered() const { return rendered_; }
     Batch const& batch() const { return batch_; }

@@ -89,7 +89,7 @@ private:
     BatchWork* learnt_ = nullptr; ///< last
     bool complete_ = false;
     BatchCodec codec_;
-    HeldPicture held_; ///< by the viewer, once all that was encoded has come
+    BatchMemory memory_; ///< of the batches that were encoded; the viewer has it once they have come
 };
 
 } // namespace framelet

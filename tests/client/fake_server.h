@@ -62,12 +62,13 @@ public:
 
     ServerAddress address() const { return {"127.0.0.1", port_}; }
 
-    /// To every viewer; numbers the batch if it has no number.
+    /// To every viewer, all of which have got the same batches before; numbers the batch if it has no number.
     void send(Batch batch) {
         boost::asio::post(io_, [this, batch = std::move(batch)]() mutable {
             batch.number = batch.number == 0 ? ++last_batch_ : batch.number;
+            EncodedBatch const encoded = codec_.encode(batch, &memory_);
             for (auto const& stream : streams_) {
-                stream->send(codec_.encode(batch));
+                stream->send(encoded);
             }
         });
     }
@@ -105,7 +106,7 @@ public:
         boost::asio::post(io_, [this, script = std::move(script)] {
             script_ = script;
             last_batch_ = 0;
-            codec_ = BatchCodec();
+            memory_ = {};
             for (auto const& stream : streams_) {
                 stream->close();
             }
@@ -246,6 +247,7 @@ private:
     std::set<FramedStream const*> greeted_; ///< of these, who hear heartbeats
     std::vector<std::shared_ptr<Tcp::socket>> raw_sockets_;
     BatchCodec codec_;
+    BatchMemory memory_;
     std::uint64_t last_batch_ = 0;
     std::mutex mutex_;
     std::condition_variable arrived_;

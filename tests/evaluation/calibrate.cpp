@@ -78,7 +78,7 @@ void calibrate_prediction(Batch batch, int rounds, CostTable& costs) {
     double const samples = static_cast<double>(batch.framelets.size() * framelet_samples);
     batch.quality.assign(batch.framelets.size(), most_loss);
     BatchCodec codec;
-    HeldPicture sent, received;
+    BatchMemory sent, received;
     std::vector<double> encode, decode;
     for (int round = -1; round < rounds; ++round) { // the first one finds a grey picture
         Tile const first = batch.framelets.front().tile;

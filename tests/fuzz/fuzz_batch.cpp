@@ -16,7 +16,7 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
     encoded.tiles.resize((data[0] | std::size_t{data[1]} << 8) % 1024);
     constexpr std::array encodings{SampleEncoding::exact, SampleEncoding::haar, SampleEncoding::predicted};
     encoded.encoding = encodings[data[2] % encodings.size()];
-    HeldPicture held;
+    BatchMemory memory;
     encoded.view.viewport = {640, 480};
     for (std::uint32_t i = 0; i < encoded.tiles.size(); ++i) {
         encoded.tiles[i] = make_tile(6, i % 32, i / 32 % 30);
@@ -24,10 +24,10 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
     auto const* const payload = reinterpret_cast<std::byte const*>(data + head);
     encoded.payload.assign(payload, payload + (size - head));
     try {
-        Batch const batch = codec.decode(encoded, &held);
+        Batch const batch = codec.decode(encoded, &memory);
         FRAMELET_CHECK(batch.framelets.size() == encoded.tiles.size());
         // What was taken can be sent again.
-        codec.encode(batch, &held);
+        codec.encode(batch, &memory);
     } catch (ProtocolError const&) {
     }
     return 0;

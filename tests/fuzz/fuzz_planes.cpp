@@ -1,5 +1,5 @@
-// Groups of framelets behind the decompression, where damage is likelier to get far. Input: one byte, the number of
-// framelets; one byte, odd where they are predicted; what a frame holds.
+// Groups of framelets behind their lengths. Input: one byte, the number of framelets; one byte, odd where they are
+// predicted; a frame.
 #include "common/error.h"
 #include "protocol/codec/color/plane_codec.h"
 
@@ -35,19 +35,26 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
     HeldPicture* const held = data[1] % 2 == 0 ? nullptr : &picture;
     std::vector<DisplayFramelet> framelets = framelets_of(data[0] % 129u);
     std::vector<std::uint8_t> quality(framelets.size());
+    PlaneModel reader; // new for each input: an input that fails does so alone
     try {
-        codec.decode({data + head, size - head}, framelets, quality, held);
+        PlaneCodec::decode({data + head, size - head}, framelets, quality, reader, held);
     } catch (ProtocolError const&) {
         return 0;
     }
-    // What was taken can be sent again, and arrives as its writer says.
+    // What was taken can be sent again, and arrives as its writer says; the second time with what the first has taught.
+    PlaneModel writer;
+    reader = {};
     std::vector<DisplayFramelet> said = framelets, arrived = framelets;
-    std::vector<std::uint8_t> bytes;
-    for (auto const part : codec.encode(framelets, quality, held, said)) {
-        bytes.insert(bytes.end(), part.begin(), part.end());
+    for (int round = 0; round < 2; ++round) {
+        std::vector<std::uint8_t> arrived_quality(quality.size());
+        PlaneCodec::decode(codec.encode(framelets, quality, writer, held, said), arrived, arrived_quality, reader,
+                           held);
+        FRAMELET_CHECK(arrived_quality == quality);
+        FRAMELET_CHECK(held == nullptr || arrived == said);
+        for (std::size_t i = 0; i < framelets.size(); ++i) {
+            FRAMELET_CHECK(quality[i] != exact_quality || arrived[i] == framelets[i]);
+        }
     }
-    codec.decode(bytes, arrived, quality, held);
-    FRAMELET_CHECK(held == nullptr || arrived == said);
     picture.take(arrived);
     return 0;
 }

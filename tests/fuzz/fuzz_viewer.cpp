@@ -1,5 +1,5 @@
-// What a viewer does with the messages of a server, one after the other: batches into the picture that predictions are
-// made from, and into the cache. Input: bodies of messages, each with its length, two bytes, in front.
+// What a viewer does with the messages of a server, one after the other: batches into the memory that later ones are
+// decoded with, and into the cache. Input: bodies of messages, each with its length, two bytes, in front.
 #include <algorithm>
 
 #include "common/error.h"
@@ -11,7 +11,7 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
     using namespace framelet;
     static BatchCodec codec;
     FrameletCache cache{ImagePlane(Viewport{256, 256})};
-    HeldPicture held;
+    BatchMemory memory;
     try {
         while (size >= 2) {
             std::size_t const length = std::min(data[0] | std::size_t{data[1]} << 8, size - 2);
@@ -23,7 +23,7 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
             if (encoded == nullptr || encoded->view.viewport != cache.plane().viewport()) {
                 continue;
             }
-            Batch const batch = codec.decode(*encoded, &held);
+            Batch const batch = codec.decode(*encoded, &memory);
             FRAMELET_CHECK(cache.insert(batch) <= batch.framelets.size());
         }
     } catch (ProtocolError const&) {

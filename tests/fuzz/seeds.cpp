@@ -6,7 +6,7 @@
 
 #include "protocol/codec/batch_codec.h"
 #include "protocol/codec/color/plane_codec.h"
-#include "protocol/codec/geometry/shape_codec.h"
+#include "protocol/codec/geometry/shape_coding.h"
 #include "protocol/messages/message_codec.h"
 
 namespace {
@@ -91,7 +91,7 @@ void write_batch(std::filesystem::path const& folder, EncodedBatch const& encode
 /// The batch as it moves right, so that the later ones are predicted from the first.
 void write_sequence(std::filesystem::path const& folder, Batch batch, std::string const& name) {
     BatchCodec codec;
-    HeldPicture held;
+    BatchMemory memory;
     std::vector<std::uint8_t> bodies;
     for (int i = 0; i < 3; ++i) {
         batch.number = static_cast<std::uint64_t>(i + 1);
@@ -106,7 +106,7 @@ void write_sequence(std::filesystem::path const& folder, Batch batch, std::strin
             moved(framelet.green);
             moved(framelet.blue);
         }
-        EncodedBatch const encoded = codec.encode(batch, &held);
+        EncodedBatch const encoded = codec.encode(batch, &memory);
         write_batch(folder, encoded, name + "_" + std::to_string(i));
         std::vector<std::uint8_t> body;
         append(body, encode_message(encoded));
@@ -119,14 +119,27 @@ void write_sequence(std::filesystem::path const& folder, Batch batch, std::strin
 
 void write_planes(std::filesystem::path const& folder, Batch const& batch, HeldPicture const* held) {
     PlaneCodec codec;
+    PlaneModel model;
     std::vector<std::uint8_t> content{static_cast<std::uint8_t>(batch.framelets.size()),
                                       static_cast<std::uint8_t>(held == nullptr ? 0 : 1)};
     std::vector<DisplayFramelet> decoded = batch.framelets;
-    for (auto const part : codec.encode(batch.framelets, batch.quality, held, decoded)) {
-        content.insert(content.end(), part.begin(), part.end());
-    }
+    auto const frame = codec.encode(batch.framelets, batch.quality, model, held, decoded);
+    content.insert(content.end(), frame.begin(), frame.end());
     write(folder / "planes" / ((held == nullptr ? "alone_" : "predicted_") + std::to_string(batch.framelets.size())),
           content);
+}
+
+void write_shapes(std::filesystem::path const& folder, std::span<FrameletShape const> shapes) {
+    ShapeModel model;
+    RangeWriter writer;
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+        auto const left = static_cast<std::int32_t>(i % 16 * framelet_side);
+        model.write(writer, {left, 0, 4}, shapes[i]);
+    }
+    auto const frame = writer.finish();
+    std::vector<std::uint8_t> content{static_cast<std::uint8_t>(shapes.size())};
+    content.insert(content.end(), frame.begin(), frame.end());
+    write(folder / "shapes" / std::to_string(shapes.size()), content);
 }
 
 std::vector<std::uint8_t> bytes_of(std::string const& text) {
@@ -223,12 +236,7 @@ int main(int argc, char** argv) {
         add_shapes(batch);
         write_batch(folder, BatchCodec().encode(batch), "shapes_" + std::to_string(count));
         if (count < 128) {
-            ShapeCodec codec;
-            std::vector<std::uint8_t> content{static_cast<std::uint8_t>(count)};
-            for (auto const part : codec.encode(batch.shapes, std::vector<std::uint8_t>(count, 4))) {
-                content.insert(content.end(), part.begin(), part.end());
-            }
-            write(folder / "shapes" / std::to_string(count), content);
+            write_shapes(folder, batch.shapes);
         }
     }
     write_files(folder);

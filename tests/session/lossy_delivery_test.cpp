@@ -47,7 +47,7 @@ Shown watch(std::uint16_t port, std::uint32_t codings) {
     socket.connect({asio::ip::make_address("127.0.0.1"), port});
     auto const stream = plain_stream(std::move(socket));
     BatchCodec codec;
-    HeldPicture held;
+    BatchMemory held;
     FrameletCache cache{ImagePlane(viewport)};
     Shown shown;
     std::uint64_t newest = 0, camera = 1;

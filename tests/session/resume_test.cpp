@@ -48,7 +48,7 @@ public:
         hello.ticket = welcome->ticket;
         if (!is_resumed) {
             codec_ = BatchCodec();
-            held_ = HeldPicture();
+            held_ = BatchMemory();
             cache_ = FrameletCache(ImagePlane(viewport));
             hello.last_batch = 0;
         }
@@ -118,7 +118,7 @@ private:
     std::unique_ptr<RawViewer> connection_;
     std::uint64_t camera_ = 0;
     BatchCodec codec_;
-    HeldPicture held_;
+    BatchMemory held_;
     FrameletCache cache_{ImagePlane(viewport)};
 };
 

@@ -4,20 +4,10 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "common/error.h"
 #include "protocol/codec/color/haar_transform.h"
-#include "protocol/codec/entropy/zigzag.h"
 
 namespace framelet {
 namespace {
-
-constexpr std::size_t octaves = 4;
-/// Of an octave, from the finest (0).
-constexpr std::size_t places(std::size_t octave) {
-    return std::size_t{framelet_samples} >> (2 * (octave + 1));
-}
-/// Details of the octaves of one plane, the coarsest first, each [0, h, v, d] a place.
-constexpr std::array<std::size_t, octaves> first_four{84, 20, 4, 0};
 
 /// Quantisation step of the plane's mean and of its coarsest octave, sixteenths; it doubles with each finer one, as the
 /// orthonormal transform has it. Errors of Y and Cg count three times in red, green and blue, those of Co twice.
@@ -25,7 +15,7 @@ std::uint16_t base_step(std::size_t plane, unsigned quality) {
     return static_cast<std::uint16_t>(plane == 1 ? (5 * quality + 2) / 4 : quality);
 }
 std::uint16_t octave_step(std::uint16_t base, std::size_t octave) {
-    return static_cast<std::uint16_t>(base << (octaves - 1 - octave));
+    return static_cast<std::uint16_t>(base << (haar_octaves - 1 - octave));
 }
 
 /// Smallest share of a step that rounds a mean up, in 64ths.
@@ -43,10 +33,10 @@ std::int16_t times(std::int16_t level, std::uint16_t step) {
 /// Details of all octaves of a plane, from its levels.
 Fours details_of(Fours const& levels, std::uint16_t base) {
     Fours details;
-    for (std::size_t octave = 0; octave < octaves; ++octave) {
+    for (std::size_t octave = 0; octave < haar_octaves; ++octave) {
         std::uint16_t const step = octave_step(base, octave);
         std::size_t const first = first_four[octave];
-        std::transform(&levels[first], &levels[first] + 4 * places(octave), &details[first],
+        std::transform(&levels[first], &levels[first] + 4 * haar_places(octave), &details[first],
                        [step](std::int16_t level) { return times(level, step); });
     }
     return details;
@@ -55,9 +45,9 @@ Fours details_of(Fours const& levels, std::uint16_t base) {
 /// Returns the bits of the levels.
 int quantise(Fours const& details, std::uint16_t base, Fours& levels) {
     int bits = 0;
-    for (std::size_t octave = 0; octave < octaves; ++octave) {
+    for (std::size_t octave = 0; octave < haar_octaves; ++octave) {
         std::size_t const first = first_four[octave];
-        bits += quantise(&details[first], places(octave), DetailStep(octave_step(base, octave)), &levels[first]);
+        bits += quantise(&details[first], haar_places(octave), DetailStep(octave_step(base, octave)), &levels[first]);
     }
     return bits;
 }
@@ -76,10 +66,10 @@ std::int16_t shared(std::int16_t luma, std::int8_t share) {
 void synthesise(Fours& levels, std::uint16_t base, std::int16_t mean, std::int16_t* values) {
     constexpr std::uint16_t one = 1;
     std::int16_t const* means = &mean;
-    for (std::size_t octave = octaves; octave-- > 0;) {
+    for (std::size_t octave = haar_octaves; octave-- > 0;) {
         std::int16_t* const fours = &levels[first_four[octave]];
         std::int16_t* const out = octave == 0 ? values : fours;
-        haar_inverse(means, fours, base == 0 ? one : octave_step(base, octave), places(octave), out);
+        haar_inverse(means, fours, base == 0 ? one : octave_step(base, octave), haar_places(octave), out);
         means = out;
     }
 }
@@ -124,11 +114,11 @@ int code(DisplayValues const& values, std::uint8_t quality, int most, HaarCode& 
         std::int16_t const* fours = values.planes[plane].data();
         std::int16_t mean = 0;
         int const bits_before = bits;
-        for (std::size_t octave = 0; octave < octaves; ++octave) {
+        for (std::size_t octave = 0; octave < haar_octaves; ++octave) {
             std::size_t const first = first_four[octave];
-            std::int16_t* const means = octave + 1 < octaves ? &details[first_four[octave + 1]] : &mean;
-            bits += haar_forward(fours, places(octave), DetailStep(octave_step(base, octave)), means, &details[first],
-                                 &levels[first]);
+            std::int16_t* const means = octave + 1 < haar_octaves ? &details[first_four[octave + 1]] : &mean;
+            bits += haar_forward(fours, haar_places(octave), DetailStep(octave_step(base, octave)), means,
+                                 &details[first], &levels[first]);
             if (bits > most) {
                 return bits;
             }
@@ -148,11 +138,11 @@ namespace {
 /// does in the picture.
 int fitted_share(Fours const& luma, Fours const& chroma) {
     float products = 0, squares = 0;
-    for (std::size_t octave = 0; octave < octaves; ++octave) {
+    for (std::size_t octave = 0; octave < haar_octaves; ++octave) {
         // Below 1.5e9: details of a place have at most the squares of its samples, 64 times 4080^2 together; rounding
         // adds at most 349 to each of 192 of luma.
         std::int32_t product = 0, square = 0;
-        for (std::size_t i = first_four[octave]; i < first_four[octave] + 4 * places(octave); ++i) {
+        for (std::size_t i = first_four[octave]; i < first_four[octave] + 4 * haar_places(octave); ++i) {
             product += luma[i] * chroma[i];
             square += luma[i] * luma[i];
         }
@@ -196,70 +186,6 @@ void share_luma(std::uint8_t quality, HaarCode& code) {
 DisplayValues dequantise(HaarLevels const& levels, std::uint8_t quality) {
     HaarLevels copy = levels;
     return synthesise(copy, quality);
-}
-
-namespace {
-
-TokenWriter writer_of(HaarWriter::Memory& memory, std::size_t part, std::size_t framelets) {
-    std::size_t const planes = part % 2 == 0 ? 1 : 2;
-    std::size_t const details = planes * (part < 2 ? coarse_details : fine_details);
-    memory.tokens[part].resize(most_token_bytes(details) * framelets);
-    return TokenWriter(memory.tokens[part].data());
-}
-
-} // namespace
-
-HaarWriter::HaarWriter(Memory& memory, std::size_t count)
-    : memory_(memory), count_(count), writers_{writer_of(memory, 0, count), writer_of(memory, 1, count),
-                                               writer_of(memory, 2, count), writer_of(memory, 3, count)} {
-    memory.shares.resize(share_bytes * count);
-    memory.means.resize(mean_bytes * count);
-    memory.escapes.resize(most_escape_bytes(3 * (coarse_details + fine_details)) * count);
-    escapes_ = memory.escapes.data();
-}
-
-void HaarWriter::put_mean(std::size_t plane, std::int16_t level) {
-    auto const code = zigzag(level);
-    std::size_t const i = plane * count_ + written_;
-    memory_.means[i] = static_cast<std::uint8_t>(code);
-    memory_.means[3 * count_ + i] = static_cast<std::uint8_t>(code >> 8);
-}
-
-void HaarWriter::write(HaarLevels const& levels) {
-    memory_.shares[written_] =
-        static_cast<std::uint8_t>((levels.shares[0] & 15) | static_cast<std::uint8_t>(levels.shares[1]) << 4);
-    for (std::size_t plane = 0; plane < 3; ++plane) {
-        put_mean(plane, levels.means[plane]);
-        std::int16_t const* const fours = levels.details[plane].data();
-        escapes_ = writers_[token_part(plane, false)].write(fours, first_four[0] / 4, escapes_);
-        escapes_ = writers_[token_part(plane, true)].write(fours + first_four[0], places(0), escapes_);
-    }
-    ++written_;
-}
-
-std::int16_t HaarReader::mean(std::size_t plane) const {
-    std::size_t const i = plane * (means_.size() / mean_bytes) + read_;
-    return from_zigzag(static_cast<std::uint16_t>(means_[i] | means_[means_.size() / 2 + i] << 8));
-}
-
-DisplayValues HaarReader::read(std::uint8_t quality) {
-    HaarLevels levels;
-    levels.details = {};
-    for (std::size_t plane = 0; plane < levels.details.size(); ++plane) {
-        std::int16_t* const fours = levels.details[plane].data();
-        readers_[token_part(plane, false)].read(fours, first_four[0] / 4, escapes_);
-        readers_[token_part(plane, true)].read(fours + first_four[0], places(0), escapes_);
-        levels.means[plane] = mean(plane);
-    }
-    unsigned const shares = shares_[read_];
-    ++read_;
-    auto const share = [](unsigned nibble) { return static_cast<std::int8_t>(nibble < 8 ? nibble : nibble - 16); };
-    levels.shares = {share(shares & 15), share(shares >> 4)};
-    return synthesise(levels, quality);
-}
-
-bool HaarReader::is_at_end() const {
-    return escapes_.left() == 0 && std::ranges::all_of(readers_, [](TokenReader const& r) { return r.is_at_end(); });
 }
 
 } // namespace framelet

@@ -1,24 +1,22 @@
-// Samples of framelets with loss: quantised Haar details of luma and chroma as tokens, the finest octave apart from the
-// rest, chroma beside a share of luma. In: luma and chroma of framelets, or what is left of them beside a prediction;
-// their quality. Out: parts of bytes, and back. PROTOCOL.md has the layout.
+// Samples of framelets with loss: quantised Haar details of luma and chroma, chroma beside a share of luma. In: luma
+// and chroma of framelets, or what is left of them beside a prediction; their quality. Out: levels, and back.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <span>
-#include <vector>
 
 #include "protocol/codec/color/display_values.h"
-#include "protocol/codec/entropy/coefficient_tokens.h"
 
 namespace framelet {
 
-/// Of a framelet: means of its three planes, shares of luma; details of a plane's three coarser octaves and of the
-/// finest.
-inline constexpr std::size_t mean_bytes = 6, share_bytes = 1;
-inline constexpr std::size_t coarse_details = 3 * (1 + 4 + 16);
-inline constexpr std::size_t fine_details = 3 * 64;
+inline constexpr std::size_t haar_octaves = 4;
+/// Of an octave, from the finest (0).
+constexpr std::size_t haar_places(std::size_t octave) {
+    return std::size_t{framelet_samples} >> (2 * (octave + 1));
+}
+/// Details of the octaves of one plane, the coarsest first, each [0, h, v, d] a place.
+inline constexpr std::array<std::size_t, haar_octaves> first_four{84, 20, 4, 0};
 
 /// Of one plane, its octaves from the coarsest, each [mean, h, v, d] a place.
 using Fours = std::array<std::int16_t, 4 * (64 + 16 + 4 + 1)>;
@@ -45,67 +43,5 @@ int code(DisplayValues const& values, std::uint8_t quality, int most, HaarCode& 
 void share_luma(std::uint8_t quality, HaarCode& code);
 /// What a reader makes of the levels.
 DisplayValues dequantise(HaarLevels const& levels, std::uint8_t quality);
-
-/// Token parts: luma and chroma of the coarser octaves, of the finest.
-inline constexpr std::size_t token_parts = 4;
-constexpr std::size_t token_part(std::size_t plane, bool is_finest) {
-    return (plane == 0 ? 0 : 1) + (is_finest ? 2 : 0);
-}
-/// Most bytes of tokens and escapes of a framelet.
-inline constexpr std::size_t most_detail_bytes =
-    most_token_bytes(3 * (coarse_details + fine_details)) + most_escape_bytes(3 * (coarse_details + fine_details));
-
-/// Writes `count` framelets, one after the other, into memory that is reused.
-class HaarWriter {
-public:
-    struct Memory {
-        std::vector<std::uint8_t> shares, means, escapes;
-        std::array<std::vector<std::uint8_t>, token_parts> tokens;
-    };
-
-    HaarWriter(Memory& memory, std::size_t count);
-
-    void write(HaarLevels const& levels);
-
-    std::span<std::uint8_t const> shares() const { return {memory_.shares.data(), share_bytes * count_}; }
-    std::span<std::uint8_t const> means() const { return {memory_.means.data(), mean_bytes * count_}; }
-    std::span<std::uint8_t const> tokens(std::size_t part) const { return writers_[part].tokens(); }
-    std::span<std::uint8_t const> escapes() const { return {memory_.escapes.data(), escapes_}; }
-
-private:
-    void put_mean(std::size_t plane, std::int16_t level);
-
-    Memory& memory_;
-    std::size_t count_;
-    std::size_t written_ = 0;
-    std::array<TokenWriter, token_parts> writers_;
-    std::uint8_t* escapes_;
-};
-
-/// Reads what a HaarWriter wrote. `shares` and `means` have `share_bytes` and `mean_bytes` for each framelet.
-class HaarReader {
-public:
-    using Parts = std::array<std::span<std::uint8_t const>, token_parts>;
-
-    HaarReader(std::span<std::uint8_t const> shares, std::span<std::uint8_t const> means,
-               std::span<std::uint8_t const> escapes, Parts const& tokens)
-        : shares_(shares), means_(means), readers_{TokenReader(tokens[0]), TokenReader(tokens[1]),
-                                                   TokenReader(tokens[2]), TokenReader(tokens[3])},
-          escapes_{escapes.data(), escapes.data() + escapes.size()} {}
-
-    /// The next framelet. ProtocolError where escapes are missing.
-    DisplayValues read(std::uint8_t quality);
-
-    /// True when nothing is left over.
-    bool is_at_end() const;
-
-private:
-    std::int16_t mean(std::size_t plane) const;
-
-    std::span<std::uint8_t const> shares_, means_;
-    std::array<TokenReader, token_parts> readers_;
-    ByteCursor escapes_;
-    std::size_t read_ = 0;
-};
 
 } // namespace framelet

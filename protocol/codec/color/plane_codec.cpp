@@ -1,66 +1,49 @@
 #include "protocol/codec/color/plane_codec.h"
 
-#include <algorithm>
-#include <array>
+#include <cstdlib>
 #include <limits>
 
 #include "common/error.h"
 
 namespace framelet {
+
+template <class Coder>
+void PlaneModel::code_head(Coder& coder, bool may_be_predicted, std::uint8_t& quality, PredictionKind& kind,
+                           PictureVector& vector) {
+    if (coder.bit(same_quality_, quality == quality_)) {
+        quality = quality_;
+    } else {
+        quality = static_cast<std::uint8_t>(qualities_.code(coder, quality));
+    }
+    quality_ = quality;
+    if (!may_be_predicted) {
+        kind = PredictionKind::none;
+        return;
+    }
+    unsigned const number = kinds_[quality == exact_quality ? 0 : 1].code(coder, static_cast<unsigned>(kind));
+    if (number > static_cast<unsigned>(PredictionKind::moved)) {
+        throw ProtocolError("a batch has a framelet of an unknown prediction");
+    }
+    kind = static_cast<PredictionKind>(number);
+    vector = kind == PredictionKind::moved ? vector : PictureVector{};
+    if (kind == PredictionKind::moved) {
+        if (coder.bit(same_vector_, vector == vector_)) {
+            vector = vector_;
+        } else {
+            auto const moved = [&](std::size_t axis, std::int8_t value, std::int8_t from) {
+                return static_cast<std::int8_t>(from +
+                                                vectors_[axis].code(coder, static_cast<std::int16_t>(value - from)));
+            };
+            vector = {moved(0, vector.x, vector_.x), moved(1, vector.y, vector_.y)};
+        }
+        vector_ = vector;
+    }
+}
+
+template void PlaneModel::code_head(RangeWriter&, bool, std::uint8_t&, PredictionKind&, PictureVector&);
+template void PlaneModel::code_head(RangeReader&, bool, std::uint8_t&, PredictionKind&, PictureVector&);
+
 namespace {
-
-constexpr std::size_t length_bytes = 4;
-
-void put_length(std::uint8_t* out, std::size_t length) {
-    for (std::size_t i = 0; i < length_bytes; ++i) {
-        out[i] = static_cast<std::uint8_t>(length >> (8 * i));
-    }
-}
-
-std::size_t take_length(ByteCursor& bytes) {
-    std::size_t length = 0;
-    auto const field = bytes.take(length_bytes);
-    for (std::size_t i = 0; i < length_bytes; ++i) {
-        length |= std::size_t{field[i]} << (8 * i);
-    }
-    return length;
-}
-
-std::size_t count_exact(std::span<std::uint8_t const> quality) {
-    return static_cast<std::size_t>(std::count(quality.begin(), quality.end(), exact_quality));
-}
-
-/// How each framelet of a group is predicted, as it was sent.
-class PredictionReader {
-public:
-    PredictionReader(ByteCursor& bytes, std::size_t framelets) : kinds_(bytes.take(framelets)) {
-        std::size_t moved = 0;
-        for (std::uint8_t const kind : kinds_) {
-            if (kind > static_cast<std::uint8_t>(PredictionKind::moved)) {
-                throw ProtocolError("a batch has a framelet of an unknown prediction");
-            }
-            moved += kind == static_cast<std::uint8_t>(PredictionKind::moved) ? 1 : 0;
-        }
-        vectors_ = bytes.take(2 * moved);
-    }
-
-    /// Of the next framelet.
-    void next(HeldPicture const& held, Tile tile, Prediction& prediction) {
-        prediction.kind = static_cast<PredictionKind>(kinds_[read_++]);
-        prediction.vector = {};
-        if (prediction.kind == PredictionKind::moved) {
-            prediction.vector = {static_cast<std::int8_t>(vectors_[0]), static_cast<std::int8_t>(vectors_[1])};
-            vectors_ = vectors_.subspan(2);
-        }
-        if (prediction.kind != PredictionKind::none) {
-            held.predict(tile, prediction.vector, prediction.samples);
-        }
-    }
-
-private:
-    std::span<std::uint8_t const> kinds_, vectors_;
-    std::size_t read_ = 0;
-};
 
 /// Most are predicted from their own places.
 void expect_next(HeldPicture const& held, std::span<DisplayFramelet const> framelets, std::size_t i) {
@@ -69,124 +52,96 @@ void expect_next(HeldPicture const& held, std::span<DisplayFramelet const> frame
     }
 }
 
-} // namespace
-
-PlaneParts PlaneCodec::join(std::span<DisplayFramelet const> framelets, std::span<std::uint8_t const> quality,
-                            HaarWriter const& haar) {
-    head_.resize(quality.size() + kinds_.size() + vectors_.size() + count_exact(quality) * exact_framelet_bytes +
-                 haar.shares().size() + haar.means().size() + (1 + token_parts) * length_bytes + haar.escapes().size());
-    std::uint8_t* out = std::copy(quality.begin(), quality.end(), head_.data());
-    out = std::copy(kinds_.begin(), kinds_.end(), out);
-    out = std::copy(vectors_.begin(), vectors_.end(), out);
-    for_each_plane([&](auto const plane) {
-        for (std::size_t i = 0; i < framelets.size(); ++i) {
-            if (quality[i] == exact_quality) {
-                difference(framelets[i].*plane, out);
-                out += framelet_samples;
-            }
-        }
-    });
-    out = std::copy(haar.shares().begin(), haar.shares().end(), out);
-    out = std::copy(haar.means().begin(), haar.means().end(), out);
-    put_length(out, haar.escapes().size());
-    PlaneParts parts;
-    for (std::size_t part = 0; part < token_parts; ++part) {
-        parts[1 + part] = haar.tokens(part);
-        out += length_bytes;
-        put_length(out, parts[1 + part].size());
+void add_prediction(DisplayValues const& left, Prediction const& prediction, DisplayFramelet& framelet) {
+    if (prediction.kind == PredictionKind::none) {
+        to_samples(left, framelet);
+    } else {
+        add_to_samples(left, prediction.samples, framelet);
     }
-    std::copy(haar.escapes().begin(), haar.escapes().end(), out + length_bytes);
-    parts[0] = head_;
-    return parts;
 }
 
-PlaneParts PlaneCodec::encode(std::span<DisplayFramelet const> framelets, std::span<std::uint8_t const> quality,
-                              HeldPicture const* held, std::span<DisplayFramelet> decoded) {
+/// What is held in its own place is what an exact framelet is likely to be, if that was sent with loss before: where
+/// it is, green tells.
+bool resembles(DisplayFramelet const& framelet, DisplayFramelet const& held) {
+    constexpr int alike = 12; // of a sample, on the average
+    int sum = 0;
+    for (std::size_t i = 0; i < framelet_samples; ++i) {
+        sum += std::abs(framelet.green[i] - held.green[i]);
+    }
+    return sum < alike * framelet_samples;
+}
+
+DisplayFramelet const* samples_of(Prediction const& prediction) {
+    return prediction.kind == PredictionKind::none ? nullptr : &prediction.samples;
+}
+
+} // namespace
+
+std::span<std::uint8_t const> PlaneCodec::encode(std::span<DisplayFramelet const> framelets,
+                                                 std::span<std::uint8_t const> quality, PlaneModel& model,
+                                                 HeldPicture const* held, std::span<DisplayFramelet> decoded) {
     FRAMELET_CHECK(framelets.size() == quality.size());
     FRAMELET_CHECK(held == nullptr || decoded.size() == quality.size());
-    HaarWriter haar(haar_, framelets.size() - count_exact(quality));
-    kinds_.clear();
-    vectors_.clear();
+    writer_.begin();
     search_.begin();
     for (std::size_t i = 0; i < framelets.size(); ++i) {
         FRAMELET_CHECK(quality[i] <= coarsest_quality);
-        if (quality[i] == exact_quality) {
-            if (held != nullptr) {
-                decoded[i] = framelets[i];
-            }
-        } else if (held == nullptr) {
-            HaarCode alone;
-            code(display_values(framelets[i]), quality[i], std::numeric_limits<int>::max(), alone);
-            share_luma(quality[i], alone);
-            haar.write(alone.levels);
-        } else {
+        DisplayFramelet const& framelet = framelets[i];
+        bool const is_exact = quality[i] == exact_quality;
+        prediction_.kind = PredictionKind::none;
+        prediction_.vector = {};
+        HaarLevels levels;
+        if (held != nullptr && is_exact) {
+            held->predict(framelet.tile, {}, prediction_.samples);
+            prediction_.kind =
+                resembles(framelet, prediction_.samples) ? PredictionKind::same_place : PredictionKind::none;
+        } else if (held != nullptr) {
             expect_next(*held, framelets, i);
-            HaarLevels const levels = predict(*held, framelets[i], quality[i], search_, prediction_);
-            haar.write(levels);
-            put_prediction();
-            add_prediction(dequantise(levels, quality[i]), decoded[i]);
+            levels = predict(*held, framelet, quality[i], search_, prediction_);
+        } else if (!is_exact) {
+            HaarCode alone;
+            code(display_values(framelet), quality[i], std::numeric_limits<int>::max(), alone);
+            share_luma(quality[i], alone);
+            levels = alone.levels;
+        }
+        std::uint8_t own_quality = quality[i];
+        model.code_head(writer_, held != nullptr, own_quality, prediction_.kind, prediction_.vector);
+        if (is_exact) {
+            DisplayFramelet copy = framelet;
+            model.exact.code(writer_, samples_of(prediction_), copy);
+            if (held != nullptr) {
+                decoded[i] = framelet;
+            }
+        } else {
+            model.levels.code(writer_, prediction_.kind != PredictionKind::none, levels);
+            if (held != nullptr) {
+                add_prediction(dequantise(levels, quality[i]), prediction_, decoded[i]);
+            }
         }
     }
-    return join(framelets, quality, haar);
-}
-
-void PlaneCodec::add_prediction(DisplayValues const& left, DisplayFramelet& framelet) const {
-    if (prediction_.kind == PredictionKind::none) {
-        to_samples(left, framelet);
-    } else {
-        add_to_samples(left, prediction_.samples, framelet);
-    }
-}
-
-void PlaneCodec::put_prediction() {
-    kinds_.push_back(static_cast<std::uint8_t>(prediction_.kind));
-    if (prediction_.kind == PredictionKind::moved) {
-        vectors_.push_back(static_cast<std::uint8_t>(prediction_.vector.x));
-        vectors_.push_back(static_cast<std::uint8_t>(prediction_.vector.y));
-    }
+    return writer_.finish();
 }
 
 void PlaneCodec::decode(std::span<std::uint8_t const> bytes, std::span<DisplayFramelet> framelets,
-                        std::span<std::uint8_t> quality, HeldPicture const* held) {
+                        std::span<std::uint8_t> quality, PlaneModel& model, HeldPicture const* held) {
     FRAMELET_CHECK(framelets.size() == quality.size());
-    ByteCursor rest{bytes.data(), bytes.data() + bytes.size()};
-    auto const qualities = rest.take(quality.size());
-    if (std::any_of(qualities.begin(), qualities.end(), [](std::uint8_t q) { return q > coarsest_quality; })) {
-        throw ProtocolError("a batch has a framelet of an unknown quality");
-    }
-    std::copy(qualities.begin(), qualities.end(), quality.begin());
-    std::size_t const exact = count_exact(quality);
-    PredictionReader predictions(rest, held == nullptr ? 0 : framelets.size() - exact);
-    std::uint8_t const* planes = rest.take(exact * exact_framelet_bytes).data();
-    for_each_plane([&](auto const plane) {
-        for (std::size_t i = 0; i < framelets.size(); ++i) {
-            if (quality[i] == exact_quality) {
-                undo_difference(planes, framelets[i].*plane);
-                planes += framelet_samples;
-            }
-        }
-    });
-    auto const shares = rest.take(share_bytes * (framelets.size() - exact));
-    auto const means = rest.take(mean_bytes * (framelets.size() - exact));
-    std::size_t const escape_bytes = take_length(rest);
-    std::array<std::size_t, token_parts> part_bytes;
-    std::ranges::generate(part_bytes, [&] { return take_length(rest); });
-    auto const escapes = rest.take(escape_bytes);
-    HaarReader::Parts parts;
-    std::ranges::transform(part_bytes, parts.begin(),
-                           [&](std::size_t bytes_of_part) { return rest.take(bytes_of_part); });
-    HaarReader haar(shares, means, escapes, parts);
+    RangeReader reader(bytes);
+    Prediction prediction;
     for (std::size_t i = 0; i < framelets.size(); ++i) {
-        if (quality[i] != exact_quality) {
-            prediction_.kind = PredictionKind::none;
-            if (held != nullptr) {
-                expect_next(*held, framelets, i);
-                predictions.next(*held, framelets[i].tile, prediction_);
-            }
-            add_prediction(haar.read(quality[i]), framelets[i]);
+        model.code_head(reader, held != nullptr, quality[i], prediction.kind, prediction.vector);
+        if (prediction.kind != PredictionKind::none) {
+            expect_next(*held, framelets, i);
+            held->predict(framelets[i].tile, prediction.vector, prediction.samples);
+        }
+        if (quality[i] == exact_quality) {
+            model.exact.code(reader, samples_of(prediction), framelets[i]);
+        } else {
+            HaarLevels levels{};
+            model.levels.code(reader, prediction.kind != PredictionKind::none, levels);
+            add_prediction(dequantise(levels, quality[i]), prediction, framelets[i]);
         }
     }
-    if (rest.left() != 0 || !haar.is_at_end()) {
+    if (!reader.is_at_end()) {
         throw ProtocolError("a group of a batch is longer than its framelets");
     }
 }

@@ -88,7 +88,7 @@ public:
         shapes_.track(input.scene.scene, input.scene.clips, input.scene.render_scene->bodies(), -1, batch.scene_time,
                       batch.tracks, batch.camera_track);
         // The message is a batch's whose payload is the access unit; of its tiles the first one says all.
-        EncodedBatch message = codec_.encode(batch);
+        EncodedBatch message = codec_.encode(batch, &sent_, false);
         message.tiles.resize(1);
         message.payload.clear();
         Picture const& picture = grid.picture();
@@ -110,7 +110,7 @@ public:
         decoder_.decode(spacing, encoded.payload, decoded_);
         encoded.payload = blank.payload;
         encoded.tiles = blank.tiles;
-        Batch batch = codec_.decode(encoded);
+        Batch batch = codec_.decode(encoded, &received_);
         for (DisplayFramelet& framelet : batch.framelets) {
             take_samples(decoded_, framelet);
         }
@@ -136,6 +136,7 @@ private:
     ScaledH264Decoder decoder_;
     std::size_t last_bytes_ = 0;
     BatchCodec codec_;
+    BatchMemory sent_, received_;
     /// By the depth of its tiles: spacing of a frame, and its tiles with a payload that stands for colours which come
     /// otherwise.
     struct Blank {

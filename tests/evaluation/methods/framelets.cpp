@@ -228,7 +228,7 @@ private:
     RenderRate rate_;
     std::uint64_t answered_ = 0; ///< batches
     BatchCodec codec_;
-    HeldPicture received_;
+    BatchMemory received_;
     std::deque<std::vector<SentTile>> let_go_; ///< with each batch that the server has no answer to yet
     WarpViewer viewer_;
     int const cells_; ///< in a row

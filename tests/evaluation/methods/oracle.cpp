@@ -50,7 +50,7 @@ public:
     }
 
     ViewerStep consume(std::vector<std::byte> const& message) override {
-        Batch const batch = codec_.decode(std::get<EncodedBatch>(decode_message(message)));
+        Batch const batch = codec_.decode(std::get<EncodedBatch>(decode_message(message)), &received_);
         time_ = batch.scene_time;
         ViewerStep step = viewer_.insert(batch);
         step.seconds.decode +=
@@ -85,8 +85,8 @@ private:
         shapes_.fit(rendered, all, make_view_rays(view_.camera, setup_.viewport), plane_, input.now, batch.shapes);
         shapes_.track(input.scene.scene, input.scene.clips, input.scene.render_scene->bodies(), -1, shown, batch.tracks,
                       batch.camera_track);
-        EncodedBatch const encoded = codec_.encode(batch);
-        mirror_.insert(codec_.decode(encoded));
+        EncodedBatch const encoded = codec_.encode(batch, &sent_, false);
+        mirror_.insert(codec_.decode(encoded, &mirrored_));
 
         CostTable const& costs = setup_.costs;
         ServerStep step;
@@ -116,6 +116,7 @@ private:
     std::uint64_t number_ = 0;
     ShapeFeed shapes_;
     BatchCodec codec_;
+    BatchMemory sent_, mirrored_, received_;
     WarpViewer mirror_, viewer_; ///< with all that was sent, with all that has come
     double time_ = 0;
 };

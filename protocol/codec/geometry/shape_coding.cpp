@@ -1,0 +1,320 @@
+#include "protocol/codec/geometry/shape_coding.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+#include "common/error.h"
+#include "protocol/codec/entropy/morton_rows.h"
+
+namespace framelet {
+namespace {
+
+/// value * 2^shift, rounded down, as near as 16 bits hold.
+std::int16_t scaled(std::int64_t value, int shift) {
+    using Limits = std::numeric_limits<std::int16_t>;
+    if (value == 0) {
+        return 0;
+    }
+    std::int64_t const large = value < 0 ? Limits::lowest() : Limits::max();
+    std::int64_t const out = shift <= 0    ? value >> std::min(-shift, 63)
+                             : shift >= 16 ? large
+                                           : value * (std::int64_t{1} << shift);
+    return static_cast<std::int16_t>(std::clamp<std::int64_t>(out, Limits::lowest(), Limits::max()));
+}
+
+std::int16_t difference(std::int16_t a, std::int16_t b) {
+    return static_cast<std::int16_t>(a - b);
+}
+std::int16_t sum(std::int16_t a, std::int16_t b) {
+    return static_cast<std::int16_t>(a + b);
+}
+
+/// How many bits numbers so far off take, about.
+int cost(LayerCode const& code, LayerCode const& expected) {
+    auto const bits = [](int off) { return static_cast<int>(std::bit_width(static_cast<unsigned>(std::abs(off)))); };
+    return 2 * (bits(code.at - expected.at) + bits(code.dx - expected.dx) + bits(code.dy - expected.dy));
+}
+
+UnitCode checked_unit(unsigned unit) {
+    if (unit > largest_unit) {
+        throw ProtocolError("a shape has an unknown unit");
+    }
+    return static_cast<UnitCode>(unit);
+}
+
+/// Calls `use` for every layer of a shape, then for every loose sample.
+template <typename Shape, typename Use>
+void for_each_carried(Shape& shape, Use const& use) {
+    for (std::size_t l = 0; l < shape.layer_count; ++l) {
+        use(shape.layers[l]);
+    }
+    for (auto& sample : shape.loose_samples) {
+        use(sample);
+    }
+}
+
+/// The smallest unit in which the velocities are; 0: nothing moves so.
+UnitCode velocity_unit(FrameletShape const& shape) {
+    float largest = 0;
+    for_each_carried(shape, [&](auto const& carried) {
+        for (int axis = 0; axis < 3; ++axis) {
+            largest = std::max(largest, std::abs(carried.velocity[axis]));
+        }
+    });
+    return unit_above(static_cast<double>(largest) / largest_velocity_code);
+}
+
+UnitCode loose_unit(FrameletShape const& shape) {
+    float largest = 0;
+    for (LooseSample const& sample : shape.loose_samples) {
+        FRAMELET_CHECK(sample.inverse_depth >= 0);
+        largest = std::max(largest, sample.inverse_depth);
+    }
+    return unit_above(static_cast<double>(largest) / largest_inverse_depth_code);
+}
+
+void check(FrameletShape const& shape) {
+    FRAMELET_CHECK(shape.layer_count <= max_layers);
+    std::size_t loose = 0, none = 0;
+    for (std::uint8_t const layer : shape.layer_of) { // without an early end: many at a time
+        loose += layer == FrameletShape::loose ? 1 : 0;
+        none += layer >= shape.layer_count ? 1 : 0;
+    }
+    FRAMELET_CHECK(loose == none && loose == shape.loose_samples.size());
+}
+
+} // namespace
+
+LayerCode continued(CodedLayer const& layer, UnitCode unit, TilePlace const& place) {
+    LayerCode const& code = layer.code;
+    int const bits = layer.place.side_bits;
+    int const finer = int{code.unit} - int{unit}; // how much larger the old unit is
+    std::int64_t const right = std::int64_t{place.left} - layer.place.left;
+    std::int64_t const down = std::int64_t{place.top} - layer.place.top;
+    std::int64_t const at = (std::int64_t{code.at} << bits) + code.dx * right + code.dy * down;
+    LayerCode out;
+    out.unit = unit;
+    out.at = scaled(at, finer - bits);
+    out.dx = scaled(code.dx, finer + place.side_bits - bits);
+    out.dy = scaled(code.dy, finer + place.side_bits - bits);
+    return out;
+}
+
+template <class Coder>
+BodyNumber ShapeModel::BodyModel::code(Coder& coder, BodyNumber last, BodyNumber body) {
+    if (coder.bit(is_same, body == last)) {
+        return last;
+    }
+    unsigned const upper = high.code(coder, body >> 8u);
+    return static_cast<BodyNumber>(upper << 8 | low.code(coder, body & 255u));
+}
+
+/// The one beside which it takes least.
+std::size_t ShapeModel::nearest(LayerCode const& code, BodyNumber body, TilePlace const& place) const {
+    std::size_t best = 0;
+    int least = std::numeric_limits<int>::max();
+    for (std::size_t i = 0; i < layers_.size(); ++i) {
+        constexpr int another_body = 12; // bits
+        int const bits = cost(code, continued(layers_[i], code.unit, place)) +
+                         (layers_[i].body == body ? 0 : another_body) + std::abs(layers_[i].code.unit - code.unit);
+        if (bits < least) {
+            least = bits;
+            best = i;
+        }
+    }
+    return best;
+}
+
+void ShapeModel::remember(CodedLayer const& layer) {
+    std::shift_right(layers_.begin(), layers_.end(), 1);
+    layers_[0] = layer;
+}
+
+template <class Coder>
+void ShapeModel::code_layer(Coder& coder, TilePlace const& place, std::size_t number, Layer& layer) {
+    LayerCode code;
+    if (!Coder::reads) {
+        code = quantise(layer, place.side_bits);
+    }
+    std::size_t const source =
+        sources_[number].code(coder, static_cast<unsigned>(Coder::reads ? 0 : nearest(code, layer.body, place)));
+    CodedLayer const& from = layers_[source];
+    code.unit = checked_unit(static_cast<unsigned>(static_cast<std::uint16_t>(
+        from.code.unit + units_.code(coder, static_cast<std::int16_t>(code.unit - from.code.unit)))));
+    LayerCode const expected = continued(from, code.unit, place);
+    auto const coded = [&](std::size_t i, std::int16_t value, std::int16_t likely) {
+        return sum(likely, planes_[i].code(coder, difference(value, likely)));
+    };
+    code.at = coded(0, code.at, expected.at);
+    code.dx = coded(1, code.dx, expected.dx);
+    code.dy = coded(2, code.dy, expected.dy);
+    std::uint32_t const error = errors_.code(coder, code.error);
+    if (error > 255) {
+        throw ProtocolError("a shape has an error that is too large");
+    }
+    code.error = static_cast<std::uint8_t>(error);
+    BodyNumber const body = layer_bodies_.code(coder, from.body, layer.body);
+    if (Coder::reads) {
+        layer = dequantise(code, place.side_bits);
+        layer.body = body;
+    }
+    remember({code, body, place});
+}
+
+/// Which sample is of which kind, row by row: layers by their number, then what is loose.
+template <class Coder>
+void ShapeModel::code_kinds(Coder& coder, unsigned kinds, FrameletShape& shape) {
+    constexpr std::size_t stride = framelet_side + 3; // two before a row, one behind it
+    std::array<std::uint8_t, stride*(framelet_side + 1)> rows{};
+    SamplePlane in_order{};
+    if (!Coder::reads) {
+        SamplePlane kinds_of;
+        std::transform(shape.layer_of.begin(), shape.layer_of.end(), kinds_of.begin(),
+                       [count = shape.layer_count](std::uint8_t layer) { return std::min(layer, count); });
+        to_rows(kinds_of.data(), in_order.data(), framelet_side);
+    }
+    auto& as_expected = as_expected_[kinds - 2];
+    for (std::size_t y = 0; y < framelet_side; ++y) {
+        for (std::size_t x = 0; x < framelet_side; ++x) {
+            std::uint8_t* const at = &rows[(y + 1) * stride + x + 2];
+            unsigned const left = at[-1], above = *(at - stride), corner = *(at - stride - 1),
+                           right = *(at - stride + 1), second = at[-2];
+            unsigned const expected = left == corner ? above : left;
+            std::size_t const context = (left == above ? 1u : 0u) | (corner == left ? 2u : 0u) |
+                                        (right == above ? 4u : 0u) | (second == left ? 8u : 0u) |
+                                        (expected + 1 == kinds ? 16u : 0u) | (right == left ? 32u : 0u);
+            unsigned kind = in_order[y * framelet_side + x];
+            if (coder.bit(as_expected[context], kind == expected)) {
+                kind = expected;
+            } else if (kinds == 2) {
+                kind = 1 - expected;
+            } else {
+                unsigned const turn = others_[kinds - 2][expected].code(coder, (kind + kinds - expected) % kinds - 1);
+                if (turn + 1 >= kinds) {
+                    throw ProtocolError("a shape has a sample on a layer that it does not have");
+                }
+                kind = (expected + turn + 1) % kinds;
+            }
+            *at = static_cast<std::uint8_t>(kind);
+            in_order[y * framelet_side + x] = static_cast<std::uint8_t>(kind);
+        }
+        rows[(y + 1) * stride + framelet_side + 2] = rows[(y + 1) * stride + framelet_side + 1];
+    }
+    if (Coder::reads) {
+        from_rows(in_order.data(), framelet_side, shape.layer_of.data());
+    }
+}
+
+/// Inverse depths as differences from the sample before, 0 before the first.
+template <class Coder>
+void ShapeModel::code_loose(Coder& coder, FrameletShape& shape) {
+    UnitCode const own = Coder::reads ? UnitCode{0} : loose_unit(shape);
+    loose_unit_ = checked_unit(static_cast<unsigned>(static_cast<std::uint16_t>(
+        loose_unit_ + loose_units_.code(coder, static_cast<std::int16_t>(own - loose_unit_)))));
+    double const unit = unit_of(loose_unit_);
+    std::uint8_t depth = 0;
+    unsigned around = 255;
+    BodyNumber body = shape.layer_count > 0 ? shape.layers[0].body : static_body;
+    for (LooseSample& sample : shape.loose_samples) {
+        std::uint8_t const wanted =
+            Coder::reads ? std::uint8_t{0} : quantise_inverse_depth(sample.inverse_depth, loose_unit_);
+        std::size_t const size_class =
+            std::min<std::size_t>(static_cast<std::size_t>(std::bit_width(around)), size_classes - 1);
+        auto const step =
+            static_cast<std::int8_t>(loose_depths_[size_class].code(coder, static_cast<std::int8_t>(wanted - depth)));
+        depth = static_cast<std::uint8_t>(depth + step);
+        around = static_cast<unsigned>(std::abs(int{step}));
+        body = loose_bodies_.code(coder, body, sample.body);
+        if (Coder::reads) {
+            sample.inverse_depth = static_cast<float>(depth * unit);
+            sample.body = body;
+        }
+    }
+}
+
+/// As differences from the one before.
+template <class Coder>
+void ShapeModel::code_velocities(Coder& coder, FrameletShape& shape) {
+    UnitCode const own = Coder::reads ? UnitCode{0} : velocity_unit(shape);
+    if (!coder.bit(velocities_.any, own != 0)) {
+        return;
+    }
+    UnitCode const code = checked_unit(velocities_.unit.code(coder, own));
+    std::array<std::int16_t, 3> last{};
+    for_each_carried(shape, [&](auto& carried) {
+        std::array<std::int16_t, 3> value{};
+        for (std::size_t axis = 0; axis < value.size() && !Coder::reads; ++axis) {
+            value[axis] = quantise_velocity(carried.velocity[static_cast<int>(axis)], code);
+        }
+        if (!coder.bit(velocities_.is_same, value == last)) {
+            for (std::size_t axis = 0; axis < value.size(); ++axis) {
+                last[axis] = sum(last[axis], velocities_.axes[axis].code(coder, difference(value[axis], last[axis])));
+            }
+        }
+        if (Coder::reads) {
+            for (std::size_t axis = 0; axis < value.size(); ++axis) {
+                carried.velocity[static_cast<int>(axis)] = static_cast<float>(last[axis] * unit_of(code));
+            }
+        }
+    });
+}
+
+template <class Coder>
+void ShapeModel::code(Coder& coder, TilePlace const& place, FrameletShape& shape) {
+    constexpr unsigned loose_bit = 4;
+    unsigned const own = shape.layer_count + (shape.loose_samples.empty() ? 0u : loose_bit);
+    unsigned const head = heads_[head_].code(coder, own);
+    if (head == 0) {
+        throw ProtocolError("a shape has neither layers nor loose samples");
+    }
+    head_ = static_cast<std::uint8_t>(head);
+    shape.layer_count = static_cast<std::uint8_t>(head % loose_bit);
+    bool const has_loose = head >= loose_bit;
+    if (!coder.bit(same_fading_, shape.fading == fading_)) {
+        fading_ = static_cast<FadingCode>(fadings_.code(coder, shape.fading));
+    }
+    shape.fading = fading_;
+    for (std::size_t l = 0; l < shape.layer_count; ++l) {
+        code_layer(coder, place, l, shape.layers[l]);
+    }
+    unsigned const kinds = shape.layer_count + (has_loose ? 1u : 0u);
+    if (kinds > 1) {
+        code_kinds(coder, kinds, shape);
+    } else if (Coder::reads) {
+        shape.layer_of.fill(0);
+    }
+    if (Coder::reads && has_loose) {
+        std::size_t loose = 0;
+        for (std::uint8_t& kind : shape.layer_of) { // without an early end: many at a time
+            bool const is_loose = kind >= shape.layer_count;
+            kind = is_loose ? FrameletShape::loose : kind;
+            loose += is_loose ? 1 : 0;
+        }
+        if (loose == 0) {
+            throw ProtocolError("a shape has none of the loose samples that it announces");
+        }
+        shape.loose_samples.resize(loose);
+    }
+    if (has_loose) {
+        code_loose(coder, shape);
+    }
+    code_velocities(coder, shape);
+}
+
+void ShapeModel::write(RangeWriter& writer, TilePlace const& place, FrameletShape const& shape) {
+    check(shape);
+    code(writer, place, const_cast<FrameletShape&>(shape)); // which a writer leaves as it is
+}
+
+void ShapeModel::read(RangeReader& reader, TilePlace const& place, FrameletShape& shape) {
+    shape.layers = {};
+    shape.fading = 0;
+    shape.layer_count = 0;
+    shape.loose_samples.clear();
+    code(reader, place, shape);
+}
+
+} // namespace framelet

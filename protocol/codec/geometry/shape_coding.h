@@ -1,0 +1,90 @@
+// Shapes as decisions of a range coder: planes beside one that was coded before, which sample lies on which of them by
+// what its neighbours lie on. In: shapes. Out: decisions, and back. PROTOCOL.md has the order.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "common/framelet/framelet_shape.h"
+#include "protocol/codec/entropy/adaptive_numbers.h"
+#include "protocol/codec/geometry/shape_quantisation.h"
+
+namespace framelet {
+
+/// Where a tile lies: its upper left corner, pixels, and its side, 2^side_bits pixels.
+struct TilePlace {
+    std::int32_t left = 0, top = 0;
+    std::int32_t side_bits = 0; ///< 0..31
+};
+
+/// A layer that was coded, and where.
+struct CodedLayer {
+    LayerCode code;
+    BodyNumber body = static_body;
+    TilePlace place;
+};
+
+/// What its plane is at another place, in that unit, as near as the numbers hold.
+LayerCode continued(CodedLayer const& layer, UnitCode unit, TilePlace const& place);
+
+/// What is known of the shapes that were coded before. Both sides know the same.
+class ShapeModel {
+public:
+    void write(RangeWriter& writer, TilePlace const& place, FrameletShape const& shape);
+    /// Fills a shape. ProtocolError where there is no such one.
+    void read(RangeReader& reader, TilePlace const& place, FrameletShape& shape);
+
+private:
+    static constexpr int unary = 3; // of numbers that may be large
+    static constexpr int remembered_bits = 3;
+    static constexpr std::size_t remembered = std::size_t{1} << remembered_bits;
+    static constexpr std::size_t size_classes = 6;
+    static constexpr std::size_t most_kinds = max_layers + 1;
+
+    struct BodyModel {
+        AdaptiveBit is_same;
+        AdaptiveTree<8> high, low;
+
+        template <class Coder>
+        BodyNumber code(Coder& coder, BodyNumber last, BodyNumber body);
+    };
+    struct VelocityModel {
+        AdaptiveBit any, is_same;
+        AdaptiveTree<8> unit;
+        std::array<AdaptiveNumber<unary>, 3> axes;
+    };
+
+    template <class Coder>
+    void code(Coder& coder, TilePlace const& place, FrameletShape& shape);
+    template <class Coder>
+    void code_layer(Coder& coder, TilePlace const& place, std::size_t number, Layer& layer);
+    template <class Coder>
+    void code_kinds(Coder& coder, unsigned kinds, FrameletShape& shape);
+    template <class Coder>
+    void code_loose(Coder& coder, FrameletShape& shape);
+    template <class Coder>
+    void code_velocities(Coder& coder, FrameletShape& shape);
+    std::size_t nearest(LayerCode const& code, BodyNumber body, TilePlace const& place) const;
+    void remember(CodedLayer const& layer);
+
+    std::array<CodedLayer, remembered> layers_{}; ///< lately, the newest first
+    std::uint8_t head_ = 0;
+    FadingCode fading_ = 0;
+    UnitCode loose_unit_ = 0;
+
+    std::array<AdaptiveTree<3>, 8> heads_; // by the last one
+    AdaptiveBit same_fading_;
+    AdaptiveTree<8> fadings_;
+    std::array<AdaptiveTree<remembered_bits>, max_layers> sources_;
+    AdaptiveNumber<unary> units_;
+    std::array<AdaptiveNumber<unary>, 3> planes_; ///< at, dx, dy
+    AdaptiveSize<12> errors_;
+    BodyModel layer_bodies_, loose_bodies_;
+    std::array<std::array<AdaptiveBit, 64>, most_kinds - 1> as_expected_;
+    std::array<std::array<AdaptiveTree<2>, most_kinds>, most_kinds - 1> others_;
+    AdaptiveNumber<unary> loose_units_;
+    std::array<AdaptiveNumber<4>, size_classes> loose_depths_;
+    VelocityModel velocities_;
+};
+
+} // namespace framelet
