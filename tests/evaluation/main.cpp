@@ -65,6 +65,15 @@ void add_live_verbs(CLI::App& app, VerbOptions& options, LiveVerbOptions& live, 
     }).group("");
 }
 
+/// Of runs that list what has failed in them.
+std::size_t failures_in(json const& runs) {
+    std::size_t count = 0;
+    for (json const& run : runs) {
+        count += run.is_object() && run.contains("failures") ? run["failures"].size() : 0;
+    }
+    return count;
+}
+
 /// As it was typed, but for the folders of whoever did so.
 std::string command_of(std::vector<std::string> const& words) {
     std::string command = "framelet-bench";
@@ -110,6 +119,10 @@ int main(int argc, char** argv) {
         json const figures = answer();
         if (!options.json_file.empty()) {
             write_json(options.json_file, figures);
+        }
+        if (std::size_t const failures = failures_in(figures); failures > 0) {
+            std::cerr << "framelet-bench: " << failures << " failures, see above\n";
+            return 1;
         }
         return 0;
     } catch (std::exception const& error) {

@@ -184,13 +184,8 @@ json answer_soak(LiveVerbOptions& options, std::filesystem::path const& usual) {
         }
     }
     json runs = json::array();
-    std::size_t failures = 0;
     for (std::filesystem::path const& file : scenes) {
         runs.push_back(run_soak(*load_bench_scene(file), soak));
-        failures += runs.back()["failures"].size();
-    }
-    if (failures > 0) {
-        throw ConnectionError(std::to_string(failures) + " failures, see above");
     }
     return runs;
 }

@@ -16,20 +16,19 @@ struct ProcessHoldings {
 /// Zeros where there is no such process.
 ProcessHoldings holdings_of(pid_t pid);
 
-/// A straight line through points, by least squares.
-struct Trend {
-    double slope = 0;
-    double slope_error = 0; ///< its standard error, from how far the points are off the line
+/// How much more values are the second time than the first, pair by pair.
+struct Growth {
     double mean = 0;
-    std::size_t points = 0;
+    double error = 0; ///< its standard error, from how much the pairs differ
+    double before = 0; ///< mean the first time
+    std::size_t pairs = 0;
 };
 
-/// At least three points, not all at one time.
-Trend trend_of(std::span<double const> times, std::span<double const> values);
+/// At least two pairs, and as many values each time.
+Growth growth_of(std::span<double const> before, std::span<double const> after);
 
-/// It rises as points about a level line do by chance in one of a thousand cases (Student's t, one side), and over
-/// `span` by more than `share` of the mean: what an allocator keeps goes up and down by some of that for reasons of its
-/// own.
-bool grows(Trend const& trend, double span, double share);
+/// It is more than what comes by chance in one of a thousand cases (Student's t, one side), and more than `share` of
+/// what there was: what an allocator keeps goes up and down by some of that for reasons of its own.
+bool grows(Growth const& growth, double share);
 
 } // namespace framelet::bench

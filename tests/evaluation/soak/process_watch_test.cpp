@@ -1,6 +1,8 @@
 #include "tests/evaluation/soak/process_watch.h"
 
+#include <algorithm>
 #include <cmath>
+#include <random>
 #include <vector>
 
 #include <fcntl.h>
@@ -28,40 +30,47 @@ TEST(ProcessWatch, NobodyHoldsNothing) {
     EXPECT_EQ(held.resident_bytes, 0);
 }
 
-TEST(Trend, OfPointsOnALine) {
-    std::vector<double> const times{1, 2, 4, 8}, values{5, 7, 11, 19};
-    Trend const trend = trend_of(times, values);
-    EXPECT_NEAR(trend.slope, 2, 1e-12);
-    EXPECT_NEAR(trend.slope_error, 0, 1e-12);
-    EXPECT_EQ(trend.mean, 10.5);
+TEST(Growth, OfKnownPairs) {
+    // Differences 1, 3, 2: their mean is 2, their deviation 1.
+    std::vector<double> const before{10, 50, 30}, after{11, 53, 32};
+    Growth const growth = growth_of(before, after);
+    EXPECT_NEAR(growth.mean, 2, 1e-12);
+    EXPECT_NEAR(growth.error, 1 / std::sqrt(3.0), 1e-12);
+    EXPECT_NEAR(growth.before, 30, 1e-12);
+    EXPECT_EQ(growth.pairs, 3u);
 }
 
-TEST(Trend, StandardErrorOfKnownPoints) {
-    // About the line 1.3 + 0.8 t they are off by -0.3, 0.9, -0.9, 0.3: squares of 1.8 together, those of the times 5.
-    std::vector<double> const times{0, 1, 2, 3}, values{1, 3, 2, 4};
-    Trend const trend = trend_of(times, values);
-    EXPECT_NEAR(trend.slope, 0.8, 1e-12);
-    EXPECT_NEAR(trend.slope_error, std::sqrt(1.8 / 2 / 5), 1e-12);
+TEST(Growth, IsToldFromNoiseAndFromWhatEachStormLeaves) {
+    std::vector<double> before, still, leaking;
+    for (int i = 0; i < 50; ++i) {
+        double const noise = i % 3 - 1, storm = 20 * std::sin(i);
+        before.push_back(100 + storm);
+        still.push_back(100 + storm + noise);
+        leaking.push_back(105 + storm + noise);
+    }
+    EXPECT_FALSE(grows(growth_of(before, still), 0.02));
+    EXPECT_TRUE(grows(growth_of(before, leaking), 0.02)) << "though storms differ by more than that";
+    EXPECT_FALSE(grows(growth_of(before, leaking), 0.2)) << "it is a twentieth";
+    EXPECT_FALSE(grows(growth_of(leaking, before), 0.02));
+    std::vector<double> const few_before{100, 100, 100, 100, 100}, few{104, 103, 109, 102, 112};
+    EXPECT_GT(growth_of(few_before, few).mean, 3 * growth_of(few_before, few).error);
+    EXPECT_FALSE(grows(growth_of(few_before, few), 0.02)) << "as few pairs do by chance";
 }
 
-TEST(Trend, GrowthIsToldFromNoise) {
-    std::vector<double> times, still, leaking;
-    for (int i = 0; i < 100; ++i) {
-        double const noise = i % 3 - 1;
-        times.push_back(i);
-        still.push_back(100 + noise);
-        leaking.push_back(100 + noise + 0.1 * i);
+TEST(Growth, ByChanceIsSeldom) {
+    std::mt19937 random(1);
+    std::normal_distribution<double> noise(100, 10);
+    for (std::size_t const pairs : {5u, 12u, 60u}) {
+        int alarms = 0;
+        std::vector<double> before(pairs), after(pairs);
+        for (int i = 0; i < 100000; ++i) {
+            std::ranges::generate(before, [&] { return noise(random); });
+            std::ranges::generate(after, [&] { return noise(random); });
+            alarms += grows(growth_of(before, after), 0) ? 1 : 0;
+        }
+        EXPECT_LT(alarms, 150) << pairs << " pairs, of 100000: 100 are expected";
+        EXPECT_GT(alarms, 50) << pairs;
     }
-    EXPECT_FALSE(grows(trend_of(times, still), 100, 0.02));
-    EXPECT_TRUE(grows(trend_of(times, leaking), 100, 0.02));
-    EXPECT_FALSE(grows(trend_of(times, leaking), 100, 0.2)) << "it is a tenth";
-    std::vector<double> const few_times{0, 10, 20, 30, 40, 50}, few{100, 103, 101, 105, 104, 108};
-    EXPECT_GT(trend_of(few_times, few).slope, 3 * trend_of(few_times, few).slope_error);
-    EXPECT_FALSE(grows(trend_of(few_times, few), 50, 0.02)) << "as few points do by chance";
-    for (double& value : leaking) {
-        value = -value;
-    }
-    EXPECT_FALSE(grows(trend_of(times, leaking), 100, 0.02));
 }
 
 } // namespace

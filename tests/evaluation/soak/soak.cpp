@@ -1,12 +1,14 @@
 #include "tests/evaluation/soak/soak.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
@@ -31,6 +33,7 @@ constexpr auto step = std::chrono::milliseconds(50); ///< between pictures of a 
 constexpr double patience = 120; ///< seconds, for what is to come by itself
 constexpr double still_times[] = {0.5, 1.5, 3}; ///< of the scene, at which it stands in the calms
 constexpr double least_psnr = 45; ///< of a reference, against a direct render of 64 samples a pixel
+constexpr std::size_t least_pairs = 4; ///< of calms after the same storm, to be compared
 constexpr double memory_noise = 0.02; ///< of the memory, which an allocator takes and gives back
 
 /// From no limit to a link that is narrow, slow, and stalls.
@@ -90,7 +93,10 @@ public:
                                  {"viewers MB", "/viewers_bytes", 10, 1, 1e-6}});
         json rounds = json::array();
         for (double printed = -1e9; seconds() < options_.seconds && failures_.empty();) {
-            rounds.push_back(run_round(rounds.size()));
+            int const quarter = std::min(static_cast<int>(4 * seconds() / options_.seconds), 3);
+            round_ = quarter == quarter_ ? round_ + 1 : 0;
+            quarter_ = quarter;
+            rounds.push_back(run_round());
             if (seconds() - printed >= options_.seconds / 60) {
                 printed = seconds();
                 table.print(rounds.back());
@@ -118,11 +124,12 @@ private:
         std::printf("FAILED %s\n", failures_.back().c_str());
     }
 
-    json run_round(std::size_t round) {
-        storm_seed_ = options_.seed + round;
+    json run_round() {
+        storm_seed_ = options_.seed + round_;
         json figures = storm(storm_seed_);
+        figures["quarter"] = quarter_;
         double const rest_began = seconds();
-        SceneTime const moment = still_times[round % std::size(still_times)];
+        SceneTime const moment = still_times[round_ % std::size(still_times)];
         bool const complete = come_to_rest(moment);
         figures["rest_seconds"] = seconds() - rest_began;
         figures["exact"] = complete ? count_exact(moment) : 0;
@@ -276,31 +283,27 @@ private:
         }
     }
 
-    /// Over the second half's calms. `key`: of a round. What viewers hold depends on the sizes that events give them,
-    /// and is judged where there are none.
+    /// In the last quarter beside the one before. `key`: of a round. What viewers hold depends on the sizes that events
+    /// give them, and is judged where there are none.
     json judge_memory(json const& rounds, char const* whose, char const* key, bool is_judged) {
-        std::vector<double> times, bytes;
+        std::array<std::vector<double>, 4> bytes;
         for (json const& round : rounds) {
-            if (round["seconds"] > 0.5 * seconds()) {
-                times.push_back(round["seconds"]);
-                bytes.push_back(round[key]);
-            }
+            bytes[round["quarter"].get<std::size_t>()].push_back(round[key]);
         }
-        if (times.size() < 3) {
+        std::size_t const pairs = std::min(bytes[2].size(), bytes[3].size());
+        if (pairs < least_pairs) {
             return {};
         }
-        Trend const trend = trend_of(times, bytes);
-        double const span = times.back() - times.front();
-        std::printf("%s: %s memory goes by %+.2f MB an hour, standard error %.2f, of %.1f MB\n", scene_.name.c_str(),
-                    whose, 3600e-6 * trend.slope, 3600e-6 * trend.slope_error, 1e-6 * trend.mean);
-        if (is_judged && grows(trend, span, memory_noise)) {
-            fail(std::string(whose) + " memory has grown by " + std::to_string(1e-6 * trend.slope * span) +
-                 " MB in the second half");
+        Growth const growth = growth_of(std::span(bytes[2]).first(pairs), std::span(bytes[3]).first(pairs));
+        std::printf("%s: %s memory has grown by %+.2f MB in a quarter of the time, standard error %.2f, of %.1f MB\n",
+                    scene_.name.c_str(), whose, 1e-6 * growth.mean, 1e-6 * growth.error, 1e-6 * growth.before);
+        if (is_judged && grows(growth, memory_noise)) {
+            fail(std::string(whose) + " memory grows");
         }
-        return {{"bytes_per_second", trend.slope},
-                {"standard_error", trend.slope_error},
-                {"mean_bytes", trend.mean},
-                {"calms", times.size()}};
+        return {{"bytes_a_quarter", growth.mean},
+                {"standard_error", growth.error},
+                {"mean_bytes", growth.before},
+                {"pairs", growth.pairs}};
     }
 
     void end() {
@@ -324,6 +327,8 @@ private:
     Clock::time_point const begun_ = Clock::now();
     std::vector<std::unique_ptr<SoakViewer>> viewers_;
     std::map<std::pair<std::size_t, SceneTime>, Picture> references_;
+    int quarter_ = -1; ///< of the time
+    std::size_t round_ = 0; ///< in the quarter
     std::uint64_t storm_seed_ = 0;
     std::vector<std::string> failures_;
 };

@@ -29,8 +29,9 @@ struct SoakOptions {
 /// - in each calm: whether every viewer's picture is complete within two minutes, and equal to that of a viewer who
 ///   came for it over a link without limit, which is a direct render's but for what its samples are quantised to;
 ///   whether the server's descriptors are those of its viewers and no more;
-/// - over the second half's calms: whether the server's resident memory grows (`grows`), and, where viewers only fly,
-///   theirs;
+/// - in the last quarter's calms: whether the server holds more resident memory than in those of the quarter before
+///   (`grows`), and, where viewers only fly, whether they do. The same storms come in each quarter, since what a calm
+///   holds depends on the storm before it. Quarters of less than four calms are not compared;
 /// - at the end: whether without viewers it has the descriptors that it had at first, and ends without an error.
 nlohmann::json run_soak(BenchScene& scene, SoakOptions const& options);
 
