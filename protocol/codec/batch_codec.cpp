@@ -89,12 +89,15 @@ std::span<Value> part_of(std::span<Value> all, std::size_t first, std::size_t si
 template <class Model>
 class GroupModels {
 public:
-    GroupModels(Model& model, std::size_t groups) : model_(model), others_(groups > 1 ? groups - 1 : 0, model) {}
+    /// `others`: scratch, for all groups but the first.
+    GroupModels(Model& model, std::size_t groups, std::vector<Model>& others) : model_(model), others_(others) {
+        others_.assign(groups > 1 ? groups - 1 : 0, model);
+    }
     Model& operator[](std::size_t group) { return group == 0 ? model_ : others_[group - 1]; }
 
 private:
     Model& model_;
-    std::vector<Model> others_;
+    std::vector<Model>& others_;
 };
 
 } // namespace
@@ -104,6 +107,8 @@ struct BatchCodec::Scratch {
     std::vector<Bytes> frames; ///< of each group
     std::vector<DisplayFramelet> decoded; ///< of a batch that is encoded
     std::unique_ptr<BatchModels> alone; ///< of a batch without a memory
+    std::vector<PlaneModel> planes; ///< of groups
+    std::vector<ShapeModel> shapes;
 
     std::span<Bytes> frames_of(std::size_t groups) {
         frames.resize(std::max(frames.size(), groups));
@@ -144,7 +149,7 @@ EncodedBatch BatchCodec::encode(Batch const& batch, BatchMemory* memory, bool pr
     }
     BatchModels& models = scratch_->models_of(memory);
     std::size_t const groups = group_count(count);
-    GroupModels<PlaneModel> planes(models.planes, quality.empty() ? 0 : groups);
+    GroupModels<PlaneModel> planes(models.planes, quality.empty() ? 0 : groups, scratch_->planes);
     std::span<Bytes> const frames = scratch_->frames_of(groups);
     for_each_group(count, [&](std::size_t group, std::size_t first, std::size_t size) {
         Worker& worker = scratch_->workers.local();
@@ -182,7 +187,7 @@ EncodedBatch BatchCodec::encode(Batch const& batch, BatchMemory* memory, bool pr
 Bytes BatchCodec::encode_shapes(Batch const& batch, BatchModels& models) {
     ImagePlane const plane(batch.view.viewport);
     std::size_t const count = batch.shapes.size();
-    GroupModels<ShapeModel> shapes(models.shapes, group_count(count));
+    GroupModels<ShapeModel> shapes(models.shapes, group_count(count), scratch_->shapes);
     std::span<Bytes> const frames = scratch_->frames_of(group_count(count));
     for_each_group(count, [&](std::size_t group, std::size_t first, std::size_t size) {
         RangeWriter& writer = scratch_->workers.local().shapes;
@@ -236,7 +241,7 @@ void BatchCodec::decode(EncodedBatch const& encoded, BatchMemory* memory, Batch&
     if (is_predicted) {
         memory->picture.show(viewport);
     }
-    GroupModels<PlaneModel> planes(models.planes, is_exact ? 0 : frames.size());
+    GroupModels<PlaneModel> planes(models.planes, is_exact ? 0 : frames.size(), scratch_->planes);
     for_each_group(count, [&](std::size_t group, std::size_t first, std::size_t size) {
         std::span const framelets = std::span(batch.framelets).subspan(first, size);
         for (std::size_t i = 0; i < size; ++i) {
@@ -269,7 +274,7 @@ void BatchCodec::decode_shapes(EncodedBatch const& encoded, BatchModels& models,
     ImagePlane const plane(encoded.view.viewport);
     std::size_t const count = encoded.tiles.size();
     std::vector<ByteView> const frames = split_frames(encoded.shapes, group_count(count));
-    GroupModels<ShapeModel> group_models(models.shapes, frames.size());
+    GroupModels<ShapeModel> group_models(models.shapes, frames.size(), scratch_->shapes);
     shapes.resize(count);
     for_each_group(count, [&](std::size_t group, std::size_t first, std::size_t size) {
         RangeReader reader(numbers(frames[group]));

@@ -76,6 +76,20 @@ UnitCode loose_unit(FrameletShape const& shape) {
     return unit_above(static_cast<double>(largest) / largest_inverse_depth_code);
 }
 
+/// Kinds beyond the layers are loose.
+void make_room_for_loose(FrameletShape& shape) {
+    std::size_t loose = 0;
+    for (std::uint8_t& kind : shape.layer_of) { // without an early end: many at a time
+        bool const is_loose = kind >= shape.layer_count;
+        kind = is_loose ? FrameletShape::loose : kind;
+        loose += is_loose ? 1 : 0;
+    }
+    if (loose == 0) {
+        throw ProtocolError("a shape has none of the loose samples that it announces");
+    }
+    shape.loose_samples.resize(loose);
+}
+
 void check(FrameletShape const& shape) {
     FRAMELET_CHECK(shape.layer_count <= max_layers);
     std::size_t loose = 0, none = 0;
@@ -133,8 +147,8 @@ void ShapeModel::remember(CodedLayer const& layer) {
     layers_[0] = layer;
 }
 
-template <class Coder>
-void ShapeModel::code_layer(Coder& coder, TilePlace const& place, std::size_t number, Layer& layer) {
+template <class Coder, class AnyLayer>
+void ShapeModel::code_layer(Coder& coder, TilePlace const& place, std::size_t number, AnyLayer& layer) {
     LayerCode code;
     if (!Coder::reads) {
         code = quantise(layer, place.side_bits);
@@ -157,7 +171,7 @@ void ShapeModel::code_layer(Coder& coder, TilePlace const& place, std::size_t nu
     }
     code.error = static_cast<std::uint8_t>(error);
     BodyNumber const body = layer_bodies_.code(coder, from.body, layer.body);
-    if (Coder::reads) {
+    if constexpr (Coder::reads) {
         layer = dequantise(code, place.side_bits);
         layer.body = body;
     }
@@ -165,8 +179,8 @@ void ShapeModel::code_layer(Coder& coder, TilePlace const& place, std::size_t nu
 }
 
 /// Which sample is of which kind, row by row: layers by their number, then what is loose.
-template <class Coder>
-void ShapeModel::code_kinds(Coder& coder, unsigned kinds, FrameletShape& shape) {
+template <class Coder, class Shape>
+void ShapeModel::code_kinds(Coder& coder, unsigned kinds, Shape& shape) {
     constexpr std::size_t stride = framelet_side + 3; // two before a row, one behind it
     std::array<std::uint8_t, stride*(framelet_side + 1)> rows{};
     SamplePlane in_order{};
@@ -203,14 +217,14 @@ void ShapeModel::code_kinds(Coder& coder, unsigned kinds, FrameletShape& shape) 
         }
         rows[(y + 1) * stride + framelet_side + 2] = rows[(y + 1) * stride + framelet_side + 1];
     }
-    if (Coder::reads) {
+    if constexpr (Coder::reads) {
         from_rows(in_order.data(), framelet_side, shape.layer_of.data());
     }
 }
 
 /// Inverse depths as differences from the sample before, 0 before the first.
-template <class Coder>
-void ShapeModel::code_loose(Coder& coder, FrameletShape& shape) {
+template <class Coder, class Shape>
+void ShapeModel::code_loose(Coder& coder, Shape& shape) {
     UnitCode const own = Coder::reads ? UnitCode{0} : loose_unit(shape);
     loose_unit_ = checked_unit(static_cast<unsigned>(static_cast<std::uint16_t>(
         loose_unit_ + loose_units_.code(coder, static_cast<std::int16_t>(own - loose_unit_)))));
@@ -218,7 +232,7 @@ void ShapeModel::code_loose(Coder& coder, FrameletShape& shape) {
     std::uint8_t depth = 0;
     unsigned around = 255;
     BodyNumber body = shape.layer_count > 0 ? shape.layers[0].body : static_body;
-    for (LooseSample& sample : shape.loose_samples) {
+    for (auto& sample : shape.loose_samples) {
         std::uint8_t const wanted =
             Coder::reads ? std::uint8_t{0} : quantise_inverse_depth(sample.inverse_depth, loose_unit_);
         std::size_t const size_class =
@@ -228,7 +242,7 @@ void ShapeModel::code_loose(Coder& coder, FrameletShape& shape) {
         depth = static_cast<std::uint8_t>(depth + step);
         around = static_cast<unsigned>(std::abs(int{step}));
         body = loose_bodies_.code(coder, body, sample.body);
-        if (Coder::reads) {
+        if constexpr (Coder::reads) {
             sample.inverse_depth = static_cast<float>(depth * unit);
             sample.body = body;
         }
@@ -236,8 +250,8 @@ void ShapeModel::code_loose(Coder& coder, FrameletShape& shape) {
 }
 
 /// As differences from the one before.
-template <class Coder>
-void ShapeModel::code_velocities(Coder& coder, FrameletShape& shape) {
+template <class Coder, class Shape>
+void ShapeModel::code_velocities(Coder& coder, Shape& shape) {
     UnitCode const own = Coder::reads ? UnitCode{0} : velocity_unit(shape);
     if (!coder.bit(velocities_.any, own != 0)) {
         return;
@@ -254,7 +268,7 @@ void ShapeModel::code_velocities(Coder& coder, FrameletShape& shape) {
                 last[axis] = sum(last[axis], velocities_.axes[axis].code(coder, difference(value[axis], last[axis])));
             }
         }
-        if (Coder::reads) {
+        if constexpr (Coder::reads) {
             for (std::size_t axis = 0; axis < value.size(); ++axis) {
                 carried.velocity[static_cast<int>(axis)] = static_cast<float>(last[axis] * unit_of(code));
             }
@@ -262,8 +276,8 @@ void ShapeModel::code_velocities(Coder& coder, FrameletShape& shape) {
     });
 }
 
-template <class Coder>
-void ShapeModel::code(Coder& coder, TilePlace const& place, FrameletShape& shape) {
+template <class Coder, class Shape>
+void ShapeModel::code(Coder& coder, TilePlace const& place, Shape& shape) {
     constexpr unsigned loose_bit = 4;
     unsigned const own = shape.layer_count + (shape.loose_samples.empty() ? 0u : loose_bit);
     unsigned const head = heads_[head_].code(coder, own);
@@ -271,34 +285,27 @@ void ShapeModel::code(Coder& coder, TilePlace const& place, FrameletShape& shape
         throw ProtocolError("a shape has neither layers nor loose samples");
     }
     head_ = static_cast<std::uint8_t>(head);
-    shape.layer_count = static_cast<std::uint8_t>(head % loose_bit);
     bool const has_loose = head >= loose_bit;
     if (!coder.bit(same_fading_, shape.fading == fading_)) {
         fading_ = static_cast<FadingCode>(fadings_.code(coder, shape.fading));
     }
-    shape.fading = fading_;
+    if constexpr (Coder::reads) {
+        shape.layer_count = static_cast<std::uint8_t>(head % loose_bit);
+        shape.fading = fading_;
+    }
     for (std::size_t l = 0; l < shape.layer_count; ++l) {
         code_layer(coder, place, l, shape.layers[l]);
     }
     unsigned const kinds = shape.layer_count + (has_loose ? 1u : 0u);
     if (kinds > 1) {
         code_kinds(coder, kinds, shape);
-    } else if (Coder::reads) {
+    } else if constexpr (Coder::reads) {
         shape.layer_of.fill(0);
     }
-    if (Coder::reads && has_loose) {
-        std::size_t loose = 0;
-        for (std::uint8_t& kind : shape.layer_of) { // without an early end: many at a time
-            bool const is_loose = kind >= shape.layer_count;
-            kind = is_loose ? FrameletShape::loose : kind;
-            loose += is_loose ? 1 : 0;
-        }
-        if (loose == 0) {
-            throw ProtocolError("a shape has none of the loose samples that it announces");
-        }
-        shape.loose_samples.resize(loose);
-    }
     if (has_loose) {
+        if constexpr (Coder::reads) {
+            make_room_for_loose(shape);
+        }
         code_loose(coder, shape);
     }
     code_velocities(coder, shape);
@@ -306,7 +313,7 @@ void ShapeModel::code(Coder& coder, TilePlace const& place, FrameletShape& shape
 
 void ShapeModel::write(RangeWriter& writer, TilePlace const& place, FrameletShape const& shape) {
     check(shape);
-    code(writer, place, const_cast<FrameletShape&>(shape)); // which a writer leaves as it is
+    code(writer, place, shape);
 }
 
 void ShapeModel::read(RangeReader& reader, TilePlace const& place, FrameletShape& shape) {

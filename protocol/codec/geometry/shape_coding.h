@@ -54,16 +54,17 @@ private:
         std::array<AdaptiveNumber<unary>, 3> axes;
     };
 
-    template <class Coder>
-    void code(Coder& coder, TilePlace const& place, FrameletShape& shape);
-    template <class Coder>
-    void code_layer(Coder& coder, TilePlace const& place, std::size_t number, Layer& layer);
-    template <class Coder>
-    void code_kinds(Coder& coder, unsigned kinds, FrameletShape& shape);
-    template <class Coder>
-    void code_loose(Coder& coder, FrameletShape& shape);
-    template <class Coder>
-    void code_velocities(Coder& coder, FrameletShape& shape);
+    // What is written is const, what is read is not.
+    template <class Coder, class Shape>
+    void code(Coder& coder, TilePlace const& place, Shape& shape);
+    template <class Coder, class AnyLayer>
+    void code_layer(Coder& coder, TilePlace const& place, std::size_t number, AnyLayer& layer);
+    template <class Coder, class Shape>
+    void code_kinds(Coder& coder, unsigned kinds, Shape& shape);
+    template <class Coder, class Shape>
+    void code_loose(Coder& coder, Shape& shape);
+    template <class Coder, class Shape>
+    void code_velocities(Coder& coder, Shape& shape);
     std::size_t nearest(LayerCode const& code, BodyNumber body, TilePlace const& place) const;
     void remember(CodedLayer const& layer);
 
