@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "client/core/server_address.h"
+#include "client/core/connection/server_address.h"
 #include "common/command_line/command_line.h"
 
 namespace framelet {

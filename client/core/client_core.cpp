@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "client/core/camera/camera_times.h"
-#include "client/core/making_time.h"
-#include "client/core/server_connection.h"
-#include "client/core/session_pictures.h"
+#include "client/core/connection/server_connection.h"
+#include "client/core/picture/making_time.h"
+#include "client/core/picture/session_pictures.h"
 #include "client/core/told_let_go.h"
 #include "common/error.h"
 #include "protocol/codec/batch_codec.h"

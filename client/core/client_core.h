@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "client/core/client_statistics.h"
-#include "client/core/picture_maker.h"
-#include "client/core/server_address.h"
+#include "client/core/connection/server_address.h"
+#include "client/core/picture/picture_maker.h"
 #include "common/framelet/tile.h"
 #include "common/image.h"
 #include "protocol/messages/message.h"

@@ -17,8 +17,8 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include "client/child.h"
-#include "client/private_server.h"
+#include "client/processes/child.h"
+#include "client/processes/private_server.h"
 #include "common/error.h"
 
 namespace framelet {

@@ -11,8 +11,8 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 
-#include "client/core/server_address.h"
-#include "client/frame_sink.h"
+#include "client/core/connection/server_address.h"
+#include "client/frames/frame_sink.h"
 #include "common/camera.h"
 
 namespace framelet {

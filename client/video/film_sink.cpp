@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "client/output_folder.h"
+#include "client/frames/output_folder.h"
 #include "common/error.h"
 
 namespace framelet {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "client/frame_sink.h"
+#include "client/frames/frame_sink.h"
 #include "client/video/recorder.h"
 #include "common/camera.h"
 

@@ -14,8 +14,8 @@
 #include <thread>
 #include <vector>
 
+#include "client/frames/when_written.h"
 #include "client/video/film_writer.h"
-#include "client/when_written.h"
 #include "common/image.h"
 
 namespace framelet {

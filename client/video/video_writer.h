@@ -11,7 +11,7 @@
 #include <string>
 #include <thread>
 
-#include "client/frame_sink.h"
+#include "client/frames/frame_sink.h"
 #include "client/video/video_clock.h"
 #include "common/camera.h"
 

@@ -8,7 +8,7 @@
 #include <random>
 #include <thread>
 
-#include "client/core/back_off.h"
+#include "client/core/connection/back_off.h"
 #include "client/window/overlay/overlay.h"
 #include "client/window/overlay/overlay_text.h"
 #include "client/window/viewer.h"

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "client/private_server.h"
+#include "client/processes/private_server.h"
 #include "client/window/connection.h"
 
 namespace framelet {

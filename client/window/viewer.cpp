@@ -4,7 +4,7 @@
 #include <iostream>
 #include <utility>
 
-#include "client/core/display_pace.h"
+#include "client/core/picture/display_pace.h"
 #include "client/window/overlay/help_text.h"
 #include "client/window/overlay/key_table.h"
 

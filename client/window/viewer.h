@@ -10,7 +10,7 @@
 
 #include "client/core/camera/camera_controller.h"
 #include "client/core/client_core.h"
-#include "client/core/making_time.h"
+#include "client/core/picture/making_time.h"
 #include "client/video/recorder.h"
 #include "client/window/connection.h"
 #include "client/window/kept/bookmarks.h"

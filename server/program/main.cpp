@@ -25,12 +25,12 @@
 #include "server/program/options.h"
 #include "server/program/progress_bar.h"
 #include "server/program/scene_reloader.h"
-#include "server/scene/scene_summary.h"
-#include "server/scene/visibility.h"
+#include "server/scene/summary/scene_summary.h"
+#include "server/scene/summary/visibility.h"
+#include "server/session/figures/metrics_port.h"
 #include "server/session/listener.h"
 #include "server/session/loaded_scene.h"
-#include "server/session/metrics_port.h"
-#include "server/session/priority.h"
+#include "server/session/loop/priority.h"
 #include "server/stream/event_log.h"
 
 namespace framelet {

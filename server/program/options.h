@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "server/scene/scene_import.h"
-#include "server/session/priority.h"
+#include "server/session/loop/priority.h"
 #include "server/session/server.h"
 
 namespace framelet {

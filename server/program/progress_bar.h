@@ -1,7 +1,7 @@
 // Progress of loading on a terminal: one line that is redrawn.
 #pragma once
 
-#include "server/scene/progress.h"
+#include "server/scene/reading/progress.h"
 
 namespace framelet {
 

@@ -5,11 +5,11 @@
 
 #include "common/error.h"
 #include "server/scene/assimp/assimp_import.h"
-#include "server/scene/file_ending.h"
 #include "server/scene/finish/scene_finish.h"
 #include "server/scene/gltf/gltf_import.h"
-#include "server/scene/import_budget.h"
-#include "server/scene/scene_folder.h"
+#include "server/scene/reading/file_ending.h"
+#include "server/scene/reading/import_budget.h"
+#include "server/scene/reading/scene_folder.h"
 
 namespace framelet {
 namespace {

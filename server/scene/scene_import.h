@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "server/scene/progress.h"
+#include "server/scene/reading/progress.h"
 #include "server/scene/scene.h"
 
 namespace framelet {

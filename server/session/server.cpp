@@ -21,8 +21,9 @@
 #include "protocol/stream/tls.h"
 #include "protocol/stream/token.h"
 #include "server/scene/motion/animation.h"
-#include "server/scene/scene_identity.h"
-#include "server/session/limits/clock_requests.h"
+#include "server/scene/summary/scene_identity.h"
+#include "server/session/clock/clock_requests.h"
+#include "server/session/clock/scene_control.h"
 #include "server/session/limits/farewells.h"
 #include "server/session/limits/log_limit.h"
 #include "server/session/limits/session_memory.h"
@@ -32,7 +33,6 @@
 #include "server/session/limits/waiting_room.h"
 #include "server/session/listener.h"
 #include "server/session/loaded_scene.h"
-#include "server/session/scene_control.h"
 
 namespace framelet {
 

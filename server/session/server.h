@@ -10,8 +10,8 @@
 
 #include "server/render/prepared/render_scene.h"
 #include "server/scene/scene.h"
-#include "server/session/server_figures.h"
-#include "server/session/session_loop.h"
+#include "server/session/figures/server_figures.h"
+#include "server/session/loop/session_loop.h"
 
 namespace framelet {
 

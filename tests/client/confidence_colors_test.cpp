@@ -1,4 +1,4 @@
-#include "client/core/confidence_colors.h"
+#include "client/core/drawn_over/confidence_colors.h"
 
 #include <algorithm>
 #include <array>

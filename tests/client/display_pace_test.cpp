@@ -1,4 +1,4 @@
-#include "client/core/display_pace.h"
+#include "client/core/picture/display_pace.h"
 
 #include <gtest/gtest.h>
 

@@ -17,7 +17,7 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/write.hpp>
 
-#include "client/core/server_address.h"
+#include "client/core/connection/server_address.h"
 #include "protocol/codec/batch_codec.h"
 #include "protocol/stream/stream_opening.h"
 

@@ -1,4 +1,4 @@
-#include "client/frame_log.h"
+#include "client/frames/frame_log.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

@@ -1,6 +1,6 @@
-#include "client/frame_writer.h"
+#include "client/frames/frame_writer.h"
 
-#include "client/frame_choice.h"
+#include "client/frames/frame_choice.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "client/core/framelet_outlines.h"
+#include "client/core/drawn_over/framelet_outlines.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "client/core/late_clock.h"
+#include "client/core/picture/late_clock.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "client/core/making_time.h"
+#include "client/core/picture/making_time.h"
 
 #include <random>
 

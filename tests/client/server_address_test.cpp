@@ -1,4 +1,4 @@
-#include "client/core/server_address.h"
+#include "client/core/connection/server_address.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "client/core/session_pictures.h"
+#include "client/core/picture/session_pictures.h"
 
 #include <gtest/gtest.h>
 

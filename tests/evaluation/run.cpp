@@ -5,7 +5,7 @@
 #include <deque>
 #include <utility>
 
-#include "client/core/making_time.h"
+#include "client/core/picture/making_time.h"
 #include "server/sampling/field/tiling.h"
 
 namespace framelet::bench {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "client/core/server_address.h"
+#include "client/core/connection/server_address.h"
 #include "common/error.h"
 #include "server/scene/scene_import.h"
 #include "server/stream/replay.h"

@@ -1,4 +1,4 @@
-#include "server/scene/scene_folder.h"
+#include "server/scene/reading/scene_folder.h"
 
 #include <gtest/gtest.h>
 

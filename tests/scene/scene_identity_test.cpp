@@ -1,4 +1,4 @@
-#include "server/scene/scene_identity.h"
+#include "server/scene/summary/scene_identity.h"
 
 #include <gtest/gtest.h>
 

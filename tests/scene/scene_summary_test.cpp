@@ -1,5 +1,5 @@
 // What --info says of a scene, as text and as JSON, with names that a terminal would obey.
-#include "server/scene/scene_summary.h"
+#include "server/scene/summary/scene_summary.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-#include "server/scene/visibility.h"
+#include "server/scene/summary/visibility.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "server/session/limits/clock_requests.h"
+#include "server/session/clock/clock_requests.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "server/session/recorder.h"
+#include "server/session/loop/recorder.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-#include "server/session/scene_clock.h"
+#include "server/session/clock/scene_clock.h"
 
 #include <gtest/gtest.h>
 

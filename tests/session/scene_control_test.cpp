@@ -1,4 +1,4 @@
-#include "server/session/scene_control.h"
+#include "server/session/clock/scene_control.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // How the loop shares its time among viewers, by what their streams are told: streams that render nothing, so that the
 // renderer is never measured and what it is taken for is known.
-#include "server/session/session_loop.h"
+#include "server/session/loop/session_loop.h"
 
 #include <atomic>
 #include <deque>

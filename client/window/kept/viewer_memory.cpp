@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "client/core/server_address.h"
+#include "client/core/connection/server_address.h"
 #include "client/window/kept/user_files.h"
 #include "common/error.h"
 #include "protocol/stream/user_folders.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "client/core/age_colors.h"
+#include "client/core/drawn_over/age_colors.h"
 #include "client/window/overlay/key_table.h"
 
 namespace framelet {

@@ -8,7 +8,7 @@
 #include "server/render/light/environment.h"
 #include "server/scene/motion/animation.h"
 #include "server/scene/motion/bodies.h"
-#include "server/scene/progress.h"
+#include "server/scene/reading/progress.h"
 #include "server/scene/scene.h"
 
 namespace framelet {

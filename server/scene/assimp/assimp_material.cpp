@@ -7,7 +7,7 @@
 
 #include "server/scene/assimp/assimp_parts.h"
 #include "server/scene/assimp/picture_ops.h"
-#include "server/scene/image_loading.h"
+#include "server/scene/reading/image_loading.h"
 
 namespace framelet {
 namespace {

@@ -2,10 +2,10 @@
 // In: a complete aiScene, triangulated. Out: parts of a Scene.
 #pragma once
 
-#include "server/scene/import_budget.h"
-#include "server/scene/progress.h"
+#include "server/scene/reading/import_budget.h"
+#include "server/scene/reading/progress.h"
+#include "server/scene/reading/scene_folder.h"
 #include "server/scene/scene.h"
-#include "server/scene/scene_folder.h"
 
 struct aiMesh;
 struct aiScene;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/error.h"
-#include "server/scene/file_ending.h"
+#include "server/scene/reading/file_ending.h"
 
 namespace framelet {
 namespace {

@@ -10,8 +10,8 @@
 #include "server/scene/finish/finish_parts.h"
 #include "server/scene/finish/primitive_finish.h"
 #include "server/scene/finish/primitive_ops.h"
-#include "server/scene/image_loading.h"
 #include "server/scene/motion/animation.h"
+#include "server/scene/reading/image_loading.h"
 #include "server/scene/vector_math.h"
 
 namespace framelet {

@@ -2,8 +2,8 @@
 // In: a Scene as an importer made it from a file. Out: what `import_scene` promises, or an InputError.
 #pragma once
 
-#include "server/scene/import_budget.h"
-#include "server/scene/progress.h"
+#include "server/scene/reading/import_budget.h"
+#include "server/scene/reading/progress.h"
 #include "server/scene/scene.h"
 
 namespace framelet {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/math.h"
-#include "server/scene/import_budget.h"
+#include "server/scene/reading/import_budget.h"
 
 namespace tinygltf {
 class Model;

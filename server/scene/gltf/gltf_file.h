@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "server/scene/image_loading.h"
-#include "server/scene/import_budget.h"
-#include "server/scene/scene_folder.h"
+#include "server/scene/reading/image_loading.h"
+#include "server/scene/reading/import_budget.h"
+#include "server/scene/reading/scene_folder.h"
 
 namespace tinygltf {
 class Model;

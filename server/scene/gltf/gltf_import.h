@@ -6,10 +6,10 @@
 #include <span>
 #include <string>
 
-#include "server/scene/import_budget.h"
-#include "server/scene/progress.h"
+#include "server/scene/reading/import_budget.h"
+#include "server/scene/reading/progress.h"
+#include "server/scene/reading/scene_folder.h"
 #include "server/scene/scene.h"
-#include "server/scene/scene_folder.h"
 
 namespace framelet {
 

@@ -15,7 +15,7 @@
 #include <tbb/parallel_for.h>
 
 #include "client/core/camera/camera_path.h"
-#include "client/frame_choice.h"
+#include "client/frames/frame_choice.h"
 #include "common/error.h"
 #include "common/files/image_io.h"
 #include "server/render/framelet_renderer.h"

@@ -7,15 +7,15 @@
 
 #include <tbb/global_control.h>
 
-#include "client/core/display_pace.h"
-#include "client/core/making_time.h"
-#include "client/core/server_connection.h"
-#include "client/frame_choice.h"
-#include "client/frame_log.h"
-#include "client/frame_writer.h"
+#include "client/core/connection/server_connection.h"
+#include "client/core/picture/display_pace.h"
+#include "client/core/picture/making_time.h"
+#include "client/frames/frame_choice.h"
+#include "client/frames/frame_log.h"
+#include "client/frames/frame_writer.h"
 #include "common/cpu_clock.h"
 #include "common/error.h"
-#include "server/session/priority.h"
+#include "server/session/loop/priority.h"
 #include "server/session/server.h"
 #include "tests/evaluation/live/method_stream.h"
 

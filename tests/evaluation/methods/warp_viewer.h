@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "client/core/picture_maker.h"
+#include "client/core/picture/picture_maker.h"
 #include "tests/evaluation/method.h"
 
 namespace framelet::bench {

@@ -1,0 +1,52 @@
+#include "client/core/connection/server_address.h"
+
+#include <algorithm>
+#include <charconv>
+
+#include "common/error.h"
+
+namespace framelet {
+
+std::string ServerAddress::text() const {
+    bool const literal = host.find(':') != std::string::npos;
+    return (literal ? "[" + host + "]" : host) + ":" + std::to_string(port);
+}
+
+ServerAddress parse_server_address(std::string const& text) {
+    return parse_address(text, default_port);
+}
+
+ServerAddress parse_address(std::string const& text, std::uint16_t port_without) {
+    auto const fail = [&](char const* what) {
+        return InputError("cannot use \"" + text + "\" as a server: " + what +
+                          ": write HOST or HOST:PORT, as in 127.0.0.1:" + std::to_string(port_without));
+    };
+    ServerAddress out;
+    std::string port = std::to_string(port_without);
+    if (text.starts_with('[')) {
+        std::size_t const end = text.find(']');
+        if (end == std::string::npos || (end + 1 < text.size() && text[end + 1] != ':')) {
+            throw fail("the bracket is not closed");
+        }
+        out.host = text.substr(1, end - 1);
+        port = end + 1 == text.size() ? port : text.substr(end + 2);
+    } else {
+        std::size_t const colon = text.find(':');
+        if (colon != text.rfind(':')) {
+            throw fail("an IPv6 address needs brackets around it");
+        }
+        out.host = text.substr(0, colon);
+        port = colon == std::string::npos ? port : text.substr(colon + 1);
+    }
+    auto const printable = [](char c) { return c > ' ' && c < 127; };
+    if (out.host.empty() || out.host.size() > 253 || !std::all_of(out.host.begin(), out.host.end(), printable)) {
+        throw fail("there is no host name in it");
+    }
+    auto const [end, error] = std::from_chars(port.data(), port.data() + port.size(), out.port);
+    if (error != std::errc() || end != port.data() + port.size() || out.port == 0) {
+        throw fail("the port is not a number from 1 to 65535");
+    }
+    return out;
+}
+
+} // namespace framelet

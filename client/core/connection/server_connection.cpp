@@ -1,0 +1,382 @@
+#include "client/core/connection/server_connection.h"
+
+#include <chrono>
+#include <concepts>
+#include <future>
+#include <mutex>
+#include <new>
+#include <random>
+#include <sstream>
+#include <thread>
+#include <utility>
+
+#include <boost/asio/connect.hpp>
+#include <boost/asio/steady_timer.hpp>
+
+#include "client/core/connection/back_off.h"
+#include "common/error.h"
+#include "protocol/stream/known_servers.h"
+#include "protocol/stream/local_token.h"
+#include "protocol/stream/stream_opening.h"
+#include "protocol/stream/tls.h"
+
+namespace framelet {
+
+namespace asio = boost::asio;
+
+namespace {
+
+constexpr auto tick = std::chrono::milliseconds(100);
+
+std::string seconds_text(double seconds) {
+    std::ostringstream out;
+    out << seconds << " s";
+    return out.str();
+}
+
+asio::steady_timer::duration duration_of(double seconds) {
+    return std::chrono::duration_cast<asio::steady_timer::duration>(std::chrono::duration<double>(seconds));
+}
+
+/// Of this machine itself.
+bool is_loopback(asio::ip::address const& address) {
+    if (address.is_v6() && address.to_v6().is_v4_mapped()) {
+        return asio::ip::make_address_v4(asio::ip::v4_mapped, address.to_v6()).is_loopback();
+    }
+    return address.is_loopback();
+}
+
+} // namespace
+
+struct ServerConnection::Impl {
+    enum class Retry { later, never };
+
+    ConnectionOptions options;
+    Handlers handlers;
+    std::string server; ///< for messages
+    asio::io_context io;
+    asio::ip::tcp::resolver resolver{io};
+    asio::ip::tcp::socket socket{io};
+    asio::steady_timer deadline{io}, watch{io}, pause{io};
+    std::shared_ptr<asio::ssl::context> tls;
+    std::promise<void> opened;
+    Welcome welcome; ///< of the first session
+    std::string notice; ///< likewise
+
+    mutable std::mutex stream_mutex;
+    std::shared_ptr<FramedStream> stream; ///< of the newest session that was opened
+
+    // Only for the connection's thread.
+    std::uint64_t attempt = 0;
+    std::shared_ptr<FramedStream> attempted; ///< of this attempt, once it is connected
+    std::string distrust; ///< why its certificate is refused; empty: it is not
+    bool has_ticket = false; ///< in its Hello
+    bool open = false; ///< its Welcome has come
+    bool was_open = false; ///< that of an attempt has
+    /// Counted in ticks of the watch and not by the clock, so that a machine that slept hears what arrived meanwhile.
+    int silent_ticks = 0;
+    std::chrono::steady_clock::time_point opened_at;
+    BackOff back_off;
+    std::minstd_rand random{std::random_device{}()};
+
+    bool is_over = false; ///< for good
+    bool is_to_tell_interruption = false;
+
+    std::thread thread;
+
+    Impl(ConnectionOptions const& o, Handlers h) : options(o), handlers(std::move(h)), server(o.server.text()) {}
+
+    /// A callback that is not heard any more when this attempt is over.
+    template <typename Callback>
+    auto heard(Callback callback) {
+        return [ this, callback = std::move(callback), number = attempt ]<typename... Arguments>(
+            Arguments && ... arguments) requires std::invocable<Callback const&, Arguments...> {
+            if (number == attempt) {
+                callback(std::forward<Arguments>(arguments)...);
+            }
+        };
+    }
+
+    /// The attempt, or the session that came of it, is over.
+    void end(std::string const& reason, Retry retry = Retry::later) {
+        if (is_over) {
+            return;
+        }
+        ++attempt;
+        resolver.cancel();
+        deadline.cancel();
+        watch.cancel();
+        boost::system::error_code ignored;
+        socket.close(ignored);
+        if (attempted) {
+            attempted->close();
+        }
+        // What follows may want memory that is missing, and is then done once more.
+        is_to_tell_interruption = std::exchange(open, false) || is_to_tell_interruption;
+        if (!was_open) {
+            auto const error = retry == Retry::never ? std::make_exception_ptr(ConnectionRefusal(reason))
+                                                     : std::make_exception_ptr(ConnectionError(reason));
+            is_over = true;
+            opened.set_exception(error);
+        } else if (retry == Retry::never || !options.reconnect || !handlers.on_reopened) {
+            handlers.on_lost(reason);
+            is_over = true;
+        } else {
+            bool const interrupted = is_to_tell_interruption;
+            if (interrupted) {
+                handlers.on_interrupted(reason);
+                is_to_tell_interruption = false;
+            }
+            begin_later(interrupted);
+        }
+    }
+
+    /// Until there is nothing more to do or it is stopped. Where memory is missing the session ends.
+    void run() {
+        for (bool is_to_end = false;;) {
+            try {
+                if (std::exchange(is_to_end, false)) {
+                    end("no memory left for what comes from the server at " + server);
+                }
+                io.run();
+                return;
+            } catch (std::bad_alloc const&) {
+                is_to_end = true;
+                std::this_thread::sleep_for(std::chrono::milliseconds(5));
+            }
+        }
+    }
+
+    void begin_later(bool interrupted) {
+        // Not where each session ends at once: such a server is not to be asked four times a second.
+        if (interrupted && std::chrono::steady_clock::now() - opened_at > duration_of(BackOff::most_seconds)) {
+            back_off.reset();
+        }
+        pause.expires_after(duration_of(back_off.next(std::generate_canonical<double, 32>(random))));
+        pause.async_wait(heard([this](boost::system::error_code error) {
+            if (!error) {
+                begin();
+            }
+        }));
+    }
+
+    void begin() {
+        deadline.expires_after(duration_of(options.connect_seconds));
+        deadline.async_wait(heard([this](boost::system::error_code error) {
+            if (!error) {
+                end("cannot connect to " + server + ": no answer within " + seconds_text(options.connect_seconds) +
+                    ": check the address, and whether a firewall is in the way");
+            }
+        }));
+        resolver.async_resolve(options.server.host, std::to_string(options.server.port),
+                               heard([this](boost::system::error_code error, auto const& endpoints) {
+                                   if (error) {
+                                       end("cannot connect to " + server + ": there is no host of that name");
+                                   } else {
+                                       connect(endpoints);
+                                   }
+                               }));
+    }
+
+    void connect(asio::ip::tcp::resolver::results_type const& endpoints) {
+        asio::async_connect(
+            socket, endpoints, heard([this](boost::system::error_code error, asio::ip::tcp::endpoint const& endpoint) {
+                if (error == asio::error::connection_refused) {
+                    end("cannot connect to " + server + ": connection refused: is framelet-server running there?");
+                } else if (error) {
+                    end("cannot connect to " + server + ": " + error.message());
+                } else if (!options.token.empty() && !options.tls && !options.insecure &&
+                           !is_loopback(endpoint.address())) {
+                    end("the token is not sent to " + server +
+                            " in clear: use --tls, or --insecure if you know that nobody can listen",
+                        Retry::never);
+                } else {
+                    shake_hands(token_for(endpoint));
+                }
+            }));
+    }
+
+    /// What the user gave, or what a server of the same user on this machine has left for its viewers.
+    std::string token_for(asio::ip::tcp::endpoint const& endpoint) const {
+        if (!options.token.empty() || !is_loopback(endpoint.address())) {
+            return options.token;
+        }
+        return read_local_token(ServerAddress{endpoint.address().to_string(), endpoint.port()}.text());
+    }
+
+    void shake_hands(std::string const& token) {
+        attempted = options.tls ? tls_client_stream(std::move(socket), tls, options.server.host)
+                                : plain_stream(std::move(socket));
+        FramedStream::Handlers events;
+        events.on_message = heard([this](Message message) { receive(std::move(message)); });
+        events.on_close = heard([this](std::string const& reason) {
+            if (!distrust.empty()) {
+                end(distrust, Retry::never);
+                return;
+            }
+            end(open ? "the connection to the server at " + server + " ended: " + reason
+                     : "cannot connect to " + server + ": it did not open a session: " + reason +
+                           (options.tls ? "" : ": does it want --tls, or has it no room?"));
+        });
+        events.on_sent = heard([this](std::size_t) {
+            if (open) {
+                handlers.on_sent();
+            }
+        });
+        // The greeting is small; batches may be large, once we know who talks to us.
+        attempted->start(std::move(events), max_upstream_message_bytes);
+        Hello hello{protocol_version, token, coding::all};
+        if (was_open && handlers.on_asking) {
+            handlers.on_asking(hello);
+        }
+        has_ticket = static_cast<bool>(hello.ticket);
+        attempted->send(hello);
+    }
+
+    /// In the handshake.
+    bool trusts(std::string const& fingerprint) {
+        CertificateVerdict verdict = judge_certificate(known_servers_file(), server, fingerprint);
+        if (!verdict.is_trusted) {
+            distrust = std::move(verdict.notice);
+        } else if (!was_open) {
+            notice = std::move(verdict.notice);
+        }
+        return verdict.is_trusted;
+    }
+
+    void receive(Message message) {
+        silent_ticks = 0;
+        if (auto const* failure = std::get_if<Failure>(&message)) {
+            end((open ? "the server at " + server + " ended the session: "
+                      : "the server at " + server + " refused the connection: ") +
+                    failure->text,
+                failure->again ? Retry::later : Retry::never);
+        } else if (auto* greeting = std::get_if<Welcome>(&message); greeting != nullptr && !open) {
+            greet(std::move(*greeting));
+        } else if (!open || greeting != nullptr) {
+            end("the server at " + server + " broke the protocol: a message out of turn", Retry::never);
+        } else {
+            try {
+                handlers.on_message(std::move(message));
+            } catch (ProtocolError const& error) {
+                end("the server at " + server + " broke the protocol: " + error.what(), Retry::never);
+            }
+        }
+    }
+
+    void greet(Welcome greeting) {
+        if (greeting.version != protocol_version) {
+            end("the server at " + server + " speaks version " + std::to_string(greeting.version) +
+                    " of the protocol, this program version " + std::to_string(protocol_version) +
+                    ": use programs of one release",
+                Retry::never);
+            return;
+        }
+        if (greeting.resumed && !has_ticket) {
+            end("the server at " + server + " broke the protocol: it resumes what was not asked for", Retry::never);
+            return;
+        }
+        open = true;
+        opened_at = std::chrono::steady_clock::now();
+        deadline.cancel();
+        attempted->set_max_body(max_message_bytes);
+        watch_for_silence();
+        {
+            std::scoped_lock const lock(stream_mutex);
+            stream = attempted;
+        }
+        if (std::exchange(was_open, true)) {
+            handlers.on_reopened(std::move(greeting));
+        } else {
+            welcome = std::move(greeting);
+            opened.set_value();
+        }
+    }
+
+    void watch_for_silence() {
+        watch.expires_after(tick);
+        watch.async_wait(heard([this](boost::system::error_code error) {
+            if (error) {
+                return;
+            }
+            if (++silent_ticks * std::chrono::duration<double>(tick).count() > options.silence_seconds) {
+                end("the server at " + server + " stopped answering");
+            } else {
+                watch_for_silence();
+            }
+        }));
+    }
+
+    /// So that the server keeps nothing for a viewer that does not come back. Nothing depends on it, and it takes no
+    /// longer than a user waits for a window to close.
+    void say_goodbye() {
+        constexpr auto most_time = std::chrono::milliseconds(200);
+        ++attempt; // no callback is heard any more
+        try {
+            for (asio::steady_timer* const timer : {&deadline, &watch, &pause}) {
+                timer->cancel();
+            }
+            resolver.cancel();
+            attempted->send(Failure{"it was closed"});
+            attempted->close_after_sending();
+            io.restart();
+            io.run_for(most_time);
+        } catch (std::bad_alloc const&) { // the server notices by itself
+        }
+    }
+
+    std::shared_ptr<FramedStream> open_stream() const {
+        std::scoped_lock const lock(stream_mutex);
+        return stream;
+    }
+};
+
+ServerConnection::ServerConnection(ConnectionOptions const& options, Handlers handlers)
+    : impl_(std::make_unique<Impl>(options, std::move(handlers))) {
+    if (options.tls) {
+        CertificateJudge judge;
+        if (options.authority_file.empty()) { // a certificate that is named is the only one that is trusted
+            judge = [impl = impl_.get()](std::string const& fingerprint) { return impl->trusts(fingerprint); };
+        }
+        impl_->tls = make_tls_client_context(options.authority_file, std::move(judge));
+    }
+    std::future<void> opened = impl_->opened.get_future();
+    asio::post(impl_->io, [impl = impl_.get()] { impl->begin(); });
+    impl_->thread = std::thread([impl = impl_.get()] { impl->run(); });
+    try {
+        opened.get();
+    } catch (...) {
+        impl_->io.stop();
+        impl_->thread.join();
+        throw;
+    }
+}
+
+ServerConnection::~ServerConnection() {
+    impl_->io.stop();
+    impl_->thread.join();
+    if (impl_->open) {
+        impl_->say_goodbye();
+    }
+    if (impl_->attempted) {
+        impl_->attempted->close();
+    }
+}
+
+Welcome const& ServerConnection::welcome() const {
+    return impl_->welcome;
+}
+
+std::string const& ServerConnection::notice() const {
+    return impl_->notice;
+}
+
+void ServerConnection::send(Message const& message) {
+    impl_->open_stream()->send(message);
+}
+
+bool ServerConnection::all_sent() const {
+    return impl_->open_stream()->unsent_bytes() == 0;
+}
+
+} // namespace framelet

@@ -1,0 +1,203 @@
+#include "client/core/picture/picture_maker.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "client/core/camera/camera_track.h"
+#include "client/core/drawn_over/confidence_colors.h"
+#include "client/core/drawn_over/framelet_outlines.h"
+#include "common/picture/reconstruction.h"
+#include "common/picture/shown_point.h"
+
+namespace framelet {
+
+Picture bare_picture(Viewport viewport) {
+    Picture out(viewport.width, viewport.height);
+    reconstruct_all(FrameletCache{ImagePlane(viewport)}, out);
+    return out;
+}
+
+PictureMaker::PictureMaker(Viewport viewport, PictureSettings const& settings)
+    : settings_(settings), pool_(ImagePlane(viewport), settings.moments), motions_(settings.knows_rest),
+      reprojector_(settings.parts) {
+    start_smoothing();
+}
+
+void PictureMaker::set(PictureSettings const& settings) {
+    if (!(settings_ == settings)) {
+        settings_ = settings;
+        start_smoothing();
+    }
+}
+
+/// Where the scene is to be smoothed, from here on.
+void PictureMaker::start_smoothing() {
+    smoother_.reset();
+    late_clock_ = LateClock(settings_.lag_seconds);
+    shown_pixels_ = nullptr; // all of it anew
+    if (settings_.lag_seconds > 0 && settings_.reproject && settings_.scene_moves) {
+        smoother_.emplace(pool_.plane());
+    }
+}
+
+void PictureMaker::insert(Batch const& batch) {
+    for (BodyTrack const& track : batch.tracks) {
+        motions_.extend(track);
+    }
+    if (batch.camera_track) {
+        cameras_.extend(*batch.camera_track);
+    }
+    if (batch.outdates) {
+        motions_.jump_at(batch.shown_from);
+    }
+    if (shown_pixels_ == nullptr || !settings_.reproject || batch.shown_from <= shown_time_) {
+        take_waiting(waiting_.size());
+        take(batch);
+        return;
+    }
+    waiting_.push_back(batch);
+    waiting_framelets_ += batch.framelets.size();
+    constexpr std::size_t most_samples = 4; // a pixel, as no moment before a jump is rendered with
+    auto const pixels = static_cast<std::size_t>(viewport().width) * static_cast<std::size_t>(viewport().height);
+    if (waiting_framelets_ * framelet_samples > most_samples * pixels) {
+        take_waiting(waiting_.size());
+    }
+}
+
+/// The first of those that wait.
+void PictureMaker::take_waiting(std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+        take(waiting_[i]);
+        waiting_framelets_ -= waiting_[i].framelets.size();
+    }
+    waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(count));
+}
+
+void PictureMaker::take(Batch const& batch) {
+    if (shown_pixels_ == nullptr) {
+        shown_camera_ = batch.view.camera;
+        shown_time_ = batch.scene_time;
+    }
+    batch_view_ = batch.view;
+    batch_time_ = batch.scene_time;
+    if (settings_.reproject && pool_.begins_moment(batch, motions_)) {
+        let_go();
+    }
+    pool_.insert(batch, motions_, settings_.reproject);
+    if (smoother_) {
+        smoother_->insert(batch, motions_);
+    }
+}
+
+/// What of older moments shows nowhere makes room, and no longer costs time.
+void PictureMaker::let_go() {
+    for (std::size_t slot = 0; slot < pool_.slot_count(); ++slot) {
+        shown_tiles_.clear();
+        if (pool_.is_tried(slot) && !smoother_ && reprojector_.add_shown(slot, shown_tiles_)) {
+            pool_.keep(slot, shown_tiles_);
+        }
+    }
+}
+
+void PictureMaker::settle() {
+    pool_.settle();
+    if (smoother_) {
+        smoother_->settle();
+    }
+}
+
+/// The present, or what is late by the lag.
+SceneTime PictureMaker::wanted_time(PictureRequest const& request) {
+    SceneTime const time = settings_.scene_moves ? request.present : 0;
+    return smoother_ ? late_clock_.read(request.now, time) : time;
+}
+
+Camera PictureMaker::wanted_camera(PictureRequest const& request, SceneTime time) const {
+    if (request.scene_camera < 0) {
+        return request.camera;
+    }
+    BodyTrack const* const track = cameras_.find(camera_body(request.scene_camera));
+    Camera const& newest = batch_view_.camera;
+    return track == nullptr ? newest : camera_at(*track, time, newest);
+}
+
+bool PictureMaker::show(PictureRequest const& request, Picture& picture, std::vector<PixelRect>& changed) {
+    changed.clear();
+    if (is_empty()) {
+        return false;
+    }
+    SceneTime const time = wanted_time(request);
+    bool const shows_all = request.is_settled || !settings_.reproject;
+    auto const waits = [&](Batch const& batch) { return !shows_all && batch.shown_from > time; };
+    take_waiting(static_cast<std::size_t>(std::ranges::find_if(waiting_, waits) - waiting_.begin()));
+    if (shows_all) {
+        settle();
+    }
+    Viewport const size = viewport();
+    bool const whole =
+        picture.rgba.data() != shown_pixels_ || picture.width != size.width || picture.height != size.height;
+    pool_.newest().take_changed(changed);
+    if (whole) {
+        picture = Picture(size.width, size.height);
+        reprojector_ = Reprojector(settings_.parts);
+        if (smoother_) {
+            smoother_->start_picture();
+        }
+        changed.assign(1, {0, 0, size.width, size.height});
+        shown_pixels_ = picture.rgba.data();
+    }
+    if (!settings_.reproject) {
+        shown_camera_ = batch_view_.camera;
+        shown_camera_number_ = batch_view_.number;
+        shown_time_ = batch_time_;
+        reconstruct(pool_.newest(), changed, picture);
+        return !changed.empty();
+    }
+    Camera const camera = wanted_camera(request, time);
+    shown_camera_ = camera;
+    shown_camera_number_ = request.camera_number;
+    shown_time_ = time;
+    arrived_.swap(changed);
+    if (smoother_) {
+        SceneTime const lag = settings_.lag_seconds * std::abs(request.clock_speed);
+        smoother_->show(pool_, arrived_, camera, time, lag, motions_, picture, changed);
+        pool_.note_shown(smoother_->shown_blocks());
+    } else {
+        reprojector_.show(pool_, arrived_, camera, time, motions_, picture, changed);
+        pool_.note_shown(reprojector_.shown_blocks());
+    }
+    return !changed.empty();
+}
+
+void PictureMaker::draw_over(DrawnOver what, Picture& picture) const {
+    if (what == DrawnOver::nothing || is_empty() || viewport() != Viewport{picture.width, picture.height}) {
+        return;
+    }
+    if (what == DrawnOver::outlines || !settings_.reproject) {
+        draw_outlines(pool_.newest(), picture);
+        return;
+    }
+    std::vector<PixelConfidence> confidence;
+    find_confidence(pool_, shown_camera_, shown_time_, motions_, confidence);
+    draw_confidence(confidence, picture);
+}
+
+std::optional<Vec3> PictureMaker::point_at(Vec2 place) const {
+    return find_shown_point(pool_, shown_camera_, shown_time_, motions_, place);
+}
+
+std::vector<float> PictureMaker::depths() const {
+    return find_shown_depths(pool_, shown_camera_, shown_time_, motions_);
+}
+
+double PictureMaker::coverage() const {
+    bool const moves = settings_.reproject && shown_pixels_ != nullptr && !smoother_ && !reprojector_.is_exact();
+    return moves ? 1 - reprojector_.hole_share() : pool_.newest().coverage();
+}
+
+std::size_t PictureMaker::memory_bytes() const {
+    return pool_.memory_bytes() + (smoother_ ? smoother_->memory_bytes() : 0) +
+           waiting_framelets_ * sizeof(DisplayFramelet);
+}
+
+} // namespace framelet

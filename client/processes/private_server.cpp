@@ -1,0 +1,114 @@
+#include "client/processes/private_server.h"
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <iostream>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace framelet {
+namespace {
+
+constexpr char const* program = "framelet-server";
+
+/// How long it may take to end when it is told to; then it is killed.
+constexpr std::chrono::seconds patience(2);
+
+} // namespace
+
+PrivateServer::PrivateServer(std::filesystem::path scene, std::vector<std::string> const& options, ServerErrors errors,
+                             std::function<void()> on_news)
+    : scene_(std::move(scene)), errors_(errors), on_news_(std::move(on_news)) {
+    std::filesystem::path const file = find_program(program);
+    std::vector<std::string> arguments{"--port", "0"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    arguments.insert(arguments.end(), {"--", scene_.string()}); // behind it, what looks like an option is none
+    std::array<int, 2> pipe{};
+    if (::pipe2(pipe.data(), O_CLOEXEC) != 0) {
+        throw std::system_error(errno, std::generic_category(), "cannot make a pipe");
+    }
+    bool const keeps = errors_ == ServerErrors::kept;
+    try {
+        process_.emplace(file, arguments, ChildFiles{pipe[1], keeps ? std::optional(pipe[1]) : std::nullopt, keeps});
+    } catch (...) {
+        ::close(pipe[0]);
+        ::close(pipe[1]);
+        throw;
+    }
+    ::close(pipe[1]);
+    reader_ = std::thread([this, from = pipe[0]] {
+        read(from);
+        ::close(from);
+        on_news_();
+    });
+}
+
+PrivateServer::~PrivateServer() {
+    process_->end(patience);
+    read_to_the_end();
+}
+
+/// Of one that has ended.
+void PrivateServer::read_to_the_end() {
+    if (reader_.joinable()) {
+        reader_.join(); // nobody has the other end of the pipe any more
+    }
+}
+
+std::optional<std::string> PrivateServer::address() const {
+    std::lock_guard const lock(mutex_);
+    return address_;
+}
+
+std::string PrivateServer::end_reason() {
+    read_to_the_end();
+    std::lock_guard const lock(mutex_);
+    return complaint_.empty() || process_->ended_by_signal() ? std::string(program) + " " + process_->how_it_ended()
+                                                             : complaint_;
+}
+
+void PrivateServer::read(int descriptor) {
+    std::array<char, 4096> bytes;
+    std::string said;
+    for (;;) {
+        ssize_t const count = ::read(descriptor, bytes.data(), bytes.size());
+        if (count < 0 && errno == EINTR) {
+            continue;
+        }
+        if (count <= 0) {
+            return;
+        }
+        said.append(bytes.data(), static_cast<std::size_t>(count));
+        std::size_t begin = 0;
+        for (std::size_t end; (end = said.find('\n', begin)) != std::string::npos; begin = end + 1) {
+            take(said.substr(begin, end - begin));
+        }
+        said.erase(0, begin);
+    }
+}
+
+void PrivateServer::take(std::string const& line) {
+    (errors_ == ServerErrors::kept ? std::cerr : std::cout) << line + '\n' << std::flush;
+    constexpr std::string_view listening = "listening on ", complaining = "framelet-server: ";
+    bool is_first = false;
+    {
+        std::lock_guard const lock(mutex_);
+        if (line.starts_with(listening) && !address_) {
+            address_ = line.substr(listening.size());
+            is_first = true;
+        } else if (line.starts_with(complaining)) {
+            complaint_ = line.substr(complaining.size());
+        }
+    }
+    if (is_first) {
+        on_news_();
+    }
+}
+
+} // namespace framelet

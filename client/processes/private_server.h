@@ -1,0 +1,58 @@
+// A server for one scene and one user: framelet-server on a free port of this machine. In: the scene's file. Out: where
+// it listens, or the line that says why it does not.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "client/processes/child.h"
+
+namespace framelet {
+
+/// Where its complaints go.
+enum class ServerErrors {
+    shown, ///< where this program's go; its progress too, where that is a terminal
+    kept, ///< there as well, line by line, and the last of them is kept
+};
+
+class PrivateServer {
+public:
+    /// Starts loading. `options` are for framelet-server. `on_news` is called from another thread when it listens, and
+    /// when it prints no more. Throws InputError where the program is missing, std::system_error.
+    PrivateServer(std::filesystem::path scene, std::vector<std::string> const& options, ServerErrors errors,
+                  std::function<void()> on_news);
+    /// Ends it, and waits for that.
+    ~PrivateServer();
+    PrivateServer(PrivateServer const&) = delete;
+    PrivateServer& operator=(PrivateServer const&) = delete;
+
+    std::filesystem::path const& scene() const { return scene_; }
+    Child& process() { return *process_; }
+    /// HOST:PORT once it listens.
+    std::optional<std::string> address() const;
+    /// Of one that has ended: why, in one line; of one whose errors are shown, how.
+    std::string end_reason();
+
+private:
+    void read_to_the_end();
+    void read(int descriptor);
+    void take(std::string const& line);
+
+    std::filesystem::path const scene_;
+    ServerErrors const errors_;
+    std::function<void()> const on_news_;
+
+    mutable std::mutex mutex_; // guards what follows
+    std::optional<std::string> address_;
+    std::string complaint_;
+
+    std::optional<Child> process_;
+    std::thread reader_;
+};
+
+} // namespace framelet

@@ -1,0 +1,86 @@
+#include "server/scene/reading/image_loading.h"
+
+#include <mutex>
+
+#include <tbb/parallel_for.h>
+
+#include "common/error.h"
+#include "common/files/image_io.h"
+
+namespace framelet {
+namespace {
+
+/// Where each of the kept elements goes; `none` for the others.
+std::vector<Index> new_indices(std::size_t count, auto const& keep) {
+    std::vector<Index> result(count, none);
+    Index next = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        if (keep(i)) {
+            result[i] = next++;
+        }
+    }
+    return result;
+}
+
+} // namespace
+
+std::vector<std::shared_ptr<Picture const>> load_images(std::span<EncodedImage const> images, ImportBudget& budget,
+                                                        std::vector<std::string>& warnings, Progress const& progress) {
+    std::vector<std::shared_ptr<Picture const>> pictures(images.size());
+    std::vector<std::string> problems(images.size());
+    SizeCheck const reserve = [&](int width, int height) {
+        budget.reserve(static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height), 4);
+    };
+    std::mutex report;
+    std::size_t done = 0;
+    tbb::parallel_for(std::size_t(0), images.size(), [&](std::size_t i) {
+        EncodedImage const& image = images[i];
+        if (image.decoded) {
+            pictures[i] = image.decoded;
+            return;
+        }
+        try {
+            if (image.bytes.empty() && image.file.empty()) {
+                throw InputError(image.problem.empty() ? "image '" + image.name + "' is missing" : image.problem);
+            }
+            pictures[i] =
+                std::make_shared<Picture const>(image.bytes.empty() ? read_picture(image.file, reserve)
+                                                                    : read_picture(image.bytes, image.name, reserve));
+        } catch (SceneTooLarge const&) {
+            throw;
+        } catch (InputError const& error) {
+            problems[i] = std::string(error.what()) + "; shown without it";
+        }
+        std::lock_guard const lock(report);
+        ++done;
+        if (progress) {
+            progress("images", static_cast<double>(done) / static_cast<double>(images.size()));
+        }
+    });
+    for (std::string& problem : problems) {
+        if (!problem.empty()) {
+            warnings.push_back(std::move(problem));
+        }
+    }
+    return pictures;
+}
+
+void drop_missing_images(Scene& scene) {
+    auto const new_image = new_indices(scene.images.size(), [&](std::size_t i) { return scene.images[i] != nullptr; });
+    std::erase(scene.images, nullptr);
+    for (Texture& texture : scene.textures) {
+        texture.image = texture.image == none ? none : new_image[static_cast<std::size_t>(texture.image)];
+    }
+    auto const new_texture =
+        new_indices(scene.textures.size(), [&](std::size_t i) { return scene.textures[i].image != none; });
+    std::erase_if(scene.textures, [](Texture const& texture) { return texture.image == none; });
+    for (Material& material : scene.materials) {
+        for (TextureUse* use :
+             {&material.base_color_texture, &material.metallic_roughness_texture, &material.normal_texture,
+              &material.occlusion_texture, &material.emissive_texture, &material.transmission_texture}) {
+            use->texture = use->texture == none ? none : new_texture[static_cast<std::size_t>(use->texture)];
+        }
+    }
+}
+
+} // namespace framelet

@@ -1,0 +1,197 @@
+#include "server/scene/summary/scene_summary.h"
+
+#include <algorithm>
+#include <iomanip>
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+
+#include "common/counted.h"
+#include "server/scene/motion/animation.h"
+#include "server/scene/motion/bodies.h"
+#include "server/scene/summary/visibility.h"
+
+namespace framelet {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+char const* kind_of(LightType type) {
+    return type == LightType::directional ? "directional" : type == LightType::point ? "point" : "spot";
+}
+
+std::size_t image_bytes(Scene const& scene) {
+    std::size_t bytes = 0;
+    for (auto const& image : scene.images) {
+        bytes += image ? image->rgba.size() * sizeof(image->rgba[0]) : 0;
+    }
+    return bytes;
+}
+
+Json three(Vec3 const& v) {
+    return {v.x, v.y, v.z};
+}
+
+/// A file may call things as it likes, with line breaks and what a terminal obeys too.
+std::string shown(std::string name) {
+    std::replace_if(
+        name.begin(), name.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
+    return name.empty() ? "(no name)" : name;
+}
+
+/// The one place that knows what is said; text and JSON have the same content.
+Json summarize(Scene const& scene, std::span<Index const> clips) {
+    SceneBodies const bodies = find_bodies(scene, clips);
+    Bounds const bounds = scene_bounds(scene, evaluate_pose(scene, clips, 0));
+    Json out = {{"scene", scene.name},
+                {"nodes", scene.nodes.size()},
+                {"meshes", scene.meshes.size()},
+                {"triangles", count_triangles(scene)},
+                {"materials", scene.materials.size()},
+                {"textures", scene.textures.size()},
+                {"images", scene.images.size()},
+                {"image_bytes", image_bytes(scene)},
+                {"bounds", {{"low", three(bounds.lower)}, {"high", three(bounds.upper)}}},
+                {"anything_to_see", has_anything_to_see(scene)},
+                {"duration_seconds", animation_duration(scene, clips)}};
+    Json& lights = out["lights"] = Json::array();
+    for (Light const& light : scene.lights) {
+        lights.push_back({{"name", light.name}, {"kind", kind_of(light.type)}});
+    }
+    Json& cameras = out["cameras"] = Json::array();
+    for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
+        cameras.push_back(
+            {{"name", scene.cameras[i].name}, {"moves", camera_moves(scene, clips, static_cast<Index>(i))}});
+    }
+    Json& all_clips = out["clips"] = Json::array();
+    for (std::size_t i = 0; i < scene.clips.size(); ++i) {
+        all_clips.push_back({{"name", scene.clips[i].name},
+                             {"seconds", scene.clips[i].duration},
+                             {"plays", std::ranges::find(clips, static_cast<Index>(i)) != clips.end()}});
+    }
+    Json& moving = out["moving_bodies"] = Json::array();
+    for (std::size_t body = 1; body < bodies.frames.size(); ++body) {
+        moving.push_back(scene.nodes[static_cast<std::size_t>(bodies.frames[body])].name);
+    }
+    Json& flowing = out["deforming"] = Json::array();
+    for (std::size_t n = 0; n < bodies.flows.size(); ++n) {
+        if (bodies.flows[n]) {
+            flowing.push_back(scene.nodes[n].name);
+        }
+    }
+    out["passed_over"] = scene.warnings;
+    return out;
+}
+
+class Lines {
+public:
+    Lines() { out_ << std::fixed; }
+
+    /// The name stands beside the first entry only.
+    void add(std::string const& name, std::vector<std::string> const& entries) {
+        std::string left = name;
+        for (std::string const& entry : entries) {
+            out_ << "  " << std::left << std::setw(18) << left << entry << "\n";
+            left.clear();
+        }
+    }
+    /// How many there are, then one to a line; of many only the first, since some scenes have ten thousand.
+    void add(std::string const& name, std::string const& count, std::vector<std::string> const& entries) {
+        constexpr std::size_t most = 20;
+        add(name, {count});
+        for (std::size_t i = 0; i < std::min(most, entries.size()); ++i) {
+            add("", {"  " + entries[i]});
+        }
+        if (entries.size() > most) {
+            add("", {"  and " + std::to_string(entries.size() - most) + " more"});
+        }
+    }
+    std::string text() const { return out_.str(); }
+
+private:
+    std::ostringstream out_;
+};
+
+std::string fixed(double value, int digits) {
+    std::ostringstream out;
+    out << std::fixed << std::setprecision(digits) << value;
+    return out.str();
+}
+
+std::string count_of(Json const& number, std::string const& word, std::string const& plural = "") {
+    return counted(number.get<std::size_t>(), word, plural);
+}
+
+template <typename Write>
+std::vector<std::string> each(Json const& list, Write const& write) {
+    std::vector<std::string> lines;
+    for (Json const& entry : list) {
+        lines.push_back(write(entry));
+    }
+    return lines;
+}
+
+std::string name_of(Json const& entry) {
+    return shown((entry.is_object() ? entry["name"] : entry).get<std::string>());
+}
+
+} // namespace
+
+std::size_t count_triangles(Scene const& scene) {
+    std::size_t count = 0;
+    for (Node const& node : scene.nodes) {
+        if (node.mesh != none) {
+            for (Primitive const& primitive : scene.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
+                count += primitive.triangles.size();
+            }
+        }
+    }
+    return count;
+}
+
+std::string scene_summary_text(Scene const& scene, std::span<Index const> clips) {
+    Json const s = summarize(scene, clips);
+    Json const& low = s["bounds"]["low"];
+    Json const& high = s["bounds"]["high"];
+    std::string size;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        size += (axis == 0 ? "" : " x ") + fixed(high[axis].get<double>() - low[axis].get<double>(), 2);
+    }
+    Lines lines;
+    lines.add("geometry", {count_of(s["triangles"], "triangle") + ", " + count_of(s["meshes"], "mesh", "meshes") +
+                           ", " + count_of(s["nodes"], "node")});
+    lines.add("size", {s["anything_to_see"].get<bool>() ? size + " m"
+                                                        : "there is nothing to see: a server refuses this scene"});
+    lines.add("materials", {count_of(s["materials"], "material") + ", " + count_of(s["textures"], "texture") + " of " +
+                            count_of(s["images"], "image") + " (" + fixed(s["image_bytes"].get<double>() * 1e-6, 1) +
+                            " MB decoded)"});
+    lines.add(
+        "lights", scene.lights.empty() ? "none: a sun and a sky are put in" : count_of(s["lights"].size(), "light"),
+        each(s["lights"], [](Json const& light) { return name_of(light) + ", " + light["kind"].get<std::string>(); }));
+    lines.add(
+        "cameras",
+        scene.cameras.empty() ? "none: one that frames the scene is put in" : count_of(s["cameras"].size(), "camera"),
+        each(s["cameras"],
+             [](Json const& camera) { return name_of(camera) + (camera["moves"].get<bool>() ? ", moves" : ""); }));
+    lines.add("clips", scene.clips.empty() ? "none" : count_of(s["clips"].size(), "clip"),
+              each(s["clips"], [](Json const& clip) {
+                  return name_of(clip) + ", " + fixed(clip["seconds"].get<double>(), 2) + " s" +
+                         (clip["plays"].get<bool>() ? "" : ", does not play: --clip picks it");
+              }));
+    lines.add("moving bodies",
+              s["moving_bodies"].empty() ? "none" : count_of(s["moving_bodies"].size(), "body", "bodies"),
+              each(s["moving_bodies"], name_of));
+    if (!s["deforming"].empty()) {
+        lines.add("deforming", count_of(s["deforming"].size(), "node"), each(s["deforming"], name_of));
+    }
+    lines.add("passed over", scene.warnings.empty() ? "nothing" : count_of(s["passed_over"].size(), "thing"),
+              each(s["passed_over"], name_of));
+    return shown(scene.name) + "\n" + lines.text();
+}
+
+std::string scene_summary_json(Scene const& scene, std::span<Index const> clips) {
+    // Names are whatever bytes the file has.
+    return summarize(scene, clips).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+} // namespace framelet

@@ -1,0 +1,33 @@
+// The port at which Prometheus and health checks ask, by HTTP. A resource with a thread of its own, so that it answers
+// while the server cannot. In: figures when they are asked for. Out: /metrics and /health.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "server/session/figures/server_figures.h"
+
+namespace framelet {
+
+class MetricsPort {
+public:
+    /// Connections at a time; others are closed at once.
+    static constexpr std::size_t most_connections = 16;
+
+    /// Binds. Throws InputError where the address cannot be had.
+    MetricsPort(std::string const& bind, std::uint16_t port);
+    ~MetricsPort();
+
+    /// Answers from now on. `figures` is called on a thread of this object, and must do so until its end.
+    void start(std::function<ServerFigures()> figures);
+    /// With the real port.
+    std::string address() const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+} // namespace framelet

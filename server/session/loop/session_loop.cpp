@@ -1,0 +1,372 @@
+#include "server/session/loop/session_loop.h"
+
+#include <algorithm>
+#include <chrono>
+#include <new>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+#include <tbb/global_control.h>
+#include <tbb/task_group.h>
+
+#include "server/session/loop/contained.h"
+#include "server/session/loop/laps.h"
+#include "server/stream/event_log.h"
+
+namespace framelet {
+namespace {
+
+/// From so many threads on learning overlaps rendering. Its serial part would leave most of them idle; few are busy
+/// with its parallel part, which is cheaper while what was rendered is still in the caches.
+constexpr std::size_t many_threads = 5;
+/// A viewer that took nothing in its turns for so long leaves its share of the time to the others.
+constexpr std::chrono::milliseconds sharing_time{250};
+constexpr std::chrono::milliseconds short_pause{5};
+
+std::size_t thread_count() {
+    return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+}
+
+double seconds_of(WallTime time) {
+    return std::chrono::duration<double>(time.time_since_epoch()).count();
+}
+
+} // namespace
+
+struct SessionLoop::Viewer {
+    std::shared_ptr<Session> session; ///< the newest
+    std::uint64_t number = 0; ///< of its first session
+    std::unique_ptr<ViewerStream> stream;
+    std::vector<StreamEvent> events; ///< scratch
+    std::uint64_t version = 0; ///< of what the viewer asks for
+    std::optional<WallTime> rendered; ///< when something was, last; nothing: it needs no share of the time
+};
+
+/// The batch that was rendered last is finished while the next one renders.
+struct SessionLoop::Pipeline {
+    struct Rendered {
+        std::shared_ptr<Session> session;
+        Viewer* viewer = nullptr;
+        std::uint64_t version = 0; ///< that it was planned for
+        bool learnt = false;
+        bool sends = false; ///< once it is learnt
+        bool complete = false; ///< likewise: with it the viewer's picture is
+        CycleRecord record;
+        double now = 0; ///< when it was planned
+    };
+    std::optional<Rendered> rendered; ///< and not finished
+    tbb::task_group finishing;
+
+    bool is_unlearnt() const { return rendered && !rendered->learnt; }
+};
+
+SessionLoop::SessionLoop(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene,
+                         SceneClock const& clock, LoopOptions options, Events events)
+    : scene_(scene, std::move(clips), render_scene), clock_(clock), options_(std::move(options)),
+      events_(std::move(events)), pipeline_(std::make_unique<Pipeline>()) {}
+
+SessionLoop::~SessionLoop() {
+    pipeline_->finishing.wait();
+}
+
+void SessionLoop::run() {
+    for (;;) {
+        {
+            std::unique_lock lock(mutex_);
+            if (stop_) {
+                break;
+            }
+            wake_ = false;
+        }
+        try {
+            serve_once();
+        } catch (std::bad_alloc const&) { // it was for none of the sessions, which are all served later
+            std::this_thread::sleep_for(short_pause);
+        }
+    }
+    pipeline_->finishing.wait(); // it tells the sessions' events, which may wake this loop
+}
+
+/// A turn for each, and where there was nothing to do in them a wait.
+void SessionLoop::serve_once() {
+    Sessions const sessions = events_.open_sessions();
+    WallTime const began = std::chrono::steady_clock::now();
+    bool const worked = give_turns(sessions, began) || finish_rendered();
+    busy_seconds_ = busy_seconds_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    if (worked) {
+        return;
+    }
+    // Nothing to do until a viewer or the clock says so. While the clock runs every display frame is worth a look.
+    bool const playing =
+        scene_.is_animated() && clock_.state(std::chrono::steady_clock::now()).playing && !sessions.empty();
+    std::unique_lock lock(mutex_);
+    auto const woken = [this] { return wake_ || stop_; };
+    if (playing || waits_for_room_) { // the link's time passes without a word from it
+        woken_.wait_for(lock, short_pause, woken);
+    } else {
+        woken_.wait(lock, woken);
+    }
+}
+
+/// One turn for each; true when something was rendered or learnt.
+bool SessionLoop::give_turns(Sessions const& sessions, WallTime now) {
+    forget_ended();
+    waits_for_room_ = false;
+    bool worked = false;
+    for (auto const& session : sessions) {
+        if (!session->is_ready()) {
+            continue;
+        }
+        bool const served = contain(*session, [&] { worked |= give_turn(session, viewer_of(session), now); });
+        if (!served) {
+            drop_rendered(*session);
+        }
+    }
+    rate_ = update_render_rate(rate_, round_.samples, round_.seconds);
+    round_ = {};
+    samples_per_second_ = rate_.samples_per_second;
+    return worked;
+}
+
+/// Among how many the time is shared when it is this one's turn: those that can take none at present, because they have
+/// all or read nothing, are not among them.
+std::size_t SessionLoop::sharers(Viewer const& served) const {
+    return static_cast<std::size_t>(std::ranges::count_if(
+        viewers_, [&served](auto const& entry) { return entry.second.get() == &served || entry.second->rendered; }));
+}
+
+SessionLoop::Viewer& SessionLoop::viewer_of(std::shared_ptr<Session> const& session) {
+    auto found = viewers_.find(session->id());
+    if (found == viewers_.end()) {
+        auto viewer = session->earlier() ? take_up(*session) : new_viewer(session);
+        viewer->session = session;
+        found = viewers_.emplace(session->id(), std::move(viewer)).first;
+    }
+    return *found->second;
+}
+
+std::unique_ptr<SessionLoop::Viewer> SessionLoop::new_viewer(std::shared_ptr<Session> const& session) const {
+    std::uint32_t const codings = session->codings();
+    auto viewer = std::make_unique<Viewer>();
+    viewer->session = session;
+    viewer->number = session->id();
+    viewer->stream = options_.make_stream ? options_.make_stream(options_.stream, codings)
+                                          : std::make_unique<FrameletStream>(options_.stream, codings);
+    if (options_.event_log != nullptr) {
+        options_.event_log->add_viewer(viewer->number, codings);
+    }
+    return viewer;
+}
+
+/// What is known of the viewer of the session that this one resumes, which goes on with it. There may be several that
+/// each resumed the one before without having had a turn.
+std::unique_ptr<SessionLoop::Viewer> SessionLoop::take_up(Session& session) {
+    std::shared_ptr<Session> const earlier = session.earlier();
+    finish_rendered(); // it may be of that one
+    if (!earlier->is_parked()) {
+        throw std::runtime_error("there was no memory left for it while the viewer was away");
+    }
+    std::unique_ptr<Viewer> viewer;
+    if (earlier->earlier()) {
+        viewer = take_up(*earlier);
+    } else if (auto const found = viewers_.find(earlier->id()); found != viewers_.end()) {
+        viewer = std::move(found->second);
+        viewers_.erase(found);
+    } else {
+        viewer = new_viewer(earlier);
+    }
+    session.take_over();
+    return viewer;
+}
+
+bool SessionLoop::give_turn(std::shared_ptr<Session> const& session, Viewer& viewer, WallTime round_began) {
+    ViewerStream& stream = *viewer.stream;
+    viewer.version = session->take_events(viewer.events);
+    // Not before: what is complete would be so at the time that was, and be reported of the one that was set meanwhile.
+    ClockState const clock = clock_.state(round_began);
+    double const rate = rate_.samples_per_second > 0 ? rate_.samples_per_second : first_samples_per_second;
+    double const speed = clock.playing ? double{clock.speed} : 0;
+    WallTime const now = std::chrono::steady_clock::now();
+    auto const among = static_cast<double>(sharers(viewer)); // a cycle is as long as all their planning asks for
+    Turn const turn{seconds_of(now), clock.time, speed, rate / among, among * plan_seconds_};
+    EventLog* const log = options_.event_log;
+    for (StreamEvent const& event : viewer.events) {
+        stream.take(event);
+        if (log != nullptr) {
+            log->add_event(viewer.number, event);
+        }
+    }
+    Laps laps;
+    Step const step = stream.plan(turn, scene_);
+    if (log != nullptr) {
+        log->add_turn(viewer.number, turn, step);
+    }
+    if (step == Step::render) {
+        viewer.rendered = now;
+    } else if (viewer.rendered && now - *viewer.rendered >= sharing_time) {
+        viewer.rendered.reset();
+    }
+    if (step != Step::render) {
+        waits_for_room_ = waits_for_room_ || step == Step::wait;
+        if (finish_rendered()) {
+            return true;
+        }
+        if (step == Step::nothing && stream.is_complete() && session->report(viewer.version, true)) {
+            events_.convergence_changed();
+        }
+        return false;
+    }
+    CycleRecord record;
+    record.stage_seconds.plan = laps.lap();
+    TurnFigures const figures = stream.planned_figures();
+    if (figures.is_new_cycle) {
+        constexpr double weight = 0.1;
+        plan_seconds_ += weight * (record.stage_seconds.plan - plan_seconds_);
+    }
+    if (options_.recorder != nullptr && stream.scheduler() != nullptr) {
+        record.session = viewer.number;
+        record.scene_time = stream.moment();
+        record.samples_rendered = figures.rays;
+        record.probes = figures.probes;
+        describe(*stream.scheduler(), record);
+        laps.lap();
+    }
+    scene_.pose(stream.moment());
+    if (pipeline_->is_unlearnt()) {
+        start_finishing();
+    }
+    stream.render(scene_);
+    record.stage_seconds.render = laps.lap();
+    wait_for_finishing();
+    record.stage_seconds.wait = laps.lap();
+    pipeline_->rendered = {session, &viewer, viewer.version, false, false, false, record, turn.now};
+    if (thread_count() < many_threads) {
+        finish_one(true);
+        start_finishing();
+    }
+    double const learning = laps.lap(); // by itself
+    note_rate(figures, record.stage_seconds.render + record.stage_seconds.wait + learning);
+    return true;
+}
+
+/// Planning left out: it takes as long for few samples, which would then seem to be dear. So would those of one
+/// viewer's small batch that was interrupted: what a round rendered counts together.
+void SessionLoop::note_rate(TurnFigures const& figures, double seconds) {
+    if (figures.rays > 0) {
+        rays_ = rays_ + static_cast<double>(figures.rays);
+        round_.samples += static_cast<double>(figures.rays);
+        round_.seconds += seconds;
+    }
+}
+
+/// Learns what was rendered, or encodes and sends what was learnt.
+void SessionLoop::finish_one(bool learns) {
+    Pipeline::Rendered& done = *pipeline_->rendered;
+    ViewerStream& stream = *done.viewer->stream;
+    EventLog* const log = options_.event_log;
+    if (learns) {
+        Laps laps;
+        done.sends = stream.learn(scene_);
+        done.learnt = true;
+        done.complete = stream.is_complete();
+        TurnFigures const& figures = stream.learnt_figures();
+        done.record.framelets_sent = (figures.exact_samples + figures.lossy_samples) / framelet_samples;
+        done.record.framelets_unchanged = figures.framelets - done.record.framelets_sent;
+        done.record.stage_seconds.learn = laps.lap();
+        if (log != nullptr) {
+            log->add_learning(done.viewer->number);
+        }
+        return;
+    }
+    if (done.sends) {
+        EncodedBatch batch = stream.encode();
+        if (log != nullptr) {
+            log->add_batch(done.viewer->number, batch);
+        }
+        done.session->send_batch(std::move(batch));
+    }
+    if (done.session->report(done.version, done.complete)) {
+        events_.convergence_changed();
+    }
+}
+
+void SessionLoop::start_finishing() {
+    // It counts as learnt from here on: whatever fails meanwhile, it is not begun a second time.
+    auto const finish = [this, learnt = std::exchange(pipeline_->rendered->learnt, true)] {
+        Session& session = *pipeline_->rendered->session;
+        contain(session, [&] {
+            if (!learnt && session.is_served()) {
+                finish_one(true);
+            }
+            if (session.is_served()) {
+                finish_one(false);
+            }
+        });
+    };
+    // With one thread it would not begin before the next batch is rendered, and be late by that.
+    if (thread_count() > 1) {
+        pipeline_->finishing.run(finish);
+    } else {
+        finish();
+    }
+}
+
+void SessionLoop::wait_for_finishing() {
+    pipeline_->finishing.wait();
+    auto const done = std::exchange(pipeline_->rendered, std::nullopt);
+    if (done && options_.recorder != nullptr && done->record.cycle > 0) {
+        contain(*done->session,
+                [&] { options_.recorder->add(done->record, *done->viewer->stream->scheduler(), done->now); });
+    }
+}
+
+/// What failed is not tried again when it is to be finished.
+void SessionLoop::drop_rendered(Session const& session) {
+    if (pipeline_->rendered && pipeline_->rendered->session.get() == &session) {
+        pipeline_->finishing.wait();
+        pipeline_->rendered.reset();
+    }
+}
+
+/// Waits for all that was rendered to be sent; true where some of it had not been learnt.
+bool SessionLoop::finish_rendered() {
+    bool const learns = pipeline_->is_unlearnt();
+    if (learns) {
+        start_finishing();
+    }
+    wait_for_finishing();
+    return learns;
+}
+
+/// Those that are parked are kept, and take no share of the time.
+void SessionLoop::forget_ended() {
+    auto const has_ended = [](auto const& entry) { return !entry.second->session->is_served(); };
+    for (auto const& [id, viewer] : viewers_) {
+        if (!viewer->session->is_open()) {
+            viewer->rendered.reset();
+        }
+    }
+    if (std::any_of(viewers_.begin(), viewers_.end(), has_ended)) {
+        finish_rendered(); // it may be of one of them
+        std::erase_if(viewers_, has_ended);
+    }
+}
+
+void SessionLoop::wake() {
+    {
+        std::scoped_lock const lock(mutex_);
+        wake_ = true;
+    }
+    woken_.notify_one();
+}
+
+void SessionLoop::stop() {
+    {
+        std::scoped_lock const lock(mutex_);
+        stop_ = true;
+    }
+    woken_.notify_one();
+}
+
+} // namespace framelet

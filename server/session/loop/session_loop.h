@@ -1,0 +1,101 @@
+// The server's loop: for every viewer, what has come -> its stream's turn -> rendering -> learning -> encoding ->
+// socket. Encoding and sending of one batch overlap the rendering of the next; with many threads all that follows the
+// rendering does, and the next batch is planned before that is learnt.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "server/sampling/plan/render_rate.h"
+#include "server/session/clock/scene_clock.h"
+#include "server/session/loop/recorder.h"
+#include "server/session/session.h"
+#include "server/stream/framelet_stream.h"
+
+namespace framelet {
+
+class EventLog;
+
+struct LoopOptions {
+    StreamOptions stream;
+    Recorder* recorder = nullptr; ///< must outlive the loop; null: nothing is recorded
+    EventLog* event_log = nullptr; ///< likewise: what comes to the streams, to be replayed
+    /// Makes a viewer's stream; empty: a `FrameletStream`.
+    std::function<std::unique_ptr<ViewerStream>(StreamOptions const&, std::uint32_t codings)> make_stream;
+};
+
+class SessionLoop {
+public:
+    using Sessions = std::vector<std::shared_ptr<Session>>;
+
+    /// What the loop asks of its server, on any of its threads.
+    struct Events {
+        std::function<Sessions()> open_sessions;
+        /// A session's picture is complete, or no longer.
+        std::function<void()> convergence_changed;
+    };
+
+    /// Scene and clock must outlive the loop.
+    SessionLoop(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene, SceneClock const& clock,
+                LoopOptions options, Events events);
+    ~SessionLoop();
+
+    /// Until `stop`; on the calling thread, with the worker threads of its TBB arena. None of these goes on after that.
+    void run();
+    void stop();
+    /// Something changed that may be worth a turn. From any thread.
+    void wake();
+
+    /// Counters for the status message. From any thread.
+    double samples_per_second() const { return samples_per_second_; }
+    /// Likewise, since the loop's beginning: what was rendered for framelets, and how long there was something to do.
+    double rays() const { return rays_; }
+    double busy_seconds() const { return busy_seconds_; }
+
+private:
+    struct Viewer;
+    struct Pipeline;
+
+    void serve_once();
+    bool give_turns(Sessions const& sessions, WallTime now);
+    bool give_turn(std::shared_ptr<Session> const& session, Viewer& viewer, WallTime round_began);
+    std::size_t sharers(Viewer const& served) const;
+    Viewer& viewer_of(std::shared_ptr<Session> const& session);
+    std::unique_ptr<Viewer> new_viewer(std::shared_ptr<Session> const& session) const;
+    std::unique_ptr<Viewer> take_up(Session& session);
+    void note_rate(TurnFigures const& figures, double seconds);
+    void start_finishing();
+    void finish_one(bool learns);
+    void wait_for_finishing();
+    bool finish_rendered();
+    void drop_rendered(Session const& session);
+    void forget_ended();
+
+    PosedScene scene_;
+    SceneClock const& clock_;
+    LoopOptions const options_;
+    Events const events_;
+
+    std::map<std::uint64_t, std::unique_ptr<Viewer>> viewers_; ///< by session, parked ones too
+    RenderRate rate_;
+    struct {
+        double samples = 0, seconds = 0;
+    } round_; ///< what was rendered since the rate was learnt last, and how long that took
+    double plan_seconds_ = 0; ///< what planning a cycle takes
+    bool waits_for_room_ = false; ///< a viewer, in this round
+    std::unique_ptr<Pipeline> pipeline_;
+
+    std::mutex mutex_;
+    std::condition_variable woken_;
+    bool wake_ = false;
+    bool stop_ = false;
+    std::atomic<double> samples_per_second_ = 0;
+    std::atomic<double> rays_ = 0, busy_seconds_ = 0; ///< written by the loop's thread alone
+};
+
+} // namespace framelet
