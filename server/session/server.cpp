@@ -2,8 +2,6 @@
 
 #include <atomic>
 #include <csignal>
-#include <map>
-#include <mutex>
 #include <new>
 #include <random>
 #include <thread>
@@ -19,20 +17,17 @@
 #include "common/error.h"
 #include "protocol/stream/stream_opening.h"
 #include "protocol/stream/tls.h"
-#include "protocol/stream/token.h"
-#include "server/scene/motion/animation.h"
-#include "server/scene/summary/scene_identity.h"
+#include "server/session/admission.h"
 #include "server/session/clock/clock_requests.h"
-#include "server/session/clock/scene_control.h"
+#include "server/session/connection_table.h"
 #include "server/session/limits/farewells.h"
 #include "server/session/limits/log_limit.h"
-#include "server/session/limits/session_memory.h"
 #include "server/session/limits/source.h"
-#include "server/session/limits/tickets.h"
-#include "server/session/limits/token_guesses.h"
 #include "server/session/limits/waiting_room.h"
 #include "server/session/listener.h"
 #include "server/session/loaded_scene.h"
+#include "server/session/loop/loop_thread.h"
+#include "server/session/welcome.h"
 
 namespace framelet {
 
@@ -47,28 +42,6 @@ constexpr std::chrono::seconds heartbeat{1};
 constexpr std::chrono::seconds healthy_pause{10};
 /// A connection whose bytes nobody confirms for so long is dropped by the kernel, milliseconds.
 constexpr unsigned user_timeout_ms = 15000;
-
-Welcome make_welcome(Scene const& scene, std::vector<Index> const& clips) {
-    ScenePose const pose = evaluate_pose(scene, clips, 0);
-    Welcome welcome;
-    welcome.server = "framelet-server " FRAMELET_VERSION;
-    welcome.scene_name = scene.name;
-    welcome.scene_bounds = scene_bounds(scene, pose);
-    for (Index i = 0; i < static_cast<Index>(scene.cameras.size()); ++i) {
-        welcome.cameras.push_back({scene.cameras[static_cast<std::size_t>(i)].name, scene_camera(scene, pose, i)});
-    }
-    welcome.start_camera =
-        welcome.cameras.empty() ? default_camera(welcome.scene_bounds) : welcome.cameras.front().camera;
-    welcome.animation_duration = animation_duration(scene, clips);
-    welcome.scene_identity = scene_identity(scene);
-    return welcome;
-}
-
-ControlRule control_rule(ServerOptions const& options) {
-    return options.shared_control          ? ControlRule::everybody
-           : options.control_token.empty() ? ControlRule::first
-                                           : ControlRule::token;
-}
 
 } // namespace
 
@@ -87,44 +60,30 @@ struct Server::Impl {
     std::shared_ptr<asio::ssl::context> tls;
     Welcome welcome;
     SceneClock clock;
-    SceneControl control;
-    ClockRequests clock_requests; ///< for the io thread only, as all down to the sessions
-    SessionMemory memory;
-    Tickets tickets;
+    ClockRequests clock_requests; ///< for the io thread only, as all that follows, but what is said to be for any
+    Admission admission;
     WaitingRoom waiting;
-    TokenGuesses guesses;
-    LogLimit wrong_tokens, turned_away, without_memory; ///< for what the log says of them
+    LogLimit turned_away, without_memory; ///< for what the log says of them
     std::minstd_rand random{std::random_device{}()};
     Farewells farewells;
 
-    struct Connection {
-        std::shared_ptr<Session> session;
-        std::shared_ptr<FramedStream> stream;
-        std::string source;
-        std::unique_ptr<asio::steady_timer> start; ///< null: at once
-        bool admitted = false;
-        bool was_ended = false; ///< at the last heartbeat, and is here all the same
-    };
-    mutable std::mutex sessions_mutex;
-    std::map<std::uint64_t, Connection> connections; ///< changed on the io thread only
+    ConnectionTable connections; ///< its open sessions: any
     std::uint64_t next_id = 1;
     bool beats = false; ///< the next heartbeat is on its way
     bool ends = false; ///< and then none is
 
     std::atomic<std::uint64_t> sent_bytes = 0, viewers = 0, scenes = 1; ///< counted for those who watch over the server
     std::atomic<steady_clock::time_point> last_beat = steady_clock::now();
-    double earlier_rays = 0, earlier_busy_seconds = 0; ///< of loops before this one; under `sessions_mutex`
 
     std::shared_ptr<LoadedScene> loaded; ///< that the loop looks at; null: it is the caller's
-    std::unique_ptr<SessionLoop>
-        loop; ///< replaced on the io thread only, under `sessions_mutex`, without `loop_thread`
-    std::thread loop_thread;
+    LoopThread loop; ///< replaced on the io thread only; its figures: any
 
     Impl(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene, ServerOptions const& given,
          std::unique_ptr<Listener> bound)
         : listener(std::move(bound)), options(given), welcome(make_welcome(scene, clips)),
-          clock(!given.paused, steady_clock::now()), control(control_rule(given)),
-          memory(given.session_megabytes * 1'000'000),
+          clock(!given.paused, steady_clock::now()),
+          admission({given.token, given.control_token, given.shared_control, given.session_megabytes * 1'000'000},
+                    [this] { loop.wake(); }),
           loop(make_loop(scene, std::move(clips), render_scene, given.loop)) {
         if (!options.tls_certificate.empty()) {
             tls = make_tls_server_context(options.tls_certificate, options.tls_key);
@@ -134,20 +93,9 @@ struct Server::Impl {
 
     std::unique_ptr<SessionLoop> make_loop(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene,
                                            LoopOptions const& loop_options) {
-        SessionLoop::Events events{[this] { return open_sessions(); }, [this] { post_status(); }};
+        SessionLoop::Events events{[this] { return connections.open_sessions(); }, [this] { post_status(); }};
         return std::make_unique<SessionLoop>(scene, std::move(clips), render_scene, clock, loop_options,
                                              std::move(events));
-    }
-
-    void start_loop() {
-        loop_thread = std::thread([serving = loop.get()] { serving->run(); });
-    }
-
-    void stop_loop() {
-        if (loop_thread.joinable()) {
-            loop->stop();
-            loop_thread.join();
-        }
     }
 
     void replace_scene(std::shared_ptr<LoadedScene> next) {
@@ -159,35 +107,17 @@ struct Server::Impl {
         loop_options.stream.exposure = next->exposure;
         Welcome next_welcome = make_welcome(next->scene, next->clips);
         auto next_loop = make_loop(next->scene, next->clips, next->render_scene, loop_options);
-        SessionLoop::Sessions const sessions = open_sessions();
-        stop_loop();
+        SessionLoop::Sessions const sessions = connections.open_sessions();
+        loop.stop();
         for (auto const& session : sessions) {
             session->end("the scene is loaded again", true);
         }
-        while (give_up_longest_parked()) {
-        }
+        admission.keep_parked(0);
         welcome = std::move(next_welcome);
-        {
-            std::scoped_lock const lock(sessions_mutex);
-            earlier_rays += loop->rays();
-            earlier_busy_seconds += loop->busy_seconds();
-            std::swap(loop, next_loop);
-        }
-        next_loop.reset(); // before the scene that it looks at
+        loop.replace(std::move(next_loop)); // the one before goes before the scene that it looks at
         ++scenes;
         loaded = std::move(next);
-        start_loop();
-    }
-
-    SessionLoop::Sessions open_sessions() const {
-        std::scoped_lock const lock(sessions_mutex);
-        SessionLoop::Sessions open;
-        for (auto const& [id, connection] : connections) {
-            if (connection.session->is_open()) {
-                open.push_back(connection.session);
-            }
-        }
-        return open;
+        loop.start();
     }
 
     /// From any thread.
@@ -209,8 +139,8 @@ struct Server::Impl {
         try {
             add_connection(id, std::move(socket), endpoint);
         } catch (std::bad_alloc const&) {
-            if (auto const found = connections.find(id); found != connections.end()) {
-                found->second.stream->close(); // it may have begun to read
+            if (Connection* const found = connections.find(id)) {
+                found->stream->close(); // it may have begun to read
             }
             forget(id);
             throw;
@@ -220,7 +150,7 @@ struct Server::Impl {
     void add_connection(std::uint64_t id, tcp::socket socket, tcp::endpoint const& endpoint) {
         std::string const source = source_of(endpoint.address());
         if (auto const dropped = waiting.enter(id, source, std::generate_canonical<double, 32>(random))) {
-            auto const session = connections.at(*dropped).session;
+            auto const session = connections.find(*dropped)->session;
             session->start(); // it may have been delayed, and is told nothing before that
             session->end("too many connections at a time have not said yet who they are: try again", true);
         }
@@ -230,7 +160,7 @@ struct Server::Impl {
         connection.stream = tls ? tls_server_stream(std::move(socket), tls) : plain_stream(std::move(socket));
         connection.session = std::make_shared<Session>(id, connection.stream, session_events(id));
         auto const session = connection.session;
-        auto const delay = guesses.delay(source, steady_clock::now());
+        auto const delay = admission.delay(source, steady_clock::now());
         if (delay.count() > 0) {
             connection.start = std::make_unique<asio::steady_timer>(io, delay);
             connection.start->async_wait([session](boost::system::error_code aborted) {
@@ -239,10 +169,7 @@ struct Server::Impl {
                 }
             });
         }
-        {
-            std::scoped_lock const lock(sessions_mutex);
-            connections[id] = std::move(connection);
-        }
+        connections.add(id, std::move(connection));
         if (delay.count() <= 0) {
             session->start();
         }
@@ -252,68 +179,31 @@ struct Server::Impl {
         Session::Events events;
         events.admit = [this, id](Hello const& hello) { return admit(id, hello); };
         events.clock_request = [this, id](ClockRequest const& request) {
-            if (control.controls(id)) {
+            if (admission.controls(id)) {
                 set_clock(request);
             }
         };
-        events.resize = [this, id](Viewport viewport, bool predicts) { return reserve(id, viewport, predicts); };
-        events.changed = [this] { loop->wake(); };
+        events.resize = [this, id](Viewport viewport, bool predicts) {
+            return admission.reserve(id, viewport, predicts);
+        };
+        events.changed = [this] { loop.wake(); };
         events.ended = [this, id](std::string const& reason) { end_session(id, reason); };
         events.sent = [this](std::size_t bytes) { sent_bytes += bytes; };
         return events;
     }
 
-    /// Viewers that are away leave their memory to those that are here.
-    std::optional<std::string> reserve(std::uint64_t id, Viewport viewport, bool predicts) {
-        auto refusal = memory.reserve(id, viewport, predicts);
-        while (refusal && give_up_longest_parked()) {
-            refusal = memory.reserve(id, viewport, predicts);
-        }
-        return refusal;
-    }
-
-    /// False where nobody is away.
-    bool give_up_longest_parked() {
-        Tickets::Holder* const holder = tickets.longest_parked();
-        if (holder == nullptr) {
-            return false;
-        }
-        give_up(*holder);
-        return true;
-    }
-
-    /// This viewer, which is away, does not come back, or has to begin anew.
-    void give_up(Tickets::Holder const& holder) {
-        std::shared_ptr<Session> const session = holder.session;
-        tickets.erase(&holder);
-        session->abandon();
-        memory.release(session->id());
-        loop->wake();
-    }
-
     std::variant<Welcome, Failure> admit(std::uint64_t id, Hello const& hello) {
-        Connection& connection = connections.at(id);
-        if (hello.version != protocol_version) {
-            return Failure{"this server speaks protocol version " + std::to_string(protocol_version) +
-                           ", the viewer version " + std::to_string(hello.version) +
-                           ": install the same release on both"};
+        Connection& connection = *connections.find(id);
+        auto const now = steady_clock::now();
+        if (auto const refusal = admission.refusal(hello, connection.source, now)) {
+            return *refusal;
         }
-        bool const knows_control_token =
-            !options.control_token.empty() && same_token(hello.token, options.control_token);
-        if (!options.token.empty() && !knows_control_token && !same_token(hello.token, options.token)) {
-            if (!hello.token.empty()) { // which would be no guess
-                note_wrong_token(connection.source);
-            }
-            return Failure{"wrong or missing token: start the viewer with --token-file"};
-        }
-        Tickets::Holder* holder = hello.ticket ? tickets.find(hello.ticket) : nullptr;
-        if (holder != nullptr && !holder->parked) { // what it says is newer than what is known of its connection
-            auto const before = holder->session;
+        if (auto const before = admission.session_left_behind(hello)) {
+            // What the viewer says is newer than what is known of its connection.
             before->cut();
             remove(before->id(), "it has come back by another connection");
-            holder = tickets.find(hello.ticket);
         }
-        if (open_sessions().size() >= options.max_sessions) {
+        if (connections.open_sessions().size() >= options.max_sessions) {
             return Failure{"the server has its " + std::to_string(options.max_sessions) +
                                " viewers already: try later or raise --max-sessions",
                            true};
@@ -323,46 +213,9 @@ struct Server::Impl {
         ++viewers;
         waiting.leave(id);
         Welcome answer = welcome;
-        answer.clock = clock.state(steady_clock::now());
-        if (holder != nullptr && !resume(*holder, connection.session, hello, knows_control_token)) {
-            give_up(*holder);
-            holder = nullptr;
-        }
-        if (holder != nullptr) {
-            answer.resumed = true;
-            answer.let_go = connection.session->status().let_go;
-        } else {
-            tickets.issue({make_ticket(), connection.session, id, hello.codings, knows_control_token, std::nullopt});
-            holder = tickets.of(*connection.session);
-        }
-        answer.ticket = holder->ticket;
-        control.enter(id, holder->seat, knows_control_token);
-        answer.controls = control.controls(id);
+        answer.clock = clock.state(now);
+        admission.seat(connection.session, hello, answer);
         return answer;
-    }
-
-    /// False where the viewer is another one by what it knows and reads, or lacks what is not kept any more.
-    bool resume(Tickets::Holder& holder, std::shared_ptr<Session> const& session, Hello const& hello,
-                bool knows_control_token) {
-        auto const earlier = holder.session;
-        if (holder.codings != hello.codings || holder.knows_control_token != knows_control_token ||
-            !earlier->can_be_resumed(hello.last_batch)) {
-            return false;
-        }
-        spdlog::info("viewer {} is viewer {}, who has come back", session->id(), earlier->id());
-        memory.pass(earlier->id(), session->id());
-        session->resume(earlier, hello.last_batch);
-        holder.session = session;
-        holder.parked.reset();
-        return true;
-    }
-
-    void note_wrong_token(std::string const& source) {
-        auto const now = steady_clock::now();
-        guesses.note_wrong(source, now);
-        if (auto const more = wrong_tokens.next(now)) {
-            spdlog::warn("wrong token from {}{}", source, *more);
-        }
     }
 
     void set_clock(ClockRequest const& request) {
@@ -384,59 +237,38 @@ struct Server::Impl {
     void apply_clock_requests() {
         auto const now = steady_clock::now();
         clock.apply(clock_requests.take(now), now);
-        for (auto const& session : open_sessions()) {
+        for (auto const& session : connections.open_sessions()) {
             session->note_clock_change();
         }
-        loop->wake();
+        loop.wake();
         send_status();
     }
 
     void end_session(std::uint64_t id, std::string const& reason) {
         // Later: the session is still on the stack.
         asio::post(io, [this, id, reason] { remove(id, reason); });
-        loop->wake();
+        loop.wake();
     }
 
     void remove(std::uint64_t id, std::string const& reason) {
-        auto const found = connections.find(id);
-        if (found == connections.end()) {
+        Connection const* const found = connections.find(id);
+        if (found == nullptr) {
             return; // two threads ended it at once
         }
-        log_end(id, found->second, reason);
-        auto const stream = found->second.stream;
+        log_end(id, *found, reason);
+        auto const stream = found->stream;
         forget(id);
-        while (tickets.parked_count() > options.max_sessions) {
-            give_up_longest_parked();
-        }
+        admission.keep_parked(options.max_sessions);
         farewells.add(stream);
         send_status(); // it may be another's turn to control
     }
 
-    /// Gives back all that it had, but what a viewer goes on with that comes back. Takes no memory for that.
+    /// Takes no memory for that.
     void forget(std::uint64_t id) {
         waiting.leave(id);
-        control.leave(id);
-        park_or_release(id);
-        std::scoped_lock const lock(sessions_mutex);
+        Connection const* const found = connections.find(id);
+        admission.leave(id, found == nullptr ? nullptr : found->session.get());
         connections.erase(id);
-    }
-
-    void park_or_release(std::uint64_t id) {
-        auto const found = connections.find(id);
-        Tickets::Holder* const holder = found == connections.end() ? nullptr : tickets.of(*found->second.session);
-        if (holder != nullptr && holder->session->is_parked()) {
-            holder->parked = steady_clock::now();
-        } else if (holder != nullptr) {
-            give_up(*holder);
-        } else {
-            memory.release(id);
-        }
-    }
-
-    void give_up_who_stay_away() {
-        while (auto const* const holder = tickets.overdue(steady_clock::now())) {
-            give_up(*holder);
-        }
     }
 
     void log_end(std::uint64_t id, Connection const& connection, std::string const& reason) {
@@ -448,54 +280,33 @@ struct Server::Impl {
     }
 
     void send_status() {
-        auto const sessions = open_sessions();
+        auto const sessions = connections.open_sessions();
         for (auto const& session : sessions) {
             Status status = session->status();
             status.clock = clock.state(steady_clock::now());
             status.converged = status.converged && !(status.clock.playing && welcome.animation_duration > 0);
-            status.samples_per_second = loop->samples_per_second();
+            status.samples_per_second = loop.samples_per_second();
             status.sessions = static_cast<std::uint32_t>(sessions.size());
-            status.controls = control.controls(session->id());
+            status.controls = admission.controls(session->id());
             session->send(status);
         }
     }
 
     void drop_overdue_connections() {
-        auto const now = steady_clock::now();
-        std::vector<std::pair<std::shared_ptr<Session>, std::string>> overdue;
-        for (auto const& [id, connection] : connections) {
-            if (auto const reason = connection.session->overdue(now)) {
-                overdue.emplace_back(connection.session, *reason);
-            }
-        }
-        for (auto const& [session, reason] : overdue) {
+        for (auto const& [session, reason] : connections.overdue(steady_clock::now())) {
             session->end(reason, true);
         }
     }
 
-    /// Those that ended when there was no memory for all that belongs to it.
     void drop_remains() {
-        std::vector<std::uint64_t> remains;
-        for (auto& [id, connection] : connections) {
-            if (connection.was_ended) {
-                remains.push_back(id);
-            }
-            connection.was_ended = connection.session->has_ended();
-        }
-        for (std::uint64_t const id : remains) {
-            connections.at(id).stream->close();
+        for (std::uint64_t const id : connections.take_remains()) {
+            connections.find(id)->stream->close();
             remove(id, "no memory left");
         }
     }
 
     void drop_stuck_connections() {
-        std::vector<std::shared_ptr<Session>> stuck;
-        for (auto const& [id, connection] : connections) {
-            if (connection.session->is_stuck()) {
-                stuck.push_back(connection.session);
-            }
-        }
-        for (auto const& session : stuck) {
+        for (auto const& session : connections.stuck()) {
             session->end("the server has no memory left", true);
         }
     }
@@ -512,7 +323,7 @@ struct Server::Impl {
                 drop_stuck_connections();
                 drop_remains();
                 drop_overdue_connections();
-                give_up_who_stay_away();
+                admission.give_up_who_stay_away(steady_clock::now());
                 send_status();
                 beat();
             }
@@ -547,15 +358,12 @@ struct Server::Impl {
     ServerFigures figures() const {
         ServerFigures now;
         now.healthy = steady_clock::now() - last_beat.load() < healthy_pause;
-        now.sessions = open_sessions().size();
+        now.sessions = connections.open_sessions().size();
         now.viewers = viewers;
         now.scenes = scenes;
         now.sent_bytes = sent_bytes;
         now.resident_bytes = resident_bytes();
-        std::scoped_lock const lock(sessions_mutex);
-        now.rays = earlier_rays + loop->rays();
-        now.busy_seconds = earlier_busy_seconds + loop->busy_seconds();
-        now.rays_per_second = loop->samples_per_second();
+        loop.add_figures(now);
         return now;
     }
 
@@ -580,7 +388,7 @@ struct Server::Impl {
         timer.cancel();
         clock_timer.cancel();
         signals.cancel(ignored);
-        for (auto const& [id, connection] : connections) {
+        for (auto const& [id, connection] : connections.all()) {
             connection.session->close("the server shuts down", true);
             if (connection.start) {
                 connection.start->cancel();
@@ -630,14 +438,14 @@ void Server::take_signals(std::function<bool()> hang_up) {
 void Server::run() {
     impl_->listener->accept([this](tcp::socket socket) { impl_->add_connection(std::move(socket)); });
     impl_->beat();
-    impl_->start_loop();
+    impl_->loop.start();
     try {
         impl_->run_io();
     } catch (...) {
-        impl_->stop_loop();
+        impl_->loop.stop();
         throw;
     }
-    impl_->stop_loop();
+    impl_->loop.stop();
 }
 
 void Server::replace_scene(std::shared_ptr<LoadedScene> next) {

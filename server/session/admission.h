@@ -1,0 +1,73 @@
+// Who is let in, and what each viewer has: its ticket, its memory, control of the scene's clock; also of those who are
+// away. In: what viewers say of themselves, sessions as they come and go. Out: refusals, the viewer's own part of its
+// Welcome.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "protocol/messages/message.h"
+#include "server/session/clock/scene_control.h"
+#include "server/session/limits/log_limit.h"
+#include "server/session/limits/session_memory.h"
+#include "server/session/limits/tickets.h"
+#include "server/session/limits/token_guesses.h"
+#include "server/session/session.h"
+
+namespace framelet {
+
+/// For the io thread only.
+class Admission {
+public:
+    using Time = std::chrono::steady_clock::time_point;
+
+    struct Rules {
+        std::string token; ///< what a viewer has to say; empty: nothing
+        std::string control_token; ///< who says it is let in as well, and may set the scene's clock; empty: nobody
+        bool shared_control = false; ///< every viewer may; otherwise, without a token for it, the first
+        std::size_t memory_bytes; ///< of all viewers
+    };
+
+    /// `given_up` is called after each viewer that has been given up.
+    Admission(Rules rules, std::function<void()> given_up);
+
+    /// How long somebody who connects from there has to wait.
+    Time::duration delay(std::string const& source, Time now) const { return guesses_.delay(source, now); }
+    /// Why who says this is not let in; nothing: it may be. A wrong token is noted.
+    std::optional<Failure> refusal(Hello const& hello, std::string const& source, Time now);
+    /// The session of the viewer that says it comes back, where the server has not noticed yet that it had gone.
+    std::shared_ptr<Session> session_left_behind(Hello const& hello);
+    /// Gives a session that is let in what its viewer had, if that is still there, or a ticket of its own.
+    void seat(std::shared_ptr<Session> const& session, Hello const& hello, Welcome& answer);
+    bool controls(std::uint64_t id) const { return control_.controls(id); }
+    /// As `SessionMemory::reserve`. Viewers that are away leave their memory to those that are here.
+    std::optional<std::string> reserve(std::uint64_t id, Viewport viewport, bool predicts);
+
+    /// Gives back all that the session had, but what a viewer that comes back goes on with. Takes no memory for that.
+    /// `session` is null where there is none of this number.
+    void leave(std::uint64_t id, Session const* session);
+    /// Of those who are away no more than so many, the last to go, may come back.
+    void keep_parked(std::size_t most);
+    /// Nor those who have been away for too long.
+    void give_up_who_stay_away(Time now);
+
+private:
+    bool knows_control_token(Hello const& hello) const;
+    bool resume(Tickets::Holder& holder, std::shared_ptr<Session> const& session, Hello const& hello);
+    bool give_up_longest_parked();
+    void give_up(Tickets::Holder const& holder);
+
+    Rules const rules_;
+    std::function<void()> const given_up_;
+    SceneControl control_;
+    SessionMemory memory_;
+    Tickets tickets_;
+    TokenGuesses guesses_;
+    LogLimit wrong_tokens_;
+};
+
+} // namespace framelet

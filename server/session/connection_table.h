@@ -1,0 +1,52 @@
+// All connections: viewers, and those that have not said yet who they are. In: sessions as they begin and end. Out:
+// which are open, and which ought to be ended.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <boost/asio/steady_timer.hpp>
+
+#include "server/session/session.h"
+
+namespace framelet {
+
+struct Connection {
+    std::shared_ptr<Session> session;
+    std::shared_ptr<FramedStream> stream;
+    std::string source;
+    std::unique_ptr<boost::asio::steady_timer> start; ///< null: at once
+    bool admitted = false;
+    bool was_ended = false; ///< at the last heartbeat, and is here all the same
+};
+
+/// For the io thread, but for `open_sessions`, which may be called from any.
+class ConnectionTable {
+public:
+    void add(std::uint64_t id, Connection connection);
+    /// Null: it has gone. Valid until it goes.
+    Connection* find(std::uint64_t id);
+    void erase(std::uint64_t id);
+    std::map<std::uint64_t, Connection> const& all() const { return connections_; }
+
+    std::vector<std::shared_ptr<Session>> open_sessions() const;
+    /// Those from which something has been waited for too long, and what.
+    std::vector<std::pair<std::shared_ptr<Session>, std::string>>
+    overdue(std::chrono::steady_clock::time_point now) const;
+    /// Those whose socket waits for nothing any more, for want of memory.
+    std::vector<std::shared_ptr<Session>> stuck() const;
+    /// Those that had ended at the last call already: there was no memory for all that belongs to an end.
+    std::vector<std::uint64_t> take_remains();
+
+private:
+    mutable std::mutex mutex_;
+    std::map<std::uint64_t, Connection> connections_; ///< changed on the io thread only
+};
+
+} // namespace framelet
