@@ -1,11 +1,10 @@
 #include "server/session/listener.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <boost/asio/ip/v6_only.hpp>
 #include <spdlog/spdlog.h>
-
-#include "common/error.h"
 
 namespace framelet {
 
@@ -17,10 +16,6 @@ namespace {
 
 /// With port 0: how often all addresses are tried, since the port that is free on the first may not be on the next.
 constexpr int attempts = 16;
-
-std::string cannot_listen(std::string const& place, Error const& error) {
-    return "cannot listen on " + place + ": " + error.message() + ": choose another --port or --bind";
-}
 
 /// A name may stand for an address of a version of IP that this machine does not speak.
 bool is_absent(Error const& error) {
@@ -34,7 +29,7 @@ std::string text_of(tcp::endpoint const& endpoint) {
     return (endpoint.address().is_v6() ? "[" + host + "]" : host) + ":" + std::to_string(endpoint.port());
 }
 
-Listener::Listener(std::string const& bind, std::uint16_t port) {
+Listener::Listener(std::string const& bind, std::uint16_t port) : advice_("choose another --port or --bind") {
     std::string const place = bind + ":" + std::to_string(port);
     Error error;
     std::vector<asio::ip::address> addresses;
@@ -52,8 +47,13 @@ Listener::Listener(std::string const& bind, std::uint16_t port) {
     this->bind(addresses, port, place);
 }
 
-Listener::Listener(std::vector<asio::ip::address> const& addresses, std::uint16_t port) {
+Listener::Listener(std::vector<asio::ip::address> const& addresses, std::uint16_t port, std::string advice)
+    : advice_(std::move(advice)) {
     bind(addresses, port, text_of({addresses.at(0), port}));
+}
+
+InputError Listener::cannot_listen(std::string const& place, Error const& error) const {
+    return InputError("cannot listen on " + place + ": " + error.message() + ": " + advice_);
 }
 
 void Listener::bind(std::vector<asio::ip::address> const& addresses, std::uint16_t port, std::string const& place) {
@@ -79,7 +79,7 @@ void Listener::bind(std::vector<asio::ip::address> const& addresses, std::uint16
         }
     }
     doors_.clear();
-    throw InputError(cannot_listen(place, failed));
+    throw cannot_listen(place, failed);
 }
 
 Error Listener::bind(Endpoint const& endpoint, bool only_this_version) {
@@ -107,7 +107,7 @@ void Listener::listen() {
         Error error;
         door.acceptor.listen(asio::socket_base::max_listen_connections, error);
         if (error) {
-            throw InputError(cannot_listen(text_of(door.acceptor.local_endpoint()), error));
+            throw cannot_listen(text_of(door.acceptor.local_endpoint()), error);
         }
     }
 }

@@ -12,6 +12,7 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
 
+#include "common/error.h"
 #include "server/session/limits/log_limit.h"
 
 namespace framelet {
@@ -30,8 +31,10 @@ public:
     /// Binds to all addresses that `bind`, a name or an address, stands for; port 0: any one that is free on all of
     /// them. Throws InputError where that cannot be had.
     Listener(std::string const& bind, std::uint16_t port);
-    /// The same for given addresses. Those that this machine has not are left out, unless there is no other.
-    Listener(std::vector<boost::asio::ip::address> const& addresses, std::uint16_t port);
+    /// The same for given addresses. Those that this machine has not are left out, unless there is no other. `advice`
+    /// ends what an InputError says.
+    Listener(std::vector<boost::asio::ip::address> const& addresses, std::uint16_t port,
+             std::string advice = "choose another --port or --bind");
 
     /// Lets viewers connect. Throws InputError where another program has begun to listen there meanwhile.
     void listen();
@@ -56,7 +59,9 @@ private:
     void bind(std::vector<boost::asio::ip::address> const& addresses, std::uint16_t port, std::string const& place);
     boost::system::error_code bind(Endpoint const& endpoint, bool only_this_version);
     void accept_at(Door& door);
+    InputError cannot_listen(std::string const& place, boost::system::error_code const& error) const;
 
+    std::string const advice_;
     std::deque<Door> doors_; // which stay where they are
     std::function<void(boost::asio::ip::tcp::socket)> take_;
     LogLimit failures_;

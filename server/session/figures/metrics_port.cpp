@@ -7,9 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
-#include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 
@@ -87,99 +85,62 @@ struct Visit : std::enable_shared_from_this<Visit> {
 } // namespace
 
 struct MetricsPort::Impl {
-    asio::io_context io{1};
-    tcp::acceptor acceptor{io};
-    asio::steady_timer again{io};
+    Listener listener;
     std::function<ServerFigures()> figures;
     std::vector<std::weak_ptr<Visit>> visits;
-    bool waits = false; ///< for a connection, or for the pause to be over
     std::thread thread;
 
-    void accept() {
-        acceptor.async_accept([this](Error error, tcp::socket socket) {
-            waits = false;
-            if (error) { // for want of file descriptors, most likely: it would say so again at once
-                again.expires_after(Listener::pause);
-                again.async_wait([this](Error aborted) {
-                    waits = false;
-                    if (!aborted) {
-                        accept();
-                    }
-                });
-                waits = true;
-                return;
-            }
-            std::erase_if(visits, [](auto const& visit) { return visit.expired(); });
-            if (visits.size() < most_connections) {
-                auto const visit = std::make_shared<Visit>(std::move(socket), figures);
-                visits.push_back(visit);
-                visit->read();
-            }
-            accept();
-        });
-        waits = true;
+    Impl(asio::ip::address const& address, std::uint16_t port)
+        : listener({address}, port, "choose another port for --metrics, or --metrics-bind") {}
+
+    void answer(tcp::socket socket) {
+        std::erase_if(visits, [](auto const& visit) { return visit.expired(); });
+        if (visits.size() < most_connections) {
+            auto const visit = std::make_shared<Visit>(std::move(socket), figures);
+            visits.push_back(visit);
+            visit->read();
+        }
     }
 
     void run() {
-        for (bool is_to_recover = false;;) {
+        for (;;) {
             try {
-                if (std::exchange(is_to_recover, false) && !waits) {
-                    accept();
-                }
-                io.run();
+                listener.accept_again();
+                listener.io.run();
                 return;
             } catch (std::bad_alloc const&) { // it costs the one who asked, not those who come later
-                is_to_recover = true;
                 std::this_thread::sleep_for(Listener::pause);
             }
         }
     }
 };
 
-MetricsPort::MetricsPort(std::string const& bind, std::uint16_t port) : impl_(std::make_unique<Impl>()) {
-    auto const fail = [&](std::string const& why) {
-        return InputError("cannot listen on " + bind + ":" + std::to_string(port) + " for --metrics: " + why +
-                          ": choose another port or --metrics-bind");
-    };
+MetricsPort::MetricsPort(std::string const& bind, std::uint16_t port) {
     Error error;
     auto const address = asio::ip::make_address(bind, error);
     if (error) {
-        throw fail("it is no address");
+        throw InputError("cannot listen on " + bind + ":" + std::to_string(port) +
+                         " for --metrics: it is no address: choose another --metrics-bind");
     }
-    tcp::acceptor& acceptor = impl_->acceptor;
-    acceptor.open(address.is_v6() ? tcp::v6() : tcp::v4(), error);
-    if (!error) {
-        acceptor.set_option(tcp::acceptor::reuse_address(true), error);
-    }
-    if (!error) {
-        acceptor.bind({address, port}, error);
-    }
-    if (error) {
-        throw fail(error.message());
-    }
+    impl_ = std::make_unique<Impl>(address, port);
 }
 
 MetricsPort::~MetricsPort() {
     if (impl_->thread.joinable()) {
-        impl_->io.stop();
+        impl_->listener.io.stop();
         impl_->thread.join();
     }
 }
 
 void MetricsPort::start(std::function<ServerFigures()> figures) {
     impl_->figures = std::move(figures);
-    Error error;
-    impl_->acceptor.listen(static_cast<int>(most_connections), error);
-    if (error) {
-        throw InputError("cannot listen on " + address() + " for --metrics: " + error.message() +
-                         ": choose another port");
-    }
-    impl_->accept();
-    impl_->thread = std::thread([this] { impl_->run(); });
+    impl_->listener.listen();
+    impl_->listener.accept([impl = impl_.get()](tcp::socket socket) { impl->answer(std::move(socket)); });
+    impl_->thread = std::thread([impl = impl_.get()] { impl->run(); });
 }
 
 std::string MetricsPort::address() const {
-    return text_of(impl_->acceptor.local_endpoint());
+    return text_of(impl_->listener.endpoints().front());
 }
 
 } // namespace framelet
