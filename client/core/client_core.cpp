@@ -7,11 +7,13 @@
 #include <thread>
 #include <utility>
 
-#include "client/core/camera/camera_times.h"
 #include "client/core/connection/server_connection.h"
 #include "client/core/picture/making_time.h"
 #include "client/core/picture/session_pictures.h"
-#include "client/core/told_let_go.h"
+#include "client/core/session/arrived_batches.h"
+#include "client/core/session/asked_view.h"
+#include "client/core/session/server_state.h"
+#include "client/core/session/told_let_go.h"
 #include "common/error.h"
 #include "protocol/codec/batch_codec.h"
 
@@ -32,20 +34,6 @@ Clock::duration clock_duration(double seconds) {
 /// A batch's number, view, scene time and length prefix on the wire, about.
 constexpr std::size_t batch_header_bytes = 96;
 
-/// What waits for a painter that is busy, or for a window that is hidden. What would be more is taken in at once.
-constexpr std::size_t most_waiting_bytes = 256u << 20;
-
-std::size_t bytes_of(Batch const& batch) {
-    std::size_t bytes = sizeof batch + batch.framelets.size() * sizeof(DisplayFramelet);
-    for (FrameletShape const& shape : batch.shapes) {
-        bytes += sizeof shape + shape.loose_samples.size() * sizeof shape.loose_samples[0];
-    }
-    for (BodyTrack const& track : batch.tracks) {
-        bytes += sizeof track + track.keys.size() * sizeof(BodyPose);
-    }
-    return bytes + (batch.camera_track ? batch.camera_track->keys.size() * sizeof(BodyPose) : 0);
-}
-
 } // namespace
 
 struct ClientCore::Impl {
@@ -64,15 +52,11 @@ struct ClientCore::Impl {
     mutable std::mutex mutex; // guards all that follows, but the connection; never held for long
     std::condition_variable news_arrived;
     bool news = false;
-    std::vector<Batch> arrived; ///< and not in the maker yet, in order
-    std::vector<Batch> spare_batches; ///< for their memory
+    ArrivedBatches arrived; ///< and not in the maker yet
     std::vector<SentTile> let_go; ///< scratch
     ToldLetGo told_let_go;
-    std::optional<CameraUpdate> waiting_view;
-    CameraUpdate view; ///< the newest, sent or not
+    AskedView asked;
     ViewerSettings viewer_settings;
-    CameraTimes camera_times;
-    std::optional<Clock::time_point> first_camera_time;
     PictureSettings picture_settings;
     bool has_picture = false; ///< something is held of the newest viewport
     std::uint64_t last_batch = 0;
@@ -81,8 +65,7 @@ struct ClientCore::Impl {
     Clock::time_point shown_at; ///< when the last picture was to be seen; does not go back
     MakingTime making;
     bool is_smooth = false;
-    Status status;
-    Clock::time_point status_time = start;
+    ServerState server;
     Welcome welcome;
     std::uint64_t scene_number = 1;
     bool starts_clean = false; ///< the picture is of another scene
@@ -109,7 +92,7 @@ struct ClientCore::Impl {
         handlers.on_reopened = [this](Welcome news_of_scene) { begin_session(std::move(news_of_scene)); };
         handlers.on_sent = [this] {
             std::lock_guard const lock(mutex);
-            send_waiting_view();
+            send_view();
         };
         auto opened = std::make_unique<ServerConnection>(options, std::move(handlers));
         std::lock_guard const lock(mutex);
@@ -118,21 +101,15 @@ struct ClientCore::Impl {
             welcome = connection->welcome();
             shown_camera = welcome.start_camera;
             picture_settings.scene_moves = welcome.animation_duration > 0;
-            if (status_time == start) { // no Status has come yet
-                note_clock(welcome);
+            if (!server.has_begun()) { // no Status has come yet
+                server.begin(welcome, Clock::now());
             }
         }
     }
 
-    /// Under the lock.
-    void note_clock(Welcome const& greeting) {
-        status.clock = greeting.clock;
-        status.controls = greeting.controls;
-    }
-
     NumberedView wanted_view() const {
         std::lock_guard const lock(mutex);
-        return view.view;
+        return asked.view();
     }
 
     /// What has come is kept for the time without a session.
@@ -141,10 +118,8 @@ struct ClientCore::Impl {
             std::lock_guard const picture_lock(picture_mutex);
             std::lock_guard const lock(mutex);
             interruption = std::move(reason);
-            status.clock = clock_at(Clock::now());
-            pictures.pause(status.clock.time);
-            status.clock.playing = false;
-            status.converged = false;
+            server.stop(Clock::now());
+            pictures.pause(server.status().clock.time);
             statistics.converged = false;
         }
         tell_news();
@@ -168,10 +143,8 @@ struct ClientCore::Impl {
             std::lock_guard const lock(mutex);
             pictures.resume();
             picture_settings.scene_moves = greeting.animation_duration > 0;
-            status = {};
-            note_clock(greeting);
-            status_time = Clock::now();
-            camera_times.forget_sent();
+            server.begin(greeting, Clock::now());
+            asked.begin_session();
             welcome = std::move(greeting);
             interruption.reset();
             ++statistics.reconnections;
@@ -182,10 +155,7 @@ struct ClientCore::Impl {
                     connection->send(told);
                 }
             }
-            if (view.view.number > 0) {
-                waiting_view = view;
-            }
-            send_waiting_view();
+            send_view();
         }
         tell_news();
     }
@@ -207,7 +177,6 @@ struct ClientCore::Impl {
             ++scene_number;
         }
         arrived.clear();
-        statistics.waiting_bytes = 0;
         has_picture = false;
         last_batch = 0;
         told_let_go = {};
@@ -226,18 +195,11 @@ struct ClientCore::Impl {
     }
 
     /// One camera in the network's queue at most: a newer one replaces it while it waits. Under the lock.
-    void send_waiting_view() {
-        if (!waiting_view || interruption || !connection || !connection->all_sent()) {
-            return;
+    void send_view() {
+        if (asked.is_unsent() && !interruption && connection && connection->all_sent()) {
+            ++statistics.cameras_sent;
+            connection->send(asked.send(Clock::now()));
         }
-        Clock::time_point const now = Clock::now();
-        if (!first_camera_time) {
-            first_camera_time = now;
-        }
-        camera_times.note_sent(waiting_view->view.number, now);
-        ++statistics.cameras_sent;
-        connection->send(*waiting_view);
-        waiting_view.reset();
     }
 
     void receive(Message message) {
@@ -245,20 +207,14 @@ struct ClientCore::Impl {
             receive_batch(*encoded);
         } else if (auto const* news_of_server = std::get_if<Status>(&message)) {
             std::lock_guard const lock(mutex);
-            status = *news_of_server;
-            status_time = Clock::now();
-            told_let_go.note_come(status.let_go);
-            statistics.converged = status.converged;
-            statistics.server_samples_per_second = status.samples_per_second;
+            server.note(*news_of_server, Clock::now());
+            told_let_go.note_come(news_of_server->let_go);
+            statistics.converged = news_of_server->converged;
+            statistics.server_samples_per_second = news_of_server->samples_per_second;
         } else {
             throw ProtocolError("a message that only a viewer sends");
         }
         tell_news();
-    }
-
-    /// Under the lock.
-    bool is_wanted(Batch const& batch) const {
-        return batch.view.held_since == view.view.held_since && batch.view.viewport == view.view.viewport;
     }
 
     void receive_batch(EncodedBatch const& encoded) {
@@ -266,14 +222,11 @@ struct ClientCore::Impl {
         Batch batch;
         {
             std::lock_guard const lock(mutex);
-            if (view.view.number == 0) {
+            if (!asked.exists()) {
                 ++statistics.stale_batches; // nobody has asked for a picture yet
                 return;
             }
-            if (!spare_batches.empty()) {
-                batch = std::move(spare_batches.back());
-                spare_batches.pop_back();
-            }
+            batch = arrived.take_spare();
         }
         is_whole = false;
         codec->decode(encoded, &*memory, batch);
@@ -290,7 +243,7 @@ struct ClientCore::Impl {
                                 encoded.tiles.size() * sizeof(Tile) + batch_header_bytes;
             statistics.decode_seconds += seconds_between(received, decoded);
             std::size_t const samples = batch.framelets.size() * framelet_samples;
-            bool const is_stale = !is_wanted(batch);
+            bool const is_stale = !asked.wants(batch);
             ++statistics.batches;
             statistics.framelets += batch.framelets.size();
             statistics.samples += samples;
@@ -298,10 +251,9 @@ struct ClientCore::Impl {
             last_batch = std::max(last_batch, batch.number);
             statistics.stale_batches += is_stale ? 1 : 0;
             if (!is_stale) {
-                statistics.waiting_bytes += bytes_of(batch);
-                arrived.push_back(std::move(batch));
+                arrived.add(std::move(batch));
             }
-            is_full = statistics.waiting_bytes > most_waiting_bytes;
+            is_full = arrived.is_full(); // for want of a painter: what would be more is taken in at once
         }
         if (is_full) {
             std::lock_guard const lock(picture_mutex);
@@ -317,10 +269,9 @@ struct ClientCore::Impl {
         std::uint64_t stale = 0;
         {
             std::lock_guard const lock(mutex);
-            taken.swap(arrived);
-            stale = std::erase_if(taken, [this](Batch const& batch) { return !is_wanted(batch); });
-            statistics.waiting_bytes = 0;
-            wanted = view.view;
+            arrived.take(taken);
+            stale = std::erase_if(taken, [this](Batch const& batch) { return !asked.wants(batch); });
+            wanted = asked.view();
             settings = picture_settings;
         }
         PictureMaker& maker = pictures.prepare(wanted, settings);
@@ -336,22 +287,13 @@ struct ClientCore::Impl {
         statistics.insert_seconds += seconds_between(before, after);
         has_picture = !maker.is_empty();
         note_held(maker, coverage, after);
-        constexpr std::size_t most_spares = 4;
-        while (!taken.empty() && spare_batches.size() < most_spares) {
-            spare_batches.push_back(std::move(taken.back()));
-            taken.pop_back();
-        }
-        taken.clear();
+        arrived.give_back(taken);
     }
 
     /// Under the picture's lock.
     void tell_let_go(PictureMaker& maker) {
         maker.take_let_go(let_go);
-        std::ranges::sort(let_go);
-        for (std::size_t first = 0; first < let_go.size(); first += max_let_go) {
-            std::size_t const end = std::min(first + max_let_go, let_go.size());
-            LetGo told{{let_go.begin() + static_cast<std::ptrdiff_t>(first),
-                        let_go.begin() + static_cast<std::ptrdiff_t>(end)}};
+        for (LetGo& told : let_go_messages(let_go)) {
             std::lock_guard const lock(mutex);
             if (!interruption) {
                 connection->send(told);
@@ -371,24 +313,15 @@ struct ClientCore::Impl {
         statistics.cached_bytes = pictures.memory_bytes();
         statistics.lag_seconds = maker.is_smooth() ? picture_settings.lag_seconds : 0;
         is_smooth = maker.is_smooth();
-        if (statistics.full_picture_seconds < 0 && first_camera_time && coverage >= 1) {
-            statistics.full_picture_seconds = seconds_between(*first_camera_time, now);
+        if (statistics.full_picture_seconds < 0 && asked.first_sent() && coverage >= 1) {
+            statistics.full_picture_seconds = seconds_between(*asked.first_sent(), now);
         }
-    }
-
-    /// Under the lock.
-    ClockState clock_at(Clock::time_point time) const {
-        ClockState out = status.clock;
-        if (out.playing) {
-            double const elapsed = seconds_between(status_time, time);
-            out.time = std::clamp(out.time + elapsed * static_cast<double>(out.speed), 0.0, max_scene_time);
-        }
-        return out;
     }
 
     /// The server says so of what was asked last, and all of it has come. Under the lock.
     bool is_settled() const {
-        return status.converged && view.view.number > 0 && status.camera_number == view.view.number &&
+        Status const& status = server.status();
+        return status.converged && asked.exists() && status.camera_number == asked.view().number &&
                last_batch >= status.last_batch;
     }
 
@@ -401,10 +334,10 @@ struct ClientCore::Impl {
     /// Of what will be the present when the picture is seen.
     PictureRequest picture_request() const {
         std::lock_guard const lock(mutex);
-        ClockState const clock = clock_at(shown_at);
-        return {view.view.camera,
-                view.view.number,
-                view.scene_camera,
+        ClockState const clock = server.clock_at(shown_at);
+        return {asked.view().camera,
+                asked.view().number,
+                asked.scene_camera(),
                 clock.time,
                 static_cast<double>(clock.speed),
                 seconds_between(start, shown_at),
@@ -413,17 +346,17 @@ struct ClientCore::Impl {
 
     /// How old what the last picture, of the camera of this number, shows is; -1: nothing new. Under the lock.
     double photon_seconds(std::uint64_t number, Clock::time_point seen) {
-        if (view.scene_camera >= 0) {
-            ClockState const clock = clock_at(seen);
+        if (asked.scene_camera() >= 0) {
+            ClockState const clock = server.clock_at(seen);
             bool const moves = clock.playing && clock.speed != 0 && picture_settings.scene_moves;
             return moves ? (clock.time - shown_time) / static_cast<double>(clock.speed) : -1;
         }
-        return camera_times.since_set(number, seen).value_or(-1);
+        return asked.since_set(number, seen).value_or(-1);
     }
 
     /// Under the lock.
     void note_round_trip(std::uint64_t camera_number, Clock::time_point received) {
-        if (auto const seconds = camera_times.since_sent(camera_number, received)) {
+        if (auto const seconds = asked.since_sent(camera_number, received)) {
             double& smoothed = statistics.round_trip_seconds;
             double& least = statistics.least_round_trip_seconds;
             smoothed = smoothed < 0 ? *seconds : 0.8 * smoothed + 0.2 * *seconds;
@@ -454,20 +387,13 @@ std::uint64_t ClientCore::scene_number() const {
 void ClientCore::set_view(Camera const& wanted, Viewport viewport, int scene_camera) {
     Camera const camera = within_bounds(wanted); // a hand may lead it out
     std::lock_guard const lock(impl_->mutex);
-    CameraUpdate& view = impl_->view;
-    if (view.view.number > 0 && view.view.camera == camera && view.view.viewport == viewport &&
-        view.scene_camera == scene_camera) {
-        impl_->send_waiting_view();
-        return;
+    AskedView& asked = impl_->asked;
+    if (!asked.equals(camera, viewport, scene_camera)) {
+        impl_->has_picture = impl_->has_picture && asked.has_viewport(viewport);
+        impl_->statistics.converged = false;
+        asked.set(camera, viewport, scene_camera, Clock::now());
     }
-    bool const is_held = view.view.number > 0 && view.view.viewport == viewport;
-    impl_->has_picture = impl_->has_picture && is_held;
-    std::uint64_t const number = view.view.number + 1;
-    view = {{number, camera, viewport, is_held ? view.view.held_since : number}, scene_camera};
-    impl_->statistics.converged = false;
-    impl_->camera_times.note_set(view.view.number, Clock::now());
-    impl_->waiting_view = view;
-    impl_->send_waiting_view();
+    impl_->send_view();
 }
 
 void ClientCore::set_settings(ViewerSettings const& settings) {
@@ -488,16 +414,10 @@ void ClientCore::set_smoothing(double lag_seconds) {
 void ClientCore::request_clock(ClockRequest const& request) {
     {
         std::lock_guard const lock(impl_->mutex);
-        if (impl_->interruption || !impl_->status.controls) {
+        if (impl_->interruption || !impl_->server.status().controls) {
             return;
         }
-        ClockState& clock = impl_->status.clock;
-        clock = impl_->clock_at(Clock::now());
-        impl_->status_time = Clock::now();
-        clock.time = (request.set & ClockRequest::time) != 0 ? request.state.time : clock.time;
-        clock.playing = (request.set & ClockRequest::playing) != 0 ? request.state.playing : clock.playing;
-        clock.speed = (request.set & ClockRequest::speed) != 0 ? request.state.speed : clock.speed;
-        impl_->status.converged = false;
+        impl_->server.ask_clock(request, Clock::now());
         impl_->statistics.converged = false;
     }
     impl_->connection->send(request);
@@ -509,8 +429,8 @@ bool ClientCore::update_picture(Picture& picture, std::vector<PixelRect>& change
     Clock::time_point const called = Clock::now();
     {
         std::lock_guard const lock(core.mutex);
-        core.send_waiting_view();
-        if (core.view.view.number == 0) {
+        core.send_view();
+        if (!core.asked.exists()) {
             return false;
         }
         shown_at = std::max({shown_at, core.shown_at, called + clock_duration(core.making.expected())});
@@ -550,8 +470,8 @@ bool ClientCore::update_picture(Picture& picture, std::vector<PixelRect>& change
     core.statistics.reconstruct_seconds += seconds_between(begun, made);
     core.making.note(seconds_between(called, made));
     ++core.statistics.pictures;
-    if (core.statistics.first_picture_seconds < 0 && core.first_camera_time) {
-        core.statistics.first_picture_seconds = seconds_between(*core.first_camera_time, made);
+    if (core.statistics.first_picture_seconds < 0 && core.asked.first_sent()) {
+        core.statistics.first_picture_seconds = seconds_between(*core.asked.first_sent(), made);
     }
     return true;
 }
@@ -596,23 +516,24 @@ std::optional<std::string> ClientCore::interruption() const {
 
 bool ClientCore::controls() const {
     std::lock_guard const lock(impl_->mutex);
-    return impl_->status.controls;
+    return impl_->server.status().controls;
 }
 
 bool ClientCore::is_complete() const {
     std::lock_guard const lock(impl_->mutex);
+    ClockState const& clock = impl_->server.status().clock;
     return impl_->is_settled() && (impl_->has_picture || !impl_->arrived.empty()) &&
-           (!impl_->is_smooth || impl_->status.clock.playing || impl_->shown_time == impl_->status.clock.time);
+           (!impl_->is_smooth || clock.playing || impl_->shown_time == clock.time);
 }
 
 Status ClientCore::status() const {
     std::lock_guard const lock(impl_->mutex);
-    return impl_->status;
+    return impl_->server.status();
 }
 
 ClockState ClientCore::clock() const {
     std::lock_guard const lock(impl_->mutex);
-    return impl_->clock_at(Clock::now());
+    return impl_->server.clock_at(Clock::now());
 }
 
 Camera ClientCore::shown_camera() const {
@@ -624,6 +545,7 @@ ClientStatistics ClientCore::statistics() const {
     std::lock_guard const lock(impl_->mutex);
     ClientStatistics out = impl_->statistics;
     out.seconds = seconds_between(impl_->start, Clock::now());
+    out.waiting_bytes = impl_->arrived.bytes();
     return out;
 }
 

@@ -1,4 +1,4 @@
-#include "client/core/told_let_go.h"
+#include "client/core/session/told_let_go.h"
 
 #include <gtest/gtest.h>
 

@@ -2,14 +2,28 @@
 // connection. In: messages, how many of them have come. Out: those to send again. A value.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <utility>
+#include <vector>
 
 #include "protocol/messages/message.h"
 
 namespace framelet {
+
+/// Messages that tell all of that, each as long as one may be. Puts `gone` in order.
+inline std::vector<LetGo> let_go_messages(std::vector<SentTile>& gone) {
+    std::ranges::sort(gone);
+    std::vector<LetGo> messages;
+    for (std::size_t first = 0; first < gone.size(); first += max_let_go) {
+        std::size_t const count = std::min(max_let_go, gone.size() - first);
+        auto const begin = gone.begin() + static_cast<std::ptrdiff_t>(first);
+        messages.push_back({{begin, begin + static_cast<std::ptrdiff_t>(count)}});
+    }
+    return messages;
+}
 
 class ToldLetGo {
 public:
