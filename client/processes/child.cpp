@@ -56,6 +56,9 @@ Child::Child(std::filesystem::path const& program, std::vector<std::string> cons
         if (::getppid() != parent) { // it has ended before that
             ::_exit(1);
         }
+        if (files.input) {
+            ::dup2(*files.input, STDIN_FILENO);
+        }
         if (files.output) {
             ::dup2(*files.output, STDOUT_FILENO);
         }
@@ -65,6 +68,7 @@ Child::Child(std::filesystem::path const& program, std::vector<std::string> cons
         if (files.is_alone) {
             ::close_range(STDERR_FILENO + 1, ~0u, CLOSE_RANGE_CLOEXEC);
         }
+        ::signal(SIGPIPE, SIG_DFL); // whatever this program makes of it
         ::execv(program.c_str(), argv.data());
         ::_exit(127);
     }

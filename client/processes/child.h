@@ -18,6 +18,7 @@ std::filesystem::path find_program(std::string const& name);
 struct ChildFiles {
     std::optional<int> output, errors;
     bool is_alone = false; ///< whatever else this program has open is not handed on
+    std::optional<int> input = {};
 };
 
 /// Ended with the thread that started it, which is this program's main thread, however that ends, and when it goes out
@@ -31,6 +32,7 @@ public:
     Child(Child const&) = delete;
     Child& operator=(Child const&) = delete;
 
+    pid_t pid() const { return pid_; }
     /// Looks whether it has ended.
     bool running();
     void signal(int number);

@@ -1,6 +1,5 @@
 #include "tests/loopback/process.h"
 
-#include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
@@ -8,7 +7,6 @@
 #include <thread>
 
 #include <fcntl.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 namespace framelet::test {
@@ -34,46 +32,28 @@ std::vector<std::string> server_arguments(std::string const& scene, std::vector<
     return options;
 }
 
+/// Closed at the end of its scope: the child has its own.
+class File {
+public:
+    File(std::filesystem::path const& path, int flags) : descriptor(::open(path.c_str(), flags | O_CLOEXEC, 0600)) {}
+    ~File() { ::close(descriptor); }
+    File(File const&) = delete;
+    File& operator=(File const&) = delete;
+
+    int const descriptor;
+};
+
+Child start(std::string const& program, std::vector<std::string> const& arguments,
+            std::filesystem::path const& folder) {
+    constexpr int flags = O_WRONLY | O_CREAT | O_TRUNC;
+    File const in("/dev/null", O_RDONLY), out(folder / "out", flags), err(folder / "err", flags);
+    return Child(program, arguments, {.output = out.descriptor, .errors = err.descriptor, .input = in.descriptor});
+}
+
 } // namespace
 
-Process::Process(std::string const& program, std::vector<std::string> const& arguments) : directory_(make_folder()) {
-    std::vector<char*> argv{const_cast<char*>(program.c_str())};
-    for (auto const& argument : arguments) {
-        argv.push_back(const_cast<char*>(argument.c_str()));
-    }
-    argv.push_back(nullptr);
-    std::string const out = (directory_ / "out").string();
-    std::string const err = (directory_ / "err").string();
-    pid_ = ::fork();
-    if (pid_ == 0) {
-        constexpr int flags = O_WRONLY | O_CREAT | O_TRUNC;
-        ::dup2(::open("/dev/null", O_RDONLY), STDIN_FILENO);
-        ::dup2(::open(out.c_str(), flags, 0600), STDOUT_FILENO);
-        ::dup2(::open(err.c_str(), flags, 0600), STDERR_FILENO);
-        ::signal(SIGPIPE, SIG_DFL); // whatever the tests were started by
-        ::execv(program.c_str(), argv.data());
-        ::_exit(127);
-    }
-    if (pid_ < 0) {
-        throw std::runtime_error("cannot start " + program);
-    }
-}
-
-Process::~Process() {
-    if (running()) {
-        ::kill(pid_, SIGKILL);
-        ::kill(pid_, SIGCONT);
-        ::waitpid(pid_, &status_, 0);
-    }
-    std::filesystem::remove_all(directory_);
-}
-
-bool Process::running() {
-    if (!reaped_ && ::waitpid(pid_, &status_, WNOHANG) == pid_) {
-        reaped_ = true;
-    }
-    return !reaped_;
-}
+Process::Process(std::string const& program, std::vector<std::string> const& arguments)
+    : child_(start(program, arguments, folder_.path())) {}
 
 int Process::wait(std::chrono::seconds timeout) {
     auto const deadline = std::chrono::steady_clock::now() + timeout;
@@ -83,20 +63,14 @@ int Process::wait(std::chrono::seconds timeout) {
         }
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
-    return WIFEXITED(status_) ? WEXITSTATUS(status_) : -WTERMSIG(status_);
-}
-
-void Process::signal(int number) {
-    if (running()) {
-        ::kill(pid_, number);
-    }
+    return child_.ended_by_signal() ? 128 - child_.exit_code() : child_.exit_code();
 }
 
 std::string Process::output() const {
-    return read_file(directory_ / "out");
+    return read_file(folder_.path() / "out");
 }
 std::string Process::errors() const {
-    return read_file(directory_ / "err");
+    return read_file(folder_.path() / "err");
 }
 
 TemporaryFolder::TemporaryFolder() : path_(make_folder()) {}

@@ -10,33 +10,9 @@
 
 #include <sys/types.h>
 
+#include "client/processes/child.h"
+
 namespace framelet::test {
-
-/// A child process with its stdout and stderr in files. Killed and reaped when it goes out of scope.
-class Process {
-public:
-    Process(std::string const& program, std::vector<std::string> const& arguments);
-    ~Process();
-    Process(Process const&) = delete;
-    Process& operator=(Process const&) = delete;
-
-    /// Exit code, or -signal; -1000 when it does not end in time.
-    int wait(std::chrono::seconds timeout);
-    void signal(int number);
-    bool running();
-    pid_t pid() const { return pid_; }
-    std::string output() const;
-    std::string errors() const;
-
-private:
-    pid_t pid_ = -1;
-    int status_ = 0;
-    bool reaped_ = false;
-    std::filesystem::path directory_;
-};
-
-/// Waits until that holds; false where it does not within two minutes.
-bool eventually(std::function<bool()> const& holds);
 
 /// A fresh folder under the system's temporary one, removed with its content at the end of its scope.
 class TemporaryFolder {
@@ -53,6 +29,27 @@ public:
 private:
     std::filesystem::path path_;
 };
+
+/// A child with its stdout and stderr in files, and nothing on stdin. Killed when it goes out of scope.
+class Process {
+public:
+    Process(std::string const& program, std::vector<std::string> const& arguments);
+
+    /// Exit code, or -signal; -1000 when it does not end in time.
+    int wait(std::chrono::seconds timeout);
+    void signal(int number) { child_.signal(number); }
+    bool running() { return child_.running(); }
+    pid_t pid() const { return child_.pid(); }
+    std::string output() const;
+    std::string errors() const;
+
+private:
+    TemporaryFolder folder_;
+    Child child_;
+};
+
+/// Waits until that holds; false where it does not within two minutes.
+bool eventually(std::function<bool()> const& holds);
 
 /// framelet-server on a free port of 127.0.0.1, or another program that says where it listens as that does, ready for
 /// connections.
