@@ -124,7 +124,7 @@ void serve(Options& options) {
         tbb::global_control::max_allowed_parallelism,
         options.threads > 0 ? static_cast<std::size_t>(options.threads)
                             : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
-    std::optional<Recorder> recorder;
+    std::optional<CycleRecorder> recorder;
     if (!options.record.empty()) {
         recorder.emplace(options.record, options.record_rate);
     }

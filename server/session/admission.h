@@ -14,9 +14,9 @@
 #include "server/session/clock/scene_control.h"
 #include "server/session/limits/log_limit.h"
 #include "server/session/limits/session_memory.h"
-#include "server/session/limits/tickets.h"
 #include "server/session/limits/token_guesses.h"
 #include "server/session/session.h"
+#include "server/session/tickets.h"
 
 namespace framelet {
 

@@ -1,4 +1,4 @@
-#include "server/session/limits/tickets.h"
+#include "server/session/tickets.h"
 
 #include <gtest/gtest.h>
 

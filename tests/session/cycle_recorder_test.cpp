@@ -1,4 +1,4 @@
-#include "server/session/loop/recorder.h"
+#include "server/session/loop/cycle_recorder.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -10,7 +10,7 @@
 namespace framelet {
 namespace {
 
-class RecorderTest : public testing::Test {
+class CycleRecorderTest : public testing::Test {
 protected:
     std::filesystem::path folder =
         std::filesystem::temp_directory_path() / ("framelet-recorder-" + std::to_string(getpid()));
@@ -39,9 +39,9 @@ AdaptiveRefresh planned() {
     return refresh;
 }
 
-TEST_F(RecorderTest, ALineForEachBatchAndPicturesAtTheirRate) {
+TEST_F(CycleRecorderTest, ALineForEachBatchAndPicturesAtTheirRate) {
     {
-        Recorder recorder(folder / "made", 2);
+        CycleRecorder recorder(folder / "made", 2);
         AdaptiveRefresh const refresh = planned();
         for (int i = 0; i < 5; ++i) {
             CycleRecord record;
@@ -71,11 +71,11 @@ TEST_F(RecorderTest, ALineForEachBatchAndPicturesAtTheirRate) {
     folder = folder.parent_path();
 }
 
-TEST_F(RecorderTest, APlanWithoutChoicesHasNoPictures) {
+TEST_F(CycleRecorderTest, APlanWithoutChoicesHasNoPictures) {
     BodyMotions const motions;
     AdaptiveRefresh refresh;
     {
-        Recorder recorder(folder, 2);
+        CycleRecorder recorder(folder, 2);
         CycleRecord record;
         recorder.add(record, refresh, 10);
         RefreshInput input;
@@ -92,10 +92,10 @@ TEST_F(RecorderTest, APlanWithoutChoicesHasNoPictures) {
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1);
 }
 
-TEST_F(RecorderTest, RefusesAFolderThatCannotBe) {
+TEST_F(CycleRecorderTest, RefusesAFolderThatCannotBe) {
     std::ofstream(folder) << "a file";
-    EXPECT_THROW(Recorder(folder, 4), InputError);
-    EXPECT_THROW(Recorder(folder / "below", 4), InputError);
+    EXPECT_THROW(CycleRecorder(folder, 4), InputError);
+    EXPECT_THROW(CycleRecorder(folder / "below", 4), InputError);
 }
 
 } // namespace

@@ -16,15 +16,15 @@
 
 namespace framelet {
 
-class Recorder {
+class CycleRecorder {
 public:
     /// Makes the folder where there is none. `pictures_per_second`: at most so many sets of pictures a session. Throws
     /// InputError where nothing can be written there.
-    Recorder(std::filesystem::path folder, double pictures_per_second);
+    CycleRecorder(std::filesystem::path folder, double pictures_per_second);
     /// Writes what waits.
-    ~Recorder();
-    Recorder(Recorder const&) = delete;
-    Recorder& operator=(Recorder const&) = delete;
+    ~CycleRecorder();
+    CycleRecorder(CycleRecorder const&) = delete;
+    CycleRecorder& operator=(CycleRecorder const&) = delete;
 
     /// Pictures are of `refresh`; `now`: seconds, steady. From the render loop's thread. Pictures are left out while
     /// the last ones are being written; a full disk ends the recording with a warning, not the server.

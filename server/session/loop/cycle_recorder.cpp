@@ -1,4 +1,4 @@
-#include "server/session/loop/recorder.h"
+#include "server/session/loop/cycle_recorder.h"
 
 #include <array>
 #include <cstdio>
@@ -20,7 +20,7 @@ constexpr std::array<std::pair<FieldView, char const*>, 4> views{{{FieldView::ti
 
 } // namespace
 
-Recorder::Recorder(std::filesystem::path folder, double pictures_per_second)
+CycleRecorder::CycleRecorder(std::filesystem::path folder, double pictures_per_second)
     : folder_(std::move(folder)), picture_period_(1 / pictures_per_second) {
     std::error_code error;
     std::filesystem::create_directories(folder_, error);
@@ -34,7 +34,7 @@ Recorder::Recorder(std::filesystem::path folder, double pictures_per_second)
     thread_ = std::thread([this] { run(); });
 }
 
-Recorder::~Recorder() {
+CycleRecorder::~CycleRecorder() {
     {
         std::scoped_lock const lock(mutex_);
         stop_ = true;
@@ -43,7 +43,7 @@ Recorder::~Recorder() {
     thread_.join();
 }
 
-void Recorder::add(CycleRecord record, AdaptiveRefresh const& refresh, double now) {
+void CycleRecorder::add(CycleRecord record, AdaptiveRefresh const& refresh, double now) {
     start_ = start_.value_or(now);
     record.seconds = now - *start_;
     bool draw = false;
@@ -69,7 +69,7 @@ void Recorder::add(CycleRecord record, AdaptiveRefresh const& refresh, double no
     added_.notify_one();
 }
 
-void Recorder::run() {
+void CycleRecorder::run() {
     std::unique_lock lock(mutex_);
     for (;;) {
         added_.wait(lock, [this] { return stop_ || !waiting_.empty(); });
@@ -95,7 +95,7 @@ void Recorder::run() {
     }
 }
 
-void Recorder::write(Entry const& entry) {
+void CycleRecorder::write(Entry const& entry) {
     lines_ << to_json_line(entry.record) << '\n';
     if (!lines_.flush()) {
         throw InputError("cannot write '" + (folder_ / "cycles.jsonl").string() + "'");
