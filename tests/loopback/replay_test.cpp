@@ -7,9 +7,9 @@
 #include "client/core/connection/server_address.h"
 #include "common/error.h"
 #include "server/scene/scene_import.h"
-#include "server/stream/replay.h"
 #include "tests/evaluation/codecs/link_emulator.h"
 #include "tests/loopback/process.h"
+#include "tests/loopback/replay.h"
 
 namespace framelet::test {
 namespace {

@@ -9,9 +9,9 @@
 #include "common/command_line/number_range.h"
 #include "common/error.h"
 #include "server/scene/scene_import.h"
-#include "server/stream/replay.h"
 #include "tests/evaluation/method.h"
 #include "tests/evaluation/verb_options.h"
+#include "tests/loopback/replay.h"
 
 namespace framelet::bench {
 

@@ -1,4 +1,4 @@
-#include "server/stream/replay.h"
+#include "tests/loopback/replay.h"
 
 #include <map>
 #include <memory>
