@@ -179,7 +179,7 @@ Step FrameletStream::plan_batch(Turn const& turn, ViewState const& present, Pose
     order.outdates = wanted.moment && wanted.moment->outdates;
     order.quality = exact_quality;
     if (takes_loss()) {
-        order.quality = choice_.choose(link, sent_share_.value() * rendered, turn.now, wanted.moment.has_value());
+        order.quality = choice_.choose(link, sent_share_.value() * rendered, turn.now);
     }
     order.takes_shapes = takes_shapes();
     order.withholds = options_.withholds;

@@ -20,14 +20,14 @@ struct Outcome {
     int changes = 0; ///< in the second half
 };
 
-Outcome outcome_of(double bytes_per_second, double samples_per_second, bool moves = false) {
+Outcome outcome_of(double bytes_per_second, double samples_per_second) {
     QualityChoice choice;
     LinkState link;
     link.bytes_per_second = bytes_per_second;
     link.bytes_per_sample = bytes_of(0);
     Outcome outcome;
     for (int i = 0; i < 400; ++i) {
-        std::uint8_t const quality = choice.choose(link, samples_per_second, 100 + 0.01 * i, moves);
+        std::uint8_t const quality = choice.choose(link, samples_per_second, 100 + 0.01 * i);
         outcome.changes += i >= 200 && quality != outcome.quality ? 1 : 0;
         outcome.quality = quality;
         link.bytes_per_sample += 0.2 * (bytes_of(quality) - link.bytes_per_sample);
@@ -55,16 +55,27 @@ TEST(QualityChoice, ExactWhereTheLinkTakesIt) {
     EXPECT_EQ(outcome_of(2e6, 1e6).quality, 0);
 }
 
-TEST(QualityChoice, AtFirstWithALossWhereSomethingMoves) {
-    LinkState const link{.bytes_per_second = std::numeric_limits<double>::infinity(), .bytes_per_sample = 1};
+TEST(QualityChoice, AtFirstWithALossUnlessThereIsHardlyALink) {
+    LinkState link{.bytes_per_second = std::numeric_limits<double>::infinity(), .bytes_per_sample = 1};
     QualityChoice choice;
-    EXPECT_GT(choice.choose(link, 1e7, 7, true), 0) << "nobody knows yet what the link carries";
-    EXPECT_GT(choice.choose(link, 1e7, 7.4, true), 0);
-    EXPECT_EQ(choice.choose(link, 1e7, 7.6, true), 0);
-    QualityChoice still;
-    EXPECT_EQ(still.choose(link, 1e7, 7, false), 0);
-    EXPECT_EQ(outcome_of(link.bytes_per_second, 1e7, true).quality, 0);
-    EXPECT_NEAR(outcome_of(0.3e6, 1e6, true).quality, outcome_of(0.3e6, 1e6).quality, 1) << "whichever way it came";
+    int const first = choice.choose(link, 1e7, 7);
+    EXPECT_GT(first, 8) << "nobody knows yet what the link carries";
+    link.base_seconds = 0.04;
+    int quality = first;
+    for (int i = 1; i < 50; ++i) {
+        quality = choice.choose(link, 1e7, 7 + 0.01 * i);
+        EXPECT_TRUE(quality > 0 && quality <= first) << i;
+    }
+    EXPECT_LT(quality, 8) << "no queue yet";
+    EXPECT_EQ(choice.choose(link, 1e7, 7.6), 0);
+    QualityChoice near;
+    near.choose(link, 1e7, 7);
+    link.base_seconds = 0.0005;
+    EXPECT_EQ(near.choose(link, 1e7, 7.04), 0) << "the first answer came at once";
+    QualityChoice narrow;
+    narrow.choose(link, 1e7, 7);
+    link.bytes_per_second = 2e4;
+    EXPECT_GE(narrow.choose(link, 1e7, 7.04), first);
 }
 
 TEST(QualityChoice, CoarserTheSlowerTheLinkAndSteady) {
@@ -81,16 +92,16 @@ TEST(QualityChoice, CoarserTheSlowerTheLinkAndSteady) {
 TEST(QualityChoice, StepsAreSmallAndItComesBack) {
     QualityChoice choice;
     LinkState link{.bytes_per_second = 1e5, .bytes_per_sample = 1};
-    int quality = choice.choose(link, 1e6, 1, false);
+    int quality = choice.choose(link, 1e6, 1);
     for (int i = 1; i < 100; ++i) {
-        int const next = choice.choose(link, 1e6, 1 + 0.001 * i, false);
+        int const next = choice.choose(link, 1e6, 1 + 0.001 * i);
         EXPECT_LE(std::abs(next - quality), 2);
         quality = next;
     }
     EXPECT_LT(quality, most_loss) << "in a tenth of a second";
     link.bytes_per_second = 1e8;
     for (int i = 0; i < 100; ++i) {
-        quality = choice.choose(link, 1e6, 2 + 0.01 * i, false);
+        quality = choice.choose(link, 1e6, 2 + 0.01 * i);
     }
     EXPECT_EQ(quality, 0);
 }

@@ -25,7 +25,7 @@ constexpr double most_queue_bytes = 64e3, fast_queue = 0.006;
 constexpr double first_growth = 1.03, most_growth = 1.5, tried_queue = 0.02;
 /// A step upwards has been tried when so much of the rate was sent since. Nobody knows that a rate is carried which
 /// nothing was sent at, and the next burst would find out. Less than what a quality that is kept makes use of.
-constexpr double tried_share = 0.75;
+constexpr double tried_share = 0.85;
 /// The same, as long as the rate is below this share of what it was before it fell.
 constexpr double known_growth = 1.5, known_share = 0.5;
 /// After a queue for so long none, seconds.
@@ -40,11 +40,10 @@ constexpr double first_used_share = 0.2;
 /// Over what time the measured rate is a mean, and the most that one batch counts for, seconds: a stall is no rate.
 constexpr double rate_memory = 0.1, most_weight = 0.1;
 constexpr double least_rate = 1e3, most_rate = 1e12;
-/// A shorter round trip says nothing of a link: there is hardly one.
-constexpr double least_round_trip = 0.002;
-constexpr double first_window = 32e3, least_window = 4e3;
-/// Before the first batch: without loss, and its shape.
-constexpr double first_bytes_per_sample = 1.3;
+/// At first ten segments, as TCP's own (RFC 6928).
+constexpr double first_window = 14.6e3, least_window = 4e3;
+/// Before the first batch: with loss, and its shape.
+constexpr double first_bytes_per_sample = 0.4;
 /// Of a new value in a running mean.
 constexpr double news = 0.125;
 

@@ -13,6 +13,9 @@
 
 namespace framelet {
 
+/// A shorter round trip says nothing of a link, seconds: there is hardly one.
+inline constexpr double least_round_trip = 0.002;
+
 struct LinkState {
     /// Infinite: it has not been felt yet. At first, while the window is still being found, what that allows.
     double bytes_per_second = std::numeric_limits<double>::infinity();

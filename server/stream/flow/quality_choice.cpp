@@ -11,13 +11,15 @@ namespace {
 /// Of the link: the rest is for what a batch is larger than expected.
 constexpr double link_share = 0.95;
 /// How far what is wanted may be off what the link carries before the quality changes.
-constexpr double too_much = 1.1, too_little = 0.8;
+constexpr double too_much = 1.1, too_little = 0.9;
 /// The finest quality with a loss: its step is below one of a display's, and what is finer costs like exact.
 constexpr std::uint8_t least_loss = 4;
 /// Exact samples take about so much more than those of `least_loss`.
 constexpr double exact_cost = 3.5;
-/// For so long a link may yet turn out to be narrow: what moves would be late on it without loss.
+/// For so long a link may yet turn out to be narrow: what is exact would be late on it. What comes first has this
+/// quality, a tenth of the bytes; where there is hardly a link the first answer says so.
 constexpr double finding_seconds = 0.5;
+constexpr std::uint8_t first_quality = 12;
 /// So many framelets are worth what a batch takes besides them (camera, tiles, envelope: some hundred bytes), but for a
 /// batch that takes longer than this on the link.
 constexpr double worthwhile_framelets = 16, most_batch_seconds = 0.05;
@@ -39,9 +41,13 @@ void SentShare::add(double rays, double sent_samples) {
     value_ += (1 - std::exp(-rays / memory_rays)) * (sent_samples / rays - value_);
 }
 
-std::uint8_t QualityChoice::choose(LinkState const& link, double samples_per_second, double now, bool moves) {
-    begun_ = begun_.value_or(now);
-    bool const may_be_exact = !moves || now - *begun_ >= finding_seconds;
+std::uint8_t QualityChoice::choose(LinkState const& link, double samples_per_second, double now) {
+    if (!begun_) {
+        begun_ = changed_ = now;
+        quality_ = first_quality;
+    }
+    bool const is_short = link.base_seconds > 0 && link.base_seconds < least_round_trip;
+    bool const may_be_exact = is_short || now - *begun_ >= finding_seconds;
     if (!may_be_exact) {
         quality_ = std::max(quality_, least_loss);
     }
@@ -53,10 +59,12 @@ std::uint8_t QualityChoice::choose(LinkState const& link, double samples_per_sec
     if (wanted > too_much) {
         int const steps = wanted > 2 ? 2 : 1;
         quality_ = static_cast<std::uint8_t>(std::clamp(quality_ + steps, int{least_loss}, int{most_loss}));
+    } else if (is_short && std::isinf(link.bytes_per_second)) {
+        quality_ = exact_quality;
     } else if (quality_ > least_loss && wanted < too_little) {
         --quality_;
     } else if (quality_ > 0 && may_be_exact && wanted * exact_cost < too_little) {
-        quality_ = 0;
+        quality_ = exact_quality;
     }
     changed_ = quality_ == before ? changed_ : now;
     return quality_;

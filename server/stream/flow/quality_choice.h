@@ -27,9 +27,9 @@ private:
 /// Goes step by step, so that one odd measurement does not show.
 class QualityChoice {
 public:
-    /// `samples_per_second`: what would be sent if the link took it. 0: exact, wherever the link takes all of that;
-    /// where anything moves in the picture not within the first half second, when little is known of the link.
-    std::uint8_t choose(LinkState const& link, double samples_per_second, double now, bool moves);
+    /// `samples_per_second`: what would be sent if the link took it. 0: exact, wherever the link takes all of that, but
+    /// within the first half second, when little is known of the link, only where there is hardly one.
+    std::uint8_t choose(LinkState const& link, double samples_per_second, double now);
 
 private:
     std::uint8_t quality_ = 0; ///< chosen last
