@@ -37,10 +37,25 @@ def filled(table, **fields):
         setattr(table, name, value)
     return table
 
+def tiles_of(data):
+    """Codes of tiles: "The list of a batch's tiles"."""
+    codes, depth, end, left = [], 0, 0, iter(data)  # `end`: of the tile before, at depth 15
+    for byte in left:
+        number, bit = byte & 127, 7
+        while byte & 128:
+            byte = next(left)
+            number, bit = number | (byte & 127) << bit, bit + 7
+        depth = next(left) if number & 1 else depth
+        index = (end >> 2 * (15 - depth)) + (number >> 2) * (-1 if number & 2 else 1)
+        end = index + 1 << 2 * (15 - depth)
+        codes.append((1 << 2 * depth) + index)
+    return codes
+
 def decode(data, count):
-    """Samples of `count` framelets, each 16 x 16 x 3 bytes: "Samples: content 1, encoding 1"."""
-    at = 4 * ((count + 127) // 128)
-    for length in struct.unpack_from(f"<{at // 4}I", data):
+    """Samples of `count` framelets, each 16 x 16 x 3 bytes: "Samples: encoding 1"."""
+    groups = (count + 127) // 128
+    at = 4 * max(groups - 1, 0)
+    for length in (*struct.unpack_from(f"<{at // 4}I", data), len(data))[:groups]:  # the last one takes what is left
         planes = numpy.frombuffer(zstandard.decompress(data[at:at + length]), numpy.uint8).reshape(3, -1, 16, 16).copy()
         planes[..., 0] = planes[..., 0].cumsum(-1, numpy.uint8)  # the first column by the rows above, then all rows
         yield from planes.cumsum(-1, numpy.uint8).transpose(1, 2, 3, 0)
@@ -65,7 +80,7 @@ def paint(framelets, width, height):
 def look(host, port, token, width, height):
     """Numbers of batches and framelets by tile code, once the picture is as good as it gets or ten seconds are over."""
     with socket.create_connection((host, port), 10) as connection, connection.makefile("rb") as stream:
-        send(connection, Body.Body.Hello, filled(Hello.HelloT(), version=5, token=token, codings=1))
+        send(connection, Body.Body.Hello, filled(Hello.HelloT(), version=6, token=token, codings=1))
         welcome = receive(stream)
         viewport = filled(Viewport.ViewportT(), width=width, height=height)
         view = filled(View.ViewT(), number=1, camera=welcome.startCamera, viewport=viewport, heldSince=1)
@@ -74,11 +89,11 @@ def look(host, port, token, width, height):
         framelets, newest, last, end = {}, 0, None, time.monotonic() + 10
         while time.monotonic() < end and newest != last:
             message = receive(stream)
-            if hasattr(message, "sections"):  # a Batch
+            if hasattr(message, "colours"):  # a Batch
                 received = time.monotonic_ns() // 1000
-                samples = decode(bytes(message.sections[0].data), len(message.tiles))
-                newest = message.number
-                framelets.update((code, (newest, one)) for code, one in zip(message.tiles.tolist(), samples))
+                newest, codes = message.number, tiles_of(bytes(message.tiles))
+                samples = decode(bytes(message.colours), len(codes))
+                framelets.update((code, (newest, one)) for code, one in zip(codes, samples))
                 send(connection, Body.Body.Ack, filled(Ack.AckT(), batch=newest, receivedUs=received))
             elif hasattr(message, "converged"):  # a Status, which may come before the Batch that it names
                 last = message.lastBatch if message.converged and message.cameraNumber == 1 else None

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <utility>
 
 #include "common/error.h"
 #include "common/per_thread.h"
@@ -100,6 +101,17 @@ private:
     std::vector<Model>& others_;
 };
 
+/// Its own, or that of the batch before, which it takes the place of.
+BatchMoment moment_of(EncodedBatch const& encoded, BatchMemory* memory) {
+    if (!encoded.moment && (memory == nullptr || !memory->moment)) {
+        throw ProtocolError("a batch has no moment, and none came before it");
+    }
+    if (memory != nullptr && encoded.moment) {
+        memory->moment = encoded.moment;
+    }
+    return encoded.moment ? *encoded.moment : *memory->moment;
+}
+
 } // namespace
 
 struct BatchCodec::Scratch {
@@ -166,8 +178,11 @@ EncodedBatch BatchCodec::encode(Batch const& batch, BatchMemory* memory, bool pr
         memory->picture.take(is_predicted ? std::span<DisplayFramelet const>(decoded) : batch.framelets);
     }
 
-    EncodedBatch encoded{batch.number,   batch.view, batch.scene_time,   batch.shown_from,
-                         batch.outdates, {},         join_frames(frames)};
+    EncodedBatch encoded{batch.number, BatchMoment{batch.view, batch.scene_time, batch.shown_from, batch.outdates},
+                         {},           join_frames(frames)};
+    if (memory != nullptr && std::exchange(memory->moment, encoded.moment) == encoded.moment) {
+        encoded.moment.reset();
+    }
     encoded.encoding = is_predicted      ? SampleEncoding::predicted
                        : quality.empty() ? SampleEncoding::exact
                                          : SampleEncoding::haar;
@@ -214,14 +229,14 @@ void BatchCodec::decode(EncodedBatch const& encoded, BatchMemory* memory, Batch&
     }
     bool const is_exact = encoded.encoding == SampleEncoding::exact;
     bool const is_predicted = encoded.encoding == SampleEncoding::predicted;
-    Viewport const viewport = encoded.view.viewport;
+    BatchMoment const moment = moment_of(encoded, memory);
+    Viewport const viewport = moment.view.viewport;
     if (is_predicted && (memory == nullptr || !HeldPicture::holds(viewport))) {
         throw ProtocolError("a batch is predicted from what this viewer does not hold");
     }
     bool const is_held = is_predicted || (memory != nullptr && memory->picture.shows(viewport));
     ImagePlane const plane(viewport);
-    if ((is_held || !encoded.shapes.empty()) &&
-        !std::ranges::all_of(encoded.tiles, [&](Tile tile) { return plane.accepts(tile); })) {
+    if (!std::ranges::all_of(encoded.tiles, [&](Tile tile) { return plane.accepts(tile); })) {
         throw ProtocolError("a batch has a tile that its viewport does not have");
     }
     std::vector<ByteView> const frames = split_frames(encoded.payload, group_count(count));
@@ -232,10 +247,10 @@ void BatchCodec::decode(EncodedBatch const& encoded, BatchMemory* memory, Batch&
     }
     BatchModels& models = scratch_->models_of(memory);
     batch.number = encoded.number;
-    batch.view = encoded.view;
-    batch.scene_time = encoded.scene_time;
-    batch.shown_from = encoded.shown_from;
-    batch.outdates = encoded.outdates;
+    batch.view = moment.view;
+    batch.scene_time = moment.scene_time;
+    batch.shown_from = moment.shown_from;
+    batch.outdates = moment.outdates;
     batch.framelets.resize(count);
     batch.quality.resize(is_exact ? 0 : count);
     if (is_predicted) {
@@ -257,7 +272,7 @@ void BatchCodec::decode(EncodedBatch const& encoded, BatchMemory* memory, Batch&
     if (is_held) {
         memory->picture.take(batch.framelets);
     }
-    decode_shapes(encoded, models, batch.shapes);
+    decode_shapes(encoded, plane, models, batch.shapes);
     batch.tracks.clear();
     batch.camera_track.reset();
     if (!encoded.tracks.empty()) {
@@ -266,12 +281,12 @@ void BatchCodec::decode(EncodedBatch const& encoded, BatchMemory* memory, Batch&
     }
 }
 
-void BatchCodec::decode_shapes(EncodedBatch const& encoded, BatchModels& models, std::vector<FrameletShape>& shapes) {
+void BatchCodec::decode_shapes(EncodedBatch const& encoded, ImagePlane const& plane, BatchModels& models,
+                               std::vector<FrameletShape>& shapes) {
     if (encoded.shapes.empty()) {
         shapes.clear();
         return;
     }
-    ImagePlane const plane(encoded.view.viewport);
     std::size_t const count = encoded.tiles.size();
     std::vector<ByteView> const frames = split_frames(encoded.shapes, group_count(count));
     GroupModels<ShapeModel> group_models(models.shapes, frames.size(), scratch_->shapes);

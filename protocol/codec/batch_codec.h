@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "common/framelet/framelet.h"
 #include "protocol/codec/color/held_picture.h"
@@ -19,6 +20,7 @@ struct BatchMemory {
     BatchMemory(BatchMemory&&) noexcept;
     BatchMemory& operator=(BatchMemory&&) noexcept;
 
+    std::optional<BatchMoment> moment; ///< of the newest batch
     HeldPicture picture; ///< that the viewer holds
     std::unique_ptr<BatchModels> models; ///< how likely which decisions of the range coder are
 };
@@ -47,7 +49,8 @@ private:
     struct Scratch;
 
     Bytes encode_shapes(Batch const& batch, BatchModels& models);
-    void decode_shapes(EncodedBatch const& encoded, BatchModels& models, std::vector<FrameletShape>& shapes);
+    void decode_shapes(EncodedBatch const& encoded, ImagePlane const& plane, BatchModels& models,
+                       std::vector<FrameletShape>& shapes);
 
     std::unique_ptr<Scratch> scratch_;
 };

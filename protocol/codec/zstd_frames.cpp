@@ -15,6 +15,11 @@ constexpr std::size_t length_bytes = 4;
 /// First bytes of a zstd frame (RFC 8878); other kinds of frames that the library knows are not part of the format.
 constexpr std::array<std::uint8_t, 4> zstd_magic{0x28, 0xb5, 0x2f, 0xfd};
 
+/// The last frame takes what is left.
+std::size_t stated_lengths(std::size_t groups) {
+    return groups > 0 ? groups - 1 : 0;
+}
+
 void put_length(std::byte* out, std::size_t length) {
     for (std::size_t i = 0; i < length_bytes; ++i) {
         out[i] = static_cast<std::byte>(length >> (8 * i));
@@ -32,27 +37,31 @@ std::size_t get_length(std::byte const* in) {
 } // namespace
 
 Bytes join_frames(std::span<Bytes const> frames) {
-    std::size_t total = frames.size() * length_bytes;
+    std::size_t const lengths = stated_lengths(frames.size());
+    std::size_t total = lengths * length_bytes;
     for (Bytes const& frame : frames) {
         total += frame.size();
     }
     Bytes payload;
     payload.reserve(total);
-    payload.resize(frames.size() * length_bytes);
+    payload.resize(lengths * length_bytes);
     for (std::size_t group = 0; group < frames.size(); ++group) {
-        put_length(&payload[group * length_bytes], frames[group].size());
+        if (group < lengths) {
+            put_length(&payload[group * length_bytes], frames[group].size());
+        }
         payload.insert(payload.end(), frames[group].begin(), frames[group].end());
     }
     return payload;
 }
 
 std::vector<ByteView> split_frames(ByteView payload, std::size_t groups) {
-    if (payload.size() < groups * length_bytes) {
+    std::size_t const lengths = stated_lengths(groups);
+    if (payload.size() < lengths * length_bytes) {
         throw ProtocolError("a batch's payload is too short for its tiles");
     }
     std::vector<ByteView> frames;
-    ByteView rest = payload.subspan(groups * length_bytes);
-    for (std::size_t group = 0; group < groups; ++group) {
+    ByteView rest = payload.subspan(lengths * length_bytes);
+    for (std::size_t group = 0; group < lengths; ++group) {
         std::size_t const length = get_length(&payload[group * length_bytes]);
         if (length > rest.size()) {
             throw ProtocolError("a batch's payload is shorter than its groups");
@@ -60,7 +69,9 @@ std::vector<ByteView> split_frames(ByteView payload, std::size_t groups) {
         frames.push_back(rest.first(length));
         rest = rest.subspan(length);
     }
-    if (!rest.empty()) {
+    if (groups > 0) {
+        frames.push_back(rest);
+    } else if (!rest.empty()) {
         throw ProtocolError("a batch's payload is longer than its groups");
     }
     return frames;

@@ -32,11 +32,11 @@ void for_each_group(std::size_t framelets, Body const& body) {
     });
 }
 
-/// Lengths and frames, one behind the other.
+/// Lengths of all frames but the last, and the frames, one behind the other.
 Bytes join_frames(std::span<Bytes const> frames);
 
-/// The frames, where the lengths in front of them say they are. Nothing is decompressed yet. ProtocolError where the
-/// payload is not exactly so many.
+/// The frames, where the lengths in front of them say they are; the last one is what is left. Nothing is decompressed
+/// yet. ProtocolError where the payload is too short for them, or where there is something and no group.
 std::vector<ByteView> split_frames(ByteView payload, std::size_t groups);
 
 /// ProtocolError for all but one zstd frame that says how many bytes it holds, and these from `least` to `most`.

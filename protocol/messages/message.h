@@ -18,7 +18,7 @@ namespace framelet {
 using Bytes = std::vector<std::byte>;
 using ByteView = std::span<std::byte const>;
 
-inline constexpr std::uint16_t protocol_version = 5;
+inline constexpr std::uint16_t protocol_version = 6;
 
 /// What lets a viewer go on where its connection was cut: 128 random bits. All of them 0: none.
 struct Ticket {
@@ -126,13 +126,19 @@ enum class SampleEncoding : std::uint8_t {
     predicted = 8, ///< the same, beside what the viewer holds
 };
 
+/// What the framelets of a batch show; the fields are as those of a Batch.
+struct BatchMoment {
+    NumberedView view;
+    SceneTime scene_time = 0;
+    SceneTime shown_from = 0;
+    bool outdates = false;
+    bool operator==(BatchMoment const&) const = default;
+};
+
 /// A batch as it travels: tiles in the clear, samples, shapes and tracks compressed by `batch_codec`.
 struct EncodedBatch {
     std::uint64_t number = 0;
-    NumberedView view;
-    SceneTime scene_time = 0;
-    SceneTime shown_from = 0; ///< as of a Batch
-    bool outdates = false; ///< as of a Batch
+    std::optional<BatchMoment> moment = BatchMoment{}; ///< none: that of the batch before
     std::vector<Tile> tiles;
     Bytes payload;
     SampleEncoding encoding = SampleEncoding::exact;

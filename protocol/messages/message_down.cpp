@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <span>
 
 #include "common/error.h"
 #include "protocol/messages/message_wire.h"
 #include "protocol/messages/text.h"
+#include "protocol/messages/tile_list.h"
 
 namespace framelet {
 namespace {
@@ -25,14 +27,29 @@ bool has_duplicate(std::vector<Tile> tiles) {
     return std::adjacent_find(tiles.begin(), tiles.end()) != tiles.end();
 }
 
-Offset<wire::Section> write_section(Builder& builder, wire::Content content, wire::Encoding encoding, ByteView bytes) {
-    auto const data = builder.CreateVector(reinterpret_cast<std::uint8_t const*>(bytes.data()), bytes.size());
-    return wire::CreateSection(builder, content, encoding, data);
+Offset<flatbuffers::Vector<std::uint8_t>> write_bytes(Builder& builder, ByteView bytes) {
+    return builder.CreateVector(reinterpret_cast<std::uint8_t const*>(bytes.data()), bytes.size());
 }
 
-Bytes read_bytes(wire::Section const& section) {
-    auto const* const data = reinterpret_cast<std::byte const*>(section.data()->data());
-    return {data, data + section.data()->size()};
+/// Nothing where there is nothing.
+Offset<flatbuffers::Vector<std::uint8_t>> write_some(Builder& builder, ByteView bytes) {
+    return bytes.empty() ? Offset<flatbuffers::Vector<std::uint8_t>>() : write_bytes(builder, bytes);
+}
+
+ByteView read_bytes(flatbuffers::Vector<std::uint8_t> const* bytes) {
+    return bytes == nullptr ? ByteView() : std::as_bytes(std::span(bytes->data(), bytes->size()));
+}
+
+Bytes copy(ByteView bytes) {
+    return {bytes.begin(), bytes.end()};
+}
+
+SampleEncoding read(wire::Encoding encoding) {
+    if (encoding != wire::Encoding::planes_left_zstd && encoding != wire::Encoding::haar_ranges &&
+        encoding != wire::Encoding::predicted_haar_ranges) {
+        throw ProtocolError("a batch's samples are in an unknown encoding");
+    }
+    return static_cast<SampleEncoding>(encoding);
 }
 
 } // namespace
@@ -105,104 +122,62 @@ char const* problem(Welcome const& value) {
 }
 
 Offset<wire::Batch> write(Builder& builder, EncodedBatch const& value) {
-    std::vector<Offset<wire::Section>> list{
-        write_section(builder, wire::Content::colour, static_cast<wire::Encoding>(value.encoding), value.payload)};
-    if (!value.shapes.empty()) {
-        list.push_back(write_section(builder, wire::Content::shape, wire::Encoding::layers_ranges, value.shapes));
+    auto const tracks = write_some(builder, value.tracks);
+    auto const shapes = write_some(builder, value.shapes);
+    auto const colours = write_bytes(builder, value.payload);
+    auto const tiles = write_bytes(builder, write_tiles(value.tiles));
+    Offset<wire::Moment> moment;
+    if (value.moment) {
+        auto const view = write(builder, value.moment->view);
+        moment = wire::CreateMoment(builder, view, value.moment->scene_time, value.moment->shown_from,
+                                    value.moment->outdates);
     }
-    if (!value.tracks.empty()) {
-        list.push_back(write_section(builder, wire::Content::track, wire::Encoding::tracks_zstd, value.tracks));
+    return wire::CreateBatch(builder, value.number, moment, static_cast<wire::Encoding>(value.encoding), tiles, colours,
+                             shapes, tracks);
+}
+
+EncodedBatch read(wire::Batch const& wire) {
+    EncodedBatch value;
+    value.number = wire.number();
+    value.moment.reset();
+    if (wire::Moment const* const moment = wire.moment()) {
+        value.moment = {read(*moment->view()), moment->scene_time(), moment->shown_from(), moment->outdates()};
     }
-    auto const sections = builder.CreateVector(list);
-    std::uint32_t* codes = nullptr;
-    auto const tiles = builder.CreateUninitializedVector(value.tiles.size(), &codes);
-    std::transform(value.tiles.begin(), value.tiles.end(), codes, [](Tile tile) { return tile.code; });
-    auto const view = write(builder, value.view);
-    return wire::CreateBatch(builder, value.number, view, value.scene_time, tiles, sections, value.shown_from,
-                             value.outdates);
+    value.encoding = read(wire.encoding());
+    value.tiles = read_tiles(read_bytes(wire.tiles()));
+    value.payload = copy(read_bytes(wire.colours()));
+    value.shapes = copy(read_bytes(wire.shapes()));
+    value.tracks = copy(read_bytes(wire.tracks()));
+    return value;
 }
 
 namespace {
 
-void take(wire::Section const& section, EncodedBatch& batch) {
-    wire::Encoding const encoding = section.encoding();
-    switch (section.content()) {
-    case wire::Content::colour:
-        if (encoding != wire::Encoding::planes_left_zstd && encoding != wire::Encoding::haar_ranges &&
-            encoding != wire::Encoding::predicted_haar_ranges) {
-            throw ProtocolError("a batch's samples are in an unknown encoding");
-        }
-        batch.encoding = static_cast<SampleEncoding>(encoding);
-        batch.payload = read_bytes(section);
-        return;
-    case wire::Content::shape:
-        if (encoding != wire::Encoding::layers_ranges) {
-            throw ProtocolError("a batch's shapes are in an unknown encoding");
-        }
-        batch.shapes = read_bytes(section);
-        return;
-    case wire::Content::track:
-        if (encoding != wire::Encoding::tracks_zstd) {
-            throw ProtocolError("a batch's tracks are in an unknown encoding");
-        }
-        batch.tracks = read_bytes(section);
-        return;
-    case wire::Content::none:
-        break;
+char const* problem(BatchMoment const& moment) {
+    if (char const* const fault = problem(moment.view)) {
+        return fault;
     }
-    throw ProtocolError("a batch's section holds something unknown");
+    if (!is_time(moment.scene_time)) {
+        return "a batch's scene time is not within 0..1e9";
+    }
+    return is_time(moment.shown_from) ? nullptr : "the time from which a batch is shown is not within 0..1e9";
 }
 
 } // namespace
 
-EncodedBatch read(wire::Batch const& wire) {
-    if (wire.sections()->size() == 0) {
-        throw ProtocolError("a batch has no section");
-    }
-    EncodedBatch value;
-    wire::Content before = wire::Content::none;
-    for (wire::Section const* const section : *wire.sections()) {
-        if (section->content() <= before ||
-            (before == wire::Content::none && section->content() != wire::Content::colour)) {
-            throw ProtocolError("a batch's sections are out of order");
-        }
-        before = section->content();
-        take(*section, value);
-    }
-    if (wire.tiles()->size() > max_batch_framelets) {
-        throw ProtocolError("a batch has more than 32768 framelets");
-    }
-    value.number = wire.number();
-    value.view = read(*wire.view());
-    value.scene_time = wire.scene_time();
-    value.shown_from = wire.shown_from();
-    value.outdates = wire.outdates();
-    value.tiles.reserve(wire.tiles()->size());
-    for (std::uint32_t const code : *wire.tiles()) {
-        value.tiles.push_back({code});
-    }
-    return value;
-}
-
+/// Whether the tiles are of the viewport is seen when the batch is decoded.
 char const* problem(EncodedBatch const& value) {
     if (value.number == 0) {
         return "a batch has the number 0";
     }
-    if (char const* const fault = problem(value.view)) {
+    if (char const* const fault = value.moment ? problem(*value.moment) : nullptr) {
         return fault;
-    }
-    if (!is_time(value.scene_time)) {
-        return "a batch's scene time is not within 0..1e9";
-    }
-    if (!is_time(value.shown_from)) {
-        return "the time from which a batch is shown is not within 0..1e9";
     }
     if (value.tiles.size() > max_batch_framelets) {
         return "a batch has more than 32768 framelets";
     }
-    ImagePlane const plane(value.view.viewport);
-    if (!std::all_of(value.tiles.begin(), value.tiles.end(), [&](Tile tile) { return plane.accepts(tile); })) {
-        return "a batch has a tile that its viewport does not have";
+    if (!std::all_of(value.tiles.begin(), value.tiles.end(), [](Tile tile) { return is_tile_code(tile.code); })) {
+        return "a batch has a tile that no plane has";
     }
     if (has_duplicate(value.tiles)) {
         return "a batch has the same tile twice";

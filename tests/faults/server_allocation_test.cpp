@@ -26,7 +26,7 @@ public:
             }
             auto const* const batch = std::get_if<EncodedBatch>(&message);
             hello_.last_batch = batch != nullptr ? batch->number : hello_.last_batch;
-            return batch != nullptr && batch->view.number == number_;
+            return batch != nullptr && batch->moment && batch->moment->view.number == number_;
         });
     }
     /// Its connection is cut, and it resumes its session by another.

@@ -17,7 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
     constexpr std::array encodings{SampleEncoding::exact, SampleEncoding::haar, SampleEncoding::predicted};
     encoded.encoding = encodings[data[2] % encodings.size()];
     BatchMemory memory;
-    encoded.view.viewport = {640, 480};
+    encoded.moment->view.viewport = {640, 480};
     for (std::uint32_t i = 0; i < encoded.tiles.size(); ++i) {
         encoded.tiles[i] = make_tile(6, i % 32, i / 32 % 30);
     }

@@ -74,16 +74,6 @@ std::size_t length_at(Bytes const& payload, std::size_t group) {
     return length;
 }
 
-/// A payload of one group made of any frame.
-Bytes payload_of(ByteView frame) {
-    Bytes payload(4 + frame.size());
-    for (std::size_t i = 0; i < 4; ++i) {
-        payload[i] = static_cast<std::byte>(frame.size() >> (8 * i));
-    }
-    std::copy(frame.begin(), frame.end(), payload.begin() + 4);
-    return payload;
-}
-
 Bytes compress(std::vector<std::uint8_t> const& content) {
     Bytes frame(ZSTD_compressBound(content.size()));
     frame.resize(ZSTD_compress(frame.data(), frame.size(), content.data(), content.size(), 1));
@@ -106,10 +96,8 @@ TEST(BatchCodec, RoundTrip) {
             Batch const batch = make_batch(count, sample);
             EncodedBatch const encoded = codec.encode(batch);
             EXPECT_EQ(encoded.number, batch.number);
-            EXPECT_EQ(encoded.view, batch.view);
-            EXPECT_EQ(encoded.scene_time, batch.scene_time);
-            EXPECT_EQ(encoded.shown_from, batch.shown_from);
-            EXPECT_EQ(encoded.outdates, batch.outdates);
+            EXPECT_EQ(encoded.moment,
+                      (BatchMoment{batch.view, batch.scene_time, batch.shown_from, batch.outdates}));
             EXPECT_TRUE(codec.decode(encoded) == batch) << count;
         }
     }
@@ -162,9 +150,8 @@ TEST(BatchCodec, SameBytesWhateverTheThreadsAndTheHistory) {
 TEST(BatchCodec, GoldenLayoutBeforeCompression) {
     Batch const batch = documented_batch();
     Bytes const payload = BatchCodec().encode(batch).payload;
-    ASSERT_EQ(length_at(payload, 0), payload.size() - 4);
     std::vector<std::uint8_t> content(3 * 512 + 1);
-    ASSERT_EQ(ZSTD_decompress(content.data(), content.size(), payload.data() + 4, payload.size() - 4), 3u * 512);
+    ASSERT_EQ(ZSTD_decompress(content.data(), content.size(), payload.data(), payload.size()), 3u * 512);
 
     std::vector<std::uint8_t> golden;
     for (int framelet = 0; framelet < 2; ++framelet) { // red: first row 00 01 01 .., others 10 01 01 ..
@@ -185,15 +172,15 @@ TEST(BatchCodec, GoldenLayoutBeforeCompression) {
 }
 
 TEST(BatchCodec, GoldenPayload) {
-    constexpr std::array<unsigned, 80> golden{
-        0x4c, 0x00, 0x00, 0x00, 0x28, 0xb5, 0x2f, 0xfd, 0x60, 0x00, 0x05, 0x15, 0x02, 0x00, 0x62, 0x44,
+    constexpr std::array<unsigned, 76> golden{
+        0x28, 0xb5, 0x2f, 0xfd, 0x60, 0x00, 0x05, 0x15, 0x02, 0x00, 0x62, 0x44,
         0x07, 0x0d, 0xd0, 0xa5, 0x03, 0x00, 0x00, 0x00, 0x00, 0x00, 0x40, 0x14, 0x00, 0x3f, 0xed, 0x89,
         0x40, 0x60, 0xdb, 0xb6, 0x6d, 0xdb, 0xb6, 0xcd, 0xb6, 0x6d, 0xdb, 0xb6, 0x6d, 0x9b, 0x23, 0x50,
         0x02, 0x00, 0x7b, 0x6a, 0x5f, 0xdd, 0x53, 0xb2, 0x2c, 0xcb, 0xb2, 0x2c, 0xcb, 0xb2, 0x2c, 0xcb,
         0xb2, 0x2c, 0xcb, 0xb2, 0x2c, 0xcb, 0xb2, 0x2c, 0xcb, 0xb2, 0x2c, 0xcb, 0xb2, 0x2c, 0xcb, 0x01};
     Batch const batch = documented_batch();
-    EncodedBatch encoded{batch.number,   batch.view, batch.scene_time,    batch.shown_from,
-                         batch.outdates, {},         Bytes(golden.size())};
+    EncodedBatch encoded{batch.number, BatchMoment{batch.view, batch.scene_time, batch.shown_from, batch.outdates},
+                         {},           Bytes(golden.size())};
     encoded.tiles = {batch.framelets[0].tile, batch.framelets[1].tile};
     std::transform(golden.begin(), golden.end(), encoded.payload.begin(),
                    [](unsigned b) { return static_cast<std::byte>(b); });
@@ -204,12 +191,13 @@ TEST(BatchCodec, LayoutByTheBook) {
     // The definition, written down a second time and as plainly as possible.
     Batch const batch = make_batch(130, noise);
     Bytes const payload = BatchCodec().encode(batch).payload;
-    std::size_t offset = 8;
+    std::size_t offset = 4;
     std::size_t first = 0;
     for (std::size_t group = 0; group < 2; ++group) {
         std::size_t const count = group == 0 ? 128 : 2;
+        std::size_t const length = group == 0 ? length_at(payload, 0) : payload.size() - offset;
         std::vector<std::uint8_t> content(count * 768);
-        ASSERT_EQ(ZSTD_decompress(content.data(), content.size(), payload.data() + offset, length_at(payload, group)),
+        ASSERT_EQ(ZSTD_decompress(content.data(), content.size(), payload.data() + offset, length),
                   content.size());
         for (std::size_t channel = 0; channel < 3; ++channel) {
             for (std::size_t i = 0; i < count; ++i) {
@@ -226,7 +214,7 @@ TEST(BatchCodec, LayoutByTheBook) {
                 }
             }
         }
-        offset += length_at(payload, group);
+        offset += length;
         first += count;
     }
     EXPECT_EQ(offset, payload.size());
@@ -237,19 +225,19 @@ TEST(BatchCodec, DecompressionIsBounded) {
     // 64 MiB of zeros in some kilobytes, for a tile that takes 768 bytes.
     Bytes const bomb = compress(std::vector<std::uint8_t>(64u << 20));
     EXPECT_LT(bomb.size(), 10000u);
-    encoded.payload = payload_of(bomb);
+    encoded.payload = bomb;
     expect_refused(encoded, "does not hold");
     // Many frames whose contents together would be right, and one that hides more behind itself.
     Bytes frames = compress(std::vector<std::uint8_t>(768));
     Bytes const right = frames;
-    encoded.payload = payload_of(right);
+    encoded.payload = right;
     EXPECT_NO_THROW(BatchCodec().decode(encoded));
     frames.insert(frames.end(), right.begin(), right.end());
-    encoded.payload = payload_of(frames);
+    encoded.payload = frames;
     expect_refused(encoded, "exactly one");
-    encoded.payload = payload_of(compress(std::vector<std::uint8_t>(767)));
+    encoded.payload = compress(std::vector<std::uint8_t>(767));
     expect_refused(encoded, "does not hold");
-    encoded.payload = payload_of(compress({}));
+    encoded.payload = compress({});
     expect_refused(encoded, "does not hold");
 }
 
@@ -260,7 +248,7 @@ TEST(BatchCodec, FrameOfUnknownContentSizeIsRefused) {
     Bytes frame(ZSTD_compressBound(content.size()));
     frame.resize(ZSTD_compress2(context.get(), frame.data(), frame.size(), content.data(), content.size()));
     EncodedBatch encoded = BatchCodec().encode(make_batch(1, constant));
-    encoded.payload = payload_of(frame);
+    encoded.payload = frame;
     expect_refused(encoded, "does not hold");
 }
 
@@ -270,11 +258,11 @@ TEST(BatchCodec, SkippableAndOldFramesAreRefused) {
     constexpr std::array<unsigned, 8> header{0x50, 0x2a, 0x4d, 0x18, 0x00, 0x03, 0x00, 0x00};
     std::transform(header.begin(), header.end(), skippable.begin(),
                    [](unsigned b) { return static_cast<std::byte>(b); });
-    encoded.payload = payload_of(skippable);
+    encoded.payload = skippable;
     expect_refused(encoded, "not a zstd frame");
     Bytes old = compress(std::vector<std::uint8_t>(768));
     old[0] = std::byte{0x27}; // zstd 0.7
-    encoded.payload = payload_of(old);
+    encoded.payload = old;
     expect_refused(encoded, "not a zstd frame");
 }
 
@@ -282,12 +270,12 @@ TEST(BatchCodec, LengthsThatDoNotFitAreRefused) {
     EncodedBatch const good = BatchCodec().encode(make_batch(200, smooth));
     EncodedBatch bad = good;
     bad.payload.pop_back();
-    expect_refused(bad, "shorter");
+    expect_refused(bad, "exactly one");
     bad = good;
     bad.payload.push_back({});
-    expect_refused(bad, "longer");
+    expect_refused(bad, "exactly one");
     bad = good;
-    bad.payload.resize(7);
+    bad.payload.resize(3);
     expect_refused(bad, "too short");
     bad = good;
     bad.payload[3] = std::byte{0xff};
@@ -300,6 +288,35 @@ TEST(BatchCodec, LengthsThatDoNotFitAreRefused) {
     bad = good;
     bad.tiles.resize(max_batch_framelets + 1);
     expect_refused(bad, "32768");
+}
+
+TEST(BatchCodec, TilesBeyondTheViewportAreRefused) {
+    EncodedBatch const good = BatchCodec().encode(make_batch(1, constant));
+    for (Tile const bad :
+         {Tile{0}, Tile{1}, Tile{2}, make_tile(10, 0, 0), make_tile(7, 80, 0), make_tile(7, 0, 45), Tile{0xffffffff}}) {
+        EncodedBatch encoded = good;
+        encoded.moment->view.viewport = {1280, 720};
+        encoded.tiles[0] = bad;
+        expect_refused(encoded, "viewport");
+    }
+}
+
+TEST(BatchCodec, AMomentIsStatedOnce) {
+    BatchCodec codec;
+    BatchMemory sent, received;
+    Batch batch = make_batch(2, smooth);
+    for (int i = 0; i < 4; ++i) {
+        batch.scene_time = i / 2;
+        batch.number = static_cast<std::uint64_t>(i) + 1;
+        EncodedBatch const encoded = codec.encode(batch, &sent);
+        EXPECT_EQ(encoded.moment.has_value(), i % 2 == 0);
+        EXPECT_TRUE(codec.decode(encoded, &received) == batch) << i;
+        if (!encoded.moment) {
+            expect_refused(encoded, "moment");
+            BatchMemory none;
+            EXPECT_THROW(codec.decode(encoded, &none), ProtocolError);
+        }
+    }
 }
 
 TEST(BatchCodec, DamagedPayloadsAreRefusedOrDecoded) {

@@ -183,7 +183,7 @@ TEST(PredictedBatch, IsRefusedWithoutThePicture) {
     EXPECT_THROW(codec.decode(encoded), ProtocolError);
     BatchMemory other;
     EncodedBatch larger = encoded;
-    larger.view.viewport = {16384, 16384};
+    larger.moment->view.viewport = {16384, 16384};
     EXPECT_THROW(codec.decode(larger, &other), ProtocolError);
     encoded.tiles[0] = {1u << 30}; // no tile of this viewport
     EXPECT_THROW(codec.decode(encoded, &other), ProtocolError);

@@ -105,9 +105,11 @@ public:
     EncodedBatch batch() {
         EncodedBatch batch;
         batch.number = any64() | 1u;
-        batch.view = view();
-        batch.scene_time = number(0, 1e9);
-        batch.tiles = tiles(ImagePlane(batch.view.viewport), integer(0, 60));
+        BatchMoment const moment{view(), number(0, 1e9), number(0, 1e9), coin()};
+        batch.tiles = tiles(ImagePlane(moment.view.viewport), integer(0, 60));
+        if (batch.moment = moment; coin()) {
+            batch.moment.reset();
+        }
         batch.payload.resize(integer(0, 3000));
         for (std::byte& byte : batch.payload) {
             byte = static_cast<std::byte>(generator_());

@@ -72,7 +72,7 @@ TEST_P(ServerOfThreads, CoarseFirstThenFinerThenConverged) {
             viewer.stream->send(camera_update(1, {640, 480}));
         } else if (auto const* const batch = std::get_if<EncodedBatch>(&message)) {
             EXPECT_EQ(batch->number, newest + 1);
-            EXPECT_EQ(batch->view.number, 1u);
+            EXPECT_EQ(batch->moment.value().view.number, 1u);
             newest = batch->number;
             depths.push_back(batch->tiles.front().depth());
             viewer.stream->send(Ack{newest, 0, 0});
@@ -126,7 +126,7 @@ TEST(Server, NothingOlderComesFirstWhenThereIsRoomAgain) {
             viewer.stream->send(camera_update(1, {640, 480}));
         } else if (auto const* const batch = std::get_if<EncodedBatch>(&message)) {
             if (++batches > FrameletStream::max_batches_in_flight) {
-                next_camera = batch->view.number;
+                next_camera = batch->moment.value().view.number;
             } else if (batches == FrameletStream::max_batches_in_flight) {
                 viewer.stream->send(camera_update(2, {640, 480}));
                 viewer.stream->send(camera_update(3, {640, 480}));
@@ -152,9 +152,9 @@ TEST_P(ServerOfThreads, NewerCameraWinsAndLateOnesAreIgnored) {
             viewer.stream->send(camera_update(4, {32, 32}));
         } else if (auto const* const batch = std::get_if<EncodedBatch>(&message)) {
             newest = batch->number;
-            camera = batch->view.number;
+            camera = batch->moment.value().view.number;
             EXPECT_EQ(camera, 5u);
-            EXPECT_EQ(batch->view.viewport, (Viewport{100, 40}));
+            EXPECT_EQ(batch->moment.value().view.viewport, (Viewport{100, 40}));
             viewer.stream->send(Ack{newest, 0, 0});
         } else if (auto const* const status = std::get_if<Status>(&message)) {
             converged = status->converged && status->last_batch == newest && newest > 0;

@@ -24,7 +24,7 @@ TEST(EventLog, GivesBackWhatWasAdded) {
     camera.view = {3, {}, {64, 48}};
     EncodedBatch batch;
     batch.number = 4;
-    batch.view = camera.view;
+    batch.moment->view = camera.view;
     batch.payload = Bytes(5);
     Turn const turn{1.5, 2.5, -0.5, 3e6, 1e-4};
     std::vector<StreamEvent> const events{

@@ -81,8 +81,7 @@ bool MethodStream::learn(PosedScene const&) {
 EncodedBatch MethodStream::encode() {
     EncodedBatch batch;
     batch.number = number_;
-    batch.view = learnt_.view;
-    batch.scene_time = learnt_.time;
+    batch.moment = {learnt_.view, learnt_.time};
     batch.payload = std::move(learnt_.step.message);
     return batch;
 }
