@@ -2,6 +2,7 @@
 #include <iostream>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "client/connection_arguments.h"
 #include "client/display_arguments.h"
@@ -36,6 +37,7 @@ int main(int argc, char** argv) {
     bool fullscreen = false;
     DisplayArguments display;
     std::optional<int> server_needed;
+    std::vector<std::string> server_options;
 
     CLI::App app("Shows a scene that framelet-server renders. F1 in the window lists the keys.", "framelet-viewer");
     prepare_command_line(app, notes());
@@ -50,6 +52,11 @@ int main(int argc, char** argv) {
     add_display_options(app, display);
     // As framelet starts it: a descriptor for SceneOpener.
     app.add_option("--server-needed", server_needed)->group("")->configurable(false);
+    app.add_option("--server-option", server_options) // of the servers of scenes that are dropped
+        ->group("")
+        ->configurable(false)
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     add_config_option(app);
 
     Viewport viewport;
@@ -77,7 +84,7 @@ int main(int argc, char** argv) {
             viewport = memory.size.value_or(viewport);
         }
         Window window("framelet-viewer", viewport);
-        SceneOpener opener(Viewer::connect, Window::wake, server_needed);
+        SceneOpener opener(Viewer::connect, Window::wake, server_needed, server_options);
         Connection first;
         if (!options.reconnect) {
             first = {Viewer::connect(options), options};

@@ -174,6 +174,7 @@ struct ClientCore::Impl {
         if (next.scene_identity == 0 || next.scene_identity != welcome.scene_identity) {
             pictures.forget_earlier();
             starts_clean = true;
+            shown_camera = next.start_camera;
             ++scene_number;
         }
         arrived.clear();
@@ -211,6 +212,7 @@ struct ClientCore::Impl {
             told_let_go.note_come(news_of_server->let_go);
             statistics.converged = news_of_server->converged;
             statistics.server_samples_per_second = news_of_server->samples_per_second;
+            statistics.server_busy = static_cast<double>(news_of_server->busy);
         } else {
             throw ProtocolError("a message that only a viewer sends");
         }
@@ -458,7 +460,9 @@ bool ClientCore::update_picture(Picture& picture, std::vector<PixelRect>& change
         }
     }
     std::lock_guard const lock(core.mutex);
-    core.shown_camera = camera;
+    if (camera_number > 0) { // else nothing has been shown, and one looks from where one is to begin
+        core.shown_camera = camera;
+    }
     core.shown_time = time;
     core.statistics.photon_seconds = drawn ? core.photon_seconds(camera_number, std::max(shown_at, made)) : -1;
     if (!drawn) {

@@ -94,7 +94,7 @@ public:
     Status status() const;
     /// The scene clock as it should stand now.
     ClockState clock() const;
-    /// What the last picture was seen from.
+    /// What the last picture was seen from; before the first one, where the scene begins.
     Camera shown_camera() const;
     ClientStatistics statistics() const;
 

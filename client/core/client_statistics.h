@@ -28,6 +28,7 @@ struct ClientStatistics {
     std::uint64_t waiting_bytes = 0; ///< of batches that have been decoded, for the next picture
     std::uint64_t cameras_sent = 0;
     double server_samples_per_second = 0;
+    double server_busy = 0; ///< the share of the last second that it had something to do, [0, 1]
     bool converged = false;
     /// From when the camera of the last picture was set, or the moment that it shows was the present, until the picture
     /// was seen; -1: it shows no new one.

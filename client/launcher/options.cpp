@@ -36,6 +36,23 @@ void pass_on(CLI::App const& app, std::string const& group, std::vector<std::str
     }
 }
 
+/// Of those of a server what is for its scene alone, as a name of one of its clips, or cannot be had twice, as a port
+/// or a file that is written, is left out.
+std::vector<std::string> kept_for_other_scenes(std::vector<std::string> const& options) {
+    std::vector<std::string> out;
+    for (std::size_t i = 0; i < options.size(); ++i) {
+        std::string const name = options[i].substr(0, options[i].find('='));
+        bool const has_value =
+            name == "--clip" || name == "--port" || name.starts_with("--metrics") || name.starts_with("--record");
+        if (!has_value && name != "--allow-outside") {
+            out.push_back(options[i]);
+        } else if (has_value && options[i] == name) {
+            ++i; // its value
+        }
+    }
+    return out;
+}
+
 } // namespace
 
 std::variant<ViewOptions, int> parse_options(int argc, char const* const* argv) {
@@ -76,6 +93,7 @@ std::variant<ViewOptions, int> parse_options(int argc, char const* const* argv) 
     }
     pass_on(*view, scene_group, out.server);
     std::copy(separator == end ? end : separator + 1, end, std::back_inserter(out.server));
+    out.other_scenes = kept_for_other_scenes(out.server);
     pass_on(*view, window_group, out.viewer);
     return out;
 }

@@ -63,6 +63,9 @@ private:
         ::fcntl(needed[1], F_SETFD, 0);
         std::vector<std::string> arguments = options_.viewer;
         arguments.insert(arguments.end(), {address, "--server-needed=" + std::to_string(needed[1])});
+        for (std::string const& option : options_.other_scenes) {
+            arguments.push_back("--server-option=" + option);
+        }
         viewer_.emplace(viewer_program_, arguments);
         ::close(needed[1]);
         server_needed_.async_wait(asio::posix::stream_descriptor::wait_read, [this](boost::system::error_code error) {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cerrno>
+#include <charconv>
 #include <chrono>
 #include <csignal>
 #include <iostream>
@@ -20,6 +21,18 @@ constexpr char const* program = "framelet-server";
 /// How long it may take to end when it is told to; then it is killed.
 constexpr std::chrono::seconds patience(2);
 
+/// Of a line "loading PERCENT% STAGE".
+std::optional<LoadProgress> load_progress_of(std::string const& line) {
+    constexpr std::string_view loading = "loading ";
+    std::size_t const end = line.find("% ");
+    if (!line.starts_with(loading) || end == std::string::npos) {
+        return std::nullopt;
+    }
+    LoadProgress out{line.substr(end + 2), 0};
+    auto const [rest, error] = std::from_chars(line.data() + loading.size(), line.data() + end, out.percent);
+    return error == std::errc() && rest == line.data() + end ? std::optional(out) : std::nullopt;
+}
+
 } // namespace
 
 PrivateServer::PrivateServer(std::filesystem::path scene, std::vector<std::string> const& options, ServerErrors errors,
@@ -28,6 +41,9 @@ PrivateServer::PrivateServer(std::filesystem::path scene, std::vector<std::strin
     std::filesystem::path const file = find_program(program);
     std::vector<std::string> arguments{"--port", "0"};
     arguments.insert(arguments.end(), options.begin(), options.end());
+    if (errors_ == ServerErrors::kept) {
+        arguments.emplace_back("--progress-lines");
+    }
     arguments.insert(arguments.end(), {"--", scene_.string()}); // behind it, what looks like an option is none
     std::array<int, 2> pipe{};
     if (::pipe2(pipe.data(), O_CLOEXEC) != 0) {
@@ -66,6 +82,11 @@ std::optional<std::string> PrivateServer::address() const {
     return address_;
 }
 
+std::optional<LoadProgress> PrivateServer::progress() const {
+    std::lock_guard const lock(mutex_);
+    return progress_;
+}
+
 std::string PrivateServer::end_reason() {
     read_to_the_end();
     std::lock_guard const lock(mutex_);
@@ -94,6 +115,16 @@ void PrivateServer::read(int descriptor) {
 }
 
 void PrivateServer::take(std::string const& line) {
+    if (errors_ == ServerErrors::kept) {
+        if (std::optional<LoadProgress> now = load_progress_of(line)) {
+            {
+                std::lock_guard const lock(mutex_);
+                progress_ = std::move(now);
+            }
+            on_news_();
+            return;
+        }
+    }
     (errors_ == ServerErrors::kept ? std::cerr : std::cout) << line + '\n' << std::flush;
     constexpr std::string_view listening = "listening on ", complaining = "framelet-server: ";
     bool is_first = false;

@@ -17,13 +17,21 @@ namespace framelet {
 /// Where its complaints go.
 enum class ServerErrors {
     shown, ///< where this program's go; its progress too, where that is a terminal
-    kept, ///< there as well, line by line, and the last of them is kept
+    kept, ///< there as well, line by line, and the last of them is kept; so is how far loading has come
+};
+
+/// As framelet-server tells it.
+struct LoadProgress {
+    std::string stage;
+    int percent = 0; ///< of the stage
+    bool operator==(LoadProgress const&) const = default;
 };
 
 class PrivateServer {
 public:
-    /// Starts loading. `options` are for framelet-server. `on_news` is called from another thread when it listens, and
-    /// when it prints no more. Throws InputError where the program is missing, std::system_error.
+    /// Starts loading. `options` are for framelet-server. `on_news` is called from another thread when it listens,
+    /// when loading has got on, and when it prints no more. Throws InputError where the program is missing,
+    /// std::system_error.
     PrivateServer(std::filesystem::path scene, std::vector<std::string> const& options, ServerErrors errors,
                   std::function<void()> on_news);
     /// Ends it, and waits for that.
@@ -33,6 +41,8 @@ public:
 
     std::filesystem::path const& scene() const { return scene_; }
     Child& process() { return *process_; }
+    /// Nothing before it says so, and of one whose errors are shown.
+    std::optional<LoadProgress> progress() const;
     /// HOST:PORT once it listens.
     std::optional<std::string> address() const;
     /// Of one that has ended: why, in one line; of one whose errors are shown, how.
@@ -50,6 +60,7 @@ private:
     mutable std::mutex mutex_; // guards what follows
     std::optional<std::string> address_;
     std::string complaint_;
+    std::optional<LoadProgress> progress_;
 
     std::optional<Child> process_;
     std::thread reader_;

@@ -114,7 +114,7 @@ Connection wait_for_server(Window& window, std::string const& address, OptionsFo
             complaint = std::move(why);
         }
         OverlayContent content;
-        content.sign = opening_text(opener.opening());
+        opener.show(content);
         content.message = message_of(*attempts) + (complaint.empty() ? "" : "\n\n" + complaint);
         if (!attempts->failure().empty() || !is_from_command_line) {
             content.address = {address, recent};

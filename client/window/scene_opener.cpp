@@ -6,12 +6,15 @@
 
 #include <unistd.h>
 
+#include "client/window/overlay/overlay_text.h"
 #include "common/error.h"
 
 namespace framelet {
 
-SceneOpener::SceneOpener(Connect connect, std::function<void()> wake, std::optional<int> server_needed)
-    : connect_(std::move(connect)), wake_(std::move(wake)), server_needed_(server_needed) {}
+SceneOpener::SceneOpener(Connect connect, std::function<void()> wake, std::optional<int> server_needed,
+                         std::vector<std::string> server_options)
+    : connect_(std::move(connect)), wake_(std::move(wake)), server_needed_(server_needed),
+      server_options_(std::move(server_options)) {}
 
 void SceneOpener::open(std::vector<std::string> const& files) {
     if (files.empty()) {
@@ -24,8 +27,7 @@ void SceneOpener::open(std::vector<std::string> const& files) {
     opening_.reset();
     connecting_ = {};
     try {
-        opening_ =
-            std::make_unique<PrivateServer>(files.front(), std::vector<std::string>(), ServerErrors::kept, wake_);
+        opening_ = std::make_unique<PrivateServer>(files.front(), server_options_, ServerErrors::kept, wake_);
     } catch (std::exception const& error) {
         complaint_ = error.what();
     }
@@ -74,6 +76,14 @@ std::optional<Connection> SceneOpener::session() {
 
 std::string SceneOpener::opening() const {
     return opening_ ? opening_->scene().filename().string() : "";
+}
+
+void SceneOpener::show(OverlayContent& content) const {
+    std::optional<LoadProgress> const progress = opening_ ? opening_->progress() : std::nullopt;
+    content.sign = opening_text(opening(), progress ? progress->stage : "");
+    if (progress) {
+        content.progress = static_cast<float>(progress->percent) / 100;
+    }
 }
 
 std::string SceneOpener::end_reason() {

@@ -13,6 +13,7 @@
 
 #include "client/processes/private_server.h"
 #include "client/window/connection.h"
+#include "client/window/overlay/overlay_content.h"
 
 namespace framelet {
 
@@ -23,7 +24,9 @@ public:
     /// `connect` (blocks) and `wake` are called from other threads; `wake` whenever `poll` may have something to say.
     /// `server_needed`: a descriptor that is closed once another scene is open, which tells who started this program
     /// that the server it was started for is not needed any more.
-    SceneOpener(Connect connect, std::function<void()> wake, std::optional<int> server_needed = {});
+    /// `server_options`: of framelet-server, for all that are started.
+    SceneOpener(Connect connect, std::function<void()> wake, std::optional<int> server_needed = {},
+                std::vector<std::string> server_options = {});
     SceneOpener(SceneOpener const&) = delete;
     SceneOpener& operator=(SceneOpener const&) = delete;
 
@@ -35,6 +38,8 @@ public:
     std::string take_complaint() { return std::exchange(complaint_, {}); }
     /// The file that is being opened, without its folder; empty while none is.
     std::string opening() const;
+    /// That file, and how far it has been loaded: sign and bar; nothing while none is opened.
+    void show(OverlayContent& content) const;
 
     bool has_open() const { return open_ != nullptr; }
     /// Of the server of the scene that is open, where it has ended by itself: why. Empty: it runs, or is not ours.
@@ -48,6 +53,7 @@ private:
     Connect const connect_;
     std::function<void()> const wake_;
     std::optional<int> server_needed_;
+    std::vector<std::string> const server_options_;
     std::string complaint_;
     std::unique_ptr<PrivateServer> open_;
     std::future<Connection> connecting_; ///< to what follows, whose end ends the attempt

@@ -57,15 +57,15 @@ void Viewer::adopt(std::unique_ptr<ClientCore> core) {
     }
 }
 
-/// As one looks at a scene at first. One of the same name is the same after a change: one goes on looking from where
+/// As one looks at a scene at first. One of the same file is the same after a change: one goes on looking from where
 /// one is.
 void Viewer::look_at_scene() {
     Welcome const welcome = core_->welcome();
     scene_number_ = core_->scene_number();
-    bool const is_changed = controller_ && welcome.scene_name == scene_name_;
+    bool const is_changed = controller_ && welcome.scene_name == scene_name_ && welcome.scene_place == scene_place_;
     std::optional<Camera> const before = is_changed ? std::optional(controller_->camera()) : std::nullopt;
     if (!bookmarks_ || !is_changed) {
-        bookmarks_.emplace(bookmarks_file(welcome.scene_name));
+        bookmarks_.emplace(bookmark_files(welcome.scene_name, welcome.scene_place));
         bookmark_ = -1;
         is_at_bookmark_ = false;
         if (!bookmarks_->complaint().empty()) {
@@ -74,6 +74,7 @@ void Viewer::look_at_scene() {
         }
     }
     scene_name_ = welcome.scene_name;
+    scene_place_ = welcome.scene_place;
     controller_.emplace(welcome.start_camera, welcome.scene_bounds);
     if (before) {
         controller_->set_camera(*before);
@@ -244,7 +245,7 @@ void Viewer::take_figures() {
     if (!meter_.update(seconds_now(), statistics.bytes) && !figures_.plots.empty()) {
         return;
     }
-    history_.add(meter_, statistics.server_samples_per_second);
+    history_.add(meter_, statistics);
     figures_.plots = history_.plots();
     figures_.rows = figure_rows(statistics, core_->clock(), core_->controls());
     figures_.details = detail_rows(statistics, meter_, window_.framebuffer_size());
@@ -289,9 +290,13 @@ OverlayContent Viewer::overlay_content() {
     if (seconds_now() < note_until_) {
         out.note = note_;
     }
-    out.sign = opening_text(opener_.opening());
+    opener_.show(out);
     if (interrupted_ && lost_.empty()) {
         out.sign += (out.sign.empty() ? "" : "\n") + std::string("no connection: trying again");
+    }
+    if (window_.has_mouse_look()) {
+        out.has_pointer = false;
+        out.sign += (out.sign.empty() ? "" : "\n") + std::string(mouse_look_text);
     }
     if (recorder_) {
         out.sign +=

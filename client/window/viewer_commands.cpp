@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iomanip>
 #include <iostream>
 #include <sstream>
 #include <utility>
@@ -45,7 +46,15 @@ bool Viewer::apply(WindowInput const& input, double seconds) {
         controller_->orbit(input.orbit, viewport);
         controller_->pan(input.pan, viewport);
         controller_->dolly(input.dolly);
+        controller_->look(input.look, viewport);
         controller_->fly(input.fly, seconds);
+    }
+    if (input.speed != 0) {
+        controller_->change_speed(input.speed);
+        std::ostringstream text;
+        float const speed = controller_->fly_speed();
+        text << "flying at " << std::fixed << std::setprecision(speed < 10 ? 2 : 0) << speed << " m/s";
+        say(text.str());
     }
     return input.fly.moving();
 }
@@ -102,7 +111,14 @@ void Viewer::apply(Command command) {
     case Command::quit:
         quit_ = true;
         break;
+    case Command::mouse_look:
+        window_.set_mouse_look(!window_.has_mouse_look());
+        break;
     case Command::escape:
+        if (window_.has_mouse_look()) {
+            window_.set_mouse_look(false);
+            break;
+        }
         quit_ = !overlay_.has_menu();
         overlay_.close_menu();
         break;

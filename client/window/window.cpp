@@ -71,6 +71,8 @@ struct Window::Impl {
     double click_time = -1; ///< and when; < 0: what comes next is no double click
     std::vector<PixelRect> overlay; ///< its areas
     bool is_typing = false;
+    bool looks = false; ///< the mouse turns the head
+    bool begins_to_look = false; ///< it has not been moved since
     bool overlay_drag = false; ///< a button was pressed there
     bool has_gamepad = false;
     Viewport size;
@@ -121,6 +123,10 @@ struct Window::Impl {
         Vec2 const way = place - cursor;
         cursor = place;
         zooms = false;
+        if (looks) { // the first way may be one from outside of the window
+            input.look += std::exchange(begins_to_look, false) ? Vec2(0, 0) : way;
+            return;
+        }
         touch_overlay(is_over_overlay(place - way));
         if (overlay_drag) {
             return;
@@ -129,6 +135,8 @@ struct Window::Impl {
             input.pan += way;
         } else if (button(GLFW_MOUSE_BUTTON_LEFT)) {
             input.orbit += way;
+        } else if (button(GLFW_MOUSE_BUTTON_RIGHT) && held_direction() != Vec3(0, 0, 0)) {
+            input.look += way; // as in most games' editors
         } else if (button(GLFW_MOUSE_BUTTON_RIGHT)) {
             constexpr float steps_per_height = 30;
             input.dolly += -way.y * steps_per_height / static_cast<float>(size.height);
@@ -154,6 +162,10 @@ struct Window::Impl {
     }
 
     void pressed(int number) {
+        if (looks) {
+            input.commands.push_back(Command::mouse_look);
+            return;
+        }
         cursor = pointer(); // a drag starts here
         overlay_drag = overlay_drag || is_over_overlay(cursor);
         touch_overlay();
@@ -174,8 +186,13 @@ struct Window::Impl {
     }
 
     void scrolled(float steps) {
+        if (looks) {
+            input.speed += steps;
+            return;
+        }
         cursor = pointer();
         if (is_over_overlay(cursor)) {
+            touch_overlay();
             return;
         }
         if (!std::exchange(zooms, true)) {
@@ -194,17 +211,20 @@ struct Window::Impl {
         input.redraw = true;
     }
 
-    void read_held_keys() {
+    Vec3 held_direction() const {
         if (is_typing) {
-            input.fly = {};
-            return;
+            return {0, 0, 0};
         }
         auto const axis = [&](int more, int less) {
             return static_cast<float>(held(more) ? 1 : 0) - static_cast<float>(held(less) ? 1 : 0);
         };
-        input.fly.direction = {axis(GLFW_KEY_D, GLFW_KEY_A), axis(GLFW_KEY_E, GLFW_KEY_Q),
-                               axis(GLFW_KEY_S, GLFW_KEY_W)};
-        input.fly.fast = shift();
+        return {axis(GLFW_KEY_D, GLFW_KEY_A), axis(GLFW_KEY_E, GLFW_KEY_Q), axis(GLFW_KEY_S, GLFW_KEY_W)};
+    }
+
+    void read_held_keys() {
+        input.fly = {};
+        input.fly.direction = held_direction();
+        input.fly.fast = !is_typing && shift();
     }
 
     /// Other windows may be flown by it: it is this one's that has the keys.
@@ -335,6 +355,17 @@ void Window::set_overlay_areas(std::span<PixelRect const> areas) {
 
 void Window::set_typing(bool is_typing) {
     impl_->is_typing = is_typing;
+}
+
+void Window::set_mouse_look(bool looks) {
+    impl_->looks = looks;
+    impl_->begins_to_look = looks;
+    glfwSetInputMode(impl_->window, GLFW_CURSOR, looks ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
+    impl_->cursor = impl_->pointer(); // it may have been put somewhere else
+}
+
+bool Window::has_mouse_look() const {
+    return impl_->looks;
 }
 
 void Window::set_clipboard(std::string const& text) {

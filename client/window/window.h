@@ -23,6 +23,8 @@ struct WindowInput {
     Vec2 orbit{0, 0}; ///< dragged, pixels of the framebuffer, x right, y down
     Vec2 pan{0, 0};
     float dolly = 0; ///< steps, positive: nearer
+    Vec2 look{0, 0}; ///< moved while that turns the head
+    float speed = 0; ///< steps of the wheel meanwhile
     std::optional<Vec2> grabbed; ///< where a drag has begun, or the wheel has turned first; pixels of the framebuffer
     std::optional<Vec2> focused; ///< likewise: where a double click was
     FlyInput fly; ///< held now
@@ -30,7 +32,9 @@ struct WindowInput {
     bool redraw = false; ///< exposed or resized
     bool touched_overlay = false; ///< the pointer did something in its area, or has left it, or a key was typed into it
 
-    bool moved_camera() const { return orbit != Vec2(0, 0) || pan != Vec2(0, 0) || dolly != 0 || fly.moving(); }
+    bool moved_camera() const {
+        return orbit != Vec2(0, 0) || pan != Vec2(0, 0) || dolly != 0 || look != Vec2(0, 0) || fly.moving();
+    }
 };
 
 class Window {
@@ -72,6 +76,9 @@ public:
     void set_overlay_areas(std::span<PixelRect const> areas);
     /// The keys are the overlay's, and neither commands nor ways to fly.
     void set_typing(bool is_typing);
+    /// There is no pointer: the mouse turns the head, the wheel is the speed, and a click is `Command::mouse_look`.
+    void set_mouse_look(bool looks);
+    bool has_mouse_look() const;
     void set_clipboard(std::string const& text);
     /// For the overlay's backend.
     GLFWwindow* handle() const;

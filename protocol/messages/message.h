@@ -117,6 +117,7 @@ struct Welcome {
     Ticket ticket{}; ///< for the viewer's next Hello
     bool resumed = false; ///< the session before goes on: what the viewer holds of it stays, what it lacks comes again
     std::uint64_t let_go = 0; ///< as in Status
+    std::uint64_t scene_place = 0; ///< the same where it is the same file, whatever is in it by now; 0: not known
 };
 
 /// How the samples of a batch are coded.
@@ -157,6 +158,7 @@ struct Status {
     std::uint32_t sessions = 0;
     bool controls = true; ///< as in Welcome, by now
     std::uint64_t let_go = 0; ///< how many messages LetGo of this viewer have come
+    float busy = 0; ///< the share of the last second in which there was something to do for viewers, [0, 1]
     bool operator==(Status const&) const = default;
 };
 

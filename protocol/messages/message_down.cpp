@@ -72,7 +72,7 @@ Offset<wire::Welcome> write(Builder& builder, Welcome const& value) {
     return wire::CreateWelcome(builder, value.version, server, scene, value.scene_bounds.empty() ? nullptr : &box,
                                start, builder.CreateVector(cameras), value.animation_duration, &clock,
                                value.scene_identity, value.controls, value.ticket ? &ticket : nullptr, value.resumed,
-                               value.let_go);
+                               value.let_go, value.scene_place);
 }
 
 Welcome read(wire::Welcome const& wire) {
@@ -102,6 +102,7 @@ Welcome read(wire::Welcome const& wire) {
     value.ticket = read(wire.ticket());
     value.resumed = wire.resumed();
     value.let_go = wire.let_go();
+    value.scene_place = wire.scene_place();
     return value;
 }
 
@@ -188,7 +189,7 @@ char const* problem(EncodedBatch const& value) {
 Offset<wire::Status> write(Builder& builder, Status const& value) {
     wire::Clock const clock = write(value.clock);
     return wire::CreateStatus(builder, &clock, value.last_batch, value.camera_number, value.converged,
-                              value.samples_per_second, value.sessions, value.controls, value.let_go);
+                              value.samples_per_second, value.sessions, value.controls, value.let_go, value.busy);
 }
 
 Status read(wire::Status const& wire) {
@@ -201,10 +202,14 @@ Status read(wire::Status const& wire) {
     value.sessions = wire.sessions();
     value.controls = wire.controls();
     value.let_go = wire.let_go();
+    value.busy = wire.busy();
     return value;
 }
 
 char const* problem(Status const& value) {
+    if (!(value.busy >= 0 && value.busy <= 1)) {
+        return "the share of the time that the server is busy is not within 0..1";
+    }
     if (!std::isfinite(value.samples_per_second) || value.samples_per_second < 0) {
         return "the samples per second are not a finite number >= 0";
     }

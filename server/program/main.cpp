@@ -134,7 +134,8 @@ void serve(Options& options) {
     if (options.watch) { // from before the scene is loaded: what changes meanwhile counts
         watch.emplace().watch(std::vector{std::filesystem::absolute(options.scene), environment_file});
     }
-    std::unique_ptr<LoadedScene> loaded = load_scene(options, make_progress_bar(options.quiet));
+    std::unique_ptr<LoadedScene> loaded =
+        load_scene(options, options.progress_lines ? make_progress_lines() : make_progress_bar(options.quiet));
     std::vector<std::filesystem::path> const files = loaded->scene.files;
 
     options.server.loop.recorder = recorder ? &*recorder : nullptr;

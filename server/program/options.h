@@ -20,6 +20,7 @@ struct Options {
     int threads = 0; ///< 0: all cores
     int nice = default_nice; ///< of all threads
     bool quiet = false;
+    bool progress_lines = false; ///< of loading, for who started this program
     bool watch = false; ///< load the scene again when its files change
     bool info = false; ///< print what is in the scene, and serve nothing
     bool json = false; ///< that as JSON

@@ -11,6 +11,10 @@
 namespace framelet {
 namespace {
 
+int percent_of(double fraction) {
+    return static_cast<int>(100 * std::clamp(fraction, 0.0, 1.0));
+}
+
 struct Bar {
     std::mutex mutex; // loading reports from several threads
     std::string stage;
@@ -19,7 +23,7 @@ struct Bar {
     void show(std::string_view what, double fraction) {
         std::scoped_lock const lock(mutex);
         bool const new_stage = stage != what;
-        int const now = static_cast<int>(100 * std::clamp(fraction, 0.0, 1.0));
+        int const now = percent_of(fraction);
         if (!new_stage && now <= percent) {
             return;
         }
@@ -42,6 +46,25 @@ Progress make_progress_bar(bool quiet) {
         return [](std::string_view, double) {};
     }
     return [bar = std::make_shared<Bar>()](std::string_view what, double fraction) { bar->show(what, fraction); };
+}
+
+Progress make_progress_lines() {
+    struct Told {
+        std::mutex mutex; // as above
+        std::string stage;
+        int percent = -1;
+    };
+    return [told = std::make_shared<Told>()](std::string_view what, double fraction) {
+        std::scoped_lock const lock(told->mutex);
+        int const now = percent_of(fraction);
+        if (what == told->stage && now <= told->percent) {
+            return;
+        }
+        told->stage = what;
+        told->percent = now;
+        std::printf("loading %d%% %s\n", now, told->stage.c_str());
+        std::fflush(stdout);
+    };
 }
 
 } // namespace framelet

@@ -1,4 +1,4 @@
-// Progress of loading on a terminal: one line that is redrawn.
+// Progress of loading: on a terminal one line that is redrawn, for a program lines of their own.
 #pragma once
 
 #include "server/scene/reading/progress.h"
@@ -7,5 +7,8 @@ namespace framelet {
 
 /// Prints to stderr. Nothing when `quiet` or where stderr is no terminal.
 Progress make_progress_bar(bool quiet);
+
+/// Prints to stdout a line "loading PERCENT% STAGE" for each percent, for who started this program.
+Progress make_progress_lines();
 
 } // namespace framelet

@@ -20,6 +20,7 @@
 #include "server/session/admission.h"
 #include "server/session/clock/clock_requests.h"
 #include "server/session/connection_table.h"
+#include "server/session/figures/busy_share.h"
 #include "server/session/limits/farewells.h"
 #include "server/session/limits/log_limit.h"
 #include "server/session/limits/source.h"
@@ -74,6 +75,7 @@ struct Server::Impl {
 
     std::atomic<std::uint64_t> sent_bytes = 0, viewers = 0, scenes = 1; ///< counted for those who watch over the server
     std::atomic<steady_clock::time_point> last_beat = steady_clock::now();
+    BusyShare busy_share;
 
     std::shared_ptr<LoadedScene> loaded; ///< that the loop looks at; null: it is the caller's
     LoopThread loop; ///< replaced on the io thread only; its figures: any
@@ -281,6 +283,7 @@ struct Server::Impl {
 
     void send_status() {
         auto const sessions = connections.open_sessions();
+        float const busy = busy_share.update(loop.busy_seconds(), steady_clock::now());
         for (auto const& session : sessions) {
             Status status = session->status();
             status.clock = clock.state(steady_clock::now());
@@ -288,6 +291,7 @@ struct Server::Impl {
             status.samples_per_second = loop.samples_per_second();
             status.sessions = static_cast<std::uint32_t>(sessions.size());
             status.controls = admission.controls(session->id());
+            status.busy = busy;
             session->send(status);
         }
     }

@@ -104,6 +104,33 @@ TEST(Bookmarks, AFolderThatCannotBeWrittenIsALine) {
     EXPECT_THROW(Bookmarks("").add(some_camera()), InputError);
 }
 
+TEST(Bookmarks, AreOfOneFileHoweverManyScenesHaveItsName) {
+    OwnFolder const folder;
+    ::setenv("XDG_CONFIG_HOME", folder.path().c_str(), 1);
+    Bookmarks(bookmark_files("scene", 7)).add(some_camera());
+    EXPECT_EQ(Bookmarks(bookmark_files("scene", 7)).all().size(), 1u);
+    EXPECT_TRUE(Bookmarks(bookmark_files("scene", 8)).all().empty());
+    EXPECT_TRUE(Bookmarks(bookmark_files("scene", 0)).all().empty());
+    EXPECT_EQ(bookmark_files("scene", 0x1f).own.filename(), "scene-000000000000001f.json");
+}
+
+TEST(Bookmarks, WhatWasKeptByNameAloneIsWhereTheyBegin) {
+    OwnFolder const folder;
+    ::setenv("XDG_CONFIG_HOME", folder.path().c_str(), 1);
+    Bookmarks(bookmark_files("scene", 0)).add(some_camera());
+    Bookmarks one(bookmark_files("scene", 7));
+    ASSERT_EQ(one.all().size(), 1u);
+    one.remove(0);
+    EXPECT_TRUE(Bookmarks(bookmark_files("scene", 7)).all().empty());
+    EXPECT_EQ(Bookmarks(bookmark_files("scene", 8)).all().size(), 1u);
+    std::ofstream(bookmark_files("scene", 0).own) << "broken";
+    Bookmarks other(bookmark_files("scene", 8));
+    EXPECT_NE(other.complaint(), "");
+    other.add(some_camera());
+    EXPECT_EQ(Bookmarks(bookmark_files("scene", 8)).complaint(), "");
+    EXPECT_TRUE(std::filesystem::exists(bookmark_files("scene", 0).own)); // it may be another's as well
+}
+
 TEST(UserFiles, NamesOfScenesAreNoWaysToOtherFolders) {
     EXPECT_EQ(file_stem_for("wind mill-2"), "wind mill-2");
     EXPECT_EQ(file_stem_for("../../etc/passwd"), "_.._.._etc_passwd");

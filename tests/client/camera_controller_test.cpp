@@ -199,6 +199,27 @@ TEST_P(CameraControllerOfSize, FitShowsAllOfTheSceneAndNoMoreThanThat) {
     }
 }
 
+TEST(CameraController, LooksToWhereThePointerGoes) {
+    CameraController controller(look_at({0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 0.8f), {{-1, -1, -1}, {1, 1, 1}});
+    Vec3 const position = controller.camera().position;
+    controller.look({100, 0}, {200, 100}); // a quarter turn
+    EXPECT_LT(glm::distance(controller.camera().forward(), Vec3(1, 0, 0)), 1e-5f);
+    controller.look({0, 25}, {200, 100});
+    EXPECT_LT(controller.camera().forward().y, -0.3f);
+    EXPECT_EQ(controller.camera().position, position);
+}
+
+TEST(CameraController, TheWheelMakesFlyingFasterWithinBounds) {
+    CameraController controller(look_at({0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 0.8f), {{-1, -1, -1}, {1, 1, 1}});
+    float const before = controller.fly_speed();
+    controller.change_speed(3);
+    EXPECT_NEAR(controller.fly_speed(), 1.953125f * before, 1e-4f * before);
+    controller.change_speed(-1000);
+    controller.fly({{0, 0, -1}, {0, 0}, false}, 1);
+    EXPECT_NEAR(controller.camera().position.z, -controller.fly_speed(), 1e-6f);
+    EXPECT_GT(controller.fly_speed(), 0);
+}
+
 TEST(CameraController, AmidALandscapeTheViewTurnsAroundSomethingNear) {
     Stage const stage(2000);
     Camera const street = look_at({50, 2, 100}, {60, 1, 100}, {0, 1, 0}, 0.8f);

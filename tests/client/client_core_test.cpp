@@ -120,6 +120,18 @@ TEST(ClientCore, CamerasCountUpAndEqualOnesAreNotRepeated) {
     }
 }
 
+TEST(ClientCore, BeforeTheFirstPictureItLooksFromWhereTheSceneBegins) {
+    FakeServer::Script script;
+    script.welcome.start_camera = look_at({3, 4, 5}, {0, 1, 0}, {0, 1, 0}, 0.7f);
+    FakeServer server(script);
+    ClientCore core(options_for(server));
+    core.set_view({}, {32, 32}, 0);
+    Picture picture;
+    std::vector<PixelRect> changed;
+    EXPECT_FALSE(core.update_picture(picture, changed));
+    EXPECT_EQ(core.shown_camera(), script.welcome.start_camera);
+}
+
 TEST(ClientCore, SettingsAndClockRequestsGoUpAndStatusComesDown) {
     FakeServer server;
     ClientCore core(options_for(server));
@@ -133,11 +145,13 @@ TEST(ClientCore, SettingsAndClockRequestsGoUpAndStatusComesDown) {
     Status status;
     status.clock = {12, false, 2};
     status.samples_per_second = 7e6;
+    status.busy = 0.5f;
     server.fall_silent();
     server.send(Message(status));
     ASSERT_TRUE(wait_for(core, [&] { return core.status() == status; }));
     EXPECT_EQ(core.clock().time, 12);
     EXPECT_EQ(core.statistics().server_samples_per_second, 7e6);
+    EXPECT_EQ(core.statistics().server_busy, 0.5);
 }
 
 TEST(ClientCore, IsCompleteWhenTheNewestViewHasConvergedAndAllHasCome) {

@@ -75,19 +75,23 @@ TEST(StatisticsHistory, HasTheNewestFigureAndAMinuteOfOlderOnes) {
     StatisticsHistory history;
     EXPECT_EQ(history.plots().front().value, "0 a second");
     RateMeter meter;
+    ClientStatistics statistics;
+    statistics.server_samples_per_second = 2.5e6;
     for (int i = 1; i <= 200; ++i) {
         for (int picture = 0; picture < i; ++picture) {
             meter.picture(0.016);
         }
         ASSERT_TRUE(meter.update(i, 125000 * static_cast<std::uint64_t>(i)));
-        history.add(meter, 2.5e6);
+        statistics.server_busy = i / 400.0;
+        history.add(meter, statistics);
     }
     std::vector<Plot> const plots = history.plots();
-    ASSERT_EQ(plots.size(), 4u);
+    ASSERT_EQ(plots.size(), 5u);
     EXPECT_EQ(plots[0].value, "200 a second");
     EXPECT_EQ(plots[1].value, "16 ms");
     EXPECT_EQ(plots[2].value, "1.0 Mbit/s");
     EXPECT_EQ(plots[3].value, "2.50 million samples/s");
+    EXPECT_EQ(plots[4].value, "50% of the time");
     for (Plot const& plot : plots) {
         EXPECT_EQ(plot.values.size(), 120u);
     }

@@ -113,6 +113,32 @@ TEST(SceneOpener, TellsWhenTheServerOfBeforeIsNotNeeded) {
     ::close(needed[0]);
 }
 
+TEST(SceneOpener, ShowsHowFarTheFileIsLoaded) {
+    SceneOpener opener(connect, [] {});
+    OverlayContent nothing;
+    opener.show(nothing);
+    EXPECT_EQ(nothing, OverlayContent());
+    opener.open({chase});
+    bool has_stage = false;
+    EXPECT_TRUE(eventually([&] {
+        OverlayContent content;
+        opener.show(content);
+        has_stage = has_stage || (content.progress && content.sign.starts_with("opening vehicle_chase.glb: "));
+        return opener.poll() || opener.opening().empty();
+    }));
+    EXPECT_TRUE(has_stage);
+}
+
+TEST(SceneOpener, EveryServerHasTheOptions) {
+    SceneOpener opener(connect, [] {}, {}, {"--paused"});
+    std::optional<Connection> const first = opened(opener, windmill);
+    ASSERT_TRUE(first) << opener.take_complaint();
+    EXPECT_FALSE(first->core->clock().playing);
+    std::optional<Connection> const second = opened(opener, chase);
+    ASSERT_TRUE(second) << opener.take_complaint();
+    EXPECT_FALSE(second->core->clock().playing);
+}
+
 TEST(SceneOpener, SaysThatThereIsNoServerToStart) {
     TemporaryFolder const folder;
     std::filesystem::path const alone = folder.path() / "launcher_test";

@@ -81,6 +81,18 @@ TEST(View, EndsWithItsWindowAndHandsOnWhatIsAsked) {
     EXPECT_FALSE(lives(programs.pids().second));
 }
 
+TEST(View, TellsTheViewerWhatCountsForOtherScenesToo) {
+    Programs const programs("exit 0");
+    Process view(programs.framelet(), {"view", scene_file, "--allow-outside", "--threads", "1", "--", "--quiet",
+                                       "--metrics", "0", "--exposure=1"});
+    EXPECT_EQ(view.wait(patience), 0) << view.errors();
+    std::string const arguments = programs.read("arguments");
+    std::size_t const begin = arguments.find("--server-option");
+    ASSERT_NE(begin, std::string::npos) << arguments;
+    EXPECT_EQ(arguments.substr(begin),
+              "--server-option=--threads=1 --server-option=--quiet --server-option=--exposure=1\n");
+}
+
 TEST(View, HasTheExitCodeOfTheViewerThatFailed) {
     Programs const programs("exit 7");
     Process failed(programs.framelet(), {"view", scene_file});

@@ -86,6 +86,30 @@ protected:
         return false;
     }
 
+    /// The newest camera that `press("shift+c")` has saved; as the file is named, in the order of time.
+    nlohmann::json newest_camera() {
+        auto const before = saved(".camera.json").size();
+        std::vector<fs::path> files;
+        EXPECT_TRUE(eventually([&] {
+            press("shift+c");
+            files = saved(".camera.json");
+            return files.size() > before;
+        }));
+        auto const newest = std::ranges::max_element(
+            files, {}, [](fs::path const& file) { return std::pair(fs::last_write_time(file), file); });
+        nlohmann::json camera;
+        EXPECT_TRUE(eventually([&] {
+            camera = nlohmann::json::parse(content_of(*newest), nullptr, false);
+            return !camera.is_discarded();
+        }));
+        return camera;
+    }
+
+    void move_mouse(int right, int down) {
+        Process tool("/usr/bin/xdotool", {"mousemove_relative", "--", std::to_string(right), std::to_string(down)});
+        EXPECT_EQ(tool.wait(patience), 0) << tool.errors();
+    }
+
     TemporaryFolder folder_;
     std::optional<Process> screen_;
     std::optional<ServerProcess> server_;
@@ -124,6 +148,52 @@ TEST_F(WindowTest, SavesThePictureWithItsDepth) {
         }
         return false;
     }));
+}
+
+TEST_F(WindowTest, TheMouseLooksAroundUntilEscapeEndsThat) {
+    EXPECT_TRUE(eventually([&] {
+        press("KP_1"); // and no camera of the scene any more
+        press("shift+c");
+        return has_looked_along({0, 0, -1});
+    }));
+    nlohmann::json const before = newest_camera();
+    nlohmann::json camera;
+    EXPECT_TRUE(eventually([&] {
+        press("m");
+        for (int i = 0; i < 10; ++i) {
+            move_mouse(20, 0);
+        }
+        camera = newest_camera();
+        if (camera == before) { // it has been switched off again, where the first one was seen late
+            return false;
+        }
+        press("Escape");
+        return true;
+    }));
+    for (std::size_t i = 0; i < 3; ++i) { // keys that came late may have looked along the axis once more
+        EXPECT_NEAR(camera["position"][i].get<double>(), before["position"][i].get<double>(), 1e-3);
+        EXPECT_NEAR(camera["up"][i].get<double>(), before["up"][i].get<double>(), 1e-3);
+    }
+    // To the right of -Z.
+    EXPECT_GT(camera["target"][0].get<double>() - camera["position"][0].get<double>(), 0.1);
+    nlohmann::json const still = newest_camera(); // after Escape, and the window is still there
+    move_mouse(-50, 0);
+    EXPECT_EQ(newest_camera(), still);
+}
+
+TEST_F(WindowTest, KeepsBookmarksForTheSceneFile) {
+    fs::path const folder = folder_.path() / "framelet" / "cameras";
+    std::string name;
+    EXPECT_TRUE(eventually([&] {
+        press("b");
+        if (!fs::exists(folder)) {
+            return false;
+        }
+        name = fs::directory_iterator(folder)->path().filename().string();
+        return name.ends_with(".json");
+    }));
+    EXPECT_TRUE(name.starts_with("windmill-")) << name;
+    EXPECT_EQ(name.size(), std::string("windmill-0123456789abcdef.json").size()) << name;
 }
 
 } // namespace

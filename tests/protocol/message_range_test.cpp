@@ -138,6 +138,11 @@ TEST(MessageRange, Status) {
         status.samples_per_second = bad;
         expect_refused(unchecked(status), "samples per second");
     }
+    for (float const bad : {-0.1f, 1.1f, nan}) {
+        Status status;
+        status.busy = bad;
+        expect_refused(unchecked(status), "busy");
+    }
 }
 
 TEST(MessageRange, Welcome) {

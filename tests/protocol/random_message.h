@@ -81,6 +81,7 @@ public:
         welcome.ticket = ticket();
         welcome.resumed = coin();
         welcome.let_go = any64();
+        welcome.scene_place = any64();
         return welcome;
     }
 
@@ -152,7 +153,9 @@ public:
         case 7:
             return batch();
         case 8:
-            return Status{clock(), any64(), any64(), coin(), number(0, 1e12), any32(), coin(), any64()};
+            return Status{clock(), any64(),         any64(),
+                          coin(),  number(0, 1e12), any32(),
+                          coin(),  any64(),         static_cast<float>(number(0, 1))};
         default:
             return Failure{text(4096), coin()};
         }
@@ -181,7 +184,7 @@ inline bool same(Message const& left, Message const& right) {
                a->start_camera == b->start_camera && a->cameras == b->cameras &&
                a->animation_duration == b->animation_duration && a->clock == b->clock &&
                a->scene_identity == b->scene_identity && a->controls == b->controls && a->ticket == b->ticket &&
-               a->resumed == b->resumed && a->let_go == b->let_go;
+               a->resumed == b->resumed && a->let_go == b->let_go && a->scene_place == b->scene_place;
     }
     return std::visit(
         [&](auto const& value) {

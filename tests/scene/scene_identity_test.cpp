@@ -26,5 +26,18 @@ TEST(SceneIdentity, IsTheSameForTheSameSceneOnly) {
     EXPECT_NE(scene_identity(other), identity);
 }
 
+TEST(SceneIdentity, APlaceIsTheSameForTheSameFileOnly) {
+    Scene scene = moving_scene();
+    EXPECT_EQ(scene_place(scene), 0u);
+    scene.files = {"/somewhere/model.glb"};
+    std::uint64_t const place = scene_place(scene);
+    EXPECT_NE(place, 0u);
+    Scene changed = triangle_scene();
+    changed.files = {"/somewhere/else/../model.glb", "/somewhere/texture.png"};
+    EXPECT_EQ(scene_place(changed), place);
+    scene.files = {"/elsewhere/model.glb"};
+    EXPECT_NE(scene_place(scene), place);
+}
+
 } // namespace
 } // namespace framelet

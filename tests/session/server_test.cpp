@@ -226,6 +226,25 @@ TEST(Server, ClockRequestsReachEveryViewer) {
     EXPECT_TRUE(one.closed.empty()) << one.closed;
 }
 
+TEST(Server, TellsViewersHowBusyItIs) {
+    RunningServer const server({}, moving_scene());
+    Conversation viewer(server.port());
+    viewer.stream->send(Hello{});
+    bool was_busy = false;
+    viewer.run([&](Message const& message) {
+        if (std::holds_alternative<Welcome>(message)) {
+            viewer.stream->send(camera_update(1));
+        } else if (auto const* const batch = std::get_if<EncodedBatch>(&message)) {
+            viewer.stream->send(Ack{batch->number, 0, 0});
+        } else if (auto const* const status = std::get_if<Status>(&message)) {
+            was_busy = was_busy || status->busy > 0;
+            return !was_busy; // the scene moves
+        }
+        return true;
+    });
+    EXPECT_TRUE(was_busy) << viewer.closed;
+}
+
 /// Says hello and looks at the scene; returns whether it controls it, as it is told.
 bool begin(RawViewer& viewer) {
     bool controls = false;

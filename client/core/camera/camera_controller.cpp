@@ -16,6 +16,8 @@ constexpr float steepest = 0.499f * pi;
 constexpr float dolly_step = 0.9f;
 constexpr float halfway_steps = 6.5788f; ///< of `dolly`: 0.9 to this power is a half
 constexpr float fast_factor = 4;
+constexpr float speed_step = 1.25f;
+constexpr float most_speed = 100; ///< times what suits the scene
 /// Up to this size a scene is crossed in the same time; larger ones are travelled faster, but by the square root only:
 /// what one goes past in a landscape is still as large as a house. Metres.
 constexpr float room_size = 30;
@@ -75,9 +77,8 @@ void CameraController::orbit(Vec2 pixels, Viewport viewport) {
 }
 
 void CameraController::look(Vec2 pixels, Viewport viewport) {
-    float const field = camera_.projection == Projection::perspective ? camera_.vertical_extent : pi / 4;
-    Vec2 const angle = pixels * (field / static_cast<float>(viewport.height));
-    turn(angle.x, angle.y);
+    Vec2 const angle = pixels * (pi / 2 / static_cast<float>(viewport.height));
+    turn(-angle.x, -angle.y);
 }
 
 void CameraController::pan(Vec2 pixels, Viewport viewport) {
@@ -162,6 +163,14 @@ void CameraController::fit(Viewport viewport) {
     go_to(scene_.center() - camera_.orientation * pivot_);
 }
 
+float CameraController::fly_speed() const {
+    return reach_ / 8 * speed_;
+}
+
+void CameraController::change_speed(float steps) {
+    speed_ = std::clamp(speed_ * std::pow(speed_step, steps), 1 / most_speed, most_speed);
+}
+
 void CameraController::fly(FlyInput const& input, double seconds) {
     if (!input.moving()) {
         return;
@@ -169,7 +178,7 @@ void CameraController::fly(FlyInput const& input, double seconds) {
     auto const time = static_cast<float>(seconds);
     Vec2 const angle = input.turn * (pi / 2 * time / std::max(glm::length(input.turn), 1.0f));
     turn(-angle.x, -angle.y);
-    float const speed = reach_ / 8 * (input.fast ? fast_factor : 1);
+    float const speed = fly_speed() * (input.fast ? fast_factor : 1);
     Vec3 const direction = input.direction / std::max(glm::length(input.direction), 1.0f);
     go_to(camera_.position + camera_.orientation * direction * (speed * time));
 }

@@ -47,10 +47,14 @@ public:
     /// Towards (positive) or away from the pivot, which stays where it is in the picture: a step is a tenth of the way;
     /// never through it.
     void dolly(float steps);
-    /// Through the scene: an eighth of its diagonal a second, in large scenes less (2 km: 30 m/s). The head turns a
-    /// quarter a second.
+    /// Through the scene with `fly_speed`. The head turns a quarter a second.
     void fly(FlyInput const& input, double seconds);
-    /// Turns the head in place: the picture's whole height is the vertical field of view.
+    /// Metres a second: an eighth of the scene's diagonal, in large scenes less (2 km: 30 m/s), times what
+    /// `change_speed` was told.
+    float fly_speed() const;
+    /// Each step is a quarter faster (positive) or slower; never more than 100 times.
+    void change_speed(float steps);
+    /// Turns the head in place, to where the pointer goes: the picture's whole height is a quarter turn.
     void look(Vec2 pixels, Viewport viewport);
 
     Vec3 pivot() const { return camera_.position + camera_.orientation * pivot_; }
@@ -63,6 +67,7 @@ private:
     Bounds scene_;
     float size_; ///< the scene's diagonal, metres
     float reach_; ///< how far one goes in a few seconds, metres
+    float speed_ = 1; ///< times what suits the scene
     Camera camera_;
     float field_of_view_ = Camera().vertical_extent; ///< that the last perspective camera had
     Vec3 pivot_{0, 0, -1}; ///< in camera space: it goes with the camera

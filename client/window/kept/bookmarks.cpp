@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cstdio>
 #include <numbers>
 
 #include <nlohmann/json.hpp>
@@ -106,14 +107,18 @@ std::vector<Bookmark> parse_bookmarks(std::string const& text, std::string const
     return out;
 }
 
-Bookmarks::Bookmarks(std::filesystem::path file) : file_(std::move(file)) {
-    try {
-        if (auto const text = read_user_file(file_)) {
-            all_ = parse_bookmarks(*text, file_.string());
+Bookmarks::Bookmarks(std::filesystem::path file, std::filesystem::path const& older) : file_(std::move(file)) {
+    for (std::filesystem::path const& from : {file_, older}) {
+        try {
+            if (auto const text = read_user_file(from)) {
+                all_ = parse_bookmarks(*text, from.string());
+                return;
+            }
+        } catch (InputError const& error) {
+            complaint_ = std::string(error.what()) + "; bookmarks are left out";
+            is_broken_ = from == file_;
+            return;
         }
-    } catch (InputError const& error) {
-        complaint_ = std::string(error.what()) + "; bookmarks are left out";
-        is_broken_ = true;
     }
 }
 
@@ -155,9 +160,19 @@ void Bookmarks::save() {
     write_user_file(file_, bookmarks_text(all_));
 }
 
-std::filesystem::path bookmarks_file(std::string const& scene_name) {
-    std::filesystem::path const folder = config_folder();
-    return folder.empty() ? folder : folder / "cameras" / (file_stem_for(scene_name) + ".json");
+BookmarkFiles bookmark_files(std::string const& scene_name, std::uint64_t scene_place) {
+    if (config_folder().empty()) {
+        return {};
+    }
+    std::filesystem::path const folder = config_folder() / "cameras";
+    std::string const stem = file_stem_for(scene_name);
+    std::filesystem::path const of_name = folder / (stem + ".json");
+    if (scene_place == 0) {
+        return {of_name, {}};
+    }
+    std::array<char, 24> place{};
+    std::snprintf(place.data(), place.size(), "-%016llx", static_cast<unsigned long long>(scene_place));
+    return {folder / (stem + place.data() + ".json"), of_name};
 }
 
 } // namespace framelet

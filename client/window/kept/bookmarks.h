@@ -1,6 +1,7 @@
 // Views of one's own in a scene, by name. In: cameras. Out: a file of camera files, and back.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -25,13 +26,25 @@ std::string bookmarks_text(std::vector<Bookmark> const& bookmarks);
 /// Throws InputError; `name` of the file is for its message.
 std::vector<Bookmark> parse_bookmarks(std::string const& text, std::string const& name);
 
+/// Empty: none.
+struct BookmarkFiles {
+    std::filesystem::path own;
+    std::filesystem::path older; ///< to begin with: what earlier versions kept, for whatever scene had the name
+};
+
+/// Where those of a scene are kept. `scene_place` as in Welcome: that of another folder has others; where it is not
+/// known (0) the name alone counts.
+BookmarkFiles bookmark_files(std::string const& scene_name, std::uint64_t scene_place);
+
 /// Those of one scene, kept in a file.
 class Bookmarks {
 public:
     static constexpr std::size_t most = 1000;
 
-    /// What is in the file, if there is one. Where it cannot be used there are none, and `complaint` is one line.
-    explicit Bookmarks(std::filesystem::path file);
+    /// What is in the file, or where there is none in the older one, which is read only. Where that cannot be used
+    /// there are none, and `complaint` is one line.
+    explicit Bookmarks(std::filesystem::path file, std::filesystem::path const& older = {});
+    explicit Bookmarks(BookmarkFiles const& files) : Bookmarks(files.own, files.older) {}
 
     std::vector<Bookmark> const& all() const { return all_; }
     std::string const& complaint() const { return complaint_; }
@@ -50,8 +63,5 @@ private:
     std::string complaint_;
     bool is_broken_ = false; ///< the file
 };
-
-/// Where those of the scene of that name are kept.
-std::filesystem::path bookmarks_file(std::string const& scene_name);
 
 } // namespace framelet

@@ -24,6 +24,7 @@ enum class Command : std::uint8_t {
     sharper,
     fresher,
     free_camera,
+    mouse_look, ///< or no more
     fit_scene,
     view_front,
     view_right,

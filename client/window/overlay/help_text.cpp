@@ -15,6 +15,7 @@ struct Line {
 };
 
 constexpr Line cameras[] = {
+    {Command::mouse_look, "look around with the mouse, wheel: speed"},
     {Command::fit_scene, "the whole scene"},
     {Command::reset, "back to the first view"},
     {Command::view_front, "look at it from the front"},
@@ -67,6 +68,7 @@ TextRows help_rows(bool controls) {
         {"wheel or right drag", "nearer, farther"},
         {"double click", "look at that point, from half as far"},
         {"W A S D, Q E", "fly; down, up (Shift: faster)"},
+        {"right drag meanwhile", "look around"},
         {"gamepad", "sticks: fly, look; triggers: down, up"},
         {"dropping a scene file", "opens it here, served by this machine"},
         {"1 .. 9", help_text(Command::scene_camera)},

@@ -14,6 +14,9 @@ using TextRows = std::vector<std::pair<std::string, std::string>>; ///< name and
 /// What is said where another viewer has the scene's clock at its disposal.
 inline constexpr char const* watching_text = "another viewer controls the scene's clock";
 
+/// What is said while the mouse turns the head.
+inline constexpr char const* mouse_look_text = "the mouse looks around, W A S D Q E fly; a click or Esc ends it";
+
 /// `controls`: the keys that set the scene's clock have an effect.
 TextRows help_rows(bool controls);
 

@@ -35,6 +35,7 @@ constexpr std::array unnumbered{
     KeyMeaning{GLFW_KEY_K, alone, Command::sharper, true},
     KeyMeaning{GLFW_KEY_L, alone, Command::fresher, true},
     KeyMeaning{GLFW_KEY_0, alone, Command::free_camera, false},
+    KeyMeaning{GLFW_KEY_M, alone, Command::mouse_look, false},
     KeyMeaning{GLFW_KEY_F, alone, Command::fit_scene, false},
     KeyMeaning{GLFW_KEY_KP_1, alone, Command::view_front, false},
     KeyMeaning{GLFW_KEY_KP_3, alone, Command::view_right, false},

@@ -20,6 +20,8 @@ PixelRect pixels(OverlayArea const& area, ImVec2 scale) {
 } // namespace
 
 void Overlay::lay_out(OverlayContent const& content, OverlayActions& actions) {
+    ImGuiConfigFlags& flags = ImGui::GetIO().ConfigFlags;
+    flags = content.has_pointer ? flags & ~ImGuiConfigFlags_NoMouse : flags | ImGuiConfigFlags_NoMouse;
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
@@ -39,7 +41,7 @@ void Overlay::lay_out(OverlayContent const& content, OverlayActions& actions) {
         draw_help(content.help, frame);
     }
     if (!content.sign.empty()) {
-        draw_text("sign", {0.5f, 0}, content.sign, frame);
+        draw_text("sign", {content.statistics ? 1.0f : 0.5f, 0}, content.sign, frame, content.progress);
     }
     if (!content.note.empty()) {
         draw_text("note", {0.5f, 1}, content.note, frame);

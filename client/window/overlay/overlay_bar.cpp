@@ -29,7 +29,33 @@ std::string tip_of(Command command) {
     return command == Command::screenshot ? tip + "\n" + tip_of(Command::screenshot_with_depth) : tip;
 }
 
-void clock_controls(TimeLine const& line, float right_width, OverlayFrame& frame) {
+constexpr char const* shown_buttons[] = {"photo", "rec", "stats", "ages", "?"};
+
+/// From which width of the window on, in font sizes, the bar has these; smaller ones have the keys for it.
+constexpr float room_for_bias = 70;
+constexpr float room_for_exposure = 56;
+constexpr float room_for_speed = 46;
+
+bool has_room(float for_it) {
+    return ImGui::GetIO().DisplaySize.x > for_it * ImGui::GetFontSize();
+}
+
+/// Of what stands to the right of the time line.
+float right_width() {
+    ImGuiStyle const& style = ImGui::GetStyle();
+    auto const width_of = [&](char const* text) { return ImGui::CalcTextSize(text).x + style.ItemSpacing.x; };
+    auto const width_of_button = [&](char const* text) { return width_of(text) + 2 * style.FramePadding.x; };
+    float const plus_and_minus = 2 * width_of_button("+");
+    float width = has_room(room_for_speed) ? plus_and_minus + width_of("0.0625x") : 0;
+    width += has_room(room_for_exposure) ? plus_and_minus + width_of("-16.00 EV") : 0;
+    width += has_room(room_for_bias) ? width_of_button("sharp") + width_of("+0.00") + width_of_button("fresh") : 0;
+    for (char const* const text : shown_buttons) {
+        width += width_of_button(text);
+    }
+    return width;
+}
+
+void clock_controls(TimeLine const& line, OverlayFrame& frame) {
     // What cannot be used says why instead of what it does.
     auto const tip = [&](Command command) { return line.fixed_because.empty() ? tip_of(command) : line.fixed_because; };
     ImGui::BeginDisabled(!line.fixed_because.empty());
@@ -41,7 +67,7 @@ void clock_controls(TimeLine const& line, float right_width, OverlayFrame& frame
     double place = line.place();
     double const least = 0;
     std::string const format = formatted("%%.2f of %.2f s", line.duration);
-    ImGui::SetNextItemWidth(std::max(ImGui::GetContentRegionAvail().x - right_width, 6 * ImGui::GetFontSize()));
+    ImGui::SetNextItemWidth(std::max(ImGui::GetContentRegionAvail().x - right_width(), 6 * ImGui::GetFontSize()));
     if (ImGui::SliderScalar("##time", ImGuiDataType_Double, &place, &least, &line.duration, format.c_str(),
                             ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoInput)) {
         frame.actions.seek = line.time_at(place);
@@ -49,29 +75,12 @@ void clock_controls(TimeLine const& line, float right_width, OverlayFrame& frame
     tooltip(line.fixed_because.empty() ? "time of the animation: drag, or Left and Right for a second"
                                        : line.fixed_because);
     ImGui::SameLine();
-    button("-##speed", Command::slower, tip(Command::slower), frame);
-    label(formatted("%gx", static_cast<double>(line.clock.speed)).c_str());
-    button("+##speed", Command::faster, tip(Command::faster), frame);
+    if (has_room(room_for_speed)) {
+        button("-##speed", Command::slower, tip(Command::slower), frame);
+        label(formatted("%gx", static_cast<double>(line.clock.speed)).c_str());
+        button("+##speed", Command::faster, tip(Command::faster), frame);
+    }
     ImGui::EndDisabled();
-}
-
-constexpr char const* shown_buttons[] = {"photo", "rec", "stats", "ages", "?"};
-
-/// Small windows have the keys for it.
-bool has_room_for_bias() {
-    return ImGui::GetIO().DisplaySize.x > 70 * ImGui::GetFontSize();
-}
-
-float width_of_buttons() {
-    ImGuiStyle const& style = ImGui::GetStyle();
-    float width = 0;
-    for (char const* const text : shown_buttons) {
-        width += ImGui::CalcTextSize(text).x + 2 * style.FramePadding.x + style.ItemSpacing.x;
-    }
-    if (has_room_for_bias()) {
-        width += ImGui::CalcTextSize("sharp+0.00fresh").x + 4 * style.FramePadding.x + 3 * style.ItemSpacing.x;
-    }
-    return width;
 }
 
 /// What was typed becomes the name, unless it is cancelled.
@@ -132,6 +141,10 @@ void draw_camera_menu(CameraMenu const& menu, OverlayFrame& frame) {
         frame.actions.commands.push_back(Command::free_camera);
     }
     tooltip(tip_of(Command::free_camera));
+    if (ImGui::Selectable("fly with the mouse")) {
+        frame.actions.commands.push_back(Command::mouse_look);
+    }
+    tooltip(tip_of(Command::mouse_look));
     for (std::size_t i = 0; i < menu.scene_cameras.size(); ++i) {
         ImGui::PushID(static_cast<int>(i));
         if (ImGui::Selectable(menu.scene_cameras[i].c_str())) {
@@ -177,15 +190,14 @@ void draw_bar(OverlayContent const& content, OverlayFrame& frame) {
     take_area(frame);
     draw_camera_menu(content.cameras, frame);
     if (line.duration > 0) {
-        float const button_width = ImGui::CalcTextSize("+").x + 2 * style.FramePadding.x;
-        float const right_width =
-            ImGui::CalcTextSize("0.0625x-16.00 EV").x + 4 * button_width + 7 * style.ItemSpacing.x + width_of_buttons();
-        clock_controls(line, right_width, frame);
+        clock_controls(line, frame);
     }
-    button("-##exposure", Command::darker, tip_of(Command::darker), frame);
-    label(formatted("%+.2f EV", static_cast<double>(line.exposure_ev)).c_str());
-    button("+##exposure", Command::brighter, tip_of(Command::brighter), frame);
-    if (has_room_for_bias()) {
+    if (has_room(room_for_exposure)) {
+        button("-##exposure", Command::darker, tip_of(Command::darker), frame);
+        label(formatted("%+.2f EV", static_cast<double>(line.exposure_ev)).c_str());
+        button("+##exposure", Command::brighter, tip_of(Command::brighter), frame);
+    }
+    if (has_room(room_for_bias)) {
         button("sharp", Command::sharper, tip_of(Command::sharper), frame);
         label(formatted("%+.2f", static_cast<double>(content.bias)).c_str());
         button("fresh", Command::fresher, tip_of(Command::fresher), frame);

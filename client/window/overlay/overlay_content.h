@@ -16,6 +16,7 @@ struct Plot {
     std::string name;
     std::string value; ///< now
     std::vector<float> values; ///< the oldest first; a negative one was not measured
+    float whole = 0; ///< what there can be of it; 0: there is no such bound
     bool operator==(Plot const&) const = default;
 };
 
@@ -61,12 +62,14 @@ struct OverlayContent {
     std::optional<StatisticsPanel> statistics;
     std::optional<Legend> legend;
     std::string sign; ///< small, at the upper edge; empty: none
+    std::optional<float> progress; ///< a bar below it, [0, 1]
     std::string note; ///< at the lower edge; empty: none
     std::string message; ///< in the middle; empty: none
     std::optional<AddressField> address; ///< below the message
     std::optional<TimeLine> time_line; ///< along the lower edge
     CameraMenu cameras; ///< in it
     float bias = 0; ///< likewise, -1: sharp, 1: fresh
+    bool has_pointer = true; ///< the mouse may be on any of it
 
     bool operator==(OverlayContent const&) const = default;
     bool empty() const {

@@ -34,7 +34,7 @@ void table(char const* name, TextRows const& rows) {
 
 void plot(Plot const& figure) {
     // From nought, so that heights can be compared, and with some room above.
-    float const highest = figure.values.empty() ? 0 : *std::ranges::max_element(figure.values);
+    float const highest = std::max(figure.whole, figure.values.empty() ? 0 : *std::ranges::max_element(figure.values));
     float const font = ImGui::GetFontSize();
     ImGui::TableNextColumn();
     ImGui::PlotLines(("##" + figure.name).c_str(), figure.values.data(), static_cast<int>(figure.values.size()), 0,
@@ -43,18 +43,20 @@ void plot(Plot const& figure) {
 
 } // namespace
 
-bool begin_panel(char const* name, ImVec2 anchor, float opacity, OverlayFrame const& frame, bool takes_mouse) {
+bool begin_panel(char const* name, ImVec2 anchor, float opacity, OverlayFrame const& frame, PanelKind kind) {
     ImVec2 const size = ImGui::GetIO().DisplaySize;
     float const margin = ImGui::GetFontSize();
     ImVec2 const place(margin + anchor.x * (size.x - 2 * margin),
                        margin + anchor.y * (size.y - frame.bar_height - 2 * margin));
     ImGui::SetNextWindowPos(place, ImGuiCond_Always, anchor);
     ImGui::SetNextWindowBgAlpha(opacity);
-    ImGuiWindowFlags const inputs = takes_mouse ? ImGuiWindowFlags_NoMove : ImGuiWindowFlags_NoInputs;
+    ImGuiWindowFlags const inputs =
+        kind == PanelKind::told ? ImGuiWindowFlags_NoInputs : ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoNav;
+    ImGuiWindowFlags const bars = kind == PanelKind::scrolls ? 0 : ImGuiWindowFlags_NoScrollbar;
     return ImGui::Begin(name, nullptr,
-                        ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
-                            ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
-                            ImGuiWindowFlags_NoNav | inputs);
+                        ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
+                            ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings |
+                            ImGuiWindowFlags_NoFocusOnAppearing | inputs | bars);
 }
 
 void take_area(OverlayFrame& frame) {
@@ -80,7 +82,7 @@ void button(char const* label, Command command, std::string const& tip, OverlayF
 }
 
 void draw_statistics(StatisticsPanel const& panel, OverlayFrame& frame) {
-    if (begin_panel("statistics", {0, 0}, 0.75f, frame, true)) {
+    if (begin_panel("statistics", {0, 0}, 0.75f, frame, PanelKind::takes_mouse)) {
         if (ImGui::BeginTable("figures", 3, ImGuiTableFlags_SizingFixedFit)) {
             for (Plot const& figure : panel.plots) {
                 name_cell(figure.name);
@@ -129,38 +131,66 @@ void draw_legend(Legend const& legend, OverlayFrame& frame) {
 }
 
 void draw_help(TextRows const& rows, OverlayFrame& frame) {
-    if (begin_panel("help", {0.5f, 0}, 0.9f, frame)) {
-        // Two rows side by side: in one column they would be higher than small windows.
-        std::size_t const half = (rows.size() + 1) / 2;
-        if (ImGui::BeginTable("help table", 4, ImGuiTableFlags_SizingFixedFit)) {
-            for (std::size_t i = 0; i < half; ++i) {
-                for (std::size_t const k : {i, i + half}) {
-                    if (k < rows.size()) {
-                        name_cell(rows[k].first);
-                        cell(rows[k].second);
-                    }
-                }
-                if (i + half >= rows.size()) {
-                    ImGui::TableNextRow();
+    ImGuiStyle const& style = ImGui::GetStyle();
+    ImVec2 const window = ImGui::GetIO().DisplaySize;
+    float const font = ImGui::GetFontSize();
+    ImVec2 const room(window.x - 2 * font, window.y - frame.bar_height - 2 * font);
+    float name_width = 0;
+    float text_width = 0;
+    for (auto const& [name, text] : rows) {
+        name_width = std::max(name_width, ImGui::CalcTextSize(name.c_str()).x);
+        text_width = std::max(text_width, ImGui::CalcTextSize(text.c_str()).x);
+    }
+    // Two rows side by side where there is room for that with what they say in two lines; what is still higher than the
+    // window is turned by the wheel.
+    float const inside = room.x - 2 * style.WindowPadding.x - style.ScrollbarSize;
+    float const gaps = 2 * style.CellPadding.x;
+    bool const is_wide = inside >= 2 * (name_width + text_width / 2 + 2 * gaps);
+    std::size_t const columns = is_wide ? 2 : 1;
+    float const column = inside / static_cast<float>(columns) - name_width - 2 * gaps;
+    ImGui::SetNextWindowSizeConstraints(ImVec2(0, 0), room);
+    if (begin_panel("help", {0.5f, 0}, 0.9f, frame, PanelKind::scrolls)) {
+        std::size_t const lines = (rows.size() + columns - 1) / columns;
+        if (ImGui::BeginTable("help table", 2 * static_cast<int>(columns), ImGuiTableFlags_SizingFixedFit)) {
+            for (std::size_t i = 0; i < columns; ++i) {
+                ImGui::TableSetupColumn("keys");
+                ImGui::TableSetupColumn("what they do", ImGuiTableColumnFlags_WidthFixed, std::min(column, text_width));
+            }
+            for (std::size_t i = 0; i < lines; ++i) {
+                ImGui::TableNextRow();
+                for (std::size_t k = i; k < rows.size(); k += lines) {
+                    name_cell(rows[k].first);
+                    ImGui::TableNextColumn();
+                    ImGui::PushTextWrapPos(0);
+                    ImGui::TextUnformatted(rows[k].second.c_str());
+                    ImGui::PopTextWrapPos();
                 }
             }
             ImGui::EndTable();
+        }
+        if (ImGui::GetScrollMaxY() > 0) { // else drags go through it, to the camera
+            take_area(frame);
         }
     }
     ImGui::End();
 }
 
-void draw_text(char const* name, ImVec2 anchor, std::string const& text, OverlayFrame const& frame) {
+void draw_text(char const* name, ImVec2 anchor, std::string const& text, OverlayFrame const& frame,
+               std::optional<float> progress) {
     if (begin_panel(name, anchor, 0.9f, frame)) {
         ImGui::PushTextWrapPos(ImGui::GetIO().DisplaySize.x * 0.8f);
         ImGui::TextUnformatted(text.c_str());
         ImGui::PopTextWrapPos();
+        if (progress) {
+            ImGui::ProgressBar(*progress, ImVec2(20 * ImGui::GetFontSize(), 0));
+        }
     }
     ImGui::End();
 }
 
 void draw_message(std::string const& text, AddressField const* field, std::string& typed, OverlayFrame& frame) {
-    if (begin_panel("message", {0.5f, 0.5f}, 0.9f, frame, field != nullptr)) {
+    if (begin_panel("message", {0.5f, 0.5f}, 0.9f, frame,
+                    field != nullptr ? PanelKind::takes_mouse : PanelKind::told)) {
         ImGui::PushTextWrapPos(ImGui::GetIO().DisplaySize.x * 0.8f);
         ImGui::TextUnformatted(text.c_str());
         ImGui::PopTextWrapPos();

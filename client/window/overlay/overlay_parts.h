@@ -2,6 +2,7 @@
 // the mouse belongs to them.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,9 +26,17 @@ struct OverlayFrame {
     float bar_height = 0; ///< so much of the lower edge is taken
 };
 
+/// What the mouse does on it.
+enum class PanelKind {
+    told, ///< nothing
+    takes_mouse,
+    scrolls, ///< its wheel, where there is more of it than room
+};
+
 /// A panel whose own point `anchor` (0..1) lies at that point of the window, a margin away from the edges and from the
 /// bar. `ImGui::End` after it, whatever it returns.
-bool begin_panel(char const* name, ImVec2 anchor, float opacity, OverlayFrame const& frame, bool takes_mouse = false);
+bool begin_panel(char const* name, ImVec2 anchor, float opacity, OverlayFrame const& frame,
+                 PanelKind kind = PanelKind::told);
 /// The current window's place is the overlay's.
 void take_area(OverlayFrame& frame);
 /// Also of what cannot be used now: that is when one asks why.
@@ -42,7 +51,9 @@ void draw_camera_menu(CameraMenu const& menu, OverlayFrame& frame);
 void draw_statistics(StatisticsPanel const& panel, OverlayFrame& frame);
 void draw_legend(Legend const& legend, OverlayFrame& frame);
 void draw_help(TextRows const& rows, OverlayFrame& frame);
-void draw_text(char const* name, ImVec2 anchor, std::string const& text, OverlayFrame const& frame);
+/// `progress`, [0, 1]: a bar below.
+void draw_text(char const* name, ImVec2 anchor, std::string const& text, OverlayFrame const& frame,
+               std::optional<float> progress = {});
 /// `typed` is the field's text, kept by the caller.
 void draw_message(std::string const& text, AddressField const* field, std::string& typed, OverlayFrame& frame);
 

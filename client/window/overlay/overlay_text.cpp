@@ -61,25 +61,26 @@ bool RateMeter::update(double now_seconds, std::uint64_t bytes) {
     return true;
 }
 
-void StatisticsHistory::add(RateMeter const& meter, double samples_per_second) {
+void StatisticsHistory::add(RateMeter const& meter, ClientStatistics const& statistics) {
     if (intervals_.size() == most_intervals) {
         intervals_.erase(intervals_.begin());
     }
-    intervals_.push_back(
-        {meter.pictures_per_second(), meter.photon_seconds(), 8 * meter.bytes_per_second(), samples_per_second});
+    intervals_.push_back({meter.pictures_per_second(), meter.photon_seconds(), 8 * meter.bytes_per_second(),
+                          statistics.server_samples_per_second, statistics.server_busy});
 }
 
 std::vector<Plot> StatisticsHistory::plots() const {
-    Interval const now = intervals_.empty() ? Interval{0, -1, 0, 0} : intervals_.back();
+    Interval const now = intervals_.empty() ? Interval{0, -1, 0, 0, 0} : intervals_.back();
     std::vector<Plot> out{
         {"pictures", fixed(now.pictures_per_second, 0, " a second"), {}},
         {"motion to photon", now.photon_seconds < 0 ? "nothing moved" : fixed(now.photon_seconds * 1e3, 0, " ms"), {}},
         {"network", fixed(now.bits_per_second * 1e-6, 1, " Mbit/s"), {}},
         {"server renders", fixed(now.samples_per_second * 1e-6, 2, " million samples/s"), {}},
+        {"server busy", fixed(now.server_busy * 100, 0, "% of the time"), {}, 1},
     };
     for (Interval const& interval : intervals_) {
         double const values[] = {interval.pictures_per_second, interval.photon_seconds, interval.bits_per_second,
-                                 interval.samples_per_second};
+                                 interval.samples_per_second, interval.server_busy};
         for (std::size_t i = 0; i < out.size(); ++i) {
             out[i].values.push_back(static_cast<float>(values[i]));
         }
@@ -124,8 +125,8 @@ std::optional<Legend> legend_of(DrawnOver drawn) {
     return std::nullopt;
 }
 
-std::string opening_text(std::string const& scene) {
-    return scene.empty() ? "" : "opening " + scene + " ...";
+std::string opening_text(std::string const& scene, std::string const& stage) {
+    return scene.empty() ? "" : "opening " + scene + (stage.empty() ? " ..." : ": " + stage);
 }
 
 std::string clock_text(ClockState const& clock) {

@@ -45,13 +45,13 @@ private:
 class StatisticsHistory {
 public:
     /// For each interval of the meter.
-    void add(RateMeter const& meter, double samples_per_second);
+    void add(RateMeter const& meter, ClientStatistics const& statistics);
     /// With the figures of the newest interval beside them.
     std::vector<Plot> plots() const;
 
 private:
     struct Interval {
-        double pictures_per_second, photon_seconds, bits_per_second, samples_per_second;
+        double pictures_per_second, photon_seconds, bits_per_second, samples_per_second, server_busy;
     };
     std::vector<Interval> intervals_; ///< the oldest first
 };
@@ -62,8 +62,8 @@ TextRows figure_rows(ClientStatistics const& statistics, ClockState const& clock
 TextRows detail_rows(ClientStatistics const& statistics, RateMeter const& meter, Viewport viewport);
 /// Of what is drawn over the picture; nothing where it needs none.
 std::optional<Legend> legend_of(DrawnOver drawn);
-/// Of a scene that is being opened; nothing of nothing.
-std::string opening_text(std::string const& scene);
+/// Of a scene that is being opened, and what is done of it; nothing of nothing.
+std::string opening_text(std::string const& scene, std::string const& stage);
 /// "12.34 s, playing at 1x".
 std::string clock_text(ClockState const& clock);
 /// "the scene 100 ms late".

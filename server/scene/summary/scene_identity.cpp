@@ -1,9 +1,13 @@
 #include "server/scene/summary/scene_identity.h"
 
 #include <algorithm>
+#include <array>
+#include <filesystem>
 #include <functional>
 #include <string_view>
 #include <type_traits>
+
+#include <unistd.h>
 
 #include "common/mix_bits.h"
 
@@ -85,6 +89,25 @@ std::uint64_t scene_identity(Scene const& scene) {
         }
     }
     return std::max<std::uint64_t>(digest.value(), 1);
+}
+
+std::uint64_t scene_place(Scene const& scene) {
+    if (scene.files.empty()) {
+        return 0;
+    }
+    std::error_code error; // of a file that is gone by now: its name as it was asked for
+    std::filesystem::path const file = std::filesystem::weakly_canonical(scene.files.front(), error);
+    std::array<char, 256> machine{};
+    ::gethostname(machine.data(), machine.size() - 1);
+    std::uint64_t out = 1; // no std::hash, which is another one in another build
+    for (std::string_view const text :
+         {std::string_view(machine.data()), std::string_view(error ? scene.files.front().native() : file.native())}) {
+        for (char const c : text) {
+            out = mix_in(out, static_cast<unsigned char>(c));
+        }
+        out = mix_in(out, text.size());
+    }
+    return std::max<std::uint64_t>(out, 1);
 }
 
 } // namespace framelet

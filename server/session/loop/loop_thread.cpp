@@ -25,7 +25,7 @@ void LoopThread::replace(std::unique_ptr<SessionLoop> next) {
 void LoopThread::add_figures(ServerFigures& figures) const {
     std::scoped_lock const lock(mutex_);
     figures.rays = earlier_rays_ + loop_->rays();
-    figures.busy_seconds = earlier_busy_seconds_ + loop_->busy_seconds();
+    figures.busy_seconds = busy_seconds();
     figures.rays_per_second = loop_->samples_per_second();
 }
 

@@ -24,6 +24,8 @@ public:
 
     void wake() { loop_->wake(); }
     double samples_per_second() const { return loop_->samples_per_second(); }
+    /// That any of the loops had something to do.
+    double busy_seconds() const { return earlier_busy_seconds_ + loop_->busy_seconds(); }
     /// Fills in what the loops have done, all together.
     void add_figures(ServerFigures& figures) const;
 
