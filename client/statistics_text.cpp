@@ -51,6 +51,7 @@ std::string statistics_json(ClientStatistics const& s, RunFigures const& run) {
         {"converged_seconds", reached(run.converged_seconds)},
         {"round_trip_seconds", reached(s.round_trip_seconds)},
         {"motion_to_photon_seconds", reached(run.photon_seconds)},
+        {"still_difference", reached(run.still_difference)},
         {"least_round_trip_seconds", reached(s.least_round_trip_seconds)},
         {"cameras_sent", s.cameras_sent},
         {"coverage", s.coverage},
@@ -58,6 +59,7 @@ std::string statistics_json(ClientStatistics const& s, RunFigures const& run) {
         {"cached_bytes", s.cached_bytes},
         {"lag_seconds", s.lag_seconds},
         {"server_samples_per_second", s.server_samples_per_second},
+        {"server_busy", s.server_busy},
         {"converged", s.converged},
         {"reconnections", s.reconnections},
     };
@@ -78,7 +80,13 @@ std::string statistics_summary(ClientStatistics const& s, RunFigures const& run)
         << "  done              " << s.coverage * 100 << "% of the picture, "
         << (run.converged_seconds < 0 ? "not yet as good as it gets"
                                       : "as good as it gets after " + milliseconds(run.converged_seconds))
-        << "\ndetails\n"
+        << "\n";
+    if (run.still_difference >= 0) {
+        out << "  off the stills    " << std::setprecision(2) << run.still_difference * 100
+            << "% of white, by mean of the sheet's moments\n"
+            << std::setprecision(1);
+    }
+    out << "details\n"
         << "  frames            " << run.frames << " shown, " << run.late_frames << " late, " << s.pictures
         << " changed; whole after " << milliseconds(s.full_picture_seconds) << "\n"
         << "  round trip        " << milliseconds(s.round_trip_seconds) << ", least "
@@ -89,7 +97,8 @@ std::string statistics_summary(ClientStatistics const& s, RunFigures const& run)
         << std::setprecision(1) << "  cost              decode " << s.decode_ns_per_sample()
         << " ns/sample, reconstruct " << s.reconstruct_ns_per_pixel() << " ns/pixel, cache "
         << static_cast<double>(s.cached_bytes) * 1e-6 << " MB\n"
-        << "  server            " << s.server_samples_per_second * 1e-6 << " million samples/s\n";
+        << "  server            " << s.server_samples_per_second * 1e-6 << " million samples/s, busy "
+        << std::setprecision(0) << s.server_busy * 100 << "% of the time\n";
     return out.str();
 }
 

@@ -18,7 +18,9 @@
 #include "client/frames/frame_choice.h"
 #include "client/frames/frame_log.h"
 #include "client/frames/frame_writer.h"
+#include "client/frames/output_folder.h"
 #include "client/picture_size.h"
+#include "client/sheet/sheet_moments.h"
 #include "client/statistics_text.h"
 #include "client/tev/tev_sender.h"
 #include "client/video/film_sink.h"
@@ -28,6 +30,7 @@
 #include "common/command_line/program_failure.h"
 #include "common/cpu_clock.h"
 #include "common/error.h"
+#include "common/files/picture_writer.h"
 
 namespace framelet {
 
@@ -47,6 +50,7 @@ struct Options {
     std::vector<double> output_times;
     std::string output;
     std::string tev;
+    std::string sheet;
     std::string frames_file;
     bool json = false;
     DrawnOver overlay = DrawnOver::nothing;
@@ -178,6 +182,10 @@ double display_rate(Options const& options) {
     return options.rate.value_or(options.output.find('%') != std::string::npos ? 10 : 60);
 }
 
+double run_seconds(Options const& options) {
+    return options.duration.value_or(options.until_converged ? 60 : 10);
+}
+
 FrameSinks make_sinks(Options const& options, std::optional<FramePattern> const& pattern, Viewport viewport) {
     FrameSinks sinks;
     if (options.output == standard_output) {
@@ -218,9 +226,9 @@ bool tell_end_of_sinks(FrameSinks const& sinks) {
 /// Shows frames until the time is over, the session has ended, somebody whom they are for has gone or, if wanted, all
 /// is there. Returns what it counted.
 RunFigures show(ClientCore& core, Options const& options, std::optional<CameraPath> const& path, Viewport viewport,
-                FrameSinks const& sinks, FrameLog* log) {
+                FrameSinks const& sinks, FrameLog* log, SheetMoments* sheet) {
     double const rate = display_rate(options);
-    double const duration = options.duration.value_or(options.until_converged ? 60 : 10);
+    double const duration = run_seconds(options);
     double const path_duration = path ? path->duration() : 0;
     RunFigures run;
     Welcome welcome;
@@ -259,10 +267,15 @@ RunFigures show(ClientCore& core, Options const& options, std::optional<CameraPa
         if (news && statistics.photon_seconds >= 0) {
             photon_seconds.push_back(statistics.photon_seconds);
         }
+        int const scene_camera = path ? path->scene_camera : start_scene_camera(welcome);
         if (log != nullptr) {
             log->add({run.frames, unix_seconds(), core.clock().time, news, core.is_complete(), statistics.bytes,
                       cpu_seconds_of(CLOCK_PROCESS_CPUTIME_ID) - cpu_seconds_of_sinks(sinks), statistics.samples,
-                      statistics.photon_seconds, path ? path->scene_camera : start_scene_camera(welcome), camera});
+                      statistics.photon_seconds, scene_camera, camera});
+        }
+        if (sheet != nullptr) {
+            sheet->note(seconds_since(start), picture,
+                        {camera, scene_camera, std::max(core.clock().time - statistics.lag_seconds, 0.0)});
         }
         ++run.frames;
         if (!sinks.empty()) {
@@ -300,6 +313,17 @@ void check_video_options(Options const& options) {
     }
 }
 
+/// Once its stills have come. Throws as `SheetMoments::take_stills`, and InputError where it cannot be written.
+void write_sheet(SheetMoments& sheet, ClientCore& core, std::string const& file) {
+    std::cerr << "framelet-client: waiting for the stills of the contact sheet" << std::endl;
+    sheet.take_stills(core);
+    if (sheet.pairs().empty()) {
+        std::cerr << "framelet-client: the run was too short for a contact sheet" << std::endl;
+        return;
+    }
+    write_png(file, contact_sheet(sheet.pairs()));
+}
+
 struct Session {
     ClientStatistics statistics;
     RunFigures figures;
@@ -310,6 +334,11 @@ struct Session {
 /// ConnectionError.
 Session look(Options const& options, ConnectionOptions const& connection, std::optional<CameraPath> const& path,
              Viewport viewport, FrameSinks const& sinks) {
+    std::optional<SheetMoments> sheet;
+    if (!options.sheet.empty()) {
+        make_folder_of(options.sheet);
+        sheet.emplace(run_seconds(options));
+    }
     std::optional<FrameLog> log;
     if (!options.frames_file.empty()) {
         log.emplace(options.frames_file);
@@ -327,9 +356,13 @@ Session look(Options const& options, ConnectionOptions const& connection, std::o
     core.set_smoothing(options.display.lag_seconds());
     ask_clock(core, options);
     Session session;
-    session.figures = show(core, options, path, viewport, sinks, log ? &*log : nullptr);
+    session.figures = show(core, options, path, viewport, sinks, log ? &*log : nullptr, sheet ? &*sheet : nullptr);
     session.statistics = core.statistics();
     session.end_reason = core.end_reason() ? core.end_reason() : core.interruption();
+    if (sheet && !session.end_reason) {
+        write_sheet(*sheet, core, options.sheet);
+        session.figures.still_difference = sheet->difference();
+    }
     return session;
 }
 
@@ -392,6 +425,15 @@ int main(int argc, char** argv) {
         ->check(readable_by([](std::string const& text) {
             if (text != standard_output && !is_film_name(text)) {
                 FramePattern{text};
+            }
+        }));
+    app.add_option("--sheet", options.sheet,
+                   "Contact sheet (.png): three moments of the run as they were shown, below each what it comes to "
+                   "once it stands still, which is waited for when the run is over")
+        ->type_name("FILE")
+        ->check(readable_by([](std::string const& text) {
+            if (!text.ends_with(".png")) {
+                throw InputError("a contact sheet is a .png file");
             }
         }));
     app.add_option(

@@ -171,5 +171,39 @@ TEST(Video, IsNotWrittenToATerminalNorWithTimes) {
     EXPECT_NE(times.errors().find("--output-times"), std::string::npos) << times.errors();
 }
 
+TEST(Sheet, HasTheMomentsAsTheyWereShownAndAsTheyAre) {
+    ServerProcess server(scene_file);
+    TemporaryFolder folder;
+    std::string const file = (folder.path() / "new" / "sheet.png").string();
+    Process client(FRAMELET_CLIENT,
+                   {server.address(), "--size", "96x64", "--duration", "2", "--sheet", file, "--json"});
+    ASSERT_EQ(client.wait(patience), 0) << client.errors();
+    auto const statistics = nlohmann::json::parse(client.output());
+    // The same view, a little off; that of another moment, in which cars are elsewhere, is off by much more.
+    EXPECT_GT(statistics.at("still_difference").get<double>(), 0);
+    EXPECT_LT(statistics.at("still_difference").get<double>(), 0.06);
+    Picture const sheet = read_picture(file);
+    EXPECT_EQ(sheet.width, 3 * 96 + 2 * 8);
+    EXPECT_EQ(sheet.height, 2 * 64 + 8);
+
+    Process again(FRAMELET_CLIENT, {server.address(), "--size", "96x64", "--duration", "1", "--json"});
+    ASSERT_EQ(again.wait(patience), 0) << again.errors();
+    EXPECT_GT(nlohmann::json::parse(again.output()).at("pictures").get<int>(), 2) << "the clock goes on";
+}
+
+TEST(Sheet, NeedsTheClock) {
+    ServerProcess server(scene_file);
+    Process first(FRAMELET_CLIENT, {server.address(), "--size", "64x64", "--duration", "100"});
+    ASSERT_TRUE(eventually([&] { return server.process().errors().find("viewer 1") != std::string::npos; }));
+    TemporaryFolder folder;
+    std::string const file = (folder.path() / "sheet.png").string();
+    Process client(FRAMELET_CLIENT, {server.address(), "--size", "64x64", "--duration", "1", "--sheet", file});
+    EXPECT_EQ(client.wait(patience), 1);
+    EXPECT_NE(client.errors().find("another viewer controls"), std::string::npos) << client.errors();
+    EXPECT_FALSE(std::filesystem::exists(file));
+    Process wrong(FRAMELET_CLIENT, {server.address(), "--sheet", "sheet.jpg"});
+    EXPECT_EQ(wrong.wait(patience), 2);
+}
+
 } // namespace
 } // namespace framelet::test

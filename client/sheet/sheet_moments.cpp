@@ -1,0 +1,82 @@
+#include "client/sheet/sheet_moments.h"
+
+#include <chrono>
+#include <thread>
+
+#include "common/error.h"
+
+namespace framelet {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// What the view comes to with the clock standing there.
+Picture still_of(ClientCore& core, ShownMoment const& moment, Viewport viewport, bool sets_clock) {
+    constexpr std::chrono::seconds patience(60);
+    // What comes meanwhile need not be painted: the server may want this machine's processors for it.
+    constexpr std::chrono::milliseconds look(200);
+    if (sets_clock) {
+        core.request_clock({ClockRequest::time | ClockRequest::playing, {moment.time, false, 1}});
+    }
+    Picture out = bare_picture(viewport);
+    std::vector<PixelRect> changed;
+    for (Clock::time_point const end = Clock::now() + patience; Clock::now() < end;) {
+        core.set_view(moment.camera, viewport, moment.scene_camera);
+        core.update_picture(out, changed, Clock::now());
+        if (auto const reason = core.end_reason()) {
+            throw ConnectionError(*reason);
+        }
+        // What the server said of the moment before may still be on its way.
+        bool const stands = !sets_clock || core.status().clock.time == moment.time;
+        if (stands && core.is_complete()) {
+            core.update_picture(out, changed, Clock::now()); // what came since
+            return out;
+        }
+        std::this_thread::sleep_for(look);
+    }
+    throw ConnectionError("the stills of the contact sheet were not complete in time: make the picture smaller");
+}
+
+} // namespace
+
+void SheetMoments::note(double seconds, Picture const& shown, ShownMoment const& of) {
+    auto const next = static_cast<double>(pairs_.size() + 1);
+    if (next <= count && seconds >= run_seconds_ * next / (count + 1)) {
+        pairs_.push_back({shown, {}});
+        moments_.push_back(of);
+    }
+}
+
+void SheetMoments::take_stills(ClientCore& core) {
+    bool const moves = core.welcome().animation_duration > 0;
+    if (pairs_.empty()) {
+        return;
+    }
+    if (moves && !core.controls()) {
+        throw InputError("the contact sheet is not written: its stills need the scene's clock, which another viewer "
+                         "controls");
+    }
+    ClockState const before = core.clock();
+    core.set_smoothing(0); // the moment itself is wanted
+    for (std::size_t i = 0; i < pairs_.size(); ++i) {
+        Picture const& shown = pairs_[i].shown;
+        pairs_[i].still = still_of(core, moments_[i], {shown.width, shown.height}, moves);
+    }
+    if (moves) {
+        core.request_clock({ClockRequest::time | ClockRequest::playing, before});
+    }
+}
+
+double SheetMoments::difference() const {
+    if (pairs_.empty()) {
+        return -1;
+    }
+    double sum = 0;
+    for (ShownAndStill const& pair : pairs_) {
+        sum += mean_difference(pair.shown, pair.still);
+    }
+    return sum / static_cast<double>(pairs_.size());
+}
+
+} // namespace framelet

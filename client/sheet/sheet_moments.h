@@ -1,0 +1,46 @@
+// What a run of framelet-client showed at some moments, and the stills of these, which it waits for when the run is
+// over. In: frames, then the session. Out: pairs for a contact sheet.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "client/core/client_core.h"
+#include "client/sheet/contact_sheet.h"
+
+namespace framelet {
+
+/// What a frame was of.
+struct ShownMoment {
+    Camera camera;
+    int scene_camera = -1; ///< as of `ClientCore::set_view`
+    SceneTime time = 0;
+};
+
+class SheetMoments {
+public:
+    static constexpr int count = 3;
+
+    /// Moments after a quarter, a half and three quarters of a run of that length.
+    explicit SheetMoments(double run_seconds) : run_seconds_(run_seconds) {}
+
+    /// Of each frame, so long after the run began: keeps the first one at each of the moments.
+    void note(double seconds, Picture const& shown, ShownMoment const& of);
+
+    /// Asks the server for each moment, standing, and waits for what it comes to; the clock goes on afterwards where
+    /// it was. Throws InputError where another viewer controls the clock that has to be set for it, ConnectionError
+    /// where the session ends or the pictures are not complete within a minute each.
+    void take_stills(ClientCore& core);
+
+    /// What `take_stills` has made; empty where the run ended before the first moment.
+    std::span<ShownAndStill const> pairs() const { return pairs_; }
+    /// The mean of theirs, as `mean_difference`; -1 of none.
+    double difference() const;
+
+private:
+    double run_seconds_;
+    std::vector<ShownMoment> moments_; ///< of each pair
+    std::vector<ShownAndStill> pairs_;
+};
+
+} // namespace framelet
