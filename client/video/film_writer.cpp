@@ -44,7 +44,9 @@ struct Setting {
     char const* value;
 };
 
-constexpr Setting mp4_settings[] = {{"preset", "superfast"}, {"crf", "18"}};
+/// Half the processor time of "superfast", which is what the picture and its server have left, for about as many bytes
+/// and a decibel less of some 50.
+constexpr Setting mp4_settings[] = {{"preset", "ultrafast"}, {"crf", "18"}};
 /// A picture of 1280x720 takes 50 ms of a core; 4 takes twice as long for a twentieth fewer bytes (cwebp -m, two
 /// scenes).
 constexpr Setting webp_settings[] = {{"compression_level", "2"}, {"quality", "80"}};

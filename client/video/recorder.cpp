@@ -110,10 +110,26 @@ void Recorder::run() {
     changed_.notify_all();
 }
 
+namespace {
+
+/// Of the film; what is left out is none of it.
+std::string rate_text(Recorder::Progress const& progress) {
+    constexpr double least_seconds = 1; // before that it would jump about
+    if (progress.seconds < least_seconds) {
+        return "";
+    }
+    std::ostringstream out;
+    out << ", " << std::fixed << std::setprecision(0) << static_cast<double>(progress.pictures) / progress.seconds
+        << " a second";
+    return out.str();
+}
+
+} // namespace
+
 std::string progress_text(Recorder::Progress const& progress) {
     std::ostringstream out;
     out << (progress.is_stopped ? "writing the film, " : "recording ") << std::fixed << std::setprecision(0)
-        << progress.seconds << " s, " << counted(progress.pictures, "picture");
+        << progress.seconds << " s, " << counted(progress.pictures, "picture") << rate_text(progress);
     if (progress.left_out > 0) {
         out << ", " << progress.left_out << " left out";
     }
@@ -126,7 +142,7 @@ std::string result_text(Recorder::Progress const& progress, fs::path const& path
     }
     std::ostringstream out;
     out << "saved " << path.string() << ": " << std::fixed << std::setprecision(1) << progress.seconds << " s, "
-        << counted(progress.pictures, "picture");
+        << counted(progress.pictures, "picture") << rate_text(progress);
     if (progress.left_out > 0) {
         out << ", " << progress.left_out << " left out";
     }

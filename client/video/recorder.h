@@ -74,9 +74,9 @@ private:
     std::thread thread_;
 };
 
-/// "recording 12 s, 360 pictures" for people.
+/// "recording 12 s, 360 pictures, 30 a second" for people.
 std::string progress_text(Recorder::Progress const& progress);
-/// "saved PATH: 12.3 s, 4.1 MB", or why not.
+/// "saved PATH: 12.3 s, 360 pictures, 30 a second, 4.1 MB", or why not.
 std::string result_text(Recorder::Progress const& progress, std::filesystem::path const& path);
 
 } // namespace framelet

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
+#include <numeric>
 #include <sstream>
+#include <utility>
 
 #include "common/command_line/bash_completion.h"
 #include "common/command_line/man_page.h"
@@ -146,6 +148,53 @@ std::string footer_of(ProgramNotes const& notes) {
     return out.substr(0, out.find_last_not_of('\n') + 1); // CLI11 ends the line
 }
 
+/// How many letters have to be added, left out or changed to make one of the other (Levenshtein).
+std::size_t spelling_distance(std::string const& a, std::string const& b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        std::size_t corner = std::exchange(row[0], i + 1);
+        for (std::size_t j = 0; j < b.size(); ++j) {
+            std::size_t const changed = corner + (a[i] == b[j] ? 0 : 1);
+            corner = row[j + 1];
+            row[j + 1] = std::min({changed, row[j] + 1, row[j + 1] + 1});
+        }
+    }
+    return row.back();
+}
+
+/// The words of the line that nothing is known of, and what the first of them was most likely meant for.
+std::string unknown_text(CLI::App const& app) {
+    std::vector<std::string> const words = app.remaining(true);
+    std::string const meant = words.front().substr(0, words.front().find('='));
+    std::vector<std::string> names;
+    auto const add_options = [&](CLI::App const& of) {
+        for (CLI::Option const* const option : of.get_options()) {
+            if (!option->get_group().empty() && !option->get_positional()) {
+                names.push_back(option->get_name());
+            }
+        }
+    };
+    if (is_option(meant)) {
+        add_options(app);
+        for (CLI::App const* const command : app.get_subcommands()) {
+            add_options(*command);
+        }
+    } else {
+        for (CLI::App const* const command : app.get_subcommands([](CLI::App const*) { return true; })) {
+            names.push_back(command->get_name());
+        }
+    }
+    std::string out = "unknown: " + CLI::detail::join(words, " ");
+    constexpr std::size_t most_wrong = 2;
+    auto const nearest =
+        std::ranges::min_element(names, {}, [&](auto const& n) { return spelling_distance(n, meant); });
+    if (nearest != names.end() && spelling_distance(*nearest, meant) <= most_wrong) {
+        out += "; did you mean " + *nearest + "?";
+    }
+    return out;
+}
+
 } // namespace
 
 std::string HelpFormatter::make_group(std::string name, bool positional,
@@ -211,7 +260,17 @@ void parse_command_line(CLI::App& app, int argc, char const* const* argv) {
         }
     }
     std::reverse(joined.begin(), joined.end()); // as CLI11 wants them
-    app.parse(std::move(joined));
+    try {
+        app.parse(std::move(joined));
+    } catch (CLI::ParseError const& error) {
+        auto const is = [&](CLI::ExitCodes code) { return error.get_exit_code() == static_cast<int>(code); };
+        bool const lacks_command = is(CLI::ExitCodes::RequiredError) && app.get_require_subcommand_min() > 0 &&
+                                   app.get_subcommands().empty() && app.remaining_size() > 0;
+        if (!is(CLI::ExitCodes::ExtrasError) && !lacks_command) {
+            throw;
+        }
+        throw CLI::ParseError(unknown_text(app), CLI::ExitCodes::ExtrasError);
+    }
 }
 
 int exit_usage(CLI::App const& app, CLI::ParseError const& error) {

@@ -80,11 +80,14 @@ TEST(Recorder, NeverWaitsAndLeavesOutWhatIsTooMuch) {
     for (int i = 0; i < 20; ++i) {
         recorder.add(Picture(2 + i, 1), 1 + i);
     }
-    Recorder::Progress const progress = recorder.progress();
+    Recorder::Progress progress = recorder.progress();
     EXPECT_EQ(progress.pictures, 1 + most_waiting);
     EXPECT_EQ(progress.left_out, 20 - most_waiting);
     EXPECT_EQ(progress.seconds, 20);
     EXPECT_NE(progress_text(progress).find("14 left out"), std::string::npos);
+    progress.seconds = 2;
+    progress.pictures = 50;
+    EXPECT_EQ(progress_text(progress), "recording 2 s, 50 pictures, 25 a second, 14 left out");
     log.release();
     log.wait([&] { return log.added.size() == 1 + most_waiting; });
     EXPECT_EQ(log.added[1], std::pair(2, 1.0));

@@ -70,6 +70,27 @@ TEST(CommandLine, AnOptionalValueIsTakenInBothSpellings) {
     EXPECT_EQ(line.host, "");
 }
 
+TEST(CommandLine, WhatIsUnknownIsNamedInItsOrderWithWhatItMayBe) {
+    EXPECT_EQ(Line().complaint({"here", "--overlay", "foo"}), "unknown: --overlay foo");
+    EXPECT_EQ(Line().complaint({"here", "--plian"}), "unknown: --plian; did you mean --plain?");
+    EXPECT_EQ(Line().complaint({"here", "--prt=8"}), "unknown: --prt=8; did you mean --port?");
+    CLI::App app("Does something.", "program");
+    prepare_command_line(app);
+    app.require_subcommand(1);
+    app.add_subcommand("view", "Show it");
+    for (auto const& [words, says] :
+         {std::pair(std::vector<char const*>{"program", "vew", "a"}, "unknown: vew a; did you mean view?"),
+          std::pair(std::vector<char const*>{"program"}, "subcommand is required"),
+          std::pair(std::vector<char const*>{"program", "view", "--hlp"}, "unknown: --hlp; did you mean --help?")}) {
+        try {
+            parse_command_line(app, static_cast<int>(words.size()), words.data());
+            ADD_FAILURE() << says;
+        } catch (CLI::ParseError const& error) {
+            EXPECT_NE(std::string(error.what()).find(says), std::string::npos) << error.what();
+        }
+    }
+}
+
 TEST(CommandLine, AValueThatCannotBeIsNamedWithThoseThatCan) {
     EXPECT_EQ(Line().complaint({"here", "--lag", "5000"}), "--lag: '5000' is not a number from 0 to 1000");
     EXPECT_EQ(Line().complaint({"here", "--lag", "much"}), "--lag: 'much' is not a number from 0 to 1000");
