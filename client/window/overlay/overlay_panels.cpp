@@ -83,11 +83,15 @@ void button(char const* label, Command command, std::string const& tip, OverlayF
 
 void draw_statistics(StatisticsPanel const& panel, OverlayFrame& frame) {
     if (begin_panel("statistics", {0, 0}, 0.75f, frame, PanelKind::takes_mouse)) {
-        if (ImGui::BeginTable("figures", 3, ImGuiTableFlags_SizingFixedFit)) {
+        constexpr float room_for_plots = 34; // font sizes
+        bool const has_plots = ImGui::GetIO().DisplaySize.x > room_for_plots * ImGui::GetFontSize();
+        if (ImGui::BeginTable("figures", has_plots ? 3 : 2, ImGuiTableFlags_SizingFixedFit)) {
             for (Plot const& figure : panel.plots) {
                 name_cell(figure.name);
                 cell(figure.value);
-                plot(figure);
+                if (has_plots) {
+                    plot(figure);
+                }
             }
             ImGui::EndTable();
         }
@@ -100,6 +104,7 @@ void draw_statistics(StatisticsPanel const& panel, OverlayFrame& frame) {
             table("details", panel.details);
         }
         take_area(frame);
+        frame.left_width = ImGui::GetWindowPos().x + ImGui::GetWindowWidth();
     }
     ImGui::End();
 }
@@ -178,11 +183,15 @@ void draw_help(TextRows const& rows, OverlayFrame& frame) {
 void draw_text(char const* name, ImVec2 anchor, std::string const& text, OverlayFrame const& frame,
                std::optional<float> progress) {
     if (begin_panel(name, anchor, 0.9f, frame)) {
-        ImGui::PushTextWrapPos(ImGui::GetIO().DisplaySize.x * 0.8f);
+        float const font = ImGui::GetFontSize();
+        float const window = ImGui::GetIO().DisplaySize.x;
+        bool const is_beside = anchor.x == 1 && anchor.y == 0;
+        float const room = is_beside ? std::max(window - frame.left_width - 3 * font, 10 * font) : 0.8f * window;
+        ImGui::PushTextWrapPos(std::min(room, 0.8f * window));
         ImGui::TextUnformatted(text.c_str());
         ImGui::PopTextWrapPos();
         if (progress) {
-            ImGui::ProgressBar(*progress, ImVec2(20 * ImGui::GetFontSize(), 0));
+            ImGui::ProgressBar(*progress, ImVec2(std::min(room, 20 * font), 0));
         }
     }
     ImGui::End();

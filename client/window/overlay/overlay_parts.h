@@ -24,6 +24,7 @@ struct OverlayFrame {
     NameEdit& edit;
     bool closes_menu = false; ///< one that is open is to be closed
     float bar_height = 0; ///< so much of the lower edge is taken
+    float left_width = 0; ///< and of the upper one, from the left
 };
 
 /// What the mouse does on it.
@@ -51,7 +52,8 @@ void draw_camera_menu(CameraMenu const& menu, OverlayFrame& frame);
 void draw_statistics(StatisticsPanel const& panel, OverlayFrame& frame);
 void draw_legend(Legend const& legend, OverlayFrame& frame);
 void draw_help(TextRows const& rows, OverlayFrame& frame);
-/// `progress`, [0, 1]: a bar below.
+/// `progress`, [0, 1]: a bar below. At the right end of the upper edge it keeps clear of what takes the left one, as
+/// far as there is room.
 void draw_text(char const* name, ImVec2 anchor, std::string const& text, OverlayFrame const& frame,
                std::optional<float> progress = {});
 /// `typed` is the field's text, kept by the caller.
