@@ -130,6 +130,23 @@ void write_colors(WarpedBlock const& block, int left, int top, Picture& picture)
     copy_rows(colors.data(), {picture.width, picture.height}, left, top, picture.rgba.data());
 }
 
+/// A block that stands in its place has the picture's colours; what it lacks inverse depths for is infinitely far and
+/// no hole. Beyond the picture's border there is nothing.
+void take_picture(Picture const& picture, int left, int top, WarpedBlock& block) {
+    block.holes = 0;
+    for (int y = 0; y < std::min(side, picture.height - top); ++y) {
+        std::uint8_t const* pixel = picture.row(top + y) + 4 * left;
+        for (int x = 0; x < std::min(side, picture.width - left); ++x, pixel += 4) {
+            auto const i = static_cast<std::size_t>(y * side + x);
+            block.inverse_depth[i] = std::max(block.inverse_depth[i], 0.0f);
+            for (std::size_t channel = 0; channel < 3; ++channel) {
+                auto const value = static_cast<float>(pixel[channel]);
+                block.squares[channel][i] = value * value;
+            }
+        }
+    }
+}
+
 void write_plane(std::array<float, WarpedBlock::pixels> const& from, int left, int top, Viewport viewport,
                  std::vector<float>& plane) {
     copy_rows(from.data(), viewport, left, top, plane.data());
@@ -284,11 +301,8 @@ bool Reprojector::update_block(FrameletPool const& pool, Camera const& camera, S
         return false;
     }
     if (in_place) {
-        block.holes = 0;
-        for (float& inverse_depth : block.inverse_depth) {
-            inverse_depth = std::max(inverse_depth, 0.0f);
-        }
         reconstruct_block(newest, column, row, unfiltered_);
+        take_picture(unfiltered_, left, top, block); // holes beside it are filled from what shows in it
     } else {
         write_colors(block, left, top, unfiltered_);
     }

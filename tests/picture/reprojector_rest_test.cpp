@@ -208,5 +208,31 @@ TEST(ReprojectorRest, OrthographicStays) {
     EXPECT_EQ(show(pool, aside, 0).picture, expected);
 }
 
+/// A block that stands in its place and ends beyond the picture's border has nothing there, rather than something black
+/// that is farther than all else: of that the holes beside it would be made.
+TEST(Reprojector, HolesAtTheBorderAreNotFilledFromBeyondIt) {
+    ImagePlane const plane({320, 184});
+    AnalyticScene const scene = room();
+    FrameletPool pool(plane);
+    std::vector<Tile> tiles = visible_tiles(plane, plane.pixel_depth());
+    Camera before = front();
+    before.position.x += 0.5f;
+    pool.insert(scene.batch(plane, 1, before, 0, {tiles.front()}), scene.motions);
+    std::erase_if(tiles, [](Tile tile) { return tile.row() == 11 && tile.column() >= 9 && tile.column() <= 11; });
+    pool.insert(scene.batch(plane, 2, front(), 0, tiles), scene.motions);
+    Picture picture(320, 184);
+    std::vector<PixelRect> repainted;
+    Reprojector reprojector;
+    reprojector.show(pool, {}, front(), 0, {}, picture, repainted);
+    ASSERT_GT(reprojector.hole_share(), 0);
+    ASSERT_FALSE(reprojector.is_exact());
+    for (int y = 176; y < 184; ++y) {
+        for (int x = 144; x < 192; ++x) {
+            std::uint8_t const* const pixel = picture.row(y) + 4 * x;
+            ASSERT_GT(pixel[0] + pixel[1] + pixel[2], 30) << x << ' ' << y;
+        }
+    }
+}
+
 } // namespace
 } // namespace framelet
