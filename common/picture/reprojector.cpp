@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstring>
+#include <utility>
 
 #include <tbb/parallel_for.h>
 
@@ -172,13 +173,15 @@ void Reprojector::show_exact(FrameletPool const& pool, std::span<PixelRect const
     }
     exact_slot_ = pool.newest_slot();
     is_exact_ = true;
+    is_on_canvas_ = false;
     noted_slots_ = 0;
     hole_share_ = 0;
 }
 
-/// After an exact picture no block is known to be as the plan says.
-void Reprojector::start_moving(Viewport viewport, std::size_t blocks) {
-    bool const is_new = is_exact_ || blocks_.size() != blocks;
+/// After an exact picture no block is known to be as the plan says; nor is it after one that was painted elsewhere,
+/// where it is blank.
+void Reprojector::start_moving(Viewport viewport, std::size_t blocks, bool is_blank) {
+    bool const is_new = is_exact_ || is_blank || blocks_.size() != blocks;
     if (is_new) {
         blocks_.assign(blocks, {});
     }
@@ -209,7 +212,7 @@ void Reprojector::flag_replanned(FrameletPool const& pool) {
 
 void Reprojector::show(FrameletPool const& pool, std::span<PixelRect const> changed, Camera const& camera,
                        SceneTime scene_time, BodyMotions const& motions, Picture& picture,
-                       std::vector<PixelRect>& repainted) {
+                       std::vector<PixelRect>& repainted, BlockCanvas* canvas) {
     Viewport const viewport = pool.plane().viewport();
     FRAMELET_CHECK(picture.width == viewport.width && picture.height == viewport.height);
     if (is_in_place(pool, camera, scene_time)) {
@@ -227,22 +230,13 @@ void Reprojector::show(FrameletPool const& pool, std::span<PixelRect const> chan
     }
     columns_ = plans_[0].columns();
     rows_ = plans_[0].rows();
-    start_moving(viewport, static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
+    bool const was_on_canvas = std::exchange(is_on_canvas_, canvas != nullptr);
+    bool const is_blank = canvas != nullptr && canvas->begin(this, !has_shown_, viewport);
+    start_moving(viewport, static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_),
+                 is_blank || was_on_canvas != is_on_canvas_);
     flag_replanned(pool);
-    std::atomic<bool> any = false;
-    tbb::parallel_for(0, rows_, [&](int row) {
-        bool painted = false;
-        std::vector<PatchView> patches;
-        auto index = static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_);
-        for (int column = 0; column < columns_; ++column, ++index) {
-            if (replanned_[index] != 0 || (blocks_[index].slots & noted_slots_) != 0) {
-                painted |= update_block(pool, camera, scene_time, motions, column, row, patches);
-            }
-        }
-        if (painted) {
-            any.store(true, std::memory_order_relaxed);
-        }
-    });
+    bool const any = canvas != nullptr ? paint_on(*canvas, pool, camera, scene_time, motions)
+                                       : paint_blocks(pool, camera, scene_time, motions);
     if (any) {
         count_blocks(pool.slot_count());
     }
@@ -251,6 +245,11 @@ void Reprojector::show(FrameletPool const& pool, std::span<PixelRect const> chan
         parts_.keeps_cuts && kept < least_kept ? &fullest_of(pool) : nullptr; // coverage takes a while
     if (fullest != nullptr && kept < least_kept * fullest->coverage()) {
         show_cut(*fullest, picture, repainted);
+    } else if (canvas != nullptr) {
+        repainted.clear();
+        if (any) {
+            repainted.assign(1, {0, 0, viewport.width, viewport.height});
+        }
     } else {
         if (any) {
             fill();
@@ -261,16 +260,99 @@ void Reprojector::show(FrameletPool const& pool, std::span<PixelRect const> chan
     has_shown_ = true;
 }
 
+/// True when something had to be painted.
+bool Reprojector::paint_blocks(FrameletPool const& pool, Camera const& camera, SceneTime scene_time,
+                               BodyMotions const& motions) {
+    std::atomic<bool> any = false;
+    tbb::parallel_for(0, rows_, [&](int row) {
+        bool painted = false;
+        std::vector<PatchView> patches;
+        auto index = static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_);
+        for (int column = 0; column < columns_; ++column, ++index) {
+            if (is_wanted(index)) {
+                painted |= update_block(pool, camera, scene_time, motions, column, row, patches);
+            }
+        }
+        if (painted) {
+            any.store(true, std::memory_order_relaxed);
+        }
+    });
+    return any;
+}
+
+/// Likewise. What is to be painted is collected here, where the plan is.
+bool Reprojector::paint_on(BlockCanvas& canvas, FrameletPool const& pool, Camera const& camera, SceneTime scene_time,
+                           BodyMotions const& motions) {
+    std::atomic<bool> any = false, any_job = false;
+    row_jobs_.resize(static_cast<std::size_t>(rows_));
+    tbb::parallel_for(0, rows_, [&](int row) {
+        bool painted = false;
+        RowJobs& jobs = row_jobs_[static_cast<std::size_t>(row)];
+        jobs.clear();
+        std::vector<PatchView> patches;
+        auto index = static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_);
+        for (int column = 0; column < columns_; ++column, ++index) {
+            if (!is_wanted(index)) {
+                continue;
+            }
+            BlockPatches const found = collect(pool, camera, scene_time, motions, column, row, patches);
+            BlockState& state = blocks_[index];
+            bool const is_painted = state.signature != found.signature;
+            if (!is_painted && (state.slots & noted_slots_) == 0) {
+                continue;
+            }
+            jobs.blocks.push_back({column, row, static_cast<std::uint32_t>(jobs.patches.size()),
+                                   static_cast<std::uint32_t>(patches.size()), is_painted, found.in_place});
+            jobs.patches.insert(jobs.patches.end(), patches.begin(), patches.end());
+            if (is_painted && found.in_place) {
+                reconstruct_block(pool.newest(), column, row, unfiltered_);
+            }
+            state.signature = found.signature;
+            painted |= is_painted;
+        }
+        if (!jobs.blocks.empty()) {
+            any_job.store(true, std::memory_order_relaxed);
+        }
+        if (painted) {
+            any.store(true, std::memory_order_relaxed);
+        }
+    });
+    if (!any_job) {
+        return false;
+    }
+    try {
+        canvas.paint({pool.plane().viewport(), columns_, rows_, row_jobs_, plans_, unfiltered_, parts_.flat_contrast},
+                     reports_);
+    } catch (...) {
+        blocks_.clear(); // no block is as the plan says
+        throw;
+    }
+    std::size_t next = 0;
+    for (RowJobs const& jobs : row_jobs_) {
+        for (BlockJob const& job : jobs.blocks) {
+            BlockReport const& report = reports_[next++];
+            BlockState& state = blocks_[static_cast<std::size_t>(job.row) * static_cast<std::size_t>(columns_) +
+                                        static_cast<std::size_t>(job.column)];
+            state.holes = report.holes;
+            state.slots = report.slots;
+        }
+    }
+    return any;
+}
+
 /// As it was.
 void Reprojector::show_cut(FrameletCache const& moment, Picture& picture, std::vector<PixelRect>& repainted) {
+    is_on_canvas_ = false;
     blocks_.clear(); // no block is as the plan says
     std::ranges::fill(painted_, std::uint8_t{0});
     reconstruct_all(moment, picture);
     repainted.assign(1, {0, 0, picture.width, picture.height});
 }
 
-bool Reprojector::update_block(FrameletPool const& pool, Camera const& camera, SceneTime scene_time,
-                               BodyMotions const& motions, int column, int row, std::vector<PatchView>& patches) {
+/// Replaces `patches` by those of the block, in order.
+Reprojector::BlockPatches Reprojector::collect(FrameletPool const& pool, Camera const& camera, SceneTime scene_time,
+                                               BodyMotions const& motions, int column, int row,
+                                               std::vector<PatchView>& patches) {
     auto const index =
         static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
     FrameletCache const& newest = pool.newest();
@@ -287,7 +369,14 @@ bool Reprojector::update_block(FrameletPool const& pool, Camera const& camera, S
     }
     in_place = in_place && patches.size() == newest_patches;
     order(patches);
-    std::uint64_t const signature = signature_of(patches, in_place);
+    return {signature_of(patches, in_place), in_place};
+}
+
+bool Reprojector::update_block(FrameletPool const& pool, Camera const& camera, SceneTime scene_time,
+                               BodyMotions const& motions, int column, int row, std::vector<PatchView>& patches) {
+    auto const index =
+        static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
+    auto const [signature, in_place] = collect(pool, camera, scene_time, motions, column, row, patches);
     bool const is_same = signature == blocks_[index].signature;
     if (is_same && (blocks_[index].slots & noted_slots_) == 0) {
         return false;
@@ -301,7 +390,7 @@ bool Reprojector::update_block(FrameletPool const& pool, Camera const& camera, S
         return false;
     }
     if (in_place) {
-        reconstruct_block(newest, column, row, unfiltered_);
+        reconstruct_block(pool.newest(), column, row, unfiltered_);
         take_picture(unfiltered_, left, top, block); // holes beside it are filled from what shows in it
     } else {
         write_colors(block, left, top, unfiltered_);

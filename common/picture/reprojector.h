@@ -10,6 +10,7 @@
 #include "common/framelet/body_motion.h"
 #include "common/held/framelet_pool.h"
 #include "common/image.h"
+#include "common/picture/block_canvas.h"
 #include "common/picture/hole_fill.h"
 #include "common/picture/pixel_filter.h"
 #include "common/warp/warp_block.h"
@@ -41,13 +42,20 @@ public:
     /// for an orthographic camera stay on their pixels. All stays on its pixels where the camera has cut: where nearly
     /// nothing of what is held would show in the new view. Only blocks whose samples or their places differ from the
     /// last call's are painted.
+    ///
+    /// With a canvas what has to be moved is painted there, and `picture` gets what has not: then `is_on_canvas` says
+    /// where the picture is. From one call to the next it may change. Throws what the canvas throws; the next call
+    /// paints all of the picture then.
     void show(FrameletPool const& pool, std::span<PixelRect const> changed, Camera const& camera, SceneTime scene_time,
-              BodyMotions const& motions, Picture& picture, std::vector<PixelRect>& repainted);
+              BodyMotions const& motions, Picture& picture, std::vector<PixelRect>& repainted,
+              BlockCanvas* canvas = nullptr);
 
     /// True when the last picture was `reconstruct`'s as a whole.
     bool is_exact() const { return is_exact_; }
+    /// True when the last picture is not in memory.
+    bool is_on_canvas() const { return is_on_canvas_; }
     /// A plane of the picture's size, 1 / metres; `hole_depth` where the colour is only filled in. Not kept up while
-    /// the picture is exact.
+    /// the picture is exact or on a canvas.
     std::span<float const> inverse_depth() const { return inverse_depth_; }
     /// By slot of the pool: in how many blocks of the last picture something of it shows.
     std::span<std::uint32_t const> shown_blocks() const { return shown_blocks_; }
@@ -67,8 +75,22 @@ private:
     bool is_in_place(FrameletPool const& pool, Camera const& camera, SceneTime scene_time) const;
     void show_exact(FrameletPool const& pool, std::span<PixelRect const> changed, Picture& picture,
                     std::vector<PixelRect>& repainted);
-    void start_moving(Viewport viewport, std::size_t blocks);
+    void start_moving(Viewport viewport, std::size_t blocks, bool is_blank);
     void flag_replanned(FrameletPool const& pool);
+    /// What of the pool is painted in a block.
+    struct BlockPatches {
+        std::uint64_t signature = 0; ///< of them
+        bool in_place = false; ///< `reconstruct_block` of the newest cache is what shows
+    };
+    BlockPatches collect(FrameletPool const& pool, Camera const& camera, SceneTime scene_time,
+                         BodyMotions const& motions, int column, int row, std::vector<PatchView>& patches);
+    /// Whether it has to be looked at.
+    bool is_wanted(std::size_t block) const {
+        return replanned_[block] != 0 || (blocks_[block].slots & noted_slots_) != 0;
+    }
+    bool paint_blocks(FrameletPool const& pool, Camera const& camera, SceneTime scene_time, BodyMotions const& motions);
+    bool paint_on(BlockCanvas& canvas, FrameletPool const& pool, Camera const& camera, SceneTime scene_time,
+                  BodyMotions const& motions);
     /// True when it had to be painted.
     bool update_block(FrameletPool const& pool, Camera const& camera, SceneTime scene_time, BodyMotions const& motions,
                       int column, int row, std::vector<PatchView>& patches);
@@ -83,6 +105,7 @@ private:
     ReprojectorParts parts_;
     bool has_shown_ = false;
     bool is_exact_ = false;
+    bool is_on_canvas_ = false;
     double hole_share_ = 0;
     std::uint32_t noted_slots_ = 0; ///< a bit for each of which the plan knows what shows in the last picture
     std::size_t exact_slot_ = 0; ///< that an exact picture shows
@@ -100,6 +123,8 @@ private:
     FarMeans means_;
     std::vector<FarCells> cells_; ///< of blocks with holes and those beside them
     std::vector<float> inverse_depth_;
+    std::vector<RowJobs> row_jobs_; ///< for a canvas
+    std::vector<BlockReport> reports_; ///< scratch: a canvas's
 };
 
 } // namespace framelet

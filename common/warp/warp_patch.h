@@ -51,6 +51,7 @@ struct WarpPatch {
     std::int32_t group = 0; ///< its samples are interpolated with others' of the same
     std::uint32_t first_splat = 0, splats = 0; ///< of loose samples, in the chunk
     std::uint32_t place = 0; ///< by tile and layer: orders patches of one batch
+    std::uint32_t square = 0; ///< of the plan, as `WarpPlan::square_grid` counts them
     std::uint64_t batch = 0;
     std::uint64_t signature = 0; ///< differs where what is painted may differ
     bool hides = true; ///< what is behind it; else it shows only where nothing does that hides

@@ -76,6 +76,12 @@ void WarpPlan::Square::clear() {
     places.clear();
 }
 
+void WarpPlan::Square::note_number(std::uint32_t number) {
+    for (WarpPatch& patch : patches) {
+        patch.square = number;
+    }
+}
+
 void WarpPlan::Square::give_back_room() {
     merged = {};
     patches = std::vector<WarpPatch>();
@@ -110,6 +116,7 @@ void WarpPlan::make(FrameletCache const& cache, std::size_t slot, bool loose, Ca
         square.merged.update(cache, square.tile, square.depth, joinings_->local());
         FrameletWarp warp(cache, slot, display, display_time, motions);
         plan(square, loose, warp);
+        square.note_number(index);
         known_[index].lasts = warp.lasts();
         known_[index].is_empty = square.patches.empty();
         // What is finer than pixels is held where the camera rests, of one moment after the other: else each would keep
@@ -313,6 +320,26 @@ void WarpPlan::add_shown(std::vector<Tile>& tiles) const {
             }
         }
     }
+}
+
+/// A framelet that is not joined has samples of its own, which are in the square's grid too, with other numbers.
+std::optional<GridPart> WarpPlan::grid_part(WarpPatch const& patch) const {
+    Square const& square = squares_[patch.square];
+    if (auto const place = square.merged.place_in_grid(patch.grid)) {
+        return GridPart{place->column, place->row, patch.layer, patch.ends_before};
+    }
+    auto const place = static_cast<std::size_t>(std::countr_zero(square.places[number_of(patch)]));
+    MergedSquare::Child const& child = square.merged.children()[place];
+    auto const [column, row] = square.merged.place_of_child(place);
+    GridPart out{column, row, child.numbers[patch.layer], {}};
+    for (std::size_t k = 0; k < child.framelet->shape.layer_count; ++k) {
+        std::uint32_t const number = child.numbers[k];
+        if (k != patch.layer && number == out.number) {
+            return std::nullopt;
+        }
+        out.ends_before[number / 32] |= (patch.ends_before[0] >> k & 1) << number % 32;
+    }
+    return out;
 }
 
 void order(std::vector<PatchView>& patches) {

@@ -6,6 +6,8 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "common/framelet/body_motion.h"
@@ -15,6 +17,14 @@
 #include "common/warp/warp_patch.h"
 
 namespace framelet {
+
+/// Where a patch has its samples in the grid of its square: from this column and row on, with this number in place of
+/// a layer's.
+struct GridPart {
+    int column = 0, row = 0;
+    std::uint32_t number = 0;
+    LayerSet ends_before{}; ///< numbers, as in `WarpPatch`
+};
 
 class WarpPlan {
 public:
@@ -40,6 +50,19 @@ public:
     void add_block(std::size_t index, std::vector<PatchView>& patches);
     /// Adds the tiles of what was noted to show since the plan was made; some come more than once.
     void add_shown(std::vector<Tile>& tiles) const;
+    /// The squares of the plan, whether anything is held of them or not.
+    std::size_t square_count() const { return squares_.size(); }
+    std::size_t patch_count(std::uint32_t square) const { return squares_[square].patches.size(); }
+    std::span<WarpPatch const> patches_of(std::uint32_t square) const { return squares_[square].patches; }
+    /// In `patches_of`, of one of these.
+    std::size_t number_of(WarpPatch const& patch) const {
+        return static_cast<std::size_t>(&patch - squares_[patch.square].patches.data());
+    }
+    /// The samples of a square, among which those of all its patches are.
+    MergedSquare& square_grid(std::uint32_t square) { return squares_[square].merged; }
+    /// Where a patch, which is not loose, has its samples there. Nothing where they are in its own grid alone: there
+    /// they are told from those of another layer, with which they are joined in the square's.
+    std::optional<GridPart> grid_part(WarpPatch const& patch) const;
     /// The blocks' numbers of patches, all together.
     std::size_t entry_count() const { return entries_.size(); }
 
@@ -61,6 +84,8 @@ private:
         void give_back_room();
         /// Patches that have been added since the last call are of these.
         void note_places(std::uint64_t some) { places.resize(patches.size(), some); }
+        /// Likewise, once all are there.
+        void note_number(std::uint32_t number);
     };
 
     /// Of a square, close together: all are looked at each time.

@@ -111,5 +111,52 @@ TEST(JoinedWarp, WhatIsJoinedShowsAsEachFrameletAlone) {
     }
 }
 
+/// Whoever has uploaded the grids of squares finds all samples of all patches there.
+TEST(JoinedWarp, PatchesHaveTheirSamplesInTheGridOfTheirSquare) {
+    ImagePlane const plane(viewport);
+    AnalyticScene scene = room();
+    for (int i = 0; i < 6; ++i) { // more than layers in some framelets
+        scene.quads.push_back({{0.2 + 0.04 * i, 1, 2 + 0.1 * i}, {0.04, 0, 0}, {0, 0.3, 0.1}, waves(2, 2)});
+    }
+    std::mt19937 random(4);
+    std::normal_distribution<double> normal;
+    Batch batch = scene.batch(plane, 1, front(), 0, visible_tiles(plane, plane.pixel_depth() + 1));
+    for (FrameletShape& shape : batch.shapes) {
+        for (Layer& layer : shape.layers) { // so that some are not joined
+            layer.at *= static_cast<float>(1 + 1e-3 * normal(random));
+        }
+    }
+    FrameletCache cache(plane);
+    cache.insert(batch);
+    WarpPlan plan;
+    plan.make(cache, 0, true, look_at(Vec3(1, 1.6f, 5), Vec3(0, 1, 0), Vec3(0, 1, 0), 0.8f), 0, {});
+    int in_grid = 0, alone = 0, compared = 0;
+    for (std::uint32_t square = 0; square < plan.square_count(); ++square) {
+        MergedSquare const& samples = plan.square_grid(square);
+        for (WarpPatch const& patch : plan.patches_of(square)) {
+            if (patch.is_loose) {
+                continue;
+            }
+            ASSERT_EQ(patch.square, square);
+            auto const part = plan.grid_part(patch);
+            bool const is_in_grid = samples.place_in_grid(patch.grid).has_value();
+            ASSERT_TRUE(part || !is_in_grid);
+            (is_in_grid ? in_grid : alone) += 1;
+            for (int i = 0; part && i < patch.side * patch.side; ++i) {
+                int const x = i % patch.side, y = i / patch.side;
+                PackedSample const own = patch.grid[y * patch.stride + x];
+                PackedSample const there =
+                    samples.grid()[static_cast<std::size_t>((part->row + y) * samples.side() + part->column + x)];
+                ASSERT_EQ(own & 0xffffffu, there & 0xffffffu);
+                ASSERT_EQ(layer_of(own) == patch.layer, layer_of(there) == part->number);
+                ++compared;
+            }
+        }
+    }
+    EXPECT_GT(in_grid, 0);
+    EXPECT_GT(alone, 0);
+    EXPECT_GT(compared, 0);
+}
+
 } // namespace
 } // namespace framelet

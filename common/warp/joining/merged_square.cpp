@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <functional>
 #include <span>
 
 #include "common/mix_bits.h"
@@ -93,6 +94,7 @@ void MergedSquare::make_room(ImagePlane const& plane) {
     children_.resize(most_children);
     layers_ = std::make_unique<SquareLayers>();
     grid_.assign(static_cast<std::size_t>(side_ * side_), no_number << 24);
+    written_ = ~std::uint64_t{0};
 }
 
 bool MergedSquare::set_layers(std::uint64_t places) {
@@ -133,6 +135,7 @@ void MergedSquare::keep(LayerJoining const& joining) {
             child.is_written = true;
             if (SquareLayers::part_at(place) >> 2 * levels() == 0) {
                 write(child, grid_.data() + offset_of(place));
+                written_ |= std::uint64_t{1} << place;
             }
         }
     }
@@ -253,6 +256,20 @@ void MergedSquare::set_tile(JoinedLayer const& joined, Tile tile, MergedLayer& o
     held.first_row = static_cast<std::int8_t>(static_cast<int>(samples * joined.extent.top) - row);
     held.last_column = static_cast<std::int8_t>(static_cast<int>(samples * joined.extent.right) - 1 - column);
     held.last_row = static_cast<std::int8_t>(static_cast<int>(samples * joined.extent.bottom) - 1 - row);
+}
+
+std::optional<MergedSquare::GridPlace> MergedSquare::place_in_grid(PackedSample const* sample) const {
+    std::less<> const is_before;
+    if (grid_.empty() || is_before(sample, grid_.data()) || !is_before(sample, grid_.data() + grid_.size())) {
+        return std::nullopt;
+    }
+    auto const index = static_cast<int>(sample - grid_.data());
+    return GridPlace{index % side_, index / side_};
+}
+
+MergedSquare::GridPlace MergedSquare::place_of_child(std::size_t place) const {
+    auto const index = static_cast<int>(offset_of(place));
+    return {index % side_, index / side_};
 }
 
 /// Where a child's samples lie.

@@ -8,7 +8,9 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "common/held/framelet_cache.h"
@@ -73,6 +75,20 @@ public:
     /// One of these, or a four.
     MergedLayer merge(JoinedLayer const& joined) const;
     Tile child_tile(std::size_t place) const;
+    /// All samples of the square in rows, `side()` by `side()`; empty where nothing ever was held.
+    std::span<PackedSample const> grid() const { return grid_; }
+    int side() const { return side_; } ///< of the grid
+    int child_side() const { return child_side_; } ///< of a child's samples in it
+    struct GridPlace {
+        int column = 0, row = 0;
+    };
+    /// Of one of these samples; nothing where it is another grid's.
+    std::optional<GridPlace> place_in_grid(PackedSample const* sample) const;
+    /// Where the samples of a child are.
+    GridPlace place_of_child(std::size_t place) const;
+    /// A bit for each child whose samples have been written since this was called last; all of them where the grid is
+    /// new.
+    std::uint64_t take_written() { return std::exchange(written_, 0); }
     /// Bit i: child i has loose samples.
     std::uint64_t loose_children() const { return loose_children_; }
 
@@ -104,6 +120,7 @@ private:
     std::vector<JoinedLayer> fours_;
     std::uint64_t loose_children_ = 0;
     std::vector<PackedSample> grid_; ///< of the square, in rows
+    std::uint64_t written_ = 0; ///< a bit for each child
 };
 
 } // namespace framelet
