@@ -1,0 +1,80 @@
+// The samples of everything that is held, on the graphics card: the grids of a plan's squares as pages of an array of
+// textures. In: grids, and which of their samples have been written. Out: where they are.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "client/gpu/gl/gl_objects.h"
+#include "common/warp/joining/merged_square.h"
+
+namespace framelet {
+
+class SampleAtlas {
+public:
+    static constexpr int layer_side = 1024; ///< of its textures, samples; every card has at least that
+    static constexpr int most_layers = 256; ///< likewise: 1 GB
+
+    /// Where a grid's first sample lies.
+    struct Place {
+        std::uint32_t x = 0, y = 0, layer = 0;
+    };
+
+    explicit SampleAtlas(GlCount& count) : count_(count) {}
+
+    /// Nothing is in it any more; its memory stays.
+    void clear();
+    /// The grid of a square of a slot's plan.
+    struct Grid {
+        std::size_t slot = 0;
+        std::uint32_t square = 0;
+        MergedSquare* samples = nullptr;
+    };
+    /// What is in no square's grid, 16 samples along a side at most, `side` from one row to the next.
+    struct SmallGrid {
+        PackedSample const* samples = nullptr;
+        int side = 0;
+    };
+    /// Uploads what has been written of grids since they were uploaded last, and all small ones, which are for one
+    /// picture. Other grids may be let go of: nobody has asked for them for this picture. Throws CanvasError where
+    /// there is no room.
+    void update(std::span<Grid const> grids, std::span<SmallGrid const> small_ones);
+    /// Of one of the last update's grids.
+    Place place(std::size_t slot, std::uint32_t square) const;
+    /// Of its small ones, by number.
+    Place small_place(std::size_t number) const { return place_of(small_pages_[number], 0); }
+
+    std::uint32_t texture() const { return texture_.get(); }
+    std::size_t memory_bytes() const;
+
+private:
+    struct Page {
+        std::int32_t number = -1; ///< -1: none
+        std::uint8_t size = 0; ///< of which: an index of `free_`
+        bool is_uploaded = false;
+        std::uint64_t picture = 0; ///< in which it was used last
+    };
+
+    Page& prepare(Grid const& grid);
+    void upload(Grid const& grid, Page& page);
+    std::int32_t take(std::size_t size);
+    void let_go();
+    void grow();
+    static int side_of(std::size_t size) { return least_side << size; }
+    static Place place_of(std::int32_t number, std::size_t size);
+
+    static constexpr int least_side = 16;
+    static constexpr std::size_t sizes = 4; ///< 16, 32, 64, 128 samples along a side
+
+    GlCount& count_;
+    GlName texture_;
+    int layers_ = 0, used_layers_ = 0;
+    std::uint64_t picture_ = 0;
+    std::array<std::vector<std::int32_t>, sizes> free_; ///< numbers of pages: layer * pages of a layer + page
+    std::vector<std::vector<Page>> pages_; ///< by slot and square
+    std::vector<std::int32_t> small_pages_; ///< of the smallest size
+};
+
+} // namespace framelet

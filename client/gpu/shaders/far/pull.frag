@@ -1,0 +1,8 @@
+// Cells of twice the side.
+uniform sampler2D fine;
+out vec4 cell;
+void main() {
+    ivec2 first = 2 * ivec2(gl_FragCoord.xy);
+    cell = farthest_of(vec4(1.0), texelFetch(fine, first, 0), texelFetch(fine, first + ivec2(1, 0), 0),
+                       texelFetch(fine, first + ivec2(0, 1), 0), texelFetch(fine, first + ivec2(1, 1), 0));
+}
