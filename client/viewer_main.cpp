@@ -6,6 +6,7 @@
 
 #include "client/connection_arguments.h"
 #include "client/display_arguments.h"
+#include "client/gpu/canvas_choice.h"
 #include "client/picture_size.h"
 #include "client/window/first_connection.h"
 #include "client/window/kept/viewer_memory.h"
@@ -35,6 +36,7 @@ int main(int argc, char** argv) {
     arguments.server = ServerAddress{}.text();
     std::string size = "1280x720";
     bool fullscreen = false;
+    std::string painter = "auto";
     DisplayArguments display;
     std::optional<int> server_needed;
     std::vector<std::string> server_options;
@@ -49,6 +51,11 @@ int main(int argc, char** argv) {
             ->check(readable_by(parse_size))
             ->capture_default_str();
     app.add_flag("--fullscreen", fullscreen, "Fill the screen, as it also does where it did last time");
+    app.add_option("--painter", painter,
+                   "What paints: the graphics card (gpu), the processor (cpu), or whichever is better (auto)")
+        ->type_name("auto|cpu|gpu")
+        ->check(readable_by(parse_painter))
+        ->capture_default_str();
     add_display_options(app, display);
     // As framelet starts it: a descriptor for SceneOpener.
     app.add_option("--server-needed", server_needed)->group("")->configurable(false);
@@ -99,8 +106,13 @@ int main(int argc, char** argv) {
         if (!first.core) {
             return 1;
         }
-        int const result =
-            Viewer(window, std::move(first), opener, display.settings(), display.lag_seconds(), memory).run();
+        CanvasChoice choice = choose_canvas(parse_painter(painter));
+        if (!choice.complaint.empty()) {
+            std::cerr << "framelet-viewer: " << choice.complaint << std::endl;
+        }
+        int const result = Viewer(window, std::move(first), opener, display.settings(), display.lag_seconds(), memory,
+                                  std::move(choice))
+                               .run();
         write_viewer_memory(memory);
         return result;
     } catch (std::exception const& error) {

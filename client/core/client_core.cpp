@@ -60,6 +60,7 @@ struct ClientCore::Impl {
     PictureSettings picture_settings;
     bool has_picture = false; ///< something is held of the newest viewport
     std::uint64_t last_batch = 0;
+    bool is_on_canvas = false; ///< the last picture is
     Camera shown_camera;
     SceneTime shown_time = 0;
     Clock::time_point shown_at; ///< when the last picture was to be seen; does not go back
@@ -425,7 +426,8 @@ void ClientCore::request_clock(ClockRequest const& request) {
     impl_->connection->send(request);
 }
 
-bool ClientCore::update_picture(Picture& picture, std::vector<PixelRect>& changed, Clock::time_point shown_at) {
+bool ClientCore::update_picture(Picture& picture, std::vector<PixelRect>& changed, Clock::time_point shown_at,
+                                BlockCanvas* canvas) {
     Impl& core = *impl_;
     changed.clear();
     Clock::time_point const called = Clock::now();
@@ -443,23 +445,28 @@ bool ClientCore::update_picture(Picture& picture, std::vector<PixelRect>& change
     Camera camera;
     SceneTime time = 0;
     std::uint64_t camera_number = 0;
+    bool is_on_canvas = false;
     {
         std::lock_guard const picture_lock(core.picture_mutex);
         core.take_in();
         begun = Clock::now();
-        drawn = core.pictures.show(core.picture_request(), picture, changed);
+        drawn = core.pictures.show(core.picture_request(), picture, changed, canvas);
         made = Clock::now();
         PictureMaker const& maker = core.pictures.shown();
         camera = maker.shown_camera();
         time = maker.shown_time();
         camera_number = maker.shown_camera_number();
+        is_on_canvas = maker.is_on_canvas();
         if (core.is_clean_start() && !drawn) {
             picture = bare_picture(maker.viewport());
+            std::lock_guard const lock(core.mutex);
+            core.is_on_canvas = false;
             changed.assign(1, {0, 0, picture.width, picture.height});
             return true;
         }
     }
     std::lock_guard const lock(core.mutex);
+    core.is_on_canvas = is_on_canvas;
     if (camera_number > 0) { // else nothing has been shown, and one looks from where one is to begin
         core.shown_camera = camera;
     }
@@ -478,6 +485,11 @@ bool ClientCore::update_picture(Picture& picture, std::vector<PixelRect>& change
         core.statistics.first_picture_seconds = seconds_between(*core.asked.first_sent(), made);
     }
     return true;
+}
+
+bool ClientCore::is_on_canvas() const {
+    std::lock_guard const lock(impl_->mutex);
+    return impl_->is_on_canvas;
 }
 
 double ClientCore::making_seconds() const {

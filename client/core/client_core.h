@@ -62,8 +62,12 @@ public:
     /// picture stays as it is, in its old size. A picture that is not the one of the last call is written as a whole.
     /// `shown_at`: when it will be seen, and what it is to be of; the past: as soon as it is ready. Throws
     /// std::bad_alloc where memory is missing for it: nothing more is to be asked of the core then.
+    /// With a canvas what is moved is painted there, in the calling thread, and `picture` has its size alone:
+    /// `is_on_canvas` says so. Throws CanvasError where that fails; called again without a canvas it goes on.
     bool update_picture(Picture& picture, std::vector<PixelRect>& changed,
-                        std::chrono::steady_clock::time_point shown_at = {});
+                        std::chrono::steady_clock::time_point shown_at = {}, BlockCanvas* canvas = nullptr);
+    /// Where the last picture is.
+    bool is_on_canvas() const;
     /// What `update_picture` will take, most likely no longer.
     double making_seconds() const;
 

@@ -70,7 +70,8 @@ void PictureTexture::upload(Picture const& picture, std::span<PixelRect const> c
     glBindTexture(GL_TEXTURE_2D, texture_);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
     glPixelStorei(GL_UNPACK_ROW_LENGTH, picture.width);
-    if (picture.width != width_ || picture.height != height_) {
+    bool const is_shown = shown_ == texture_; // else nobody has told what has changed in it
+    if (picture.width != width_ || picture.height != height_ || !is_shown) {
         width_ = picture.width;
         height_ = picture.height;
         glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, width_, height_, 0, GL_RGBA, GL_UNSIGNED_BYTE, picture.rgba.data());
@@ -86,21 +87,28 @@ void PictureTexture::upload(Picture const& picture, std::span<PixelRect const> c
         }
     }
     glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+    show(texture_, width_, height_);
+}
+
+void PictureTexture::show(std::uint32_t texture, int width, int height) {
+    shown_ = texture;
+    shown_width_ = width;
+    shown_height_ = height;
 }
 
 void PictureTexture::draw(int width, int height) {
     glViewport(0, 0, width, height);
     glClearColor(0, 0, 0, 1);
     glClear(GL_COLOR_BUFFER_BIT);
-    if (width_ == 0) {
+    if (shown_ == 0) {
         return;
     }
     glDisable(GL_BLEND);
     glUseProgram(program_);
     glBindVertexArray(vertices_);
     glActiveTexture(GL_TEXTURE0);
-    glBindTexture(GL_TEXTURE_2D, texture_);
-    GLint const filter = width == width_ && height == height_ ? GL_NEAREST : GL_LINEAR;
+    glBindTexture(GL_TEXTURE_2D, shown_);
+    GLint const filter = width == shown_width_ && height == shown_height_ ? GL_NEAREST : GL_LINEAR;
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, filter);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, filter);
     glDrawArrays(GL_TRIANGLES, 0, 3); // one triangle that covers everything

@@ -21,6 +21,9 @@ public:
     /// Copies the changed rectangles; everything where the size is another than before. Rectangles that begin at the
     /// same row go as one.
     void upload(Picture const& picture, std::span<PixelRect const> changed);
+    /// Another texture of this size is drawn instead, rows from the top, until something is uploaded; it is to stay as
+    /// long.
+    void show(std::uint32_t texture, int width, int height);
     /// Fills a framebuffer of this size, stretching the picture; black before the first upload.
     void draw(int width, int height);
 
@@ -28,8 +31,11 @@ private:
     std::uint32_t texture_ = 0;
     std::uint32_t program_ = 0;
     std::uint32_t vertices_ = 0; ///< an empty array: the corners come from their number
-    int width_ = 0;
+    int width_ = 0; ///< of the texture
     int height_ = 0;
+    std::uint32_t shown_ = 0; ///< what is drawn
+    int shown_width_ = 0;
+    int shown_height_ = 0;
 };
 
 } // namespace framelet

@@ -18,10 +18,11 @@ constexpr double idle_seconds = 0.25;
 } // namespace
 
 Viewer::Viewer(Window& window, Connection connection, SceneOpener& opener, ViewerSettings const& settings,
-               double lag_seconds, ViewerMemory& memory)
+               double lag_seconds, ViewerMemory& memory, CanvasChoice painter)
     : window_(window), connection_(std::move(connection.options)), opener_(opener), memory_(memory),
       overlay_(window.handle(), window.content_scale()), settings_(settings), lag_seconds_(lag_seconds),
-      chosen_lag_seconds_(lag_seconds > 0 ? lag_seconds : usual_lag_seconds), steady_size_(window.framebuffer_size()) {
+      chosen_lag_seconds_(lag_seconds > 0 ? lag_seconds : usual_lag_seconds), painter_(std::move(painter)),
+      steady_size_(window.framebuffer_size()) {
     adopt(std::move(connection.core));
     if (note_.empty()) {
         say(core_->notice().empty() ? "F1: help" : core_->notice());
@@ -154,12 +155,42 @@ void Viewer::remember() {
     memory_.fullscreen = window_.is_fullscreen();
 }
 
+/// On the graphics card, unless something is to be drawn over it in memory. Once that has failed the processor paints.
+bool Viewer::make_picture(Clock::time_point shown_at) {
+    if (painter_.canvas && drawn_over_ == DrawnOver::nothing) {
+        try {
+            return core_->update_picture(picture_, changed_, shown_at, painter_.canvas.get());
+        } catch (CanvasError const& error) {
+            painter_ = processor_paints(error.what());
+            is_on_canvas_ = false;
+            std::cerr << "framelet-viewer: " << painter_.complaint << std::endl;
+        }
+    }
+    return core_->update_picture(picture_, changed_, shown_at);
+}
+
+/// The last one, in memory.
+Picture const& Viewer::shown_picture() {
+    if (is_on_canvas_) {
+        painter_.canvas->read(picture_);
+    }
+    return picture_;
+}
+
+std::string Viewer::painter_text() const {
+    if (!painter_.canvas || (drawn_over_ == DrawnOver::nothing && lag_seconds_ == 0)) {
+        return painter_.painter;
+    }
+    return drawn_over_ == DrawnOver::nothing ? "processor, for --smooth" : "processor, for what is drawn over (F3)";
+}
+
 /// Uploads what has changed; true when something has.
 bool Viewer::update_shown_picture() {
     double const until_seen = core_->making_seconds() + showing_.expected();
-    bool const changed = core_->update_picture(picture_, changed_, Clock::now() + DisplayPace::duration(until_seen));
+    bool const changed = make_picture(Clock::now() + DisplayPace::duration(until_seen));
     made_ = seconds_now();
     if (changed) {
+        is_on_canvas_ = core_->is_on_canvas();
         meter_.picture(core_->statistics().photon_seconds);
     }
     Viewport const size{picture_.width, picture_.height};
@@ -179,10 +210,14 @@ bool Viewer::update_shown_picture() {
         overlaid_ = picture_;
         core_->draw_overlay(drawn_over_, overlaid_);
     }
-    window_.upload(draws ? overlaid_ : picture_, changed_);
+    if (is_on_canvas_) {
+        window_.show_texture(painter_.canvas->texture(), painter_.canvas->size());
+    } else {
+        window_.upload(draws ? overlaid_ : picture_, changed_);
+    }
     uploaded_size_ = size;
     if (recorder_ && !toggled) {
-        recorder_->add(picture_, made_ - recording_since_);
+        recorder_->add(shown_picture(), made_ - recording_since_);
     }
     return true;
 }
@@ -248,7 +283,7 @@ void Viewer::take_figures() {
     history_.add(meter_, statistics);
     figures_.plots = history_.plots();
     figures_.rows = figure_rows(statistics, core_->clock(), core_->controls());
-    figures_.details = detail_rows(statistics, meter_, window_.framebuffer_size());
+    figures_.details = detail_rows(statistics, meter_, window_.framebuffer_size(), painter_text());
 }
 
 CameraMenu Viewer::camera_menu(Welcome const& welcome) const {

@@ -11,6 +11,7 @@
 #include "client/core/camera/camera_controller.h"
 #include "client/core/client_core.h"
 #include "client/core/picture/making_time.h"
+#include "client/gpu/canvas_choice.h"
 #include "client/video/recorder.h"
 #include "client/window/connection.h"
 #include "client/window/kept/bookmarks.h"
@@ -26,9 +27,10 @@ namespace framelet {
 class Viewer {
 public:
     /// `connection` wakes the window on news. `lag_seconds` as in `ClientCore::set_smoothing`. Scenes that are dropped
-    /// are opened by `opener`, what is to be remembered goes into `memory`; both must outlive this.
+    /// are opened by `opener`, what is to be remembered goes into `memory`; both must outlive this. `painter` is of the
+    /// window's context.
     Viewer(Window& window, Connection connection, SceneOpener& opener, ViewerSettings const& settings,
-           double lag_seconds, ViewerMemory& memory);
+           double lag_seconds, ViewerMemory& memory, CanvasChoice painter);
 
     /// Until the user quits. Returns the program's exit code: 1 where the server was gone.
     int run();
@@ -68,7 +70,10 @@ private:
     void say(std::string note, double seconds = note_seconds);
     void watch_connection();
     void watch_opener();
+    bool make_picture(Clock::time_point shown_at);
     bool update_shown_picture();
+    Picture const& shown_picture();
+    std::string painter_text() const;
     void take_figures();
     CameraMenu camera_menu(Welcome const& welcome) const;
     OverlayContent overlay_content();
@@ -98,7 +103,9 @@ private:
     std::string lost_; ///< why there is no session; empty while there is one
     std::future<std::unique_ptr<ClientCore>> reconnecting_;
 
-    Picture picture_;
+    CanvasChoice painter_;
+    Picture picture_; ///< where it is not on the canvas; of its size there, too
+    bool is_on_canvas_ = false;
     double made_ = 0; ///< when
     MakingTime showing_; ///< from then until it is on the display
     std::vector<PixelRect> changed_;

@@ -314,9 +314,9 @@ void Viewer::save_screenshot(bool with_depth) {
                 depths.clear();
                 lacks = ", without depth: it is not known here";
             }
-            write_exr(file, picture_, depths);
+            write_exr(file, shown_picture(), depths);
         } else {
-            write_png(file, picture_);
+            write_png(file, shown_picture());
         }
         say("saved " + file.string() + lacks, long_note_seconds);
     } catch (InputError const& failure) {
@@ -336,7 +336,7 @@ void Viewer::toggle_recording() {
     std::error_code error;
     recorder_.emplace(make_film_file(fs::current_path(error)));
     recording_since_ = seconds_now();
-    recorder_->add(picture_, 0);
+    recorder_->add(shown_picture(), 0);
     say("recording to " + recorder_->path().string(), long_note_seconds);
 }
 

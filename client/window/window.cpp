@@ -341,6 +341,10 @@ void Window::upload(Picture const& picture, std::span<PixelRect const> changed) 
     impl_->texture->upload(picture, changed);
 }
 
+void Window::show_texture(std::uint32_t texture, Viewport size) {
+    impl_->texture->show(texture, size.width, size.height);
+}
+
 void Window::draw_picture() {
     impl_->texture->draw(impl_->size.width, impl_->size.height);
 }

@@ -66,6 +66,8 @@ public:
 
     /// Uploads the changed rectangles of the picture (as `FrameletCache::take_changed` orders them: by rows).
     void upload(Picture const& picture, std::span<PixelRect const> changed);
+    /// Shows a texture of this context instead, rows from the top, until something is uploaded.
+    void show_texture(std::uint32_t texture, Viewport size);
     /// Fills the framebuffer with the picture, stretched.
     void draw_picture();
     /// Shows what was drawn.

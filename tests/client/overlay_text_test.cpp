@@ -59,7 +59,7 @@ TEST(OverlayText, ClockAndStatisticsReadWell) {
     TextRows const rows = figure_rows(statistics, {}, true);
     EXPECT_EQ(value_of(rows, "done"), "0% of the picture");
     EXPECT_EQ(value_of(rows, "clock"), "0.00 s, paused at 1x");
-    TextRows const details = detail_rows(statistics, RateMeter(), {640, 360});
+    TextRows const details = detail_rows(statistics, RateMeter(), {640, 360}, "processor");
     EXPECT_EQ(value_of(details, "picture"), "640x360");
     EXPECT_EQ(value_of(details, "received"), "1 batch, 0 framelets, 0.25 B/sample");
     EXPECT_EQ(value_of(details, "round trip"), "not measured");

@@ -43,10 +43,11 @@ protected:
         ::unsetenv("WAYLAND_DISPLAY");
         ::setenv("XDG_STATE_HOME", folder_.path().c_str(), 1);
         ::setenv("XDG_CONFIG_HOME", folder_.path().c_str(), 1);
-        server_.emplace(scene_file, std::vector<std::string>{"--paused", "--insecure"});
+        server_.emplace(scene_file, server_options_);
         viewer_.emplace("/bin/sh", std::vector<std::string>{"-c", "cd \"$0\" && exec \"$@\"", folder_.path().string(),
                                                             FRAMELET_VIEWER, server_->address(), "--size",
-                                                            std::to_string(width) + "x" + std::to_string(height)});
+                                                            std::to_string(width) + "x" + std::to_string(height),
+                                                            "--painter", painter_});
     }
 
     /// One that the window may not see yet, or that comes too early, is to be pressed again.
@@ -110,6 +111,8 @@ protected:
         EXPECT_EQ(tool.wait(patience), 0) << tool.errors();
     }
 
+    std::vector<std::string> server_options_{"--paused", "--insecure"};
+    std::string painter_ = "auto";
     TemporaryFolder folder_;
     std::optional<Process> screen_;
     std::optional<ServerProcess> server_;
@@ -194,6 +197,37 @@ TEST_F(WindowTest, KeepsBookmarksForTheSceneFile) {
     }));
     EXPECT_TRUE(name.starts_with("windmill-")) << name;
     EXPECT_EQ(name.size(), std::string("windmill-0123456789abcdef.json").size()) << name;
+}
+
+/// What moves is painted by OpenGL here, too, where it is a program on the processor.
+class PaintedWindowTest : public WindowTest {
+protected:
+    PaintedWindowTest() {
+        server_options_ = {"--insecure"};
+        painter_ = "gpu";
+    }
+};
+
+TEST_F(PaintedWindowTest, SavesWhatTheGraphicsCardHasPainted) {
+    EXPECT_TRUE(eventually([&] {
+        press("shift+F12");
+        for (fs::path const& file : saved(".exr")) {
+            // The picture's last line: blue, green, red, depth.
+            std::string const bytes = content_of(file);
+            std::vector<float> line(4 * width);
+            std::size_t const length = line.size() * sizeof(float);
+            if (bytes.size() < static_cast<std::size_t>(height) * length) {
+                continue;
+            }
+            std::memcpy(line.data(), bytes.data() + bytes.size() - length, length);
+            if (std::all_of(line.end() - width, line.end(), [](float depth) { return depth > 1 && depth < 1000; }) &&
+                std::all_of(line.begin(), line.end() - width, [](float light) { return light > 0 && light <= 1; })) {
+                return true;
+            }
+        }
+        return false;
+    }));
+    EXPECT_EQ(viewer_->errors().find("processor paints"), std::string::npos) << viewer_->errors();
 }
 
 } // namespace

@@ -121,7 +121,8 @@ Camera PictureMaker::wanted_camera(PictureRequest const& request, SceneTime time
     return track == nullptr ? newest : camera_at(*track, time, newest);
 }
 
-bool PictureMaker::show(PictureRequest const& request, Picture& picture, std::vector<PixelRect>& changed) {
+bool PictureMaker::show(PictureRequest const& request, Picture& picture, std::vector<PixelRect>& changed,
+                        BlockCanvas* canvas) {
     changed.clear();
     if (is_empty()) {
         return false;
@@ -163,7 +164,7 @@ bool PictureMaker::show(PictureRequest const& request, Picture& picture, std::ve
         smoother_->show(pool_, arrived_, camera, time, lag, motions_, picture, changed);
         pool_.note_shown(smoother_->shown_blocks());
     } else {
-        reprojector_.show(pool_, arrived_, camera, time, motions_, picture, changed);
+        reprojector_.show(pool_, arrived_, camera, time, motions_, picture, changed, canvas);
         pool_.note_shown(reprojector_.shown_blocks());
     }
     return !changed.empty();

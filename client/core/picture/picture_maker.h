@@ -60,8 +60,12 @@ public:
 
     /// Brings `picture` up to date. True when it changed; `changed` gets the rectangles that may differ. A picture that
     /// is not the one of the last call, or has another size, is written as a whole. Nothing happens while nothing is
-    /// held.
-    bool show(PictureRequest const& request, Picture& picture, std::vector<PixelRect>& changed);
+    /// held. With a canvas what is moved is painted there, unless the scene is smoothed: `is_on_canvas` says so. Throws
+    /// what the canvas throws.
+    bool show(PictureRequest const& request, Picture& picture, std::vector<PixelRect>& changed,
+              BlockCanvas* canvas = nullptr);
+    /// True when the last picture is not in memory but on the canvas.
+    bool is_on_canvas() const { return settings_.reproject && !smoother_ && reprojector_.is_on_canvas(); }
     /// Draws over a copy of the picture that was shown last.
     void draw_over(DrawnOver what, Picture& picture) const;
     /// The point of the world that this place of it shows, as `find_shown_point`.

@@ -52,17 +52,18 @@ bool SessionPictures::replaces_earlier(PictureRequest const& request) {
     return !current_->is_empty() && (request.is_settled || current_->coverage() >= earlier_->coverage());
 }
 
-bool SessionPictures::show(PictureRequest const& request, Picture& picture, std::vector<PixelRect>& changed) {
+bool SessionPictures::show(PictureRequest const& request, Picture& picture, std::vector<PixelRect>& changed,
+                           BlockCanvas* canvas) {
     FRAMELET_CHECK(current_ != nullptr);
     if (earlier_ && replaces_earlier(request)) {
         forget_earlier();
     }
     if (!earlier_) {
-        return current_->show(request, picture, changed);
+        return current_->show(request, picture, changed, canvas);
     }
     PictureRequest paused = request;
     paused.present = paused_;
-    return earlier_->show(paused, picture, changed);
+    return earlier_->show(paused, picture, changed, canvas);
 }
 
 std::size_t SessionPictures::memory_bytes() const {

@@ -30,7 +30,8 @@ public:
 
     /// As `PictureMaker::show`. The session before shows its own until this one's picture has no more holes, or is
     /// complete: that is seen by making both. After `prepare`.
-    bool show(PictureRequest const& request, Picture& picture, std::vector<PixelRect>& changed);
+    bool show(PictureRequest const& request, Picture& picture, std::vector<PixelRect>& changed,
+              BlockCanvas* canvas = nullptr);
     /// Whose the picture is. After `prepare`.
     PictureMaker const& shown() const { return earlier_ ? *earlier_ : *current_; }
     std::size_t memory_bytes() const;

@@ -96,9 +96,10 @@ TextRows figure_rows(ClientStatistics const& s, ClockState const& clock, bool co
     };
 }
 
-TextRows detail_rows(ClientStatistics const& s, RateMeter const& meter, Viewport viewport) {
+TextRows detail_rows(ClientStatistics const& s, RateMeter const& meter, Viewport viewport, std::string const& painter) {
     return {
         {"picture", std::to_string(viewport.width) + "x" + std::to_string(viewport.height)},
+        {"painted by", painter},
         {"display", fixed(meter.frames_per_second(), 0, " frames/s, ") + fixed(meter.frame_seconds() * 1e3, 1, " ms")},
         {"round trip", s.round_trip_seconds < 0 ? "not measured"
                                                 : fixed(s.round_trip_seconds * 1e3, 0, " ms (least ") +

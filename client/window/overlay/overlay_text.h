@@ -59,7 +59,8 @@ private:
 /// What most people want to know.
 TextRows figure_rows(ClientStatistics const& statistics, ClockState const& clock, bool controls);
 /// For who looks into what it costs.
-TextRows detail_rows(ClientStatistics const& statistics, RateMeter const& meter, Viewport viewport);
+TextRows detail_rows(ClientStatistics const& statistics, RateMeter const& meter, Viewport viewport,
+                     std::string const& painter);
 /// Of what is drawn over the picture; nothing where it needs none.
 std::optional<Legend> legend_of(DrawnOver drawn);
 /// Of a scene that is being opened, and what is done of it; nothing of nothing.
