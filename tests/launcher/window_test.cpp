@@ -87,7 +87,7 @@ protected:
         return false;
     }
 
-    /// The newest camera that `press("shift+c")` has saved; as the file is named, in the order of time.
+    /// What the window looks from now, as it saves it.
     nlohmann::json newest_camera() {
         auto const before = saved(".camera.json").size();
         std::vector<fs::path> files;
