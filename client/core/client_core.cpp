@@ -31,7 +31,7 @@ Clock::duration clock_duration(double seconds) {
     return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
 }
 
-/// A batch's number, view, scene time and length prefix on the wire, about.
+/// What a batch takes on the wire besides its bytes and one for each tile, about.
 constexpr std::size_t batch_header_bytes = 96;
 
 } // namespace
@@ -243,7 +243,7 @@ struct ClientCore::Impl {
         {
             std::lock_guard const lock(mutex);
             statistics.bytes += encoded.payload.size() + encoded.shapes.size() + encoded.tracks.size() +
-                                encoded.tiles.size() * sizeof(Tile) + batch_header_bytes;
+                                encoded.tiles.size() + batch_header_bytes;
             statistics.decode_seconds += seconds_between(received, decoded);
             std::size_t const samples = batch.framelets.size() * framelet_samples;
             bool const is_stale = !asked.wants(batch);
