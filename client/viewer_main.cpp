@@ -7,6 +7,7 @@
 #include "client/connection_arguments.h"
 #include "client/display_arguments.h"
 #include "client/gpu/canvas_choice.h"
+#include "client/painter.h"
 #include "client/picture_size.h"
 #include "client/window/first_connection.h"
 #include "client/window/kept/viewer_memory.h"

@@ -6,8 +6,6 @@
 
 #include <epoxy/gl.h>
 
-#include "common/error.h"
-
 namespace framelet {
 
 namespace {
@@ -20,19 +18,6 @@ std::string renderer_name() {
 }
 
 } // namespace
-
-Painter parse_painter(std::string const& text) {
-    if (text == "auto") {
-        return Painter::automatic;
-    }
-    if (text == "cpu") {
-        return Painter::cpu;
-    }
-    if (text == "gpu") {
-        return Painter::gpu;
-    }
-    throw InputError("a painter is auto, cpu or gpu, not " + text);
-}
 
 bool is_software(std::string_view renderer) {
     constexpr std::array<std::string_view, 5> names{"llvmpipe", "softpipe", "SwiftShader", "Software Rasterizer",

@@ -2,21 +2,15 @@
 // canvas, or none and why.
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
 
 #include "client/gpu/gpu_canvas.h"
+#include "client/painter.h"
 
 namespace framelet {
-
-/// What paints: `automatic` is the graphics card where there is one.
-enum class Painter : std::uint8_t { automatic, cpu, gpu };
-
-/// `auto`, `cpu` or `gpu`. Throws InputError.
-Painter parse_painter(std::string const& text);
 
 /// True where what OpenGL calls its renderer is a program on the processor, which the painter on it is quicker than.
 bool is_software(std::string_view renderer);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "client/painter.h"
 #include "client/picture_size.h"
 #include "common/command_line/command_line.h"
 #include "common/command_line/option_text.h"
@@ -85,6 +86,9 @@ std::variant<ViewOptions, int> parse_options(int argc, char const* const* argv) 
     view->option_defaults()->group(window_group);
     option("--size", "Size of the window in pixels")->type_name("WIDTHxHEIGHT")->check(readable_by(parse_size));
     flag("--fullscreen", "Fill the screen");
+    option("--painter", "What paints: the graphics card (gpu), the processor (cpu), or whichever is better (auto)")
+        ->type_name("auto|cpu|gpu")
+        ->check(readable_by(parse_painter));
     option("--viewer-config", "Take further options of framelet-viewer from this file")->type_name("FILE");
     try {
         parse_command_line(app, static_cast<int>(separator - argv), argv);

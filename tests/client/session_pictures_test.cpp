@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/picture/fake_canvas.h"
 #include "tests/picture/synthetic_framelets.h"
 
 namespace framelet {
@@ -194,6 +195,55 @@ TEST(SessionPictures, OfAnotherSizeTheFirstThatComesIsShown) {
     shown.insert(make_batch(narrow, 1, {constant_framelet(narrow, make_tile(narrow.pixel_depth(), 0, 1), 70)}));
     EXPECT_EQ(shown.at(10), 70);
     EXPECT_EQ(shown.picture.width, 64);
+}
+
+TEST(PictureMaker, WhatIsMovedIsPaintedOnTheCanvasAndNothingElse) {
+    PictureMaker maker(plane.viewport(), {});
+    maker.insert(left_of(100, 50));
+    FakeCanvas canvas;
+    Picture picture;
+    std::vector<PixelRect> changed;
+    PictureRequest request;
+    EXPECT_TRUE(maker.show(request, picture, changed, &canvas));
+    EXPECT_FALSE(maker.is_on_canvas()) << "nothing has moved";
+    request.camera.orientation = glm::angleAxis(0.1f, Vec3(0, 1, 0));
+    EXPECT_TRUE(maker.show(request, picture, changed, &canvas));
+    EXPECT_TRUE(maker.is_on_canvas());
+    EXPECT_GT(canvas.painted, 0);
+    EXPECT_EQ(picture.width, 100) << "it has the size";
+    EXPECT_FALSE(maker.show(request, picture, changed, &canvas)) << "nothing has changed";
+    EXPECT_TRUE(maker.is_on_canvas());
+    canvas.painted = 0;
+    maker.set({.lag_seconds = 0.1});
+    EXPECT_TRUE(maker.show(request, picture, changed, &canvas));
+    EXPECT_FALSE(maker.is_on_canvas()) << "two pictures are mixed in memory";
+    EXPECT_EQ(canvas.painted, 0);
+    maker.set({.reproject = false});
+    maker.show(request, picture, changed, &canvas);
+    EXPECT_FALSE(maker.is_on_canvas());
+}
+
+/// Two makers take turns on one canvas; it has the picture of one of them at a time.
+TEST(SessionPictures, TheSessionBeforeIsOnTheCanvasUntilThisOneIs) {
+    Shown shown;
+    FakeCanvas canvas;
+    shown.request.camera.orientation = glm::angleAxis(0.1f, Vec3(0, 1, 0));
+    shown.insert(left_of(100, 50));
+    auto const show = [&] {
+        shown.pictures.prepare(shown.view, {});
+        return shown.pictures.show(shown.request, shown.picture, shown.changed, &canvas);
+    };
+    EXPECT_TRUE(show());
+    EXPECT_TRUE(shown.pictures.shown().is_on_canvas());
+    shown.begin_anew();
+    shown.insert(left_of(32, 80));
+    show();
+    EXPECT_TRUE(shown.pictures.shown().is_on_canvas()) << "the session before";
+    shown.insert(left_of(100, 80));
+    canvas.painted = 0;
+    EXPECT_TRUE(show());
+    EXPECT_TRUE(shown.pictures.shown().is_on_canvas());
+    EXPECT_EQ(canvas.painted, 7 * 4) << "this one, all of it";
 }
 
 } // namespace

@@ -158,8 +158,9 @@ TEST(View, WhatCannotBeUsedIsOneLineAndAnExitCode) {
     Programs const programs(waiting);
     for (auto const& [words, exit_code, says] :
          {Case{{}, 2, "subcommand"}, Case{{"view"}, 2, "SCENE"}, Case{{"view", "a.glb", "b.glb"}, 2, "b.glb"},
-          Case{{"view", "--size", "3", "a.glb"}, 2, "\"3\""}, Case{{"view", "absent.glb"}, 1, "absent.glb"},
-          Case{{"view", "--threads", "x", scene_file}, 2, "'x'"},
+          Case{{"view", "--size", "3", "a.glb"}, 2, "\"3\""},
+          Case{{"view", "--painter", "3", "a.glb"}, 2, "auto, cpu or gpu"},
+          Case{{"view", "absent.glb"}, 1, "absent.glb"}, Case{{"view", "--threads", "x", scene_file}, 2, "'x'"},
           Case{{"view", scene_file, "--", "--clip", "none"}, 1, "'none'"},
           Case{{"view", "--server-config", "absent.toml", scene_file}, 1, "absent.toml"}}) {
         Process view(programs.framelet(), words);
