@@ -1,8 +1,10 @@
 #include "client/gpu/gpu_canvas.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include <epoxy/gl.h>

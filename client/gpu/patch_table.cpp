@@ -1,13 +1,12 @@
 #include "client/gpu/patch_table.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <bit>
 #include <cmath>
 
 #include <tbb/parallel_for.h>
-
-#include "common/error.h"
 
 namespace framelet {
 
