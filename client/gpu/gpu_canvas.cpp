@@ -240,6 +240,8 @@ struct GpuCanvas::Impl {
         std::size_t offset = 0;
         for (GLenum const attachment : {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1}) {
             glReadBuffer(attachment);
+            // OpenGL takes an offset into the buffer that is bound as a pointer.
+            // NOLINTNEXTLINE(performance-no-int-to-ptr)
             glReadPixels(0, 0, columns, rows, GL_RGBA_INTEGER, GL_UNSIGNED_INT, reinterpret_cast<void*>(offset));
             offset += planes->report_words.size() / 2 * sizeof planes->report_words[0];
         }

@@ -176,7 +176,7 @@ std::uint32_t PatchTable::add_splats(BlockJob const& job, PatchView const& view,
         Parts const rows = parts_of(splat.y - top, splat.spacing);
         for (int y = rows.first; columns.first <= columns.last && y <= rows.last; ++y) {
             for (int x = columns.first; x <= columns.last; ++x) {
-                visit(static_cast<std::size_t>(y * parts_across + x));
+                visit(static_cast<std::size_t>(y) * parts_across + static_cast<std::size_t>(x));
             }
         }
     };

@@ -147,7 +147,7 @@ void SampleAtlas::upload(Grid const& grid, Page& page) {
     glPixelStorei(GL_UNPACK_ROW_LENGTH, side);
     glTexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, static_cast<GLint>(at.x) + rect.left, static_cast<GLint>(at.y) + rect.top,
                     static_cast<GLint>(at.layer), rect.width(), rect.height(), 1, GL_RED_INTEGER, GL_UNSIGNED_INT,
-                    samples.grid().data() + rect.top * side + rect.left);
+                    samples.grid().data() + static_cast<std::ptrdiff_t>(rect.top) * side + rect.left);
 }
 
 void SampleAtlas::update(std::span<Grid const> grids, std::span<SmallGrid const> small_ones) {
