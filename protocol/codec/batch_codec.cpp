@@ -178,8 +178,10 @@ EncodedBatch BatchCodec::encode(Batch const& batch, BatchMemory* memory, bool pr
         memory->picture.take(is_predicted ? std::span<DisplayFramelet const>(decoded) : batch.framelets);
     }
 
-    EncodedBatch encoded{batch.number, BatchMoment{batch.view, batch.scene_time, batch.shown_from, batch.outdates},
-                         {},           join_frames(frames)};
+    EncodedBatch encoded{batch.number,
+                         BatchMoment{batch.view, batch.scene_time, batch.shown_from, batch.outdates},
+                         {},
+                         join_frames(frames)};
     if (memory != nullptr && std::exchange(memory->moment, encoded.moment) == encoded.moment) {
         encoded.moment.reset();
     }

@@ -20,8 +20,7 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
             size -= 2 + length;
             auto const* const encoded = std::get_if<EncodedBatch>(&message);
             // Another viewport is decoded all the same; the seeds' own is enough here, and small.
-            if (encoded == nullptr ||
-                (encoded->moment && encoded->moment->view.viewport != cache.plane().viewport())) {
+            if (encoded == nullptr || (encoded->moment && encoded->moment->view.viewport != cache.plane().viewport())) {
                 continue;
             }
             Batch const batch = codec.decode(*encoded, &memory);

@@ -96,8 +96,7 @@ TEST(BatchCodec, RoundTrip) {
             Batch const batch = make_batch(count, sample);
             EncodedBatch const encoded = codec.encode(batch);
             EXPECT_EQ(encoded.number, batch.number);
-            EXPECT_EQ(encoded.moment,
-                      (BatchMoment{batch.view, batch.scene_time, batch.shown_from, batch.outdates}));
+            EXPECT_EQ(encoded.moment, (BatchMoment{batch.view, batch.scene_time, batch.shown_from, batch.outdates}));
             EXPECT_TRUE(codec.decode(encoded) == batch) << count;
         }
     }
@@ -173,14 +172,16 @@ TEST(BatchCodec, GoldenLayoutBeforeCompression) {
 
 TEST(BatchCodec, GoldenPayload) {
     constexpr std::array<unsigned, 76> golden{
-        0x28, 0xb5, 0x2f, 0xfd, 0x60, 0x00, 0x05, 0x15, 0x02, 0x00, 0x62, 0x44,
-        0x07, 0x0d, 0xd0, 0xa5, 0x03, 0x00, 0x00, 0x00, 0x00, 0x00, 0x40, 0x14, 0x00, 0x3f, 0xed, 0x89,
-        0x40, 0x60, 0xdb, 0xb6, 0x6d, 0xdb, 0xb6, 0xcd, 0xb6, 0x6d, 0xdb, 0xb6, 0x6d, 0x9b, 0x23, 0x50,
-        0x02, 0x00, 0x7b, 0x6a, 0x5f, 0xdd, 0x53, 0xb2, 0x2c, 0xcb, 0xb2, 0x2c, 0xcb, 0xb2, 0x2c, 0xcb,
-        0xb2, 0x2c, 0xcb, 0xb2, 0x2c, 0xcb, 0xb2, 0x2c, 0xcb, 0xb2, 0x2c, 0xcb, 0xb2, 0x2c, 0xcb, 0x01};
+        0x28, 0xb5, 0x2f, 0xfd, 0x60, 0x00, 0x05, 0x15, 0x02, 0x00, 0x62, 0x44, 0x07, 0x0d, 0xd0, 0xa5,
+        0x03, 0x00, 0x00, 0x00, 0x00, 0x00, 0x40, 0x14, 0x00, 0x3f, 0xed, 0x89, 0x40, 0x60, 0xdb, 0xb6,
+        0x6d, 0xdb, 0xb6, 0xcd, 0xb6, 0x6d, 0xdb, 0xb6, 0x6d, 0x9b, 0x23, 0x50, 0x02, 0x00, 0x7b, 0x6a,
+        0x5f, 0xdd, 0x53, 0xb2, 0x2c, 0xcb, 0xb2, 0x2c, 0xcb, 0xb2, 0x2c, 0xcb, 0xb2, 0x2c, 0xcb, 0xb2,
+        0x2c, 0xcb, 0xb2, 0x2c, 0xcb, 0xb2, 0x2c, 0xcb, 0xb2, 0x2c, 0xcb, 0x01};
     Batch const batch = documented_batch();
-    EncodedBatch encoded{batch.number, BatchMoment{batch.view, batch.scene_time, batch.shown_from, batch.outdates},
-                         {},           Bytes(golden.size())};
+    EncodedBatch encoded{batch.number,
+                         BatchMoment{batch.view, batch.scene_time, batch.shown_from, batch.outdates},
+                         {},
+                         Bytes(golden.size())};
     encoded.tiles = {batch.framelets[0].tile, batch.framelets[1].tile};
     std::transform(golden.begin(), golden.end(), encoded.payload.begin(),
                    [](unsigned b) { return static_cast<std::byte>(b); });
@@ -197,8 +198,7 @@ TEST(BatchCodec, LayoutByTheBook) {
         std::size_t const count = group == 0 ? 128 : 2;
         std::size_t const length = group == 0 ? length_at(payload, 0) : payload.size() - offset;
         std::vector<std::uint8_t> content(count * 768);
-        ASSERT_EQ(ZSTD_decompress(content.data(), content.size(), payload.data() + offset, length),
-                  content.size());
+        ASSERT_EQ(ZSTD_decompress(content.data(), content.size(), payload.data() + offset, length), content.size());
         for (std::size_t channel = 0; channel < 3; ++channel) {
             for (std::size_t i = 0; i < count; ++i) {
                 DisplayFramelet const& framelet = batch.framelets[first + i];

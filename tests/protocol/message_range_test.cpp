@@ -240,8 +240,7 @@ TEST(MessageRange, Encodings) {
     auto const with = [](int encoding) {
         Builder builder;
         auto const bytes = builder.CreateVector(std::vector<std::uint8_t>{});
-        return finish(builder,
-                      wire::CreateBatch(builder, 1, {}, static_cast<wire::Encoding>(encoding), bytes, bytes));
+        return finish(builder, wire::CreateBatch(builder, 1, {}, static_cast<wire::Encoding>(encoding), bytes, bytes));
     };
     for (int const known : {1, 7, 8}) {
         EXPECT_NO_THROW(decode_message(with(known))) << known;

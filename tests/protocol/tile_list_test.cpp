@@ -54,10 +54,8 @@ TEST(TileList, WhatIsNoListIsRefused) {
              bytes_of({0x80}), // so is the rest of a number
              bytes_of({0x80, 0x80, 0x80, 0x80, 0x80, 1}), // more than five digits
              bytes_of({1, 16}), // too deep
-             bytes_of({1, 255}),
-             bytes_of({0, 0}), // behind the root there is nothing
-             bytes_of({4}),
-             bytes_of({6}), // before the first tile
+             bytes_of({1, 255}), bytes_of({0, 0}), // behind the root there is nothing
+             bytes_of({4}), bytes_of({6}), // before the first tile
              bytes_of({0x81, 0x80, 0x04, 7}), // the 16384th of depth 7
          }) {
         EXPECT_THROW(read_tiles(bad), ProtocolError);
