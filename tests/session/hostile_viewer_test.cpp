@@ -36,7 +36,7 @@ TEST_P(HostileViewer, SetsTheClockFarAhead) {
     bystander.send(camera_update(2, {48, 64}));
     EXPECT_TRUE(bystander.watch([](Message const& message) {
         auto const* const batch = std::get_if<EncodedBatch>(&message);
-        return batch != nullptr && batch->moment.value().view.number == 2;
+        return batch != nullptr && batch->moment && batch->moment->view.number == 2;
     }));
 }
 
@@ -68,7 +68,7 @@ TEST_P(HostileViewer, CamerasAtTheirBoundsAreServed) {
                 viewer.send(update);
                 EXPECT_TRUE(viewer.watch([&](Message const& message) {
                     auto const* const batch = std::get_if<EncodedBatch>(&message);
-                    return batch != nullptr && batch->moment.value().view.number == number;
+                    return batch != nullptr && batch->moment && batch->moment->view.number == number;
                 })) << coordinate
                     << ' ' << extent << ' ' << viewport.width;
             }

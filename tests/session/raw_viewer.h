@@ -38,7 +38,7 @@ public:
         write(frame);
     }
 
-    /// Nothing once the connection has ended, or where nothing comes. Every batch has its moment.
+    /// Nothing once the connection has ended, or where nothing comes.
     std::optional<Message> receive() {
         std::array<std::uint8_t, 4> prefix{};
         if (!read(prefix.data(), prefix.size())) {
@@ -49,14 +49,7 @@ public:
             size |= std::size_t{prefix[i]} << (8 * i);
         }
         Bytes body(size);
-        if (!read(body.data(), size)) {
-            return std::nullopt;
-        }
-        Message message = decode_message(body);
-        if (auto* const batch = std::get_if<EncodedBatch>(&message)) {
-            moment_ = batch->moment = batch->moment ? batch->moment : moment_;
-        }
-        return message;
+        return read(body.data(), size) ? std::optional(decode_message(body)) : std::nullopt;
     }
 
     /// Acknowledges what comes until `done` says so of a message; false where the connection ends before.
@@ -104,7 +97,6 @@ private:
     boost::asio::io_context io_{1};
     boost::asio::ip::tcp::socket socket_{io_};
     std::string failure_;
-    std::optional<BatchMoment> moment_; ///< of the newest batch
 };
 
 } // namespace framelet

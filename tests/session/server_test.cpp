@@ -72,7 +72,8 @@ TEST_P(ServerOfThreads, CoarseFirstThenFinerThenConverged) {
             viewer.stream->send(camera_update(1, {640, 480}));
         } else if (auto const* const batch = std::get_if<EncodedBatch>(&message)) {
             EXPECT_EQ(batch->number, newest + 1);
-            EXPECT_EQ(batch->moment.value().view.number, 1u);
+            EXPECT_EQ(batch->moment.has_value(), newest == 0) << "nothing moves";
+            EXPECT_TRUE(!batch->moment || batch->moment->view.number == 1);
             newest = batch->number;
             depths.push_back(batch->tiles.front().depth());
             viewer.stream->send(Ack{newest, 0, 0});
@@ -152,9 +153,11 @@ TEST_P(ServerOfThreads, NewerCameraWinsAndLateOnesAreIgnored) {
             viewer.stream->send(camera_update(4, {32, 32}));
         } else if (auto const* const batch = std::get_if<EncodedBatch>(&message)) {
             newest = batch->number;
-            camera = batch->moment.value().view.number;
+            if (batch->moment) {
+                camera = batch->moment->view.number;
+                EXPECT_EQ(batch->moment->view.viewport, (Viewport{100, 40}));
+            }
             EXPECT_EQ(camera, 5u);
-            EXPECT_EQ(batch->moment.value().view.viewport, (Viewport{100, 40}));
             viewer.stream->send(Ack{newest, 0, 0});
         } else if (auto const* const status = std::get_if<Status>(&message)) {
             converged = status->converged && status->last_batch == newest && newest > 0;

@@ -76,7 +76,7 @@ protected:
             goes_on.send(camera_update(++number, {64, 48}));
             if (!goes_on.watch([&](Message const& message) {
                     auto const* const batch = std::get_if<EncodedBatch>(&message);
-                    return batch != nullptr && batch->moment.value().view.number == number;
+                    return batch != nullptr && batch->moment && batch->moment->view.number == number;
                 })) {
                 ADD_FAILURE() << "both have ended";
                 break;
