@@ -153,6 +153,7 @@ std::optional<HeldMoment> FrameletStream::moment_at(Turn const& turn, ViewState 
 Step FrameletStream::plan_batch(Turn const& turn, ViewState const& present, PosedScene& scene) {
     LinkState const link = link_.state();
     double const rendered = turn.samples_per_second;
+    rendered_per_second_ = std::max(rendered, 1.0);
     RefreshInput wanted;
     wanted.state = present;
     wanted.moment = moment_at(turn, present, scene);
@@ -245,7 +246,8 @@ bool FrameletStream::learn(PosedScene const& scene) {
         link_.begin(samples);
     }
     TurnFigures const& figures = learnt_->figures;
-    sent_share_.add(static_cast<double>(figures.rays) + probe_cost * static_cast<double>(figures.probes), samples);
+    sent_share_.add(static_cast<double>(figures.rays) + probe_cost * static_cast<double>(figures.probes), samples,
+                    rendered_per_second_);
     complete_ = viewer_.lossy.empty() && viewer_.refresh.is_complete(learnt_->order.present);
     return sends;
 }

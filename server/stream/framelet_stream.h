@@ -79,6 +79,7 @@ private:
     LinkEstimate link_;
     QualityChoice choice_;
     SentShare sent_share_;
+    double rendered_per_second_ = 1; ///< rays, when it was planned last
     CameraForecast forecast_; ///< of a camera that is the viewer's own
     MomentChoice moments_;
     ViewerKnowledge viewer_;

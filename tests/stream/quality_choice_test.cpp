@@ -38,15 +38,15 @@ Outcome outcome_of(double bytes_per_second, double samples_per_second) {
 TEST(SentShare, IsThatOfTheLastRays) {
     SentShare share;
     EXPECT_EQ(share.value(), 1) << "all, until more is known";
-    share.add(0, 0);
+    share.add(0, 0, 1e6);
     EXPECT_EQ(share.value(), 1);
     for (int i = 0; i < 100; ++i) {
-        share.add(1e5, 0.25e5);
+        share.add(1e5, 0.25e5, 1e6);
         EXPECT_GE(share.value(), 0.25);
         EXPECT_LE(share.value(), 1);
     }
     EXPECT_NEAR(share.value(), 0.25, 1e-6);
-    share.add(1e9, 0);
+    share.add(1e9, 0, 1e6);
     EXPECT_NEAR(share.value(), 0, 1e-6) << "all of it was held";
 }
 

@@ -33,12 +33,12 @@ double worthwhile_bytes(LinkState const& link) {
 
 } // namespace
 
-void SentShare::add(double rays, double sent_samples) {
+void SentShare::add(double rays, double sent_samples, double rays_per_second) {
     if (!(rays > 0)) {
         return;
     }
-    constexpr double memory_rays = 5e5; // a tenth of a second of two cores
-    value_ += (1 - std::exp(-rays / memory_rays)) * (sent_samples / rays - value_);
+    constexpr double memory_seconds = 0.2;
+    value_ += (1 - std::exp(-rays / (memory_seconds * rays_per_second))) * (sent_samples / rays - value_);
 }
 
 std::uint8_t QualityChoice::choose(LinkState const& link, double samples_per_second, double now) {

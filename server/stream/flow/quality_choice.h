@@ -17,7 +17,8 @@ inline constexpr std::uint8_t most_loss = 24;
 /// sample, and into what the viewer has already.
 class SentShare {
 public:
-    void add(double rays, double sent_samples);
+    /// `rays_per_second`: that are rendered lately, > 0.
+    void add(double rays, double sent_samples, double rays_per_second);
     double value() const { return value_; }
 
 private:
