@@ -3,15 +3,14 @@
 #include "client/gpu/shader_text.h"
 #include "common/color.h"
 #include "common/picture/reconstruction.h"
+#include "common/warp/warp_block.h"
 
 namespace framelet {
 
 namespace {
 
-constexpr int block_side = 16;
-
 int blocks_of(int pixels) {
-    return (pixels + block_side - 1) / block_side;
+    return (pixels + WarpedBlock::side - 1) / WarpedBlock::side;
 }
 
 } // namespace

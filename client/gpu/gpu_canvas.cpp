@@ -23,7 +23,6 @@ namespace framelet {
 namespace {
 
 constexpr int side = WarpedBlock::side;
-constexpr int table_width = 1024; ///< as tables.glsl has it
 constexpr std::size_t words_of_report = 4; ///< of each of the two planes
 
 /// All that has the size of a picture.

@@ -1,5 +1,7 @@
 #include "protocol/messages/tile_list.h"
 
+#include <algorithm>
+
 #include "common/error.h"
 
 namespace framelet {
@@ -68,7 +70,7 @@ Bytes write_tiles(std::span<Tile const> tiles) {
 
 std::vector<Tile> read_tiles(ByteView bytes) {
     std::vector<Tile> tiles;
-    tiles.reserve(bytes.size());
+    tiles.reserve(std::min(bytes.size(), max_batch_framelets)); // more is refused
     Place place;
     while (!bytes.empty()) {
         std::uint64_t const number = read_number(bytes);

@@ -312,6 +312,9 @@ TEST(BatchCodec, AMomentIsStatedOnce) {
         EXPECT_EQ(encoded.moment.has_value(), i % 2 == 0);
         EXPECT_TRUE(codec.decode(encoded, &received) == batch) << i;
         if (!encoded.moment) {
+            std::size_t const besides =
+                encode_message(encoded).size() - encoded.payload.size() - batch.framelets.size();
+            EXPECT_LE(besides, 100u) << "what a small batch over a narrow link is made small for";
             expect_refused(encoded, "moment");
             BatchMemory none;
             EXPECT_THROW(codec.decode(encoded, &none), ProtocolError);

@@ -12,8 +12,6 @@ namespace framelet {
 
 namespace {
 
-constexpr std::size_t table_width = 1024;
-
 struct GlFormat {
     GLint internal;
     GLenum format, type;
@@ -97,7 +95,7 @@ GlPlane::GlPlane(TexelFormat format, int width, int height, GlCount& count)
 }
 
 void GlTable::upload(std::vector<std::uint32_t>& words) {
-    std::size_t const row = table_width * words_;
+    std::size_t const row = std::size_t{table_width} * words_;
     std::size_t const rows = (words.size() + row - 1) / row;
     if (rows == 0 && plane_.texture() != 0) {
         return;

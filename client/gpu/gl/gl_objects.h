@@ -39,6 +39,9 @@ private:
     std::uint32_t name_ = 0; ///< 0: none
 };
 
+/// Texels in a row of a table, as tables.glsl has it.
+inline constexpr int table_width = 1024;
+
 enum class TexelFormat : std::uint8_t { color, depth, number, four_numbers, four_floats };
 
 /// A plane of texels that are read one by one, and what can be rendered to.
@@ -57,7 +60,7 @@ private:
     int width_ = 0, height_ = 0;
 };
 
-/// Numbers that a shader reads, `words` in each texel (1 or 4), 1024 texels a row (`tables.glsl`).
+/// Numbers that a shader reads, `words` in each texel (1 or 4), `table_width` texels a row.
 class GlTable {
 public:
     GlTable(TexelFormat format, std::size_t words, GlCount& count) : format_(format), words_(words), count_(&count) {}
