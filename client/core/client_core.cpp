@@ -13,7 +13,7 @@
 #include "client/core/session/arrived_batches.h"
 #include "client/core/session/asked_view.h"
 #include "client/core/session/server_state.h"
-#include "client/core/session/told_let_go.h"
+#include "client/core/session/told_evictions.h"
 #include "common/error.h"
 #include "protocol/codec/batch_codec.h"
 
@@ -53,8 +53,8 @@ struct ClientCore::Impl {
     std::condition_variable news_arrived;
     bool news = false;
     ArrivedBatches arrived; ///< and not in the maker yet
-    std::vector<SentTile> let_go; ///< scratch
-    ToldLetGo told_let_go;
+    std::vector<SentTile> evicted; ///< scratch
+    ToldEvictions told_evictions;
     AskedView asked;
     ViewerSettings viewer_settings;
     PictureSettings picture_settings;
@@ -129,7 +129,7 @@ struct ClientCore::Impl {
     /// Where what is held is what the server thinks it is, but for batches that are still to come.
     void ask_to_go_on(Hello& hello) {
         std::lock_guard const lock(mutex);
-        if (is_whole && !told_let_go.is_lost()) {
+        if (is_whole && !told_evictions.is_lost()) {
             hello.ticket = welcome.ticket;
             hello.last_batch = last_batch;
         }
@@ -149,10 +149,10 @@ struct ClientCore::Impl {
             welcome = std::move(greeting);
             interruption.reset();
             ++statistics.reconnections;
-            told_let_go.note_come(welcome.let_go);
+            told_evictions.note_come(welcome.evicted);
             if (connection) {
                 connection->send(viewer_settings);
-                for (LetGo const& told : told_let_go.messages()) {
+                for (Evicted const& told : told_evictions.messages()) {
                     connection->send(told);
                 }
             }
@@ -181,7 +181,7 @@ struct ClientCore::Impl {
         arrived.clear();
         has_picture = false;
         last_batch = 0;
-        told_let_go = {};
+        told_evictions = {};
         is_whole = true;
     }
 
@@ -210,7 +210,7 @@ struct ClientCore::Impl {
         } else if (auto const* news_of_server = std::get_if<Status>(&message)) {
             std::lock_guard const lock(mutex);
             server.note(*news_of_server, Clock::now());
-            told_let_go.note_come(news_of_server->let_go);
+            told_evictions.note_come(news_of_server->evicted);
             statistics.converged = news_of_server->converged;
             statistics.server_samples_per_second = news_of_server->samples_per_second;
             statistics.server_busy = static_cast<double>(news_of_server->busy);
@@ -282,7 +282,7 @@ struct ClientCore::Impl {
         for (Batch const& batch : taken) {
             maker.insert(batch);
         }
-        tell_let_go(maker);
+        tell_evicted(maker);
         Clock::time_point const after = Clock::now();
         double const coverage = taken.empty() ? -1 : maker.coverage();
         std::lock_guard const lock(mutex);
@@ -294,15 +294,15 @@ struct ClientCore::Impl {
     }
 
     /// Under the picture's lock.
-    void tell_let_go(PictureMaker& maker) {
-        maker.take_let_go(let_go);
-        for (LetGo& told : let_go_messages(let_go)) {
+    void tell_evicted(PictureMaker& maker) {
+        maker.take_evicted(evicted);
+        for (Evicted& told : evicted_messages(evicted)) {
             std::lock_guard const lock(mutex);
             if (!interruption) {
                 connection->send(told);
             }
             if (welcome.ticket) {
-                told_let_go.keep(std::move(told));
+                told_evictions.keep(std::move(told));
             }
         }
     }

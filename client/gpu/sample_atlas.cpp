@@ -52,7 +52,7 @@ SampleAtlas::Place SampleAtlas::place(std::size_t slot, std::uint32_t square) co
 }
 
 /// What this picture has not used makes room.
-void SampleAtlas::let_go() {
+void SampleAtlas::evict() {
     for (auto& slot : pages_) {
         for (Page& page : slot) {
             if (page.number >= 0 && page.picture < picture_) {
@@ -92,7 +92,7 @@ void SampleAtlas::grow() {
 std::int32_t SampleAtlas::take(std::size_t size) {
     auto& free = free_[size];
     if (free.empty()) {
-        let_go();
+        evict();
     }
     if (free.empty()) {
         if (used_layers_ == layers_) {

@@ -38,7 +38,7 @@ public:
         int side = 0;
     };
     /// Uploads what has been written of grids since they were uploaded last, and all small ones, which are for one
-    /// picture. Other grids may be let go of: nobody has asked for them for this picture. Throws CanvasError where
+    /// picture. Other grids may be evicted: nobody has asked for them for this picture. Throws CanvasError where
     /// there is no room.
     void update(std::span<Grid const> grids, std::span<SmallGrid const> small_ones);
     /// Of one of the last update's grids.
@@ -60,7 +60,7 @@ private:
     Page& prepare(Grid const& grid);
     void upload(Grid const& grid, Page& page);
     std::int32_t take(std::size_t size);
-    void let_go();
+    void evict();
     void grow();
     static int side_of(std::size_t size) { return least_side << size; }
     static Place place_of(std::int32_t number, std::size_t size);

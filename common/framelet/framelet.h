@@ -59,8 +59,8 @@ struct NumberedView {
 inline constexpr std::size_t max_batch_framelets = 32768;
 
 /// How a framelet was coded: 0 without loss, else with quantisation steps that grow with the number.
-inline constexpr std::uint8_t exact_quality = 0;
-inline constexpr std::uint8_t coarsest_quality = 127;
+inline constexpr std::uint8_t lossless_qp = 0;
+inline constexpr std::uint8_t coarsest_qp = 127;
 
 /// Framelets of one camera and one scene time.
 struct Batch {
@@ -71,7 +71,7 @@ struct Batch {
     SceneTime shown_from = 0;
     bool outdates = false; ///< what was rendered for before that looks otherwise from then on
     std::vector<DisplayFramelet> framelets;
-    std::vector<std::uint8_t> quality{}; ///< of each framelet, 0..coarsest_quality; empty: all are exact
+    std::vector<std::uint8_t> qp{}; ///< of each framelet, 0..coarsest_qp; empty: all are exact
     /// One for each framelet; none at all where the viewer has no use for them.
     std::vector<FrameletShape> shapes{};
     /// How the bodies of the shapes move: what the viewer has not been told yet.

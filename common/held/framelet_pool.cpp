@@ -18,7 +18,7 @@ bool moves(Batch const& batch, BodyMotions const& motions) {
                                [&](FrameletShape const& shape) { return moves(shape, batch.scene_time, motions); });
 }
 
-/// For a sample a pixel, twice: about what a moment brings while things move, and what is let go of meanwhile.
+/// For a sample a pixel, twice: about what a moment brings while things move, and what is evicted meanwhile.
 std::size_t chunks_of_two_pictures(ImagePlane const& plane) {
     Viewport const viewport = plane.viewport();
     auto const framelets =
@@ -85,14 +85,14 @@ std::size_t FrameletPool::insert_moving(Batch const& batch, BodyMotions const& m
     if (slot == slots_.size()) {
         slot = begin_slot(batch);
         if (moments_ == slots_[base_].begun + most_) {
-            let_go_of_moving(batch.scene_time, motions);
+            evict_moving(batch.scene_time, motions);
         }
     }
     return slots_[base_].cache->insert(batch, stands_) + slots_[slot].cache->insert(batch, moves_);
 }
 
 /// Of the base, since it is as old by now as what moved in other slots gets; what deforms goes astray with time.
-void FrameletPool::let_go_of_moving(SceneTime now, BodyMotions const& motions) {
+void FrameletPool::evict_moving(SceneTime now, BodyMotions const& motions) {
     FrameletCache& base = *slots_[base_].cache;
     std::vector<Tile> kept;
     for (std::size_t i = 0; i < base.slot_count(); ++i) {
@@ -103,7 +103,7 @@ void FrameletPool::let_go_of_moving(SceneTime now, BodyMotions const& motions) {
             kept.push_back(framelet->tile);
         }
     }
-    base.keep(kept, let_go_);
+    base.keep(kept, evicted_);
 }
 
 /// Where what moves before the newest camera is held; `slot_count()` where it has no slot yet.
@@ -124,7 +124,7 @@ void FrameletPool::settle() {
             continue;
         }
         Slot& slot = slots_[i];
-        base.cache->take(*slot.cache, let_go_);
+        base.cache->take(*slot.cache, evicted_);
         if (slot.begun > newest) {
             newest = slot.begun;
             base.scene_time = slot.scene_time;
@@ -159,7 +159,7 @@ std::size_t FrameletPool::begin_slot(Batch const& batch) {
     }
     std::size_t const index = free_slot();
     Slot& slot = slots_[index];
-    slot.cache->add_held(let_go_);
+    slot.cache->add_held(evicted_);
     slot.cache->clear();
     slot.camera = batch.view.camera;
     slot.scene_time = batch.scene_time;
@@ -168,9 +168,9 @@ std::size_t FrameletPool::begin_slot(Batch const& batch) {
     return index;
 }
 
-void FrameletPool::take_let_go(std::vector<SentTile>& framelets) {
+void FrameletPool::take_evicted(std::vector<SentTile>& framelets) {
     framelets.clear();
-    framelets.swap(let_go_);
+    framelets.swap(evicted_);
 }
 
 void FrameletPool::note_shown(std::span<std::uint32_t const> blocks) {

@@ -62,10 +62,10 @@ public:
     /// the newest camera.
     bool is_tried(std::size_t slot) const;
     /// Nothing else of the slot is held any more.
-    void keep(std::size_t slot, std::span<Tile const> tiles) { slots_[slot].cache->keep(tiles, let_go_); }
-    /// Replaces `framelets` by those that have been let go of since the last call, other than for newer ones in their
+    void keep(std::size_t slot, std::span<Tile const> tiles) { slots_[slot].cache->keep(tiles, evicted_); }
+    /// Replaces `framelets` by those that have been evicted since the last call, other than for newer ones in their
     /// places of the same moment.
-    void take_let_go(std::vector<SentTile>& framelets);
+    void take_evicted(std::vector<SentTile>& framelets);
     /// Of slots: in how many blocks of the last picture something of it showed. For what goes next.
     void note_shown(std::span<std::uint32_t const> blocks);
 
@@ -87,7 +87,7 @@ private:
     std::size_t free_slot();
     std::size_t begin_slot(Batch const& batch);
     std::size_t insert_moving(Batch const& batch, BodyMotions const& motions);
-    void let_go_of_moving(SceneTime now, BodyMotions const& motions);
+    void evict_moving(SceneTime now, BodyMotions const& motions);
 
     ImagePlane plane_;
     std::size_t most_;
@@ -95,7 +95,7 @@ private:
     std::vector<Slot> slots_;
     std::size_t base_ = 0;
     std::uint64_t moments_ = 0;
-    std::vector<SentTile> let_go_;
+    std::vector<SentTile> evicted_;
     std::vector<std::uint8_t> stands_, moves_; ///< scratch: flags of a batch's framelets
 };
 

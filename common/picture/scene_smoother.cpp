@@ -76,7 +76,7 @@ void SceneSmoother::take_due(SceneTime scene_time, BodyMotions const& motions) {
         older_pool_.insert(batch, motions);
         return true;
     });
-    older_pool_.take_let_go(let_go_);
+    older_pool_.take_evicted(evicted_);
 }
 
 void SceneSmoother::settle() {

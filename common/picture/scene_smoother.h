@@ -68,7 +68,7 @@ private:
     SceneTime shown_time_ = 0;
     Side older_, newer_;
     std::vector<PixelRect> changed_; ///< scratch: of the older cache
-    std::vector<SentTile> let_go_; ///< scratch: nobody is to know
+    std::vector<SentTile> evicted_; ///< scratch: nobody is to know
     // Of blocks of 16x16 pixels, in rows.
     std::vector<MixShare> shares_, shown_shares_;
     std::vector<std::uint8_t> dirty_; ///< one of the two pictures has changed

@@ -144,11 +144,11 @@ EncodedBatch BatchCodec::encode(Batch const& batch, BatchMemory* memory, bool pr
     scratch_->workers.prepare();
     std::size_t const count = batch.framelets.size();
     FRAMELET_CHECK(count <= max_batch_framelets);
-    FRAMELET_CHECK(batch.quality.empty() || batch.quality.size() == count);
+    FRAMELET_CHECK(batch.qp.empty() || batch.qp.size() == count);
     FRAMELET_CHECK(batch.shapes.empty() || batch.shapes.size() == count);
-    std::span<std::uint8_t const> const quality = batch.quality;
+    std::span<std::uint8_t const> const qp = batch.qp;
     Viewport const viewport = batch.view.viewport;
-    bool const is_predicted = memory != nullptr && predicts && !quality.empty() && HeldPicture::holds(viewport);
+    bool const is_predicted = memory != nullptr && predicts && !qp.empty() && ReferencePicture::holds(viewport);
     std::span<DisplayFramelet> decoded;
     if (is_predicted) {
         memory->picture.show(viewport);
@@ -161,15 +161,15 @@ EncodedBatch BatchCodec::encode(Batch const& batch, BatchMemory* memory, bool pr
     }
     BatchModels& models = scratch_->models_of(memory);
     std::size_t const groups = group_count(count);
-    GroupModels<PlaneModel> planes(models.planes, quality.empty() ? 0 : groups, scratch_->planes);
+    GroupModels<PlaneModel> planes(models.planes, qp.empty() ? 0 : groups, scratch_->planes);
     std::span<Bytes> const frames = scratch_->frames_of(groups);
     for_each_group(count, [&](std::size_t group, std::size_t first, std::size_t size) {
         Worker& worker = scratch_->workers.local();
         std::span const framelets = std::span(batch.framelets).subspan(first, size);
-        if (quality.empty()) {
+        if (qp.empty()) {
             worker.encode(framelets, frames[group]);
         } else {
-            copy(worker.planes.encode(framelets, quality.subspan(first, size), planes[group],
+            copy(worker.planes.encode(framelets, qp.subspan(first, size), planes[group],
                                       is_predicted ? &memory->picture : nullptr, part_of(decoded, first, size)),
                  frames[group]);
         }
@@ -186,7 +186,7 @@ EncodedBatch BatchCodec::encode(Batch const& batch, BatchMemory* memory, bool pr
         encoded.moment.reset();
     }
     encoded.encoding = is_predicted      ? SampleEncoding::predicted
-                       : quality.empty() ? SampleEncoding::exact
+                       : qp.empty() ? SampleEncoding::exact
                                          : SampleEncoding::haar;
     encoded.tiles.reserve(count);
     for (DisplayFramelet const& framelet : batch.framelets) {
@@ -233,7 +233,7 @@ void BatchCodec::decode(EncodedBatch const& encoded, BatchMemory* memory, Batch&
     bool const is_predicted = encoded.encoding == SampleEncoding::predicted;
     BatchMoment const moment = moment_of(encoded, memory);
     Viewport const viewport = moment.view.viewport;
-    if (is_predicted && (memory == nullptr || !HeldPicture::holds(viewport))) {
+    if (is_predicted && (memory == nullptr || !ReferencePicture::holds(viewport))) {
         throw ProtocolError("a batch is predicted from what this viewer does not hold");
     }
     bool const is_held = is_predicted || (memory != nullptr && memory->picture.shows(viewport));
@@ -254,7 +254,7 @@ void BatchCodec::decode(EncodedBatch const& encoded, BatchMemory* memory, Batch&
     batch.shown_from = moment.shown_from;
     batch.outdates = moment.outdates;
     batch.framelets.resize(count);
-    batch.quality.resize(is_exact ? 0 : count);
+    batch.qp.resize(is_exact ? 0 : count);
     if (is_predicted) {
         memory->picture.show(viewport);
     }
@@ -267,7 +267,7 @@ void BatchCodec::decode(EncodedBatch const& encoded, BatchMemory* memory, Batch&
         if (is_exact) {
             scratch_->workers.local().decode(frames[group], framelets);
         } else {
-            PlaneCodec::decode(numbers(frames[group]), framelets, std::span(batch.quality).subspan(first, size),
+            PlaneCodec::decode(numbers(frames[group]), framelets, std::span(batch.qp).subspan(first, size),
                                planes[group], is_predicted ? &memory->picture : nullptr);
         }
     });

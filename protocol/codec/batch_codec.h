@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "common/framelet/framelet.h"
-#include "protocol/codec/color/held_picture.h"
+#include "protocol/codec/color/reference_picture.h"
 #include "protocol/messages/message.h"
 
 namespace framelet {
@@ -21,7 +21,7 @@ struct BatchMemory {
     BatchMemory& operator=(BatchMemory&&) noexcept;
 
     std::optional<BatchMoment> moment; ///< of the newest batch
-    HeldPicture picture; ///< that the viewer holds
+    ReferencePicture picture; ///< that the viewer holds
     std::unique_ptr<BatchModels> models; ///< how likely which decisions of the range coder are
 };
 
@@ -33,7 +33,7 @@ public:
     BatchCodec(BatchCodec&&) noexcept;
     BatchCodec& operator=(BatchCodec&&) noexcept;
 
-    /// Without loss where the batch has no qualities; else each framelet with its own, and `decode` gives what the
+    /// Without loss where the batch has no QPs; else each framelet with its own, and `decode` gives what the
     /// viewer will see. Shapes always lose a little (`shape_quantisation.h`). `memory`: of all batches before this one,
     /// which then knows this one as well; null: this batch stands alone. `predicts`: samples with loss are predicted
     /// from the picture in the memory.

@@ -34,7 +34,7 @@ struct Ticket {
 /// What a viewer can read; a server sends nothing else. Sums of these; bits that a server does not know are left out.
 namespace coding {
 inline constexpr std::uint32_t exact_colour = 1; ///< every viewer can
-inline constexpr std::uint32_t haar_colour = 2; ///< framelets with a quality
+inline constexpr std::uint32_t haar_colour = 2; ///< framelets with a QP
 inline constexpr std::uint32_t predicted_colour = 8; ///< framelets predicted from those of earlier batches
 inline constexpr std::uint32_t shapes_and_tracks = 32;
 inline constexpr std::uint32_t all = exact_colour | haar_colour | shapes_and_tracks | predicted_colour; ///< known here
@@ -86,12 +86,12 @@ struct Ack {
 };
 
 /// The viewer no longer holds these framelets, though nothing newer has come in their places.
-struct LetGo {
-    std::vector<SentTile> framelets; ///< those of a batch together; at most `max_let_go`
-    bool operator==(LetGo const&) const = default;
+struct Evicted {
+    std::vector<SentTile> framelets; ///< those of a batch together; at most `max_evicted`
+    bool operator==(Evicted const&) const = default;
 };
 /// More are several messages.
-inline constexpr std::size_t max_let_go = 4096;
+inline constexpr std::size_t max_evicted = 4096;
 
 // --- downstream
 // -------------------------------------------------------------------------------------------------------
@@ -116,14 +116,14 @@ struct Welcome {
     bool controls = true; ///< whether this viewer's clock requests count
     Ticket ticket{}; ///< for the viewer's next Hello
     bool resumed = false; ///< the session before goes on: what the viewer holds of it stays, what it lacks comes again
-    std::uint64_t let_go = 0; ///< as in Status
+    std::uint64_t evicted = 0; ///< as in Status
     std::uint64_t scene_place = 0; ///< the same where it is the same file, whatever is in it by now; 0: not known
 };
 
 /// How the samples of a batch are coded.
 enum class SampleEncoding : std::uint8_t {
     exact = 1, ///< all without loss
-    haar = 7, ///< each with a quality of its own
+    haar = 7, ///< each with a QP of its own
     predicted = 8, ///< the same, beside what the viewer holds
 };
 
@@ -157,7 +157,7 @@ struct Status {
     double samples_per_second = 0; ///< rendered for all sessions together
     std::uint32_t sessions = 0;
     bool controls = true; ///< as in Welcome, by now
-    std::uint64_t let_go = 0; ///< how many messages LetGo of this viewer have come
+    std::uint64_t evicted = 0; ///< how many messages Evicted of this viewer have come
     float busy = 0; ///< the share of the last second in which there was something to do for viewers, [0, 1]
     bool operator==(Status const&) const = default;
 };
@@ -170,7 +170,7 @@ struct Failure {
 };
 
 using Message =
-    std::variant<Hello, CameraUpdate, ViewerSettings, ClockRequest, Ack, LetGo, Welcome, EncodedBatch, Status, Failure>;
+    std::variant<Hello, CameraUpdate, ViewerSettings, ClockRequest, Ack, Evicted, Welcome, EncodedBatch, Status, Failure>;
 
 /// Largest message body that either side accepts, bytes: what one cycle's worst batch needs, with room.
 inline constexpr std::size_t max_message_bytes = 64u << 20;

@@ -45,8 +45,8 @@ Message value_of(wire::Message const& message) {
         return value_of(*message.body_as_ClockRequest());
     case wire::Body::Ack:
         return value_of(*message.body_as_Ack());
-    case wire::Body::LetGo:
-        return value_of(*message.body_as_LetGo());
+    case wire::Body::Evicted:
+        return value_of(*message.body_as_Evicted());
     case wire::Body::Welcome:
         return value_of(*message.body_as_Welcome());
     case wire::Body::Batch:

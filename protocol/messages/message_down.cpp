@@ -72,7 +72,7 @@ Offset<wire::Welcome> write(Builder& builder, Welcome const& value) {
     return wire::CreateWelcome(builder, value.version, server, scene, value.scene_bounds.empty() ? nullptr : &box,
                                start, builder.CreateVector(cameras), value.animation_duration, &clock,
                                value.scene_identity, value.controls, value.ticket ? &ticket : nullptr, value.resumed,
-                               value.let_go, value.scene_place);
+                               value.evicted, value.scene_place);
 }
 
 Welcome read(wire::Welcome const& wire) {
@@ -101,7 +101,7 @@ Welcome read(wire::Welcome const& wire) {
     value.controls = wire.controls();
     value.ticket = read(wire.ticket());
     value.resumed = wire.resumed();
-    value.let_go = wire.let_go();
+    value.evicted = wire.evicted();
     value.scene_place = wire.scene_place();
     return value;
 }
@@ -189,7 +189,7 @@ char const* problem(EncodedBatch const& value) {
 Offset<wire::Status> write(Builder& builder, Status const& value) {
     wire::Clock const clock = write(value.clock);
     return wire::CreateStatus(builder, &clock, value.last_batch, value.camera_number, value.converged,
-                              value.samples_per_second, value.sessions, value.controls, value.let_go, value.busy);
+                              value.samples_per_second, value.sessions, value.controls, value.evicted, value.busy);
 }
 
 Status read(wire::Status const& wire) {
@@ -201,7 +201,7 @@ Status read(wire::Status const& wire) {
     value.samples_per_second = wire.samples_per_second();
     value.sessions = wire.sessions();
     value.controls = wire.controls();
-    value.let_go = wire.let_go();
+    value.evicted = wire.evicted();
     value.busy = wire.busy();
     return value;
 }

@@ -77,7 +77,7 @@ char const* problem(Ack const&) {
     return nullptr;
 }
 
-Offset<wire::LetGo> write(Builder& builder, LetGo const& value) {
+Offset<wire::Evicted> write(Builder& builder, Evicted const& value) {
     std::vector<std::uint64_t> batches;
     std::vector<std::uint16_t> counts;
     std::vector<std::uint32_t> tiles;
@@ -89,11 +89,11 @@ Offset<wire::LetGo> write(Builder& builder, LetGo const& value) {
         ++counts.back();
         tiles.push_back(sent.tile.code);
     }
-    return wire::CreateLetGoDirect(builder, &batches, &counts, &tiles);
+    return wire::CreateEvictedDirect(builder, &batches, &counts, &tiles);
 }
 
-LetGo read(wire::LetGo const& wire) {
-    LetGo value;
+Evicted read(wire::Evicted const& wire) {
+    Evicted value;
     std::size_t next = 0;
     for (flatbuffers::uoffset_t i = 0; i < std::min(wire.batches()->size(), wire.counts()->size()); ++i) {
         std::size_t const end = next + wire.counts()->Get(i);
@@ -106,14 +106,14 @@ LetGo read(wire::LetGo const& wire) {
         }
     }
     if (wire.batches()->size() != wire.counts()->size() || next != wire.tiles()->size()) {
-        throw ProtocolError("what the viewer lets go of does not add up");
+        throw ProtocolError("what the viewer evicts does not add up");
     }
     return value;
 }
 
-char const* problem(LetGo const& value) {
-    if (value.framelets.size() > max_let_go) {
-        return "the viewer lets go of more than 4096 framelets at once";
+char const* problem(Evicted const& value) {
+    if (value.framelets.size() > max_evicted) {
+        return "the viewer evicts more than 4096 framelets at once";
     }
     auto const is_valid = [](SentTile const& sent) { return is_tile_code(sent.tile.code); };
     return std::ranges::all_of(value.framelets, is_valid) ? nullptr : "a tile code is invalid";

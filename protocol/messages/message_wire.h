@@ -60,9 +60,9 @@ char const* problem(ClockRequest const& value);
 Offset<wire::Ack> write(Builder& builder, Ack const& value);
 Ack read(wire::Ack const& wire);
 char const* problem(Ack const& value);
-Offset<wire::LetGo> write(Builder& builder, LetGo const& value);
-LetGo read(wire::LetGo const& wire);
-char const* problem(LetGo const& value);
+Offset<wire::Evicted> write(Builder& builder, Evicted const& value);
+Evicted read(wire::Evicted const& wire);
+char const* problem(Evicted const& value);
 
 // --- downstream, and either direction
 Offset<wire::Welcome> write(Builder& builder, Welcome const& value);

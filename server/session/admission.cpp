@@ -56,7 +56,7 @@ void Admission::seat(std::shared_ptr<Session> const& session, Hello const& hello
     bool const knows_token = knows_control_token(hello);
     if (holder != nullptr) {
         answer.resumed = true;
-        answer.let_go = session->status().let_go;
+        answer.evicted = session->status().evicted;
     } else {
         tickets_.issue({make_ticket(), session, session->id(), hello.codings, knows_token, std::nullopt});
         holder = tickets_.of(*session);

@@ -83,7 +83,7 @@ bool Session::can_be_resumed(std::uint64_t last_batch) const {
 
 void Session::resume(std::shared_ptr<Session> earlier, std::uint64_t last_batch) {
     std::scoped_lock const lock(mutex_, earlier->mutex_);
-    let_go_ = earlier->let_go_;
+    evicted_ = earlier->evicted_;
     last_batch_ = last_ack_ = last_batch;
     earlier_ = std::move(earlier);
 }
@@ -97,7 +97,7 @@ void Session::take_over() {
         events.push_back({seconds_of(std::chrono::steady_clock::now()), Resumed{last_batch_}});
         events.insert(events.end(), waiting_events_.begin(), waiting_events_.end());
         waiting_events_ = std::move(events);
-        waiting_let_go_ += earlier->waiting_let_go_;
+        waiting_evicted_ += earlier->waiting_evicted_;
         lacked = std::move(earlier->kept_);
         std::erase_if(lacked, [this](auto const& message) { return batch_of(message).number <= last_batch_; });
         earlier->parked_ = false;
@@ -159,7 +159,7 @@ std::uint64_t Session::take_events(std::vector<StreamEvent>& events) {
     events.clear();
     std::scoped_lock const lock(mutex_);
     events.swap(waiting_events_);
-    waiting_let_go_ = 0;
+    waiting_evicted_ = 0;
     return version_;
 }
 
@@ -225,7 +225,7 @@ Status Session::status() const {
     std::scoped_lock const lock(mutex_);
     Status status;
     status.last_batch = last_batch_;
-    status.let_go = let_go_;
+    status.evicted = evicted_;
     status.camera_number = camera_number_;
     status.converged = camera_number_ > 0 && converged_version_ == version_;
     return status;
@@ -272,8 +272,8 @@ void Session::receive(Message message) {
         if (receive_ack(*ack)) {
             events_.changed();
         }
-    } else if (auto* const gone = std::get_if<LetGo>(&message)) {
-        receive_let_go(std::move(*gone));
+    } else if (auto* const gone = std::get_if<Evicted>(&message)) {
+        receive_evicted(std::move(*gone));
     } else if (auto const* const failure = std::get_if<Failure>(&message)) {
         stream_->close();
         fail("the viewer gave up: " + failure->text, false);
@@ -304,13 +304,13 @@ bool Session::receive_ack(Ack const& ack) {
     return true;
 }
 
-/// What waits is bounded: a viewer that lets go of more than it can hold is not heard.
-void Session::receive_let_go(LetGo gone) {
+/// What waits is bounded: a viewer that evicts more than it can hold is not heard.
+void Session::receive_evicted(Evicted gone) {
     constexpr std::size_t most_waiting = std::size_t{1} << 18;
     std::scoped_lock const lock(mutex_);
-    ++let_go_;
-    waiting_let_go_ += gone.framelets.size() + 1;
-    if (waiting_let_go_ <= most_waiting) {
+    ++evicted_;
+    waiting_evicted_ += gone.framelets.size() + 1;
+    if (waiting_evicted_ <= most_waiting) {
         waiting_events_.push_back({seconds_of(std::chrono::steady_clock::now()), std::move(gone)});
     }
 }

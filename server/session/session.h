@@ -104,7 +104,7 @@ private:
     void receive_hello(Message const& message);
     void receive_camera(CameraUpdate const& camera);
     bool receive_ack(Ack const& ack);
-    void receive_let_go(LetGo gone);
+    void receive_evicted(Evicted gone);
     template <class What>
     void add_newest(What const& what);
     void send_batch(std::shared_ptr<Message const> const& batch);
@@ -125,8 +125,8 @@ private:
     std::uint64_t camera_number_ = 0; ///< newest that came; 0: none
     Viewport viewport_; ///< its
     std::vector<StreamEvent> waiting_events_; ///< few: none of those that a newer one replaces
-    std::size_t waiting_let_go_ = 0; ///< messages and framelets among these
-    std::uint64_t let_go_ = 0; ///< messages that have come, in sessions before this one too
+    std::size_t waiting_evicted_ = 0; ///< messages and framelets among these
+    std::uint64_t evicted_ = 0; ///< messages that have come, in sessions before this one too
     std::uint64_t version_ = 0;
     std::uint64_t last_batch_ = 0;
     std::uint64_t last_ack_ = 0;

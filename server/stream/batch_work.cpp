@@ -49,8 +49,8 @@ bool BatchWork::learn(PosedScene const& scene, ViewerKnowledge& viewer) {
     if (!order.withholds) {
         std::ranges::fill(needed_, std::uint8_t{1});
     }
-    choose_qualities(ImagePlane(order.state.view.viewport), order.plan.tiles, needed_, order.quality, order.still,
-                     viewer.lossy, batch_.quality);
+    choose_qps(ImagePlane(order.state.view.viewport), order.plan.tiles, needed_, order.qp, order.still,
+                     viewer.lossy, batch_.qp);
     fill_batch(viewer);
     if (batch_.framelets.empty()) {
         return false;
@@ -59,7 +59,7 @@ bool BatchWork::learn(PosedScene const& scene, ViewerKnowledge& viewer) {
         describe_shapes(scene, viewer);
     }
     std::uint64_t const samples = batch_.framelets.size() * framelet_samples;
-    figures.exact_samples = batch_.quality.empty() ? samples : 0;
+    figures.exact_samples = batch_.qp.empty() ? samples : 0;
     figures.lossy_samples = samples - figures.exact_samples;
     figures.shaped_samples = order.takes_shapes ? samples : 0;
     return true;

@@ -9,7 +9,7 @@
 #include "protocol/codec/batch_codec.h"
 #include "server/render/probe_renderer.h"
 #include "server/sampling/plan/adaptive_refresh.h"
-#include "server/stream/flow/lossy_places.h"
+#include "server/stream/flow/lossy_tiles.h"
 #include "server/stream/layers/shape_feed.h"
 #include "server/stream/posed_scene.h"
 #include "server/stream/viewer_stream.h"
@@ -21,7 +21,7 @@ struct ViewerKnowledge {
     AdaptiveRefresh refresh;
     ShapeFeed shapes;
     BodyMotions motions; ///< as the viewer knows them
-    LossyPlaces lossy;
+    LossyTiles lossy;
     std::uint64_t batches = 0; ///< that have been learnt, and are sent
 };
 
@@ -33,7 +33,7 @@ struct BatchOrder {
     SceneTime shown_from = 0; ///< as of a Batch
     bool outdates = false; ///< as of a Batch
     RefreshPlan plan;
-    std::uint8_t quality = exact_quality;
+    std::uint8_t qp = lossless_qp;
     bool takes_shapes = false;
     bool withholds = true; ///< what the viewer has already
     bool still = false; ///< nothing moves: what is finest is sent without loss
@@ -47,7 +47,7 @@ public:
 
     /// Parallel on the calling TBB arena.
     void render(PosedScene const& scene);
-    /// What was rendered: learning, choice of quality, shapes. Not while the viewer's knowledge is used otherwise.
+    /// What was rendered: learning, choice of QP, shapes. Not while the viewer's knowledge is used otherwise.
     /// False where there is nothing to send.
     bool learn(PosedScene const& scene, ViewerKnowledge& viewer);
     /// What was learnt. `codec` may keep scratch from batch to batch; the rest as of `BatchCodec::encode`.

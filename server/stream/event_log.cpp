@@ -25,7 +25,7 @@ enum Kind : std::uint8_t {
     turn,
     learning,
     batch,
-    let_go,
+    evicted,
     resumed
 };
 
@@ -112,8 +112,8 @@ void EventLog::add_event(std::uint64_t session, StreamEvent const& event) {
         write(session, settings, event_content(event.seconds, *wanted));
     } else if (auto const* const answer = std::get_if<Ack>(&event.what)) {
         write(session, ack, event_content(event.seconds, *answer));
-    } else if (auto const* const gone = std::get_if<LetGo>(&event.what)) {
-        write(session, let_go, event_content(event.seconds, *gone));
+    } else if (auto const* const gone = std::get_if<Evicted>(&event.what)) {
+        write(session, evicted, event_content(event.seconds, *gone));
     } else if (auto const* const sent = std::get_if<BatchSent>(&event.what)) {
         put(content, event.seconds);
         put(content, sent->batch);
@@ -200,8 +200,8 @@ std::optional<LogRecord> EventLogReader::next() {
         return event([&] { return content.message<ViewerSettings>(); });
     case ack:
         return event([&] { return content.message<Ack>(); });
-    case let_go:
-        return event([&] { return content.message<LetGo>(); });
+    case evicted:
+        return event([&] { return content.message<Evicted>(); });
     case clock_changed:
         return event([&] { return ClockChanged{}; });
     case batch_sent:

@@ -36,7 +36,7 @@ void FrameletStream::take(StreamEvent const& event) {
             received = 1e-6 * static_cast<double>(ack->received_us);
         }
         link_.acknowledged(ack->batch, event.seconds, received);
-    } else if (auto const* const gone = std::get_if<LetGo>(&event.what)) {
+    } else if (auto const* const gone = std::get_if<Evicted>(&event.what)) {
         viewer_.refresh.forget(gone->framelets);
     } else if (auto const* const sent = std::get_if<BatchSent>(&event.what)) {
         link_.sent(sent->batch, event.seconds, static_cast<double>(sent->bytes));
@@ -178,9 +178,9 @@ Step FrameletStream::plan_batch(Turn const& turn, ViewState const& present, Pose
     order.scene_camera = moving_camera(scene);
     order.shown_from = wanted.moment ? wanted.moment->shown_from : 0;
     order.outdates = wanted.moment && wanted.moment->outdates;
-    order.quality = exact_quality;
+    order.qp = lossless_qp;
     if (takes_loss()) {
-        order.quality = choice_.choose(link, sent_share_.value() * rendered, turn.now);
+        order.qp = choice_.choose(link, sent_share_.value() * rendered, turn.now);
     }
     order.takes_shapes = takes_shapes();
     order.withholds = options_.withholds;
@@ -208,7 +208,7 @@ Step FrameletStream::plan_batch(Turn const& turn, ViewState const& present, Pose
 void FrameletStream::plan_exactly(ViewState const& present, PosedScene const& scene) {
     constexpr std::size_t most_framelets = 1024;
     BatchWork& work = free_work();
-    work.order = {present, present, moving_camera(scene), 0, false, {}, exact_quality, takes_shapes(), true,
+    work.order = {present, present, moving_camera(scene), 0, false, {}, lossless_qp, takes_shapes(), true,
                   true,    true};
     viewer_.lossy.list(std::min(bounded_batch(link_.state()), most_framelets), work.order.plan.tiles);
     work.figures = {};

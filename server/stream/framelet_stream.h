@@ -7,7 +7,7 @@
 #include "server/stream/batch_work.h"
 #include "server/stream/camera_forecast.h"
 #include "server/stream/flow/link_estimate.h"
-#include "server/stream/flow/quality_choice.h"
+#include "server/stream/flow/qp_choice.h"
 #include "server/stream/moment_choice.h"
 #include "server/stream/viewer_stream.h"
 
@@ -77,7 +77,7 @@ private:
     ViewerSettings settings_;
     std::uint64_t acknowledged_ = 0;
     LinkEstimate link_;
-    QualityChoice choice_;
+    QpChoice choice_;
     SentShare sent_share_;
     double rendered_per_second_ = 1; ///< rays, when it was planned last
     CameraForecast forecast_; ///< of a camera that is the viewer's own

@@ -30,7 +30,7 @@ struct Resumed {
 
 struct StreamEvent {
     double seconds = 0; ///< when, on the server's steady clock
-    std::variant<CameraUpdate, ViewerSettings, Ack, LetGo, ClockChanged, BatchSent, Resumed> what;
+    std::variant<CameraUpdate, ViewerSettings, Ack, Evicted, ClockChanged, BatchSent, Resumed> what;
     bool operator==(StreamEvent const&) const = default;
 };
 

@@ -106,11 +106,11 @@ TEST(ClientCore, AnotherSceneStartsClean) {
     viewer.show(90);
 }
 
-FakeServer::Script with_ticket(bool resumed, std::uint64_t let_go = 0) {
+FakeServer::Script with_ticket(bool resumed, std::uint64_t evicted = 0) {
     FakeServer::Script script;
     script.welcome.ticket = {3, 4};
     script.welcome.resumed = resumed;
-    script.welcome.let_go = let_go;
+    script.welcome.evicted = evicted;
     return script;
 }
 
@@ -154,7 +154,7 @@ TEST(ClientCore, LeavesAServerThatGoesOnUnasked) {
     EXPECT_TRUE(one_line_with(*viewer.core->end_reason(), {"protocol"})) << *viewer.core->end_reason();
 }
 
-TEST(ClientCore, SaysOnceMoreWhatItLetGoAndTheServerHasNotHeard) {
+TEST(ClientCore, SaysOnceMoreWhatItEvictedAndTheServerHasNotHeard) {
     Returning viewer(with_ticket(false));
     std::uint64_t camera = 1;
     auto const look_elsewhere = [&] {
@@ -168,7 +168,7 @@ TEST(ClientCore, SaysOnceMoreWhatItLetGoAndTheServerHasNotHeard) {
         }
     };
     look_elsewhere();
-    ASSERT_TRUE(viewer.server.wait_for_some<LetGo>());
+    ASSERT_TRUE(viewer.server.wait_for_some<Evicted>());
     look_elsewhere();
     viewer.core->set_view({}, viewer.plane.viewport()); // so that all before it has come
     ++camera;
@@ -176,18 +176,18 @@ TEST(ClientCore, SaysOnceMoreWhatItLetGoAndTheServerHasNotHeard) {
         auto const* const last = std::get_if<CameraUpdate>(&messages.back());
         return last != nullptr && last->view.number == camera;
     }));
-    std::vector<LetGo> const told = viewer.server.received<LetGo>();
+    std::vector<Evicted> const told = viewer.server.received<Evicted>();
     ASSERT_GT(told.size(), 3u);
     viewer.server.cut(with_ticket(true, 2)); // it has heard two of them
     ASSERT_TRUE(viewer.is_back());
-    ASSERT_TRUE(viewer.server.wait_for_some<LetGo>(2 * told.size() - 2));
-    std::vector<LetGo> const all = viewer.server.received<LetGo>();
+    ASSERT_TRUE(viewer.server.wait_for_some<Evicted>(2 * told.size() - 2));
+    std::vector<Evicted> const all = viewer.server.received<Evicted>();
     EXPECT_TRUE(std::equal(told.begin() + 2, told.end(), all.begin() + static_cast<std::ptrdiff_t>(told.size())));
     FakeServer::Script script = with_ticket(true, told.size());
     viewer.server.cut(script);
     ASSERT_TRUE(wait_for(*viewer.core, [&] { return viewer.core->statistics().reconnections == 2; }));
     ASSERT_TRUE(viewer.server.wait_for_some<ViewerSettings>(3));
-    EXPECT_EQ(viewer.server.received<LetGo>().size(), all.size()) << "it has heard all";
+    EXPECT_EQ(viewer.server.received<Evicted>().size(), all.size()) << "it has heard all";
 }
 
 TEST(ClientCore, ARefusalIsFinalUnlessItSaysOtherwise) {

@@ -11,7 +11,7 @@
 #include "common/picture/reprojector.h"
 #include "protocol/codec/batch_codec.h"
 #include "server/render/display_framelet.h"
-#include "server/stream/flow/quality_choice.h"
+#include "server/stream/flow/qp_choice.h"
 #include "server/stream/layers/shape_feed.h"
 #include "tests/evaluation/codecs/h264_codec.h"
 #include "tests/evaluation/methods/kd_leaves.h"
@@ -76,7 +76,7 @@ double cost(int rounds, double units, Work&& work) {
 /// Every framelet lies where another one was before, as far from there as a search has to look in vain.
 void calibrate_prediction(Batch batch, int rounds, CostTable& costs) {
     double const samples = static_cast<double>(batch.framelets.size() * framelet_samples);
-    batch.quality.assign(batch.framelets.size(), most_loss);
+    batch.qp.assign(batch.framelets.size(), most_loss);
     BatchCodec codec;
     BatchMemory sent, received;
     std::vector<double> encode, decode;

@@ -29,15 +29,15 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
         return 0;
     }
     static PlaneCodec codec;
-    static HeldPicture picture;
+    static ReferencePicture picture;
     picture.show(viewport);
     picture.prepare_search({});
-    HeldPicture* const held = data[1] % 2 == 0 ? nullptr : &picture;
+    ReferencePicture* const held = data[1] % 2 == 0 ? nullptr : &picture;
     std::vector<DisplayFramelet> framelets = framelets_of(data[0] % 129u);
-    std::vector<std::uint8_t> quality(framelets.size());
+    std::vector<std::uint8_t> qp(framelets.size());
     PlaneModel reader; // new for each input: an input that fails does so alone
     try {
-        PlaneCodec::decode({data + head, size - head}, framelets, quality, reader, held);
+        PlaneCodec::decode({data + head, size - head}, framelets, qp, reader, held);
     } catch (ProtocolError const&) {
         return 0;
     }
@@ -46,13 +46,13 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
     reader = {};
     std::vector<DisplayFramelet> said = framelets, arrived = framelets;
     for (int round = 0; round < 2; ++round) {
-        std::vector<std::uint8_t> arrived_quality(quality.size());
-        PlaneCodec::decode(codec.encode(framelets, quality, writer, held, said), arrived, arrived_quality, reader,
+        std::vector<std::uint8_t> arrived_qp(qp.size());
+        PlaneCodec::decode(codec.encode(framelets, qp, writer, held, said), arrived, arrived_qp, reader,
                            held);
-        FRAMELET_CHECK(arrived_quality == quality);
+        FRAMELET_CHECK(arrived_qp == qp);
         FRAMELET_CHECK(held == nullptr || arrived == said);
         for (std::size_t i = 0; i < framelets.size(); ++i) {
-            FRAMELET_CHECK(quality[i] != exact_quality || arrived[i] == framelets[i]);
+            FRAMELET_CHECK(qp[i] != lossless_qp || arrived[i] == framelets[i]);
         }
     }
     picture.take(arrived);

@@ -13,8 +13,8 @@ namespace {
 
 using namespace framelet;
 
-/// Slopes, an edge, and noise of growing strength; `quality` of the framelets counts up from the first.
-Batch make_batch(std::size_t count, std::uint8_t first_quality) {
+/// Slopes, an edge, and noise of growing strength; `qp` of the framelets counts up from the first.
+Batch make_batch(std::size_t count, std::uint8_t first_qp) {
     std::mt19937 random(static_cast<std::uint32_t>(count));
     Batch batch;
     batch.number = 1;
@@ -28,7 +28,7 @@ Batch make_batch(std::size_t count, std::uint8_t first_quality) {
             framelet.green[k] = static_cast<std::uint8_t>(morton_x(k) + morton_y(k) > 12 ? 200 : 30);
             framelet.blue[k] = static_cast<std::uint8_t>(100 + noise);
         }
-        batch.quality.push_back(static_cast<std::uint8_t>((first_quality + 9 * i) % (coarsest_quality + 1)));
+        batch.qp.push_back(static_cast<std::uint8_t>((first_qp + 9 * i) % (coarsest_qp + 1)));
     }
     return batch;
 }
@@ -117,13 +117,13 @@ void write_sequence(std::filesystem::path const& folder, Batch batch, std::strin
     write(folder / "viewer" / name, bodies);
 }
 
-void write_planes(std::filesystem::path const& folder, Batch const& batch, HeldPicture const* held) {
+void write_planes(std::filesystem::path const& folder, Batch const& batch, ReferencePicture const* held) {
     PlaneCodec codec;
     PlaneModel model;
     std::vector<std::uint8_t> content{static_cast<std::uint8_t>(batch.framelets.size()),
                                       static_cast<std::uint8_t>(held == nullptr ? 0 : 1)};
     std::vector<DisplayFramelet> decoded = batch.framelets;
-    auto const frame = codec.encode(batch.framelets, batch.quality, model, held, decoded);
+    auto const frame = codec.encode(batch.framelets, batch.qp, model, held, decoded);
     content.insert(content.end(), frame.begin(), frame.end());
     write(folder / "planes" / ((held == nullptr ? "alone_" : "predicted_") + std::to_string(batch.framelets.size())),
           content);
@@ -199,7 +199,7 @@ void write_sessions(std::filesystem::path const& folder) {
     write_session(folder, "resizes",
                   {camera(1, {64, 48}), camera(2, {33, 17}), Ack{1, 1000, 100}, camera(3, {120, 90})});
     write_session(folder, "lets_go",
-                  {camera(1, {64, 48}), Ack{1, 1000, 100}, LetGo{{{1, Tile{1}}, {1, Tile{5}}}}, clock});
+                  {camera(1, {64, 48}), Ack{1, 1000, 100}, Evicted{{{1, Tile{1}}, {1, Tile{5}}}}, clock});
     write_session(folder, "wants",
                   {ViewerSettings{1, 0.5f, true}, camera(1, {64, 48}), ViewerSettings{-1, 0, false}, clock,
                    Ack{1, 0, 0}, Ack{2, 0, 0}, camera(2, {64, 48}), Failure{"enough"}});
@@ -223,7 +223,7 @@ int main(int argc, char** argv) {
         Batch batch = make_batch(count, 1);
         write_batch(folder, BatchCodec().encode(batch), "lossy_" + std::to_string(count));
         if (count < 128) {
-            HeldPicture held;
+            ReferencePicture held;
             held.show(batch.view.viewport);
             held.prepare_search({});
             held.take(batch.framelets);
@@ -231,7 +231,7 @@ int main(int argc, char** argv) {
             write_planes(folder, batch, nullptr);
             write_sequence(folder, batch, "predicted_" + std::to_string(count));
         }
-        batch.quality.clear();
+        batch.qp.clear();
         write_batch(folder, BatchCodec().encode(batch), "exact_" + std::to_string(count));
         add_shapes(batch);
         write_batch(folder, BatchCodec().encode(batch), "shapes_" + std::to_string(count));
@@ -247,7 +247,7 @@ int main(int argc, char** argv) {
     for (Message const& message :
          {Message(Hello{protocol_version, "secret"}), Message(Hello{protocol_version, {}, coding::all, {1, 2}, 3}),
           Message(CameraUpdate{}), Message(ViewerSettings{1, 0}), Message(ClockRequest{}), Message(Ack{3, 4, 5}),
-          Message(LetGo{{{3, Tile{5}}}}),
+          Message(Evicted{{{3, Tile{5}}}}),
           Message(Welcome{1, "s", "n", {}, {}, {camera}, 2, {}, 7, true, {1, 2}, true, 4}), Message(Status{}),
           Message(Failure{"text"})}) {
         write_message(folder, message, std::to_string(number++));

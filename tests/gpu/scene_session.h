@@ -40,7 +40,7 @@ public:
     }
 
     /// Lets the server work until `now` while the viewer looks through the camera. `receive` gets each batch, and may
-    /// answer with what the viewer lets go of.
+    /// answer with what the viewer evicts.
     void advance(double now, Camera const& camera, bool plays,
                  std::function<std::vector<SentTile>(Batch const&)> const& receive) {
         if (view_ == 0 || !(camera == camera_)) {
@@ -63,11 +63,11 @@ public:
                 continue;
             }
             Batch const& batch = stream_->learnt_batch();
-            std::vector<SentTile> let_go = receive(batch);
+            std::vector<SentTile> evicted = receive(batch);
             std::uint64_t const number = stream_->encode().number;
             stream_->take({free_at_, BatchSent{number, 1000}});
-            if (!let_go.empty()) {
-                stream_->take({free_at_, LetGo{std::move(let_go)}});
+            if (!evicted.empty()) {
+                stream_->take({free_at_, Evicted{std::move(evicted)}});
             }
             stream_->take({free_at_, Ack{number, static_cast<std::uint64_t>(1e6 * free_at_), 0}});
         }
@@ -97,7 +97,7 @@ struct Holder {
 
     explicit Holder(Viewport viewport) : pool(ImagePlane(viewport)) {}
 
-    /// `shown`: tells what of a slot showed, as `Reprojector::add_shown`. Returns what is let go of.
+    /// `shown`: tells what of a slot showed, as `Reprojector::add_shown`. Returns what is evicted.
     std::vector<SentTile> insert(Batch const& batch,
                                  std::function<bool(std::size_t, std::vector<Tile>&)> const& shown) {
         for (BodyTrack const& track : batch.tracks) {
@@ -116,7 +116,7 @@ struct Holder {
         }
         pool.insert(batch, motions);
         std::vector<SentTile> out;
-        pool.take_let_go(out);
+        pool.take_evicted(out);
         return out;
     }
 };

@@ -76,9 +76,9 @@ TEST(FrameletPool, TheMomentGoesOfWhichLeastShows) {
     EXPECT_FALSE(cameras(pool).contains(3));
     EXPECT_TRUE(cameras(pool).contains(1));
     std::vector<SentTile> gone;
-    pool.take_let_go(gone);
+    pool.take_evicted(gone);
     EXPECT_EQ(gone, (std::vector<SentTile>{{3, place}}));
-    pool.take_let_go(gone);
+    pool.take_evicted(gone);
     EXPECT_TRUE(gone.empty()) << "said once";
     pool.insert(seen_from(101, 101, place), {}); // the oldest of those of which as little shows
     EXPECT_FALSE(cameras(pool).contains(1));

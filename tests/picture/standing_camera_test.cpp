@@ -107,7 +107,7 @@ TEST(StandingCamera, WhatMovedWhenTheBaseBeganGoesAsOtherMomentsDo) {
     for (std::uint64_t i = 1; i <= FrameletPool::most_moments; ++i) {
         EXPECT_TRUE(gone.empty());
         pool.insert(rendered(scene, 1 + i, 0.005 * static_cast<double>(i), {moving.front()}), scene.motions);
-        pool.take_let_go(gone);
+        pool.take_evicted(gone);
     }
     EXPECT_EQ(std::ranges::count(gone, 1U, &SentTile::batch), static_cast<std::ptrdiff_t>(moving.size()));
     EXPECT_EQ(held_of(pool, 1), all_tiles.size() - moving.size());
@@ -223,11 +223,11 @@ TEST(StandingCamera, SettledItIsAsIfAllHadBeenTakenByOneCache) {
     reprojector.show(pool, {}, front(), 1, scene.motions, picture, repainted);
     EXPECT_FALSE(reprojector.is_exact());
     std::vector<SentTile> gone;
-    pool.take_let_go(gone);
+    pool.take_evicted(gone);
     EXPECT_TRUE(gone.empty());
     std::size_t const before = pool.framelet_count();
     pool.settle();
-    pool.take_let_go(gone);
+    pool.take_evicted(gone);
     EXPECT_FALSE(pool.has_moving());
     EXPECT_EQ(pool.framelet_count(), cache.framelet_count());
     EXPECT_LT(gone.size(), before - pool.framelet_count() + 1);

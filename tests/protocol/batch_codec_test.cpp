@@ -115,7 +115,7 @@ TEST(BatchCodec, MemoryOfAnotherBatchLeavesNoTrace) {
             }
         }
         if (random.integer(0, 1) == 1) {
-            batch.quality.assign(batch.framelets.size(), 12);
+            batch.qp.assign(batch.framelets.size(), 12);
         }
         EncodedBatch const encoded = codec.encode(batch);
         codec.decode(encoded, nullptr, reused);

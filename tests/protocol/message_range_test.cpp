@@ -250,18 +250,18 @@ TEST(MessageRange, Encodings) {
     }
 }
 
-TEST(MessageRange, WhatIsLetGoAddsUp) {
-    auto const let_go = [](std::vector<std::uint64_t> const& batches, std::vector<std::uint16_t> const& counts,
+TEST(MessageRange, WhatIsEvictedAddsUp) {
+    auto const evicted = [](std::vector<std::uint64_t> const& batches, std::vector<std::uint16_t> const& counts,
                            std::vector<std::uint32_t> const& tiles) {
         Builder builder;
-        return finish(builder, wire::CreateLetGoDirect(builder, &batches, &counts, &tiles));
+        return finish(builder, wire::CreateEvictedDirect(builder, &batches, &counts, &tiles));
     };
-    EXPECT_NO_THROW(decode_message(let_go({1, 2}, {1, 2}, {1, 5, 6})));
-    expect_refused(let_go({1, 2}, {1, 1}, {1, 5, 6}), "add up");
-    expect_refused(let_go({1, 2}, {1, 3}, {1, 5, 6}), "add up");
-    expect_refused(let_go({1}, {1, 2}, {1, 5, 6}), "add up");
-    expect_refused(let_go({1}, {2}, {1, 8}), "tile code");
-    expect_refused(let_go({1}, {4097}, std::vector<std::uint32_t>(4097, 1)), "4096");
+    EXPECT_NO_THROW(decode_message(evicted({1, 2}, {1, 2}, {1, 5, 6})));
+    expect_refused(evicted({1, 2}, {1, 1}, {1, 5, 6}), "add up");
+    expect_refused(evicted({1, 2}, {1, 3}, {1, 5, 6}), "add up");
+    expect_refused(evicted({1}, {1, 2}, {1, 5, 6}), "add up");
+    expect_refused(evicted({1}, {2}, {1, 8}), "tile code");
+    expect_refused(evicted({1}, {4097}, std::vector<std::uint32_t>(4097, 1)), "4096");
 }
 
 TEST(MessageRange, UnknownType) {

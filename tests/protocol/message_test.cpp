@@ -93,13 +93,13 @@ TEST(Message, GoldenAck) {
     EXPECT_TRUE(same(decode_message(golden), Ack{0x0102030405060708, 1000000, 2500}));
 }
 
-TEST(Message, LetGoNamesFrameletsByBatchAndTile) {
-    LetGo const gone{{{7, Tile{5}}, {7, Tile{19}}, {9, Tile{1}}}};
+TEST(Message, EvictedNamesFrameletsByBatchAndTile) {
+    Evicted const gone{{{7, Tile{5}}, {7, Tile{19}}, {9, Tile{1}}}};
     EXPECT_TRUE(same(decode_message(encode_message(gone)), gone));
-    EXPECT_TRUE(same(decode_message(encode_message(LetGo{})), LetGo{}));
-    EXPECT_THROW(encode_message(LetGo{{{1, Tile{0}}}}), UnsendableMessage);
-    EXPECT_THROW(encode_message(LetGo{std::vector<SentTile>(max_let_go + 1, {1, Tile{5}})}), UnsendableMessage);
-    EXPECT_LT(encode_message(LetGo{std::vector<SentTile>(max_let_go, {1, Tile{5}})}).size(),
+    EXPECT_TRUE(same(decode_message(encode_message(Evicted{})), Evicted{}));
+    EXPECT_THROW(encode_message(Evicted{{{1, Tile{0}}}}), UnsendableMessage);
+    EXPECT_THROW(encode_message(Evicted{std::vector<SentTile>(max_evicted + 1, {1, Tile{5}})}), UnsendableMessage);
+    EXPECT_LT(encode_message(Evicted{std::vector<SentTile>(max_evicted, {1, Tile{5}})}).size(),
               max_upstream_message_bytes);
 }
 

@@ -43,16 +43,16 @@ std::vector<DisplayFramelet> make_framelets(std::size_t count) {
 }
 
 /// As the first group of a session.
-Bytes8 encoded(std::span<DisplayFramelet const> framelets, Bytes8 const& quality) {
+Bytes8 encoded(std::span<DisplayFramelet const> framelets, Bytes8 const& qp) {
     PlaneModel model;
     PlaneCodec codec;
-    auto const bytes = codec.encode(framelets, quality, model);
+    auto const bytes = codec.encode(framelets, qp, model);
     return {bytes.begin(), bytes.end()};
 }
 
-void decode(Bytes8 const& bytes, std::span<DisplayFramelet> framelets, Bytes8& quality) {
+void decode(Bytes8 const& bytes, std::span<DisplayFramelet> framelets, Bytes8& qp) {
     PlaneModel model;
-    PlaneCodec::decode(bytes, framelets, quality, model);
+    PlaneCodec::decode(bytes, framelets, qp, model);
 }
 
 double mean_square_error(DisplayFramelet const& a, DisplayFramelet const& b) {
@@ -66,7 +66,7 @@ double mean_square_error(DisplayFramelet const& a, DisplayFramelet const& b) {
     return sum / (3 * framelet_samples);
 }
 
-/// PROTOCOL.md's example: a red of 16 x in the left half and of 128 elsewhere, green 100, blue 50, quality 8.
+/// PROTOCOL.md's example: a red of 16 x in the left half and of 128 elsewhere, green 100, blue 50, QP 8.
 DisplayFramelet documented_framelet() {
     DisplayFramelet framelet;
     for (std::uint32_t k = 0; k < framelet_samples; ++k) {
@@ -125,7 +125,7 @@ TEST(HaarTransform, AllNumbersOfPlacesAreAlike) {
     }
 }
 
-/// Against what the declaration says, for many steps that qualities make and every detail.
+/// Against what the declaration says, for many steps that QPs make and every detail.
 TEST(HaarTransform, LevelsAreTheNearestButForWhatIsNearerToZero) {
     std::vector<std::int16_t> details, levels;
     for (int value = -32768; value < 32768; value += 1) {
@@ -167,24 +167,24 @@ TEST(HaarTransform, LevelsAreTheNearestButForWhatIsNearerToZero) {
 
 TEST(PlaneCodec, ExactFrameletsAmongOthersStayExact) {
     auto const framelets = make_framelets(128);
-    Bytes8 quality(framelets.size()), decoded_quality(framelets.size());
-    for (std::size_t i = 0; i < quality.size(); ++i) {
-        quality[i] = static_cast<std::uint8_t>(i % 2 == 0 ? exact_quality : i % (coarsest_quality + 1u));
+    Bytes8 qp(framelets.size()), decoded_qp(framelets.size());
+    for (std::size_t i = 0; i < qp.size(); ++i) {
+        qp[i] = static_cast<std::uint8_t>(i % 2 == 0 ? lossless_qp : i % (coarsest_qp + 1u));
     }
     std::vector<DisplayFramelet> decoded(framelets.size());
-    decode(encoded(framelets, quality), decoded, decoded_quality);
-    EXPECT_EQ(decoded_quality, quality);
-    for (std::size_t i = 0; i < quality.size(); i += 2) {
+    decode(encoded(framelets, qp), decoded, decoded_qp);
+    EXPECT_EQ(decoded_qp, qp);
+    for (std::size_t i = 0; i < qp.size(); i += 2) {
         EXPECT_EQ(decoded[i], framelets[i]) << i;
     }
 }
 
-TEST(PlaneCodec, ErrorFollowsTheQuality) {
+TEST(PlaneCodec, ErrorFollowsTheQp) {
     auto const framelets = make_framelets(3);
-    for (std::uint8_t q = 1; q <= coarsest_quality; ++q) {
-        Bytes8 quality(framelets.size(), q);
+    for (std::uint8_t q = 1; q <= coarsest_qp; ++q) {
+        Bytes8 qp(framelets.size(), q);
         std::vector<DisplayFramelet> decoded(framelets.size());
-        decode(encoded(framelets, quality), decoded, quality);
+        decode(encoded(framelets, qp), decoded, qp);
         for (std::size_t i = 0; i < framelets.size(); ++i) {
             // An orthonormal detail is off by 0.66 steps at most, its square by 0.44; Y, Co, Cg count 3, 2, 3 times,
             // the step of Co is 1.25 times as long. Rounding of a sample adds at most a half.
@@ -201,11 +201,11 @@ TEST(PlaneCodec, UniformFrameletsCostFewBytesAndAreNearlyExact) {
         framelets[i].green.fill(static_cast<std::uint8_t>(255 - i));
         framelets[i].blue.fill(7);
     }
-    Bytes8 quality(framelets.size(), 16);
-    Bytes8 const bytes = encoded(framelets, quality);
+    Bytes8 qp(framelets.size(), 16);
+    Bytes8 const bytes = encoded(framelets, qp);
     EXPECT_LT(bytes.size(), 4 * framelets.size()); // three means
     std::vector<DisplayFramelet> decoded(framelets.size());
-    decode(bytes, decoded, quality);
+    decode(bytes, decoded, qp);
     for (std::size_t i = 0; i < framelets.size(); ++i) {
         EXPECT_LE(mean_square_error(framelets[i], decoded[i]), 4) << i; // half a step of a mean is half a level
     }
@@ -217,12 +217,12 @@ TEST(PlaneCodec, GoldenBytes) {
                         0x07, 0x8e, 0x1d, 0xa2, 0x5b, 0x4f, 0x10, 0x01, 0xd5, 0xa5, 0xd2, 0x1d, 0xac, 0x77, 0x8e, 0xb3,
                         0xd0, 0x1d, 0x95, 0xc8, 0x9a, 0x1a, 0xaf, 0x05, 0x80, 0xdb, 0x31, 0x4b, 0x48, 0xa1, 0xf2, 0xd5,
                         0xad, 0x4c, 0xcd, 0x34, 0xda, 0x61, 0x5b, 0x7a, 0x7f, 0x99, 0x23, 0x79, 0x80};
-    Bytes8 quality{8};
+    Bytes8 qp{8};
     std::array const framelets{documented_framelet()};
-    EXPECT_EQ(encoded(framelets, quality), golden);
+    EXPECT_EQ(encoded(framelets, qp), golden);
     std::array<DisplayFramelet, 1> decoded;
-    decode(golden, decoded, quality);
-    EXPECT_EQ(quality[0], 8);
+    decode(golden, decoded, qp);
+    EXPECT_EQ(qp[0], 8);
     constexpr std::array<int, 16> red{3, 13, 36, 46, 67, 77, 100, 110, 128, 128, 128, 128, 128, 128, 128, 128};
     constexpr std::array<int, 16> blue{55, 45, 54, 44, 55, 45, 54, 44, 50, 50, 50, 50, 50, 50, 50, 50};
     for (std::uint32_t k = 0; k < framelet_samples; ++k) {
@@ -234,11 +234,11 @@ TEST(PlaneCodec, GoldenBytes) {
 
 TEST(PlaneCodec, GarbageIsRefusedOrDecoded) {
     auto const framelets = make_framelets(30);
-    Bytes8 quality(framelets.size());
-    for (std::size_t i = 0; i < quality.size(); ++i) {
-        quality[i] = static_cast<std::uint8_t>(i);
+    Bytes8 qp(framelets.size());
+    for (std::size_t i = 0; i < qp.size(); ++i) {
+        qp[i] = static_cast<std::uint8_t>(i);
     }
-    Bytes8 const good = encoded(framelets, quality);
+    Bytes8 const good = encoded(framelets, qp);
     std::vector<DisplayFramelet> decoded(framelets.size());
     std::mt19937 random(1);
     std::size_t refused = 0;
@@ -253,52 +253,52 @@ TEST(PlaneCodec, GarbageIsRefusedOrDecoded) {
             }
         }
         try {
-            decode(bad, decoded, quality);
+            decode(bad, decoded, qp);
         } catch (ProtocolError const&) {
             ++refused;
         }
-        for (std::uint8_t const q : quality) {
-            ASSERT_LE(q, coarsest_quality);
+        for (std::uint8_t const q : qp) {
+            ASSERT_LE(q, coarsest_qp);
         }
     }
     EXPECT_GT(refused, 1000u) << "numbers that are too large, or bytes that are left over";
     Bytes8 bad = good;
     bad.insert(bad.end(), 5, 0);
-    EXPECT_THROW(decode(bad, decoded, quality), ProtocolError);
+    EXPECT_THROW(decode(bad, decoded, qp), ProtocolError);
 }
 
 TEST(PlaneCodec, WhatIsLearntMakesTheNextGroupsSmaller) {
     auto const framelets = make_framelets(30);
-    Bytes8 const quality(framelets.size(), 12);
+    Bytes8 const qp(framelets.size(), 12);
     PlaneModel writing, reading;
     PlaneCodec codec;
     std::vector<DisplayFramelet> decoded(framelets.size()), first(framelets.size());
-    Bytes8 read_quality(framelets.size());
+    Bytes8 read_qp(framelets.size());
     std::size_t bytes_before = 0;
     for (int i = 0; i < 3; ++i) {
-        auto const bytes = codec.encode(framelets, quality, writing);
+        auto const bytes = codec.encode(framelets, qp, writing);
         EXPECT_TRUE(i == 0 || bytes.size() < bytes_before) << i;
         bytes_before = bytes.size();
-        PlaneCodec::decode(bytes, decoded, read_quality, reading);
+        PlaneCodec::decode(bytes, decoded, read_qp, reading);
         first = i == 0 ? decoded : first;
         EXPECT_TRUE(decoded == first) << i;
     }
 }
 
-TEST(BatchCodec, QualitiesAndEncodingTravel) {
+TEST(BatchCodec, QpsAndEncodingTravel) {
     Batch batch;
     batch.number = 1;
     batch.view.viewport = {1024, 1024};
     batch.framelets = make_framelets(300);
     for (std::size_t i = 0; i < batch.framelets.size(); ++i) {
         batch.framelets[i].tile = make_tile(6, static_cast<std::uint32_t>(i % 64), static_cast<std::uint32_t>(i / 64));
-        batch.quality.push_back(static_cast<std::uint8_t>(i % 5 == 0 ? 0 : 12));
+        batch.qp.push_back(static_cast<std::uint8_t>(i % 5 == 0 ? 0 : 12));
     }
     BatchCodec codec;
     auto const received = std::get<EncodedBatch>(decode_message(encode_message(codec.encode(batch))));
     EXPECT_EQ(received.encoding, SampleEncoding::haar);
     Batch const decoded = codec.decode(received);
-    EXPECT_EQ(decoded.quality, batch.quality);
+    EXPECT_EQ(decoded.qp, batch.qp);
     for (std::size_t i = 0; i < batch.framelets.size(); ++i) {
         EXPECT_EQ(decoded.framelets[i].tile, batch.framelets[i].tile);
         EXPECT_TRUE(i % 5 != 0 || decoded.framelets[i] == batch.framelets[i]) << i;
@@ -307,7 +307,7 @@ TEST(BatchCodec, QualitiesAndEncodingTravel) {
     EncodedBatch other = received;
     other.encoding = SampleEncoding::exact;
     EXPECT_THROW(codec.decode(other), ProtocolError);
-    batch.quality.clear();
+    batch.qp.clear();
     other = codec.encode(batch);
     other.encoding = SampleEncoding::haar;
     EXPECT_THROW(codec.decode(other), ProtocolError);

@@ -51,8 +51,8 @@ std::size_t payload_bytes(BatchCodec& codec, BatchMemory& memory, Batch const& b
     return codec.encode(batch, &memory).payload.size();
 }
 
-Batch with_quality(Batch batch, std::uint8_t quality) {
-    batch.quality.assign(batch.framelets.size(), quality);
+Batch with_qp(Batch batch, std::uint8_t qp) {
+    batch.qp.assign(batch.framelets.size(), qp);
     return batch;
 }
 
@@ -69,15 +69,15 @@ TEST(PredictedBatch, BothSidesHoldTheSameAfterAnySequence) {
             viewport = random() % 16 == 0 ? viewports[random() % viewports.size()] : viewport;
             Batch batch = make_batch(random, viewport, random() % 60, 0.3 * i, static_cast<int>(random() % 30));
             for (std::size_t f = 0; f < batch.framelets.size() && i % 5 != 0; ++f) {
-                batch.quality.push_back(
-                    static_cast<std::uint8_t>(random() % 4 == 0 ? 0 : random() % (coarsest_quality + 1)));
+                batch.qp.push_back(
+                    static_cast<std::uint8_t>(random() % 4 == 0 ? 0 : random() % (coarsest_qp + 1)));
             }
             auto const arrived = std::get<EncodedBatch>(decode_message(encode_message(encoder.encode(batch, &sent))));
             Batch const decoded = decoder.decode(arrived, &received);
             ASSERT_TRUE(sent.picture == received.picture) << "seed " << seed << " batch " << i;
-            ASSERT_EQ(decoded.quality, batch.quality);
+            ASSERT_EQ(decoded.qp, batch.qp);
             for (std::size_t f = 0; f < batch.framelets.size(); ++f) {
-                bool const exact = batch.quality.empty() || batch.quality[f] == exact_quality;
+                bool const exact = batch.qp.empty() || batch.qp[f] == lossless_qp;
                 ASSERT_TRUE(!exact || decoded.framelets[f] == batch.framelets[f]);
             }
         }
@@ -113,25 +113,25 @@ TEST(PredictedBatch, ReadersSeeWhatWritersSayWhateverTheSamplesAre) {
             framelets.push_back({{code}, {}, {}, {}});
         }
     }
-    HeldPicture held;
+    ReferencePicture held;
     held.show(small_viewport);
     held.prepare_search({});
     PlaneCodec codec;
     std::vector<DisplayFramelet> said = framelets, read = framelets;
-    std::vector<std::uint8_t> quality(group), read_quality(group);
+    std::vector<std::uint8_t> qp(group), read_qp(group);
     PlaneModel writing, reading;
     for (std::size_t i = 0; i < groups; ++i) {
         for (std::size_t f = 0; f < group; ++f) {
             fill_with_anything(framelets[f], random);
-            quality[f] = static_cast<std::uint8_t>(random() % 8 == 0 ? exact_quality : random() % 128);
+            qp[f] = static_cast<std::uint8_t>(random() % 8 == 0 ? lossless_qp : random() % 128);
         }
         bool const is_predicted = i % 4 != 0;
-        HeldPicture const* const from = is_predicted ? &held : nullptr;
-        PlaneCodec::decode(codec.encode(framelets, quality, writing, from, said), read, read_quality, reading, from);
-        ASSERT_EQ(read_quality, quality);
+        ReferencePicture const* const from = is_predicted ? &held : nullptr;
+        PlaneCodec::decode(codec.encode(framelets, qp, writing, from, said), read, read_qp, reading, from);
+        ASSERT_EQ(read_qp, qp);
         ASSERT_TRUE(!is_predicted || read == said) << "group " << i;
         for (std::size_t f = 0; f < group; ++f) {
-            ASSERT_TRUE(quality[f] != exact_quality || read[f] == framelets[f]) << "group " << i;
+            ASSERT_TRUE(qp[f] != lossless_qp || read[f] == framelets[f]) << "group " << i;
         }
         held.take(read);
     }
@@ -140,7 +140,7 @@ TEST(PredictedBatch, ReadersSeeWhatWritersSayWhateverTheSamplesAre) {
 TEST(PredictedBatch, WhatIsHeldCostsNearlyNothing) {
     std::mt19937 random(1);
     int const depth = ImagePlane(small_viewport).pixel_depth();
-    Batch const batch = with_quality(make_batch(random, small_viewport, 24, 0, 0, depth), 12);
+    Batch const batch = with_qp(make_batch(random, small_viewport, 24, 0, 0, depth), 12);
     BatchCodec codec;
     BatchMemory memory;
     std::size_t const alone = payload_bytes(codec, memory, batch);
@@ -148,7 +148,7 @@ TEST(PredictedBatch, WhatIsHeldCostsNearlyNothing) {
     EXPECT_LT(again * 10, alone);
     // The same moved by three pixels: nearly all of it is found elsewhere.
     std::size_t const moved =
-        payload_bytes(codec, memory, with_quality(make_batch(random, small_viewport, 24, 3, 0, depth), 12));
+        payload_bytes(codec, memory, with_qp(make_batch(random, small_viewport, 24, 3, 0, depth), 12));
     EXPECT_LT(moved * 2, alone);
 }
 
@@ -157,9 +157,9 @@ TEST(PredictedBatch, ErrorsDoNotAddUp) {
     int const depth = ImagePlane(small_viewport).pixel_depth();
     BatchCodec codec;
     BatchMemory sent, received;
-    constexpr std::uint8_t quality = 12;
+    constexpr std::uint8_t qp = 12;
     for (int i = 0; i < 60; ++i) {
-        Batch const batch = with_quality(make_batch(random, small_viewport, 24, 0.15 * i, 0, depth), quality);
+        Batch const batch = with_qp(make_batch(random, small_viewport, 24, 0.15 * i, 0, depth), qp);
         Batch const decoded = codec.decode(codec.encode(batch, &sent), &received);
         double sum = 0;
         for (std::size_t f = 0; f < batch.framelets.size(); ++f) {
@@ -170,7 +170,7 @@ TEST(PredictedBatch, ErrorsDoNotAddUp) {
         }
         // An orthonormal detail is off by 0.66 steps at most; green is Y + Cg.
         double const mean = sum / static_cast<double>(batch.framelets.size() * framelet_samples);
-        EXPECT_LE(std::sqrt(mean), 0.66 * quality * std::sqrt(2.0) + 1) << i;
+        EXPECT_LE(std::sqrt(mean), 0.66 * qp * std::sqrt(2.0) + 1) << i;
     }
 }
 
@@ -178,7 +178,7 @@ TEST(PredictedBatch, IsRefusedWithoutThePicture) {
     std::mt19937 random(1);
     BatchCodec codec;
     BatchMemory memory;
-    EncodedBatch encoded = codec.encode(with_quality(make_batch(random, small_viewport, 5, 0, 0), 8), &memory);
+    EncodedBatch encoded = codec.encode(with_qp(make_batch(random, small_viewport, 5, 0, 0), 8), &memory);
     EXPECT_EQ(encoded.encoding, SampleEncoding::predicted);
     EXPECT_THROW(codec.decode(encoded), ProtocolError);
     BatchMemory other;
@@ -195,7 +195,7 @@ TEST(PredictedBatch, ThereIsNoPictureWithoutLossNorOfLargeViewports) {
     BatchMemory memory;
     EXPECT_EQ(codec.encode(make_batch(random, small_viewport, 5, 0, 0), &memory).encoding, SampleEncoding::exact);
     EXPECT_FALSE(memory.picture.shows(small_viewport));
-    Batch batch = with_quality(make_batch(random, small_viewport, 1, 0, 0), 8);
+    Batch batch = with_qp(make_batch(random, small_viewport, 1, 0, 0), 8);
     batch.view.viewport = {16384, 16384};
     batch.framelets[0].tile = make_tile(10, 0, 0);
     EXPECT_EQ(codec.encode(batch, &memory).encoding, SampleEncoding::haar);
@@ -204,18 +204,18 @@ TEST(PredictedBatch, ThereIsNoPictureWithoutLossNorOfLargeViewports) {
 
 TEST(PredictedBatch, DamagedGroupsAreRefusedOrDecoded) {
     std::mt19937 random(1);
-    Batch batch = with_quality(make_batch(random, small_viewport, 40, 0, 3), 8);
-    for (std::size_t i = 0; i < batch.quality.size(); i += 7) {
-        batch.quality[i] = exact_quality;
+    Batch batch = with_qp(make_batch(random, small_viewport, 40, 0, 3), 8);
+    for (std::size_t i = 0; i < batch.qp.size(); i += 7) {
+        batch.qp[i] = lossless_qp;
     }
-    HeldPicture held;
+    ReferencePicture held;
     held.show(small_viewport);
     held.prepare_search({});
     held.take(make_batch(random, small_viewport, 100, 2, 0).framelets);
     PlaneModel writing;
     std::vector<DisplayFramelet> decoded = batch.framelets;
     PlaneCodec codec;
-    auto const written = codec.encode(batch.framelets, batch.quality, writing, &held, decoded);
+    auto const written = codec.encode(batch.framelets, batch.qp, writing, &held, decoded);
     std::vector<std::uint8_t> const good(written.begin(), written.end());
     std::size_t refused = 0;
     for (int i = 0; i < 3000; ++i) {
@@ -229,7 +229,7 @@ TEST(PredictedBatch, DamagedGroupsAreRefusedOrDecoded) {
         }
         try {
             PlaneModel reading;
-            PlaneCodec::decode(bad, decoded, batch.quality, reading, &held);
+            PlaneCodec::decode(bad, decoded, batch.qp, reading, &held);
         } catch (ProtocolError const&) {
             ++refused;
         }
@@ -239,7 +239,7 @@ TEST(PredictedBatch, DamagedGroupsAreRefusedOrDecoded) {
 
 TEST(PredictedBatch, GoldenBytes) {
     // As PROTOCOL.md has it: two framelets of one grey each, over a picture that is grey and one that has been sent.
-    HeldPicture held;
+    ReferencePicture held;
     held.show({32, 32});
     std::array<DisplayFramelet, 2> framelets;
     framelets[0].tile = make_tile(1, 0, 0);
@@ -250,7 +250,7 @@ TEST(PredictedBatch, GoldenBytes) {
         framelet.blue.fill(140);
     }
     std::vector<std::uint8_t> const golden{0xf7, 0x7f, 0x80, 0x19, 0xff, 0xfc, 0x24, 0x6c, 0xb8, 0xee, 0xfe};
-    std::vector<std::uint8_t> quality(2);
+    std::vector<std::uint8_t> qp(2);
     std::array<DisplayFramelet, 2> decoded = framelets;
     DisplayFramelet light = framelets[0];
     light.red.fill(200);
@@ -258,7 +258,7 @@ TEST(PredictedBatch, GoldenBytes) {
     light.blue.fill(200);
     auto const decode = [&] {
         PlaneModel model;
-        PlaneCodec::decode(golden, decoded, quality, model, &held);
+        PlaneCodec::decode(golden, decoded, qp, model, &held);
     };
     decode();
     EXPECT_EQ(decoded[0], framelets[0]);

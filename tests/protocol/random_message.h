@@ -80,7 +80,7 @@ public:
         welcome.controls = coin();
         welcome.ticket = ticket();
         welcome.resumed = coin();
-        welcome.let_go = any64();
+        welcome.evicted = any64();
         welcome.scene_place = any64();
         return welcome;
     }
@@ -122,8 +122,8 @@ public:
         return batch;
     }
 
-    LetGo let_go() {
-        LetGo message;
+    Evicted evicted() {
+        Evicted message;
         for (std::uint64_t batch = integer(0, 4); batch > 0; --batch) {
             for (std::uint64_t count = integer(1, 30); count > 0; --count) {
                 auto const depth = static_cast<int>(integer(0, 15));
@@ -147,7 +147,7 @@ public:
         case 4:
             return Ack{any64(), any64(), any32()};
         case 5:
-            return let_go();
+            return evicted();
         case 6:
             return welcome();
         case 7:
@@ -184,7 +184,7 @@ inline bool same(Message const& left, Message const& right) {
                a->start_camera == b->start_camera && a->cameras == b->cameras &&
                a->animation_duration == b->animation_duration && a->clock == b->clock &&
                a->scene_identity == b->scene_identity && a->controls == b->controls && a->ticket == b->ticket &&
-               a->resumed == b->resumed && a->let_go == b->let_go && a->scene_place == b->scene_place;
+               a->resumed == b->resumed && a->evicted == b->evicted && a->scene_place == b->scene_place;
     }
     return std::visit(
         [&](auto const& value) {

@@ -333,7 +333,7 @@ TEST(Mirror, KeepsFewMoments) {
     }
 }
 
-TEST(Mirror, ForgetsWhatTheViewerLetGo) {
+TEST(Mirror, ForgetsWhatTheViewerEvicted) {
     Mirror mirror(viewport);
     mirror.look(view_at(Vec3(0)), no_motions);
     Tile const tile = make_tile(plane.pixel_depth(), 2, 3);

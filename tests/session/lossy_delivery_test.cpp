@@ -61,7 +61,7 @@ Shown watch(std::uint16_t port, std::uint32_t codings) {
             shown.predicted += encoded->encoding == SampleEncoding::predicted ? 1 : 0;
             cache.insert(batch);
             newest = batch.number;
-            shown.lossy += batch.quality.size() - static_cast<std::size_t>(std::ranges::count(batch.quality, 0));
+            shown.lossy += batch.qp.size() - static_cast<std::size_t>(std::ranges::count(batch.qp, 0));
             stream->send(Ack{newest, static_cast<std::uint64_t>(received.count()), 0});
             if (camera < cameras) {
                 stream->send(camera_update(++camera));

@@ -44,7 +44,7 @@ public:
         }
         is_resumed = welcome->resumed;
         controls = welcome->controls;
-        let_go = welcome->let_go;
+        evicted = welcome->evicted;
         hello.ticket = welcome->ticket;
         if (!is_resumed) {
             codec_ = BatchCodec();
@@ -76,7 +76,7 @@ public:
                     on_batch();
                 }
             } else if (auto const* const status = std::get_if<Status>(&*message)) {
-                let_go = status->let_go;
+                evicted = status->evicted;
                 if (status->converged && status->camera_number == camera_ && status->last_batch == hello.last_batch) {
                     return true;
                 }
@@ -100,7 +100,7 @@ public:
     Hello hello; ///< of the next connection
     bool is_resumed = false;
     bool controls = false; ///< the clock, as its Welcome says
-    std::uint64_t let_go = 0; ///< as the server says
+    std::uint64_t evicted = 0; ///< as the server says
     std::uint64_t framelets = 0;
     std::vector<EncodedBatch> batches;
     std::function<void()> on_batch;
@@ -397,20 +397,20 @@ TEST(ResumeTicket, WhoIsAwayLeavesItsMemoryToOthers) {
     EXPECT_FALSE(first.is_resumed);
 }
 
-TEST(ResumeTicket, SaysHowMuchOfWhatIsLetGoHasCome) {
+TEST(ResumeTicket, SaysHowMuchOfWhatIsEvictedHasCome) {
     RunningServer const server(still(), chase());
     Returning viewer(server.port());
     viewer.look(1);
     ASSERT_TRUE(viewer.watch());
     Tile const tile = viewer.batches.front().tiles.front();
     for (std::uint64_t number = 1; number <= 3; ++number) {
-        viewer.connection().send(LetGo{{{1, tile}}});
+        viewer.connection().send(Evicted{{{1, tile}}});
         viewer.look(number + 1);
         ASSERT_TRUE(viewer.watch());
-        EXPECT_EQ(viewer.let_go, number);
+        EXPECT_EQ(viewer.evicted, number);
         ASSERT_TRUE(viewer.connect());
         ASSERT_TRUE(viewer.is_resumed);
-        EXPECT_EQ(viewer.let_go, number);
+        EXPECT_EQ(viewer.evicted, number);
     }
 }
 

@@ -10,7 +10,7 @@
 namespace framelet {
 namespace {
 
-TEST(Session, AFloodOfWhatAViewerLetsGoOfIsBounded) {
+TEST(Session, AFloodOfWhatAViewerEvictsIsBounded) {
     constexpr std::size_t most_waiting = std::size_t{1} << 18;
     FakeConnection const stream;
     Session::Events events;
@@ -20,19 +20,19 @@ TEST(Session, AFloodOfWhatAViewerLetsGoOfIsBounded) {
     auto const session = std::make_shared<Session>(1, stream.stream(), events);
     session->start();
     stream->bring(Hello{protocol_version, {}, coding::all});
-    LetGo const full{std::vector<SentTile>(max_let_go, {1, Tile{5}})};
+    Evicted const full{std::vector<SentTile>(max_evicted, {1, Tile{5}})};
     auto const waiting = [&] {
         std::vector<StreamEvent> came;
         session->take_events(came);
         return std::ranges::count_if(
-            came, [](StreamEvent const& event) { return std::holds_alternative<LetGo>(event.what); });
+            came, [](StreamEvent const& event) { return std::holds_alternative<Evicted>(event.what); });
     };
-    for (std::size_t i = 0; i < 2 * most_waiting / max_let_go; ++i) {
+    for (std::size_t i = 0; i < 2 * most_waiting / max_evicted; ++i) {
         stream->bring(full);
     }
-    EXPECT_EQ(waiting(), most_waiting / (max_let_go + 1));
+    EXPECT_EQ(waiting(), most_waiting / (max_evicted + 1));
     for (std::size_t i = 0; i < 2 * most_waiting; ++i) { // of nothing, each still takes memory
-        stream->bring(LetGo{});
+        stream->bring(Evicted{});
     }
     EXPECT_EQ(waiting(), most_waiting);
     stream->bring(full);
@@ -121,11 +121,11 @@ TEST(Session, TakesOverThroughSeveralCuts) {
     for (std::uint64_t number = 1; number <= 3; ++number) {
         first.session->send_batch(batch_of_bytes(number, 1));
     }
-    first.stream->bring(LetGo{});
+    first.stream->bring(Evicted{});
     first.session->cut();
     second.session->resume(first.session, 1);
     second.stream->bring(Hello{});
-    second.stream->bring(LetGo{});
+    second.stream->bring(Evicted{});
     second.session->cut(); // before the loop has come to it
     EXPECT_FALSE(second.session->can_be_resumed(2)) << "it was not sent there";
     ASSERT_TRUE(second.session->can_be_resumed(1));
@@ -134,7 +134,7 @@ TEST(Session, TakesOverThroughSeveralCuts) {
     third.stream->bring(Hello{});
     third.stream->bring(CameraUpdate{{1, Camera{}, {64, 48}}, -1});
     EXPECT_TRUE(third.session->is_ready());
-    EXPECT_EQ(third.session->status().let_go, 2u);
+    EXPECT_EQ(third.session->status().evicted, 2u);
     EXPECT_EQ(third.session->status().last_batch, 1u);
     second.session->take_over();
     third.session->take_over();
@@ -147,7 +147,7 @@ TEST(Session, TakesOverThroughSeveralCuts) {
         kinds.push_back(event.what.index());
     }
     auto const kind = [](auto const& what) { return StreamEvent{0, what}.what.index(); };
-    std::size_t const sent = kind(BatchSent{}), gone = kind(LetGo{}), resumed = kind(Resumed{});
+    std::size_t const sent = kind(BatchSent{}), gone = kind(Evicted{}), resumed = kind(Resumed{});
     EXPECT_EQ(kinds, (std::vector{sent, sent, sent, gone, resumed, gone, resumed, kind(CameraUpdate{}), sent, sent}));
 }
 

@@ -29,7 +29,7 @@ TEST(EventLog, GivesBackWhatWasAdded) {
     Turn const turn{1.5, 2.5, -0.5, 3e6, 1e-4};
     std::vector<StreamEvent> const events{
         {0.1, camera},         {0.2, ViewerSettings{1.5f, -0.25f, false}},
-        {0.3, Ack{9, 8, 7}},   {0.4, LetGo{{{4, Tile{5}}, {4, Tile{21}}, {6, Tile{5}}}}},
+        {0.3, Ack{9, 8, 7}},   {0.4, Evicted{{{4, Tile{5}}, {4, Tile{21}}, {6, Tile{5}}}}},
         {0.5, ClockChanged{}}, {0.6, BatchSent{6, 12345}},
         {0.7, Resumed{5}}};
     {

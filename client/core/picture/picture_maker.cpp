@@ -81,7 +81,7 @@ void PictureMaker::take(Batch const& batch) {
     batch_view_ = batch.view;
     batch_time_ = batch.scene_time;
     if (settings_.reproject && pool_.begins_moment(batch, motions_)) {
-        let_go();
+        evict();
     }
     pool_.insert(batch, motions_, settings_.reproject);
     if (smoother_) {
@@ -90,7 +90,7 @@ void PictureMaker::take(Batch const& batch) {
 }
 
 /// What of older moments shows nowhere makes room, and no longer costs time.
-void PictureMaker::let_go() {
+void PictureMaker::evict() {
     for (std::size_t slot = 0; slot < pool_.slot_count(); ++slot) {
         shown_tiles_.clear();
         if (pool_.is_tried(slot) && !smoother_ && reprojector_.add_shown(slot, shown_tiles_)) {

@@ -56,7 +56,7 @@ public:
     bool is_empty() const { return pool_.framelet_count() == 0; }
     FrameletPool const& pool() const { return pool_; }
     /// As of the pool: what the server should know.
-    void take_let_go(std::vector<SentTile>& framelets) { pool_.take_let_go(framelets); }
+    void take_evicted(std::vector<SentTile>& framelets) { pool_.take_evicted(framelets); }
 
     /// Brings `picture` up to date. True when it changed; `changed` gets the rectangles that may differ. A picture that
     /// is not the one of the last call, or has another size, is written as a whole. Nothing happens while nothing is
@@ -89,7 +89,7 @@ private:
     void start_smoothing();
     void take(Batch const& batch);
     void take_waiting(std::size_t count);
-    void let_go();
+    void evict();
     void settle();
     SceneTime wanted_time(PictureRequest const& request);
     Camera wanted_camera(PictureRequest const& request, SceneTime time) const;

@@ -11,8 +11,8 @@ namespace {
 
 /// Quantisation step of the plane's mean and of its coarsest octave, sixteenths; it doubles with each finer one, as the
 /// orthonormal transform has it. Errors of Y and Cg count three times in red, green and blue, those of Co twice.
-std::uint16_t base_step(std::size_t plane, unsigned quality) {
-    return static_cast<std::uint16_t>(plane == 1 ? (5 * quality + 2) / 4 : quality);
+std::uint16_t base_step(std::size_t plane, unsigned qp) {
+    return static_cast<std::uint16_t>(plane == 1 ? (5 * qp + 2) / 4 : qp);
 }
 std::uint16_t octave_step(std::uint16_t base, std::size_t octave) {
     return static_cast<std::uint16_t>(base << (haar_octaves - 1 - octave));
@@ -75,12 +75,12 @@ void synthesise(Fours& levels, std::uint16_t base, std::int16_t mean, std::int16
 }
 
 /// The levels are overwritten.
-DisplayValues synthesise(HaarLevels& levels, std::uint8_t quality) {
+DisplayValues synthesise(HaarLevels& levels, std::uint8_t qp) {
     DisplayValues out;
     std::array<std::uint16_t, 3> bases;
     std::array<std::int16_t, 3> means;
     for (std::size_t plane = 0; plane < bases.size(); ++plane) {
-        bases[plane] = base_step(plane, quality);
+        bases[plane] = base_step(plane, qp);
         means[plane] = times(levels.means[plane], bases[plane]);
     }
     if (levels.shares[0] != 0 || levels.shares[1] != 0) {
@@ -105,10 +105,10 @@ DisplayValues synthesise(HaarLevels& levels, std::uint8_t quality) {
 
 } // namespace
 
-int code(DisplayValues const& values, std::uint8_t quality, int most, HaarCode& out) {
+int code(DisplayValues const& values, std::uint8_t qp, int most, HaarCode& out) {
     int bits = 0;
     for (std::size_t plane = 0; plane < values.planes.size(); ++plane) {
-        std::uint16_t const base = base_step(plane, quality);
+        std::uint16_t const base = base_step(plane, qp);
         Fours& details = out.values[plane];
         Fours& levels = out.levels.details[plane];
         std::int16_t const* fours = values.planes[plane].data();
@@ -156,12 +156,12 @@ int fitted_share(Fours const& luma, Fours const& chroma) {
 
 } // namespace
 
-void share_luma(std::uint8_t quality, HaarCode& code) {
+void share_luma(std::uint8_t qp, HaarCode& code) {
     HaarLevels& levels = code.levels;
     if (code.bits[0] == 0 || code.bits[1] + code.bits[2] == 0) {
         return; // nothing to share, or nobody to share it
     }
-    Fours const luma = details_of(levels.details[0], base_step(0, quality));
+    Fours const luma = details_of(levels.details[0], base_step(0, qp));
     for (std::size_t chroma = 0; chroma < levels.shares.size(); ++chroma) {
         std::size_t const plane = 1 + chroma;
         if (code.bits[plane] == 0) {
@@ -176,16 +176,16 @@ void share_luma(std::uint8_t quality, HaarCode& code) {
                        [share](std::int16_t own, std::int16_t of_luma) {
                            return static_cast<std::int16_t>(own - shared(of_luma, share));
                        });
-        if (quantise(tried, base_step(plane, quality), tried_levels) < code.bits[plane]) {
+        if (quantise(tried, base_step(plane, qp), tried_levels) < code.bits[plane]) {
             levels.details[plane] = tried_levels;
             levels.shares[chroma] = share;
         }
     }
 }
 
-DisplayValues dequantise(HaarLevels const& levels, std::uint8_t quality) {
+DisplayValues dequantise(HaarLevels const& levels, std::uint8_t qp) {
     HaarLevels copy = levels;
-    return synthesise(copy, quality);
+    return synthesise(copy, qp);
 }
 
 } // namespace framelet

@@ -1,5 +1,5 @@
 // Samples of framelets with loss: quantised Haar details of luma and chroma, chroma beside a share of luma. In: luma
-// and chroma of framelets, or what is left of them beside a prediction; their quality. Out: levels, and back.
+// and chroma of framelets, or what is left of them beside a prediction; their QP. Out: levels, and back.
 #pragma once
 
 #include <array>
@@ -37,11 +37,11 @@ struct HaarCode {
 };
 
 /// Returns the bits that the levels will take, roughly: what ways of coding a framelet are compared by. Above `most` it
-/// gives up, and the levels are not to be used. `quality` is 1..coarsest_quality.
-int code(DisplayValues const& values, std::uint8_t quality, int most, HaarCode& out);
+/// gives up, and the levels are not to be used. `qp` is 1..coarsest_qp.
+int code(DisplayValues const& values, std::uint8_t qp, int most, HaarCode& out);
 /// Quantises chroma again, beside a share of luma, where that takes less.
-void share_luma(std::uint8_t quality, HaarCode& code);
+void share_luma(std::uint8_t qp, HaarCode& code);
 /// What a reader makes of the levels.
-DisplayValues dequantise(HaarLevels const& levels, std::uint8_t quality);
+DisplayValues dequantise(HaarLevels const& levels, std::uint8_t qp);
 
 } // namespace framelet

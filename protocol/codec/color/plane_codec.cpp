@@ -8,24 +8,24 @@
 namespace framelet {
 
 template <class Coder>
-void PlaneModel::code_head(Coder& coder, bool may_be_predicted, std::uint8_t& quality, PredictionKind& kind,
-                           PictureVector& vector) {
-    if (coder.bit(same_quality_, quality == quality_)) {
-        quality = quality_;
+void PlaneModel::code_head(Coder& coder, bool may_be_predicted, std::uint8_t& qp, PredictionKind& kind,
+                           MotionVector& vector) {
+    if (coder.bit(same_qp_, qp == qp_)) {
+        qp = qp_;
     } else {
-        quality = static_cast<std::uint8_t>(qualities_.code(coder, quality));
+        qp = static_cast<std::uint8_t>(qps_.code(coder, qp));
     }
-    quality_ = quality;
+    qp_ = qp;
     if (!may_be_predicted) {
         kind = PredictionKind::none;
         return;
     }
-    unsigned const number = kinds_[quality == exact_quality ? 0 : 1].code(coder, static_cast<unsigned>(kind));
+    unsigned const number = kinds_[qp == lossless_qp ? 0 : 1].code(coder, static_cast<unsigned>(kind));
     if (number > static_cast<unsigned>(PredictionKind::moved)) {
         throw ProtocolError("a batch has a framelet of an unknown prediction");
     }
     kind = static_cast<PredictionKind>(number);
-    vector = kind == PredictionKind::moved ? vector : PictureVector{};
+    vector = kind == PredictionKind::moved ? vector : MotionVector{};
     if (kind == PredictionKind::moved) {
         if (coder.bit(same_vector_, vector == vector_)) {
             vector = vector_;
@@ -40,15 +40,15 @@ void PlaneModel::code_head(Coder& coder, bool may_be_predicted, std::uint8_t& qu
     }
 }
 
-template void PlaneModel::code_head(RangeWriter&, bool, std::uint8_t&, PredictionKind&, PictureVector&);
-template void PlaneModel::code_head(RangeReader&, bool, std::uint8_t&, PredictionKind&, PictureVector&);
+template void PlaneModel::code_head(RangeWriter&, bool, std::uint8_t&, PredictionKind&, MotionVector&);
+template void PlaneModel::code_head(RangeReader&, bool, std::uint8_t&, PredictionKind&, MotionVector&);
 
 namespace {
 
 /// Most are predicted from their own places.
-void expect_next(HeldPicture const& held, std::span<DisplayFramelet const> framelets, std::size_t i) {
+void expect_next(ReferencePicture const& reference, std::span<DisplayFramelet const> framelets, std::size_t i) {
     if (i + 1 < framelets.size()) {
-        held.expect(framelets[i + 1].tile);
+        reference.expect(framelets[i + 1].tile);
     }
 }
 
@@ -62,11 +62,11 @@ void add_prediction(DisplayValues const& left, Prediction const& prediction, Dis
 
 /// What is held in its own place is what an exact framelet is likely to be, if that was sent with loss before: where
 /// it is, green tells.
-bool resembles(DisplayFramelet const& framelet, DisplayFramelet const& held) {
+bool resembles(DisplayFramelet const& framelet, DisplayFramelet const& reference) {
     constexpr int alike = 12; // of a sample, on the average
     int sum = 0;
     for (std::size_t i = 0; i < framelet_samples; ++i) {
-        sum += std::abs(framelet.green[i] - held.green[i]);
+        sum += std::abs(framelet.green[i] - reference.green[i]);
     }
     return sum < alike * framelet_samples;
 }
@@ -78,44 +78,44 @@ DisplayFramelet const* samples_of(Prediction const& prediction) {
 } // namespace
 
 std::span<std::uint8_t const> PlaneCodec::encode(std::span<DisplayFramelet const> framelets,
-                                                 std::span<std::uint8_t const> quality, PlaneModel& model,
-                                                 HeldPicture const* held, std::span<DisplayFramelet> decoded) {
-    FRAMELET_CHECK(framelets.size() == quality.size());
-    FRAMELET_CHECK(held == nullptr || decoded.size() == quality.size());
+                                                 std::span<std::uint8_t const> qp, PlaneModel& model,
+                                                 ReferencePicture const* reference, std::span<DisplayFramelet> decoded) {
+    FRAMELET_CHECK(framelets.size() == qp.size());
+    FRAMELET_CHECK(reference == nullptr || decoded.size() == qp.size());
     writer_.begin();
     search_.begin();
     for (std::size_t i = 0; i < framelets.size(); ++i) {
-        FRAMELET_CHECK(quality[i] <= coarsest_quality);
+        FRAMELET_CHECK(qp[i] <= coarsest_qp);
         DisplayFramelet const& framelet = framelets[i];
-        bool const is_exact = quality[i] == exact_quality;
+        bool const is_exact = qp[i] == lossless_qp;
         prediction_.kind = PredictionKind::none;
         prediction_.vector = {};
         HaarLevels levels;
-        if (held != nullptr && is_exact) {
-            held->predict(framelet.tile, {}, prediction_.samples);
+        if (reference != nullptr && is_exact) {
+            reference->predict(framelet.tile, {}, prediction_.samples);
             prediction_.kind =
                 resembles(framelet, prediction_.samples) ? PredictionKind::same_place : PredictionKind::none;
-        } else if (held != nullptr) {
-            expect_next(*held, framelets, i);
-            levels = predict(*held, framelet, quality[i], search_, prediction_);
+        } else if (reference != nullptr) {
+            expect_next(*reference, framelets, i);
+            levels = predict(*reference, framelet, qp[i], search_, prediction_);
         } else if (!is_exact) {
             HaarCode alone;
-            code(display_values(framelet), quality[i], std::numeric_limits<int>::max(), alone);
-            share_luma(quality[i], alone);
+            code(display_values(framelet), qp[i], std::numeric_limits<int>::max(), alone);
+            share_luma(qp[i], alone);
             levels = alone.levels;
         }
-        std::uint8_t own_quality = quality[i];
-        model.code_head(writer_, held != nullptr, own_quality, prediction_.kind, prediction_.vector);
+        std::uint8_t own_qp = qp[i];
+        model.code_head(writer_, reference != nullptr, own_qp, prediction_.kind, prediction_.vector);
         if (is_exact) {
             DisplayFramelet copy = framelet;
             model.exact.code(writer_, samples_of(prediction_), copy);
-            if (held != nullptr) {
+            if (reference != nullptr) {
                 decoded[i] = framelet;
             }
         } else {
             model.levels.code(writer_, prediction_.kind != PredictionKind::none, levels);
-            if (held != nullptr) {
-                add_prediction(dequantise(levels, quality[i]), prediction_, decoded[i]);
+            if (reference != nullptr) {
+                add_prediction(dequantise(levels, qp[i]), prediction_, decoded[i]);
             }
         }
     }
@@ -123,22 +123,22 @@ std::span<std::uint8_t const> PlaneCodec::encode(std::span<DisplayFramelet const
 }
 
 void PlaneCodec::decode(std::span<std::uint8_t const> bytes, std::span<DisplayFramelet> framelets,
-                        std::span<std::uint8_t> quality, PlaneModel& model, HeldPicture const* held) {
-    FRAMELET_CHECK(framelets.size() == quality.size());
+                        std::span<std::uint8_t> qp, PlaneModel& model, ReferencePicture const* reference) {
+    FRAMELET_CHECK(framelets.size() == qp.size());
     RangeReader reader(bytes);
     Prediction prediction;
     for (std::size_t i = 0; i < framelets.size(); ++i) {
-        model.code_head(reader, held != nullptr, quality[i], prediction.kind, prediction.vector);
+        model.code_head(reader, reference != nullptr, qp[i], prediction.kind, prediction.vector);
         if (prediction.kind != PredictionKind::none) {
-            expect_next(*held, framelets, i);
-            held->predict(framelets[i].tile, prediction.vector, prediction.samples);
+            expect_next(*reference, framelets, i);
+            reference->predict(framelets[i].tile, prediction.vector, prediction.samples);
         }
-        if (quality[i] == exact_quality) {
+        if (qp[i] == lossless_qp) {
             model.exact.code(reader, samples_of(prediction), framelets[i]);
         } else {
             HaarLevels levels{};
             model.levels.code(reader, prediction.kind != PredictionKind::none, levels);
-            add_prediction(dequantise(levels, quality[i]), prediction, framelets[i]);
+            add_prediction(dequantise(levels, qp[i]), prediction, framelets[i]);
         }
     }
     if (!reader.is_at_end()) {

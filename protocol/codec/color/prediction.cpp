@@ -19,7 +19,7 @@ struct Way {
 
 } // namespace
 
-HaarLevels predict(HeldPicture const& held, DisplayFramelet const& framelet, std::uint8_t quality, VectorSearch& search,
+HaarLevels predict(ReferencePicture const& reference, DisplayFramelet const& framelet, std::uint8_t qp, MotionSearch& search,
                    Prediction& prediction) {
     Way at_place, alone, moved;
     at_place.prediction.kind = PredictionKind::same_place;
@@ -28,15 +28,15 @@ HaarLevels predict(HeldPicture const& held, DisplayFramelet const& framelet, std
     int least = std::numeric_limits<int>::max();
     // The way that is likely the best one comes first: all others end where they take more.
     auto const consider = [&](Way& way, DisplayValues const& values, int bits_beside) {
-        way.bits = code(values, quality, least - bits_beside, way.code) + bits_beside;
+        way.bits = code(values, qp, least - bits_beside, way.code) + bits_beside;
         if (way.bits < least) {
             best = &way;
             least = way.bits;
         }
     };
-    auto const consider_from = [&](PictureVector vector, Way& way, int bits_beside) {
+    auto const consider_from = [&](MotionVector vector, Way& way, int bits_beside) {
         way.prediction.vector = vector;
-        held.predict(framelet.tile, vector, way.prediction.samples);
+        reference.predict(framelet.tile, vector, way.prediction.samples);
         consider(way, difference(framelet, way.prediction.samples), bits_beside);
     };
     bool const may_have_moved = search.has_moved();
@@ -44,8 +44,8 @@ HaarLevels predict(HeldPicture const& held, DisplayFramelet const& framelet, std
         consider_from({}, at_place, bits_of_kind);
     }
     if (least > few_bits) {
-        PictureVector const vector = search.find(held, framelet);
-        if (vector != PictureVector{}) {
+        MotionVector const vector = search.find(reference, framelet);
+        if (vector != MotionVector{}) {
             consider_from(vector, moved, bits_of_kind + bits_of_vector);
         }
         if (may_have_moved) {
@@ -54,7 +54,7 @@ HaarLevels predict(HeldPicture const& held, DisplayFramelet const& framelet, std
         if (least > few_bits) {
             consider(alone, display_values(framelet), 0);
         }
-        share_luma(quality, best->code);
+        share_luma(qp, best->code);
     }
     search.note_moved(best == &moved);
     prediction = best->prediction;

@@ -6,8 +6,8 @@
 #include <cstdint>
 
 #include "protocol/codec/color/haar_planes.h"
-#include "protocol/codec/color/held_picture.h"
-#include "protocol/codec/color/vector_search.h"
+#include "protocol/codec/color/reference_picture.h"
+#include "protocol/codec/color/motion_search.h"
 
 namespace framelet {
 
@@ -16,12 +16,12 @@ enum class PredictionKind : std::uint8_t { none = 0, same_place = 1, moved = 2 }
 
 struct Prediction {
     PredictionKind kind = PredictionKind::none;
-    PictureVector vector; ///< zero where it has not moved
+    MotionVector vector; ///< zero where it has not moved
     DisplayFramelet samples; ///< predicted; only where there is a prediction
 };
 
-/// Levels of what is left of the framelet at this quality, 1..coarsest_quality.
-HaarLevels predict(HeldPicture const& held, DisplayFramelet const& framelet, std::uint8_t quality, VectorSearch& search,
+/// Levels of what is left of the framelet at this QP, 1..coarsest_qp.
+HaarLevels predict(ReferencePicture const& reference, DisplayFramelet const& framelet, std::uint8_t qp, MotionSearch& search,
                    Prediction& prediction);
 
 } // namespace framelet

@@ -1,5 +1,5 @@
 // Green of what a viewer holds, as its writer searches it: all of it points of one spacing, so that any place is read
-// alike, and again with every fourth point of every fourth row, for coarse framelets. In: framelets as the held picture
+// alike, and again with every fourth point of every fourth row, for coarse framelets. In: framelets as the reference picture
 // takes them. Out: rows of points.
 #pragma once
 

@@ -63,7 +63,7 @@ public:
 
     /// Marks what is at fault until something of the moment comes there. True where there is anything.
     bool mark(std::span<CellFault const> faults);
-    /// The viewer has let go of these; from the next look on.
+    /// The viewer has evicted these; from the next look on.
     void forget(std::span<SentTile const> framelets);
 
     std::size_t moment_count() const;
@@ -104,7 +104,7 @@ private:
     Viewport viewport_;
     int columns_, rows_;
     std::vector<Cell> cells_;
-    /// Twice as many as a viewer has: it says late what it lets go of.
+    /// Twice as many as a viewer has: it says late what it evicts.
     std::array<Moment, 2 * FrameletPool::most_moments> moments_;
     std::unordered_set<std::uint64_t> forgotten_; ///< keys of framelets
     std::uint64_t last_number_ = 0;

@@ -1,8 +1,8 @@
 #include "server/session/limits/session_memory.h"
 
-#include "protocol/codec/color/held_picture.h"
+#include "protocol/codec/color/reference_picture.h"
 #include "server/sampling/plan/adaptive_refresh.h"
-#include "server/stream/flow/lossy_places.h"
+#include "server/stream/flow/lossy_tiles.h"
 
 namespace framelet {
 namespace {
@@ -21,9 +21,9 @@ std::size_t session_bytes(Viewport viewport, bool predicts) {
     bytes += LumaHistory::default_entries * sizeof(LumaHistory::Entry);
     // What is known of each place, and as much again for what is worked out from it in every cycle.
     bytes += (std::size_t{2} << (2 * field_depth(plane))) * sizeof(Place);
-    bytes += LossyPlaces::bytes(plane);
-    if (predicts && HeldPicture::holds(viewport)) {
-        bytes += HeldPicture::bytes(viewport);
+    bytes += LossyTiles::bytes(plane);
+    if (predicts && ReferencePicture::holds(viewport)) {
+        bytes += ReferencePicture::bytes(viewport);
     }
     return bytes;
 }

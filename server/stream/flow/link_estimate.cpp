@@ -24,7 +24,7 @@ constexpr double most_queue_bytes = 64e3, fast_queue = 0.006;
 /// until that stands.
 constexpr double first_growth = 1.03, most_growth = 1.5, tried_queue = 0.02;
 /// A step upwards has been tried when so much of the rate was sent since. Nobody knows that a rate is carried which
-/// nothing was sent at, and the next burst would find out. Less than what a quality that is kept makes use of.
+/// nothing was sent at, and the next burst would find out. Less than what a QP that is kept makes use of.
 constexpr double tried_share = 0.85;
 /// The same, as long as the rate is below this share of what it was before it fell.
 constexpr double known_growth = 1.5, known_share = 0.5;

@@ -70,10 +70,10 @@ public:
         stream_->take({clock(now), BatchSent{stream_->last_batch(), static_cast<std::uint64_t>(bytes)}});
     }
     void answered(double now, double arrived) override {
-        if (std::vector<SentTile>& framelets = let_go_.front(); !framelets.empty()) {
-            stream_->take({clock(now), LetGo{std::move(framelets)}});
+        if (std::vector<SentTile>& framelets = evicted_.front(); !framelets.empty()) {
+            stream_->take({clock(now), Evicted{std::move(framelets)}});
         }
-        let_go_.pop_front();
+        evicted_.pop_front();
         stream_->take({clock(now), Ack{++answered_, static_cast<std::uint64_t>(1e6 * clock(arrived)), 0}});
     }
 
@@ -82,8 +82,8 @@ public:
         clocked(setup_.times, &SessionTimes::decode,
                 [&] { batch = codec_.decode(std::get<EncodedBatch>(decode_message(message)), &received_); });
         ViewerStep step = viewer_.insert(batch);
-        viewer_.take_let_go(let_go_.emplace_back());
-        double const decoding = batch.quality.empty() ? setup_.costs.decode_sample : setup_.costs.decode_lossy_sample;
+        viewer_.take_evicted(evicted_.emplace_back());
+        double const decoding = batch.qp.empty() ? setup_.costs.decode_sample : setup_.costs.decode_lossy_sample;
         step.seconds.decode +=
             charged(setup_.times, &SessionTimes::decode,
                     1e-9 * static_cast<double>(batch.framelets.size() * framelet_samples) * decoding);
@@ -229,7 +229,7 @@ private:
     std::uint64_t answered_ = 0; ///< batches
     BatchCodec codec_;
     BatchMemory received_;
-    std::deque<std::vector<SentTile>> let_go_; ///< with each batch that the server has no answer to yet
+    std::deque<std::vector<SentTile>> evicted_; ///< with each batch that the server has no answer to yet
     WarpViewer viewer_;
     int const cells_; ///< in a row
     std::vector<double> times_; ///< scene time shown in each cell

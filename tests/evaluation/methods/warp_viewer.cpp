@@ -25,9 +25,9 @@ ViewerStep WarpViewer::insert(Batch const& batch) {
     return step;
 }
 
-void WarpViewer::take_let_go(std::vector<SentTile>& framelets) {
-    maker_.take_let_go(let_go_);
-    framelets.insert(framelets.end(), let_go_.begin(), let_go_.end());
+void WarpViewer::take_evicted(std::vector<SentTile>& framelets) {
+    maker_.take_evicted(evicted_);
+    framelets.insert(framelets.end(), evicted_.begin(), evicted_.end());
 }
 
 ViewerStep WarpViewer::present(Camera const& camera, SceneTime time, int scene_camera, bool is_settled) {

@@ -22,7 +22,7 @@ public:
     ViewerStep present(Camera const& camera, SceneTime time, int scene_camera = -1, bool is_settled = false);
 
     /// Appends what the viewer holds no longer.
-    void take_let_go(std::vector<SentTile>& framelets);
+    void take_evicted(std::vector<SentTile>& framelets);
 
     Picture const& picture() const { return picture_; }
 
@@ -32,7 +32,7 @@ private:
     SessionTimes* const times_;
     PictureMaker maker_;
     std::vector<PixelRect> changed_;
-    std::vector<SentTile> let_go_; ///< scratch
+    std::vector<SentTile> evicted_; ///< scratch
     double fine_samples_ = 0; ///< that have come since the last picture, finer than pixels
     Picture picture_;
 };

@@ -1,5 +1,5 @@
 // What of a moment is worth rendering for a viewer that moves what it holds. In: moments, what was rendered and sent
-// of them, what the viewer let go of. Out: patches, and where to check what the viewer shows.
+// of them, what the viewer evicted. Out: patches, and where to check what the viewer shows.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // How much of a picture a link has room for: how many samples a second, in which batches, and how coarsely they are
-// coded. In: what the link carries, what the renderer makes. Out: the same, bounded, and a quality.
+// coded. In: what the link carries, what the renderer makes. Out: the same, bounded, and a QP.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace framelet {
 
-/// The coarsest quality that is chosen: its loss, about 32 dB, is what sampling leaves of a picture that moves anyway.
+/// The coarsest QP that is chosen: its loss, about 32 dB, is what sampling leaves of a picture that moves anyway.
 inline constexpr std::uint8_t most_loss = 24;
 
 /// How many samples are sent for each ray that is rendered, lately: fewer where rays go into probes, into several a
@@ -26,14 +26,14 @@ private:
 };
 
 /// Goes step by step, so that one odd measurement does not show.
-class QualityChoice {
+class QpChoice {
 public:
     /// `samples_per_second`: what would be sent if the link took it. 0: exact, wherever the link takes all of that, but
     /// within the first half second, when little is known of the link, only where there is hardly one.
     std::uint8_t choose(LinkState const& link, double samples_per_second, double now);
 
 private:
-    std::uint8_t quality_ = 0; ///< chosen last
+    std::uint8_t qp_ = 0; ///< chosen last
     std::optional<double> begun_; ///< when it was asked first, seconds
     double changed_ = 0; ///< when, seconds
 };

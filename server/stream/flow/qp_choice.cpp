@@ -1,4 +1,4 @@
-#include "server/stream/flow/quality_choice.h"
+#include "server/stream/flow/qp_choice.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,16 +10,16 @@ namespace {
 
 /// Of the link: the rest is for what a batch is larger than expected.
 constexpr double link_share = 0.95;
-/// How far what is wanted may be off what the link carries before the quality changes.
+/// How far what is wanted may be off what the link carries before the QP changes.
 constexpr double too_much = 1.1, too_little = 0.9;
-/// The finest quality with a loss: its step is below one of a display's, and what is finer costs like exact.
+/// The finest QP with a loss: its step is below one of a display's, and what is finer costs like exact.
 constexpr std::uint8_t least_loss = 4;
 /// Exact samples take about so much more than those of `least_loss`.
 constexpr double exact_cost = 3.5;
 /// For so long a link may yet turn out to be narrow: what is exact would be late on it. What comes first has this
-/// quality, a tenth of the bytes; where there is hardly a link the first answer says so.
+/// QP, a tenth of the bytes; where there is hardly a link the first answer says so.
 constexpr double finding_seconds = 0.5;
-constexpr std::uint8_t first_quality = 12;
+constexpr std::uint8_t first_qp = 12;
 /// So many framelets are worth what a batch takes besides them (camera, tiles, envelope: some hundred bytes), but for a
 /// batch that takes longer than this on the link.
 constexpr double worthwhile_framelets = 16, most_batch_seconds = 0.05;
@@ -41,33 +41,33 @@ void SentShare::add(double rays, double sent_samples, double rays_per_second) {
     value_ += (1 - std::exp(-rays / (memory_seconds * rays_per_second))) * (sent_samples / rays - value_);
 }
 
-std::uint8_t QualityChoice::choose(LinkState const& link, double samples_per_second, double now) {
+std::uint8_t QpChoice::choose(LinkState const& link, double samples_per_second, double now) {
     if (!begun_) {
         begun_ = changed_ = now;
-        quality_ = first_quality;
+        qp_ = first_qp;
     }
     bool const is_short = link.base_seconds > 0 && link.base_seconds < least_round_trip;
     bool const may_be_exact = is_short || now - *begun_ >= finding_seconds;
     if (!may_be_exact) {
-        quality_ = std::max(quality_, least_loss);
+        qp_ = std::max(qp_, least_loss);
     }
     if (now - changed_ < step_seconds) {
-        return quality_;
+        return qp_;
     }
     double const wanted = samples_per_second * link.bytes_per_sample / (link_share * link.bytes_per_second);
-    std::uint8_t const before = quality_;
+    std::uint8_t const before = qp_;
     if (wanted > too_much) {
         int const steps = wanted > 2 ? 2 : 1;
-        quality_ = static_cast<std::uint8_t>(std::clamp(quality_ + steps, int{least_loss}, int{most_loss}));
+        qp_ = static_cast<std::uint8_t>(std::clamp(qp_ + steps, int{least_loss}, int{most_loss}));
     } else if (is_short && std::isinf(link.bytes_per_second)) {
-        quality_ = exact_quality;
-    } else if (quality_ > least_loss && wanted < too_little) {
-        --quality_;
-    } else if (quality_ > 0 && may_be_exact && wanted * exact_cost < too_little) {
-        quality_ = exact_quality;
+        qp_ = lossless_qp;
+    } else if (qp_ > least_loss && wanted < too_little) {
+        --qp_;
+    } else if (qp_ > 0 && may_be_exact && wanted * exact_cost < too_little) {
+        qp_ = lossless_qp;
     }
-    changed_ = quality_ == before ? changed_ : now;
-    return quality_;
+    changed_ = qp_ == before ? changed_ : now;
+    return qp_;
 }
 
 double bounded_rate(LinkState const& link, double samples_per_second) {

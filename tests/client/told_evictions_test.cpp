@@ -1,16 +1,16 @@
-#include "client/core/session/told_let_go.h"
+#include "client/core/session/told_evictions.h"
 
 #include <gtest/gtest.h>
 
 namespace framelet {
 namespace {
 
-LetGo message_of(std::size_t framelets) {
+Evicted message_of(std::size_t framelets) {
     return {std::vector<SentTile>(framelets)};
 }
 
-TEST(ToldLetGo, WhatHasNotComeIsKeptInOrder) {
-    ToldLetGo told;
+TEST(ToldEvictions, WhatHasNotComeIsKeptInOrder) {
+    ToldEvictions told;
     for (std::size_t framelets = 1; framelets <= 4; ++framelets) {
         told.keep(message_of(framelets));
     }
@@ -25,12 +25,12 @@ TEST(ToldLetGo, WhatHasNotComeIsKeptInOrder) {
     EXPECT_EQ(told.messages().size(), 1u);
 }
 
-TEST(ToldLetGo, OfTooManyNothingIsKept) {
-    ToldLetGo told;
-    told.keep(message_of(ToldLetGo::most_framelets));
+TEST(ToldEvictions, OfTooManyNothingIsKept) {
+    ToldEvictions told;
+    told.keep(message_of(ToldEvictions::most_framelets));
     EXPECT_FALSE(told.is_lost());
     told.note_come(1);
-    told.keep(message_of(ToldLetGo::most_framelets));
+    told.keep(message_of(ToldEvictions::most_framelets));
     EXPECT_FALSE(told.is_lost());
     told.keep(message_of(1));
     EXPECT_TRUE(told.is_lost());

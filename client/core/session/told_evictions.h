@@ -14,23 +14,23 @@
 namespace framelet {
 
 /// Messages that tell all of that, each as long as one may be. Puts `gone` in order.
-inline std::vector<LetGo> let_go_messages(std::vector<SentTile>& gone) {
+inline std::vector<Evicted> evicted_messages(std::vector<SentTile>& gone) {
     std::ranges::sort(gone);
-    std::vector<LetGo> messages;
-    for (std::size_t first = 0; first < gone.size(); first += max_let_go) {
-        std::size_t const count = std::min(max_let_go, gone.size() - first);
+    std::vector<Evicted> messages;
+    for (std::size_t first = 0; first < gone.size(); first += max_evicted) {
+        std::size_t const count = std::min(max_evicted, gone.size() - first);
         auto const begin = gone.begin() + static_cast<std::ptrdiff_t>(first);
         messages.push_back({{begin, begin + static_cast<std::ptrdiff_t>(count)}});
     }
     return messages;
 }
 
-class ToldLetGo {
+class ToldEvictions {
 public:
     /// Of more framelets it is no longer known which have come.
     static constexpr std::size_t most_framelets = std::size_t{1} << 18;
 
-    void keep(LetGo told) {
+    void keep(Evicted told) {
         if (is_lost_) {
             return;
         }
@@ -50,12 +50,12 @@ public:
     }
 
     /// In order.
-    std::deque<LetGo> const& messages() const { return messages_; }
+    std::deque<Evicted> const& messages() const { return messages_; }
     /// There were too many: no session can go on with what is held.
     bool is_lost() const { return is_lost_; }
 
 private:
-    std::deque<LetGo> messages_;
+    std::deque<Evicted> messages_;
     std::size_t framelets_ = 0; ///< in these
     std::uint64_t come_ = 0; ///< messages that have
     bool is_lost_ = false;

@@ -1,4 +1,4 @@
-#include "server/stream/flow/quality_choice.h"
+#include "server/stream/flow/qp_choice.h"
 
 #include <cmath>
 #include <limits>
@@ -11,26 +11,26 @@ namespace framelet {
 namespace {
 
 /// About what the codec makes of a moving picture.
-double bytes_of(std::uint8_t quality) {
-    return quality == 0 ? 1.15 : 0.6 / (1 + 0.2 * quality);
+double bytes_of(std::uint8_t qp) {
+    return qp == 0 ? 1.15 : 0.6 / (1 + 0.2 * qp);
 }
 
 struct Outcome {
-    int quality = 0;
+    int qp = 0;
     int changes = 0; ///< in the second half
 };
 
 Outcome outcome_of(double bytes_per_second, double samples_per_second) {
-    QualityChoice choice;
+    QpChoice choice;
     LinkState link;
     link.bytes_per_second = bytes_per_second;
     link.bytes_per_sample = bytes_of(0);
     Outcome outcome;
     for (int i = 0; i < 400; ++i) {
-        std::uint8_t const quality = choice.choose(link, samples_per_second, 100 + 0.01 * i);
-        outcome.changes += i >= 200 && quality != outcome.quality ? 1 : 0;
-        outcome.quality = quality;
-        link.bytes_per_sample += 0.2 * (bytes_of(quality) - link.bytes_per_sample);
+        std::uint8_t const qp = choice.choose(link, samples_per_second, 100 + 0.01 * i);
+        outcome.changes += i >= 200 && qp != outcome.qp ? 1 : 0;
+        outcome.qp = qp;
+        link.bytes_per_sample += 0.2 * (bytes_of(qp) - link.bytes_per_sample);
     }
     return outcome;
 }
@@ -50,63 +50,63 @@ TEST(SentShare, IsThatOfTheLastRays) {
     EXPECT_NEAR(share.value(), 0, 1e-6) << "all of it was held";
 }
 
-TEST(QualityChoice, ExactWhereTheLinkTakesIt) {
-    EXPECT_EQ(outcome_of(std::numeric_limits<double>::infinity(), 1e7).quality, 0);
-    EXPECT_EQ(outcome_of(2e6, 1e6).quality, 0);
+TEST(QpChoice, ExactWhereTheLinkTakesIt) {
+    EXPECT_EQ(outcome_of(std::numeric_limits<double>::infinity(), 1e7).qp, 0);
+    EXPECT_EQ(outcome_of(2e6, 1e6).qp, 0);
 }
 
-TEST(QualityChoice, AtFirstWithALossUnlessThereIsHardlyALink) {
+TEST(QpChoice, AtFirstWithALossUnlessThereIsHardlyALink) {
     LinkState link{.bytes_per_second = std::numeric_limits<double>::infinity(), .bytes_per_sample = 1};
-    QualityChoice choice;
+    QpChoice choice;
     int const first = choice.choose(link, 1e7, 7);
     EXPECT_GT(first, 8) << "nobody knows yet what the link carries";
     link.base_seconds = 0.04;
-    int quality = first;
+    int qp = first;
     for (int i = 1; i < 50; ++i) {
-        quality = choice.choose(link, 1e7, 7 + 0.01 * i);
-        EXPECT_TRUE(quality > 0 && quality <= first) << i;
+        qp = choice.choose(link, 1e7, 7 + 0.01 * i);
+        EXPECT_TRUE(qp > 0 && qp <= first) << i;
     }
-    EXPECT_LT(quality, 8) << "no queue yet";
+    EXPECT_LT(qp, 8) << "no queue yet";
     EXPECT_EQ(choice.choose(link, 1e7, 7.6), 0);
-    QualityChoice near;
+    QpChoice near;
     near.choose(link, 1e7, 7);
     link.base_seconds = 0.0005;
     EXPECT_EQ(near.choose(link, 1e7, 7.04), 0) << "the first answer came at once";
-    QualityChoice narrow;
+    QpChoice narrow;
     narrow.choose(link, 1e7, 7);
     link.bytes_per_second = 2e4;
     EXPECT_GE(narrow.choose(link, 1e7, 7.04), first);
 }
 
-TEST(QualityChoice, CoarserTheSlowerTheLinkAndSteady) {
+TEST(QpChoice, CoarserTheSlowerTheLinkAndSteady) {
     int before = 0;
     for (double const rate : {1.0e6, 0.8e6, 0.6e6, 0.45e6, 0.35e6, 0.3e6, 0.1e6, 1.0}) {
         Outcome const outcome = outcome_of(rate, 1e6);
-        EXPECT_GE(outcome.quality, before) << rate;
+        EXPECT_GE(outcome.qp, before) << rate;
         EXPECT_LE(outcome.changes, 1) << rate;
-        before = outcome.quality;
+        before = outcome.qp;
     }
     EXPECT_EQ(before, most_loss);
 }
 
-TEST(QualityChoice, StepsAreSmallAndItComesBack) {
-    QualityChoice choice;
+TEST(QpChoice, StepsAreSmallAndItComesBack) {
+    QpChoice choice;
     LinkState link{.bytes_per_second = 1e5, .bytes_per_sample = 1};
-    int quality = choice.choose(link, 1e6, 1);
+    int qp = choice.choose(link, 1e6, 1);
     for (int i = 1; i < 100; ++i) {
         int const next = choice.choose(link, 1e6, 1 + 0.001 * i);
-        EXPECT_LE(std::abs(next - quality), 2);
-        quality = next;
+        EXPECT_LE(std::abs(next - qp), 2);
+        qp = next;
     }
-    EXPECT_LT(quality, most_loss) << "in a tenth of a second";
+    EXPECT_LT(qp, most_loss) << "in a tenth of a second";
     link.bytes_per_second = 1e8;
     for (int i = 0; i < 100; ++i) {
-        quality = choice.choose(link, 1e6, 2 + 0.01 * i);
+        qp = choice.choose(link, 1e6, 2 + 0.01 * i);
     }
-    EXPECT_EQ(quality, 0);
+    EXPECT_EQ(qp, 0);
 }
 
-TEST(QualityChoice, RateAndBatchAreBounded) {
+TEST(QpChoice, RateAndBatchAreBounded) {
     LinkState link;
     EXPECT_EQ(bounded_rate(link, 5e6), 5e6);
     EXPECT_EQ(bounded_batch(link), max_batch_framelets);

@@ -1,4 +1,4 @@
-#include "protocol/codec/color/held_picture.h"
+#include "protocol/codec/color/reference_picture.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "protocol/codec/color/vector_search.h"
+#include "protocol/codec/color/motion_search.h"
 #include "protocol/codec/entropy/morton_rows.h"
 
 namespace framelet {
@@ -16,8 +16,8 @@ namespace {
 constexpr Viewport viewport{200, 120};
 int const pixel_depth = ImagePlane(viewport).pixel_depth();
 
-HeldPicture grey_picture() {
-    HeldPicture held;
+ReferencePicture grey_picture() {
+    ReferencePicture held;
     held.show(viewport);
     return held;
 }
@@ -56,7 +56,7 @@ TEST(MortonRows, EachSampleIsAtItsPlace) {
     }
 }
 
-DisplayFramelet predicted(HeldPicture const& held, Tile tile, PictureVector vector = {}) {
+DisplayFramelet predicted(ReferencePicture const& held, Tile tile, MotionVector vector = {}) {
     DisplayFramelet out{tile, {}, {}, {}};
     held.predict(tile, vector, out);
     return out;
@@ -66,12 +66,12 @@ int red_at(DisplayFramelet const& framelet, std::uint32_t x, std::uint32_t y) {
     return framelet.red[morton_index(x, y)];
 }
 
-void take(HeldPicture& held, DisplayFramelet const& framelet) {
+void take(ReferencePicture& held, DisplayFramelet const& framelet) {
     held.take(std::span(&framelet, 1));
 }
 
-TEST(HeldPicture, IsGreyAtFirstAndForEveryOtherViewport) {
-    HeldPicture held;
+TEST(ReferencePicture, IsGreyAtFirstAndForEveryOtherViewport) {
+    ReferencePicture held;
     EXPECT_FALSE(held.shows(viewport));
     held.show(viewport);
     Tile const tile = make_tile(pixel_depth, 3, 2);
@@ -85,11 +85,11 @@ TEST(HeldPicture, IsGreyAtFirstAndForEveryOtherViewport) {
     EXPECT_TRUE(held == grey_picture());
 }
 
-TEST(HeldPicture, GivesBackWhatItTookUpToHalfThePixelsSpacing) {
+TEST(ReferencePicture, GivesBackWhatItTookUpToHalfThePixelsSpacing) {
     std::mt19937 random(1);
     ImagePlane const plane(viewport);
     for (int depth = plane.min_depth(); depth < plane.max_depth(); ++depth) {
-        HeldPicture held = grey_picture();
+        ReferencePicture held = grey_picture();
         Tile const tile = make_tile(depth, 0, 0);
         DisplayFramelet const framelet = framelet_of(tile, [&](int, int) { return random(); });
         take(held, framelet);
@@ -97,8 +97,8 @@ TEST(HeldPicture, GivesBackWhatItTookUpToHalfThePixelsSpacing) {
     }
 }
 
-TEST(HeldPicture, KnownValuesOfOtherDepths) {
-    HeldPicture held = grey_picture();
+TEST(ReferencePicture, KnownValuesOfOtherDepths) {
+    ReferencePicture held = grey_picture();
     take(held, framelet_of(make_tile(pixel_depth, 1, 1), [](int x, int y) { return 10 * x + y; }));
     // Finer: what covers it. A level finer, sample (2, 4) of the upper right quarter lies in sample (9, 2).
     DisplayFramelet const finer = predicted(held, make_tile(pixel_depth + 1, 3, 2));
@@ -116,8 +116,8 @@ TEST(HeldPicture, KnownValuesOfOtherDepths) {
     EXPECT_EQ(red_at(predicted(held, make_tile(pixel_depth + 1, 2, 2)), 1, 2), (6 + 7 + 7 + 8 + 2) / 4);
 }
 
-TEST(HeldPicture, VectorsAreHalfPixelsAndStayInside) {
-    HeldPicture held = grey_picture();
+TEST(ReferencePicture, VectorsAreHalfPixelsAndStayInside) {
+    ReferencePicture held = grey_picture();
     Tile const tile = make_tile(pixel_depth, 1, 1);
     take(held, framelet_of(tile, [](int x, int y) { return 8 * x + y; }));
     DisplayFramelet const moved = predicted(held, tile, {6, -2});
@@ -134,11 +134,11 @@ TEST(HeldPicture, VectorsAreHalfPixelsAndStayInside) {
     EXPECT_TRUE(predicted(held, last.tile, {127, 127}) == last);
 }
 
-TEST(HeldPicture, OfOneBatchTheFinerCountsWhateverTheOrder) {
+TEST(ReferencePicture, OfOneBatchTheFinerCountsWhateverTheOrder) {
     Tile const coarse_tile = make_tile(pixel_depth - 1, 1, 0);
     DisplayFramelet const coarse = framelet_of(coarse_tile, [](int, int) { return 10; });
     DisplayFramelet const fine = framelet_of(coarse_tile.child(2), [](int x, int) { return 100 + x; });
-    HeldPicture one = grey_picture(), other = one, later = one;
+    ReferencePicture one = grey_picture(), other = one, later = one;
     one.take(std::array{coarse, fine});
     other.take(std::array{fine, coarse});
     EXPECT_TRUE(one == other);
@@ -149,14 +149,14 @@ TEST(HeldPicture, OfOneBatchTheFinerCountsWhateverTheOrder) {
     EXPECT_EQ(red_at(predicted(later, fine.tile), 4, 4), 10);
 }
 
-/// The held picture of one plane as PROTOCOL.md states it: all of it points.
+/// The reference picture of one plane as PROTOCOL.md states it: all of it points.
 struct FlatPicture {
     int width, height;
     std::vector<std::uint8_t> points = std::vector<std::uint8_t>(static_cast<std::size_t>(width * height), 128);
 
     std::uint8_t& at(int x, int y) { return points[static_cast<std::size_t>(y * width + x)]; }
 
-    void take(HeldPicture::Place place, std::array<std::uint8_t, framelet_samples> const& samples) {
+    void take(ReferencePicture::Place place, std::array<std::uint8_t, framelet_samples> const& samples) {
         auto const sample = [&](int x, int y) {
             return unsigned{samples[morton_index(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y))]};
         };
@@ -171,7 +171,7 @@ struct FlatPicture {
         }
     }
 
-    int predicted(HeldPicture::Place place, PictureVector vector, int i, int j) {
+    int predicted(ReferencePicture::Place place, MotionVector vector, int i, int j) {
         int const left = std::clamp(place.left + vector.x, 0, width - place.side);
         int const top = std::clamp(place.top + vector.y, 0, height - place.side);
         int const t = place.side / framelet_side;
@@ -183,7 +183,7 @@ struct FlatPicture {
     }
 };
 
-TEST(HeldPicture, PredictsAsIfAllOfItWerePoints) {
+TEST(ReferencePicture, PredictsAsIfAllOfItWerePoints) {
     std::mt19937 random(1);
     ImagePlane const plane(viewport);
     auto const any_tile = [&] {
@@ -198,7 +198,7 @@ TEST(HeldPicture, PredictsAsIfAllOfItWerePoints) {
         }
     };
     auto const component = [&] { return static_cast<std::int8_t>(random() % 3 == 0 ? 0 : random() % 256 - 128); };
-    HeldPicture held = grey_picture();
+    ReferencePicture held = grey_picture();
     FlatPicture flat{512, 256}, flat_green = flat;
     for (int i = 0; i < 1500; ++i) {
         DisplayFramelet const framelet = framelet_of(any_tile(), [&](int, int) { return random(); });
@@ -211,9 +211,9 @@ TEST(HeldPicture, PredictsAsIfAllOfItWerePoints) {
             looked_for.tile = tile;
             held.prepare_search({&looked_for, 1});
         }
-        PictureVector const vector{component(), component()};
+        MotionVector const vector{component(), component()};
         DisplayFramelet const out = predicted(held, tile, vector);
-        HeldPicture::Place const place = held.place(tile);
+        ReferencePicture::Place const place = held.place(tile);
         for (std::uint32_t k = 0; k < framelet_samples; ++k) {
             int const x = static_cast<int>(morton_x(k)), y = static_cast<int>(morton_y(k));
             ASSERT_EQ(out.red[k], flat.predicted(place, vector, x, y)) << i << " tile " << tile.code;
@@ -221,9 +221,9 @@ TEST(HeldPicture, PredictsAsIfAllOfItWerePoints) {
         if (held.is_searched()) {
             // Of coarse framelets every fourth point, wherever they may have been; fine ones only where they are.
             int const step = SearchPicture::is_coarse(place.side) ? SearchPicture::coarse : 1;
-            PictureVector const to = step > 1 ? vector : PictureVector{};
+            MotionVector const to = step > 1 ? vector : MotionVector{};
             SearchPicture::Source const source = held.searched(place, to);
-            HeldPicture::Place const from = held.moved(place, to);
+            ReferencePicture::Place const from = held.moved(place, to);
             int const y = static_cast<int>(random() % unsigned(from.side / step));
             for (int x = 0; x < from.side / step; ++x) {
                 auto const green = source.first[static_cast<std::size_t>(y) * source.stride + std::size_t(x)];
@@ -234,11 +234,11 @@ TEST(HeldPicture, PredictsAsIfAllOfItWerePoints) {
     }
 }
 
-TEST(VectorSearch, FindsNothingInWhatIsNotKeptForIt) {
-    HeldPicture const held = grey_picture();
-    VectorSearch search;
+TEST(MotionSearch, FindsNothingInWhatIsNotKeptForIt) {
+    ReferencePicture const held = grey_picture();
+    MotionSearch search;
     DisplayFramelet const framelet = framelet_of(make_tile(pixel_depth, 2, 2), [](int x, int y) { return 9 * x + y; });
-    EXPECT_EQ(search.find(held, framelet), PictureVector{});
+    EXPECT_EQ(search.find(held, framelet), MotionVector{});
 }
 
 double scene(double x, double y) {
@@ -246,8 +246,8 @@ double scene(double x, double y) {
 }
 
 /// All of the scene, a sample a pixel.
-HeldPicture searched_picture() {
-    HeldPicture held = grey_picture();
+ReferencePicture searched_picture() {
+    ReferencePicture held = grey_picture();
     held.prepare_search({});
     ImagePlane const plane(viewport);
     for (std::uint32_t row = 0; row < 8; ++row) {
@@ -262,8 +262,8 @@ HeldPicture searched_picture() {
 }
 
 /// What is coarse is looked for among coarse points of what is finer.
-TEST(VectorSearch, WhatIsCoarseAndStillHasHardlyMoved) {
-    HeldPicture const held = searched_picture();
+TEST(MotionSearch, WhatIsCoarseAndStillHasHardlyMoved) {
+    ReferencePicture const held = searched_picture();
     ImagePlane const plane(viewport);
     constexpr int levels = 2, spacing = 1 << levels; // pixels
     Tile const tile = make_tile(pixel_depth - levels, 1, 1);
@@ -271,15 +271,15 @@ TEST(VectorSearch, WhatIsCoarseAndStillHasHardlyMoved) {
     DisplayFramelet const still = framelet_of(tile, [&](int x, int y) {
         return scene(rect.left + spacing * (x + 0.5) - 0.5, rect.top + spacing * (y + 0.5) - 0.5);
     });
-    PictureVector const found = VectorSearch().find(held, still);
-    EXPECT_EQ(found, PictureVector{}) << int{found.x} << " " << int{found.y};
+    MotionVector const found = MotionSearch().find(held, still);
+    EXPECT_EQ(found, MotionVector{}) << int{found.x} << " " << int{found.y};
 }
 
-TEST(VectorSearch, FindsWhatHasMoved) {
+TEST(MotionSearch, FindsWhatHasMoved) {
     std::mt19937 random(1);
-    HeldPicture const held = searched_picture();
+    ReferencePicture const held = searched_picture();
     ImagePlane const plane(viewport);
-    VectorSearch search;
+    MotionSearch search;
     for (int i = 0; i < 50; ++i) {
         int const dx = static_cast<int>(random() % 9) - 4, dy = static_cast<int>(random() % 9) - 4; // pixels
         Tile const tile = make_tile(pixel_depth, 2 + random() % 8, 2 + random() % 4);

@@ -1,4 +1,4 @@
-#include "server/stream/flow/lossy_places.h"
+#include "server/stream/flow/lossy_tiles.h"
 
 #include <algorithm>
 
@@ -6,22 +6,22 @@
 
 namespace framelet {
 
-LossyPlaces::Range LossyPlaces::range_of(Tile tile) const {
+LossyTiles::Range LossyTiles::range_of(Tile tile) const {
     int const bits = 2 * (plane_.max_depth() - tile.depth());
     std::size_t const first = std::size_t{tile.index()} << bits;
     return {first, first + (std::size_t{1} << bits)};
 }
 
-void LossyPlaces::sent(ImagePlane const& plane, Tile tile, std::uint8_t quality) {
+void LossyTiles::sent(ImagePlane const& plane, Tile tile, std::uint8_t qp) {
     if (plane != plane_) {
         *this = {};
         plane_ = plane;
     }
-    if (quality == exact_quality && count_ == 0) {
+    if (qp == lossless_qp && count_ == 0) {
         return;
     }
     depth_.resize(std::size_t{1} << (2 * plane_.max_depth()));
-    auto const mark = static_cast<std::uint8_t>(quality == exact_quality ? 0 : tile.depth() + 1);
+    auto const mark = static_cast<std::uint8_t>(qp == lossless_qp ? 0 : tile.depth() + 1);
     Range const range = range_of(tile);
     for (std::size_t i = range.first; i < range.last; ++i) {
         Tile const finest{static_cast<std::uint32_t>(depth_.size() + i)};
@@ -33,7 +33,7 @@ void LossyPlaces::sent(ImagePlane const& plane, Tile tile, std::uint8_t quality)
     }
 }
 
-bool LossyPlaces::is_held(ImagePlane const& plane, Tile tile) const {
+bool LossyTiles::is_held(ImagePlane const& plane, Tile tile) const {
     if (count_ == 0 || plane != plane_) {
         return false;
     }
@@ -47,7 +47,7 @@ bool LossyPlaces::is_held(ImagePlane const& plane, Tile tile) const {
     return true;
 }
 
-void LossyPlaces::list(std::size_t most, std::vector<Tile>& tiles) const {
+void LossyTiles::list(std::size_t most, std::vector<Tile>& tiles) const {
     tiles.clear();
     for (std::size_t i = 0; i < depth_.size() && tiles.size() < std::min(most, count_); ++i) {
         if (depth_[i] != 0) {
@@ -56,16 +56,16 @@ void LossyPlaces::list(std::size_t most, std::vector<Tile>& tiles) const {
     }
 }
 
-void choose_qualities(ImagePlane const& plane, std::span<Tile const> tiles, std::span<std::uint8_t> needed,
-                      std::uint8_t quality, bool finish, LossyPlaces& places, std::vector<std::uint8_t>& qualities) {
+void choose_qps(ImagePlane const& plane, std::span<Tile const> tiles, std::span<std::uint8_t> needed,
+                      std::uint8_t qp, bool finish, LossyTiles& places, std::vector<std::uint8_t>& qps) {
     FRAMELET_CHECK(tiles.size() == needed.size());
-    qualities.clear();
+    qps.clear();
     for (std::size_t i = 0; i < tiles.size(); ++i) {
         bool const again = needed[i] == 0 && places.is_held(plane, tiles[i]);
         needed[i] = needed[i] != 0 || again ? 1 : 0;
         if (needed[i] != 0) {
             bool const last = finish && tiles[i].depth() == plane.max_depth();
-            qualities.push_back(again || last ? exact_quality : quality);
+            qps.push_back(again || last ? lossless_qp : qp);
         }
     }
     // Of those of one batch the finer ones show.
@@ -73,15 +73,15 @@ void choose_qualities(ImagePlane const& plane, std::span<Tile const> tiles, std:
         std::size_t next = 0;
         for (std::size_t i = 0; i < tiles.size(); ++i) {
             if (needed[i] != 0) {
-                std::uint8_t const chosen = qualities[next++];
+                std::uint8_t const chosen = qps[next++];
                 if (tiles[i].depth() == depth) {
                     places.sent(plane, tiles[i], chosen);
                 }
             }
         }
     }
-    if (std::ranges::all_of(qualities, [](std::uint8_t q) { return q == exact_quality; })) {
-        qualities.clear();
+    if (std::ranges::all_of(qps, [](std::uint8_t q) { return q == lossless_qp; })) {
+        qps.clear();
     }
 }
 

@@ -1,4 +1,4 @@
-#include "server/stream/flow/lossy_places.h"
+#include "server/stream/flow/lossy_tiles.h"
 
 #include <gtest/gtest.h>
 
@@ -7,14 +7,14 @@ namespace {
 
 ImagePlane const plane({40, 24}); // 64x64 pixels, one sample a pixel at depth 2
 
-std::vector<Tile> listed(LossyPlaces const& places) {
+std::vector<Tile> listed(LossyTiles const& places) {
     std::vector<Tile> tiles;
     places.list(100000, tiles);
     return tiles;
 }
 
-TEST(LossyPlaces, WhatCameLastCounts) {
-    LossyPlaces places;
+TEST(LossyTiles, WhatCameLastCounts) {
+    LossyTiles places;
     EXPECT_TRUE(places.empty());
     Tile const tile = make_tile(plane.pixel_depth(), 1, 0);
     places.sent(plane, tile, 8);
@@ -22,53 +22,53 @@ TEST(LossyPlaces, WhatCameLastCounts) {
     EXPECT_FALSE(places.is_held(plane, tile.parent()));
     EXPECT_FALSE(places.is_held(plane, tile.child(0))) << "what is coarser there does not make the finer one held";
     EXPECT_EQ(listed(places).size(), 16u);
-    places.sent(plane, tile.child(1), exact_quality);
+    places.sent(plane, tile.child(1), lossless_qp);
     EXPECT_FALSE(places.is_held(plane, tile)) << "a part of it is better already";
     EXPECT_EQ(listed(places).size(), 12u);
     for (Tile const finest : listed(places)) {
         EXPECT_EQ(finest.depth(), plane.max_depth());
-        places.sent(plane, finest, exact_quality);
+        places.sent(plane, finest, lossless_qp);
     }
     EXPECT_TRUE(places.empty());
 }
 
-TEST(LossyPlaces, OnlyVisibleOnesCount) {
-    LossyPlaces places;
+TEST(LossyTiles, OnlyVisibleOnesCount) {
+    LossyTiles places;
     places.sent(plane, Tile{1}, 3);
     EXPECT_EQ(listed(places).size(), 60u); // 40x24 pixels of 4x4 each
     EXPECT_TRUE(places.is_held(plane, Tile{1}));
     std::vector<Tile> few;
     places.list(7, few);
     EXPECT_EQ(few.size(), 7u);
-    places.sent(ImagePlane({64, 64}), make_tile(2, 0, 0), exact_quality);
+    places.sent(ImagePlane({64, 64}), make_tile(2, 0, 0), lossless_qp);
     EXPECT_TRUE(places.empty()) << "another viewport: the viewer begins anew";
 }
 
-TEST(LossyPlaces, UnchangedIsSentExactlyOnce) {
-    LossyPlaces places;
+TEST(LossyTiles, UnchangedIsSentExactlyOnce) {
+    LossyTiles places;
     std::vector<Tile> const tiles{make_tile(2, 0, 0), make_tile(2, 1, 0), make_tile(4, 8, 0)};
-    std::vector<std::uint8_t> needed{1, 0, 1}, qualities;
-    choose_qualities(plane, tiles, needed, 9, false, places, qualities);
+    std::vector<std::uint8_t> needed{1, 0, 1}, qps;
+    choose_qps(plane, tiles, needed, 9, false, places, qps);
     EXPECT_EQ(needed, (std::vector<std::uint8_t>{1, 0, 1}));
-    EXPECT_EQ(qualities, (std::vector<std::uint8_t>{9, 9}));
+    EXPECT_EQ(qps, (std::vector<std::uint8_t>{9, 9}));
 
     needed = {0, 0, 0};
-    choose_qualities(plane, tiles, needed, 9, false, places, qualities);
+    choose_qps(plane, tiles, needed, 9, false, places, qps);
     EXPECT_EQ(needed, (std::vector<std::uint8_t>{1, 0, 1}));
-    EXPECT_TRUE(qualities.empty()) << "all exact";
+    EXPECT_TRUE(qps.empty()) << "all exact";
     EXPECT_TRUE(places.empty());
 
     needed = {0, 0, 0};
-    choose_qualities(plane, tiles, needed, 9, false, places, qualities);
+    choose_qps(plane, tiles, needed, 9, false, places, qps);
     EXPECT_EQ(needed, (std::vector<std::uint8_t>{0, 0, 0}));
 }
 
-TEST(LossyPlaces, FinestOfAStillPictureAreExact) {
-    LossyPlaces places;
+TEST(LossyTiles, FinestOfAStillPictureAreExact) {
+    LossyTiles places;
     std::vector<Tile> const tiles{make_tile(4, 8, 0), make_tile(2, 0, 0), make_tile(4, 0, 0)};
-    std::vector<std::uint8_t> needed{1, 1, 1}, qualities;
-    choose_qualities(plane, tiles, needed, 9, true, places, qualities);
-    EXPECT_EQ(qualities, (std::vector<std::uint8_t>{0, 9, 0}));
+    std::vector<std::uint8_t> needed{1, 1, 1}, qps;
+    choose_qps(plane, tiles, needed, 9, true, places, qps);
+    EXPECT_EQ(qps, (std::vector<std::uint8_t>{0, 9, 0}));
     EXPECT_EQ(listed(places).size(), 15u) << "the finer one of the batch shows";
 }
 

@@ -15,15 +15,15 @@
 namespace framelet {
 
 /// Half pixels.
-struct PictureVector {
+struct MotionVector {
     std::int8_t x = 0, y = 0;
-    bool operator==(PictureVector const&) const = default;
+    bool operator==(MotionVector const&) const = default;
 };
 
 /// Four values a pixel and plane: at half the spacing of the pixels coarse and fine framelets alike find what they
 /// were. Nothing coarse is spread over the values that it stands for (`point_grids.h`). 16 bytes a pixel of the
 /// viewport, rounded up to tiles of the coarsest kind, 15.8 MB at 1280x720; 4.2 more where it is kept for searches.
-class HeldPicture {
+class ReferencePicture {
 public:
     /// Larger viewports have no such picture: their framelets are coded without.
     static constexpr std::int64_t most_pixels = std::int64_t{1} << 23;
@@ -42,7 +42,7 @@ public:
     void take(std::span<DisplayFramelet const> framelets);
 
     /// Samples of `out` as the picture has them `vector` away from its tile, or as far as the picture reaches.
-    void predict(Tile tile, PictureVector vector, DisplayFramelet& out) const;
+    void predict(Tile tile, MotionVector vector, DisplayFramelet& out) const;
 
     /// Says that a prediction from near the tile's place will be asked for soon.
     void expect(Tile tile) const;
@@ -57,7 +57,7 @@ public:
     };
     Place place(Tile tile) const;
     /// Moved, as far as the picture reaches.
-    Place moved(Place const& place, PictureVector vector) const {
+    Place moved(Place const& place, MotionVector vector) const {
         return {std::clamp(place.left + vector.x, 0, points_.width() - place.side),
                 std::clamp(place.top + vector.y, 0, points_.height() - place.side), place.side};
     }
@@ -65,13 +65,13 @@ public:
     /// viewport is shown.
     void prepare_search(std::span<DisplayFramelet const> framelets);
     bool is_searched() const { return search_.is_kept(); }
-    SearchPicture::Source searched(Place const& place, PictureVector vector) const {
+    SearchPicture::Source searched(Place const& place, MotionVector vector) const {
         Place const from = moved(place, vector);
         return search_.source(from.left, from.top, from.side);
     }
 
     /// Whether predictions from them are the same.
-    bool operator==(HeldPicture const& other) const { return plane_ == other.plane_ && points_ == other.points_; }
+    bool operator==(ReferencePicture const& other) const { return plane_ == other.plane_ && points_ == other.points_; }
 
 private:
     void write(DisplayFramelet const& framelet);

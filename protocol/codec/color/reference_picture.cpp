@@ -1,4 +1,4 @@
-#include "protocol/codec/color/held_picture.h"
+#include "protocol/codec/color/reference_picture.h"
 
 #include <array>
 #include <cstring>
@@ -93,8 +93,8 @@ void put_row(PointRow const& row, SamplePlane& rows, int y) {
     std::memcpy(rows.data() + y * framelet_side, &row, sizeof row);
 }
 
-/// The point of each sample, `pitch` as of `HeldPicture::Place`, whatever levels these are of.
-void look_up(PointGrids const& points, HeldPicture::Place const& from, int level, Planes& rows) {
+/// The point of each sample, `pitch` as of `ReferencePicture::Place`, whatever levels these are of.
+void look_up(PointGrids const& points, ReferencePicture::Place const& from, int level, Planes& rows) {
     int const twice = from.pitch() < 0 ? 1 : 0, pitch = std::max(from.pitch(), 0);
     PointRows reader(points, from.left, pitch, level, twice);
     for (int y = 0; y < framelet_side; ++y) {
@@ -106,7 +106,7 @@ void look_up(PointGrids const& points, HeldPicture::Place const& from, int level
 }
 
 /// The mean of the four points about each sample's centre.
-void look_up_means(PointGrids const& points, HeldPicture::Place const& from, int level, Planes& rows) {
+void look_up_means(PointGrids const& points, ReferencePicture::Place const& from, int level, Planes& rows) {
     using Sums [[gnu::vector_size(2 * framelet_side)]] = std::uint16_t;
     int const pitch = from.pitch();
     int const before_centre = (1 << pitch) / 2 - 1;
@@ -130,24 +130,24 @@ void look_up_means(PointGrids const& points, HeldPicture::Place const& from, int
 
 } // namespace
 
-std::size_t HeldPicture::bytes(Viewport viewport) {
-    Viewport const held = rounded_up(ImagePlane(viewport));
+std::size_t ReferencePicture::bytes(Viewport viewport) {
+    Viewport const whole = rounded_up(ImagePlane(viewport));
     constexpr double bytes_per_pixel = 20.3; // 16 of the points with their levels, the rest for searches
-    return static_cast<std::size_t>(bytes_per_pixel * held.width * held.height);
+    return static_cast<std::size_t>(bytes_per_pixel * whole.width * whole.height);
 }
 
-void HeldPicture::show(Viewport viewport) {
+void ReferencePicture::show(Viewport viewport) {
     FRAMELET_CHECK(holds(viewport));
     if (shows(viewport)) {
         return;
     }
     plane_ = ImagePlane(viewport);
-    Viewport const held = rounded_up(plane_);
-    points_.fill(values_per_pixel * held.width, values_per_pixel * held.height, grey);
+    Viewport const whole = rounded_up(plane_);
+    points_.fill(values_per_pixel * whole.width, values_per_pixel * whole.height, grey);
     search_ = {};
 }
 
-void HeldPicture::prepare_search(std::span<DisplayFramelet const> framelets) {
+void ReferencePicture::prepare_search(std::span<DisplayFramelet const> framelets) {
     constexpr std::size_t green = 1;
     if (!is_searched()) {
         search_.copy(points_, green);
@@ -158,12 +158,12 @@ void HeldPicture::prepare_search(std::span<DisplayFramelet const> framelets) {
     }
 }
 
-HeldPicture::Place HeldPicture::place(Tile tile) const {
+ReferencePicture::Place ReferencePicture::place(Tile tile) const {
     PixelRect const rect = plane_.tile_rect(tile);
     return {values_per_pixel * rect.left, values_per_pixel * rect.top, values_per_pixel * rect.width()};
 }
 
-void HeldPicture::expect(Tile tile) const {
+void ReferencePicture::expect(Tile tile) const {
     Place const from = place(tile);
     if (is_searched()) {
         search_.expect(from.left, from.top, from.side);
@@ -189,7 +189,7 @@ void HeldPicture::expect(Tile tile) const {
     }
 }
 
-void HeldPicture::predict(Tile tile, PictureVector vector, DisplayFramelet& out) const {
+void ReferencePicture::predict(Tile tile, MotionVector vector, DisplayFramelet& out) const {
     Place const from = moved(place(tile), vector);
     int const pitch = from.pitch();
     int const level = points_.level_in(from.left, from.top, from.side);
@@ -213,7 +213,7 @@ void HeldPicture::predict(Tile tile, PictureVector vector, DisplayFramelet& out)
     for_each_plane([&](auto const samples) { from_rows(rows[plane++].data(), framelet_side, (out.*samples).data()); });
 }
 
-void HeldPicture::write(DisplayFramelet const& framelet) {
+void ReferencePicture::write(DisplayFramelet const& framelet) {
     Place const to = place(framelet.tile);
     int const level = std::max(to.pitch(), 0);
     std::size_t plane = 0;
@@ -231,7 +231,7 @@ void HeldPicture::write(DisplayFramelet const& framelet) {
     }
 }
 
-void HeldPicture::take(std::span<DisplayFramelet const> framelets) {
+void ReferencePicture::take(std::span<DisplayFramelet const> framelets) {
     for (int depth = plane_.min_depth(); depth <= plane_.max_depth(); ++depth) {
         for (DisplayFramelet const& framelet : framelets) {
             if (framelet.tile.depth() == depth) {

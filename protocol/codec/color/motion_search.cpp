@@ -1,4 +1,4 @@
-#include "protocol/codec/color/vector_search.h"
+#include "protocol/codec/color/motion_search.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,18 +36,18 @@ Rows rows_of(SamplePlane const& samples) {
 
 /// Values from the picture near the middles of a row of samples. `Lane` holds a row of those that a sample covers.
 template <typename Lane>
-Row row_at(std::uint8_t const* held) {
+Row row_at(std::uint8_t const* points) {
     constexpr std::size_t pitch = sizeof(Lane);
     using Lanes [[gnu::vector_size(framelet_side * pitch)]] = Lane;
     Lanes values;
-    std::memcpy(&values, held, sizeof values);
+    std::memcpy(&values, points, sizeof values);
     return __builtin_convertvector(values >> (8 * (pitch / 2)), Row);
 }
 
-Row doubled_row_at(std::uint8_t const* held) {
+Row doubled_row_at(std::uint8_t const* points) {
     using Half [[gnu::vector_size(framelet_side / 2)]] = std::uint8_t;
     Half half;
-    std::memcpy(&half, held, sizeof half);
+    std::memcpy(&half, points, sizeof half);
     return __builtin_shufflevector(half, half, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7);
 }
 
@@ -71,7 +71,7 @@ Sums differences(Row const& a, Row const& b) {
 template <std::size_t twice, Row (*at)(std::uint8_t const*)>
 struct Reading {
     static constexpr std::size_t twice_pitch = twice;
-    static Row row_at(std::uint8_t const* held) { return at(held); }
+    static Row row_at(std::uint8_t const* points) { return at(points); }
 };
 
 /// Sum of differences of rows `apart` from each other, or any number above `most` where it is above that.
@@ -94,10 +94,10 @@ int difference(Rows const& rows, SearchPicture::Source const& from, int most) {
 template <typename Reading>
 class Search {
 public:
-    Search(HeldPicture const& held, Rows const& rows, HeldPicture::Place const& place)
-        : held_(held), rows_(rows), place_(place) {}
+    Search(ReferencePicture const& reference, Rows const& rows, ReferencePicture::Place const& place)
+        : reference_(reference), rows_(rows), place_(place) {}
 
-    PictureVector best() const { return best_; }
+    MotionVector best() const { return best_; }
     bool leaves_hardly_any() const { return least_ <= hardly_any; }
 
     /// These rows are compared from now on: begins anew with the best one so far.
@@ -109,7 +109,7 @@ public:
 
     template <std::size_t apart>
     void consider(int x, int y) {
-        PictureVector const vector{static_cast<std::int8_t>(std::clamp(x, -farthest, farthest)),
+        MotionVector const vector{static_cast<std::int8_t>(std::clamp(x, -farthest, farthest)),
                                    static_cast<std::int8_t>(std::clamp(y, -farthest, farthest))};
         if (int const there = cost<apart>(vector); there < least_) {
             least_ = there;
@@ -119,7 +119,7 @@ public:
 
     template <std::size_t apart>
     void consider_around(int step) {
-        PictureVector const centre = best_;
+        MotionVector const centre = best_;
         for (int y = -step; y <= step; y += step) {
             for (int x = -step; x <= step; x += step) {
                 if (x != 0 || y != 0) {
@@ -131,25 +131,25 @@ public:
 
 private:
     template <std::size_t apart>
-    int cost(PictureVector vector) const {
+    int cost(MotionVector vector) const {
         int const of_length = length_cost * (std::abs(int{vector.x}) + std::abs(int{vector.y}));
         constexpr int by = static_cast<int>(apart);
-        return by * difference<Reading, apart>(rows_, held_.searched(place_, vector), (least_ - of_length) / by) +
+        return by * difference<Reading, apart>(rows_, reference_.searched(place_, vector), (least_ - of_length) / by) +
                of_length;
     }
 
-    HeldPicture const& held_;
+    ReferencePicture const& reference_;
     Rows const& rows_;
-    HeldPicture::Place const place_;
-    PictureVector best_;
+    ReferencePicture::Place const place_;
+    MotionVector best_;
     int least_ = std::numeric_limits<int>::max();
 };
 
 /// What was found before, and steps from there down to `last_step`.
 template <typename Reading, std::size_t apart>
-void search_in_steps(Search<Reading>& search, std::span<PictureVector const> found, int last_step) {
+void search_in_steps(Search<Reading>& search, std::span<MotionVector const> found, int last_step) {
     search.template compare_rows<apart>();
-    for (PictureVector const vector : found) {
+    for (MotionVector const vector : found) {
         search.template consider<apart>(vector.x, vector.y);
     }
     for (int step = search.leaves_hardly_any() ? near_step : first_step; step >= last_step; step /= 2) {
@@ -158,17 +158,17 @@ void search_in_steps(Search<Reading>& search, std::span<PictureVector const> fou
 }
 
 template <typename Reading>
-PictureVector search_coarsely(HeldPicture const& held, Rows const& rows, HeldPicture::Place const& place,
-                              std::span<PictureVector const> found) {
-    Search<Reading> search(held, rows, place);
+MotionVector search_coarsely(ReferencePicture const& reference, Rows const& rows, ReferencePicture::Place const& place,
+                              std::span<MotionVector const> found) {
+    Search<Reading> search(reference, rows, place);
     search_in_steps<Reading, 2>(search, found, SearchPicture::coarse);
     return search.best();
 }
 
 template <typename Reading>
-PictureVector search_finely(HeldPicture const& held, Rows const& rows, HeldPicture::Place const& place,
-                            std::span<PictureVector const> found) {
-    Search<Reading> search(held, rows, place);
+MotionVector search_finely(ReferencePicture const& reference, Rows const& rows, ReferencePicture::Place const& place,
+                            std::span<MotionVector const> found) {
+    Search<Reading> search(reference, rows, place);
     search_in_steps<Reading, 4>(search, found, near_step);
     search.template compare_rows<2>();
     search.template consider_around<2>(2);
@@ -177,31 +177,31 @@ PictureVector search_finely(HeldPicture const& held, Rows const& rows, HeldPictu
     return search.best();
 }
 
-PictureVector search(HeldPicture const& held, Rows const& rows, HeldPicture::Place const& place,
-                     std::span<PictureVector const> found) {
+MotionVector search(ReferencePicture const& reference, Rows const& rows, ReferencePicture::Place const& place,
+                     std::span<MotionVector const> found) {
     switch (place.pitch()) {
     case -1:
-        return search_finely<Reading<1, doubled_row_at>>(held, rows, place, found);
+        return search_finely<Reading<1, doubled_row_at>>(reference, rows, place, found);
     case 0:
-        return search_finely<Reading<2, row_at<std::uint8_t>>>(held, rows, place, found);
+        return search_finely<Reading<2, row_at<std::uint8_t>>>(reference, rows, place, found);
     case 1:
-        return search_finely<Reading<4, row_at<std::uint16_t>>>(held, rows, place, found);
+        return search_finely<Reading<4, row_at<std::uint16_t>>>(reference, rows, place, found);
     case 2:
-        return search_finely<Reading<8, row_at<std::uint32_t>>>(held, rows, place, found);
+        return search_finely<Reading<8, row_at<std::uint32_t>>>(reference, rows, place, found);
     case 3: // of the coarse points, as all that is coarser
-        return search_coarsely<Reading<4, row_at<std::uint16_t>>>(held, rows, place, found);
+        return search_coarsely<Reading<4, row_at<std::uint16_t>>>(reference, rows, place, found);
     default:
-        return search_coarsely<Reading<8, row_at<std::uint32_t>>>(held, rows, place, found);
+        return search_coarsely<Reading<8, row_at<std::uint32_t>>>(reference, rows, place, found);
     }
 }
 
 } // namespace
 
-PictureVector VectorSearch::find(HeldPicture const& held, DisplayFramelet const& framelet) {
-    if (!held.is_searched()) {
+MotionVector MotionSearch::find(ReferencePicture const& reference, DisplayFramelet const& framelet) {
+    if (!reference.is_searched()) {
         return {};
     }
-    PictureVector const best = search(held, rows_of(framelet.green), held.place(framelet.tile), found_);
+    MotionVector const best = search(reference, rows_of(framelet.green), reference.place(framelet.tile), found_);
     if (std::find(found_.begin(), found_.end(), best) == found_.end()) {
         found_[next_] = best;
         next_ = (next_ + 1) % found_.size();

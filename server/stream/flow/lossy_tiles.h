@@ -10,15 +10,15 @@
 
 namespace framelet {
 
-class LossyPlaces {
+class LossyTiles {
 public:
-    LossyPlaces() = default;
+    LossyTiles() = default;
 
     /// What it takes once something was sent with loss.
     static std::size_t bytes(ImagePlane const& plane) { return std::size_t{1} << (2 * plane.max_depth()); }
 
     /// The viewer gets this framelet, as its newest there. Another viewport forgets all.
-    void sent(ImagePlane const& plane, Tile tile, std::uint8_t quality);
+    void sent(ImagePlane const& plane, Tile tile, std::uint8_t qp);
     bool empty() const { return count_ == 0; }
     /// True where the viewer shows nothing but this very tile, with loss: once more without would be all that it lacks.
     bool is_held(ImagePlane const& plane, Tile tile) const;
@@ -37,11 +37,11 @@ private:
 };
 
 /// Which framelets of a batch go to the viewer and how they are coded. `needed`: what the scheduler says of each; those
-/// that are not, because they have not changed, are added where the viewer holds them with loss. `quality`: of the
+/// that are not, because they have not changed, are added where the viewer holds them with loss. `qp`: of the
 /// batch. `finish`: the picture stands still, and its finest tiles are the last that come: they are sent exactly.
-/// Replaces `qualities` by one for each framelet that is sent, in order, or by none where all are exact; keeps account
+/// Replaces `qps` by one for each framelet that is sent, in order, or by none where all are exact; keeps account
 /// in `places`.
-void choose_qualities(ImagePlane const& plane, std::span<Tile const> tiles, std::span<std::uint8_t> needed,
-                      std::uint8_t quality, bool finish, LossyPlaces& places, std::vector<std::uint8_t>& qualities);
+void choose_qps(ImagePlane const& plane, std::span<Tile const> tiles, std::span<std::uint8_t> needed,
+                      std::uint8_t qp, bool finish, LossyTiles& places, std::vector<std::uint8_t>& qps);
 
 } // namespace framelet
