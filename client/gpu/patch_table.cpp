@@ -15,7 +15,7 @@ namespace {
 constexpr int side = FrameletCache::block_side;
 constexpr std::uint32_t unused = 0xffffffffu;
 constexpr std::uint32_t hides_flag = 1, ends_flag = 2; // as in painting.glsl
-constexpr std::uint32_t loose_flag = 1u << 16;
+constexpr std::uint32_t outlier_flag = 1u << 16;
 constexpr std::uint32_t most_patches = 1u << 24;
 
 constexpr int part_side = 4; ///< pixels of a part of a block that has its own list of splats
@@ -122,7 +122,7 @@ void PatchTable::find_used(CanvasJobs const& jobs) {
 /// Of patches that have samples in no square's grid.
 void PatchTable::find_small(CanvasJobs const& jobs) {
     auto const is_small = [](WarpPlan const& plan, WarpPatch const& patch) {
-        return !patch.is_loose && !plan.grid_part(patch);
+        return !patch.is_outlier && !plan.grid_part(patch);
     };
     first_small_.resize(grids_.size());
     tbb::parallel_for(std::size_t{0}, grids_.size(), [&](std::size_t i) {
@@ -152,7 +152,7 @@ void PatchTable::write_square(CanvasJobs const& jobs, SampleAtlas const& atlas, 
     std::uint32_t* to = patches.data() + words_of_patch * first_patch_[slot][square];
     for (WarpPatch const& patch : plan.patches_of(square)) {
         write_maps(patch, to);
-        if (!patch.is_loose) {
+        if (!patch.is_outlier) {
             if (auto const part = plan.grid_part(patch)) {
                 write_samples(patch, *part, place, to);
             } else {
@@ -163,7 +163,7 @@ void PatchTable::write_square(CanvasJobs const& jobs, SampleAtlas const& atlas, 
     }
 }
 
-/// The loose samples that reach into the block, which is the row's last. Returns where their lists begin.
+/// The outliers that reach into the block, which is the row's last. Returns where their lists begin.
 std::uint32_t PatchTable::add_splats(BlockJob const& job, PatchView const& view, std::uint32_t number, Row& row) {
     WarpPatch const& patch = *view.patch;
     std::span<Splat const> const splats(view.splats + patch.first_splat, patch.splats);
@@ -227,9 +227,9 @@ void PatchTable::write_row(CanvasJobs const& jobs, RowJobs const& from, Row& row
                 first_patch_[slot][patch.square] + static_cast<std::uint32_t>(jobs.plans[slot].number_of(patch));
             row.entries.insert(row.entries.end(),
                                {number | leader_of(patch.group, i, row.groups, row.leaders) << 24,
-                                local_box(patch.box, job) | (patch.is_loose ? loose_flag : 0),
+                                local_box(patch.box, job) | (patch.is_outlier ? outlier_flag : 0),
                                 static_cast<std::uint32_t>(patch.group),
-                                patch.is_loose ? add_splats(job, view, i, row) : pair(patch.box.left, patch.box.top)});
+                                patch.is_outlier ? add_splats(job, view, i, row) : pair(patch.box.left, patch.box.top)});
         }
     }
 }

@@ -158,7 +158,7 @@ bool is_at_rest(FrameletShape const& shape, SceneTime scene_time, BodyMotions co
                 motions.rests(one.body, scene_time - resting_seconds, scene_time + resting_seconds));
     };
     return std::all_of(shape.layers.begin(), shape.layers.begin() + shape.layer_count, rests) &&
-           std::ranges::all_of(shape.loose_samples, rests);
+           std::ranges::all_of(shape.outliers, rests);
 }
 
 } // namespace framelet

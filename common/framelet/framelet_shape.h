@@ -37,12 +37,12 @@ struct Layer {
 };
 
 /// A sample that lies on no layer.
-struct LooseSample {
+struct Outlier {
     float inverse_depth = 0;
     BodyNumber body = static_body;
     Vec3 velocity{0}; ///< as of a layer
 
-    bool operator==(LooseSample const&) const = default;
+    bool operator==(Outlier const&) const = default;
 };
 
 /// Whether what is carried so may be elsewhere at another time.
@@ -51,21 +51,21 @@ inline bool moves(BodyNumber body, Vec3 const& velocity) {
 }
 
 struct FrameletShape {
-    static constexpr std::uint8_t loose = max_layers;
+    static constexpr std::uint8_t outlier = max_layers;
 
     std::uint8_t layer_count = 0;
     FadingCode fading = 0; ///< of what it shows
     std::array<Layer, max_layers> layers;
-    /// In Morton order: which layer the sample lies on, or `loose`.
+    /// In Morton order: which layer the sample lies on, or `outlier`.
     std::array<std::uint8_t, framelet_samples> layer_of{};
-    /// Those that are `loose`, in Morton order.
-    std::vector<LooseSample> loose_samples;
+    /// Those that are `outlier`, in Morton order.
+    std::vector<Outlier> outliers;
 
     /// Whether something in it may be elsewhere at another time.
     bool moves() const {
         auto const one_moves = [](auto const& one) { return framelet::moves(one.body, one.velocity); };
         return std::any_of(layers.begin(), layers.begin() + layer_count, one_moves) ||
-               std::any_of(loose_samples.begin(), loose_samples.end(), one_moves);
+               std::any_of(outliers.begin(), outliers.end(), one_moves);
     }
 
     bool operator==(FrameletShape const&) const = default;

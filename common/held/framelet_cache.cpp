@@ -16,7 +16,7 @@ int ceil_div(int value, int divisor) {
 }
 
 std::size_t bytes_behind(HeldShape const& shape) {
-    return shape.loose.capacity() * sizeof(HeldLoose);
+    return shape.outliers.capacity() * sizeof(HeldOutlier);
 }
 
 } // namespace
@@ -322,7 +322,7 @@ void FrameletCache::clear() {
     }
     for (std::unique_ptr<Chunk>& chunk : chunks_) {
         for (CachedFramelet& framelet : *chunk) {
-            framelet.shape.loose = std::vector<HeldLoose>();
+            framelet.shape.outliers = std::vector<HeldOutlier>();
         }
         if (room_ != nullptr) {
             room_->give(std::move(chunk));

@@ -14,8 +14,8 @@ namespace {
 
 constexpr std::size_t side = framelet_side;
 
-/// Room for so many loose samples is kept for the next framelet of a place.
-constexpr std::size_t most_spare_loose = 16;
+/// Room for so many outliers is kept for the next framelet of a place.
+constexpr std::size_t most_spare_outliers = 16;
 
 /// Inverse depths that differ by more than this share are of different surfaces.
 constexpr float clearly = 0.02f;
@@ -51,16 +51,16 @@ void pack_rows(DisplayFramelet const& framelet, FrameletShape const* shape, Samp
     }
 }
 
-void hold_loose(FrameletShape const& shape, std::vector<HeldLoose>& loose) {
+void hold_outliers(FrameletShape const& shape, std::vector<HeldOutlier>& outliers) {
     for (std::size_t i = 0; i < framelet_samples; ++i) {
-        FRAMELET_CHECK(shape.layer_of[i] < shape.layer_count || shape.layer_of[i] == FrameletShape::loose);
-        if (shape.layer_of[i] == FrameletShape::loose) {
-            FRAMELET_CHECK(loose.size() < shape.loose_samples.size());
-            loose.push_back({shape.loose_samples[loose.size()], row_places[i]});
+        FRAMELET_CHECK(shape.layer_of[i] < shape.layer_count || shape.layer_of[i] == FrameletShape::outlier);
+        if (shape.layer_of[i] == FrameletShape::outlier) {
+            FRAMELET_CHECK(outliers.size() < shape.outliers.size());
+            outliers.push_back({shape.outliers[outliers.size()], row_places[i]});
         }
     }
-    FRAMELET_CHECK(loose.size() == shape.loose_samples.size());
-    std::sort(loose.begin(), loose.end(), [](HeldLoose const& a, HeldLoose const& b) { return a.place < b.place; });
+    FRAMELET_CHECK(outliers.size() == shape.outliers.size());
+    std::sort(outliers.begin(), outliers.end(), [](HeldOutlier const& a, HeldOutlier const& b) { return a.place < b.place; });
 }
 
 using ReducedSamples = std::array<PackedSample, framelet_samples / 4>;
@@ -119,24 +119,24 @@ void reduce_colors(Samples const& samples, std::size_t n, Weights const* weights
     }
 }
 
-/// Of the loose samples of a pixel the nearest one stands for all.
-void reduce_loose(std::size_t n, ReducedSamples const& reduced, std::vector<HeldLoose>& loose) {
+/// Of the outliers of a pixel the nearest one stands for all.
+void reduce_outliers(std::size_t n, ReducedSamples const& reduced, std::vector<HeldOutlier>& outliers) {
     std::size_t const pixels = side / n;
-    std::array<HeldLoose const*, framelet_samples> nearest{};
-    for (HeldLoose const& one : loose) {
-        HeldLoose const*& best = nearest[one.place / side / n * pixels + one.place % side / n];
+    std::array<HeldOutlier const*, framelet_samples> nearest{};
+    for (HeldOutlier const& one : outliers) {
+        HeldOutlier const*& best = nearest[one.place / side / n * pixels + one.place % side / n];
         if (best == nullptr || one.sample.inverse_depth > best->sample.inverse_depth) {
             best = &one;
         }
     }
-    std::array<HeldLoose, framelet_samples / 4> kept;
+    std::array<HeldOutlier, framelet_samples / 4> kept;
     std::size_t count = 0;
     for (std::size_t i = 0; i < pixels * pixels; ++i) {
-        if (layer_of(reduced[i]) == FrameletShape::loose) {
+        if (layer_of(reduced[i]) == FrameletShape::outlier) {
             kept[count++] = {nearest[i]->sample, static_cast<std::uint8_t>(i)};
         }
     }
-    loose.assign(kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(count));
+    outliers.assign(kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
 void hold_boxes(PackedSample const* grid, HeldShape& held) {
@@ -166,7 +166,7 @@ bool is_in_place(HeldShape const& held, SceneTime from, SceneTime to, BodyMotion
     };
     return std::all_of(held.layers.begin(), held.layers.begin() + held.layer_count,
                        [&](HeldLayer const& layer) { return is_there(layer.layer); }) &&
-           std::ranges::all_of(held.loose, [&](HeldLoose const& loose) { return is_there(loose.sample); });
+           std::ranges::all_of(held.outliers, [&](HeldOutlier const& outlier) { return is_there(outlier.sample); });
 }
 
 void hold(DisplayFramelet const& framelet, FrameletShape const* shape, int samples_per_pixel, Samples& samples,
@@ -178,15 +178,15 @@ void hold(DisplayFramelet const& framelet, FrameletShape const* shape, int sampl
     held.moves = shape != nullptr && shape->moves();
     held.fading = shape == nullptr ? FadingCode{0} : shape->fading;
     held.layers.fill({});
-    held.loose.clear();
+    held.outliers.clear();
     if (shape != nullptr) {
         for (std::size_t i = 0; i < shape->layer_count; ++i) {
             held.layers[i].layer = shape->layers[i];
         }
-        hold_loose(*shape, held.loose);
+        hold_outliers(*shape, held.outliers);
     }
     held.reduced.fill(0);
-    bool const mixed = held.layer_count != 1 || !held.loose.empty();
+    bool const mixed = held.layer_count != 1 || !held.outliers.empty();
     if (samples_per_pixel > 1) {
         auto const n = static_cast<std::size_t>(samples_per_pixel);
         Weights weights;
@@ -194,10 +194,10 @@ void hold(DisplayFramelet const& framelet, FrameletShape const* shape, int sampl
             choose_layers(samples, n, held.reduced, weights);
         }
         reduce_colors(samples, n, mixed ? &weights : nullptr, held.reduced);
-        reduce_loose(n, held.reduced, held.loose);
+        reduce_outliers(n, held.reduced, held.outliers);
     }
-    if (held.loose.capacity() > std::max(most_spare_loose, held.loose.size())) {
-        held.loose.shrink_to_fit();
+    if (held.outliers.capacity() > std::max(most_spare_outliers, held.outliers.size())) {
+        held.outliers.shrink_to_fit();
     }
     if (!mixed) {
         auto const last = static_cast<std::int8_t>(held.side - 1);

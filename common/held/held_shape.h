@@ -1,5 +1,5 @@
 // How a viewer holds what a framelet shows: colour and layer of each sample in one word, the layers with the box of
-// their samples, what is loose. Framelets finer than pixels have a second grid of one sample a pixel, for when they
+// their samples, the outliers. Framelets finer than pixels have a second grid of one sample a pixel, for when they
 // move. In: what a batch brings. Out: arrays to read samples from.
 #pragma once
 
@@ -13,7 +13,7 @@
 
 namespace framelet {
 
-/// Bytes, lowest first: red, green, blue (sRGB-encoded), layer (or `FrameletShape::loose`).
+/// Bytes, lowest first: red, green, blue (sRGB-encoded), layer (or `FrameletShape::outlier`).
 using PackedSample = std::uint32_t;
 
 constexpr std::uint32_t red_of(PackedSample sample) {
@@ -41,9 +41,9 @@ struct HeldLayer {
     std::uint8_t ends_before = 0;
 };
 
-/// A loose sample of the moving grid.
-struct HeldLoose {
-    LooseSample sample;
+/// An outlier of the moving grid.
+struct HeldOutlier {
+    Outlier sample;
     std::uint8_t place = 0; ///< in the grid, in rows
 };
 
@@ -53,7 +53,7 @@ struct HeldShape {
     std::uint8_t side = framelet_side;
     bool moves = false; ///< something in it is on a body or deforms
     FadingCode fading = 0;
-    std::vector<HeldLoose> loose; ///< in rows of the moving grid
+    std::vector<HeldOutlier> outliers; ///< in rows of the moving grid
     std::array<PackedSample, framelet_samples / 4> reduced; ///< the moving grid in rows where `side` is not 16
     std::array<HeldLayer, max_layers> layers;
 };

@@ -105,11 +105,11 @@ void FrameletWarp::add(CachedFramelet const& framelet, unsigned parts, std::vect
         patch.place = framelet.tile.code * 4 + i;
         add_layer(framelet.view, shape.layers[i], shape.fading, framelet.moment.batch, patch, patches);
     }
-    if ((parts >> FrameletShape::loose & 1) != 0 && !shape.loose.empty()) {
-        common.is_loose = true;
-        common.layer = FrameletShape::loose;
+    if ((parts >> FrameletShape::outlier & 1) != 0 && !shape.outliers.empty()) {
+        common.is_outlier = true;
+        common.layer = FrameletShape::outlier;
         common.worn = worn(framelet.view, shape.fading, static_cast<float>(spacing_), 0);
-        common.place = framelet.tile.code * 4 + FrameletShape::loose;
+        common.place = framelet.tile.code * 4 + FrameletShape::outlier;
         common.first_splat = static_cast<std::uint32_t>(splats.size());
         add_splats(framelet, common, splats);
         common.splats = static_cast<std::uint32_t>(splats.size()) - common.first_splat;
@@ -320,12 +320,12 @@ void FrameletWarp::add_splats(CachedFramelet const& framelet, WarpPatch& patch, 
     Viewport const viewport = cache_.plane().viewport();
     double left = viewport.width, top = viewport.height, right = 0, bottom = 0;
     bool still = true;
-    for (HeldLoose const& loose : framelet.shape.loose) {
-        turn_to(framelet.view, loose.sample.body, loose.sample.velocity);
+    for (HeldOutlier const& outlier : framelet.shape.outliers) {
+        turn_to(framelet.view, outlier.sample.body, outlier.sample.velocity);
         still = still && is_still_;
-        double const w = std::max(static_cast<double>(loose.sample.inverse_depth), 0.0);
-        glm::dvec3 const at = transform_.map(rect_.left + (loose.place % patch.side + 0.5) * spacing_,
-                                             rect_.top + (loose.place / patch.side + 0.5) * spacing_, w);
+        double const w = std::max(static_cast<double>(outlier.sample.inverse_depth), 0.0);
+        glm::dvec3 const at = transform_.map(rect_.left + (outlier.place % patch.side + 0.5) * spacing_,
+                                             rect_.top + (outlier.place / patch.side + 0.5) * spacing_, w);
         if (!(at.z > nearest)) {
             continue;
         }
@@ -340,7 +340,7 @@ void FrameletWarp::add_splats(CachedFramelet const& framelet, WarpPatch& patch, 
             continue;
         }
         splats.push_back({static_cast<float>(x), static_cast<float>(y), static_cast<float>(inverse_depth),
-                          static_cast<float>(spacing), patch.grid[loose.place]});
+                          static_cast<float>(spacing), patch.grid[outlier.place]});
         left = std::min(left, x - spacing);
         top = std::min(top, y - spacing);
         right = std::max(right, x + spacing);

@@ -1,5 +1,5 @@
 // Where one framelet shows in the picture of another camera at another time. In: a framelet, display camera and time,
-// motions. Out: a patch for each of its layers, a splat for each of its loose samples.
+// motions. Out: a patch for each of its layers, a splat for each of its outliers.
 #pragma once
 
 #include <cmath>
@@ -29,7 +29,7 @@ public:
     FrameletWarp(FrameletCache const& cache, std::size_t slot, Camera const& display, SceneTime time,
                  BodyMotions const& motions);
 
-    /// Bit i of `parts`: layer i; bit `FrameletShape::loose`: what is loose.
+    /// Bit i of `parts`: layer i; bit `FrameletShape::outlier`: the outliers.
     void add(CachedFramelet const& framelet, unsigned parts, std::vector<WarpPatch>& patches,
              std::vector<Splat>& splats);
     void add(MergedLayer const& merged, std::vector<WarpPatch>& patches);

@@ -14,7 +14,7 @@ namespace {
 constexpr int side = WarpedBlock::side;
 constexpr std::size_t pixels = WarpedBlock::pixels;
 
-/// Of a loose sample's tent: within half its spacing.
+/// Of an outlier's tent: within half its spacing.
 constexpr float firm_tent = 0.25f;
 /// Less than this is no cover at all.
 constexpr float faint = 1e-3f;
@@ -165,7 +165,7 @@ bool is_hidden(Splat const& splat, std::int32_t group, float x, float y, Layers 
            layers.inverse_depth[at] >= (1 - same_surface) * splat.inverse_depth;
 }
 
-/// Loose samples: a tent each, as wide as its neighbours are far.
+/// Outliers: a tent each, as wide as its neighbours are far.
 bool paint_splat(Splat const& splat, std::int32_t group, int left, int top, Layers& layers) {
     float const x = splat.x - static_cast<float>(left) - 0.5f;
     float const y = splat.y - static_cast<float>(top) - 0.5f;
@@ -200,7 +200,7 @@ bool paint_splat(Splat const& splat, std::int32_t group, int left, int top, Laye
 /// True where something of it shows.
 bool paint_patch(PatchView const& view, int left, int top, Layers& layers) {
     WarpPatch const& patch = *view.patch;
-    if (!patch.is_loose) {
+    if (!patch.is_outlier) {
         return paint_layer(patch, left, top, layers);
     }
     bool shows = false;

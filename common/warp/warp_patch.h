@@ -1,4 +1,4 @@
-// What a plan consists of: where a layer of a framelet or its loose samples show in the display picture.
+// What a plan consists of: where a layer of a framelet or its outliers show in the display picture.
 #pragma once
 
 #include <array>
@@ -31,7 +31,7 @@ constexpr int depth_of_group(std::int32_t group) {
     return group % 16;
 }
 
-/// A layer of a framelet in the display picture, or its loose samples.
+/// A layer of a framelet in the display picture, or its outliers.
 struct WarpPatch {
     /// Homogeneous sample coordinates (u / z, v / z, 1 / z) of the moving grid at the centre of the box's first pixel,
     /// and what a pixel to the right and one down add. Sample (i, j) lies at u = i, v = j.
@@ -49,17 +49,17 @@ struct WarpPatch {
     /// Of 8x8 equal parts of the grid, in rows, those in which there may be samples of it.
     std::uint64_t occupied = ~std::uint64_t{0};
     std::int32_t group = 0; ///< its samples are interpolated with others' of the same
-    std::uint32_t first_splat = 0, splats = 0; ///< of loose samples, in the chunk
+    std::uint32_t first_splat = 0, splats = 0; ///< of outliers, in the chunk
     std::uint32_t place = 0; ///< by tile and layer: orders patches of one batch
     std::uint32_t square = 0; ///< of the plan, as `WarpPlan::square_grid` counts them
     std::uint64_t batch = 0;
     std::uint64_t signature = 0; ///< differs where what is painted may differ
     bool hides = true; ///< what is behind it; else it shows only where nothing does that hides
-    bool is_loose = false; ///< not a layer, but splats
+    bool is_outlier = false; ///< not a layer, but splats
     bool is_still = false; ///< its samples lie on their own pixels
 };
 
-/// A loose sample in the display picture.
+/// An outlier in the display picture.
 struct Splat {
     float x = 0, y = 0; ///< pixels
     float inverse_depth = 0; ///< in the display

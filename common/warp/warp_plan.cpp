@@ -90,15 +90,15 @@ void WarpPlan::Square::give_back_room() {
     shows = std::vector<std::uint8_t>();
 }
 
-void WarpPlan::make(FrameletCache const& cache, std::size_t slot, bool loose, Camera const& display,
+void WarpPlan::make(FrameletCache const& cache, std::size_t slot, bool outliers, Camera const& display,
                     SceneTime display_time, BodyMotions const& motions) {
     set_size(cache.plane().viewport());
     set_squares(cache);
     SceneTime const last_jump = motions.last_jump(display_time);
-    bool const is_new = is_limited_ || loose != loose_ || !(display == display_) || last_jump != last_jump_;
+    bool const is_new = is_limited_ || outliers != outliers_ || !(display == display_) || last_jump != last_jump_;
     last_jump_ = last_jump;
     display_ = display;
-    loose_ = loose;
+    outliers_ = outliers;
     replanned_.clear();
     for (std::uint32_t i = 0; i < known_.size(); ++i) {
         Known& known = known_[i];
@@ -115,7 +115,7 @@ void WarpPlan::make(FrameletCache const& cache, std::size_t slot, bool loose, Ca
         Square& square = squares_[index];
         square.merged.update(cache, square.tile, square.depth, joinings_->local());
         FrameletWarp warp(cache, slot, display, display_time, motions);
-        plan(square, loose, warp);
+        plan(square, outliers, warp);
         square.note_number(index);
         known_[index].lasts = warp.lasts();
         known_[index].is_empty = square.patches.empty();
@@ -211,7 +211,7 @@ void WarpPlan::add_parts(MergedLayer const& merged, FrameletWarp& warp, Square& 
 }
 
 /// What is joined, then what is left of the framelets.
-void WarpPlan::plan(Square& square, bool loose, FrameletWarp& warp) {
+void WarpPlan::plan(Square& square, bool outliers, FrameletWarp& warp) {
     square.clear();
     LayerBits alone{};
     for (MergedLayer const& merged : square.merged.merged()) {
@@ -220,10 +220,10 @@ void WarpPlan::plan(Square& square, bool loose, FrameletWarp& warp) {
         }
     }
     std::span<MergedSquare::Child const> const children = square.merged.children();
-    for (std::uint64_t left = alone[0] | alone[1] | alone[2] | (loose ? square.merged.loose_children() : 0); left != 0;
+    for (std::uint64_t left = alone[0] | alone[1] | alone[2] | (outliers ? square.merged.children_with_outliers() : 0); left != 0;
          left &= left - 1) {
         auto const place = static_cast<std::size_t>(std::countr_zero(left));
-        unsigned parts = loose && children[place].has_loose ? 1u << FrameletShape::loose : 0u;
+        unsigned parts = outliers && children[place].has_outliers ? 1u << FrameletShape::outlier : 0u;
         for (std::size_t k = 0; k < max_layers; ++k) {
             parts |= static_cast<unsigned>(alone[k] >> place & 1) << k;
         }

@@ -1,5 +1,5 @@
 // Where everything that is held shows in the picture of another camera at another time: a patch for each layer, a splat
-// for each loose sample, and for each block of the picture the patches that may touch it. In: cache, display camera and
+// for each outlier, and for each block of the picture the patches that may touch it. In: cache, display camera and
 // time, motions. Out: the plan, from which every block is painted on its own.
 #pragma once
 
@@ -39,7 +39,7 @@ public:
 
     /// Replaces the plan; `cache` and `slot` are always the same ones. Squares of which all stays as it was planned
     /// last are kept. Runs in parallel; allocates only where more is held than ever before.
-    void make(FrameletCache const& cache, std::size_t slot, bool loose, Camera const& display, SceneTime display_time,
+    void make(FrameletCache const& cache, std::size_t slot, bool outliers, Camera const& display, SceneTime display_time,
               BodyMotions const& motions);
 
     int columns() const { return columns_; }
@@ -60,7 +60,7 @@ public:
     }
     /// The samples of a square, among which those of all its patches are.
     MergedSquare& square_grid(std::uint32_t square) { return squares_[square].merged; }
-    /// Where a patch, which is not loose, has its samples there. Nothing where they are in its own grid alone: there
+    /// Where a patch, which is not of outliers, has its samples there. Nothing where they are in its own grid alone: there
     /// they are told from those of another layer, with which they are joined in the square's.
     std::optional<GridPart> grid_part(WarpPatch const& patch) const;
     /// The blocks' numbers of patches, all together.
@@ -102,7 +102,7 @@ private:
     WarpPatch const& patch_at(std::uint32_t entry) const;
     void set_size(Viewport viewport);
     void set_squares(FrameletCache const& cache);
-    static void plan(Square& square, bool loose, FrameletWarp& warp);
+    static void plan(Square& square, bool outliers, FrameletWarp& warp);
     static bool add_joined(MergedLayer const& merged, FrameletWarp& warp, Square& square);
     static void add_parts(MergedLayer const& merged, FrameletWarp& warp, Square& square, LayerBits& alone);
     bool count_entries(std::size_t most);
@@ -118,7 +118,7 @@ private:
     struct Joinings;
     std::unique_ptr<Joinings> joinings_; ///< scratch
     Camera display_; ///< of the plan
-    bool loose_ = false; ///< whether what is loose is in it
+    bool outliers_ = false; ///< whether outliers are in it
     SceneTime last_jump_ = -INFINITY; ///< of the scene, before what is displayed
     bool is_limited_ = false; ///< not all of it has room
     std::vector<std::uint32_t> first_entry_; ///< by block; one more at the end

@@ -126,7 +126,7 @@ TEST(BodyMotion, WhatDeformsOrIsOnABodyThatMovesIsNotAtRest) {
     EXPECT_FALSE(is_at_rest(shape, 0.3, of_no_rest));
     EXPECT_FALSE(is_at_rest(shape, 39 * key_seconds - 0.9 * resting_seconds, motions)) << "it soon will move";
     EXPECT_FALSE(is_at_rest(shape, 0.8, motions));
-    shape.loose_samples.push_back({1, static_body, Vec3(0, 1, 0)});
+    shape.outliers.push_back({1, static_body, Vec3(0, 1, 0)});
     EXPECT_FALSE(is_at_rest(shape, 0.3, motions));
 }
 

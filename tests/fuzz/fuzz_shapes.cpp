@@ -27,11 +27,11 @@ void read(ShapeModel& model, std::span<std::uint8_t const> bytes, std::span<Fram
     }
 }
 
-/// Whether a shape is what a reader makes of another one: its planes are quantised, the rest but for depths of loose
+/// Whether a shape is what a reader makes of another one: its planes are quantised, the rest but for depths of
 /// samples and velocities is the same, and these are within half a unit.
 bool is_quantised(FrameletShape const& got, FrameletShape const& sent, int side_bits) {
     if (got.layer_count != sent.layer_count || got.fading != sent.fading || got.layer_of != sent.layer_of ||
-        got.loose_samples.size() != sent.loose_samples.size()) {
+        got.outliers.size() != sent.outliers.size()) {
         return false;
     }
     float deepest = 0, fastest = 0;
@@ -43,7 +43,7 @@ bool is_quantised(FrameletShape const& got, FrameletShape const& sent, int side_
     for (std::size_t l = 0; l < sent.layer_count; ++l) {
         note_velocity(sent.layers[l].velocity);
     }
-    for (LooseSample const& sample : sent.loose_samples) {
+    for (Outlier const& sample : sent.outliers) {
         note_velocity(sample.velocity);
         deepest = std::max(deepest, sample.inverse_depth);
     }
@@ -64,8 +64,8 @@ bool is_quantised(FrameletShape const& got, FrameletShape const& sent, int side_
         }
     }
     double const half_unit = unit_of(unit_above(static_cast<double>(deepest) / largest_inverse_depth_code)) / 2;
-    return std::equal(got.loose_samples.begin(), got.loose_samples.end(), sent.loose_samples.begin(),
-                      [&](LooseSample const& a, LooseSample const& b) {
+    return std::equal(got.outliers.begin(), got.outliers.end(), sent.outliers.begin(),
+                      [&](Outlier const& a, Outlier const& b) {
                           double const off =
                               std::abs(static_cast<double>(a.inverse_depth) - static_cast<double>(b.inverse_depth));
                           return a.body == b.body && off <= half_unit && is_near(a.velocity, b.velocity);

@@ -33,7 +33,7 @@ Batch make_batch(std::size_t count, std::uint8_t first_qp) {
     return batch;
 }
 
-/// An edge between two layers, one of them on a moving body, and something loose.
+/// An edge between two layers, one of them on a moving body, and an outlier.
 void add_shapes(Batch& batch) {
     for (std::size_t i = 0; i < batch.framelets.size(); ++i) {
         FrameletShape& shape = batch.shapes.emplace_back();
@@ -43,8 +43,8 @@ void add_shapes(Batch& batch) {
         for (std::uint32_t k = 0; k < framelet_samples; ++k) {
             shape.layer_of[k] = morton_x(k) < 1 + i % 15 ? 0 : 1;
         }
-        shape.layer_of[i % framelet_samples] = FrameletShape::loose;
-        shape.loose_samples.push_back({1, 1, Vec3(0)});
+        shape.layer_of[i % framelet_samples] = FrameletShape::outlier;
+        shape.outliers.push_back({1, 1, Vec3(0)});
     }
     batch.tracks.push_back({1, 60, {BodyPose{}, BodyPose{{1, 0, 0}, {1, 0, 0, 0}, {1, 1, 1}}}});
 }

@@ -88,8 +88,8 @@ struct AnalyticScene {
         return hit;
     }
 
-    /// Adds a framelet to the batch, from the batch's camera at its time. `all_loose`: no layers.
-    void render(ImagePlane const& plane, Tile tile, Batch& batch, bool all_loose = false) const {
+    /// Adds a framelet to the batch, from the batch's camera at its time. `all_outliers`: no layers.
+    void render(ImagePlane const& plane, Tile tile, Batch& batch, bool all_outliers = false) const {
         std::vector<Quad> const placed = at_time(batch.scene_time);
         ViewRays const rays = make_view_rays(batch.view.camera, plane.viewport());
         PixelRect const rect = plane.tile_rect(tile);
@@ -109,14 +109,14 @@ struct AnalyticScene {
             while (layer < shape.layer_count && quad_of_layer[layer] != hit.quad) {
                 ++layer;
             }
-            if (layer == max_layers || all_loose) {
-                shape.layer_of[i] = FrameletShape::loose;
-                LooseSample loose{static_cast<float>(hit.inverse_depth), static_body, Vec3(0)};
+            if (layer == max_layers || all_outliers) {
+                shape.layer_of[i] = FrameletShape::outlier;
+                Outlier outlier{static_cast<float>(hit.inverse_depth), static_body, Vec3(0)};
                 if (hit.quad >= 0) {
-                    loose.body = placed[static_cast<std::size_t>(hit.quad)].body;
-                    loose.velocity = Vec3(placed[static_cast<std::size_t>(hit.quad)].velocity);
+                    outlier.body = placed[static_cast<std::size_t>(hit.quad)].body;
+                    outlier.velocity = Vec3(placed[static_cast<std::size_t>(hit.quad)].velocity);
                 }
-                shape.loose_samples.push_back(loose);
+                shape.outliers.push_back(outlier);
                 continue;
             }
             if (layer == shape.layer_count) {
@@ -141,13 +141,13 @@ struct AnalyticScene {
     }
 
     Batch batch(ImagePlane const& plane, std::uint64_t number, Camera const& camera, SceneTime time,
-                std::vector<Tile> const& tiles, bool all_loose = false) const {
+                std::vector<Tile> const& tiles, bool all_outliers = false) const {
         Batch out;
         out.number = number;
         out.view = {number, camera, plane.viewport()};
         out.scene_time = time;
         for (Tile const tile : tiles) {
-            render(plane, tile, out, all_loose);
+            render(plane, tile, out, all_outliers);
         }
         return out;
     }

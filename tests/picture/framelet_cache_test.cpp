@@ -232,15 +232,15 @@ TEST(FrameletCache, NeverDropsTheOnlyContentOfAPlace) {
 TEST(FrameletCache, MemoryIsBounded) {
     ImagePlane const plane({320, 192});
     std::vector<Tile> const tiles = visible_tiles(plane, plane.max_depth());
-    FrameletShape loose;
-    loose.layer_of.fill(FrameletShape::loose);
-    loose.loose_samples.resize(framelet_samples);
+    FrameletShape outliers;
+    outliers.layer_of.fill(FrameletShape::outlier);
+    outliers.outliers.resize(framelet_samples);
     FrameletCache cache(plane);
     std::uint64_t number = 0;
     for (int round = 0; round < 3; ++round) {
         for (Tile const tile : tiles) {
             Batch batch = make_batch(plane, ++number, {constant_framelet(plane, tile, 9)});
-            batch.shapes.push_back(loose);
+            batch.shapes.push_back(outliers);
             cache.insert(seen_from(number, batch));
         }
         EXPECT_EQ(cache.framelet_count(), tiles.size());

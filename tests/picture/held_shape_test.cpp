@@ -7,7 +7,7 @@
 namespace framelet {
 namespace {
 
-/// Column x of a tile is red x; the left half lies on layer 0, the right half on layer 1, row 5 is loose.
+/// Column x of a tile is red x; the left half lies on layer 0, the right half on layer 1, row 5 is outliers.
 struct Mixed {
     DisplayFramelet framelet;
     FrameletShape shape;
@@ -21,8 +21,8 @@ struct Mixed {
             framelet.red[i] = static_cast<std::uint8_t>(x);
             shape.layer_of[i] = x < 8 ? 0 : 1;
             if (morton_y(i) == 5) {
-                shape.layer_of[i] = FrameletShape::loose;
-                shape.loose_samples.push_back({static_cast<float>(x + 1), 3, Vec3(0)});
+                shape.layer_of[i] = FrameletShape::outlier;
+                shape.outliers.push_back({static_cast<float>(x + 1), 3, Vec3(0)});
             }
         }
     }
@@ -38,13 +38,13 @@ TEST(HeldShape, SamplesAndLayersAreInRows) {
         EXPECT_EQ(red_of(samples[i]), x);
         EXPECT_EQ(green_of(samples[i]), 40u);
         EXPECT_EQ(blue_of(samples[i]), 50u);
-        EXPECT_EQ(layer_of(samples[i]), i / 16 == 5 ? FrameletShape::loose : x / 8);
+        EXPECT_EQ(layer_of(samples[i]), i / 16 == 5 ? FrameletShape::outlier : x / 8);
     }
     EXPECT_TRUE(held.moves);
-    ASSERT_EQ(held.loose.size(), 16u);
+    ASSERT_EQ(held.outliers.size(), 16u);
     for (std::size_t x = 0; x < 16; ++x) {
-        EXPECT_EQ(held.loose[x].place, 80 + x);
-        EXPECT_EQ(held.loose[x].sample.inverse_depth, static_cast<float>(x + 1));
+        EXPECT_EQ(held.outliers[x].place, 80 + x);
+        EXPECT_EQ(held.outliers[x].sample.inverse_depth, static_cast<float>(x + 1));
     }
     EXPECT_EQ(held.layers[1].first_column, 8);
     EXPECT_EQ(held.layers[1].last_column, 15);
@@ -59,25 +59,25 @@ TEST(HeldShape, FineSamplesAreReducedToTheLayerThatMostOfAPixelLieOn) {
     HeldShape held;
     hold(mixed.framelet, &mixed.shape, 4, samples, held);
     EXPECT_EQ(held.side, 4);
-    EXPECT_TRUE(held.loose.empty()); // a row of four is not most
+    EXPECT_TRUE(held.outliers.empty()); // a row of four is not most
     for (std::uint32_t i = 0; i < 16; ++i) {
         EXPECT_EQ(layer_of(held.reduced[i]), i % 4 / 2);
         EXPECT_EQ(green_of(held.reduced[i]), 40u);
     }
     std::uint32_t place = 0;
     for (std::uint32_t i = 0; i < framelet_samples; ++i) {
-        if (mixed.shape.layer_of[i] != FrameletShape::loose && morton_y(i) / 2 == 2) {
-            mixed.shape.layer_of[i] = FrameletShape::loose;
+        if (mixed.shape.layer_of[i] != FrameletShape::outlier && morton_y(i) / 2 == 2) {
+            mixed.shape.layer_of[i] = FrameletShape::outlier;
         }
-        place += mixed.shape.layer_of[i] == FrameletShape::loose ? 1 : 0;
+        place += mixed.shape.layer_of[i] == FrameletShape::outlier ? 1 : 0;
     }
-    mixed.shape.loose_samples.assign(place, {2, static_body, Vec3(0)});
-    mixed.shape.loose_samples.back().inverse_depth = 5;
+    mixed.shape.outliers.assign(place, {2, static_body, Vec3(0)});
+    mixed.shape.outliers.back().inverse_depth = 5;
     hold(mixed.framelet, &mixed.shape, 2, samples, held);
     EXPECT_EQ(held.side, 8);
-    ASSERT_EQ(held.loose.size(), 8u);
-    EXPECT_EQ(held.loose[0].place, 16);
-    EXPECT_EQ(held.loose[7].sample.inverse_depth, 5);
+    ASSERT_EQ(held.outliers.size(), 8u);
+    EXPECT_EQ(held.outliers[0].place, 16);
+    EXPECT_EQ(held.outliers[7].sample.inverse_depth, 5);
     EXPECT_FALSE(held.moves);
 }
 

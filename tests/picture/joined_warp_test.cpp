@@ -13,7 +13,7 @@
 namespace framelet {
 namespace {
 
-constexpr unsigned all_parts = (2u << FrameletShape::loose) - 1;
+constexpr unsigned all_parts = (2u << FrameletShape::outlier) - 1;
 
 /// Each framelet alone, in the order of the plan.
 void alone(FrameletCache const& cache, Camera const& display, SceneTime time, BodyMotions const& motions,
@@ -29,7 +29,7 @@ void alone(FrameletCache const& cache, Camera const& display, SceneTime time, Bo
     });
 }
 
-/// Several planes in a framelet, bodies, what deforms, loose samples; all framelets of one batch, each fifth of one, or
+/// Several planes in a framelet, bodies, what deforms, outliers; all framelets of one batch, each fifth of one, or
 /// planes of neighbours that do not quite meet.
 TEST(JoinedWarp, WhatIsJoinedShowsAsEachFrameletAlone) {
     ImagePlane const plane(viewport);
@@ -134,7 +134,7 @@ TEST(JoinedWarp, PatchesHaveTheirSamplesInTheGridOfTheirSquare) {
     for (std::uint32_t square = 0; square < plan.square_count(); ++square) {
         MergedSquare const& samples = plan.square_grid(square);
         for (WarpPatch const& patch : plan.patches_of(square)) {
-            if (patch.is_loose) {
+            if (patch.is_outlier) {
                 continue;
             }
             ASSERT_EQ(patch.square, square);

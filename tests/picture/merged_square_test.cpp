@@ -27,10 +27,10 @@ void expect_same(MergedSquare const& kept, MergedSquare const& fresh) {
     ASSERT_EQ(kept.children().size(), fresh.children().size());
     for (std::size_t i = 0; i < kept.children().size(); ++i) {
         EXPECT_EQ(kept.children()[i].framelet, fresh.children()[i].framelet);
-        EXPECT_EQ(kept.children()[i].has_loose, fresh.children()[i].has_loose);
+        EXPECT_EQ(kept.children()[i].has_outliers, fresh.children()[i].has_outliers);
         EXPECT_EQ(kept.children()[i].numbers, fresh.children()[i].numbers);
     }
-    EXPECT_EQ(kept.loose_children(), fresh.loose_children());
+    EXPECT_EQ(kept.children_with_outliers(), fresh.children_with_outliers());
     ASSERT_EQ(kept.merged().size(), fresh.merged().size());
     for (std::size_t i = 0; i < kept.merged().size(); ++i) {
         MergedLayer const& a = kept.merged()[i];
@@ -127,7 +127,7 @@ TEST(MergedSquare, SamplesHaveTheNumberOfTheirLayer) {
     }
     scene.quads[2].body = 3;
     LayerJoining joining;
-    int joined = 0, alone = 0, loose = 0, fours = 0;
+    int joined = 0, alone = 0, outliers = 0, fours = 0;
     for (int levels = 0; levels <= finest_levels; ++levels) {
         FrameletPool const pool = filled(scene, front(), levels);
         FrameletCache const& cache = pool.newest();
@@ -174,12 +174,12 @@ TEST(MergedSquare, SamplesHaveTheNumberOfTheirLayer) {
                 EXPECT_EQ(part.layer.last_row, part.side - 1);
                 ++fours;
             }
-            loose += static_cast<int>(std::ranges::count_if(square.children(), &MergedSquare::Child::has_loose));
+            outliers += static_cast<int>(std::ranges::count_if(square.children(), &MergedSquare::Child::has_outliers));
         }
     }
     EXPECT_GT(joined, 20);
     EXPECT_GT(fours, 20);
-    EXPECT_GT(loose, 0);
+    EXPECT_GT(outliers, 0);
     EXPECT_GT(alone, 0);
 }
 

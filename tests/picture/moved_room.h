@@ -41,10 +41,10 @@ inline Shown show(FrameletPool const& pool, Camera const& camera, SceneTime time
 }
 
 inline FrameletPool filled(AnalyticScene const& scene, Camera const& camera, int levels, SceneTime time = 0,
-                           bool all_loose = false) {
+                           bool all_outliers = false) {
     ImagePlane const plane(viewport);
     FrameletPool pool(plane);
-    pool.insert(scene.batch(plane, 1, camera, time, visible_tiles(plane, plane.pixel_depth() + levels), all_loose),
+    pool.insert(scene.batch(plane, 1, camera, time, visible_tiles(plane, plane.pixel_depth() + levels), all_outliers),
                 scene.motions);
     return pool;
 }

@@ -82,7 +82,7 @@ TEST(ReprojectorMotion, FindsTheRightPlacesFromAnotherCamera) {
     EXPECT_GE(got.unseen_holes, 0.8 * got.unseen); // a rim of half a sample is covered by what stands beside it
 }
 
-TEST(ReprojectorMotion, LooseSamplesFindTheirPlacesToo) {
+TEST(ReprojectorMotion, OutliersFindTheirPlacesToo) {
     AnalyticScene const scene = room();
     Camera const display = look_at(Vec3(0.25f, 1.6f, 5.8f), Vec3(0.05f, 0.95f, 0), Vec3(0, 1, 0), 0.8f);
     Shown const shown = show(filled(scene, front(), 0, 0, true), display, 0);

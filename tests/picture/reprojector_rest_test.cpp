@@ -182,8 +182,8 @@ TEST(ReprojectorRest, NoShapeLeavesWhatIsNotANumber) {
                                         &layer.error, &layer.velocity.x, &layer.velocity.y};
                 *fields[random() % fields.size()] = any();
             }
-            for (LooseSample& loose : shape.loose_samples) {
-                (random() % 2 == 0 ? loose.inverse_depth : loose.velocity.z) = any();
+            for (Outlier& outlier : shape.outliers) {
+                (random() % 2 == 0 ? outlier.inverse_depth : outlier.velocity.z) = any();
             }
         }
         FrameletPool pool(plane);

@@ -41,8 +41,8 @@ Batch small_batch() {
     for (std::uint32_t i = 0; i < framelet_samples; ++i) {
         batch.shapes[1].layer_of[i] = morton_x(i) < 5 ? 0 : 1;
     }
-    batch.shapes[1].layer_of[255] = FrameletShape::loose;
-    batch.shapes[1].loose_samples.push_back({0.25f, 3, Vec3(0)});
+    batch.shapes[1].layer_of[255] = FrameletShape::outlier;
+    batch.shapes[1].outliers.push_back({0.25f, 3, Vec3(0)});
     batch.tracks.push_back({3, 90, {BodyPose{}, BodyPose{{1, 2, 3}, {0, 0, 1, 0}, {1, 1, 2}}}});
     return batch;
 }

@@ -1,4 +1,4 @@
-// Random well-formed shapes for property tests. In: a seeded generator. Out: shapes with every number of layers, loose
+// Random well-formed shapes for property tests. In: a seeded generator. Out: shapes with every number of layers, outliers
 // samples or none, magnitudes over many decades.
 #pragma once
 
@@ -37,14 +37,14 @@ public:
                                body(),
                                velocity(deforms)};
         }
-        bool const has_loose = shape.layer_count == 0 || integer(0, 1) == 1;
-        std::uint32_t const kinds = shape.layer_count + (has_loose ? 1u : 0u);
+        bool const has_outliers = shape.layer_count == 0 || integer(0, 1) == 1;
+        std::uint32_t const kinds = shape.layer_count + (has_outliers ? 1u : 0u);
         std::uint32_t kind = 0;
         for (std::uint8_t& layer : shape.layer_of) {
             kind = integer(0, 5) == 0 ? integer(0, kinds - 1) : kind;
-            layer = kind < shape.layer_count ? static_cast<std::uint8_t>(kind) : FrameletShape::loose;
-            if (layer == FrameletShape::loose) {
-                shape.loose_samples.push_back({scale * number(0, 1), body(), velocity(deforms)});
+            layer = kind < shape.layer_count ? static_cast<std::uint8_t>(kind) : FrameletShape::outlier;
+            if (layer == FrameletShape::outlier) {
+                shape.outliers.push_back({scale * number(0, 1), body(), velocity(deforms)});
             }
         }
         return shape;

@@ -67,7 +67,7 @@ float largest(Vec3 const& v) {
 void expect_close(FrameletShape const& in, FrameletShape const& out, int side_bits, float fastest) {
     ASSERT_EQ(in.layer_count, out.layer_count);
     ASSERT_EQ(in.layer_of, out.layer_of);
-    ASSERT_EQ(in.loose_samples.size(), out.loose_samples.size());
+    ASSERT_EQ(in.outliers.size(), out.outliers.size());
     double const side = std::ldexp(1.0, side_bits);
     float const velocity_off = fastest / 32767 + 1e-30f;
     for (std::size_t l = 0; l < in.layer_count; ++l) {
@@ -89,14 +89,14 @@ void expect_close(FrameletShape const& in, FrameletShape const& out, int side_bi
         EXPECT_LE(static_cast<double>(b.error), error + 2.5 * unit);
     }
     float nearest = 0;
-    for (LooseSample const& sample : in.loose_samples) {
+    for (Outlier const& sample : in.outliers) {
         nearest = std::max(nearest, sample.inverse_depth);
     }
-    for (std::size_t i = 0; i < in.loose_samples.size(); ++i) {
-        EXPECT_EQ(in.loose_samples[i].body, out.loose_samples[i].body);
-        EXPECT_NEAR(in.loose_samples[i].inverse_depth, out.loose_samples[i].inverse_depth, nearest / 255 + 1e-37f);
-        EXPECT_GE(out.loose_samples[i].inverse_depth, 0);
-        EXPECT_LE(largest(in.loose_samples[i].velocity - out.loose_samples[i].velocity), velocity_off);
+    for (std::size_t i = 0; i < in.outliers.size(); ++i) {
+        EXPECT_EQ(in.outliers[i].body, out.outliers[i].body);
+        EXPECT_NEAR(in.outliers[i].inverse_depth, out.outliers[i].inverse_depth, nearest / 255 + 1e-37f);
+        EXPECT_GE(out.outliers[i].inverse_depth, 0);
+        EXPECT_LE(largest(in.outliers[i].velocity - out.outliers[i].velocity), velocity_off);
     }
 }
 
@@ -114,7 +114,7 @@ TEST(ShapeCoding, RoundTripsLoseNoMoreThanStated) {
             for (std::size_t l = 0; l < shape.layer_count; ++l) {
                 fastest = std::max(fastest, largest(shape.layers[l].velocity));
             }
-            for (LooseSample const& sample : shape.loose_samples) {
+            for (Outlier const& sample : shape.outliers) {
                 fastest = std::max(fastest, largest(sample.velocity));
             }
         }
@@ -136,9 +136,9 @@ TEST(ShapeCoding, MasksOfAnyPatternAreExact) {
             std::uint32_t const x = morton_x(i), y = morton_y(i);
             std::array const kinds{x, y, x + y, x ^ y, x * y, i == pattern - 5 ? 1u : 0u}; // the last: one sample
             std::uint32_t const kind = kinds[std::min(pattern, 5u)] % (shape.layer_count + 1u);
-            shape.layer_of[i] = kind < shape.layer_count ? static_cast<std::uint8_t>(kind) : FrameletShape::loose;
+            shape.layer_of[i] = kind < shape.layer_count ? static_cast<std::uint8_t>(kind) : FrameletShape::outlier;
             if (kind == shape.layer_count) {
-                shape.loose_samples.push_back({});
+                shape.outliers.push_back({});
             }
         }
         Plain const bytes = bytes_of({&shape, 1}, {&side_bits, 1});
@@ -170,7 +170,7 @@ TEST(ShapeCoding, WhatIsOneLayerCostsNearlyNothing) {
     EXPECT_LT(bytes_of(shapes, side_bits).size(), 128u);
 }
 
-/// The example of PROTOCOL.md: columns 0..3 on the first layer, 4..14 on the second, the last column loose.
+/// The example of PROTOCOL.md: columns 0..3 on the first layer, 4..14 on the second, the last column outliers.
 FrameletShape documented_shape() {
     FrameletShape shape;
     shape.layer_count = 2;
@@ -179,9 +179,9 @@ FrameletShape documented_shape() {
     shape.layers[1] = {0.25f, 0, 0, 0, 258, Vec3(0)};
     for (std::uint32_t i = 0; i < framelet_samples; ++i) {
         std::uint32_t const x = morton_x(i);
-        shape.layer_of[i] = x < 4 ? 0 : x < 15 ? 1 : FrameletShape::loose;
+        shape.layer_of[i] = x < 4 ? 0 : x < 15 ? 1 : FrameletShape::outlier;
         if (x == 15) {
-            shape.loose_samples.push_back({morton_y(i) == 0 ? 1.0f : 0.5f, 3, Vec3(0)});
+            shape.outliers.push_back({morton_y(i) == 0 ? 1.0f : 0.5f, 3, Vec3(0)});
         }
     }
     return shape;
@@ -252,7 +252,7 @@ void expect_sent_again(std::vector<FrameletShape> const& shapes, std::span<std::
     for (std::size_t i = 0; i < shapes.size(); ++i) {
         EXPECT_EQ(again[i].layer_of, shapes[i].layer_of);
         EXPECT_EQ(again[i].fading, shapes[i].fading);
-        EXPECT_EQ(again[i].loose_samples.size(), shapes[i].loose_samples.size());
+        EXPECT_EQ(again[i].outliers.size(), shapes[i].outliers.size());
     }
 }
 

@@ -49,15 +49,15 @@ void expect_sound(Framelet const& framelet, FrameletShape const& shape, LayerTol
                                                     (std::abs(layer.dx) + std::abs(layer.dy));
         ASSERT_LE(layer.error, 1.001f * isolated_tolerances * most + 1e-5f * size);
     }
-    std::size_t loose = 0;
+    std::size_t outliers = 0;
     for (std::size_t i = 0; i < framelet_samples; ++i) {
         BodyNumber const body = framelet.body.empty() ? static_body : framelet.body[i];
         Vec3 const velocity = framelet.velocity.empty() ? Vec3(0) : framelet.velocity[i];
         float const inverse = 1 / framelet.depth[i];
-        if (shape.layer_of[i] == FrameletShape::loose) {
-            ASSERT_LT(loose, shape.loose_samples.size());
-            EXPECT_EQ(shape.loose_samples[loose], (LooseSample{inverse, body, velocity}));
-            ++loose;
+        if (shape.layer_of[i] == FrameletShape::outlier) {
+            ASSERT_LT(outliers, shape.outliers.size());
+            EXPECT_EQ(shape.outliers[outliers], (Outlier{inverse, body, velocity}));
+            ++outliers;
         } else {
             ASSERT_LT(shape.layer_of[i], shape.layer_count);
             Layer const& layer = shape.layers[shape.layer_of[i]];
@@ -67,7 +67,7 @@ void expect_sound(Framelet const& framelet, FrameletShape const& shape, LayerTol
                       1.001f * isolated_tolerances * allowed.velocity * coarse);
         }
     }
-    ASSERT_EQ(loose, shape.loose_samples.size());
+    ASSERT_EQ(outliers, shape.outliers.size());
 }
 
 FrameletShape fit(Framelet const& framelet, LayerTolerance const& allowed = tolerance) {
@@ -91,7 +91,7 @@ TEST(LayerFit, APlaneIsOneLayerAtAnySpacing) {
         Framelet const framelet = make_framelet([&](float x, float y) { return slope(x / spacing, y / spacing); }, of);
         FrameletShape const shape = fit(framelet);
         ASSERT_EQ(shape.layer_count, 1);
-        EXPECT_TRUE(shape.loose_samples.empty());
+        EXPECT_TRUE(shape.outliers.empty());
         EXPECT_NEAR(shape.layers[0].at, 0.2f, 1e-5f);
         EXPECT_NEAR(shape.layers[0].dx * spacing, 0.004f, 1e-6f);
         EXPECT_NEAR(shape.layers[0].dy * spacing, -0.006f, 1e-6f);
@@ -105,7 +105,7 @@ TEST(LayerFit, SkyIsALayerAtInfinity) {
     EXPECT_EQ(all.layers[0], Layer{});
     FrameletShape const edge = fit(make_framelet([](float x, float y) { return x + y < 14 ? slope(x, y) : INFINITY; }));
     ASSERT_EQ(edge.layer_count, 2);
-    EXPECT_TRUE(edge.loose_samples.empty());
+    EXPECT_TRUE(edge.outliers.empty());
     EXPECT_EQ(edge.layers[0], Layer{}) << "the larger part";
     EXPECT_NEAR(edge.layers[1].dx, 0.004f, 1e-5f);
 }
@@ -114,37 +114,37 @@ TEST(LayerFit, ASilhouetteIsTwoLayers) {
     FrameletShape const shape = fit(make_framelet(
         [](float x, float y) { return 3 * x - y < 17 ? slope(x, y) : 1 / (0.7f - 0.01f * x + 0.002f * y); }));
     EXPECT_EQ(shape.layer_count, 2);
-    EXPECT_TRUE(shape.loose_samples.empty());
+    EXPECT_TRUE(shape.outliers.empty());
 }
 
 TEST(LayerFit, AnEdgeOfARoomIsTwoLayersAndACornerThree) {
     FrameletShape const edge =
         fit(make_framelet([](float x, float) { return 1 / (0.3f - 0.01f * std::abs(x - 6.3f)); }));
     EXPECT_EQ(edge.layer_count, 2);
-    EXPECT_TRUE(edge.loose_samples.empty());
+    EXPECT_TRUE(edge.outliers.empty());
     FrameletShape const corner = fit(make_framelet([](float x, float y) {
         float const a = 0.3f - 0.01f * (x - 8), b = 0.3f + 0.012f * (x - 8), c = 0.3f - 0.02f * (y - 7);
         return 1 / std::max({a, b, c});
     }));
     EXPECT_EQ(corner.layer_count, 3);
-    EXPECT_LE(corner.loose_samples.size(), 4u);
+    EXPECT_LE(corner.outliers.size(), 4u);
 }
 
 TEST(LayerFit, AThinPoleBeforeAWall) {
     FrameletShape const shape = fit(
         make_framelet([](float x, float y) { return std::abs(x - 7) < 1 ? 1 / (0.9f + 0.003f * y) : slope(x, y); }));
     EXPECT_EQ(shape.layer_count, 2);
-    EXPECT_TRUE(shape.loose_samples.empty());
+    EXPECT_TRUE(shape.outliers.empty());
 }
 
-TEST(LayerFit, FewOutliersAreLoose) {
+TEST(LayerFit, FewSamplesThatFitNowhereAreOutliers) {
     Framelet framelet = make_framelet(slope);
     for (std::size_t i : {std::size_t{3}, std::size_t{77}, std::size_t{200}}) {
         framelet.depth[i] *= 0.5f;
     }
     FrameletShape const shape = fit(framelet);
     EXPECT_EQ(shape.layer_count, 1);
-    EXPECT_EQ(shape.loose_samples.size(), 3u);
+    EXPECT_EQ(shape.outliers.size(), 3u);
 }
 
 TEST(LayerFit, AnIsolatedSampleNearALayerOfItsBodyLiesOnIt) {
@@ -159,7 +159,7 @@ TEST(LayerFit, AnIsolatedSampleNearALayerOfItsBodyLiesOnIt) {
     framelet.body[120] = 1;
     FrameletShape const shape = fit(framelet);
     EXPECT_EQ(shape.layer_count, 1);
-    EXPECT_EQ(shape.loose_samples.size(), 2u) << "one is far off, one on another body";
+    EXPECT_EQ(shape.outliers.size(), 2u) << "one is far off, one on another body";
     EXPECT_EQ(shape.layer_of[3], 0);
     EXPECT_EQ(shape.layer_of[77], 0);
 }
@@ -176,22 +176,22 @@ TEST(LayerFit, BodiesAreLayersOfTheirOwnEvenOnOnePlane) {
     ASSERT_EQ(shape.layer_count, 2);
     EXPECT_EQ(shape.layers[0].body, 0);
     EXPECT_EQ(shape.layers[1].body, 2);
-    EXPECT_TRUE(shape.loose_samples.empty());
+    EXPECT_TRUE(shape.outliers.empty());
 }
 
-TEST(LayerFit, MoreBodiesThanLayersLeaveTheSmallestLoose) {
+TEST(LayerFit, MoreBodiesThanLayersMakeTheSmallestOutliers) {
     Framelet framelet = make_framelet(slope);
     framelet.body.resize(framelet_samples);
     for (std::uint32_t i = 0; i < framelet_samples; ++i) {
         framelet.body[i] = static_cast<BodyNumber>(i);
     }
-    EXPECT_EQ(fit(framelet).loose_samples.size(), std::size_t{framelet_samples});
+    EXPECT_EQ(fit(framelet).outliers.size(), std::size_t{framelet_samples});
     for (std::uint32_t i = 0; i < framelet_samples; ++i) {
         framelet.body[i] = static_cast<BodyNumber>(std::min(morton_x(i) / 3, 4u));
     }
     FrameletShape const shape = fit(framelet);
     EXPECT_EQ(shape.layer_count, 3);
-    EXPECT_EQ(shape.loose_samples.size(), 96u);
+    EXPECT_EQ(shape.outliers.size(), 96u);
 }
 
 TEST(LayerFit, WhatDeformsSharesALayerWhereItMovesAlike) {
@@ -205,12 +205,12 @@ TEST(LayerFit, WhatDeformsSharesALayerWhereItMovesAlike) {
     }
     FrameletShape const alike = fit(framelet);
     ASSERT_EQ(alike.layer_count, 2);
-    EXPECT_TRUE(alike.loose_samples.empty());
+    EXPECT_TRUE(alike.outliers.empty());
     EXPECT_NEAR(alike.layers[0].velocity.x + alike.layers[1].velocity.x, 2, 1e-5f);
     for (std::uint32_t i = 0; i < framelet_samples; ++i) {
         framelet.velocity[i] = Vec3(100 * static_cast<float>(i + 1), 0, 0);
     }
-    EXPECT_EQ(fit(framelet).loose_samples.size(), std::size_t{framelet_samples});
+    EXPECT_EQ(fit(framelet).outliers.size(), std::size_t{framelet_samples});
 }
 
 TEST(LayerFit, AMovingShadowIsALayerOfItsOwnOnThePlaneOfWhatIsLit) {
@@ -224,7 +224,7 @@ TEST(LayerFit, AMovingShadowIsALayerOfItsOwnOnThePlaneOfWhatIsLit) {
     }
     FrameletShape const shape = fit(framelet);
     ASSERT_EQ(shape.layer_count, 2);
-    EXPECT_TRUE(shape.loose_samples.empty());
+    EXPECT_TRUE(shape.outliers.empty());
     for (std::uint32_t i = 0; i < framelet_samples; ++i) {
         EXPECT_EQ(shape.layers[shape.layer_of[i]].velocity, framelet.velocity[i]) << i;
     }
@@ -246,10 +246,10 @@ TEST(LayerFit, AFewThatMoveOtherwiseDoNotBendTheVelocityOfTheOthers) {
     ASSERT_EQ(shape.layer_count, 2);
     EXPECT_EQ(shape.layers[0].velocity, Vec3(20, 0, 1));
     EXPECT_EQ(shape.layers[1].velocity, Vec3(60, 5, -30));
-    EXPECT_TRUE(shape.loose_samples.empty());
+    EXPECT_TRUE(shape.outliers.empty());
 }
 
-TEST(LayerFit, NoiseAboveTheToleranceIsLooseAndBelowItIsNot) {
+TEST(LayerFit, NoiseAboveTheToleranceIsOfOutliersAndBelowItIsNot) {
     std::mt19937 random(1);
     std::uniform_real_distribution<float> uniform(-1, 1);
     auto const noisy = [&](float amount) {
@@ -258,8 +258,8 @@ TEST(LayerFit, NoiseAboveTheToleranceIsLooseAndBelowItIsNot) {
     };
     FrameletShape const quiet = fit(noisy(0.9f * tolerance.inverse_depth));
     EXPECT_EQ(quiet.layer_count, 1);
-    EXPECT_TRUE(quiet.loose_samples.empty());
-    EXPECT_GT(fit(noisy(30 * tolerance.inverse_depth)).loose_samples.size(), 150u);
+    EXPECT_TRUE(quiet.outliers.empty());
+    EXPECT_GT(fit(noisy(30 * tolerance.inverse_depth)).outliers.size(), 150u);
 }
 
 TEST(LayerFit, WithoutAnyToleranceTheShapeIsOverwrittenAsWell) {
@@ -289,7 +289,7 @@ TEST(LayerFit, MedianDepthAndTolerance) {
     EXPECT_NEAR(layer_tolerance(5, rays, 1e9f).preferred_inverse_depth * 5 * focal, 0.1f, 1e-6f) << "a jump";
 }
 
-TEST(LayerFit, FitsCloserWhereThatLeavesFewSamplesLoose) {
+TEST(LayerFit, FitsCloserWhereThatLeavesFewOutliers) {
     auto const roof = [](float x, float) { return 1 / (0.2f + 0.001f * std::abs(x - 8)); };
     LayerTolerance wanted{0.01f, 1, 0};
     FrameletShape const rough = fit(make_framelet(roof), wanted);
@@ -297,11 +297,11 @@ TEST(LayerFit, FitsCloserWhereThatLeavesFewSamplesLoose) {
     wanted.preferred_inverse_depth = 1e-5f;
     FrameletShape const close = fit(make_framelet(roof), wanted);
     EXPECT_EQ(close.layer_count, 2);
-    EXPECT_TRUE(close.loose_samples.empty());
+    EXPECT_TRUE(close.outliers.empty());
     EXPECT_LT(close.layers[0].error, 2e-5f);
     auto const rubble = [](float x, float y) { return 1 / (0.2f + 0.005f * std::sin(x * x * 31 + y * 17)); };
     EXPECT_EQ(fit(make_framelet(rubble), wanted).layer_count, 1);
-    EXPECT_TRUE(fit(make_framelet(rubble), wanted).loose_samples.empty());
+    EXPECT_TRUE(fit(make_framelet(rubble), wanted).outliers.empty());
 }
 
 /// Patches of planes at depths of all sizes, bodies, velocities, sky and noise.

@@ -8,7 +8,7 @@ namespace {
 std::size_t bytes_of(Batch const& batch) {
     std::size_t bytes = sizeof batch + batch.framelets.size() * sizeof(DisplayFramelet);
     for (FrameletShape const& shape : batch.shapes) {
-        bytes += sizeof shape + shape.loose_samples.size() * sizeof shape.loose_samples[0];
+        bytes += sizeof shape + shape.outliers.size() * sizeof shape.outliers[0];
     }
     for (BodyTrack const& track : batch.tracks) {
         bytes += sizeof track + track.keys.size() * sizeof(BodyPose);

@@ -14,7 +14,7 @@ const float hole_depth = -1.0;
 const float faded_share = 0.1;
 const int texels_of_patch = 6;
 const uint hides_flag = 1u, ends_flag = 2u; // of patches
-const uint loose_flag = 1u << 16; // of entries
+const uint outlier_flag = 1u << 16; // of entries
 
 // What is in front so far.
 vec3 color = vec3(0.0);
@@ -126,7 +126,7 @@ bool paint_layer(int patch_texel, int own_group, uint own_leader, vec2 from) {
 // Where most of a splat is hidden nothing of it is to show; what says so is in the shader that includes this.
 bool is_left_out(int splat);
 
-bool paint_loose(int list, int own_group, int first_splat, uint own_leader, ivec2 pixel) {
+bool paint_outliers(int list, int own_group, int first_splat, uint own_leader, ivec2 pixel) {
     int part = ((pixel.y & 15) >> 2) * 4 + ((pixel.x & 15) >> 2);
     int last = list + int(texel_of(lists, list + part + 1).x);
     bool shows = false;
@@ -166,8 +166,8 @@ uvec4 paint(uvec4 block, int first_splat, int count, ivec2 pixel) {
         int group_of_patch = int(entry.z);
         uint leader_of_patch = entry.x >> 24;
         bool shows = false;
-        if ((entry.y & loose_flag) != 0u) {
-            shows = paint_loose(int(block.w + entry.w), group_of_patch, first_splat, leader_of_patch, pixel);
+        if ((entry.y & outlier_flag) != 0u) {
+            shows = paint_outliers(int(block.w + entry.w), group_of_patch, first_splat, leader_of_patch, pixel);
         } else {
             ivec2 corner = ivec2(entry.w & 0xffffu, entry.w >> 16); // of the patch's box
             shows = paint_layer(texels_of_patch * int(entry.x & 0xffffffu), group_of_patch, leader_of_patch,

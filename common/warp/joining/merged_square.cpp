@@ -105,7 +105,7 @@ bool MergedSquare::set_layers(std::uint64_t places) {
             layers_->clear(place);
             continue;
         }
-        child.has_loose = !child.framelet->shape.loose.empty();
+        child.has_outliers = !child.framelet->shape.outliers.empty();
         if (!layers_->set(place, child.framelet->view, child.framelet->moment.batch, child.framelet->shape)) {
             return false;
         }
@@ -126,10 +126,10 @@ void MergedSquare::keep(LayerJoining const& joining) {
             }
         }
     }
-    loose_children_ = 0;
+    with_outliers_ = 0;
     for (std::size_t place = 0; place < most_children; ++place) {
         Child& child = children_[place];
-        loose_children_ |= std::uint64_t{child.has_loose} << place;
+        with_outliers_ |= std::uint64_t{child.has_outliers} << place;
         if (!child.is_written || child.numbers != numbers[place]) {
             child.numbers = numbers[place];
             child.is_written = true;

@@ -53,7 +53,7 @@ public:
     struct Child {
         CachedFramelet const* framelet = nullptr;
         std::array<std::uint8_t, max_layers> numbers{}; ///< of its layers in the grid
-        bool has_loose = false;
+        bool has_outliers = false;
         bool is_written = false; ///< to the grid
     };
 
@@ -89,8 +89,8 @@ public:
     /// A bit for each child whose samples have been written since this was called last; all of them where the grid is
     /// new.
     std::uint64_t take_written() { return std::exchange(written_, 0); }
-    /// Bit i: child i has loose samples.
-    std::uint64_t loose_children() const { return loose_children_; }
+    /// Bit i: child i has outliers.
+    std::uint64_t children_with_outliers() const { return with_outliers_; }
 
 private:
     int levels() const { return depth_ - square_.depth(); } ///< of the children below the square
@@ -118,7 +118,7 @@ private:
     std::unique_ptr<SquareLayers> layers_;
     std::vector<MergedLayer> merged_;
     std::vector<JoinedLayer> fours_;
-    std::uint64_t loose_children_ = 0;
+    std::uint64_t with_outliers_ = 0;
     std::vector<PackedSample> grid_; ///< of the square, in rows
     std::uint64_t written_ = 0; ///< a bit for each child
 };

@@ -45,13 +45,13 @@ UnitCode checked_unit(unsigned unit) {
     return static_cast<UnitCode>(unit);
 }
 
-/// Calls `use` for every layer of a shape, then for every loose sample.
+/// Calls `use` for every layer of a shape, then for every outlier.
 template <typename Shape, typename Use>
 void for_each_carried(Shape& shape, Use const& use) {
     for (std::size_t l = 0; l < shape.layer_count; ++l) {
         use(shape.layers[l]);
     }
-    for (auto& sample : shape.loose_samples) {
+    for (auto& sample : shape.outliers) {
         use(sample);
     }
 }
@@ -67,37 +67,37 @@ UnitCode velocity_unit(FrameletShape const& shape) {
     return unit_above(static_cast<double>(largest) / largest_velocity_code);
 }
 
-UnitCode loose_unit(FrameletShape const& shape) {
+UnitCode outlier_unit(FrameletShape const& shape) {
     float largest = 0;
-    for (LooseSample const& sample : shape.loose_samples) {
+    for (Outlier const& sample : shape.outliers) {
         FRAMELET_CHECK(sample.inverse_depth >= 0);
         largest = std::max(largest, sample.inverse_depth);
     }
     return unit_above(static_cast<double>(largest) / largest_inverse_depth_code);
 }
 
-/// Kinds beyond the layers are loose.
-void make_room_for_loose(FrameletShape& shape) {
-    std::size_t loose = 0;
+/// Kinds beyond the layers are outliers.
+void make_room_for_outliers(FrameletShape& shape) {
+    std::size_t outliers = 0;
     for (std::uint8_t& kind : shape.layer_of) { // without an early end: many at a time
-        bool const is_loose = kind >= shape.layer_count;
-        kind = is_loose ? FrameletShape::loose : kind;
-        loose += is_loose ? 1 : 0;
+        bool const is_outlier = kind >= shape.layer_count;
+        kind = is_outlier ? FrameletShape::outlier : kind;
+        outliers += is_outlier ? 1 : 0;
     }
-    if (loose == 0) {
-        throw ProtocolError("a shape has none of the loose samples that it announces");
+    if (outliers == 0) {
+        throw ProtocolError("a shape has none of the outliers that it announces");
     }
-    shape.loose_samples.resize(loose);
+    shape.outliers.resize(outliers);
 }
 
 void check(FrameletShape const& shape) {
     FRAMELET_CHECK(shape.layer_count <= max_layers);
-    std::size_t loose = 0, none = 0;
+    std::size_t outliers = 0, none = 0;
     for (std::uint8_t const layer : shape.layer_of) { // without an early end: many at a time
-        loose += layer == FrameletShape::loose ? 1 : 0;
+        outliers += layer == FrameletShape::outlier ? 1 : 0;
         none += layer >= shape.layer_count ? 1 : 0;
     }
-    FRAMELET_CHECK(loose == none && loose == shape.loose_samples.size());
+    FRAMELET_CHECK(outliers == none && outliers == shape.outliers.size());
 }
 
 } // namespace
@@ -178,7 +178,7 @@ void ShapeModel::code_layer(Coder& coder, TilePlace const& place, std::size_t nu
     remember({code, body, place});
 }
 
-/// Which sample is of which kind, row by row: layers by their number, then what is loose.
+/// Which sample is of which kind, row by row: layers by their number, then the outliers.
 template <class Coder, class Shape>
 void ShapeModel::code_kinds(Coder& coder, unsigned kinds, Shape& shape) {
     constexpr std::size_t stride = framelet_side + 3; // two before a row, one behind it
@@ -224,24 +224,24 @@ void ShapeModel::code_kinds(Coder& coder, unsigned kinds, Shape& shape) {
 
 /// Inverse depths as differences from the sample before, 0 before the first.
 template <class Coder, class Shape>
-void ShapeModel::code_loose(Coder& coder, Shape& shape) {
-    UnitCode const own = Coder::reads ? UnitCode{0} : loose_unit(shape);
-    loose_unit_ = checked_unit(static_cast<unsigned>(static_cast<std::uint16_t>(
-        loose_unit_ + loose_units_.code(coder, static_cast<std::int16_t>(own - loose_unit_)))));
-    double const unit = unit_of(loose_unit_);
+void ShapeModel::code_outliers(Coder& coder, Shape& shape) {
+    UnitCode const own = Coder::reads ? UnitCode{0} : outlier_unit(shape);
+    outlier_unit_ = checked_unit(static_cast<unsigned>(static_cast<std::uint16_t>(
+        outlier_unit_ + outlier_units_.code(coder, static_cast<std::int16_t>(own - outlier_unit_)))));
+    double const unit = unit_of(outlier_unit_);
     std::uint8_t depth = 0;
     unsigned around = 255;
     BodyNumber body = shape.layer_count > 0 ? shape.layers[0].body : static_body;
-    for (auto& sample : shape.loose_samples) {
+    for (auto& sample : shape.outliers) {
         std::uint8_t const wanted =
-            Coder::reads ? std::uint8_t{0} : quantise_inverse_depth(sample.inverse_depth, loose_unit_);
+            Coder::reads ? std::uint8_t{0} : quantise_inverse_depth(sample.inverse_depth, outlier_unit_);
         std::size_t const size_class =
             std::min<std::size_t>(static_cast<std::size_t>(std::bit_width(around)), size_classes - 1);
         auto const step =
-            static_cast<std::int8_t>(loose_depths_[size_class].code(coder, static_cast<std::int8_t>(wanted - depth)));
+            static_cast<std::int8_t>(outlier_depths_[size_class].code(coder, static_cast<std::int8_t>(wanted - depth)));
         depth = static_cast<std::uint8_t>(depth + step);
         around = static_cast<unsigned>(std::abs(int{step}));
-        body = loose_bodies_.code(coder, body, sample.body);
+        body = outlier_bodies_.code(coder, body, sample.body);
         if constexpr (Coder::reads) {
             sample.inverse_depth = static_cast<float>(depth * unit);
             sample.body = body;
@@ -278,35 +278,35 @@ void ShapeModel::code_velocities(Coder& coder, Shape& shape) {
 
 template <class Coder, class Shape>
 void ShapeModel::code(Coder& coder, TilePlace const& place, Shape& shape) {
-    constexpr unsigned loose_bit = 4;
-    unsigned const own = shape.layer_count + (shape.loose_samples.empty() ? 0u : loose_bit);
+    constexpr unsigned outlier_bit = 4;
+    unsigned const own = shape.layer_count + (shape.outliers.empty() ? 0u : outlier_bit);
     unsigned const head = heads_[head_].code(coder, own);
     if (head == 0) {
-        throw ProtocolError("a shape has neither layers nor loose samples");
+        throw ProtocolError("a shape has neither layers nor outliers");
     }
     head_ = static_cast<std::uint8_t>(head);
-    bool const has_loose = head >= loose_bit;
+    bool const has_outliers = head >= outlier_bit;
     if (!coder.bit(same_fading_, shape.fading == fading_)) {
         fading_ = static_cast<FadingCode>(fadings_.code(coder, shape.fading));
     }
     if constexpr (Coder::reads) {
-        shape.layer_count = static_cast<std::uint8_t>(head % loose_bit);
+        shape.layer_count = static_cast<std::uint8_t>(head % outlier_bit);
         shape.fading = fading_;
     }
     for (std::size_t l = 0; l < shape.layer_count; ++l) {
         code_layer(coder, place, l, shape.layers[l]);
     }
-    unsigned const kinds = shape.layer_count + (has_loose ? 1u : 0u);
+    unsigned const kinds = shape.layer_count + (has_outliers ? 1u : 0u);
     if (kinds > 1) {
         code_kinds(coder, kinds, shape);
     } else if constexpr (Coder::reads) {
         shape.layer_of.fill(0);
     }
-    if (has_loose) {
+    if (has_outliers) {
         if constexpr (Coder::reads) {
-            make_room_for_loose(shape);
+            make_room_for_outliers(shape);
         }
-        code_loose(coder, shape);
+        code_outliers(coder, shape);
     }
     code_velocities(coder, shape);
 }
@@ -320,7 +320,7 @@ void ShapeModel::read(RangeReader& reader, TilePlace const& place, FrameletShape
     shape.layers = {};
     shape.fading = 0;
     shape.layer_count = 0;
-    shape.loose_samples.clear();
+    shape.outliers.clear();
     code(reader, place, shape);
 }
 

@@ -62,7 +62,7 @@ private:
     template <class Coder, class Shape>
     void code_kinds(Coder& coder, unsigned kinds, Shape& shape);
     template <class Coder, class Shape>
-    void code_loose(Coder& coder, Shape& shape);
+    void code_outliers(Coder& coder, Shape& shape);
     template <class Coder, class Shape>
     void code_velocities(Coder& coder, Shape& shape);
     std::size_t nearest(LayerCode const& code, BodyNumber body, TilePlace const& place) const;
@@ -71,7 +71,7 @@ private:
     std::array<CodedLayer, remembered> layers_{}; ///< lately, the newest first
     std::uint8_t head_ = 0;
     FadingCode fading_ = 0;
-    UnitCode loose_unit_ = 0;
+    UnitCode outlier_unit_ = 0;
 
     std::array<AdaptiveTree<3>, 8> heads_; // by the last one
     AdaptiveBit same_fading_;
@@ -80,11 +80,11 @@ private:
     AdaptiveNumber<unary> units_;
     std::array<AdaptiveNumber<unary>, 3> planes_; ///< at, dx, dy
     AdaptiveSize<12> errors_;
-    BodyModel layer_bodies_, loose_bodies_;
+    BodyModel layer_bodies_, outlier_bodies_;
     std::array<std::array<AdaptiveBit, 64>, most_kinds - 1> as_expected_;
     std::array<std::array<AdaptiveTree<2>, most_kinds>, most_kinds - 1> others_;
-    AdaptiveNumber<unary> loose_units_;
-    std::array<AdaptiveNumber<4>, size_classes> loose_depths_;
+    AdaptiveNumber<unary> outlier_units_;
+    std::array<AdaptiveNumber<4>, size_classes> outlier_depths_;
     VelocityModel velocities_;
 };
 

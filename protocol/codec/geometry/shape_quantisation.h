@@ -1,4 +1,4 @@
-// Layers and what is loose in 16-bit numbers, each in a unit that is a power of two, and back. PROTOCOL.md says how the
+// Layers and outliers in 16-bit numbers, each in a unit that is a power of two, and back. PROTOCOL.md says how the
 // bytes are arranged. In: numbers below `most_shape_number` in magnitude. Out: codes, and the very numbers that a
 // reader makes of them.
 #pragma once
@@ -32,7 +32,7 @@ LayerCode quantise(Layer const& layer, int side_bits);
 /// Without body and velocity.
 Layer dequantise(LayerCode const& code, int side_bits);
 
-/// Units, rounded. The unit is that above the largest of all values that share it, divided by these. What is loose is
+/// Units, rounded. The unit is that above the largest of all values that share it, divided by these. Outliers are
 /// few samples: moved by 20 pixels they are shown a twelfth of a pixel off at most.
 inline constexpr double largest_inverse_depth_code = 255, largest_velocity_code = 32767;
 std::uint8_t quantise_inverse_depth(float inverse_depth, UnitCode unit);

@@ -84,7 +84,7 @@ void Mirror::forget(std::span<SentTile const> framelets) {
 
 void Mirror::erase_forgotten() {
     for (Moment& moment : moments_) {
-        bool const loose = shows_loose(moment);
+        bool const outliers = shows_outliers(moment);
         std::uint64_t last = 0; // pieces of a framelet follow each other
         bool is_gone = false;
         std::erase_if(moment.pieces, [&](Piece const& piece) {
@@ -92,7 +92,7 @@ void Mirror::erase_forgotten() {
                 last = key;
                 is_gone = forgotten_.contains(key);
             }
-            return is_gone || piece.is_replaced || (piece.is_loose && !loose);
+            return is_gone || piece.is_replaced || (piece.is_outlier && !outliers);
         });
         if (moment.pieces.empty() && &moment != &moments_[base_]) {
             moment.number = 0;
@@ -227,8 +227,8 @@ void Mirror::replace(Moment& moment, std::span<Piece const> pieces) {
     }
 }
 
-/// What is loose shows of the base and of the newest moments only, of which one may be still to come.
-bool Mirror::shows_loose(Moment const& moment) const {
+/// Outliers show of the base and of the newest moments only, of which one may be still to come.
+bool Mirror::shows_outliers(Moment const& moment) const {
     return &moment == &moments_[base_] ||
            moment.number + FrameletPool::recent_moments > last_number_ + (awaits_moment_ ? 1 : 0);
 }
@@ -241,7 +241,7 @@ PieceReprojection Mirror::to_picture(Moment const& moment, BodyMotions const& mo
 void Mirror::draw(Moment& moment, std::size_t first, BodyMotions const& motions) {
     moment.is_of_camera = same_camera(moment.rays, target_.rays);
     moment.reprojected.resize(first);
-    reproject(to_picture(moment, motions), std::span(moment.pieces).subspan(first), shows_loose(moment), transforms_,
+    reproject(to_picture(moment, motions), std::span(moment.pieces).subspan(first), shows_outliers(moment), transforms_,
               moment.reprojected);
     for (std::size_t i = first; i < moment.pieces.size(); ++i) {
         if (moment.reprojected[i].is_in_picture()) {

@@ -99,7 +99,7 @@ private:
     void put(Moment const& moment, std::size_t index, float inverse_depth, int share, Cell& cell) const;
     bool is_better(Moment const& moment, ReprojectedPiece const& reprojected, float inverse_depth, int share,
                    Cell const& cell) const;
-    bool shows_loose(Moment const& moment) const;
+    bool shows_outliers(Moment const& moment) const;
 
     Viewport viewport_;
     int columns_, rows_;

@@ -90,7 +90,7 @@ void list_probes(Mirror const& mirror, PlaceGrid const& grid, std::vector<Probe>
     probes.clear();
     for_each_place(grid, mirror.viewport(), [&](Vec2 at) {
         Cell const& shown = cell_at(mirror, at);
-        if (shown.share == cell_pixels && !mirror.piece_of(shown).is_loose &&
+        if (shown.share == cell_pixels && !mirror.piece_of(shown).is_outlier &&
             mirror.time_of(shown) != mirror.view().scene_time) {
             probes.push_back({at, 1, mirror.luma_of(shown, at)});
         }

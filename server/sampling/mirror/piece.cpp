@@ -53,12 +53,12 @@ struct Sum {
 };
 
 /// The same of samples that lie on no layer.
-struct LooseSum : Sum {
+struct OutlierSum : Sum {
     float inverse_depth = 0, least = INFINITY, most = 0;
     Vec3 velocity{0};
     BodyNumber body = static_body; ///< of the last one
 
-    void add(std::uint32_t i, float value, bool reflected, LooseSample const& sample) {
+    void add(std::uint32_t i, float value, bool reflected, Outlier const& sample) {
         float const w = bounded(sample.inverse_depth);
         Sum::add(i, value, reflected);
         inverse_depth += w;
@@ -102,11 +102,11 @@ void put_on(Layer const& layer, Vec2 corner, Piece& piece) {
     piece.body = layer.body;
 }
 
-void put_on(LooseSum const& sum, Piece& piece) {
+void put_on(OutlierSum const& sum, Piece& piece) {
     piece.inverse_depth = sum.inverse_depth / sum.count;
     piece.velocity = sum.velocity / sum.count;
     piece.body = sum.body;
-    piece.is_loose = true;
+    piece.is_outlier = true;
 }
 
 /// Of each block of 2x2 samples: half the mean squared difference of neighbours, those in the next blocks to the right
@@ -159,17 +159,17 @@ void cut_pieces(Framelet const& rendered, DisplayFramelet const& shown, Framelet
     auto const parts = static_cast<std::uint32_t>(rect.width() / part_side(rect.width()));
     std::uint32_t const count = framelet_samples / (parts * parts);
     bool const moves = shape.moves();
-    auto loose = shape.loose_samples.begin();
+    auto outliers = shape.outliers.begin();
     for (std::uint32_t first = 0; first < framelet_samples; first += count) {
         float const local = std::reduce(details.begin() + first / 4, details.begin() + (first + count) / 4) /
                             static_cast<float>(count / 4);
         float const detail = (1 - common_share) * local + common_share * common;
         std::array<Sum, max_layers> sums;
-        LooseSum all;
-        auto const first_loose = loose;
+        OutlierSum all;
+        auto const first_outlier = outliers;
         for (std::uint32_t i = first; i < first + count; ++i) {
-            if (shape.layer_of[i] == FrameletShape::loose) {
-                all.add(i, luma[i], rendered.reflects[i], *loose++);
+            if (shape.layer_of[i] == FrameletShape::outlier) {
+                all.add(i, luma[i], rendered.reflects[i], *outliers++);
             } else {
                 sums[shape.layer_of[i]].add(i, luma[i], rendered.reflects[i]);
             }
@@ -187,11 +187,11 @@ void cut_pieces(Framelet const& rendered, DisplayFramelet const& shown, Framelet
         for (std::size_t k = 0; k < shape.layer_count; ++k) {
             append(sums[k], [&](Piece& piece) { put_on(shape.layers[k], corner, piece); });
         }
-        std::array<LooseSum, 2> halves;
+        std::array<OutlierSum, 2> halves;
         if (all.most - all.least > surface_tolerance * all.most) {
-            auto sample = first_loose;
+            auto sample = first_outlier;
             for (std::uint32_t i = first; i < first + count; ++i) {
-                if (shape.layer_of[i] == FrameletShape::loose) {
+                if (shape.layer_of[i] == FrameletShape::outlier) {
                     bool const near = bounded(sample->inverse_depth) > 0.5f * (all.least + all.most);
                     halves[near ? 0 : 1].add(i, luma[i], rendered.reflects[i], *sample++);
                 }
@@ -199,7 +199,7 @@ void cut_pieces(Framelet const& rendered, DisplayFramelet const& shown, Framelet
         } else {
             halves[0] = all;
         }
-        for (LooseSum const& half : halves) {
+        for (OutlierSum const& half : halves) {
             append(half, [&](Piece& piece) { put_on(half, piece); });
         }
     }

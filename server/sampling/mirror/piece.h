@@ -27,7 +27,7 @@ struct Piece {
     SceneTime scene_time = 0; ///< when it was rendered
     Vec3 velocity{0}; ///< of what deforms, metres a second in the world at its scene time
     BodyNumber body = static_body;
-    bool is_loose = false; ///< its samples lie on no layer
+    bool is_outlier = false; ///< its samples lie on no layer
     bool moves = false; ///< something of its framelet may, being on a body or deforming
     bool rests = false; ///< nothing of it does about its scene time: the viewer holds it with what stands
     bool is_replaced = false; ///< a newer framelet lies in its place: it is held no longer
@@ -40,7 +40,7 @@ struct Piece {
 inline constexpr float surface_tolerance = 0.05f;
 
 /// Appends the pieces of a framelet of a scene time and a batch: for each layer, squares of 4 .. 16 pixels or what of
-/// them lies on it; what is loose in a square is split in a near and a far part. `fading` stays 0. All
+/// them lies on it; the outliers of a square are split in a near and a far part. `fading` stays 0. All
 /// numbers are finite where those of the shape are.
 void cut_pieces(Framelet const& rendered, DisplayFramelet const& shown, FrameletShape const& shape,
                 ImagePlane const& plane, SceneTime scene_time, std::uint64_t batch, std::vector<Piece>& pieces);

@@ -88,7 +88,7 @@ ReprojectedPiece reproject(Piece const& piece, BodyTransform const& body, Vec2 s
     float spacing = piece.spacing;
     float misplaced = 0;
     reprojected.is_still = body.is_still && piece.velocity == Vec3(0);
-    if (!piece.is_loose) { // as the viewer rates them
+    if (!piece.is_outlier) { // as the viewer rates them
         float const squares = glm::dot(right, right) + glm::dot(down, down);
         spacing *= std::sqrt(0.5f * (squares + std::sqrt(std::max(squares * squares - 4 * area * area, 0.0f))));
         misplaced = reprojected.is_still ? 0 : tolerance * glm::length(Vec2(parallax) - parallax.z * reprojected.at);
@@ -100,7 +100,7 @@ ReprojectedPiece reproject(Piece const& piece, BodyTransform const& body, Vec2 s
     Vec2 const slope = share * (piece.depth_slope - reprojected.inverse_depth * Vec2(dx.z, dy.z)); // along its own axes
     reprojected.depth_slope = Vec2(down.y * slope.x - right.y * slope.y, right.x * slope.y - down.x * slope.x) / area;
     reprojected.tolerance = tolerance;
-    reprojected.leads = leads(piece.body, piece.velocity, age) && !piece.is_loose;
+    reprojected.leads = leads(piece.body, piece.velocity, age) && !piece.is_outlier;
     reprojected.worn = worn_step(worn_spacing(spacing, age, piece.fading) + misplaced);
     return reprojected;
 }
@@ -112,7 +112,7 @@ bool same_camera(ViewRays const& a, ViewRays const& b) {
            a.direction_dy == b.direction_dy;
 }
 
-void reproject(PieceReprojection const& reprojection, std::span<Piece const> pieces, bool with_loose,
+void reproject(PieceReprojection const& reprojection, std::span<Piece const> pieces, bool with_outliers,
                BodyTransforms& transforms, std::vector<ReprojectedPiece>& reprojected) {
     ++transforms.stamp;
     SceneTime const last_jump = reprojection.motions->last_jump(reprojection.display.scene_time);
@@ -123,7 +123,7 @@ void reproject(PieceReprojection const& reprojection, std::span<Piece const> pie
         }
         auto const age = static_cast<float>(reprojection.display.scene_time - piece.scene_time);
         reprojected.push_back(
-            with_loose || !piece.is_loose
+            with_outliers || !piece.is_outlier
                 ? reproject(piece, transform_of(reprojection, piece, transforms), reprojection.display_size, age)
                 : ReprojectedPiece{});
         reprojected.back().is_outdated = piece.scene_time < last_jump;

@@ -62,9 +62,9 @@ struct PieceReprojection {
     BodyMotions const* motions = nullptr; ///< not null
 };
 
-/// Appends one to `reprojected` for each piece; what is loose unless `with_loose`, what lies outside the picture and
+/// Appends one to `reprojected` for each piece; outliers unless `with_outliers`, what lies outside the picture and
 /// what is too coarse or too uncertain to hide anything are not in the picture.
-void reproject(PieceReprojection const& reprojection, std::span<Piece const> pieces, bool with_loose,
+void reproject(PieceReprojection const& reprojection, std::span<Piece const> pieces, bool with_outliers,
                BodyTransforms& transforms, std::vector<ReprojectedPiece>& reprojected);
 
 } // namespace framelet

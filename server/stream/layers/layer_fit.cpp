@@ -12,7 +12,7 @@
 namespace framelet {
 namespace {
 
-/// Kinds of samples that are told apart in a framelet; those of more are loose.
+/// Kinds of samples that are told apart in a framelet; those of more are outliers.
 constexpr std::size_t most_groups = 8;
 /// Closer to the eye than this, metres, nothing is told apart.
 constexpr float least_depth = 1e-6f;
@@ -51,9 +51,9 @@ public:
     void fit() {
         shape_.layer_count = 0;
         shape_.layers = {};
-        shape_.loose_samples.clear();
+        shape_.outliers.clear();
         if (!(is_uniform() && fit_one())) {
-            layer_of_.fill(FrameletShape::loose);
+            layer_of_.fill(FrameletShape::outlier);
             make_groups();
             fit_groups();
             take_isolated();
@@ -144,7 +144,7 @@ void Fitter::make_groups() {
 /// Samples of the group that are on no layer yet.
 void Fitter::set_candidates(std::size_t group) {
     for (std::size_t i = 0; i < framelet_samples; ++i) {
-        bool const is_group = group_of_[i] == group, is_free = layer_of_[i] == FrameletShape::loose;
+        bool const is_group = group_of_[i] == group, is_free = layer_of_[i] == FrameletShape::outlier;
         candidates_.value[i] = static_cast<float>(int{is_group} & int{is_free});
     }
 }
@@ -205,7 +205,7 @@ void Fitter::fit_groups() {
             agree_on_velocity();
         }
         if (found_.count < least_plane_samples) {
-            *largest = 0; // what is left of it stays loose
+            *largest = 0; // what is left of it stays outliers
             continue;
         }
         add_found(g);
@@ -241,10 +241,10 @@ float Fitter::error_of(Layer const& layer, float half_width) const {
     return half_width + rounding * (magnitude + half_width);
 }
 
-/// Which layer of its group a sample is nearest to, if it moves as that does; `loose` where none is near.
+/// Which layer of its group a sample is nearest to, if it moves as that does; `outlier` where none is near.
 std::uint8_t Fitter::nearest_layer(int at) const {
     float least = isolated_tolerances * tolerance_;
-    std::uint8_t nearest = FrameletShape::loose;
+    std::uint8_t nearest = FrameletShape::outlier;
     for (std::uint8_t l = 0; l < shape_.layer_count; ++l) {
         float const off = std::abs(residual(values_, planes_[l], at));
         if (layer_groups_[l] == group_of_[static_cast<std::size_t>(at)] && off <= least) {
@@ -261,8 +261,8 @@ void Fitter::take_isolated() {
     for (int i = 0; i < framelet_samples; ++i) {
         int const at = block_order(i);
         std::uint8_t& layer_of = layer_of_[static_cast<std::size_t>(at)];
-        std::uint8_t const l = layer_of == FrameletShape::loose ? nearest_layer(at) : FrameletShape::loose;
-        if (l == FrameletShape::loose || !moves_with(shape_.layers[l].velocity, i, isolated_tolerances)) {
+        std::uint8_t const l = layer_of == FrameletShape::outlier ? nearest_layer(at) : FrameletShape::outlier;
+        if (l == FrameletShape::outlier || !moves_with(shape_.layers[l].velocity, i, isolated_tolerances)) {
             continue;
         }
         layer_of = l;
@@ -281,8 +281,8 @@ void Fitter::collect() {
         }
     }
     for (int i = 0; i < framelet_samples; ++i) {
-        if (shape_.layer_of[static_cast<std::size_t>(i)] == FrameletShape::loose) {
-            shape_.loose_samples.push_back({values_[block_order(i)], body_of(framelet_, i), velocity_of(framelet_, i)});
+        if (shape_.layer_of[static_cast<std::size_t>(i)] == FrameletShape::outlier) {
+            shape_.outliers.push_back({values_[block_order(i)], body_of(framelet_, i), velocity_of(framelet_, i)});
         }
     }
 }
@@ -329,7 +329,7 @@ void fit_layers(Framelet const& framelet, ImagePlane const& plane, LayerToleranc
                          wide_tolerances * tolerance.inverse_depth};
     for (float const off : std::span(all).subspan(tolerance.preferred_inverse_depth > 0 ? 0 : 1)) {
         Fitter(framelet, spacing, {off, tolerance.velocity, 0}, shape).fit();
-        if (shape.loose_samples.size() <= most_loose_samples) {
+        if (shape.outliers.size() <= most_outliers) {
             return;
         }
     }

@@ -19,13 +19,13 @@ struct LayerTolerance {
     float inverse_depth = 0;
     /// Speed times inverse depth, 1 / seconds, by which what deforms may move otherwise than its layer.
     float velocity = 0;
-    /// As `inverse_depth`: what layers are fitted to where that leaves no more than `most_loose_samples`. 0: to that.
+    /// As `inverse_depth`: what layers are fitted to where that leaves no more than `most_outliers`. 0: to that.
     float preferred_inverse_depth = 0;
 };
 
 /// Of a framelet. They cost more than layers, on the wire and in the viewer: where more than these are left, layers are
 /// fitted to so many tolerances instead.
-inline constexpr std::size_t most_loose_samples = 16;
+inline constexpr std::size_t most_outliers = 16;
 inline constexpr float wide_tolerances = 2;
 /// A sample that no plane was found for lies on the nearest layer of its body that it is so many tolerances off at
 /// most, in its place and in its velocity.
@@ -39,7 +39,7 @@ LayerTolerance layer_tolerance(float median_depth, ViewRays const& rays, float s
 /// Median of the finite depths in the framelets, from a part of their samples; 1 where there are none.
 float median_depth(std::span<Framelet const> framelets);
 
-/// Up to `max_layers` layers, the samples that none of them takes being loose. The inverse depth of every sample of a
+/// Up to `max_layers` layers, the samples that none of them takes being outliers. The inverse depth of every sample of a
 /// layer is within its `error` of the layer, and that within the tolerance (times `wide_tolerances` and
 /// `isolated_tolerances`, where these apply), or what single precision resolves. Finite for any depths > 0. The sky is
 /// at inverse depth 0. `shape` is overwritten; its memory is used again.

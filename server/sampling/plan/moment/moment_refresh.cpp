@@ -82,7 +82,7 @@ void MomentRefresh::note_sent(RenderedMoment const& moment, std::uint64_t batch,
             std::span<Piece> const pieces = std::span(pieces_).subspan(first);
             bool const rests = is_at_rest(*shape, moment.scene_time, *moment.motions);
             std::ranges::for_each(pieces, [&](Piece& piece) { piece.rests = rests; });
-            bool const has_outline = shape->layer_count > 1 || !shape->loose_samples.empty();
+            bool const has_outline = shape->layer_count > 1 || !shape->outliers.empty();
             shape->fading =
                 expects_change ? expect_fading(pieces, mirror_.camera_stands(), has_outline) : FadingCode{0};
             ++shape;
