@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "client/gpu/gl/gl_objects.h"
-#include "common/warp/joining/merged_square.h"
+#include "common/warp/merging/merged_square.h"
 
 namespace framelet {
 

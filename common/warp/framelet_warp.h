@@ -9,7 +9,7 @@
 
 #include "common/framelet/body_motion.h"
 #include "common/framelet/reprojection.h"
-#include "common/warp/joining/merged_square.h"
+#include "common/warp/merging/merged_square.h"
 #include "common/warp/warp_patch.h"
 
 namespace framelet {

@@ -7,13 +7,13 @@
 #include <tbb/parallel_for.h>
 
 #include "common/per_thread.h"
-#include "common/warp/joining/layer_joining.h"
+#include "common/warp/merging/coplanar_merging.h"
 
 namespace framelet {
 
 namespace {
 
-/// What is joined takes the place of two layers or more.
+/// What is merged takes the place of two layers or more.
 constexpr std::uint32_t patches_per_square = MergedSquare::most_children * (max_layers + 1);
 constexpr int block_side = FrameletCache::block_side;
 
@@ -59,9 +59,9 @@ bool is_before(WarpPatch const& a, WarpPatch const& b) {
 
 } // namespace
 
-struct WarpPlan::Joinings : PerThread<LayerJoining> {};
+struct WarpPlan::Mergings : PerThread<CoplanarMerging> {};
 
-WarpPlan::WarpPlan() : joinings_(std::make_unique<Joinings>()) {}
+WarpPlan::WarpPlan() : mergings_(std::make_unique<Mergings>()) {}
 WarpPlan::~WarpPlan() = default;
 WarpPlan::WarpPlan(WarpPlan&&) noexcept = default;
 WarpPlan& WarpPlan::operator=(WarpPlan&&) noexcept = default;
@@ -109,11 +109,11 @@ void WarpPlan::make(FrameletCache const& cache, std::size_t slot, bool outliers,
             replanned_.push_back(i);
         }
     }
-    joinings_->prepare();
+    mergings_->prepare();
     tbb::parallel_for(std::size_t{0}, replanned_.size(), [&](std::size_t i) {
         std::uint32_t const index = replanned_[i];
         Square& square = squares_[index];
-        square.merged.update(cache, square.tile, square.depth, joinings_->local());
+        square.merged.update(cache, square.tile, square.depth, mergings_->local());
         FrameletWarp warp(cache, slot, display, display_time, motions);
         plan(square, outliers, warp);
         square.note_number(index);
@@ -184,8 +184,8 @@ void WarpPlan::set_squares(FrameletCache const& cache) {
     }
 }
 
-/// Nothing is added where it is out of the picture. False where what is joined is not near enough to its parts.
-bool WarpPlan::add_joined(MergedLayer const& merged, FrameletWarp& warp, Square& square) {
+/// Nothing is added where it is out of the picture. False where what is merged is not near enough to its parts.
+bool WarpPlan::add_merged(MergedLayer const& merged, FrameletWarp& warp, Square& square) {
     if (merged.difference > 0 && !(merged.difference <= warp.inverse_depth_within(merging_pixels, merged))) {
         return false;
     }
@@ -194,15 +194,15 @@ bool WarpPlan::add_joined(MergedLayer const& merged, FrameletWarp& warp, Square&
     return true;
 }
 
-/// Fours as far as they are near enough; what is left is `alone`.
+/// Quads as far as they are near enough; what is left is `alone`.
 void WarpPlan::add_parts(MergedLayer const& merged, FrameletWarp& warp, Square& square, LayerBits& alone) {
     LayerBits left = merged.parts;
-    for (JoinedLayer const& four : square.merged.fours()) {
-        if ((four.parts[0] & ~left[0]) == 0 && four.parts != merged.parts) {
-            MergedLayer part = square.merged.merge(four);
+    for (CoplanarLayers const& quad : square.merged.quads()) {
+        if ((quad.parts[0] & ~left[0]) == 0 && quad.parts != merged.parts) {
+            MergedLayer part = square.merged.merge(quad);
             part.number = merged.number; // as its samples have
             part.ends_before = merged.ends_before;
-            left[0] &= add_joined(part, warp, square) ? ~four.parts[0] : ~std::uint64_t{0};
+            left[0] &= add_merged(part, warp, square) ? ~quad.parts[0] : ~std::uint64_t{0};
         }
     }
     for (std::size_t k = 0; k < max_layers; ++k) {
@@ -210,12 +210,12 @@ void WarpPlan::add_parts(MergedLayer const& merged, FrameletWarp& warp, Square& 
     }
 }
 
-/// What is joined, then what is left of the framelets.
+/// What is merged, then what is left of the framelets.
 void WarpPlan::plan(Square& square, bool outliers, FrameletWarp& warp) {
     square.clear();
     LayerBits alone{};
     for (MergedLayer const& merged : square.merged.merged()) {
-        if (!add_joined(merged, warp, square)) {
+        if (!add_merged(merged, warp, square)) {
             add_parts(merged, warp, square, alone);
         }
     }
@@ -322,7 +322,7 @@ void WarpPlan::add_shown(std::vector<Tile>& tiles) const {
     }
 }
 
-/// A framelet that is not joined has samples of its own, which are in the square's grid too, with other numbers.
+/// A framelet that is not merged has samples of its own, which are in the square's grid too, with other numbers.
 std::optional<GridPart> WarpPlan::grid_part(WarpPatch const& patch) const {
     Square const& square = squares_[patch.square];
     if (auto const place = square.merged.place_in_grid(patch.grid)) {

@@ -13,7 +13,7 @@
 #include "common/framelet/body_motion.h"
 #include "common/held/framelet_cache.h"
 #include "common/warp/framelet_warp.h"
-#include "common/warp/joining/merged_square.h"
+#include "common/warp/merging/merged_square.h"
 #include "common/warp/warp_patch.h"
 
 namespace framelet {
@@ -61,7 +61,7 @@ public:
     /// The samples of a square, among which those of all its patches are.
     MergedSquare& square_grid(std::uint32_t square) { return squares_[square].merged; }
     /// Where a patch, which is not of outliers, has its samples there. Nothing where they are in its own grid alone: there
-    /// they are told from those of another layer, with which they are joined in the square's.
+    /// they are told from those of another layer, with which they are merged in the square's.
     std::optional<GridPart> grid_part(WarpPatch const& patch) const;
     /// The blocks' numbers of patches, all together.
     std::size_t entry_count() const { return entries_.size(); }
@@ -103,7 +103,7 @@ private:
     void set_size(Viewport viewport);
     void set_squares(FrameletCache const& cache);
     static void plan(Square& square, bool outliers, FrameletWarp& warp);
-    static bool add_joined(MergedLayer const& merged, FrameletWarp& warp, Square& square);
+    static bool add_merged(MergedLayer const& merged, FrameletWarp& warp, Square& square);
     static void add_parts(MergedLayer const& merged, FrameletWarp& warp, Square& square, LayerBits& alone);
     bool count_entries(std::size_t most);
     void limit_entries(std::size_t most);
@@ -115,8 +115,8 @@ private:
     std::vector<Known> known_; ///< of these
     std::vector<std::uint32_t> replanned_; ///< those that were planned when the plan was made last
     std::vector<std::uint32_t> occupied_; ///< those with patches
-    struct Joinings;
-    std::unique_ptr<Joinings> joinings_; ///< scratch
+    struct Mergings;
+    std::unique_ptr<Mergings> mergings_; ///< scratch
     Camera display_; ///< of the plan
     bool outliers_ = false; ///< whether outliers are in it
     SceneTime last_jump_ = -INFINITY; ///< of the scene, before what is displayed

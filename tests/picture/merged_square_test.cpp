@@ -1,4 +1,4 @@
-#include "common/warp/joining/merged_square.h"
+#include "common/warp/merging/merged_square.h"
 
 #include <algorithm>
 #include <array>
@@ -60,7 +60,7 @@ TEST(MergedSquare, WhatIsKeptIsWhatIsThere) {
     FrameletCache cache(plane);
     Tile const parent = make_tile(plane.pixel_depth() - 1, 4, 3);
     std::map<std::pair<std::uint32_t, int>, MergedSquare> kept;
-    LayerJoining joining;
+    CoplanarMerging merging;
     std::size_t found = 0;
     for (std::uint64_t number = 1; number < 300; ++number) {
         std::vector<Tile> tiles;
@@ -86,8 +86,8 @@ TEST(MergedSquare, WhatIsKeptIsWhatIsThere) {
             Tile const square = square_over(down >= 0 ? Tile{parent.code << 2 * down} : Tile{parent.code >> -2 * down});
             MergedSquare fresh;
             MergedSquare& own = kept[{square.code, d}];
-            fresh.update(cache, square, d, joining);
-            own.update(cache, square, d, joining);
+            fresh.update(cache, square, d, merging);
+            own.update(cache, square, d, merging);
             found += own.merged().size();
             expect_same(own, fresh);
         }
@@ -100,13 +100,13 @@ TEST(MergedSquare, OnePlaneIsFound) {
     ImagePlane const plane(viewport);
     AnalyticScene scene;
     scene.quads.push_back({{-8, -8, -3}, {16, 0, 4}, {0, 16, 0}, waves(12, 6)});
-    LayerJoining joining;
+    CoplanarMerging merging;
     for (int levels = -1; levels <= finest_levels; ++levels) {
         FrameletPool const pool = filled(scene, front(), levels);
         FrameletCache const& cache = pool.newest();
         int const depth = plane.pixel_depth() + levels;
         MergedSquare square;
-        square.update(cache, make_tile(depth - MergedSquare::most_levels, 0, 0), depth, joining);
+        square.update(cache, make_tile(depth - MergedSquare::most_levels, 0, 0), depth, merging);
         ASSERT_FALSE(square.merged().empty());
         MergedLayer const& merged = square.merged()[0];
         EXPECT_EQ(merged.side, std::min(8 * plane.tile_side(make_tile(depth, 0, 0)), 128));
@@ -118,7 +118,7 @@ TEST(MergedSquare, OnePlaneIsFound) {
     }
 }
 
-/// Every sample of the grid has a number that stands for its own layer or what that is joined to, and no other one's.
+/// Every sample of the grid has a number that stands for its own layer or what that is merged with, and no other one's.
 TEST(MergedSquare, SamplesHaveTheNumberOfTheirLayer) {
     ImagePlane const plane(viewport);
     AnalyticScene scene = room();
@@ -126,8 +126,8 @@ TEST(MergedSquare, SamplesHaveTheNumberOfTheirLayer) {
         scene.quads.push_back({{0.2 + 0.04 * i, 1, 2 + 0.1 * i}, {0.04, 0, 0}, {0, 0.3, 0.1}, waves(2, 2)});
     }
     scene.quads[2].body = 3;
-    LayerJoining joining;
-    int joined = 0, alone = 0, outliers = 0, fours = 0;
+    CoplanarMerging merging;
+    int together = 0, alone = 0, outliers = 0, quads = 0;
     for (int levels = 0; levels <= finest_levels; ++levels) {
         FrameletPool const pool = filled(scene, front(), levels);
         FrameletCache const& cache = pool.newest();
@@ -135,9 +135,9 @@ TEST(MergedSquare, SamplesHaveTheNumberOfTheirLayer) {
         std::vector<Tile> const squares = visible_tiles(plane, depth - MergedSquare::most_levels);
         for (Tile const tile : squares) {
             MergedSquare square;
-            square.update(cache, tile, depth, joining);
+            square.update(cache, tile, depth, merging);
             for (MergedLayer const& merged : square.merged()) {
-                ++(merged.tile == merged.first ? alone : joined);
+                ++(merged.tile == merged.first ? alone : together);
                 int const n = std::min(plane.tile_side(merged.first), framelet_side);
                 for (int y = 0; y < merged.side; ++y) {
                     for (int x = 0; x < merged.side; ++x) {
@@ -166,19 +166,19 @@ TEST(MergedSquare, SamplesHaveTheNumberOfTheirLayer) {
                     }
                 }
             }
-            for (JoinedLayer const& four :
-                 square.fours()) { // shown apart it must not reach for its neighbours' samples
-                MergedLayer const part = square.merge(four);
+            for (CoplanarLayers const& quad :
+                 square.quads()) { // shown apart it must not reach for its neighbours' samples
+                MergedLayer const part = square.merge(quad);
                 EXPECT_EQ(part.tile.code, part.first.code >> 2);
                 EXPECT_EQ(part.layer.first_column, 0);
                 EXPECT_EQ(part.layer.last_row, part.side - 1);
-                ++fours;
+                ++quads;
             }
             outliers += static_cast<int>(std::ranges::count_if(square.children(), &MergedSquare::Child::has_outliers));
         }
     }
-    EXPECT_GT(joined, 20);
-    EXPECT_GT(fours, 20);
+    EXPECT_GT(together, 20);
+    EXPECT_GT(quads, 20);
     EXPECT_GT(outliers, 0);
     EXPECT_GT(alone, 0);
 }

@@ -1,4 +1,4 @@
-#include "common/warp/joining/merged_square.h"
+#include "common/warp/merging/merged_square.h"
 
 #include <algorithm>
 #include <bit>
@@ -33,7 +33,7 @@ std::uint32_t number_of(std::size_t place, std::size_t layer) {
 
 } // namespace
 
-void MergedSquare::update(FrameletCache const& cache, Tile square, int depth, LayerJoining& joining) {
+void MergedSquare::update(FrameletCache const& cache, Tile square, int depth, CoplanarMerging& merging) {
     square_ = square;
     depth_ = depth;
     SquareVersions const& versions = cache.versions(depth, square.column(), square.row());
@@ -41,8 +41,8 @@ void MergedSquare::update(FrameletCache const& cache, Tile square, int depth, La
     versions_ = versions;
     if (changed != 0) {
         load(cache, changed);
-        joining.join(*layers_, {child_side_, spacing_});
-        keep(joining);
+        merging.merge(*layers_, {child_side_, spacing_});
+        keep(merging);
     }
 }
 
@@ -113,15 +113,15 @@ bool MergedSquare::set_layers(std::uint64_t places) {
     return true;
 }
 
-/// Framelets that are as they were and joined as they were are written to the grid already.
-void MergedSquare::keep(LayerJoining const& joining) {
-    fours_.assign(joining.fours().begin(), joining.fours().end());
+/// Framelets that are as they were and merged as they were are written to the grid already.
+void MergedSquare::keep(CoplanarMerging const& merging) {
+    quads_.assign(merging.quads().begin(), merging.quads().end());
     merged_.clear();
     std::array<std::array<std::uint8_t, max_layers>, most_children> numbers{};
-    for (JoinedLayer const& joined : joining.joined()) {
-        MergedLayer const& merged = merged_.emplace_back(merge(joined));
+    for (CoplanarLayers const& coplanar : merging.coplanar()) {
+        MergedLayer const& merged = merged_.emplace_back(merge(coplanar));
         for (std::size_t k = 0; k < max_layers; ++k) {
-            for (std::uint64_t left = joined.parts[k]; left != 0; left &= left - 1) {
+            for (std::uint64_t left = coplanar.parts[k]; left != 0; left &= left - 1) {
                 numbers[static_cast<std::size_t>(std::countr_zero(left))][k] = static_cast<std::uint8_t>(merged.number);
             }
         }
@@ -142,7 +142,7 @@ void MergedSquare::keep(LayerJoining const& joining) {
     find_ends();
 }
 
-/// Of what is joined, from its parts; where of two layers each ends before the other somewhere, neither counts.
+/// Of what is merged, from its parts; where of two layers each ends before the other somewhere, neither counts.
 void MergedSquare::find_ends() {
     auto const has_ends = [](Child const& child) {
         return child.framelet != nullptr &&
@@ -173,26 +173,26 @@ void MergedSquare::find_ends() {
     }
 }
 
-/// The smallest of framelet, four and square that has all of them.
+/// The smallest of framelet, quad and square that has all of them.
 Tile MergedSquare::tile_around(std::array<std::uint64_t, max_layers> const& parts) const {
     std::uint64_t const places = parts[0] | parts[1] | parts[2];
     if (std::has_single_bit(places)) {
         return child_tile(static_cast<std::size_t>(std::countr_zero(places)));
     }
-    std::uint64_t const fours = (places | places >> 16 | places >> 32 | places >> 48) & 0xffffu;
-    if (std::has_single_bit(fours)) {
-        return tile_below(square_, levels() - 1, static_cast<std::size_t>(std::countr_zero(fours)));
+    std::uint64_t const quads = (places | places >> 16 | places >> 32 | places >> 48) & 0xffffu;
+    if (std::has_single_bit(quads)) {
+        return tile_below(square_, levels() - 1, static_cast<std::size_t>(std::countr_zero(quads)));
     }
     return square_;
 }
 
-MergedLayer MergedSquare::merge(JoinedLayer const& joined) const {
+MergedLayer MergedSquare::merge(CoplanarLayers const& coplanar) const {
     MergedLayer out;
     Layer& layer = out.layer.layer;
     bool is_first = true;
     for (std::size_t k = 0; k < max_layers; ++k) {
         SquareLayers::Rows const& rows = layers_->rows(k);
-        for (std::uint64_t left = joined.parts[k]; left != 0; left &= left - 1) {
+        for (std::uint64_t left = coplanar.parts[k]; left != 0; left &= left - 1) {
             auto const place = static_cast<std::size_t>(std::countr_zero(left));
             std::uint32_t const number = number_of(place, k);
             if (is_first) {
@@ -212,10 +212,10 @@ MergedLayer MergedSquare::merge(JoinedLayer const& joined) const {
             out.signature = mix_in(out.signature, layers_->batch(place) * 256 + number);
         }
     }
-    layer.error += static_cast<float>(joined.difference);
-    out.difference = static_cast<float>(joined.difference);
-    out.parts = joined.parts;
-    set_tile(joined, tile_around(joined.parts), out);
+    layer.error += static_cast<float>(coplanar.difference);
+    out.difference = static_cast<float>(coplanar.difference);
+    out.parts = coplanar.parts;
+    set_tile(coplanar, tile_around(coplanar.parts), out);
     return out;
 }
 
@@ -238,24 +238,24 @@ std::uint64_t MergedSquare::occupied_parts(std::array<std::uint64_t, max_layers>
 
 /// What of a layer depends on the tile that it is looked at in. (Samples beyond the tile are not its own, though they
 /// may have its number.)
-void MergedSquare::set_tile(JoinedLayer const& joined, Tile tile, MergedLayer& out) const {
+void MergedSquare::set_tile(CoplanarLayers const& coplanar, Tile tile, MergedLayer& out) const {
     int const down = tile.depth() - square_.depth();
     out.tile = tile;
-    out.occupied = occupied_parts(joined.parts, tile);
+    out.occupied = occupied_parts(coplanar.parts, tile);
     out.side = side_ >> down;
     out.stride = side_;
     int const column = static_cast<int>(tile.column() - (square_.column() << down)) * out.side;
     int const row = static_cast<int>(tile.row() - (square_.row() << down)) * out.side;
     out.grid = grid_.data() + row * side_ + column;
     HeldLayer& held = out.layer;
-    held.layer.at = static_cast<float>(joined.plane(spacing_ * column, spacing_ * row));
-    held.layer.dx = static_cast<float>(joined.plane.dx);
-    held.layer.dy = static_cast<float>(joined.plane.dy);
+    held.layer.at = static_cast<float>(coplanar.plane(spacing_ * column, spacing_ * row));
+    held.layer.dx = static_cast<float>(coplanar.plane.dx);
+    held.layer.dy = static_cast<float>(coplanar.plane.dy);
     double const samples = 1 / spacing_; // a pixel: a power of two
-    held.first_column = static_cast<std::int8_t>(static_cast<int>(samples * joined.extent.left) - column);
-    held.first_row = static_cast<std::int8_t>(static_cast<int>(samples * joined.extent.top) - row);
-    held.last_column = static_cast<std::int8_t>(static_cast<int>(samples * joined.extent.right) - 1 - column);
-    held.last_row = static_cast<std::int8_t>(static_cast<int>(samples * joined.extent.bottom) - 1 - row);
+    held.first_column = static_cast<std::int8_t>(static_cast<int>(samples * coplanar.extent.left) - column);
+    held.first_row = static_cast<std::int8_t>(static_cast<int>(samples * coplanar.extent.top) - row);
+    held.last_column = static_cast<std::int8_t>(static_cast<int>(samples * coplanar.extent.right) - 1 - column);
+    held.last_row = static_cast<std::int8_t>(static_cast<int>(samples * coplanar.extent.bottom) - 1 - row);
 }
 
 std::optional<MergedSquare::GridPlace> MergedSquare::place_in_grid(PackedSample const* sample) const {
@@ -279,7 +279,7 @@ std::size_t MergedSquare::offset_of(std::size_t place) const {
            (morton_y(part) * static_cast<std::uint32_t>(side_) + morton_x(part));
 }
 
-/// The child's samples to the grid, with the numbers of what they are joined to.
+/// The child's samples to the grid, with the numbers of what they are merged with.
 void MergedSquare::write(Child const& child, PackedSample* to) const {
     switch (child_side_) {
     case 4:

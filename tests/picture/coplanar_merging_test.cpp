@@ -1,4 +1,4 @@
-#include "common/warp/joining/layer_joining.h"
+#include "common/warp/merging/coplanar_merging.h"
 
 #include <algorithm>
 #include <bit>
@@ -17,7 +17,7 @@ namespace {
 struct TestLayer {
     HeldLayer held;
     std::uint32_t part = 0, view = 0;
-    std::size_t layer = 0; ///< set by `joined`
+    std::size_t layer = 0; ///< set by `coplanar`
 };
 
 /// `plane`: from the square's corner on.
@@ -45,16 +45,16 @@ std::uint64_t bit_of(std::uint32_t part) {
     return std::uint64_t{1} << SquareLayers::place_of(part);
 }
 
-bool is_part(JoinedLayer const& joined, TestLayer const& layer) {
-    return (joined.parts[layer.layer] & bit_of(layer.part)) != 0;
+bool is_part(CoplanarLayers const& coplanar, TestLayer const& layer) {
+    return (coplanar.parts[layer.layer] & bit_of(layer.part)) != 0;
 }
 
-int part_count(JoinedLayer const& joined) {
-    return std::popcount(joined.parts[0]) + std::popcount(joined.parts[1]) + std::popcount(joined.parts[2]);
+int part_count(CoplanarLayers const& coplanar) {
+    return std::popcount(coplanar.parts[0]) + std::popcount(coplanar.parts[1]) + std::popcount(coplanar.parts[2]);
 }
 
 /// Layers of one part come one after the other.
-LayerJoining joined(std::vector<TestLayer>& layers) {
+CoplanarMerging merging_of(std::vector<TestLayer>& layers) {
     SquareLayers square;
     HeldShape shape;
     for (std::size_t i = 0; i < layers.size(); ++i) {
@@ -64,16 +64,16 @@ LayerJoining joined(std::vector<TestLayer>& layers) {
         shape.layers[layers[i].layer] = layers[i].held;
         EXPECT_TRUE(square.set(SquareLayers::place_of(layers[i].part), layers[i].view, 1, shape));
     }
-    LayerJoining out;
-    out.join(square, {});
+    CoplanarMerging out;
+    out.merge(square, {});
     return out;
 }
 
 /// Those of more than one.
-std::vector<JoinedLayer> several(LayerJoining const& joining) {
-    std::vector<JoinedLayer> out;
-    std::ranges::copy_if(joining.joined(), std::back_inserter(out),
-                         [](JoinedLayer const& layer) { return part_count(layer) > 1; });
+std::vector<CoplanarLayers> several(CoplanarMerging const& merging) {
+    std::vector<CoplanarLayers> out;
+    std::ranges::copy_if(merging.coplanar(), std::back_inserter(out),
+                         [](CoplanarLayers const& layer) { return part_count(layer) > 1; });
     return out;
 }
 
@@ -143,16 +143,16 @@ TEST(PlaneFit, PiecesKnowHowFarAPlaneIs) {
     }
 }
 
-TEST(LayerJoining, TwoPlanesInEveryFrameletAreTwo) {
+TEST(CoplanarMerging, TwoPlanesInEveryFrameletAreTwo) {
     std::vector<TestLayer> layers;
     for (std::uint32_t part = 0; part < 64; ++part) {
         layers.push_back(layer_at({0.5, 1e-4, 0}, part));
         layers.push_back(layer_at({0.2, 0, -1e-4}, part));
     }
-    LayerJoining const joining = joined(layers);
-    ASSERT_EQ(joining.joined().size(), 2u);
+    CoplanarMerging const merging = merging_of(layers);
+    ASSERT_EQ(merging.coplanar().size(), 2u);
     for (std::size_t i = 0; i < 2; ++i) {
-        JoinedLayer const& layer = joining.joined()[i];
+        CoplanarLayers const& layer = merging.coplanar()[i];
         EXPECT_NEAR(layer.plane.at, i == 0 ? 0.5 : 0.2, 1e-7);
         EXPECT_EQ(layer.parts[i], ~std::uint64_t{0});
         EXPECT_EQ(layer.parts[1 - i], 0u);
@@ -164,7 +164,7 @@ TEST(LayerJoining, TwoPlanesInEveryFrameletAreTwo) {
     }
 }
 
-TEST(LayerJoining, OnlyOfOneViewBodyAndVelocity) {
+TEST(CoplanarMerging, OnlyOfOneViewBodyAndVelocity) {
     for (int kind = 0; kind < 4; ++kind) {
         std::vector<TestLayer> layers;
         for (std::uint32_t part = 0; part < 4; ++part) {
@@ -175,21 +175,21 @@ TEST(LayerJoining, OnlyOfOneViewBodyAndVelocity) {
             layer.held.layer.velocity = Vec3(kind == 3 && other ? 7.0f : 0.0f);
             layers.push_back(layer);
         }
-        LayerJoining const joining = joined(layers);
-        EXPECT_EQ(joining.joined().size(), kind == 0 ? 1u : 2u);
-        EXPECT_EQ(is_part(joining.joined()[0], layers[1]), kind == 0);
-        EXPECT_TRUE(is_part(joining.joined()[0], layers[2]));
+        CoplanarMerging const merging = merging_of(layers);
+        EXPECT_EQ(merging.coplanar().size(), kind == 0 ? 1u : 2u);
+        EXPECT_EQ(is_part(merging.coplanar()[0], layers[1]), kind == 0);
+        EXPECT_TRUE(is_part(merging.coplanar()[0], layers[2]));
     }
 }
 
-/// Whatever is joined is as near to all layers it was joined of as it says, and each layer is in one.
-TEST(LayerJoining, DifferencesAreBounds) {
+/// Whatever is merged is as near to all layers it was merged from as it says, and each layer is in one.
+TEST(CoplanarMerging, DifferencesAreBounds) {
     std::mt19937 random(11);
     std::normal_distribution<double> normal;
-    int of_fours = 0, of_layers = 0, alone = 0;
-    std::ptrdiff_t fours = 0;
+    int of_quads = 0, of_layers = 0, alone = 0;
+    std::ptrdiff_t quads = 0;
     for (int round = 0; round < 200; ++round) {
-        int const of_each = 1 + round / 4 % 2; // fours of framelets with one layer each are joined by themselves
+        int const of_each = 1 + round / 4 % 2; // quads of framelets with one layer each are merged by themselves
         std::vector<TestLayer> layers;
         for (std::uint32_t part = 0; part < 64; ++part) {
             for (int i = 0; i < of_each; ++i) {
@@ -203,11 +203,11 @@ TEST(LayerJoining, DifferencesAreBounds) {
                 }
             }
         }
-        LayerJoining const joining = joined(layers);
+        CoplanarMerging const merging = merging_of(layers);
         int parts = 0;
-        for (JoinedLayer const& found : joining.joined()) {
+        for (CoplanarLayers const& found : merging.coplanar()) {
             parts += part_count(found);
-            (part_count(found) == 1 ? alone : of_each == 1 ? of_fours : of_layers) += 1;
+            (part_count(found) == 1 ? alone : of_each == 1 ? of_quads : of_layers) += 1;
             PlaneExtent extent;
             bool is_first = true;
             for (TestLayer const& layer : layers) {
@@ -215,7 +215,7 @@ TEST(LayerJoining, DifferencesAreBounds) {
                     PlanePiece const piece = piece_of(layer);
                     double const off = largest_difference(piece, found.plane);
                     EXPECT_LE(off, found.difference + 1e-12);
-                    EXPECT_LE(off, 2.002e-3 * least_value(found.plane, piece)); // a four's share is of the four's plane
+                    EXPECT_LE(off, 2.002e-3 * least_value(found.plane, piece)); // a quad's share is of the quad's plane
                     extent = is_first ? piece.extent() : united(extent, piece.extent());
                     is_first = false;
                 }
@@ -226,37 +226,37 @@ TEST(LayerJoining, DifferencesAreBounds) {
             EXPECT_EQ(extent.bottom, found.extent.bottom);
         }
         EXPECT_EQ(static_cast<std::size_t>(parts), layers.size());
-        for (JoinedLayer const& four : joining.fours()) {
-            EXPECT_EQ(part_count(four), 4);
+        for (CoplanarLayers const& quad : merging.quads()) {
+            EXPECT_EQ(part_count(quad), 4);
             for (TestLayer const& layer : layers) {
-                if (is_part(four, layer)) {
-                    EXPECT_LE(largest_difference(piece_of(layer), four.plane), four.difference + 1e-12);
+                if (is_part(quad, layer)) {
+                    EXPECT_LE(largest_difference(piece_of(layer), quad.plane), quad.difference + 1e-12);
                 }
             }
-            fours += std::ranges::count_if(
-                joining.joined(), [&](JoinedLayer const& found) { return (four.parts[0] & ~found.parts[0]) == 0; });
+            quads += std::ranges::count_if(
+                merging.coplanar(), [&](CoplanarLayers const& found) { return (quad.parts[0] & ~found.parts[0]) == 0; });
         }
-        fours -= static_cast<std::ptrdiff_t>(joining.fours().size()); // each is in one
+        quads -= static_cast<std::ptrdiff_t>(merging.quads().size()); // each is in one
         for (TestLayer const& layer : layers) {
-            EXPECT_EQ(std::ranges::count_if(joining.joined(),
-                                            [&](JoinedLayer const& found) { return is_part(found, layer); }),
+            EXPECT_EQ(std::ranges::count_if(merging.coplanar(),
+                                            [&](CoplanarLayers const& found) { return is_part(found, layer); }),
                       1);
         }
     }
-    EXPECT_EQ(fours, 0);
-    EXPECT_GT(of_fours, 100);
+    EXPECT_EQ(quads, 0);
+    EXPECT_GT(of_quads, 100);
     EXPECT_GT(of_layers, 100);
     EXPECT_GT(alone, 20);
 }
 
-TEST(LayerJoining, WhatIsNoNumberStaysAlone) {
+TEST(CoplanarMerging, WhatIsNoNumberStaysAlone) {
     for (int kind = 0; kind < 2; ++kind) {
         std::vector<TestLayer> layers;
         for (std::uint32_t part = 0; part < 8; ++part) {
             layers.push_back(
                 layer_at({kind == 0 && part == 2 ? NAN : 0.5, kind == 1 && part == 2 ? NAN : 0.0, 0}, part));
         }
-        std::vector<JoinedLayer> const found = several(joined(layers));
+        std::vector<CoplanarLayers> const found = several(merging_of(layers));
         ASSERT_EQ(found.size(), 1u);
         EXPECT_FALSE(is_part(found[0], layers[2]));
         EXPECT_EQ(part_count(found[0]), 7);
@@ -265,36 +265,36 @@ TEST(LayerJoining, WhatIsNoNumberStaysAlone) {
 }
 
 /// What is infinitely far is of one plane too.
-TEST(LayerJoining, TheSkyIsOne) {
+TEST(CoplanarMerging, TheSkyIsOne) {
     std::vector<TestLayer> layers;
     for (std::uint32_t part = 0; part < 64; ++part) {
         layers.push_back(layer_at({0, 0, 0}, part));
     }
-    LayerJoining const joining = joined(layers);
-    ASSERT_EQ(joining.joined().size(), 1u);
-    EXPECT_EQ(joining.joined()[0].difference, 0);
+    CoplanarMerging const merging = merging_of(layers);
+    ASSERT_EQ(merging.coplanar().size(), 1u);
+    EXPECT_EQ(merging.coplanar()[0].difference, 0);
 }
 
 /// Far apart from each other two cost less than what holds both.
-TEST(LayerJoining, OnlyWhereThatIsCheaper) {
+TEST(CoplanarMerging, OnlyWhereThatIsCheaper) {
     std::vector<TestLayer> layers{layer_at({0.5, 0, 0}, 0), layer_at({0.5, 0, 0}, 63)};
-    EXPECT_TRUE(several(joined(layers)).empty());
+    EXPECT_TRUE(several(merging_of(layers)).empty());
     std::vector<TestLayer> beside{layer_at({0.5, 0, 0}, 0), layer_at({0.5, 0, 0}, 1)};
-    EXPECT_EQ(several(joined(beside)).size(), 1u);
+    EXPECT_EQ(several(merging_of(beside)).size(), 1u);
 }
 
 /// A column of framelets grows piece by piece, past what is of another plane.
-TEST(LayerJoining, WhatIsNearIsAddedUntilNothingIs) {
+TEST(CoplanarMerging, WhatIsNearIsAddedUntilNothingIs) {
     std::vector<TestLayer> layers;
     for (std::uint32_t row = 0; row < 8; ++row) {
         std::uint32_t const part = morton_index(3, row);
         layers.push_back(layer_at({0.2, 0, 1e-4}, part));
         layers.push_back(layer_at({0.5, 0, 0}, part));
     }
-    LayerJoining const joining = joined(layers);
-    ASSERT_EQ(joining.joined().size(), 2u);
-    EXPECT_EQ(part_count(joining.joined()[0]), 8);
-    EXPECT_EQ(part_count(joining.joined()[1]), 8);
+    CoplanarMerging const merging = merging_of(layers);
+    ASSERT_EQ(merging.coplanar().size(), 2u);
+    EXPECT_EQ(part_count(merging.coplanar()[0]), 8);
+    EXPECT_EQ(part_count(merging.coplanar()[1]), 8);
 }
 
 TEST(SquareLayers, MotionsAreNumbered) {

@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "common/simd/lanes.h"
-#include "common/warp/joining/plane_fit.h"
+#include "common/warp/merging/plane_fit.h"
 
 namespace framelet {
 

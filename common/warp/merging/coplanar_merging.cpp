@@ -1,4 +1,4 @@
-#include "common/warp/joining/layer_joining.h"
+#include "common/warp/merging/coplanar_merging.h"
 
 #include "common/morton.h"
 
@@ -20,7 +20,7 @@ constexpr double hopeless = 2;
 /// So many times what is near is not of the plane until no more is looked for.
 constexpr int most_failures = 2;
 
-/// The framelets of a four.
+/// The framelets of a quad.
 constexpr std::uint64_t quarters = 0x0001000100010001u;
 
 /// What it costs to show what lies there, in pixels: blocks and lanes reach beyond it.
@@ -79,9 +79,9 @@ Number difference_in_middle(PieceOf<Number> const& of, PieceOf<Number> const& at
 } // namespace
 
 /// Framelets of one layer each first, four at a time; then whatever there is.
-void LayerJoining::join(SquareLayers const& layers, SampleGrid const& grid) {
-    joined_.clear();
-    fours_.clear();
+void CoplanarMerging::merge(SquareLayers const& layers, SampleGrid const& grid) {
+    coplanar_.clear();
+    quads_.clear();
     open_count_ = 0;
     std::uint64_t several = 0;
     for (std::size_t k = 1; k < max_layers; ++k) {
@@ -90,11 +90,11 @@ void LayerJoining::join(SquareLayers const& layers, SampleGrid const& grid) {
     std::uint64_t const one = layers.rows(0).held & ~several;
     std::uint64_t left = layers.rows(0).held;
     load(layers, 0, grid);
-    left &= ~join_fours(one & one >> 16 & one >> 32 & one >> 48 & 0xffffu);
-    four_count_ = open_count_;
-    for (std::size_t i = 0; i < four_count_; ++i) {
+    left &= ~merge_quads(one & one >> 16 & one >> 32 & one >> 48 & 0xffffu);
+    quad_count_ = open_count_;
+    for (std::size_t i = 0; i < quad_count_; ++i) {
         PlanePiece const own = open_.piece(i);
-        fours_.push_back({own.plane(), own.extent(), difference_[i], {quarters << place_[i]}});
+        quads_.push_back({own.plane(), own.extent(), difference_[i], {quarters << place_[i]}});
     }
     for (std::size_t k = 0; k < max_layers; ++k) {
         if (k > 0) {
@@ -110,12 +110,12 @@ void LayerJoining::join(SquareLayers const& layers, SampleGrid const& grid) {
     for (Bits open = Bits::first(open_count_); open.any();) {
         Group const group = grow(open.lowest(), open);
         open = open.without(group.members);
-        joined_.push_back(layer_of(group));
+        coplanar_.push_back(layer_of(group));
     }
 }
 
 /// One layer of each framelet.
-void LayerJoining::load(SquareLayers const& layers, std::size_t layer, SampleGrid const& grid) {
+void CoplanarMerging::load(SquareLayers const& layers, std::size_t layer, SampleGrid const& grid) {
     SquareLayers::Rows const& from = layers.rows(layer);
     double const tile = grid.side * grid.spacing; // pixels
     for (std::size_t i = 0; i < SquareLayers::places; i += wide_doubles) {
@@ -140,11 +140,11 @@ void LayerJoining::load(SquareLayers const& layers, std::size_t layer, SampleGri
     }
 }
 
-/// Of what is loaded, a lane for each four, those that are `complete`. Returns a bit for each framelet of those that
+/// Of what is loaded, a lane for each quad, those that are `complete`. Returns a bit for each framelet of those that
 /// one plane is near enough to; these are open then.
-std::uint64_t LayerJoining::join_fours(std::uint64_t complete) {
+std::uint64_t CoplanarMerging::merge_quads(std::uint64_t complete) {
     std::uint64_t out = 0;
-    for (std::size_t first = 0; first < SquareLayers::most_fours; first += wide_doubles) {
+    for (std::size_t first = 0; first < SquareLayers::most_quads; first += wide_doubles) {
         unsigned const wanted = static_cast<unsigned>(complete >> first) & ((1u << wide_doubles) - 1);
         if (wanted == 0) {
             continue;
@@ -155,7 +155,7 @@ std::uint64_t LayerJoining::join_fours(std::uint64_t complete) {
         Lanes const motion = loaded_.load_motion(first);
         WideLongs is_one = lanes_of(wanted);
         for (std::size_t k = 0; k < parts.size(); ++k) {
-            std::size_t const i = SquareLayers::most_fours * k + first;
+            std::size_t const i = SquareLayers::most_quads * k + first;
             parts[k] = loaded_.load(i);
             sums += sums_over(parts[k]);
             cost_of_parts += showing_cost(parts[k].half_width, parts[k].half_height);
@@ -177,14 +177,14 @@ std::uint64_t LayerJoining::join_fours(std::uint64_t complete) {
         unsigned const found = bits_of(is_one);
         out |= std::uint64_t{found} << first;
         // All of them, then those that are.
-        PieceRows<wide_doubles> fours;
-        fours.store(piece_of(plane, extent), motion, 0);
+        PieceRows<wide_doubles> quads;
+        quads.store(piece_of(plane, extent), motion, 0);
         std::array<double, wide_doubles> shares, differences;
         store_lanes(share, shares.data());
         store_lanes(difference, differences.data());
         for (unsigned left = found; left != 0; left &= left - 1) {
             auto const lane = static_cast<std::size_t>(std::countr_zero(left));
-            open_.copy(fours, lane, open_count_);
+            open_.copy(quads, lane, open_count_);
             open(shares[lane], differences[lane], first + lane, 0);
         }
     }
@@ -192,7 +192,7 @@ std::uint64_t LayerJoining::join_fours(std::uint64_t complete) {
 }
 
 /// What was last copied to the rows.
-void LayerJoining::open(double share, double difference, std::size_t place, std::size_t layer) {
+void CoplanarMerging::open(double share, double difference, std::size_t place, std::size_t layer) {
     share_[open_count_] = share;
     difference_[open_count_] = difference;
     place_[open_count_] = static_cast<std::uint8_t>(place);
@@ -200,18 +200,18 @@ void LayerJoining::open(double share, double difference, std::size_t place, std:
     ++open_count_;
 }
 
-LayerJoining::Group LayerJoining::alone(std::size_t seed) const {
+CoplanarMerging::Group CoplanarMerging::alone(std::size_t seed) const {
     PlanePiece const own = open_.piece(seed);
     double const cost = showing_cost(own.half_width, own.half_height);
     return {Bits::only(seed), sums_over(own), own.plane(), own.extent(), difference_[seed], cost, cost};
 }
 
-/// What can be joined to one of the `open`: all that may be of its plane at once, else what is near, and near to that,
+/// What can be merged with one of the `open`: all that may be of its plane at once, else what is near, and near to that,
 /// and then all once more. (Around a single layer too little of what is far is of its plane to begin with all.)
-LayerJoining::Group LayerJoining::grow(std::size_t seed, Bits const& open) const {
+CoplanarMerging::Group CoplanarMerging::grow(std::size_t seed, Bits const& open) const {
     Group group = alone(seed);
     Bits rest = open.without(group.members);
-    bool near = seed >= four_count_;
+    bool near = seed >= quad_count_;
     bool has_grown = false; // since all were tried
     for (int failures = 0; failures < most_failures && rest.any();) {
         Bits const some = find(seed, group, rest, near);
@@ -230,9 +230,9 @@ LayerJoining::Group LayerJoining::grow(std::size_t seed, Bits const& open) const
     return group;
 }
 
-/// Adds `some` to the group, or those of them that agree, or the first one of those that are `near`. What is joined, or
+/// Adds `some` to the group, or those of them that agree, or the first one of those that are `near`. What is merged, or
 /// near and not of the plane, leaves `rest`.
-bool LayerJoining::extend(Bits some, bool near, Group& group, Bits& rest) const {
+bool CoplanarMerging::extend(Bits some, bool near, Group& group, Bits& rest) const {
     for (int i = 0; i < 3 && some.any(); ++i) {
         Group extended = group;
         add(some, extended);
@@ -261,7 +261,7 @@ bool LayerJoining::extend(Bits some, bool near, Group& group, Bits& rest) const 
 
 /// Those of the `open` that are of the seed's motion and may be of the group's plane; `near`: and with each of which
 /// alone it would be cheaper to show.
-LayerJoining::Bits LayerJoining::find(std::size_t seed, Group const& group, Bits const& open, bool near) const {
+CoplanarMerging::Bits CoplanarMerging::find(std::size_t seed, Group const& group, Bits const& open, bool near) const {
     Bits out;
     AffineOf<Lanes> const plane = all_of(group.plane);
     ExtentOf<Lanes> const extent = all_of(group.extent);
@@ -287,7 +287,7 @@ LayerJoining::Bits LayerJoining::find(std::size_t seed, Group const& group, Bits
 }
 
 /// Without the fit, which is not needed where all together cost more.
-void LayerJoining::add(Bits const& added, Group& group) const {
+void CoplanarMerging::add(Bits const& added, Group& group) const {
     constexpr double far = 1e30;
     ExtentOf<Lanes> const nothing{all_of(far), all_of(far), all_of(-far), all_of(-far)};
     ExtentOf<Lanes> extent = nothing;
@@ -319,7 +319,7 @@ void LayerJoining::add(Bits const& added, Group& group) const {
 }
 
 /// Sets its plane. Returns those that it is near enough to.
-LayerJoining::Bits LayerJoining::fit(Group& group) const {
+CoplanarMerging::Bits CoplanarMerging::fit(Group& group) const {
     group.plane = fit_plane(group.sums);
     AffineOf<Lanes> const plane = all_of(group.plane);
     Lanes difference{};
@@ -339,10 +339,10 @@ LayerJoining::Bits LayerJoining::fit(Group& group) const {
     return out;
 }
 
-JoinedLayer LayerJoining::layer_of(Group const& group) const {
-    JoinedLayer out{group.plane, group.extent, group.difference, {}};
+CoplanarLayers CoplanarMerging::layer_of(Group const& group) const {
+    CoplanarLayers out{group.plane, group.extent, group.difference, {}};
     group.members.for_each(
-        [&](std::size_t i) { out.parts[layer_[i]] |= (i < four_count_ ? quarters : std::uint64_t{1}) << place_[i]; });
+        [&](std::size_t i) { out.parts[layer_[i]] |= (i < quad_count_ ? quarters : std::uint64_t{1}) << place_[i]; });
     return out;
 }
 

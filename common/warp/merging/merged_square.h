@@ -1,6 +1,6 @@
 // Neighbouring framelets as one where their layers are about one plane: each one's rim costs what its middle costs when
 // they move, and those finer than pixels are hardly more than rim. In: what is held in a square of 8x8 tiles. Out: its
-// samples in one grid, what of them is joined, and what is left. None of this depends on the camera that shows it, so
+// samples in one grid, what of them is merged, and what is left. None of this depends on the camera that shows it, so
 // it is kept as long as what is held stays.
 #pragma once
 
@@ -14,13 +14,13 @@
 #include <vector>
 
 #include "common/held/framelet_cache.h"
-#include "common/warp/joining/layer_joining.h"
-#include "common/warp/joining/square_layers.h"
+#include "common/warp/merging/coplanar_merging.h"
+#include "common/warp/merging/square_layers.h"
 
 namespace framelet {
 
 /// Layers of neighbouring framelets that are about one plane, as one layer of a larger framelet; or one of one framelet
-/// that is joined to none.
+/// that is merged with none.
 struct MergedLayer {
     Tile tile; ///< that they are below, or that it is
     Tile first; ///< of a framelet of theirs
@@ -58,8 +58,8 @@ public:
     };
 
     /// Brings it up to date. Always of the same cache, square and depth. Looks at what has changed since the last call
-    /// only; allocates where more is held or joined than ever before. `joining` is scratch.
-    void update(FrameletCache const& cache, Tile square, int depth, LayerJoining& joining);
+    /// only; allocates where more is held or merged than ever before. `merging` is scratch.
+    void update(FrameletCache const& cache, Tile square, int depth, CoplanarMerging& merging);
 
     /// What is held of that depth below the square, by place (as in `SquareLayers`); empty where nothing ever was. This
     /// and what follows is valid until the next update.
@@ -71,9 +71,9 @@ public:
     /// Each layer is part of one of these.
     std::span<MergedLayer const> merged() const { return merged_; }
     /// Four framelets each, which are part of one of these.
-    std::span<JoinedLayer const> fours() const { return fours_; }
-    /// One of these, or a four.
-    MergedLayer merge(JoinedLayer const& joined) const;
+    std::span<CoplanarLayers const> quads() const { return quads_; }
+    /// One of these, or a quad.
+    MergedLayer merge(CoplanarLayers const& coplanar) const;
     Tile child_tile(std::size_t place) const;
     /// All samples of the square in rows, `side()` by `side()`; empty where nothing ever was held.
     std::span<PackedSample const> grid() const { return grid_; }
@@ -98,9 +98,9 @@ private:
     void load(FrameletCache const& cache, std::uint64_t changed);
     void make_room(ImagePlane const& plane);
     bool set_layers(std::uint64_t places);
-    void keep(LayerJoining const& joining);
+    void keep(CoplanarMerging const& merging);
     Tile tile_around(std::array<std::uint64_t, max_layers> const& parts) const;
-    void set_tile(JoinedLayer const& joined, Tile tile, MergedLayer& out) const;
+    void set_tile(CoplanarLayers const& coplanar, Tile tile, MergedLayer& out) const;
     std::uint64_t occupied_parts(std::array<std::uint64_t, max_layers> const& parts, Tile tile) const;
     void find_ends();
     std::size_t offset_of(std::size_t place) const;
@@ -117,7 +117,7 @@ private:
     std::vector<Child> children_;
     std::unique_ptr<SquareLayers> layers_;
     std::vector<MergedLayer> merged_;
-    std::vector<JoinedLayer> fours_;
+    std::vector<CoplanarLayers> quads_;
     std::uint64_t with_outliers_ = 0;
     std::vector<PackedSample> grid_; ///< of the square, in rows
     std::uint64_t written_ = 0; ///< a bit for each child

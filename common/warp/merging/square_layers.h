@@ -11,18 +11,18 @@
 
 namespace framelet {
 
-/// Framelets of one depth below a larger tile, by place: four framelets of one parent make a four; place p is quarter
-/// p / 16 of four p % 16, both in Morton order.
+/// Framelets of one depth below a larger tile, by place: four framelets of one parent make a quad; place p is quarter
+/// p / 16 of quad p % 16, both in Morton order.
 class SquareLayers {
 public:
     static constexpr int most_levels = 3; ///< of framelets below the square
-    static constexpr std::size_t most_fours = std::size_t{1} << 2 * (most_levels - 1);
-    static constexpr std::size_t places = 4 * most_fours;
+    static constexpr std::size_t most_quads = std::size_t{1} << 2 * (most_levels - 1);
+    static constexpr std::size_t places = 4 * most_quads;
     static_assert(places == 64); // a bit each
 
     /// Of a part of the square, in Morton order.
-    static constexpr std::size_t place_of(std::size_t part) { return part % 4 * most_fours + part / 4; }
-    static constexpr std::size_t part_at(std::size_t place) { return place % most_fours * 4 + place / most_fours; }
+    static constexpr std::size_t place_of(std::size_t part) { return part % 4 * most_quads + part / 4; }
+    static constexpr std::size_t part_at(std::size_t place) { return place % most_quads * 4 + place / most_quads; }
 
     /// What carries a layer, and from where it was seen.
     struct Motion {

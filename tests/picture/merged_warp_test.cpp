@@ -1,4 +1,4 @@
-// What is joined beside what it was joined of.
+// What is merged beside what it was merged from.
 #include "common/warp/warp_plan.h"
 
 #include <algorithm>
@@ -31,7 +31,7 @@ void alone(FrameletCache const& cache, Camera const& display, SceneTime time, Bo
 
 /// Several planes in a framelet, bodies, what deforms, outliers; all framelets of one batch, each fifth of one, or
 /// planes of neighbours that do not quite meet.
-TEST(JoinedWarp, WhatIsJoinedShowsAsEachFrameletAlone) {
+TEST(MergedWarp, WhatIsMergedShowsAsEachFrameletAlone) {
     ImagePlane const plane(viewport);
     AnalyticScene scene = room();
     BodyTrack track{5, 0, {}};
@@ -52,7 +52,7 @@ TEST(JoinedWarp, WhatIsJoinedShowsAsEachFrameletAlone) {
         for (int kind = 0; kind < 3; ++kind) {
             std::size_t const batches = kind == 1 ? 5 : 1;
             double const rough = kind == 2 ? 4e-4 : 0;
-            // Of neighbours that are not joined only one shows where something farther was painted between them.
+            // Of neighbours that are not merged only one shows where something farther was painted between them.
             float const tolerance = kind == 0 ? 2 : 8;
             FrameletCache cache(plane);
             std::vector<Tile> const tiles = visible_tiles(plane, plane.pixel_depth() + levels);
@@ -78,10 +78,10 @@ TEST(JoinedWarp, WhatIsJoinedShowsAsEachFrameletAlone) {
             int different = 0, shown = 0;
             for (int row = 0; row < plan.rows(); ++row) {
                 for (int column = 0; column < plan.columns(); ++column) {
-                    std::vector<PatchView> joined, views;
-                    joined.clear();
-                    plan.add_block(static_cast<std::size_t>(row * plan.columns() + column), joined);
-                    order(joined);
+                    std::vector<PatchView> merged, views;
+                    merged.clear();
+                    plan.add_block(static_cast<std::size_t>(row * plan.columns() + column), merged);
+                    order(merged);
                     PixelRect const block{16 * column, 16 * row, 16 * column + 16, 16 * row + 16};
                     for (WarpPatch const& patch : each) {
                         if (patch.box.left < block.right && patch.box.right > block.left &&
@@ -91,7 +91,7 @@ TEST(JoinedWarp, WhatIsJoinedShowsAsEachFrameletAlone) {
                     }
                     entries += views.size();
                     WarpedBlock one, other;
-                    paint_warped_block(joined, column, row, viewport, one);
+                    paint_warped_block(merged, column, row, viewport, one);
                     paint_warped_block(views, column, row, viewport, other);
                     for (std::size_t i = 0; i < WarpedBlock::pixels; ++i) {
                         ++shown;
@@ -112,7 +112,7 @@ TEST(JoinedWarp, WhatIsJoinedShowsAsEachFrameletAlone) {
 }
 
 /// Whoever has uploaded the grids of squares finds all samples of all patches there.
-TEST(JoinedWarp, PatchesHaveTheirSamplesInTheGridOfTheirSquare) {
+TEST(MergedWarp, PatchesHaveTheirSamplesInTheGridOfTheirSquare) {
     ImagePlane const plane(viewport);
     AnalyticScene scene = room();
     for (int i = 0; i < 6; ++i) { // more than layers in some framelets
@@ -122,7 +122,7 @@ TEST(JoinedWarp, PatchesHaveTheirSamplesInTheGridOfTheirSquare) {
     std::normal_distribution<double> normal;
     Batch batch = scene.batch(plane, 1, front(), 0, visible_tiles(plane, plane.pixel_depth() + 1));
     for (FrameletShape& shape : batch.shapes) {
-        for (Layer& layer : shape.layers) { // so that some are not joined
+        for (Layer& layer : shape.layers) { // so that some are not merged
             layer.at *= static_cast<float>(1 + 1e-3 * normal(random));
         }
     }

@@ -1,5 +1,5 @@
 // Which layers of neighbouring framelets are about one plane. In: the layers of a square. Out: planes, each with what
-// is joined to it. None of this depends on the camera that shows it.
+// is merged with it. None of this depends on the camera that shows it.
 #pragma once
 
 #include <array>
@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "common/simd/lane_bits.h"
-#include "common/warp/joining/piece_rows.h"
-#include "common/warp/joining/plane_fit.h"
-#include "common/warp/joining/square_layers.h"
+#include "common/warp/merging/piece_rows.h"
+#include "common/warp/merging/plane_fit.h"
+#include "common/warp/merging/square_layers.h"
 
 namespace framelet {
 
@@ -21,33 +21,33 @@ struct SampleGrid {
     double spacing = 1;
 };
 
-/// What layers were joined to, or one that is joined to none.
-struct JoinedLayer {
+/// What layers were merged with, or one that is merged with none.
+struct CoplanarLayers {
     AffinePlane plane; ///< inverse depth, pixels from the square's corner
     PlaneExtent extent; ///< of its samples
-    double difference = 0; ///< at most: of the plane from the layers that it was joined of, 1 / metres
+    double difference = 0; ///< at most: of the plane from the layers that it was merged from, 1 / metres
     /// Bit p of word k: layer k of the framelet at place p.
     std::array<std::uint64_t, max_layers> parts{};
 };
 
-/// Joins layers of a square: what is of one view, body and velocity and of about one plane, where all of that together
+/// Merges layers of a square: what is of one view, body and velocity and of about one plane, where all of that together
 /// is cheaper to show than each by itself. Greedily: what is found first may take what would suit others better.
-class LayerJoining {
+class CoplanarMerging {
 public:
-    void join(SquareLayers const& layers, SampleGrid const& grid);
+    void merge(SquareLayers const& layers, SampleGrid const& grid);
 
     /// Each layer is part of one of these.
-    std::span<JoinedLayer const> joined() const { return joined_; }
-    /// Four framelets of one layer and one parent each, which all are part of one of `joined`.
-    std::span<JoinedLayer const> fours() const { return fours_; }
+    std::span<CoplanarLayers const> coplanar() const { return coplanar_; }
+    /// Four framelets of one layer and one parent each, which all are part of one of `coplanar`.
+    std::span<CoplanarLayers const> quads() const { return quads_; }
 
 private:
-    /// A four takes the place of four layers.
+    /// A quad takes the place of four layers.
     static constexpr std::size_t most_open = max_layers * SquareLayers::places;
 
     using Bits = LaneBits<most_open>; ///< of what is open
 
-    /// What is about to be joined.
+    /// What is about to be merged.
     struct Group {
         Bits members;
         PlaneSums sums;
@@ -59,7 +59,7 @@ private:
     };
 
     void load(SquareLayers const& layers, std::size_t layer, SampleGrid const& grid);
-    std::uint64_t join_fours(std::uint64_t complete);
+    std::uint64_t merge_quads(std::uint64_t complete);
     void open(double share, double difference, std::size_t place, std::size_t layer);
     Group alone(std::size_t seed) const;
     Group grow(std::size_t seed, Bits const& open) const;
@@ -67,17 +67,17 @@ private:
     Bits find(std::size_t seed, Group const& group, Bits const& open, bool near) const;
     void add(Bits const& added, Group& group) const;
     Bits fit(Group& group) const;
-    JoinedLayer layer_of(Group const& group) const;
+    CoplanarLayers layer_of(Group const& group) const;
 
     PieceRows<SquareLayers::places> loaded_; ///< of all framelets: one layer each
-    // What is open: fours first, then layers.
-    std::size_t four_count_ = 0, open_count_ = 0;
+    // What is open: quads first, then layers.
+    std::size_t quad_count_ = 0, open_count_ = 0;
     PieceRows<most_open> open_;
-    /// Of a four from its layers at most, in itself and as a share of its inverse depth there; of layers 0.
+    /// Of a quad from its layers at most, in itself and as a share of its inverse depth there; of layers 0.
     alignas(64) std::array<double, most_open> difference_{}, share_{};
-    std::array<std::uint8_t, most_open> place_{}; ///< or which four
+    std::array<std::uint8_t, most_open> place_{}; ///< or which quad
     std::array<std::uint8_t, most_open> layer_{};
-    std::vector<JoinedLayer> joined_, fours_;
+    std::vector<CoplanarLayers> coplanar_, quads_;
 };
 
 } // namespace framelet

@@ -1,4 +1,4 @@
-#include "common/warp/joining/square_layers.h"
+#include "common/warp/merging/square_layers.h"
 
 #include <algorithm>
 #include <cstring>
