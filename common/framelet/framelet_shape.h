@@ -21,7 +21,7 @@ inline constexpr std::size_t max_layers = 3;
 
 /// How soon the looks of a surface are no longer what they were (a shadow passes, a light changes), where it is: see
 /// `common/framelet/sample_worth.h`. 0: they do not change.
-using FadingCode = std::uint8_t;
+using DecorrelationCode = std::uint8_t;
 
 /// A plane on one body. The inverse of the view depth (1 / metres, 0 at infinity) is affine on the image plane:
 /// at + dx * (x - left) + dy * (y - top), where (x, y) is in pixels and (left, top) the tile's upper left corner.
@@ -54,7 +54,7 @@ struct FrameletShape {
     static constexpr std::uint8_t outlier = max_layers;
 
     std::uint8_t layer_count = 0;
-    FadingCode fading = 0; ///< of what it shows
+    DecorrelationCode decorrelation = 0; ///< of what it shows
     std::array<Layer, max_layers> layers;
     /// In Morton order: which layer the sample lies on, or `outlier`.
     std::array<std::uint8_t, framelet_samples> layer_of{};

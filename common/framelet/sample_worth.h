@@ -32,20 +32,20 @@ inline bool is_astray(float spacing, float misplaced) {
 
 /// By how many pixels a second (of scene time) samples become worse, as if they lay so much farther apart. 0 for code
 /// 0.
-inline float fading_rate(FadingCode code) {
+inline float decorrelation_rate(DecorrelationCode code) {
     return code == 0 ? 0.0f : std::exp2(static_cast<float>(code - 128) / 8);
 }
 
 /// The nearest code of a rate >= 0; 0 for what is not a number.
-inline FadingCode fading_code(float rate) {
+inline DecorrelationCode decorrelation_code(float rate) {
     if (!(rate > std::exp2(-127.0f / 8))) {
         return 0;
     }
-    return static_cast<FadingCode>(std::lround(std::clamp(8 * std::log2(rate) + 128, 1.0f, 255.0f)));
+    return static_cast<DecorrelationCode>(std::lround(std::clamp(8 * std::log2(rate) + 128, 1.0f, 255.0f)));
 }
 
 /// The spacing, pixels, of fresh samples that would be as bad: what detail is missed grows about as the spacing does.
-/// `spacing`: once moved, pixels; `age`: seconds of scene time, of either sign; `rate`: as `fading_rate` has it.
+/// `spacing`: once moved, pixels; `age`: seconds of scene time, of either sign; `rate`: as `decorrelation_rate` has it.
 inline float worn_spacing(float spacing, float age, float rate) {
     return std::max(spacing, finest_shown_spacing) + rate * std::abs(age);
 }

@@ -176,7 +176,7 @@ void hold(DisplayFramelet const& framelet, FrameletShape const* shape, int sampl
     held.layer_count = shape == nullptr ? 1 : shape->layer_count;
     held.side = static_cast<std::uint8_t>(framelet_side / samples_per_pixel);
     held.moves = shape != nullptr && shape->moves();
-    held.fading = shape == nullptr ? FadingCode{0} : shape->fading;
+    held.decorrelation = shape == nullptr ? DecorrelationCode{0} : shape->decorrelation;
     held.layers.fill({});
     held.outliers.clear();
     if (shape != nullptr) {

@@ -52,7 +52,7 @@ struct HeldShape {
     /// Samples along a side of the moving grid: 16, or as many as the tile has pixels if it is finer than they are.
     std::uint8_t side = framelet_side;
     bool moves = false; ///< something in it is on a body or deforms
-    FadingCode fading = 0;
+    DecorrelationCode decorrelation = 0;
     std::vector<HeldOutlier> outliers; ///< in rows of the moving grid
     std::array<PackedSample, framelet_samples / 4> reduced; ///< the moving grid in rows where `side` is not 16
     std::array<HeldLayer, max_layers> layers;

@@ -103,12 +103,12 @@ void FrameletWarp::add(CachedFramelet const& framelet, unsigned parts, std::vect
         patch.ends_before[0] = shape.layers[i].ends_before;
         patch.has_ends = patch.ends_before[0] != 0;
         patch.place = framelet.tile.code * 4 + i;
-        add_layer(framelet.view, shape.layers[i], shape.fading, framelet.moment.batch, patch, patches);
+        add_layer(framelet.view, shape.layers[i], shape.decorrelation, framelet.moment.batch, patch, patches);
     }
     if ((parts >> FrameletShape::outlier & 1) != 0 && !shape.outliers.empty()) {
         common.is_outlier = true;
         common.layer = FrameletShape::outlier;
-        common.worn = worn(framelet.view, shape.fading, static_cast<float>(spacing_), 0);
+        common.worn = worn(framelet.view, shape.decorrelation, static_cast<float>(spacing_), 0);
         common.place = framelet.tile.code * 4 + FrameletShape::outlier;
         common.first_splat = static_cast<std::uint32_t>(splats.size());
         add_splats(framelet, common, splats);
@@ -135,26 +135,26 @@ void FrameletWarp::add(MergedLayer const& merged, std::vector<WarpPatch>& patche
     patch.place = merged.first.code * 4 + merged.first_layer;
     rect_ = cache_.plane().tile_rect(merged.tile);
     spacing_ = static_cast<double>(rect_.width()) / merged.side;
-    add_layer(merged.view, merged.layer, merged.fading, merged.signature, patch, patches);
+    add_layer(merged.view, merged.layer, merged.decorrelation, merged.signature, patch, patches);
 }
 
-void FrameletWarp::add_layer(std::uint32_t view, HeldLayer const& layer, FadingCode fading, std::uint64_t content,
+void FrameletWarp::add_layer(std::uint32_t view, HeldLayer const& layer, DecorrelationCode decorrelation, std::uint64_t content,
                              WarpPatch& patch, std::vector<WarpPatch>& patches) {
     if (layer.last_column < layer.first_column || !is_usable(layer.layer)) {
         return;
     }
     turn_to(view, layer.layer.body, layer.layer.velocity);
     if ((is_still_ ? place_still(layer, patch) : place(layer, patch)) && is_usable(patch)) {
-        rate(view, fading, layer.layer, patch);
+        rate(view, decorrelation, layer.layer, patch);
         patch.signature = signature_of(patch, content, {});
         patches.push_back(patch);
     }
 }
 
 /// As `worn_step` has it.
-float FrameletWarp::worn(std::uint32_t view, FadingCode fading, float spacing, float misplaced) {
+float FrameletWarp::worn(std::uint32_t view, DecorrelationCode decorrelation, float spacing, float misplaced) {
     SceneTime const rendered = cache_.views()[view].scene_time;
-    float const rate = fading_rate(fading);
+    float const rate = decorrelation_rate(decorrelation);
     float const fresh = worn_spacing(spacing, 0, rate) + misplaced;
     float const step = worn_step(worn_spacing(spacing, static_cast<float>(time_ - rendered), rate) + misplaced);
     if (rate > 0) {
@@ -169,7 +169,7 @@ float FrameletWarp::worn(std::uint32_t view, FadingCode fading, float spacing, f
     return rendered < last_jump_ ? behind_all * step : step;
 }
 
-void FrameletWarp::rate(std::uint32_t view, FadingCode fading, Layer const& layer, WarpPatch& patch) {
+void FrameletWarp::rate(std::uint32_t view, DecorrelationCode decorrelation, Layer const& layer, WarpPatch& patch) {
     float const x = 0.5f * static_cast<float>(patch.box.width());
     float const y = 0.5f * static_cast<float>(patch.box.height());
     auto const at = [&](std::size_t i) { return patch.at[i] + x * patch.dx[i] + y * patch.dy[i]; };
@@ -186,7 +186,7 @@ void FrameletWarp::rate(std::uint32_t view, FadingCode fading, Layer const& laye
     // By so many pixels its samples may be shown off their places: their inverse depths are not quite the plane's.
     glm::dvec2 const middle = 0.5 * glm::dvec2(patch.box.left + patch.box.right, patch.box.top + patch.box.bottom);
     float const misplaced = is_still_ ? 0 : layer.error * z * parallax_at(middle);
-    patch.worn = worn(view, fading, spacing, misplaced);
+    patch.worn = worn(view, decorrelation, spacing, misplaced);
     auto const age = static_cast<float>(time_ - cache_.views()[view].scene_time);
     if (drifts(layer.body, layer.velocity)) {
         patch.group = drifting_group(patch.group);

@@ -46,10 +46,10 @@ private:
     void turn_to(std::uint32_t view, BodyNumber body, Vec3 const& velocity);
     glm::dvec2 low(HeldLayer const& layer) const;
     glm::dvec2 high(HeldLayer const& layer) const;
-    void add_layer(std::uint32_t view, HeldLayer const& layer, FadingCode fading, std::uint64_t content,
+    void add_layer(std::uint32_t view, HeldLayer const& layer, DecorrelationCode decorrelation, std::uint64_t content,
                    WarpPatch& patch, std::vector<WarpPatch>& patches);
-    float worn(std::uint32_t view, FadingCode fading, float spacing, float misplaced);
-    void rate(std::uint32_t view, FadingCode fading, Layer const& layer, WarpPatch& patch);
+    float worn(std::uint32_t view, DecorrelationCode decorrelation, float spacing, float misplaced);
+    void rate(std::uint32_t view, DecorrelationCode decorrelation, Layer const& layer, WarpPatch& patch);
     /// Pixels for each 1 / metre, of what is shown at a pixel at depth 1.
     float parallax_at(glm::dvec2 pixel) const;
     bool place_still(HeldLayer const& held, WarpPatch& patch) const;

@@ -36,7 +36,7 @@ constexpr Part parts[] = {
     {"spacing", &FrameletParts::spacing},
     {"price", &FrameletParts::price},
     {"probes", &FrameletParts::probes},
-    {"inspections", &FrameletParts::inspections},
+    {"periodic refresh", &FrameletParts::periodic_refresh},
     {"withholding", &FrameletParts::withholding},
     {"reprojection", &FrameletParts::reprojection},
     {"few moments", &FrameletParts::few_moments},

@@ -36,7 +36,7 @@ struct FrameletParts {
     bool spacing = true; ///< adapts to the picture; else one sample a pixel, finer only when nothing is due
     bool price = true; ///< of a sample, follows the budget; else it is always cheap, and urgency alone decides
     bool probes = true;
-    bool inspections = true;
+    bool periodic_refresh = true;
     bool link_budget = true; ///< rate and batches are bounded by what the link carries
     bool loss = true; ///< where the link asks for it
     bool withholding = true; ///< of what the viewer has already

@@ -30,7 +30,7 @@ void read(ShapeModel& model, std::span<std::uint8_t const> bytes, std::span<Fram
 /// Whether a shape is what a reader makes of another one: its planes are quantised, the rest but for depths of
 /// samples and velocities is the same, and these are within half a unit.
 bool is_quantised(FrameletShape const& got, FrameletShape const& sent, int side_bits) {
-    if (got.layer_count != sent.layer_count || got.fading != sent.fading || got.layer_of != sent.layer_of ||
+    if (got.layer_count != sent.layer_count || got.decorrelation != sent.decorrelation || got.layer_of != sent.layer_of ||
         got.outliers.size() != sent.outliers.size()) {
         return false;
     }

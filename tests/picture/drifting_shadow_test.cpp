@@ -23,7 +23,7 @@ Batch batch_at(AnalyticScene const& scene, std::uint64_t number, Camera const& c
     ImagePlane const plane(viewport);
     Batch batch = scene.batch(plane, number, camera, time, visible_tiles(plane, plane.pixel_depth()));
     for (FrameletShape& shape : batch.shapes) {
-        shape.fading = shape.layer_count > 1 ? 180 : 0;
+        shape.decorrelation = shape.layer_count > 1 ? 180 : 0;
     }
     return batch;
 }

@@ -27,7 +27,7 @@ public:
     FrameletShape shape(bool deforms) {
         FrameletShape shape;
         shape.layer_count = static_cast<std::uint8_t>(integer(0, max_layers));
-        shape.fading = static_cast<FadingCode>(integer(0, 255));
+        shape.decorrelation = static_cast<DecorrelationCode>(integer(0, 255));
         float const scale = std::exp(number(-20, 12));
         for (std::size_t l = 0; l < shape.layer_count; ++l) {
             shape.layers[l] = {scale * number(-1, 1),

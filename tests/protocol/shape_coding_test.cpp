@@ -174,7 +174,7 @@ TEST(ShapeCoding, WhatIsOneLayerCostsNearlyNothing) {
 FrameletShape documented_shape() {
     FrameletShape shape;
     shape.layer_count = 2;
-    shape.fading = 90;
+    shape.decorrelation = 90;
     shape.layers[0] = {0.5f, 0.0078125f, -0.015625f, 0.001f, static_body, Vec3(0)};
     shape.layers[1] = {0.25f, 0, 0, 0, 258, Vec3(0)};
     for (std::uint32_t i = 0; i < framelet_samples; ++i) {
@@ -251,7 +251,7 @@ void expect_sent_again(std::vector<FrameletShape> const& shapes, std::span<std::
     std::vector<FrameletShape> const again = shapes_of(bytes_of(shapes, side_bits), side_bits);
     for (std::size_t i = 0; i < shapes.size(); ++i) {
         EXPECT_EQ(again[i].layer_of, shapes[i].layer_of);
-        EXPECT_EQ(again[i].fading, shapes[i].fading);
+        EXPECT_EQ(again[i].decorrelation, shapes[i].decorrelation);
         EXPECT_EQ(again[i].outliers.size(), shapes[i].outliers.size());
     }
 }

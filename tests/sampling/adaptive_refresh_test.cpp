@@ -138,7 +138,7 @@ TEST(AdaptiveRefresh, AMomentIsHardlyEverRenderedTwice) {
         SyntheticRefresh synthetic(small, moving_texture);
         synthetic.pipelined = pipelined;
         synthetic.moment_length = 0.1;
-        synthetic.input.limits.inspection_share = 0;
+        synthetic.input.limits.periodic_share = 0;
         std::map<Tile, double> rendered; // and of which moment last
         std::size_t tiles = 0, repeated = 0;
         synthetic.run(5, [&] {
@@ -208,10 +208,10 @@ TEST(AdaptiveRefresh, OfAMomentNoTileIsRenderedTwiceWithAsManyRays) {
     EXPECT_TRUE(is_all_finest(synthetic.refresh));
 }
 
-TEST(AdaptiveRefresh, InspectionsAndRefinementsAreNotOfTheSameTiles) {
+TEST(AdaptiveRefresh, PeriodicRefreshesAndRefinementsAreNotOfTheSameTiles) {
     SyntheticRefresh synthetic(small, moving_texture);
     synthetic.moment_length = 0.1;
-    synthetic.input.limits.inspection_share = 0.3;
+    synthetic.input.limits.periodic_share = 0.3;
     synthetic.run(5, [&] {
         std::set<Tile> batch;
         for (Tile const tile : synthetic.tiles) {
@@ -414,7 +414,7 @@ TEST(AdaptiveRefresh, FindsAHairInWhatWasFlat) {
             double period = 0;
             synthetic.run(appears + 8, [&] {
                 Budget const budget{synthetic.input.samples_per_second, synthetic.input.cycle_seconds, 0, 0};
-                period = inspection_period(synthetic.refresh.field(), budget);
+                period = refresh_period(synthetic.refresh.field(), budget);
                 for (DisplayFramelet const& framelet : synthetic.sent) {
                     if (std::count(framelet.red.begin(), framelet.red.end(), 255) > 0) {
                         found = std::min(found, synthetic.input.now - appears);
@@ -428,7 +428,7 @@ TEST(AdaptiveRefresh, FindsAHairInWhatWasFlat) {
     }
 }
 
-TEST(AdaptiveRefresh, EveryPlaceIsInspected) {
+TEST(AdaptiveRefresh, EveryRegionIsRefreshed) {
     for (double const pictures_a_second : {1.0, 4.0, 30.0}) {
         for (std::size_t const batch : {8u, 64u, 1024u}) {
             SyntheticRefresh synthetic({256, 100}, moving_texture);
@@ -437,15 +437,15 @@ TEST(AdaptiveRefresh, EveryPlaceIsInspected) {
             double oldest = 0;
             Budget const budget{synthetic.input.samples_per_second, synthetic.input.cycle_seconds, 0, 0};
             PlaceField const whole{ImagePlane({256, 100})};
-            double const period = inspection_period(whole, budget);
+            double const period = refresh_period(whole, budget);
             synthetic.run(3 * period, [&] {
                 PlaceField const& field = synthetic.refresh.field();
                 for (std::uint32_t const index : field.visible()) {
-                    double const inspected = std::max(field[index].inspected, 0.0);
-                    oldest = std::max(oldest, synthetic.input.now - inspected);
+                    double const refreshed = std::max(field[index].refreshed, 0.0);
+                    oldest = std::max(oldest, synthetic.input.now - refreshed);
                 }
             });
-            std::printf("inspections, %.0f pictures/s, batch %zu: oldest %.2f s, period %.2f\n", pictures_a_second,
+            std::printf("periodic refreshes, %.0f pictures/s, batch %zu: oldest %.2f s, period %.2f\n", pictures_a_second,
                         batch, oldest, period);
             EXPECT_LT(oldest, 2 * period);
         }

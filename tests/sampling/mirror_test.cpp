@@ -166,7 +166,7 @@ TEST(Mirror, TheLeastWornShows) {
     mirror.look(view_at(Vec3(0)), no_motions);
     auto fine = render_pieces(plane, plane.pixel_depth(), wall);
     for (Piece& piece : fine) {
-        piece.fading = 1;
+        piece.decorrelation = 1;
     }
     mirror.add(view_at(Vec3(0), 0).rays, no_motions, fine);
     Vec3 const aside(1e-5f, 0, 0);

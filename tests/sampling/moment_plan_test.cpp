@@ -168,7 +168,7 @@ TEST(MomentPlan, WhatStandsIsRefinedToTheFinestSamplesAndWhatMovesIsNot) {
     };
     EXPECT_EQ(deepest_after([](Piece&) {}, 0), plane.max_depth());
     EXPECT_EQ(deepest_after([](Piece& piece) { piece.moves = true; }, 0), 0);
-    EXPECT_EQ(deepest_after([](Piece& piece) { piece.fading = 1; }, 0), 0);
+    EXPECT_EQ(deepest_after([](Piece& piece) { piece.decorrelation = 1; }, 0), 0);
     float const pixel = 10 * view_at(0).rays.direction_dx.x;
     EXPECT_LT(deepest_after([](Piece&) {}, 20 * pixel), plane.max_depth());
 }

@@ -8,12 +8,12 @@
 namespace framelet {
 namespace {
 
-TEST(Inspections, LookAtEveryPlaceAndTakeNoTileTwice) {
+TEST(PeriodicRefresh, LooksAtEveryRegionAndTakesNoTileTwice) {
     PlaceField const field{ImagePlane({128, 128})};
     int const fine = field.plane().pixel_depth();
     std::vector<Patch> patches{{make_tile(field.depth(), 3, 5), fine}, {Tile{1}.child(1), fine - 1}};
     std::vector<std::uint32_t> scratch;
-    select_inspections(field, 100, {.samples_per_second = 1e9, .cycle_seconds = 1}, scratch, patches);
+    select_periodic_refreshes(field, 100, {.samples_per_second = 1e9, .cycle_seconds = 1}, scratch, patches);
 
     std::vector<Tile> tiles;
     for (Patch const& patch : patches) {

@@ -28,7 +28,7 @@ PlaceField random_field(Viewport viewport, std::mt19937& random) {
         bool const moves = std::uniform_real_distribution<float>(0, 1)(random) < moving;
         place.model.motion = moves ? between(0.1f, 50) : 0;
         place.level = 5;
-        place.rendered = place.checked = place.inspected = 10;
+        place.rendered = place.checked = place.refreshed = 10;
         place.changed = 9;
     }
     return field;
@@ -107,7 +107,7 @@ TEST(Price, SelectionStopsAtTheBudget) {
         PlaceField field = random_field({300, 200}, random);
         for (std::uint32_t const index : field.visible()) {
             field[index].drift = 64 * static_cast<float>(random() % 2);
-            field[index].inspected = static_cast<double>(random() % 10);
+            field[index].refreshed = static_cast<double>(random() % 10);
         }
         double const pixels = 300 * 200;
         Budget const budget{pixels * std::exp2(static_cast<double>(random() % 8)), 0.02f, 0.03f, 0};
@@ -139,10 +139,10 @@ TEST(Price, SelectionStopsAtTheBudget) {
             spent += rated[i].samples;
         }
         std::vector<std::uint32_t> suspects;
-        std::vector<Patch> inspections;
-        select_inspections(field, 12 + inspection_period(field, budget), budget, suspects, inspections);
+        std::vector<Patch> periodic_refreshes;
+        select_periodic_refreshes(field, 12 + refresh_period(field, budget), budget, suspects, periodic_refreshes);
         double looked = 0;
-        for (Patch const& patch : inspections) {
+        for (Patch const& patch : periodic_refreshes) {
             EXPECT_LT(looked, 0.05 * samples);
             EXPECT_EQ(field.level_of(patch.depth), pixel_level);
             looked += framelet_samples * std::ldexp(1.0, 2 * (patch.depth - patch.node.depth()));

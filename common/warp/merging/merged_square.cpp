@@ -208,7 +208,7 @@ MergedLayer MergedSquare::merge(CoplanarLayers const& coplanar) const {
             }
             layer.error = std::max(layer.error, rows.error[place]);
             out.newest_batch = std::max(out.newest_batch, layers_->batch(place));
-            out.fading = std::max(out.fading, children_[place].framelet->shape.fading);
+            out.decorrelation = std::max(out.decorrelation, children_[place].framelet->shape.decorrelation);
             out.signature = mix_in(out.signature, layers_->batch(place) * 256 + number);
         }
     }

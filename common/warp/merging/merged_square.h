@@ -34,7 +34,7 @@ struct MergedLayer {
     std::uint32_t number = 0; ///< that its samples have in the grid, as it were a layer's
     LayerSet ends_before{}; ///< as in `WarpPatch`
     std::uint64_t newest_batch = 0;
-    FadingCode fading = 0; ///< the soonest
+    DecorrelationCode decorrelation = 0; ///< the soonest
     std::uint64_t signature = 0; ///< differs where what is held differs
     /// Bit p of word k: layer k of the framelet at place p.
     std::array<std::uint64_t, max_layers> parts{};

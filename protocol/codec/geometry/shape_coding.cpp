@@ -286,12 +286,12 @@ void ShapeModel::code(Coder& coder, TilePlace const& place, Shape& shape) {
     }
     head_ = static_cast<std::uint8_t>(head);
     bool const has_outliers = head >= outlier_bit;
-    if (!coder.bit(same_fading_, shape.fading == fading_)) {
-        fading_ = static_cast<FadingCode>(fadings_.code(coder, shape.fading));
+    if (!coder.bit(same_decorrelation_, shape.decorrelation == decorrelation_)) {
+        decorrelation_ = static_cast<DecorrelationCode>(decorrelations_.code(coder, shape.decorrelation));
     }
     if constexpr (Coder::reads) {
         shape.layer_count = static_cast<std::uint8_t>(head % outlier_bit);
-        shape.fading = fading_;
+        shape.decorrelation = decorrelation_;
     }
     for (std::size_t l = 0; l < shape.layer_count; ++l) {
         code_layer(coder, place, l, shape.layers[l]);
@@ -318,7 +318,7 @@ void ShapeModel::write(RangeWriter& writer, TilePlace const& place, FrameletShap
 
 void ShapeModel::read(RangeReader& reader, TilePlace const& place, FrameletShape& shape) {
     shape.layers = {};
-    shape.fading = 0;
+    shape.decorrelation = 0;
     shape.layer_count = 0;
     shape.outliers.clear();
     code(reader, place, shape);

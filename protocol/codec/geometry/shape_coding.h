@@ -70,12 +70,12 @@ private:
 
     std::array<CodedLayer, remembered> layers_{}; ///< lately, the newest first
     std::uint8_t head_ = 0;
-    FadingCode fading_ = 0;
+    DecorrelationCode decorrelation_ = 0;
     UnitCode outlier_unit_ = 0;
 
     std::array<AdaptiveTree<3>, 8> heads_; // by the last one
-    AdaptiveBit same_fading_;
-    AdaptiveTree<8> fadings_;
+    AdaptiveBit same_decorrelation_;
+    AdaptiveTree<8> decorrelations_;
     std::array<AdaptiveTree<remembered_bits>, max_layers> sources_;
     AdaptiveNumber<unary> units_;
     std::array<AdaptiveNumber<unary>, 3> planes_; ///< at, dx, dy

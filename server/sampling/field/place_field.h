@@ -41,7 +41,7 @@ struct Place {
     double checked = never; ///< when it was last rendered or probed
     double asked = never; ///< the same, learnt or not
     bool settled = true; ///< false from a change that was seen until two renderings are the same
-    double inspected = never; ///< when all its pixels were last rendered
+    double refreshed = never; ///< when all its pixels were last rendered
     float inverse_depth = 0; ///< mean, 1/metres
     float arriving = 0; ///< the farthest way, pixels, by which the camera's last step brought something here
     float speed = 0; ///< of the camera's motion here, pixels a second, when `model.motion` was learnt

@@ -212,7 +212,7 @@ bool learn_patch(PlaceField& field, Patch const& patch, std::span<PlaceFindings 
         }
         place.checked = now;
         if (level >= pixel_level) {
-            place.inspected = now;
+            place.refreshed = now;
         }
         place.drift = drift_since(place, now);
         if (!known || place.level == level) { // where it is known, what is held is the very picture of then

@@ -16,7 +16,7 @@ namespace framelet {
 struct ResponseLimits {
     int least_level = 0, most_level = sampling_levels - 1; ///< of what is chosen for a place
     float least_price = 1e-12f, most_price = 1e3f;
-    double inspection_share = 0.05; ///< of the samples, for looking at all of the picture now and then
+    double periodic_share = 0.05; ///< of the samples, for looking at all of the picture now and then
     double probe_share = 0.08; ///< likewise, while the scene moves, for looking at a few samples of what seems to stand
     // Of moments, for a viewer that moves what it holds:
     bool mirrors = true; ///< what the viewer shows says what is rendered; else what the places were last

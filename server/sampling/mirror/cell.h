@@ -20,7 +20,7 @@ struct Cell {
     float inverse_depth = -1; ///< of the nearest surface that covers most of it, in its middle, 1 / metres
     float worn = 0; ///< least worn spacing on it, pixels; 0 where nothing shows
     float detail = 0; ///< as of a piece, in this picture's pixels
-    float spacing = 0, fading = 0; ///< of the piece
+    float spacing = 0, decorrelation = 0; ///< of the piece
     std::uint32_t piece = 0; ///< of its moment
     std::uint16_t covered = 0; ///< by anything: a bit for each pixel, row by row
     std::uint8_t moment = 0; ///< slot

@@ -23,7 +23,7 @@ struct Piece {
     /// Energy of the detail between samples a pixel apart: of samples `s` pixels apart it is about s times as much, as
     /// it is of edges, which are most of a picture. Mean squared luma.
     float detail = 0;
-    float fading = 0; ///< pixels of spacing a second: see `common/framelet/sample_worth.h`
+    float decorrelation = 0; ///< pixels of spacing a second: see `common/framelet/sample_worth.h`
     SceneTime scene_time = 0; ///< when it was rendered
     Vec3 velocity{0}; ///< of what deforms, metres a second in the world at its scene time
     BodyNumber body = static_body;
@@ -40,7 +40,7 @@ struct Piece {
 inline constexpr float surface_tolerance = 0.05f;
 
 /// Appends the pieces of a framelet of a scene time and a batch: for each layer, squares of 4 .. 16 pixels or what of
-/// them lies on it; the outliers of a square are split in a near and a far part. `fading` stays 0. All
+/// them lies on it; the outliers of a square are split in a near and a far part. `decorrelation` stays 0. All
 /// numbers are finite where those of the shape are.
 void cut_pieces(Framelet const& rendered, DisplayFramelet const& shown, FrameletShape const& shape,
                 ImagePlane const& plane, SceneTime scene_time, std::uint64_t batch, std::vector<Piece>& pieces);

@@ -101,7 +101,7 @@ ReprojectedPiece reproject(Piece const& piece, BodyTransform const& body, Vec2 s
     reprojected.depth_slope = Vec2(down.y * slope.x - right.y * slope.y, right.x * slope.y - down.x * slope.x) / area;
     reprojected.tolerance = tolerance;
     reprojected.leads = leads(piece.body, piece.velocity, age) && !piece.is_outlier;
-    reprojected.worn = worn_step(worn_spacing(spacing, age, piece.fading) + misplaced);
+    reprojected.worn = worn_step(worn_spacing(spacing, age, piece.decorrelation) + misplaced);
     return reprojected;
 }
 

@@ -196,7 +196,7 @@ void learn_motion(PlaceModel& place, Observation const& seen) {
     constexpr float least_seconds = 1e-4f; // so that rates are finite
     float const seconds = std::max(seen.seconds, least_seconds);
     // A finer band that was not sampled goes with the finest one that was, as it last did; that memory fades.
-    constexpr float fading = 0.25f;
+    constexpr float forgetting = 0.25f;
     std::array<float, sampling_levels> rates{};
     for (std::size_t band = 0; band < rates.size(); ++band) {
         float const before = place.motion * place.pace[band];
@@ -212,7 +212,7 @@ void learn_motion(PlaceModel& place, Observation const& seen) {
         } else if (band > finest) {
             float const doubled = static_cast<float>(1 << (band - finest));
             float const known = place.pace[finest] > 0 ? place.pace[band] / place.pace[finest] : doubled;
-            rates[band] = rates[finest] * (known + fading * (doubled - known));
+            rates[band] = rates[finest] * (known + forgetting * (doubled - known));
         } else {
             rates[band] = before;
         }

@@ -143,7 +143,7 @@ void AdaptiveRefresh::plan_cycle(RefreshInput const& input, RefreshPlan& plan) {
     if (scene_moves_) {
         plan_probes(input.limits.probe_share * samples, plan);
         samples -= probe_cost * static_cast<double>(plan.probes.size());
-        samples -= plan_inspections(input);
+        samples -= plan_periodic_refreshes(input);
     }
     plan_patches(input, samples);
     if (rated_.empty() && samples > 0) {
@@ -158,10 +158,10 @@ void AdaptiveRefresh::plan_cycle(RefreshInput const& input, RefreshPlan& plan) {
 
 /// Before all else of the cycle, so that they are not what is cut off when it takes longer than expected. Returns what
 /// they cost.
-double AdaptiveRefresh::plan_inspections(RefreshInput const& input) {
+double AdaptiveRefresh::plan_periodic_refreshes(RefreshInput const& input) {
     Budget const budget{input.samples_per_second, input.cycle_seconds, input.delivery_seconds, input.bias,
                         input.limits};
-    select_inspections(field_, advanced_, budget, suspects_, cycle_);
+    select_periodic_refreshes(field_, advanced_, budget, suspects_, cycle_);
     double tiles = 0;
     for (Patch const& patch : cycle_) {
         tiles += tile_count(patch);
@@ -244,11 +244,11 @@ void AdaptiveRefresh::append_rated(double samples, double rays) {
     if (!costs_.empty()) {
         mean_bits_ *= mean_cost(rated_, 0.2f);
     }
-    std::size_t const inspections = cycle_.size();
+    std::size_t const periodic_refreshes = cycle_.size();
     auto const append = [&](int rays_per_sample) {
         for (RatedPatch const& entry : rated_) {
             if (entry.rays_per_sample == rays_per_sample) {
-                append_new(entry.patch, inspections, cycle_);
+                append_new(entry.patch, periodic_refreshes, cycle_);
             }
         }
     };

@@ -66,7 +66,7 @@ private:
     void advance(RefreshInput const& input);
     void note_base(Camera const& camera, bool moves_samples, double now);
     void plan_cycle(RefreshInput const& input, RefreshPlan& plan);
-    double plan_inspections(RefreshInput const& input);
+    double plan_periodic_refreshes(RefreshInput const& input);
     void find_costs(RefreshInput const& input);
     void plan_patches(RefreshInput const& input, double samples);
     void append_rated(double samples, double rays);

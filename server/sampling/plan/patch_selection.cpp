@@ -5,7 +5,7 @@
 namespace framelet {
 namespace {
 
-constexpr double least_inspection_period = 2;
+constexpr double least_refresh_period = 2;
 
 struct Gain {
     double error = 0; ///< that refreshing takes away, beyond what is tolerated, summed over pixels
@@ -91,27 +91,27 @@ bool append_new(Patch const& patch, std::size_t count, std::vector<Patch>& patch
     return is_new;
 }
 
-double inspection_period(PlaceField const& field, Budget const& budget) {
+double refresh_period(PlaceField const& field, Budget const& budget) {
     Viewport const viewport = field.plane().viewport();
     double const pixels = static_cast<double>(viewport.width) * viewport.height;
-    return std::max(least_inspection_period, pixels / (budget.limits.inspection_share * budget.samples_per_second));
+    return std::max(least_refresh_period, pixels / (budget.limits.periodic_share * budget.samples_per_second));
 }
 
-void select_inspections(PlaceField const& field, double now, Budget const& budget, std::vector<std::uint32_t>& scratch,
+void select_periodic_refreshes(PlaceField const& field, double now, Budget const& budget, std::vector<std::uint32_t>& scratch,
                         std::vector<Patch>& patches) {
-    double const latest = now - inspection_period(field, budget);
+    double const latest = now - refresh_period(field, budget);
     scratch.clear();
     for (std::uint32_t const index : field.visible()) {
         Place const& place = field[index];
-        if (place.inspected < latest && place.taken.level < pixel_level) {
+        if (place.refreshed < latest && place.taken.level < pixel_level) {
             scratch.push_back(index);
         }
     }
     std::sort(scratch.begin(), scratch.end(), [&field](std::uint32_t a, std::uint32_t b) {
-        return field[a].inspected != field[b].inspected ? field[a].inspected < field[b].inspected : a < b;
+        return field[a].refreshed != field[b].refreshed ? field[a].refreshed < field[b].refreshed : a < b;
     });
     double samples =
-        budget.limits.inspection_share * budget.samples_per_second * static_cast<double>(budget.cycle_seconds);
+        budget.limits.periodic_share * budget.samples_per_second * static_cast<double>(budget.cycle_seconds);
     for (std::uint32_t const index : scratch) {
         if (samples <= 0) {
             return;

@@ -30,11 +30,11 @@ bool append_new(Patch const& patch, std::size_t count, std::vector<Patch>& patch
 
 /// How long a place may go without a look at all of its pixels, seconds: at least two, and so long that looking takes a
 /// twentieth of the samples. It bounds how long anything small can stay unseen.
-double inspection_period(PlaceField const& field, Budget const& budget);
+double refresh_period(PlaceField const& field, Budget const& budget);
 
 /// Appends a patch at one sample a pixel for places that have not been looked at for so long, within their twentieth of
 /// a cycle's samples, those that have waited longest first. `scratch` is overwritten.
-void select_inspections(PlaceField const& field, double now, Budget const& budget, std::vector<std::uint32_t>& scratch,
+void select_periodic_refreshes(PlaceField const& field, double now, Budget const& budget, std::vector<std::uint32_t>& scratch,
                         std::vector<Patch>& patches);
 
 } // namespace framelet

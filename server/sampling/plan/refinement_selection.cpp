@@ -59,7 +59,7 @@ void select_completion(PlaceField const& field, double still_since, bool scene_m
         bool const fine = place.level == sampling_levels - 1 && place.settled;
         bool const taken = place.taken.level == sampling_levels - 1 && place.taken.when >= still_since;
         if (is_finest(place, still_since) || taken ||
-            (scene_moves && fine)) { // while things move, probes and inspections are enough
+            (scene_moves && fine)) { // while things move, probes and periodic_refreshes are enough
             continue;
         }
         Patch const patch = field.patch_of(index, field.plane().max_depth());

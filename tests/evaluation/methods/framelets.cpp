@@ -164,7 +164,7 @@ private:
             limits.least_price = limits.most_price = 1e-6f; // what the first cycle begins with
         }
         limits.probe_share = parts.probes ? limits.probe_share : 0;
-        limits.inspection_share = parts.inspections ? limits.inspection_share : 0;
+        limits.periodic_share = parts.periodic_refresh ? limits.periodic_share : 0;
         limits.mirrors = parts.mirror;
         limits.visibility_share = parts.visibility ? limits.visibility_share : 0;
         limits.plans_together = parts.planned_together;

@@ -65,12 +65,12 @@ bool shows_means(Cell const& cell, bool stands) {
 /// Whether a cell is worth the finest samples: as far as is known it will show the same for a second, in which they
 /// wear by less than what they are finer.
 bool stays(Mirror const& mirror, Cell const& cell) {
-    constexpr float most_fading = 0.25f; // pixels a second
+    constexpr float most_decorrelation = 0.25f; // pixels a second
     if (!mirror.camera_stands() || !cell.is_shown() || !mirror.gives_way(cell) || cell.is_outdated || cell.is_wrong ||
         cell.stale > 0) {
         return false;
     }
-    return !cell.moves && cell.fading < most_fading;
+    return !cell.moves && cell.decorrelation < most_decorrelation;
 }
 
 /// Mean squared error of samples `spacing` pixels apart (worn), of a surface of such `detail` (see `Piece`): what is

@@ -1,4 +1,4 @@
-#include "server/sampling/plan/moment/fading.h"
+#include "server/sampling/plan/moment/decorrelation.h"
 
 #include "server/sampling/plan/moment/moment_plan.h"
 
@@ -10,7 +10,7 @@ constexpr float expected_change = 0.005f;
 
 } // namespace
 
-FadingCode expect_fading(std::span<Piece> pieces, bool camera_stands, bool has_outline) {
+DecorrelationCode expect_decorrelation(std::span<Piece> pieces, bool camera_stands, bool has_outline) {
     float changing = 0, detail = 0;
     for (Piece const& piece : pieces) {
         bool const turns = piece.body != static_body && !piece.rests;
@@ -20,9 +20,9 @@ FadingCode expect_fading(std::span<Piece> pieces, bool camera_stands, bool has_o
         detail += area * piece.detail;
     }
     // Per pixel of spacing, error grows by about so much of the detail.
-    FadingCode const code = fading_code(detail > 0 ? expected_change * changing / (detail * error_growth) : 0);
+    DecorrelationCode const code = decorrelation_code(detail > 0 ? expected_change * changing / (detail * error_growth) : 0);
     for (Piece& piece : pieces) {
-        piece.fading = fading_rate(code);
+        piece.decorrelation = decorrelation_rate(code);
     }
     return code;
 }
