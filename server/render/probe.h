@@ -6,7 +6,7 @@
 namespace framelet {
 
 struct Probe {
-    Vec2 place{0, 0}; ///< pixels
+    Vec2 position{0, 0}; ///< pixels
     float spacing = 1; ///< footprint, pixels
     float luma = 0; ///< when it was rendered: display-encoded, [0, 1]
 };

@@ -9,7 +9,7 @@ std::uint64_t ProbeRenderer::render(RenderScene const& scene, Camera const& came
     places_.clear();
     spacings_.clear();
     for (Probe const& probe : probes) {
-        places_.push_back(probe.place);
+        places_.push_back(probe.position);
         spacings_.push_back(probe.spacing);
     }
     radiance_.resize(probes.size());

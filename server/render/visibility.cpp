@@ -41,7 +41,7 @@ void look(PreparedScene const& scene, ViewRays const& view, Place&& place, LaneF
 } // namespace
 
 std::uint64_t render_visibility(RenderScene const& scene, ViewRays const& view, Viewport viewport,
-                                PlaceGrid const& grid, std::vector<float>& inverse_depth) {
+                                RayGrid const& grid, std::vector<float>& inverse_depth) {
     int const columns = grid.columns(viewport);
     int const rows = grid.rows(viewport);
     inverse_depth.resize(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
@@ -54,7 +54,7 @@ std::uint64_t render_visibility(RenderScene const& scene, ViewRays const& view, 
             auto const row_of = [&](int i) { return std::min(top + i / packet_side, rows - 1); };
             LaneFloats found;
             look(
-                scene.prepared(), view, [&](int i) { return grid.place(column_of(i), row_of(i)); }, found);
+                scene.prepared(), view, [&](int i) { return grid.position(column_of(i), row_of(i)); }, found);
             for (int i = 0; i < lanes; ++i) {
                 inverse_depth[static_cast<std::size_t>(row_of(i)) * static_cast<std::size_t>(columns) +
                               static_cast<std::size_t>(column_of(i))] = found[i];

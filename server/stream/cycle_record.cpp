@@ -5,7 +5,7 @@
 namespace framelet {
 
 void describe(AdaptiveRefresh const& refresh, CycleRecord& record) {
-    PlaceField const& field = refresh.field();
+    RegionField const& field = refresh.field();
     record.cycle = refresh.cycle_count();
     record.price = static_cast<double>(refresh.price());
     record.budget = refresh.cycle_budget();
@@ -17,14 +17,14 @@ void describe(AdaptiveRefresh const& refresh, CycleRecord& record) {
         auto const rays = static_cast<std::size_t>(i < refresh.first_supersampled() ? single_ray : four_rays);
         record.samples_planned += tiles.size() * framelet_samples * rays;
     }
-    record.places_by_level.fill(0);
+    record.regions_by_level.fill(0);
     double error = 0;
     double pixels = 0;
     for (std::uint32_t const index : field.visible()) {
-        Place const& place = field[index];
-        ++record.places_by_level[static_cast<std::size_t>(place.level + 1)];
+        Region const& region = field[index];
+        ++record.regions_by_level[static_cast<std::size_t>(region.level + 1)];
         auto const area = static_cast<double>(field.pixels_of(index));
-        error += area * static_cast<double>(shown_error(place, 0));
+        error += area * static_cast<double>(shown_error(region, 0));
         pixels += area;
     }
     record.mean_shown_error = pixels > 0 ? error / pixels : 0;
@@ -42,7 +42,7 @@ std::string to_json_line(CycleRecord const& record) {
                                       {"framelets_sent", record.framelets_sent},
                                       {"framelets_unchanged", record.framelets_unchanged},
                                       {"probes", record.probes},
-                                      {"places_by_level", record.places_by_level},
+                                      {"regions_by_level", record.regions_by_level},
                                       {"mean_shown_error", record.mean_shown_error},
                                       {"stage_seconds",
                                        {{"plan", record.stage_seconds.plan},

@@ -23,7 +23,7 @@ struct CycleRecord {
     std::uint64_t framelets_sent = 0;
     std::uint64_t framelets_unchanged = 0; ///< rendered, and the viewer had them
     std::uint64_t probes = 0;
-    std::array<std::uint64_t, sampling_levels + 1> places_by_level{}; ///< of what the viewer holds; first: bare
+    std::array<std::uint64_t, sampling_levels + 1> regions_by_level{}; ///< of what the viewer holds; first: bare
     double mean_shown_error = 0; ///< over the viewport's pixels
     struct {
         double plan = 0, render = 0;

@@ -195,7 +195,7 @@ Step FrameletStream::plan_batch(Turn const& turn, ViewState const& present, Pose
     }
     work.figures = {};
     work.figures.is_new_cycle = order.plan.is_new_cycle;
-    work.figures.places = viewer_.refresh.field().visible().size();
+    work.figures.regions = viewer_.refresh.field().visible().size();
     work.figures.framelets = order.plan.tiles.size();
     work.figures.rays = order.plan.ray_count();
     work.figures.probes = order.plan.probes.size();

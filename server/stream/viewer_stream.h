@@ -38,7 +38,7 @@ enum class Step : std::uint8_t {
 /// What a turn's work amounts to: for whoever charges or records it.
 struct TurnFigures {
     bool is_new_cycle = false; ///< what is worth rendering was worked out anew
-    std::uint64_t places = 0; ///< that this went over
+    std::uint64_t regions = 0; ///< that this went over
     std::uint64_t framelets = 0; ///< that are rendered
     std::uint64_t rays = 0; ///< through samples
     std::uint64_t probes = 0;

@@ -189,7 +189,7 @@ void calibrate_reprojection(BenchScene const& scene, ImagePlane const& plane, in
 void calibrate_response(BenchScene& scene, Viewport viewport, int rounds, CostTable& costs) {
     double const rate = 10.0 * viewport.width * viewport.height;
     ResponseCost const cost = response_cost(scene, viewport, rate, 0.1 * rounds);
-    costs.plan_place = 1e9 * cost.plan / static_cast<double>(cost.cycles * cost.places);
+    costs.plan_region = 1e9 * cost.plan / static_cast<double>(cost.cycles * cost.regions);
     costs.learn_sample = 1e9 * cost.learn / static_cast<double>(cost.samples);
 }
 

@@ -15,7 +15,7 @@ constexpr std::array<std::pair<char const*, double CostTable::*>, 23> fields{{
     {"coherent_segment", &CostTable::coherent_segment},
     {"incoherent_segment", &CostTable::incoherent_segment},
     {"display_sample", &CostTable::display_sample},
-    {"plan_place", &CostTable::plan_place},
+    {"plan_region", &CostTable::plan_region},
     {"learn_sample", &CostTable::learn_sample},
     {"encode_sample", &CostTable::encode_sample},
     {"decode_sample", &CostTable::decode_sample},

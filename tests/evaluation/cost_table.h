@@ -14,7 +14,7 @@ struct CostTable {
     double coherent_segment = 0; ///< one ray of a framelet, its share of shading included
     double incoherent_segment = 0; ///< one ray of samples at random places
     double display_sample = 0; ///< tone curve and sRGB
-    double plan_place = 0; ///< the response's planning of a cycle, a place of the picture
+    double plan_region = 0; ///< the response's planning of a cycle, a place of the picture
     double learn_sample = 0; ///< what the response learns from one sample
     double encode_sample = 0; ///< batch codec
     double decode_sample = 0;

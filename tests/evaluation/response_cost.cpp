@@ -46,7 +46,7 @@ ResponseCost response_cost(BenchScene& scene, Viewport viewport, double samples_
         double const samples = static_cast<double>(rendered.size() * framelet_samples + plan.probes.size());
         input.now += std::max(samples, 1.0) / samples_per_second;
     }
-    cost.places = refresh.field().visible().size();
+    cost.regions = refresh.field().visible().size();
     pose_at(scene, 0);
     return cost;
 }

@@ -10,7 +10,7 @@ struct ResponseCost {
     double plan = 0, learn = 0;
     std::size_t cycles = 0;
     std::size_t samples = 0; ///< of framelets
-    std::size_t places = 0;
+    std::size_t regions = 0;
 };
 
 /// Serves `seconds` of the moving scene to a viewer whose server makes `samples_per_second`, with cycles of the default

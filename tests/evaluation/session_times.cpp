@@ -10,7 +10,7 @@ CostTable calibrated(CostTable costs, SessionTimes const& times) {
             costs.*entry *= stage.factor();
         }
     };
-    scale(times.plan, {&CostTable::plan_place});
+    scale(times.plan, {&CostTable::plan_region});
     scale(times.render, {&CostTable::coherent_segment, &CostTable::incoherent_segment, &CostTable::display_sample});
     scale(times.learn, {&CostTable::learn_sample, &CostTable::shape_sample});
     scale(times.encode, {&CostTable::encode_sample, &CostTable::encode_lossy_sample});

@@ -12,7 +12,7 @@ using namespace test;
 constexpr Viewport viewport{50, 38};
 Camera const camera = look_at({0, 0, 10}, {0, 0, 0}, {0, 1, 0}, 0.5f);
 
-std::vector<float> look(Scene const& scene, PlaceGrid const& grid) {
+std::vector<float> look(Scene const& scene, RayGrid const& grid) {
     RenderScene const rendered(scene, std::nullopt);
     std::vector<float> seen;
     std::uint64_t const rays = render_visibility(rendered, make_view_rays(camera, viewport), viewport, grid, seen);
@@ -33,11 +33,11 @@ TEST(Visibility, IsTheInverseDepthOfWhatIsNearest) {
     Scene scene = half_wall(matte(Vec3(0.5f)));
     add(scene, quad({-50, 0, 5}, {100, 0, 0}, {0, 50, 0}, 0)); // the upper half, at 5 metres
     for (int const spacing : {4, 8, 16}) {
-        PlaceGrid const grid = cell_grid(4, spacing, 1);
+        RayGrid const grid = cell_grid(4, spacing, 1);
         std::vector<float> const seen = look(scene, grid);
         for (int row = 0; row < grid.rows(viewport); ++row) {
             for (int column = 0; column < grid.columns(viewport); ++column) {
-                Vec2 const place = grid.place(column, row);
+                Vec2 const place = grid.position(column, row);
                 float const expected = place.y < 19 ? 0.2f : place.x < 25 ? 0.1f : 0.0f;
                 EXPECT_NEAR(seen[static_cast<std::size_t>(row * grid.columns(viewport) + column)], expected, 1e-5f)
                     << place.x << ' ' << place.y;
@@ -49,7 +49,7 @@ TEST(Visibility, IsTheInverseDepthOfWhatIsNearest) {
 TEST(Visibility, IsNotKnownOfWhatIsSeeThroughOrSeenFromItsBack) {
     Material glass = matte(Vec3(0.5f));
     glass.transmission = 1;
-    PlaceGrid const grid = cell_grid(4, 4, 0);
+    RayGrid const grid = cell_grid(4, 4, 0);
     EXPECT_EQ(look(half_wall(glass), grid).front(), unknown_inverse_depth);
     Scene turned;
     turned.materials = {matte(Vec3(0.5f))};

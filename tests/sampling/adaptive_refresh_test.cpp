@@ -34,7 +34,7 @@ float half_dust(float x, float y, double time) {
 }
 
 bool is_all_finest(AdaptiveRefresh const& refresh) {
-    PlaceField const& field = refresh.field();
+    RegionField const& field = refresh.field();
     return std::all_of(field.visible().begin(), field.visible().end(),
                        [&](std::uint32_t index) { return field[index].level == sampling_levels - 1; });
 }
@@ -63,16 +63,16 @@ TEST(AdaptiveRefresh, AStillSceneCompletes) {
     }
 }
 
-/// The places under patches, each as often as it is under one.
-std::multiset<std::uint32_t> places_of(PlaceField const& field, std::vector<Patch> const& patches) {
-    std::multiset<std::uint32_t> places;
+/// The regions under patches, each as often as it is under one.
+std::multiset<std::uint32_t> regions_of(RegionField const& field, std::vector<Patch> const& patches) {
+    std::multiset<std::uint32_t> regions;
     for (Patch const& patch : patches) {
-        PlaceField::Range const range = field.range_of(patch.node);
+        RegionField::Range const range = field.range_of(patch.node);
         for (std::uint32_t i = range.first; i < range.last; ++i) {
-            places.insert(i);
+            regions.insert(i);
         }
     }
-    return places;
+    return regions;
 }
 
 /// What was taken by the last plan is not learnt when the next one is made.
@@ -85,9 +85,9 @@ TEST(AdaptiveRefresh, WhatIsInFlightIsNotTakenAgain) {
         std::size_t plans = 0;
         for (bool goes_on = true; goes_on; ++plans) {
             goes_on = synthetic.step();
-            auto const taken = places_of(synthetic.refresh.field(), synthetic.patches);
+            auto const taken = regions_of(synthetic.refresh.field(), synthetic.patches);
             for (std::uint32_t const index : taken) {
-                ASSERT_EQ(in_flight.count(index), 0u) << "place " << index << ", plan " << plans;
+                ASSERT_EQ(in_flight.count(index), 0u) << "region " << index << ", plan " << plans;
             }
             in_flight = taken;
         }
@@ -260,7 +260,7 @@ TEST(AdaptiveRefresh, ACameraThatReturnsWithinACycleIsNotForgotten) {
     EXPECT_GT(strays, 5);
 }
 
-/// Each place once, where that is needed; then nothing.
+/// Each region once, where that is needed; then nothing.
 TEST(AdaptiveRefresh, WhatTheFinestSamplesDoNotResolveGetsFourRaysASample) {
     SyntheticRefresh synthetic(small, half_dust);
     synthetic.running = false;
@@ -269,7 +269,7 @@ TEST(AdaptiveRefresh, WhatTheFinestSamplesDoNotResolveGetsFourRaysASample) {
         std::map<Tile, int> times;
         int last_rays = single_ray;
         bool in_order = true;
-        std::vector<PlaceModel> models; // once single rays are learnt
+        std::vector<RegionModel> models; // once single rays are learnt
         while (synthetic.step()) {
             if (models.empty() && synthetic.rays_per_sample == four_rays) {
                 for (std::uint32_t const index : synthetic.refresh.field().visible()) {
@@ -436,10 +436,10 @@ TEST(AdaptiveRefresh, EveryRegionIsRefreshed) {
             synthetic.input.batch_framelets = batch;
             double oldest = 0;
             Budget const budget{synthetic.input.samples_per_second, synthetic.input.cycle_seconds, 0, 0};
-            PlaceField const whole{ImagePlane({256, 100})};
+            RegionField const whole{ImagePlane({256, 100})};
             double const period = refresh_period(whole, budget);
             synthetic.run(3 * period, [&] {
-                PlaceField const& field = synthetic.refresh.field();
+                RegionField const& field = synthetic.refresh.field();
                 for (std::uint32_t const index : field.visible()) {
                     double const refreshed = std::max(field[index].refreshed, 0.0);
                     oldest = std::max(oldest, synthetic.input.now - refreshed);
@@ -483,7 +483,7 @@ TEST(AdaptiveRefresh, SettlesOnSteadyMotion) {
     float most = 0;
     TilingScratch scratch;
     synthetic.run(4, [&] {
-        PlaceField const& field = synthetic.refresh.field();
+        RegionField const& field = synthetic.refresh.field();
         std::vector<float> density(field.size());
         for (std::uint32_t const index : field.visible()) {
             density[index] = samples_per_pixel(synthetic.refresh.choices()[index].level);

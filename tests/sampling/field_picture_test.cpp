@@ -6,7 +6,7 @@ namespace framelet {
 namespace {
 
 struct Drawn {
-    PlaceField field{ImagePlane({200, 120})};
+    RegionField field{ImagePlane({200, 120})};
     std::vector<SamplingChoice> choices{field.size(), SamplingChoice{pixel_level, 1, 0}};
     std::vector<Patch> cut;
 
@@ -19,9 +19,9 @@ struct Drawn {
     Picture draw(FieldView view) const { return draw_field(field, choices, cut, view); }
 };
 
-/// The place that this pixel lies in.
-std::uint32_t place_at(PlaceField const& field, int x, int y) {
-    auto const side = static_cast<std::uint32_t>(field.place_side());
+/// The region that this pixel lies in.
+std::uint32_t region_at(RegionField const& field, int x, int y) {
+    auto const side = static_cast<std::uint32_t>(field.region_side());
     return morton_index(static_cast<std::uint32_t>(x) / side, static_cast<std::uint32_t>(y) / side);
 }
 
@@ -29,10 +29,10 @@ int red_at(Picture const& picture, int x, int y) {
     return picture.row(y)[4 * x];
 }
 
-TEST(FieldPicture, ShowsEachPlaceWhereItIs) {
+TEST(FieldPicture, ShowsEachRegionWhereItIs) {
     for (auto const& [x, y] : {std::pair{0, 0}, {190, 10}, {5, 110}, {199, 119}}) {
         Drawn drawn;
-        std::uint32_t const index = place_at(drawn.field, x, y);
+        std::uint32_t const index = region_at(drawn.field, x, y);
         drawn.field[index].model.motion = 8;
         Picture const picture = drawn.draw(FieldView::motion);
         EXPECT_EQ(picture.width, 200);
@@ -50,15 +50,15 @@ TEST(FieldPicture, ShowsEachPlaceWhereItIs) {
 
 TEST(FieldPicture, IsBrighterWhereThereIsMore) {
     Drawn drawn;
-    std::uint32_t const index = place_at(drawn.field, 100, 50);
-    Place& place = drawn.field[index];
+    std::uint32_t const index = region_at(drawn.field, 100, 50);
+    Region& region = drawn.field[index];
     auto const bright = [&](FieldView view) { return red_at(drawn.draw(view), 100, 50); };
 
-    place.level = -1;
+    region.level = -1;
     EXPECT_EQ(bright(FieldView::error), 255) << "bare";
-    place.level = 0;
+    region.level = 0;
     int const coarse = bright(FieldView::error);
-    place.level = pixel_level;
+    region.level = pixel_level;
     EXPECT_LT(bright(FieldView::error), coarse);
 
     int last = 0;
@@ -69,12 +69,12 @@ TEST(FieldPicture, IsBrighterWhereThereIsMore) {
     }
     EXPECT_EQ(last, 255);
 
-    place.model.motion = 1;
+    region.model.motion = 1;
     drawn.choices[index].period = 0.02f;
     int const often = bright(FieldView::tiles);
     drawn.choices[index].period = 2;
     EXPECT_LT(bright(FieldView::tiles), often);
-    place.model.motion = 0;
+    region.model.motion = 0;
     EXPECT_EQ(bright(FieldView::tiles), 0) << "stands still";
 }
 

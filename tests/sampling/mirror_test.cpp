@@ -351,7 +351,7 @@ TEST(Mirror, SomethingNearerThanWhatShowsIsWrongUntilItComes) {
     Mirror mirror(viewport);
     mirror.look(view_at(Vec3(0)), no_motions);
     mirror.add(view_at(Vec3(0)).rays, no_motions, render_pieces(plane, plane.pixel_depth(), wall)); // at 10 metres
-    PlaceGrid const grid = cell_grid(cell_side, 8, 1);
+    RayGrid const grid = cell_grid(cell_side, 8, 1);
     std::size_t const columns = static_cast<std::size_t>(grid.columns(viewport));
     std::vector<float> seen(columns * static_cast<std::size_t>(grid.rows(viewport)), 0.1f);
     mirror.look(view_at(Vec3(1e-4f, 0, 0)), no_motions);
@@ -372,7 +372,7 @@ TEST(Mirror, SomethingNearerThanWhatShowsIsWrongUntilItComes) {
 
 TEST(Mirror, WhatLooksOtherwiseIsStaleUntilItComes) {
     MirrorView const later = view_at(Vec3(0), 1);
-    PlaceGrid const grid = cell_grid(cell_side, 16, 0);
+    RayGrid const grid = cell_grid(cell_side, 16, 0);
     auto const lamp = [](float x, float) { return Seen{10, x < 64 ? 0.9f : 0.5f}; };
     Mirror mirror(viewport);
     mirror.look(view_at(Vec3(0)), no_motions);
@@ -390,7 +390,7 @@ TEST(Mirror, WhatLooksOtherwiseIsStaleUntilItComes) {
     }
     EXPECT_FALSE(mirror.mark(find_stale(mirror, probes, luma, grid.spacing)));
     for (std::size_t i = 0; i < probes.size(); ++i) {
-        luma[i] = lamp(probes[i].place.x, probes[i].place.y).luma;
+        luma[i] = lamp(probes[i].position.x, probes[i].position.y).luma;
     }
     EXPECT_TRUE(mirror.mark(find_stale(mirror, probes, luma, grid.spacing)));
     for (int y = 0; y < viewport.height - 16; y += cell_side) {
@@ -404,12 +404,12 @@ TEST(Mirror, WhatLooksOtherwiseIsStaleUntilItComes) {
     EXPECT_TRUE(std::ranges::all_of(mirror.cells(), [](Cell const& cell) { return cell.stale == 0; }));
 }
 
-TEST(PlaceGrid, EveryCellHasItsTurn) {
+TEST(RayGrid, EveryCellHasItsTurn) {
     for (int const spacing : {4, 8, 16}) {
         std::set<std::pair<float, float>> firsts;
         auto const turns = static_cast<std::uint32_t>(spacing / 4 * (spacing / 4));
         for (std::uint32_t turn = 0; turn < turns; ++turn) {
-            PlaceGrid const grid = cell_grid(4, spacing, turn);
+            RayGrid const grid = cell_grid(4, spacing, turn);
             firsts.insert({grid.first.x, grid.first.y});
             EXPECT_LT(grid.first.x, static_cast<float>(spacing));
             EXPECT_GE(grid.columns({5, 5}) * grid.rows({5, 5}), grid.first.x < 5 && grid.first.y < 5 ? 1 : 0);

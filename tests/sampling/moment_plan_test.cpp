@@ -27,7 +27,7 @@ Seen half_busy(float x, float y) {
 
 struct Planner {
     Mirror mirror{viewport};
-    PlaceField field{plane};
+    RegionField field{plane};
     MomentPlan plan;
     std::vector<RatedPatch> rated;
 
@@ -64,7 +64,7 @@ TEST(MomentPlan, UsesItsBudgetAndCoversWhatIsEmpty) {
         planner.mirror.look(view_at(0), no_motions);
         double const cost = planner.find(samples);
         EXPECT_LE(cost, samples) << share;
-        EXPECT_GT(cost, 0.2 * samples) << share; // all places alike: a level more of one is one more of all
+        EXPECT_GT(cost, 0.2 * samples) << share; // all regions alike: a level more of one is one more of all
         std::set<std::uint32_t> pixels;
         for (Tile const tile : planner.tiles()) {
             PixelRect const rect = plane.tile_rect(tile);

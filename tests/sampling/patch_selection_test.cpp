@@ -9,7 +9,7 @@ namespace framelet {
 namespace {
 
 TEST(PeriodicRefresh, LooksAtEveryRegionAndTakesNoTileTwice) {
-    PlaceField const field{ImagePlane({128, 128})};
+    RegionField const field{ImagePlane({128, 128})};
     int const fine = field.plane().pixel_depth();
     std::vector<Patch> patches{{make_tile(field.depth(), 3, 5), fine}, {Tile{1}.child(1), fine - 1}};
     std::vector<std::uint32_t> scratch;
@@ -21,11 +21,11 @@ TEST(PeriodicRefresh, LooksAtEveryRegionAndTakesNoTileTwice) {
     }
     std::ranges::sort(tiles);
     EXPECT_EQ(std::ranges::adjacent_find(tiles), tiles.end()) << "a tile twice";
-    EXPECT_EQ(std::ranges::count(tiles, fine, &Tile::depth), 64) << "every place is looked at";
+    EXPECT_EQ(std::ranges::count(tiles, fine, &Tile::depth), 64) << "every region is looked at";
 }
 
 TEST(RatedPatches, WhatIsTrueKeepsItsNeighboursNotWaiting) {
-    PlaceField field{ImagePlane({128, 128})};
+    RegionField field{ImagePlane({128, 128})};
     Choices choices(field.size());
     std::vector<float> due(field.size(), 0.1f); // all are wrong
     for (std::uint32_t const index : field.visible()) {
@@ -33,7 +33,7 @@ TEST(RatedPatches, WhatIsTrueKeepsItsNeighboursNotWaiting) {
         field[index].drift = 64;
         field[index].model.energy.fill(1e-6f);
     }
-    std::vector<Patch> const cut{{Tile{1}.child(0), field.depth() - 2}}; // coarser than a place is
+    std::vector<Patch> const cut{{Tile{1}.child(0), field.depth() - 2}}; // coarser than a region is
     std::vector<RatedPatch> rated;
     rate_patches(field, choices, due, cut, {}, rated);
     ASSERT_EQ(rated.size(), 1u);
@@ -49,9 +49,9 @@ TEST(RatedPatches, WhatIsTrueKeepsItsNeighboursNotWaiting) {
     }
 }
 
-/// Once nothing moves, what was learnt of the motion of places says nothing of what the viewer holds.
+/// Once nothing moves, what was learnt of the motion of regions says nothing of what the viewer holds.
 TEST(RatedPatches, WhatIsTrueGetsNoCoarserOnceAllStands) {
-    PlaceField field{ImagePlane({128, 128})};
+    RegionField field{ImagePlane({128, 128})};
     for (std::uint32_t const index : field.visible()) {
         field[index].level = pixel_level;
         field[index].model.energy.fill(1e-3f);
@@ -77,7 +77,7 @@ TEST(RatedPatches, WhatIsTrueGetsNoCoarserOnceAllStands) {
 /// What takes away the same error goes in the order of its cost, and neither what is spent nor the samples exceed what
 /// there is by more than the last patch.
 TEST(SelectedPatches, CheaperOnesGoFirst) {
-    PlaceField field{ImagePlane({128, 128})};
+    RegionField field{ImagePlane({128, 128})};
     for (std::uint32_t const index : field.visible()) {
         field[index].level = pixel_level;
         field[index].drift = 64;

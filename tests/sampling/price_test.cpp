@@ -11,30 +11,30 @@
 namespace framelet {
 namespace {
 
-/// Places that hold what suits them, some of them moving; a pattern of `kind`.
-PlaceField random_field(Viewport viewport, std::mt19937& random) {
-    PlaceField field{ImagePlane(viewport)};
+/// Regions that hold what suits them, some of them moving; a pattern of `kind`.
+RegionField random_field(Viewport viewport, std::mt19937& random) {
+    RegionField field{ImagePlane(viewport)};
     auto const between = [&random](float low, float high) {
         return std::exp2(std::uniform_real_distribution<float>(std::log2(low), std::log2(high))(random));
     };
     float const moving = std::uniform_real_distribution<float>(0.05f, 1)(random);
     for (std::uint32_t const index : field.visible()) {
-        Place& place = field[index];
+        Region& region = field[index];
         float energy = between(1e-5f, 0.1f);
-        for (float& band : place.model.energy) {
+        for (float& band : region.model.energy) {
             band = energy;
             energy *= between(0.2f, 1);
         }
         bool const moves = std::uniform_real_distribution<float>(0, 1)(random) < moving;
-        place.model.motion = moves ? between(0.1f, 50) : 0;
-        place.level = 5;
-        place.rendered = place.checked = place.refreshed = 10;
-        place.changed = 9;
+        region.model.motion = moves ? between(0.1f, 50) : 0;
+        region.level = 5;
+        region.rendered = region.checked = region.refreshed = 10;
+        region.changed = 9;
     }
     return field;
 }
 
-std::vector<float> due_errors(PlaceField const& field, Budget const& budget) {
+std::vector<float> due_errors(RegionField const& field, Budget const& budget) {
     std::vector<float> due;
     find_due_errors(field, budget, due);
     return due;
@@ -48,7 +48,7 @@ TEST(Price, DemandIsTheBudget) {
     constexpr int fields = 60;
     for (int n = 0; n < fields; ++n) {
         Viewport const viewport = n % 2 == 0 ? Viewport{256, 256} : Viewport{500, 120};
-        PlaceField const field = random_field(viewport, random);
+        RegionField const field = random_field(viewport, random);
         double const pixels = double(viewport.width) * viewport.height;
         Budget const budget{pixels * std::exp2(std::uniform_real_distribution<double>(-1, 6)(random)), 0.02f, 0.03f, 0};
         Choices choices;
@@ -84,7 +84,7 @@ TEST(Price, DemandIsTheBudget) {
 /// What is due is dear: a picture of which nothing is held costs more than the same once it is held.
 TEST(Price, ABacklogIsDear) {
     std::mt19937 random(2);
-    PlaceField field = random_field({256, 256}, random);
+    RegionField field = random_field({256, 256}, random);
     Budget const budget{65536.0 * 20, 0.02f, 0.03f, 0};
     Choices choices;
     float held = 1e-6f;
@@ -104,7 +104,7 @@ TEST(Price, ABacklogIsDear) {
 TEST(Price, SelectionStopsAtTheBudget) {
     std::mt19937 random(3);
     for (int n = 0; n < 40; ++n) {
-        PlaceField field = random_field({300, 200}, random);
+        RegionField field = random_field({300, 200}, random);
         for (std::uint32_t const index : field.visible()) {
             field[index].drift = 64 * static_cast<float>(random() % 2);
             field[index].refreshed = static_cast<double>(random() % 10);
@@ -124,9 +124,9 @@ TEST(Price, SelectionStopsAtTheBudget) {
         make_density_patches(field.plane(), density, field.depth(), scratch, cut);
         std::vector<RatedPatch> rated;
         rate_patches(field, choices, due, cut, budget, rated);
-        std::vector<int> times(field.size()); // that each place is in one of them
+        std::vector<int> times(field.size()); // that each region is in one of them
         for (RatedPatch const& entry : rated) {
-            PlaceField::Range const range = field.range_of(entry.patch.node);
+            RegionField::Range const range = field.range_of(entry.patch.node);
             std::for_each(times.begin() + range.first, times.begin() + range.last, [](int& count) { ++count; });
         }
         EXPECT_LE(std::ranges::max(times), 1);

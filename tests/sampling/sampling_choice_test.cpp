@@ -9,7 +9,7 @@ namespace framelet {
 namespace {
 
 struct State {
-    PlaceModel place;
+    RegionModel region;
     float life = 1;
     SamplingPrice price;
 };
@@ -19,28 +19,28 @@ State random_state(std::mt19937& random) {
         return std::exp2(std::uniform_real_distribution<float>(std::log2(low), std::log2(high))(random));
     };
     State state;
-    state.place = unknown_place();
-    for (float& band : state.place.energy) {
+    state.region = unknown_region();
+    for (float& band : state.region.energy) {
         band = between(1e-6f, 0.2f);
     }
-    state.place.motion = random() % 5 == 0 ? 0 : between(0.01f, 100);
+    state.region.motion = random() % 5 == 0 ? 0 : between(0.01f, 100);
     state.life = between(0.1f, 4);
     state.price = {between(1e-9f, 1e-1f), between(0.001f, 0.3f), 0.02f, 0};
     return state;
 }
 
 SamplingChoice choose(State const& state, int least = 0, int most = sampling_levels - 1) {
-    return choose_sampling(state.place, state.life, state.price, least, most);
+    return choose_sampling(state.region, state.life, state.price, least, most);
 }
 
 /// What the header says is minimised.
 double paid(State const& state, int level, double period) {
-    DriftBounds const bounds = drift_bounds(state.place, level);
-    double const rate = double(state.place.motion) * bounds.growth / bounds.most;
+    DriftBounds const bounds = drift_bounds(state.region, level);
+    double const rate = double(state.region.motion) * bounds.growth / bounds.most;
     double const left = bounds.most * std::exp(-rate * state.price.latency);
     double const x = rate * period;
     double const kept = x > 1e-6 ? -std::expm1(-x) / x : 1;
-    return unresolved_error(state.place, level) + bounds.most - left * kept +
+    return unresolved_error(state.region, level) + bounds.most - left * kept +
            double(state.price.price) * samples_per_pixel(level) / period;
 }
 
@@ -120,7 +120,7 @@ TEST(SamplingChoice, BiasTradesSpaceForTime) {
     EXPECT_GT(oftener, 5000);
 }
 
-/// `due_error` is compared with the error that a place shows, which knows no bias: what has just been rendered as
+/// `due_error` is compared with the error that a region shows, which knows no bias: what has just been rendered as
 /// chosen is not due, and at the chosen age it is.
 TEST(SamplingChoice, IsDueAtItsPeriodWhateverTheBias) {
     std::mt19937 random(5);
@@ -128,10 +128,10 @@ TEST(SamplingChoice, IsDueAtItsPeriodWhateverTheBias) {
         State state = random_state(random);
         state.price.bias = std::uniform_real_distribution<float>(-1, 1)(random);
         SamplingChoice const choice = choose(state);
-        DriftBounds const bounds = drift_bounds(state.place, choice.level);
-        double const rate = double(state.place.motion) * bounds.growth / bounds.most;
+        DriftBounds const bounds = drift_bounds(state.region, choice.level);
+        double const rate = double(state.region.motion) * bounds.growth / bounds.most;
         auto const shown = [&](double age) {
-            return unresolved_error(state.place, choice.level) - bounds.most * std::expm1(-rate * age);
+            return unresolved_error(state.region, choice.level) - bounds.most * std::expm1(-rate * age);
         };
         ASSERT_GE(choice.due_error, shown(state.price.latency) * 0.999) << n;
         if (choice.period > state.price.least_period * 1.01f && choice.period < state.life * 0.99f) {
@@ -146,16 +146,16 @@ TEST(SamplingChoice, IsFiniteForAnything) {
     auto const value = [&] { return odd[random() % std::size(odd)]; };
     for (int n = 0; n < 1000000; ++n) {
         State state;
-        for (float& band : state.place.energy) {
+        for (float& band : state.region.energy) {
             band = std::clamp(value(), 1e-6f, 4.0f); // as `learn` keeps them
         }
-        state.place.motion = value();
+        state.region.motion = value();
         state.life = value();
         state.price = {value(), value(), std::max(value(), 1e-6f), static_cast<float>(random() % 3) - 1};
         SamplingChoice const choice = choose(state);
         ASSERT_TRUE(std::isfinite(choice.period) && choice.period > 0) << n;
         ASSERT_TRUE(std::isfinite(choice.due_error) && choice.due_error >= 0)
-            << n << " motion " << state.place.motion << " life " << state.life << " price " << state.price.price
+            << n << " motion " << state.region.motion << " life " << state.life << " price " << state.price.price
             << " latency " << state.price.latency << " least " << state.price.least_period;
     }
 }

@@ -1,4 +1,4 @@
-// Drives AdaptiveRefresh without a scene: a picture that is a function of place and time, on a virtual clock that goes
+// Drives AdaptiveRefresh without a scene: a picture that is a function of region and time, on a virtual clock that goes
 // on by what rendering would take. In: the function, rates. Out: what was planned, rendered and sent.
 #pragma once
 
@@ -174,7 +174,7 @@ private:
         }
         luma_.clear();
         for (Probe const& probe : plan.probes) {
-            std::uint8_t const grey = shade(probe.place.x, probe.place.y);
+            std::uint8_t const grey = shade(probe.position.x, probe.position.y);
             luma_.push_back(display_luma(grey, grey, grey));
         }
     }

@@ -60,7 +60,7 @@ TEST_F(CycleRecorderTest, ALineForEachBatchAndPicturesAtTheirRate) {
     EXPECT_NEAR(all[0]["budget"].get<double>(), 1e6 * static_cast<double>(RefreshInput().cycle_seconds), 1);
     EXPECT_GT(all[0]["mean_shown_error"].get<double>(), 0);
     EXPECT_LT(all[0]["mean_shown_error"].get<double>(), static_cast<double>(bare_error)) << "what is taken counts";
-    EXPECT_GT(all[0]["places_by_level"][0], 0) << "everything is bare";
+    EXPECT_GT(all[0]["regions_by_level"][0], 0) << "everything is bare";
     EXPECT_NEAR(all[4]["seconds"].get<double>(), 0.08, 1e-9);
     for (char const* const view : {"tiles", "density", "error", "motion"}) {
         Picture const picture = read_picture(folder / ("7-000001-" + std::string(view) + ".png"));

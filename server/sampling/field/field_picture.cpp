@@ -36,27 +36,27 @@ void draw_edges(Picture& picture, PixelRect const& rect) {
 }
 
 /// What stands still is never due again.
-float refresh_rate(Place const& place, SamplingChoice const& choice) {
-    return place.model.motion > 0 && choice.period > 0 ? 1 / choice.period : 0;
+float refresh_rate(Region const& region, SamplingChoice const& choice) {
+    return region.model.motion > 0 && choice.period > 0 ? 1 / choice.period : 0;
 }
 
-Color color_of(Place const& place, SamplingChoice const& choice, FieldView view) {
+Color color_of(Region const& region, SamplingChoice const& choice, FieldView view) {
     switch (view) {
     case FieldView::tiles:
-        return grey(refresh_rate(place, choice), 0.1f, 60);
+        return grey(refresh_rate(region, choice), 0.1f, 60);
     case FieldView::density:
         return grey(samples_per_pixel(choice.level), samples_per_pixel(0) / 2, samples_per_pixel(sampling_levels - 1));
     case FieldView::error:
-        return grey(shown_error(place, 0), 1e-6f, bare_error);
+        return grey(shown_error(region, 0), 1e-6f, bare_error);
     case FieldView::motion:
-        return grey(place.model.motion, 0.01f, 64);
+        return grey(region.model.motion, 0.01f, 64);
     }
     return {};
 }
 
 } // namespace
 
-Picture draw_field(PlaceField const& field, std::span<SamplingChoice const> choices, std::span<Patch const> cut,
+Picture draw_field(RegionField const& field, std::span<SamplingChoice const> choices, std::span<Patch const> cut,
                    FieldView view) {
     FRAMELET_CHECK(choices.size() == field.size());
     Viewport const viewport = field.plane().viewport();

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "common/image.h"
-#include "server/sampling/field/place_field.h"
+#include "server/sampling/field/region_field.h"
 
 namespace framelet {
 
@@ -16,8 +16,8 @@ enum class FieldView {
     motion, ///< drift a second, 0.01 .. 64; black: stands still
 };
 
-/// Values are grey on a logarithmic scale. `choices`: of every place of the field; `cut`: covers the viewport.
-Picture draw_field(PlaceField const& field, std::span<SamplingChoice const> choices, std::span<Patch const> cut,
+/// Values are grey on a logarithmic scale. `choices`: of every region of the field; `cut`: covers the viewport.
+Picture draw_field(RegionField const& field, std::span<SamplingChoice const> choices, std::span<Patch const> cut,
                    FieldView view);
 
 } // namespace framelet

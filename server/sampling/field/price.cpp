@@ -10,55 +10,55 @@ namespace {
 constexpr double stale_cycles = 3;
 /// What is true but coarse can wait longer, seconds.
 constexpr double coarse_seconds = 0.12;
-/// Seconds that a place is expected to stay as it is: as long as it has, within these.
+/// Seconds that a region is expected to stay as it is: as long as it has, within these.
 constexpr float least_life = 0.1f;
 constexpr float most_life = 4;
 constexpr float least_rest = 0.3f; ///< once all stands
 
-float expected_life(Place const& place, double now, bool all_stands) {
-    float const still = static_cast<float>(std::min(now - place.changed, static_cast<double>(most_life)));
+float expected_life(Region const& region, double now, bool all_stands) {
+    float const still = static_cast<float>(std::min(now - region.changed, static_cast<double>(most_life)));
     if (all_stands) {
         return std::clamp(still, least_rest, most_life);
     }
-    float const motion = place.model.motion;
+    float const motion = region.model.motion;
     float const passing = motion > 2 / most_life ? 2 / motion : most_life;
     return std::clamp(std::min(std::max(still, passing), most_life), least_life, most_life);
 }
 
-void choose_all(PlaceField const& field, double now, Budget const& budget, float price, Choices& choices) {
+void choose_all(RegionField const& field, double now, Budget const& budget, float price, Choices& choices) {
     SamplingPrice const terms{price, budget.latency, budget.cycle_seconds, budget.bias};
     int const least_level = std::max(field.least_level(), budget.limits.least_level);
     for (std::uint32_t const index : field.visible()) {
-        Place const& place = field[index];
-        PlaceModel model = place.model;
+        Region const& region = field[index];
+        RegionModel model = region.model;
         if (budget.still) {
             model.motion = 0;
         }
-        choices[index] = choose_sampling(model, expected_life(place, now, budget.still), terms, least_level,
+        choices[index] = choose_sampling(model, expected_life(region, now, budget.still), terms, least_level,
                                          budget.limits.most_level, costs_at(budget, index));
     }
 }
 
 } // namespace
 
-float drift_on_the_way(Place const& place, Budget const& budget) {
-    return budget.still ? 0 : place.model.motion * budget.latency;
+float drift_on_the_way(Region const& region, Budget const& budget) {
+    return budget.still ? 0 : region.model.motion * budget.latency;
 }
 
-void find_due_errors(PlaceField const& field, Budget const& budget, std::vector<float>& due) {
+void find_due_errors(RegionField const& field, Budget const& budget, std::vector<float>& due) {
     due.resize(field.size());
     for (std::uint32_t const index : field.visible()) {
-        Place const& place = field[index];
-        due[index] = shown_error(place, drift_on_the_way(place, budget));
+        Region const& region = field[index];
+        due[index] = shown_error(region, drift_on_the_way(region, budget));
     }
 }
 
-Demand demand_of(PlaceField const& field, Budget const& budget, std::span<float const> due, Choices const& choices) {
+Demand demand_of(RegionField const& field, Budget const& budget, std::span<float const> due, Choices const& choices) {
     double steady = 0;
     double stale = 0;
     double coarse = 0;
     for (std::uint32_t const index : field.visible()) {
-        Place const& place = field[index];
+        Region const& region = field[index];
         SamplingChoice const& choice = choices[index];
         double const samples = static_cast<double>(field.pixels_of(index) * samples_per_pixel(choice.level) *
                                                    costs_at(budget, index)[static_cast<std::size_t>(choice.level)]);
@@ -66,7 +66,7 @@ Demand demand_of(PlaceField const& field, Budget const& budget, std::span<float 
         float const error = due[index];
         if (error > choice.due_error) {
             bool const is_true =
-                place.taken.level < 0 && place.level >= 0 && unresolved_error(place.model, place.level) > 0.5f * error;
+                region.taken.level < 0 && region.level >= 0 && unresolved_error(region.model, region.level) > 0.5f * error;
             (is_true ? coarse : stale) += samples;
         }
     }
@@ -74,7 +74,7 @@ Demand demand_of(PlaceField const& field, Budget const& budget, std::span<float 
             coarse / coarse_seconds};
 }
 
-float solve_price(PlaceField const& field, double now, Budget const& budget, std::span<float const> due,
+float solve_price(RegionField const& field, double now, Budget const& budget, std::span<float const> due,
                   float last_price, Choices& choices) {
     choices.resize(field.size());
     constexpr int most_steps = 4;

@@ -18,12 +18,12 @@ Cell const& cell_at(Mirror const& mirror, Vec2 at) {
 
 /// Calls `look` with each place of a grid.
 template <class Look>
-void for_each_place(PlaceGrid const& grid, Viewport viewport, Look look) {
+void for_each_place(RayGrid const& grid, Viewport viewport, Look look) {
     int const columns = grid.columns(viewport);
     int const rows = grid.rows(viewport);
     for (int row = 0; row < rows; ++row) {
         for (int column = 0; column < columns; ++column) {
-            look(grid.place(column, row));
+            look(grid.position(column, row));
         }
     }
 }
@@ -61,7 +61,7 @@ float chance_difference(float detail, float blur, float side) {
 
 /// What a probe really shows with what the viewer does.
 Difference compare(Mirror const& mirror, Probe const& probe, float luma) {
-    Cell const& shown = cell_at(mirror, probe.place);
+    Cell const& shown = cell_at(mirror, probe.position);
     if (shown.share < cell_pixels) { // something else has come
         return {};
     }
@@ -73,7 +73,7 @@ Difference compare(Mirror const& mirror, Probe const& probe, float luma) {
 
 } // namespace
 
-std::vector<CellFault> find_wrong(Mirror const& mirror, PlaceGrid const& grid, std::span<float const> inverse_depth) {
+std::vector<CellFault> find_wrong(Mirror const& mirror, RayGrid const& grid, std::span<float const> inverse_depth) {
     std::size_t const columns = static_cast<std::size_t>(grid.columns(mirror.viewport()));
     FRAMELET_CHECK(inverse_depth.size() == columns * static_cast<std::size_t>(grid.rows(mirror.viewport())));
     std::vector<CellFault> faults;
@@ -86,7 +86,7 @@ std::vector<CellFault> find_wrong(Mirror const& mirror, PlaceGrid const& grid, s
     return faults;
 }
 
-void list_probes(Mirror const& mirror, PlaceGrid const& grid, std::vector<Probe>& probes) {
+void list_probes(Mirror const& mirror, RayGrid const& grid, std::vector<Probe>& probes) {
     probes.clear();
     for_each_place(grid, mirror.viewport(), [&](Vec2 at) {
         Cell const& shown = cell_at(mirror, at);
@@ -109,11 +109,11 @@ std::vector<CellFault> find_stale(Mirror const& mirror, std::span<Probe const> p
     };
     std::vector<Difference> differences(static_cast<std::size_t>(columns * (mirror.viewport().height / spacing + 3)));
     for (std::size_t i = 0; i < probes.size(); ++i) {
-        differences[static_cast<std::size_t>(index_at(probes[i].place))] = compare(mirror, probes[i], luma[i]);
+        differences[static_cast<std::size_t>(index_at(probes[i].position))] = compare(mirror, probes[i], luma[i]);
     }
     std::vector<CellFault> faults;
     for (Probe const& probe : probes) {
-        int const at = index_at(probe.place);
+        int const at = index_at(probe.position);
         Difference const own = differences[static_cast<std::size_t>(at)];
         Difference around;
         for (int const row : {at - columns, at, at + columns}) {
@@ -123,7 +123,7 @@ std::vector<CellFault> find_stale(Mirror const& mirror, std::span<Probe const> p
             }
         }
         if (own.chance > 0 && (own.beyond(doubt) || around.beyond(doubt))) {
-            faults.push_back({.at = probe.place, .side = spacing, .stale = own.luma * own.luma});
+            faults.push_back({.at = probe.position, .side = spacing, .stale = own.luma * own.luma});
         }
     }
     return faults;

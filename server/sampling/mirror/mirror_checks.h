@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "server/render/place_grid.h"
+#include "server/render/ray_grid.h"
 #include "server/render/probe.h"
 #include "server/sampling/mirror/mirror.h"
 
@@ -13,11 +13,11 @@ namespace framelet {
 
 /// Inverse depths of the places of a grid, 1 / metres, row by row, < 0 where that is not known: of those where neither
 /// the cell of the place nor those beside it show anything about as near, the cells around are wrong.
-std::vector<CellFault> find_wrong(Mirror const& mirror, PlaceGrid const& grid, std::span<float const> inverse_depth);
+std::vector<CellFault> find_wrong(Mirror const& mirror, RayGrid const& grid, std::span<float const> inverse_depth);
 
 /// Replaces `probes` by one for each place of a grid that shows, well within a surface, what is of another time:
 /// with the luma that the viewer shows there.
-void list_probes(Mirror const& mirror, PlaceGrid const& grid, std::vector<Probe>& probes);
+void list_probes(Mirror const& mirror, RayGrid const& grid, std::vector<Probe>& probes);
 
 /// What probes really show of the moment, luma in their order: where that differs from what they showed by more than
 /// chance the cells around are stale. `spacing`: pixels from one probe to the next.

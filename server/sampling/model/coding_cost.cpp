@@ -12,10 +12,10 @@ constexpr float finest_share = 0.75f; ///< of a framelet's coefficients; each co
 
 } // namespace
 
-LevelCosts coded_bits(PlaceModel const& place) {
+LevelCosts coded_bits(RegionModel const& region) {
     LevelCosts half_logs;
     for (std::size_t band = 0; band < half_logs.size(); ++band) {
-        half_logs[band] = 0.5f * std::log2(1 + place.energy[band] / noise);
+        half_logs[band] = 0.5f * std::log2(1 + region.energy[band] / noise);
     }
     LevelCosts out;
     for (std::size_t level = 0; level < out.size(); ++level) {

@@ -24,9 +24,9 @@ public:
         }
     }
     float operator()(float cost) const {
-        float const place = std::sqrt(cost) * steps;
-        std::size_t const i = std::min(static_cast<std::size_t>(place), steps - 1);
-        return periods_[i] + (place - static_cast<float>(i)) * (periods_[i + 1] - periods_[i]);
+        float const position = std::sqrt(cost) * steps;
+        std::size_t const i = std::min(static_cast<std::size_t>(position), steps - 1);
+        return periods_[i] + (position - static_cast<float>(i)) * (periods_[i + 1] - periods_[i]);
     }
 
 private:
@@ -38,12 +38,12 @@ BestPeriod const best_period;
 
 } // namespace
 
-SamplingChoice choose_sampling(PlaceModel const& place, float life, SamplingPrice const& price, int least_level,
+SamplingChoice choose_sampling(RegionModel const& region, float life, SamplingPrice const& price, int least_level,
                                int most_level, LevelCosts const& costs) {
     float const time_weight = price.bias == 0 ? 1 : std::exp2(2 * price.bias);
     float const space_weight = 1 / time_weight;
     float const longest = std::max(life, price.least_period);
-    LevelErrors const errors = level_errors(place);
+    LevelErrors const errors = level_errors(region);
     SamplingChoice best;
     float least = std::numeric_limits<float>::infinity();
     /// Weighs a level, unless what it leaves unresolved alone is too much already.
@@ -55,10 +55,10 @@ SamplingChoice choose_sampling(PlaceModel const& place, float life, SamplingPric
         }
         float period = longest;
         float paid = unresolved + cost / longest;
-        if (place.motion > 0) {
+        if (region.motion > 0) {
             DriftBounds const bounds = errors.drift[static_cast<std::size_t>(level)];
             float const most = time_weight * bounds.most;
-            float const rate = place.motion * bounds.growth / bounds.most; // 1/s, of the one exponential
+            float const rate = region.motion * bounds.growth / bounds.most; // 1/s, of the one exponential
             float const left = most * std::exp(-rate * price.latency); // what a refresh can save, fresh as it comes
             float const share = rate * cost / left;
             float const wanted = share < 1 && rate > 0 ? best_period(share) / rate : longest;

@@ -1,7 +1,7 @@
-// The best way to sample a place for a given price of samples. In: what is known of the place, the price, how late what
+// The best way to sample a region for a given price of samples. In: what is known of the region, the price, how late what
 // is rendered shows. Out: how finely, how often, and what error that leaves.
 //
-// A place that is refreshed at level l every P seconds shows on average the error
+// A region that is refreshed at level l every P seconds shows on average the error
 //     F = unresolved(l) + mean over ages a in [latency, latency + P] of drift_error(l, motion a),
 // and costs samples_per_pixel(l) / P (times what a sample costs). The choice minimises F + price * cost. With
 // drift_error taken as one exponential, V (1 - exp(-r a)), the best period solves 1 - exp(-x)(1 + x) = price * spp * r
@@ -34,10 +34,10 @@ struct SamplingChoice {
     bool recurring = false; ///< false: it goes on as it is for its life; another refresh is not worth its price
 };
 
-/// `life`: seconds for which the place is expected to go on as it does: nothing is worth more than it saves in that
+/// `life`: seconds for which the region is expected to go on as it does: nothing is worth more than it saves in that
 /// time. `least_level`, `most_level`: levels to choose from. `costs`: of a sample of each level, in those that the
 /// price is of.
-SamplingChoice choose_sampling(PlaceModel const& place, float life, SamplingPrice const& price, int least_level,
+SamplingChoice choose_sampling(RegionModel const& region, float life, SamplingPrice const& price, int least_level,
                                int most_level, LevelCosts const& costs = equal_costs);
 
 } // namespace framelet

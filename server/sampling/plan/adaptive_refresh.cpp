@@ -51,7 +51,7 @@ bool AdaptiveRefresh::is_complete(ViewState const& state) const {
 void AdaptiveRefresh::advance(RefreshInput const& input) {
     ViewState const& state = input.state;
     if (!seen_ || seen_->view.viewport != state.view.viewport) {
-        field_ = PlaceField(ImagePlane(state.view.viewport));
+        field_ = RegionField(ImagePlane(state.view.viewport));
         history_.clear();
         moments_ = MomentRefresh(state.view.viewport);
         price_ = 1e-6f;
@@ -170,7 +170,7 @@ double AdaptiveRefresh::plan_periodic_refreshes(RefreshInput const& input) {
 }
 
 /// The next patches of the cycle of as many rays a sample, as many as a batch may hold, at least one; in order of their
-/// places, since neighbours are coded in fewer bytes beside each other.
+/// regions, since neighbours are coded in fewer bytes beside each other.
 void AdaptiveRefresh::take_batch(std::size_t most_framelets, RefreshPlan& plan) {
     bool const single = next_ < first_supersampled_ || next_ == cycle_.size();
     plan.rays_per_sample = single ? single_ray : four_rays;
@@ -282,13 +282,13 @@ void AdaptiveRefresh::plan_moment(RefreshInput const& input, double samples, Ref
 
 /// Probes what seems to stand, the neighbours of what moves first.
 void AdaptiveRefresh::plan_probes(double samples, RefreshPlan& plan) {
-    auto const most = static_cast<std::size_t>(samples / (probe_cost * static_cast<double>(probes_per_place)));
+    auto const most = static_cast<std::size_t>(samples / (probe_cost * static_cast<double>(probes_per_region)));
     select_probed(field_, choices_, advanced_, most, probe_scratch_, plan.probed);
     for (std::uint32_t const index : plan.probed) {
-        Place& place = field_[index];
-        place.asked = plan.now;
-        plan.probes.insert(plan.probes.end(), place.probes.begin(),
-                           place.probes.begin() + static_cast<std::ptrdiff_t>(place.probe_count));
+        Region& region = field_[index];
+        region.asked = plan.now;
+        plan.probes.insert(plan.probes.end(), region.probes.begin(),
+                           region.probes.begin() + static_cast<std::ptrdiff_t>(region.probe_count));
     }
 }
 
@@ -314,9 +314,9 @@ std::vector<std::uint8_t> const& AdaptiveRefresh::learn(RefreshPlan const& plan,
     }
     std::size_t probe = 0;
     for (std::uint32_t const index : plan.probed) {
-        Place& place = field_[index];
-        learn_probes(place, probe_luma.subspan(probe, place.probe_count), plan.now);
-        probe += place.probe_count;
+        Region& region = field_[index];
+        learn_probes(region, probe_luma.subspan(probe, region.probe_count), plan.now);
+        probe += region.probe_count;
     }
     examine_batch(field_, plan, framelets, rendered, supersampled ? no_history() : history_, findings_);
     learn_batch(field_, plan, findings_, send_);

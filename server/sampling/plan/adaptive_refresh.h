@@ -39,7 +39,7 @@ public:
     void note_sent(RefreshPlan const& plan, std::uint64_t batch, std::span<DisplayFramelet const> framelets,
                    std::span<Framelet const> rendered, std::span<std::uint8_t const> sent,
                    std::span<FrameletShape> shapes);
-    /// What is really to be seen of the moment of a plan that asks for it: inverse depths of the places of its grid, 1
+    /// What is really to be seen of the moment of a plan that asks for it: inverse depths at the positions of its grid, 1
     /// / metres, row by row; < 0: not known.
     void note_visibility(RefreshPlan const& plan, std::span<float const> inverse_depth);
     /// The viewer no longer holds these.
@@ -49,7 +49,7 @@ public:
 
     // To look at it.
     Mirror const& mirror() const { return moments_.mirror(); }
-    PlaceField const& field() const { return field_; }
+    RegionField const& field() const { return field_; }
     Choices const& choices() const { return choices_; }
     float price() const { return price_; }
     /// The cycle that was planned last: how many there have been, its tiling, the patches to render, the samples
@@ -82,9 +82,9 @@ private:
     double base_begun_ = never; ///< when the first plan of that camera was made since there was another one
     bool scene_moves_ = false;
     bool still_ = false; ///< what is to be seen is what the last plan was for
-    PlaceField field_;
+    RegionField field_;
     LumaHistory history_;
-    std::vector<LevelCosts> costs_; ///< of samples, by place; none where all cost the same
+    std::vector<LevelCosts> costs_; ///< of samples, by region; none where all cost the same
     /// Of a sample planned lately, as estimated. It begins below what pictures have, so that a slow link is not filled
     /// with the first of them (measured).
     float mean_bits_ = 1;
@@ -107,7 +107,7 @@ private:
     std::vector<Patch> cut_;
     std::vector<RatedPatch> rated_;
     std::vector<std::uint32_t> suspects_;
-    UnresolvedPlaces unresolved_;
+    UnresolvedRegions unresolved_;
     ProbeScratch probe_scratch_;
     BatchFindings findings_;
 };

@@ -3,52 +3,52 @@
 #include <tbb/parallel_for.h>
 
 namespace framelet {
-void examine_batch(PlaceField const& field, RefreshPlan const& plan, std::span<DisplayFramelet const> framelets,
+void examine_batch(RegionField const& field, RefreshPlan const& plan, std::span<DisplayFramelet const> framelets,
                    std::span<Framelet const> rendered, LumaHistory const& history, BatchFindings& findings) {
     findings.firsts.clear();
     std::size_t tiles = 0;
-    std::size_t places = 0;
+    std::size_t regions = 0;
     for (std::size_t i = 0; i < plan.patches.size(); ++i) {
-        findings.firsts.push_back({tiles, places});
+        findings.firsts.push_back({tiles, regions});
         tiles += plan.tile_counts[i];
-        places += field.range_of(plan.patches[i].node).size();
+        regions += field.range_of(plan.patches[i].node).size();
     }
     findings.entries.resize(tiles);
-    findings.places.resize(places);
+    findings.regions.resize(regions);
     findings.same_since.resize(plan.patches.size());
     tbb::parallel_for(std::size_t{0}, plan.patches.size(), [&](std::size_t i) {
         Patch const& patch = plan.patches[i];
-        auto const [tile, place] = findings.firsts[i];
+        auto const [tile, region] = findings.firsts[i];
         std::size_t const count = plan.tile_counts[i];
         findings.same_since[i] =
             examine_patch(field, patch, framelets.subspan(tile, count), rendered.subspan(tile, count),
                           {plan.now, plan.moment_begun, plan.base_begun}, plan.moment, history,
                           std::span(findings.entries).subspan(tile, count),
-                          std::span(findings.places).subspan(place, field.range_of(patch.node).size()));
+                          std::span(findings.regions).subspan(region, field.range_of(patch.node).size()));
     });
 }
 
-void learn_batch(PlaceField& field, RefreshPlan const& plan, BatchFindings const& findings,
+void learn_batch(RegionField& field, RefreshPlan const& plan, BatchFindings const& findings,
                  std::vector<std::uint8_t>& needed) {
     needed.clear();
     for (std::size_t i = 0; i < plan.patches.size(); ++i) {
         Patch const& patch = plan.patches[i];
-        auto const places =
-            std::span(findings.places).subspan(findings.firsts[i].second, field.range_of(patch.node).size());
+        auto const regions =
+            std::span(findings.regions).subspan(findings.firsts[i].second, field.range_of(patch.node).size());
         bool const is_needed =
-            learn_patch(field, patch, places, findings.same_since[i], plan.still_since, plan.now, !plan.is_mirrored);
+            learn_patch(field, patch, regions, findings.same_since[i], plan.still_since, plan.now, !plan.is_mirrored);
         needed.insert(needed.end(), plan.tile_counts[i], is_needed ? 1 : 0);
     }
 }
 
-void learn_supersampled(PlaceField& field, RefreshPlan const& plan) {
+void learn_supersampled(RegionField& field, RefreshPlan const& plan) {
     for (Patch const& patch : plan.patches) {
-        PlaceField::Range const range = field.range_of(patch.node);
+        RegionField::Range const range = field.range_of(patch.node);
         for (std::uint32_t i = range.first; i < range.last; ++i) {
-            Place& place = field[i];
-            place.drift = drift_since(place, plan.now);
-            place.level = field.level_of(patch.depth);
-            place.rendered = place.checked = place.supersampled = plan.now;
+            Region& region = field[i];
+            region.drift = drift_since(region, plan.now);
+            region.level = field.level_of(patch.depth);
+            region.rendered = region.checked = region.supersampled = plan.now;
         }
     }
 }

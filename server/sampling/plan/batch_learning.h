@@ -6,28 +6,28 @@
 #include <utility>
 #include <vector>
 
-#include "server/sampling/field/place_learning.h"
+#include "server/sampling/field/region_learning.h"
 #include "server/sampling/plan/refresh_plan.h"
 
 namespace framelet {
 
 struct BatchFindings {
-    std::vector<std::pair<std::size_t, std::size_t>> firsts; ///< first tile and first place of each patch
+    std::vector<std::pair<std::size_t, std::size_t>> firsts; ///< first tile and first region of each patch
     std::vector<LumaHistory::Entry> entries; ///< of the framelets
-    std::vector<PlaceFindings> places; ///< of the patches
+    std::vector<RegionFindings> regions; ///< of the patches
     std::vector<double> same_since; ///< of the patches, as `examine_patch` says
 };
 
 /// Replaces `findings` by what the framelets of a plan say, of all patches in parallel. `history`: none
 /// where samples are means of four rays, since beside single ones they would seem to have changed.
-void examine_batch(PlaceField const& field, RefreshPlan const& plan, std::span<DisplayFramelet const> framelets,
+void examine_batch(RegionField const& field, RefreshPlan const& plan, std::span<DisplayFramelet const> framelets,
                    std::span<Framelet const> rendered, LumaHistory const& history, BatchFindings& findings);
 
 /// Takes the findings into account; replaces `needed` by whether the viewer needs each framelet.
-void learn_batch(PlaceField& field, RefreshPlan const& plan, BatchFindings const& findings,
+void learn_batch(RegionField& field, RefreshPlan const& plan, BatchFindings const& findings,
                  std::vector<std::uint8_t>& needed);
 
 /// The viewer holds what a plan shows with four rays a sample. At rest that is all that is learnt of it.
-void learn_supersampled(PlaceField& field, RefreshPlan const& plan);
+void learn_supersampled(RegionField& field, RefreshPlan const& plan);
 
 } // namespace framelet

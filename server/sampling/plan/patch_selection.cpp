@@ -14,23 +14,23 @@ struct Gain {
     bool spoils = false; ///< what is finer and still true
 };
 
-Gain gain_of(PlaceField const& field, Choices const& choices, std::span<float const> due, Budget const& budget,
-             PlaceField::Range range, int level) {
+Gain gain_of(RegionField const& field, Choices const& choices, std::span<float const> due, Budget const& budget,
+             RegionField::Range range, int level) {
     Gain gain;
     for (std::uint32_t i = range.first; i < range.last; ++i) {
-        Place const& place = field[i];
+        Region const& region = field[i];
         auto const pixels = static_cast<double>(field.pixels_of(i));
         gain.pixels += pixels;
         gain.cost += pixels * static_cast<double>(costs_at(budget, i)[static_cast<std::size_t>(level)]);
-        if (pixels == 0 || place.taken.level >= 0) { // what it is worth is seen once it is learnt
+        if (pixels == 0 || region.taken.level >= 0) { // what it is worth is seen once it is learnt
             continue;
         }
         gain.spoils =
-            gain.spoils || (place.level > level && place.drift == 0 && (budget.still || place.model.motion == 0));
-        float const unresolved = unresolved_error(place.model, level);
-        float fresh = unresolved + drift_error(place.model, level, drift_on_the_way(place, budget));
-        if (place.rendered >= budget.moment_begun) { // of this moment there is only more detail to show
-            float const detail = level > place.level ? unresolved_error(place.model, place.level) - unresolved : 0;
+            gain.spoils || (region.level > level && region.drift == 0 && (budget.still || region.model.motion == 0));
+        float const unresolved = unresolved_error(region.model, level);
+        float fresh = unresolved + drift_error(region.model, level, drift_on_the_way(region, budget));
+        if (region.rendered >= budget.moment_begun) { // of this moment there is only more detail to show
+            float const detail = level > region.level ? unresolved_error(region.model, region.level) - unresolved : 0;
             fresh = due[i] - std::max(detail, 0.0f);
         }
         gain.error += pixels * static_cast<double>(due[i] - std::max(choices[i].due_error, fresh));
@@ -40,7 +40,7 @@ Gain gain_of(PlaceField const& field, Choices const& choices, std::span<float co
 
 } // namespace
 
-void rate_patches(PlaceField const& field, Choices const& choices, std::span<float const> due,
+void rate_patches(RegionField const& field, Choices const& choices, std::span<float const> due,
                   std::vector<Patch> const& cut, Budget const& budget, std::vector<RatedPatch>& rated) {
     rated.clear();
     auto const rate = [&](Patch const& patch) {
@@ -57,7 +57,7 @@ void rate_patches(PlaceField const& field, Choices const& choices, std::span<flo
             continue;
         }
         // What is true among them must not keep the others waiting: each for itself.
-        PlaceField::Range const range = field.range_of(patch.node);
+        RegionField::Range const range = field.range_of(patch.node);
         for (std::uint32_t i = range.first; i < range.last && range.last - range.first > 1; ++i) {
             if (field.pixels_of(i) > 0) {
                 rate(field.patch_of(i, std::max(patch.depth, field.depth())));
@@ -91,19 +91,19 @@ bool append_new(Patch const& patch, std::size_t count, std::vector<Patch>& patch
     return is_new;
 }
 
-double refresh_period(PlaceField const& field, Budget const& budget) {
+double refresh_period(RegionField const& field, Budget const& budget) {
     Viewport const viewport = field.plane().viewport();
     double const pixels = static_cast<double>(viewport.width) * viewport.height;
     return std::max(least_refresh_period, pixels / (budget.limits.periodic_share * budget.samples_per_second));
 }
 
-void select_periodic_refreshes(PlaceField const& field, double now, Budget const& budget, std::vector<std::uint32_t>& scratch,
+void select_periodic_refreshes(RegionField const& field, double now, Budget const& budget, std::vector<std::uint32_t>& scratch,
                         std::vector<Patch>& patches) {
     double const latest = now - refresh_period(field, budget);
     scratch.clear();
     for (std::uint32_t const index : field.visible()) {
-        Place const& place = field[index];
-        if (place.refreshed < latest && place.taken.level < pixel_level) {
+        Region const& region = field[index];
+        if (region.refreshed < latest && region.taken.level < pixel_level) {
             scratch.push_back(index);
         }
     }

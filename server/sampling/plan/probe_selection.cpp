@@ -5,14 +5,14 @@
 namespace framelet {
 namespace {
 
-/// A place is probed again after so many seconds, sooner beside something that moves.
+/// A region is probed again after so many seconds, sooner beside something that moves.
 constexpr double probe_period = 0.25;
 /// What should have been refreshed by then, and has not, is probed after so many.
 constexpr double most_unseen = 0.5;
 
 } // namespace
 
-void select_probed(PlaceField const& field, Choices const& choices, double now, std::size_t most, ProbeScratch& scratch,
+void select_probed(RegionField const& field, Choices const& choices, double now, std::size_t most, ProbeScratch& scratch,
                    std::vector<std::uint32_t>& probed) {
     scratch.active.assign(field.size(), 0);
     for (std::uint32_t const index : field.visible()) {
@@ -26,7 +26,7 @@ void select_probed(PlaceField const& field, Choices const& choices, double now, 
         return scratch.active[morton_index(static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row))] != 0;
     };
     auto const suspicion = [&](std::uint32_t index) {
-        Place const& place = field[index];
+        Region const& region = field[index];
         int const column = static_cast<int>(morton_x(index));
         int const row = static_cast<int>(morton_y(index));
         bool beside = false;
@@ -35,21 +35,21 @@ void select_probed(PlaceField const& field, Choices const& choices, double now, 
                 beside = beside || is_active(x, y);
             }
         }
-        return (now - place.asked) * (beside ? 8 : 1);
+        return (now - region.asked) * (beside ? 8 : 1);
     };
     probed.clear();
     scratch.suspicions.assign(field.size(), 0);
     for (std::uint32_t const index : field.visible()) {
-        Place const& place = field[index];
-        if (place.level < 0 || place.taken.level >= 0 || place.probe_count == 0) {
+        Region const& region = field[index];
+        if (region.level < 0 || region.taken.level >= 0 || region.probe_count == 0) {
             continue;
         }
         // What is refreshed again and again needs no probes, as long as it is.
-        bool const planned = place.model.motion > 0 && choices.size() == field.size() && choices[index].recurring &&
+        bool const planned = region.model.motion > 0 && choices.size() == field.size() && choices[index].recurring &&
                              static_cast<double>(choices[index].period) < probe_period;
         double const expected = planned ? most_unseen : 0;
         scratch.suspicions[index] = suspicion(index);
-        if (scratch.suspicions[index] > probe_period && now - place.asked > expected) {
+        if (scratch.suspicions[index] > probe_period && now - region.asked > expected) {
             probed.push_back(index);
         }
     }

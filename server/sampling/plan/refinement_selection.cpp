@@ -14,24 +14,24 @@ constexpr float enough = 5e-5f;
 
 } // namespace
 
-bool is_finest(Place const& place, double still_since) {
-    return place.level == sampling_levels - 1 && place.rendered >= still_since;
+bool is_finest(Region const& region, double still_since) {
+    return region.level == sampling_levels - 1 && region.rendered >= still_since;
 }
 
-bool is_finished(Place const& place, double still_since) {
-    return is_finest(place, still_since) && (place.supersampled >= still_since || place.left <= enough);
+bool is_finished(Region const& region, double still_since) {
+    return is_finest(region, still_since) && (region.supersampled >= still_since || region.left <= enough);
 }
 
-void select_refinement(PlaceField const& field, double samples, UnresolvedPlaces& scratch,
+void select_refinement(RegionField const& field, double samples, UnresolvedRegions& scratch,
                        std::vector<Patch>& patches) {
     scratch.clear();
     for (std::uint32_t const index : field.visible()) {
-        Place const& place = field[index];
-        if (place.level < 0 || place.level + 1 >= sampling_levels || place.taken.level >= 0) {
+        Region const& region = field[index];
+        if (region.level < 0 || region.level + 1 >= sampling_levels || region.taken.level >= 0) {
             continue;
         }
-        int const finer = place.level + 1;
-        float const gain = unresolved_error(place.model, place.level) - unresolved_error(place.model, finer);
+        int const finer = region.level + 1;
+        float const gain = unresolved_error(region.model, region.level) - unresolved_error(region.model, finer);
         if (gain > 0) {
             scratch.push_back({gain / samples_per_pixel(finer), index});
         }
@@ -51,15 +51,15 @@ void select_refinement(PlaceField const& field, double samples, UnresolvedPlaces
     }
 }
 
-void select_completion(PlaceField const& field, double still_since, bool scene_moves, double samples,
+void select_completion(RegionField const& field, double still_since, bool scene_moves, double samples,
                        std::vector<Patch>& patches) {
     double tiles = 0;
     for (std::uint32_t const index : field.visible()) {
-        Place const& place = field[index];
-        bool const fine = place.level == sampling_levels - 1 && place.settled;
-        bool const taken = place.taken.level == sampling_levels - 1 && place.taken.when >= still_since;
-        if (is_finest(place, still_since) || taken ||
-            (scene_moves && fine)) { // while things move, probes and periodic_refreshes are enough
+        Region const& region = field[index];
+        bool const fine = region.level == sampling_levels - 1 && region.settled;
+        bool const taken = region.taken.level == sampling_levels - 1 && region.taken.when >= still_since;
+        if (is_finest(region, still_since) || taken ||
+            (scene_moves && fine)) { // while things move, probes and periodic refreshes are enough
             continue;
         }
         Patch const patch = field.patch_of(index, field.plane().max_depth());
@@ -71,7 +71,7 @@ void select_completion(PlaceField const& field, double still_since, bool scene_m
     }
 }
 
-void select_supersampling(PlaceField const& field, double still_since, double samples, UnresolvedPlaces& scratch,
+void select_supersampling(RegionField const& field, double still_since, double samples, UnresolvedRegions& scratch,
                           std::vector<Patch>& patches) {
     scratch.clear();
     for (std::uint32_t const index : field.visible()) {

@@ -63,8 +63,8 @@ struct RefreshPlan {
     int rays_per_sample = single_ray; ///< of the tiles
     /// Where what the moment shows is to be compared with what the viewer would.
     std::optional<MomentChecks> checks;
-    std::vector<Probe> probes; ///< of the probed places, in order
-    std::vector<std::uint32_t> probed; ///< places
+    std::vector<Probe> probes; ///< of the probed regions, in order
+    std::vector<std::uint32_t> probed; ///< regions
 
     bool is_empty() const { return tiles.empty() && probes.empty() && !checks; }
     /// Through the samples of the tiles.

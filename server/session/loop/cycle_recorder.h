@@ -32,7 +32,7 @@ public:
 
 private:
     struct Snapshot {
-        PlaceField field;
+        RegionField field;
         Choices choices;
         std::vector<Patch> cut;
     };

@@ -205,8 +205,8 @@ private:
 
     /// Of the calibrated machine, for a cycle.
     double plan_seconds() const {
-        auto const places = static_cast<double>(stream_->scheduler()->field().visible().size());
-        return 1e-9 * places * setup_.costs.plan_place;
+        auto const regions = static_cast<double>(stream_->scheduler()->field().visible().size());
+        return 1e-9 * regions * setup_.costs.plan_region;
     }
 
     static constexpr int cell = framelet_side >> finest_levels; ///< side of the finest tile, pixels

@@ -11,7 +11,7 @@
 namespace framelet {
 namespace {
 
-/// Of what nothing is known: as `unknown_place` has it.
+/// Of what nothing is known: as `unknown_region` has it.
 constexpr float unknown_detail = 0.0025f;
 /// What was rendered before the scene jumped looks otherwise by so much, squared luma, where no probe has told.
 constexpr float outdated_error = 2e-4f;
@@ -93,7 +93,7 @@ void for_each_cell(Mirror const& mirror, PixelRect const& rect, Visit visit) {
 
 } // namespace
 
-void MomentPlan::find(Mirror const& mirror, PlaceField const& field, MomentBudget const& budget,
+void MomentPlan::find(Mirror const& mirror, RegionField const& field, MomentBudget const& budget,
                       std::vector<RatedPatch>& rated) {
     FRAMELET_CHECK(mirror.viewport() == field.plane().viewport());
     rated.clear();
@@ -121,7 +121,7 @@ void MomentPlan::find(Mirror const& mirror, PlaceField const& field, MomentBudge
 
 /// What gains much for few samples is shown before what those lack is refined: of the dearer prices too the one is
 /// taken whose patches gain most a second, where each plan takes `overhead` besides.
-void MomentPlan::choose_horizon(PlaceField const& field, MomentBudget const& budget) {
+void MomentPlan::choose_horizon(RegionField const& field, MomentBudget const& budget) {
     constexpr int most_steps = 12;
     float const first = price_;
     float best_rate = -1;
@@ -139,27 +139,27 @@ void MomentPlan::choose_horizon(PlaceField const& field, MomentBudget const& bud
     solve(field, budget, best);
 }
 
-void MomentPlan::find_gains(Mirror const& mirror, PlaceField const& field, MomentBudget const& budget) {
+void MomentPlan::find_gains(Mirror const& mirror, RegionField const& field, MomentBudget const& budget) {
     leaves_.assign(field.size(), Leaf{});
-    std::span<std::uint32_t const> const places = field.visible();
-    tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) { add_detail(mirror, field, places[i]); });
+    std::span<std::uint32_t const> const regions = field.visible();
+    tbb::parallel_for(std::size_t{0}, regions.size(), [&](std::size_t i) { add_detail(mirror, field, regions[i]); });
     float detail = 0, shown = 0;
-    for (std::uint32_t const index : places) {
+    for (std::uint32_t const index : regions) {
         detail += leaves_[index].detail;
         shown += leaves_[index].shown;
     }
     mean_detail_ = shown > 0 ? detail / shown : unknown_detail;
-    tbb::parallel_for(std::size_t{0}, places.size(),
-                      [&](std::size_t i) { add_gains(mirror, field, places[i], budget); });
+    tbb::parallel_for(std::size_t{0}, regions.size(),
+                      [&](std::size_t i) { add_gains(mirror, field, regions[i], budget); });
     stale_ = wrong_ = 0;
-    for (std::uint32_t const index : places) {
+    for (std::uint32_t const index : regions) {
         stale_ += leaves_[index].stale;
         wrong_ += leaves_[index].wrong;
     }
 }
 
-/// Of one place.
-void MomentPlan::add_detail(Mirror const& mirror, PlaceField const& field, std::uint32_t index) {
+/// Of one region.
+void MomentPlan::add_detail(Mirror const& mirror, RegionField const& field, std::uint32_t index) {
     Leaf& leaf = leaves_[index];
     for_each_cell(mirror, field.rect_of(index), [&](Cell const& cell, float) {
         leaf.detail += cell.is_shown() ? cell.detail : 0;
@@ -167,15 +167,15 @@ void MomentPlan::add_detail(Mirror const& mirror, PlaceField const& field, std::
     });
 }
 
-/// Of one place.
-void MomentPlan::add_gains(Mirror const& mirror, PlaceField const& field, std::uint32_t index,
+/// Of one region.
+void MomentPlan::add_gains(Mirror const& mirror, RegionField const& field, std::uint32_t index,
                            MomentBudget const& budget) {
-    Place const& place = field[index];
+    Region const& region = field[index];
     Leaf& leaf = leaves_[index];
     // What is on its way, or has been rendered of this moment, the viewer has whatever the mirror makes of it.
-    int had = place.taken.level;
-    if (place.rendered >= budget.moment_begun) {
-        had = std::max(had, place.level + (place.supersampled >= budget.moment_begun ? 1 : 0));
+    int had = region.taken.level;
+    if (region.rendered >= budget.moment_begun) {
+        had = std::max(had, region.level + (region.supersampled >= budget.moment_begun ? 1 : 0));
     }
     float const hidden_detail = leaf.shown > 0 ? leaf.detail / leaf.shown : mean_detail_;
     FloatLanes gains{};
@@ -220,8 +220,8 @@ void MomentPlan::add_gains(Mirror const& mirror, PlaceField const& field, std::u
     leaf.cost[supersampled] = leaf.cost[pixel_level] * std::max(1.0f, four_rays / budget.rays);
 }
 
-/// Gains of tiles that are larger than a place.
-void MomentPlan::sum_nodes(PlaceField const& field, MomentBudget const& budget) {
+/// Gains of tiles that are larger than a region.
+void MomentPlan::sum_nodes(RegionField const& field, MomentBudget const& budget) {
     nodes_.resize(static_cast<std::size_t>(field.depth()));
     for (int depth = 0; depth < field.depth(); ++depth) {
         std::vector<Node>& nodes = nodes_[static_cast<std::size_t>(depth)];
@@ -241,7 +241,7 @@ void MomentPlan::sum_nodes(PlaceField const& field, MomentBudget const& budget) 
 }
 
 /// Chooses what is best for the price; returns what it costs.
-double MomentPlan::solve(PlaceField const& field, MomentBudget const& budget, float price) {
+double MomentPlan::solve(RegionField const& field, MomentBudget const& budget, float price) {
     int const first = std::max(field.level_of(field.depth()), budget.limits.least_level);
     auto const deepest = static_cast<std::size_t>(field.depth());
     for (std::vector<Node>& nodes : nodes_) {
@@ -298,7 +298,7 @@ double MomentPlan::solve(PlaceField const& field, MomentBudget const& budget, fl
     return all;
 }
 
-void MomentPlan::collect(PlaceField const& field, int depth, std::uint32_t index,
+void MomentPlan::collect(RegionField const& field, int depth, std::uint32_t index,
                          std::vector<RatedPatch>& rated) const {
     Tile const tile{(1u << (2 * depth)) + index};
     auto const rate = [&](int tile_depth, float gain, float cost, int rays_per_sample) {

@@ -39,7 +39,7 @@ public:
     static_assert(supersampled < std::tuple_size_v<ChoiceFigures>);
 
     /// Replaces `rated` by disjoint patches, unsorted. `mirror` looks at the moment, with the viewport of `field`.
-    void find(Mirror const& mirror, PlaceField const& field, MomentBudget const& budget,
+    void find(Mirror const& mirror, RegionField const& field, MomentBudget const& budget,
               std::vector<RatedPatch>& rated);
 
     /// Of the patches found last: squared error that the last sample takes away, summed over pixels.
@@ -59,20 +59,20 @@ private:
         std::size_t choice = no_choice; ///< best
     };
 
-    void find_gains(Mirror const& mirror, PlaceField const& field, MomentBudget const& budget);
-    void add_detail(Mirror const& mirror, PlaceField const& field, std::uint32_t index);
-    void add_gains(Mirror const& mirror, PlaceField const& field, std::uint32_t index, MomentBudget const& budget);
-    void sum_nodes(PlaceField const& field, MomentBudget const& budget);
-    void choose_horizon(PlaceField const& field, MomentBudget const& budget);
-    double solve(PlaceField const& field, MomentBudget const& budget, float price);
-    void collect(PlaceField const& field, int depth, std::uint32_t index, std::vector<RatedPatch>& rated) const;
+    void find_gains(Mirror const& mirror, RegionField const& field, MomentBudget const& budget);
+    void add_detail(Mirror const& mirror, RegionField const& field, std::uint32_t index);
+    void add_gains(Mirror const& mirror, RegionField const& field, std::uint32_t index, MomentBudget const& budget);
+    void sum_nodes(RegionField const& field, MomentBudget const& budget);
+    void choose_horizon(RegionField const& field, MomentBudget const& budget);
+    double solve(RegionField const& field, MomentBudget const& budget, float price);
+    void collect(RegionField const& field, int depth, std::uint32_t index, std::vector<RatedPatch>& rated) const;
 
     float price_ = 0;
     float gain_ = 0; ///< of what was chosen last
     float mean_detail_ = 0;
     float stale_ = 0, wrong_ = 0; ///< of all leaves
-    std::vector<Leaf> leaves_; ///< of the places
-    std::vector<std::vector<Node>> nodes_; ///< by depth, above the places
+    std::vector<Leaf> leaves_; ///< of the regions
+    std::vector<std::vector<Node>> nodes_; ///< by depth, above the regions
 };
 
 } // namespace framelet

@@ -7,7 +7,7 @@
 namespace framelet {
 namespace {
 
-/// The finest grid, a power of two times `least`, whose places cost no more than so many samples at `cost` each; at
+/// The finest grid, a power of two times `least`, whose positions cost no more than so many samples at `cost` each; at
 /// most `most` pixels apart.
 int grid_spacing(Viewport viewport, int least, int most, double cost, double samples) {
     int spacing = least;
@@ -48,12 +48,12 @@ MomentChecks MomentRefresh::look(RenderedMoment const& moment, double begun, dou
     return checks;
 }
 
-void MomentRefresh::plan(PlaceField const& field, MomentBudget const& budget, std::vector<RatedPatch>& rated) {
+void MomentRefresh::plan(RegionField const& field, MomentBudget const& budget, std::vector<RatedPatch>& rated) {
     is_checked_ = false;
     plan_.find(mirror_, field, budget, rated);
 }
 
-void MomentRefresh::note_visibility(RenderedMoment const& moment, PlaceGrid const& grid,
+void MomentRefresh::note_visibility(RenderedMoment const& moment, RayGrid const& grid,
                                     std::span<float const> inverse_depth) {
     if (mirror_.looks_at(view_of(moment))) {
         is_checked_ = mirror_.mark(find_wrong(mirror_, grid, inverse_depth)) || is_checked_;

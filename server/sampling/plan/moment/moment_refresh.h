@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "server/render/place_grid.h"
+#include "server/render/ray_grid.h"
 #include "server/render/probe.h"
 #include "server/sampling/field/meeting_bodies.h"
 #include "server/sampling/mirror/mirror.h"
@@ -20,7 +20,7 @@ inline constexpr double visibility_cost = 0.25, probe_cost = 2;
 
 /// Where what a moment really shows is compared with what the viewer would show of it.
 struct MomentChecks {
-    std::optional<PlaceGrid> visibility; ///< none: nowhere
+    std::optional<RayGrid> visibility; ///< none: nowhere
     int probe_spacing = 0; ///< pixels from one probe to the next; 0: none
 
     /// Samples, without the probes.
@@ -41,11 +41,11 @@ public:
     MomentChecks look(RenderedMoment const& moment, double begun, double visibility_samples, double probe_samples,
                       std::vector<Probe>& probes);
     /// Replaces `rated` by where what the viewer holds shows the moment worst: see `MomentPlan`.
-    void plan(PlaceField const& field, MomentBudget const& budget, std::vector<RatedPatch>& rated);
+    void plan(RegionField const& field, MomentBudget const& budget, std::vector<RatedPatch>& rated);
 
-    /// What checks of a moment have shown: inverse depths at the places of their grid, 1 / metres, row by row (< 0: not
+    /// What checks of a moment have shown: inverse depths at the positions of their grid, 1 / metres, row by row (< 0: not
     /// known), and luma of the probes, in order. Not taken in where another moment is looked at by now.
-    void note_visibility(RenderedMoment const& moment, PlaceGrid const& grid, std::span<float const> inverse_depth);
+    void note_visibility(RenderedMoment const& moment, RayGrid const& grid, std::span<float const> inverse_depth);
     void note_looks(RenderedMoment const& moment, std::span<Probe const> probes, std::span<float const> luma,
                     int probe_spacing);
 

@@ -1,4 +1,4 @@
-#include "server/sampling/field/place_learning.h"
+#include "server/sampling/field/region_learning.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@ namespace framelet {
 namespace {
 
 /// Where sample `i` of a tile lies, pixels.
-Vec2 sample_place(ImagePlane const& plane, Tile tile, std::size_t i) {
+Vec2 sample_position(ImagePlane const& plane, Tile tile, std::size_t i) {
     PixelRect const rect = plane.tile_rect(tile);
     float const spacing = plane.sample_spacing(tile);
     auto const sample = static_cast<std::uint32_t>(i);
@@ -51,21 +51,21 @@ std::size_t steepest(Steps const& steps, std::size_t first, std::size_t last) {
 }
 
 /// Notes some samples of a part of a framelet, one in each of equal shares of it: in turn the steepest and any one.
-void note_probes(PlaceFindings& place, ImagePlane const& plane, LumaHistory::Entry const& entry, Steps const& steps,
+void note_probes(RegionFindings& region, ImagePlane const& plane, LumaHistory::Entry const& entry, Steps const& steps,
                  std::size_t first, std::size_t count, std::size_t wanted) {
     Viewport const viewport = plane.viewport();
     if (wanted == 0) {
         return;
     }
     std::size_t const share = std::max<std::size_t>(count / wanted, 1);
-    for (std::size_t i = 0; i < std::min(wanted, count) && place.probe_count < probes_per_place; ++i) {
+    for (std::size_t i = 0; i < std::min(wanted, count) && region.probe_count < probes_per_region; ++i) {
         std::size_t const begin = first + i * share;
-        std::size_t const sample = place.probe_count % 2 == 0
+        std::size_t const sample = region.probe_count % 2 == 0
                                        ? steepest(steps, begin, begin + share)
                                        : begin + scattered(entry.tile.code + static_cast<std::uint32_t>(i), share);
-        Vec2 const at = sample_place(plane, entry.tile, sample);
+        Vec2 const at = sample_position(plane, entry.tile, sample);
         if (at.x < static_cast<float>(viewport.width) && at.y < static_cast<float>(viewport.height)) {
-            place.probes[place.probe_count++] = {at, plane.sample_spacing(entry.tile), luma_at(entry, sample)};
+            region.probes[region.probe_count++] = {at, plane.sample_spacing(entry.tile), luma_at(entry, sample)};
         }
     }
 }
@@ -112,25 +112,25 @@ bool is_change(Observation const& seen) {
 
 } // namespace
 
-float drift_since(Place const& place, double now) {
-    if (place.taken.level < 0) {
+float drift_since(Region const& region, double now) {
+    if (region.taken.level < 0) {
         return 0;
     }
     // What has been taken again meanwhile knows that no more: what is known of before is too much.
-    return place.taken.when == now ? place.taken.drift : place.drift;
+    return region.taken.when == now ? region.taken.drift : region.drift;
 }
 
-double examine_patch(PlaceField const& field, Patch const& patch, std::span<DisplayFramelet const> framelets,
+double examine_patch(RegionField const& field, Patch const& patch, std::span<DisplayFramelet const> framelets,
                      std::span<Framelet const> rendered, RenderedTimes times, RenderedMoment const& moment,
                      LumaHistory const& history, std::span<LumaHistory::Entry> entries,
-                     std::span<PlaceFindings> places) {
+                     std::span<RegionFindings> regions) {
     FRAMELET_CHECK(framelets.size() == rendered.size() && framelets.size() == entries.size() && !framelets.empty());
-    FRAMELET_CHECK(framelet_samples % places.size() == 0);
+    FRAMELET_CHECK(framelet_samples % regions.size() == 0);
     int const level = field.level_of(patch.depth);
-    std::size_t const count = framelet_samples / places.size();
+    std::size_t const count = framelet_samples / regions.size();
     std::array<float, framelet_samples> luma;
     std::array<float, framelet_samples> change;
-    std::fill(places.begin(), places.end(), PlaceFindings{});
+    std::fill(regions.begin(), regions.end(), RegionFindings{});
     double same_since = times.now;
     for (std::size_t f = 0; f < framelets.size(); ++f) {
         LumaHistory::Entry& entry = entries[f];
@@ -156,101 +156,101 @@ double examine_patch(PlaceField const& field, Patch const& patch, std::span<Disp
         bool const same = in_place && before->content == entry.content;
         same_since = std::min(same_since, same ? before->time : never);
         std::size_t const wanted =
-            (f + 1) * probes_per_place / framelets.size() - f * probes_per_place / framelets.size();
+            (f + 1) * probes_per_region / framelets.size() - f * probes_per_region / framelets.size();
         Steps const steps = steps_of(entry);
         std::size_t first = 0;
-        for (PlaceFindings& place : places) {
-            accumulate(place.seen, observe(level, luma, difference, seconds, first, count));
-            note_probes(place, field.plane(), entry, steps, first, count, wanted);
-            place.inverse_depth += mean_inverse_depth(rendered[f], first, count);
-            place.meeting_speed =
-                std::max(place.meeting_speed, meeting_speed(rendered[f], field.plane(), moment, first, count));
+        for (RegionFindings& region : regions) {
+            accumulate(region.seen, observe(level, luma, difference, seconds, first, count));
+            note_probes(region, field.plane(), entry, steps, first, count, wanted);
+            region.inverse_depth += mean_inverse_depth(rendered[f], first, count);
+            region.meeting_speed =
+                std::max(region.meeting_speed, meeting_speed(rendered[f], field.plane(), moment, first, count));
             first += count;
         }
     }
-    for (PlaceFindings& place : places) {
-        place.seen = mean_of(place.seen, static_cast<int>(framelets.size()));
-        place.inverse_depth /= static_cast<float>(framelets.size());
+    for (RegionFindings& region : regions) {
+        region.seen = mean_of(region.seen, static_cast<int>(framelets.size()));
+        region.inverse_depth /= static_cast<float>(framelets.size());
     }
     return same_since;
 }
 
-bool learn_patch(PlaceField& field, Patch const& patch, std::span<PlaceFindings const> places, double same_since,
+bool learn_patch(RegionField& field, Patch const& patch, std::span<RegionFindings const> regions, double same_since,
                  double still_since, double now, bool withholds) {
     int const level = field.level_of(patch.depth);
-    PlaceField::Range const range = field.range_of(patch.node);
-    FRAMELET_CHECK(places.size() == range.last - range.first);
+    RegionField::Range const range = field.range_of(patch.node);
+    FRAMELET_CHECK(regions.size() == range.last - range.first);
     // The viewer has it, or better, and either has had it since before it looked the same, or what it got later is of a
-    // place that has not changed meanwhile: nothing to send.
+    // region that has not changed meanwhile: nothing to send.
     bool known = withholds && same_since > never;
     for (std::uint32_t i = range.first; i < range.last; ++i) {
-        Place const& place = field[i];
-        bool const goes_on = std::min(place.rendered, std::max(place.changed, place.doubted)) <= same_since;
-        known = known && (field.pixels_of(i) == 0 || (place.level >= level && goes_on));
+        Region const& region = field[i];
+        bool const goes_on = std::min(region.rendered, std::max(region.changed, region.doubted)) <= same_since;
+        known = known && (field.pixels_of(i) == 0 || (region.level >= level && goes_on));
     }
     for (std::uint32_t i = range.first; i < range.last; ++i) {
-        Place& place = field[i];
-        PlaceFindings const& found = places[i - range.first];
-        place.probes = found.probes;
-        place.probe_count = found.probe_count;
-        std::ranges::transform(found.probes, place.seen.begin(), &Probe::luma);
-        place.inverse_depth = found.inverse_depth;
-        learn(place.model, found.seen);
+        Region& region = field[i];
+        RegionFindings const& found = regions[i - range.first];
+        region.probes = found.probes;
+        region.probe_count = found.probe_count;
+        std::ranges::transform(found.probes, region.seen.begin(), &Probe::luma);
+        region.inverse_depth = found.inverse_depth;
+        learn(region.model, found.seen);
         if (level == sampling_levels - 1) {
-            place.left = unresolved_error(found.seen);
+            region.left = unresolved_error(found.seen);
         }
-        // What is uncovered there may look like what was rendered there before. It fills a place in so long.
-        place.model.motion = std::max(place.model.motion, found.meeting_speed / static_cast<float>(field.place_side()));
+        // What is uncovered there may look like what was rendered there before. It fills a region in so long.
+        region.model.motion = std::max(region.model.motion, found.meeting_speed / static_cast<float>(field.region_side()));
         if (found.seen.has_change) {
-            place.settled = !is_change(found.seen);
+            region.settled = !is_change(found.seen);
         }
-        if (is_change(found.seen) || place.rendered == never) {
-            place.changed = now;
+        if (is_change(found.seen) || region.rendered == never) {
+            region.changed = now;
         }
-        if (!found.seen.has_change && place.rendered < still_since) {
-            place.doubted = now;
+        if (!found.seen.has_change && region.rendered < still_since) {
+            region.doubted = now;
         }
-        place.checked = now;
+        region.checked = now;
         if (level >= pixel_level) {
-            place.refreshed = now;
+            region.refreshed = now;
         }
-        place.drift = drift_since(place, now);
-        if (!known || place.level == level) { // where it is known, what is held is the very picture of then
-            place.level = level;
-            place.rendered = now;
-            place.supersampled = never;
+        region.drift = drift_since(region, now);
+        if (!known || region.level == level) { // where it is known, what is held is the very picture of then
+            region.level = level;
+            region.rendered = now;
+            region.supersampled = never;
         }
     }
     return !known;
 }
 
-void learn_probes(Place& place, std::span<float const> luma, double now) {
-    FRAMELET_CHECK(luma.size() == place.probe_count && place.level >= 0);
-    float const error = probed_error(luma, [&](std::size_t i) { return place.probes[i].luma; });
-    float const change = probed_error(luma, [&](std::size_t i) { return place.seen[i]; });
-    auto const seconds = static_cast<float>(now - place.checked);
+void learn_probes(Region& region, std::span<float const> luma, double now) {
+    FRAMELET_CHECK(luma.size() == region.probe_count && region.level >= 0);
+    float const error = probed_error(luma, [&](std::size_t i) { return region.probes[i].luma; });
+    float const change = probed_error(luma, [&](std::size_t i) { return region.seen[i]; });
+    auto const seconds = static_cast<float>(now - region.checked);
     if (error > 0) {
-        place.drift = std::max(place.drift, drift_of_error(place.model, place.level, error));
-        place.settled = false;
+        region.drift = std::max(region.drift, drift_of_error(region.model, region.level, error));
+        region.settled = false;
     }
     if (change > 0) {
-        float const drift = drift_of_error(place.model, place.level, change);
-        place.model.motion = std::max(place.model.motion, seconds > 0 ? drift / seconds : 0);
-        place.changed = now;
+        float const drift = drift_of_error(region.model, region.level, change);
+        region.model.motion = std::max(region.model.motion, seconds > 0 ? drift / seconds : 0);
+        region.changed = now;
     } else if (error > 0) {
         // It is not what the viewer has, and stands: a step, after which it is worth rendering again.
         constexpr float unseen_drift = 0.1f;
-        place.model.motion = std::min(0.5f * place.model.motion, seconds > 0 ? unseen_drift / seconds : INFINITY);
-        place.model.pace = PlaceModel::unknown_pace();
+        region.model.motion = std::min(0.5f * region.model.motion, seconds > 0 ? unseen_drift / seconds : INFINITY);
+        region.model.pace = RegionModel::unknown_pace();
     } else {
         // Too few samples to say so of all of it, unless its last rendering did.
         constexpr float least_motion = 0.5f;
-        float const kept = place.settled || place.model.motion < least_motion ? 0 : 0.5f;
-        place.drift *= kept;
-        place.model.motion *= kept;
+        float const kept = region.settled || region.model.motion < least_motion ? 0 : 0.5f;
+        region.drift *= kept;
+        region.model.motion *= kept;
     }
-    std::ranges::copy(luma, place.seen.begin());
-    place.checked = now;
+    std::ranges::copy(luma, region.seen.begin());
+    region.checked = now;
 }
 
 } // namespace framelet

@@ -1,4 +1,4 @@
-#include "server/sampling/model/place_model.h"
+#include "server/sampling/model/region_model.h"
 
 #include <cmath>
 #include <functional>
@@ -29,39 +29,39 @@ Samples checkerboard(unsigned octave) {
         [octave](auto x, auto y) { return static_cast<float>(((x >> octave) + (y >> octave)) % 2); });
 }
 
-PlaceModel random_place(std::mt19937& random) {
+RegionModel random_region(std::mt19937& random) {
     std::uniform_real_distribution<float> exponent(-20, -1);
-    PlaceModel place = unknown_place();
-    for (float& band : place.energy) {
+    RegionModel region = unknown_region();
+    for (float& band : region.energy) {
         band = std::exp2(exponent(random));
     }
-    return place;
+    return region;
 }
 
-bool is_sound(PlaceModel const& place) {
-    for (float const band : place.energy) {
+bool is_sound(RegionModel const& region) {
+    for (float const band : region.energy) {
         if (!(band >= 0) || !std::isfinite(band)) {
             return false;
         }
     }
-    return place.motion >= 0 && std::isfinite(place.motion);
+    return region.motion >= 0 && std::isfinite(region.motion);
 }
 
-TEST(PlaceModel, AnOctaveOfALevelIsItsBand) {
+TEST(RegionModel, AnOctaveOfALevelIsItsBand) {
     for (int level = 0; level < sampling_levels; ++level) {
         for (unsigned octave = 0; octave < framelet_octaves; ++octave) {
             for (std::size_t const count : {4u, 16u, 64u, 256u}) {
-                PlaceModel place = unknown_place();
-                learn(place, observe(level, checkerboard(octave), std::nullopt, 0, 256 - count, count));
-                EXPECT_EQ(place.finest_seen, level);
+                RegionModel region = unknown_region();
+                learn(region, observe(level, checkerboard(octave), std::nullopt, 0, 256 - count, count));
+                EXPECT_EQ(region.finest_seen, level);
                 int const band = std::max(level - static_cast<int>(octave), 0);
                 for (int b = std::max(level - 3, 0); b <= level; ++b) {
-                    EXPECT_NEAR(place.energy[static_cast<std::size_t>(b)], b == band ? 0.25f : 0, 1e-5f)
+                    EXPECT_NEAR(region.energy[static_cast<std::size_t>(b)], b == band ? 0.25f : 0, 1e-5f)
                         << "level " << level << " octave " << octave << " band " << b << " of " << count;
                 }
                 for (auto b = static_cast<std::size_t>(level) + 1; b < sampling_levels; ++b) {
-                    EXPECT_LE(place.energy[b], place.energy[b - 1]) << "unseen bands fall off";
-                    EXPECT_GT(place.energy[b], 0);
+                    EXPECT_LE(region.energy[b], region.energy[b - 1]) << "unseen bands fall off";
+                    EXPECT_GT(region.energy[b], 0);
                 }
             }
         }
@@ -69,48 +69,48 @@ TEST(PlaceModel, AnOctaveOfALevelIsItsBand) {
 }
 
 /// A ramp's energy falls by 4 from an octave to the next finer one: that of steps of s in x is (s / 2)^2 at octave 0.
-TEST(PlaceModel, ARampIsMostlyCoarse) {
+TEST(RegionModel, ARampIsMostlyCoarse) {
     float const slope = 1.0f / 16;
     Samples const ramp = coefficients_of([slope](auto x, auto) { return slope * static_cast<float>(x); });
     for (int level = 3; level < sampling_levels; ++level) {
-        PlaceModel place = unknown_place();
-        learn(place, observe(level, ramp, std::nullopt, 0, 0, framelet_samples));
+        RegionModel region = unknown_region();
+        learn(region, observe(level, ramp, std::nullopt, 0, 0, framelet_samples));
         for (int octave = 0; octave < 4; ++octave) {
-            EXPECT_NEAR(place.energy[static_cast<std::size_t>(level - octave)],
+            EXPECT_NEAR(region.energy[static_cast<std::size_t>(level - octave)],
                         0.25f * slope * slope * std::exp2(2.0f * static_cast<float>(octave)), 1e-5f);
         }
     }
 }
 
 /// Finer bands that were seen follow the finest of a coarser observation, by at most 4; what is sampled is not missing.
-TEST(PlaceModel, CarriesFinerBandsAlong) {
-    PlaceModel place = unknown_place();
-    learn(place, observe(5, checkerboard(0), std::nullopt, 0, 0, 256));
-    PlaceModel const before = place;
+TEST(RegionModel, CarriesFinerBandsAlong) {
+    RegionModel region = unknown_region();
+    learn(region, observe(5, checkerboard(0), std::nullopt, 0, 0, 256));
+    RegionModel const before = region;
     Samples const half = coefficients_of([](auto x, auto y) { return 0.5f * static_cast<float>((x + y) % 2); });
-    learn(place, observe(3, half, std::nullopt, 0, 0, 256));
-    EXPECT_EQ(place.finest_seen, 5);
-    EXPECT_NEAR(place.energy[3], 0.0625f, 1e-5f);
-    EXPECT_GE(place.energy[5], before.energy[5] / 4.0f);
-    EXPECT_LE(place.energy[5], before.energy[5] * 4.0f);
+    learn(region, observe(3, half, std::nullopt, 0, 0, 256));
+    EXPECT_EQ(region.finest_seen, 5);
+    EXPECT_NEAR(region.energy[3], 0.0625f, 1e-5f);
+    EXPECT_GE(region.energy[5], before.energy[5] / 4.0f);
+    EXPECT_LE(region.energy[5], before.energy[5] * 4.0f);
 }
 
-TEST(PlaceModel, FinerSamplingLeavesLess) {
+TEST(RegionModel, FinerSamplingLeavesLess) {
     for (int level = 1; level < sampling_levels; ++level) {
-        EXPECT_LT(unresolved_error(unknown_place(), level), unresolved_error(unknown_place(), level - 1));
+        EXPECT_LT(unresolved_error(unknown_region(), level), unresolved_error(unknown_region(), level - 1));
     }
 }
 
-TEST(PlaceModel, DriftErrorGrowsFromZeroToItsBound) {
+TEST(RegionModel, DriftErrorGrowsFromZeroToItsBound) {
     std::mt19937 random(1);
     for (int n = 0; n < 1000; ++n) {
-        PlaceModel const place = random_place(random);
+        RegionModel const region = random_region(random);
         for (int level = 0; level < sampling_levels; ++level) {
-            DriftBounds const bounds = drift_bounds(place, level);
-            EXPECT_EQ(drift_error(place, level, 0), 0);
+            DriftBounds const bounds = drift_bounds(region, level);
+            EXPECT_EQ(drift_error(region, level, 0), 0);
             float last = 0;
             for (float drift = 1e-4f; drift < 1e3f; drift *= 1.7f) {
-                float const error = drift_error(place, level, drift);
+                float const error = drift_error(region, level, drift);
                 EXPECT_GE(error, last * (1 - 1e-6f));
                 EXPECT_LE(error, bounds.most * (1 + 1e-5f));
                 EXPECT_LE(error, bounds.growth * drift * 1.01f + 1e-9f);
@@ -118,48 +118,48 @@ TEST(PlaceModel, DriftErrorGrowsFromZeroToItsBound) {
             }
             EXPECT_NEAR(last, bounds.most, 1e-4f * bounds.most);
             float const little = 1e-2f;
-            EXPECT_NEAR(drift_error(place, level, little), bounds.growth * little, 0.05f * bounds.growth * little);
+            EXPECT_NEAR(drift_error(region, level, little), bounds.growth * little, 0.05f * bounds.growth * little);
         }
     }
 }
 
-TEST(PlaceModel, DriftOfErrorIsTheInverse) {
+TEST(RegionModel, DriftOfErrorIsTheInverse) {
     std::mt19937 random(2);
     std::uniform_real_distribution<float> exponent(-8, 4);
     for (int n = 0; n < 20000; ++n) {
-        PlaceModel place = random_place(random);
+        RegionModel region = random_region(random);
         int const level = static_cast<int>(random() % sampling_levels);
         float const drift = std::exp2(exponent(random));
-        float const error = drift_error(place, level, drift);
-        PlaceModel const before = place;
-        float const found = drift_of_error(place, level, error);
-        EXPECT_NEAR(drift_error(place, level, found), error, 0.01f * error);
+        float const error = drift_error(region, level, drift);
+        RegionModel const before = region;
+        float const found = drift_of_error(region, level, error);
+        EXPECT_NEAR(drift_error(region, level, found), error, 0.01f * error);
         if (error <= 0.9f * drift_bounds(before, level).most) {
-            EXPECT_EQ(place, before);
+            EXPECT_EQ(region, before);
             EXPECT_NEAR(found, drift, 0.01f * drift);
         }
     }
-    PlaceModel place = random_place(random);
-    EXPECT_EQ(drift_of_error(place, 3, 0), 0);
+    RegionModel region = random_region(random);
+    EXPECT_EQ(drift_of_error(region, 3, 0), 0);
 }
 
-TEST(PlaceModel, ErrorThatTheBandsCannotHoldRaisesBandZero) {
+TEST(RegionModel, ErrorThatTheBandsCannotHoldRaisesBandZero) {
     for (float const error : {0.01f, 0.1f, 0.5f, 1.0f}) {
-        PlaceModel place = unknown_place();
-        place.energy.fill(1e-6f);
-        PlaceModel const before = place;
-        float const drift = drift_of_error(place, 3, error);
-        EXPECT_GT(place.energy[0], before.energy[0]);
+        RegionModel region = unknown_region();
+        region.energy.fill(1e-6f);
+        RegionModel const before = region;
+        float const drift = drift_of_error(region, 3, error);
+        EXPECT_GT(region.energy[0], before.energy[0]);
         for (std::size_t band = 1; band < sampling_levels; ++band) {
-            EXPECT_EQ(place.energy[band], before.energy[band]);
+            EXPECT_EQ(region.energy[band], before.energy[band]);
         }
-        EXPECT_NEAR(drift_error(place, 3, drift), error, 0.01f * error);
-        EXPECT_GE(drift_bounds(place, 3).most, error);
+        EXPECT_NEAR(drift_error(region, 3, drift), error, 0.01f * error);
+        EXPECT_GE(drift_bounds(region, 3).most, error);
     }
 }
 
 /// A million observations, the half of them nonsense.
-TEST(PlaceModel, LearnsNothingUnsound) {
+TEST(RegionModel, LearnsNothingUnsound) {
     std::mt19937 random(3);
     float const odd[] = {0,
                          1e-45f,
@@ -172,7 +172,7 @@ TEST(PlaceModel, LearnsNothingUnsound) {
                          std::numeric_limits<float>::min()};
     std::uniform_real_distribution<float> exponent(-30, 2);
     auto const value = [&] { return random() % 4 == 0 ? odd[random() % std::size(odd)] : std::exp2(exponent(random)); };
-    PlaceModel place = unknown_place();
+    RegionModel region = unknown_region();
     for (int n = 0; n < 1000000; ++n) {
         Observation seen;
         seen.level = static_cast<int>(random() % sampling_levels);
@@ -183,32 +183,32 @@ TEST(PlaceModel, LearnsNothingUnsound) {
         }
         seen.mean_change = value();
         seen.seconds = value();
-        PlaceModel const before = place;
-        learn(place, seen);
-        ASSERT_TRUE(is_sound(place)) << "observation " << n << ", seconds " << seen.seconds << ", motion before "
-                                     << before.motion << ", after " << place.motion;
-        ASSERT_TRUE(std::isfinite(unresolved_error(place, seen.level)));
+        RegionModel const before = region;
+        learn(region, seen);
+        ASSERT_TRUE(is_sound(region)) << "observation " << n << ", seconds " << seen.seconds << ", motion before "
+                                     << before.motion << ", after " << region.motion;
+        ASSERT_TRUE(std::isfinite(unresolved_error(region, seen.level)));
         if (n % 16 == 0) {
-            place = random_place(random);
+            region = random_region(random);
         }
     }
 }
 
-TEST(PlaceModel, NoChangeIsNoMotion) {
+TEST(RegionModel, NoChangeIsNoMotion) {
     Samples const luma = checkerboard(1);
     Samples const none{};
-    PlaceModel place = unknown_place();
-    place.motion = 5;
-    learn(place, observe(3, luma, std::span<float const, framelet_samples>(none), 0.1f, 0, 256));
-    EXPECT_EQ(place.motion, 0);
-    place.motion = 5;
-    learn(place, observe(3, luma, std::nullopt, 0, 0, 256));
-    EXPECT_EQ(place.motion, 5) << "nothing to compare with says nothing";
+    RegionModel region = unknown_region();
+    region.motion = 5;
+    learn(region, observe(3, luma, std::span<float const, framelet_samples>(none), 0.1f, 0, 256));
+    EXPECT_EQ(region.motion, 0);
+    region.motion = 5;
+    learn(region, observe(3, luma, std::nullopt, 0, 0, 256));
+    EXPECT_EQ(region.motion, 5) << "nothing to compare with says nothing";
 }
 
 /// Random texture (white noise of cells of a pixel, seen through a tent) that moves at v pixels a second, seen again
 /// when it has moved by half a pixel, one and two: the motion learnt a second is v times one constant, within a factor.
-TEST(PlaceModel, MotionIsProportionalToSpeed) {
+TEST(RegionModel, MotionIsProportionalToSpeed) {
     std::mt19937 random(4);
     std::vector<float> noise(64 * 64);
     for (float& cell : noise) {
@@ -243,13 +243,13 @@ TEST(PlaceModel, MotionIsProportionalToSpeed) {
                 }
                 haar_forward(samples);
                 haar_forward(change);
-                PlaceModel place = unknown_place();
+                RegionModel region = unknown_region();
                 Observation const seen = observe(pixel_level, samples, std::span<float const, framelet_samples>(change),
                                                  moved / speed, 0, 256);
                 for (int i = 0; i < 10; ++i) { // the same again and again
-                    learn(place, seen);
+                    learn(region, seen);
                 }
-                sum += place.motion / tries;
+                sum += region.motion / tries;
             }
             least = std::min(least, sum / speed);
             most = std::max(most, sum / speed);

@@ -1,4 +1,4 @@
-#include "server/sampling/field/place_field.h"
+#include "server/sampling/field/region_field.h"
 
 #include <cmath>
 
@@ -34,20 +34,20 @@ public:
             rendered[t].body = bodies;
         }
         std::vector<LumaHistory::Entry> entries(tiles.size());
-        PlaceField::Range const range = field.range_of(patch.node);
-        std::vector<PlaceFindings> places(range.last - range.first);
+        RegionField::Range const range = field.range_of(patch.node);
+        std::vector<RegionFindings> regions(range.last - range.first);
         double const same_since =
-            examine_patch(field, patch, display, rendered, {now, now}, moment, history, entries, places);
+            examine_patch(field, patch, display, rendered, {now, now}, moment, history, entries, regions);
         for (LumaHistory::Entry const& entry : entries) {
             history.store(entry);
         }
-        return learn_patch(field, patch, places, same_since, still_since, now, withholds);
+        return learn_patch(field, patch, regions, same_since, still_since, now, withholds);
     }
     Patch patch(int level, std::uint32_t index = 0) const {
         return {{(1u << (2 * field.depth())) + index}, field.depth_of(level)};
     }
 
-    PlaceField field;
+    RegionField field;
     LumaHistory history;
     RenderedMoment moment; ///< the viewer moves nothing
     double still_since = 0;
@@ -59,9 +59,9 @@ float still(float x, float y) {
     return smooth_noise(x / 5, y / 5);
 }
 
-TEST(PlaceField, PlacesCoverTheViewport) {
+TEST(RegionField, RegionsCoverTheViewport) {
     for (Viewport const viewport : {Viewport{1, 1}, {17, 5}, {1280, 720}, {16384, 100}}) {
-        PlaceField const field{ImagePlane(viewport)};
+        RegionField const field{ImagePlane(viewport)};
         double pixels = 0;
         for (std::uint32_t const index : field.visible()) {
             pixels += double(field.pixels_of(index));
@@ -70,7 +70,7 @@ TEST(PlaceField, PlacesCoverTheViewport) {
     }
 }
 
-TEST(PlaceField, WhereBodiesPassEachOtherThingsMoveThoughTheyLookTheSame) {
+TEST(RegionField, WhereBodiesPassEachOtherThingsMoveThoughTheyLookTheSame) {
     BodyMotions motions;
     motions.extend({7, 0, {{Vec3(0)}, {Vec3(0.1f, 0, 0)}}});
     Learner learner({64, 64});
@@ -88,7 +88,7 @@ TEST(PlaceField, WhereBodiesPassEachOtherThingsMoveThoughTheyLookTheSame) {
     EXPECT_EQ(learner.field[0].model.motion, 0) << "it moves as one";
 }
 
-TEST(PlaceField, TheSameIsSentOnce) {
+TEST(RegionField, TheSameIsSentOnce) {
     Learner learner({64, 64});
     EXPECT_TRUE(learner.learn(learner.patch(3), 1, still));
     EXPECT_FALSE(learner.learn(learner.patch(3), 2, still));
@@ -102,7 +102,7 @@ TEST(PlaceField, TheSameIsSentOnce) {
     EXPECT_FALSE(learner.learn(learner.patch(5), 5, still));
 }
 
-TEST(PlaceField, WhatIsSentThoughItIsTheSameIsWhatTheViewerHolds) {
+TEST(RegionField, WhatIsSentThoughItIsTheSameIsWhatTheViewerHolds) {
     Learner learner({64, 64});
     Patch const coarse = learner.patch(3);
     Patch const fine = learner.patch(5);
@@ -116,7 +116,7 @@ TEST(PlaceField, WhatIsSentThoughItIsTheSameIsWhatTheViewerHolds) {
 }
 
 /// In the dark, say.
-TEST(PlaceField, WhatLooksAsABodyDidThatHasGoneIsSent) {
+TEST(RegionField, WhatLooksAsABodyDidThatHasGoneIsSent) {
     BodyMotions const motions;
     for (bool const moves : {false, true}) {
         Learner learner({64, 64});
@@ -130,7 +130,7 @@ TEST(PlaceField, WhatLooksAsABodyDidThatHasGoneIsSent) {
     }
 }
 
-TEST(PlaceField, WhatIsAsItWasBeforeTheLastChangeIsSent) {
+TEST(RegionField, WhatIsAsItWasBeforeTheLastChangeIsSent) {
     auto const other = [](float x, float y) { return 1 - still(x, y); };
     Learner learner({64, 64});
     EXPECT_TRUE(learner.learn(learner.patch(3), 1, still));
@@ -140,7 +140,7 @@ TEST(PlaceField, WhatIsAsItWasBeforeTheLastChangeIsSent) {
     EXPECT_FALSE(learner.learn(learner.patch(3), 5, still));
 }
 
-TEST(PlaceField, WhatWasRenderedWithNothingToCompareWithMayHaveChanged) {
+TEST(RegionField, WhatWasRenderedWithNothingToCompareWithMayHaveChanged) {
     auto const other = [](float x, float y) { return 1 - still(x, y); };
     for (bool const moves : {false, true}) {
         Learner learner({64, 64});
@@ -152,80 +152,80 @@ TEST(PlaceField, WhatWasRenderedWithNothingToCompareWithMayHaveChanged) {
     }
 }
 
-/// Probes lie in all parts of a place, however many framelets it was rendered as.
-TEST(PlaceField, ProbesSpreadOverThePlace) {
+/// Probes lie in all parts of a region, however many framelets it was rendered as.
+TEST(RegionField, ProbesSpreadOverTheRegion) {
     for (Viewport const viewport : {Viewport{64, 64}, {1280, 720}, {4096, 4096}}) {
         Learner learner(viewport);
         for (int level = pixel_level; level < sampling_levels; ++level) {
             learner.learn(learner.patch(level), level, still);
-            Place const& place = learner.field[0];
-            EXPECT_EQ(place.probe_count, probes_per_place);
+            Region const& region = learner.field[0];
+            EXPECT_EQ(region.probe_count, probes_per_region);
             std::array<int, 4> quarters{};
-            int const half = learner.field.place_side() / 2;
-            for (std::size_t i = 0; i < place.probe_count; ++i) {
-                Vec2 const at = place.probes[i].place;
+            int const half = learner.field.region_side() / 2;
+            for (std::size_t i = 0; i < region.probe_count; ++i) {
+                Vec2 const at = region.probes[i].position;
                 int const x = at.x < static_cast<float>(half) ? 0 : 1;
                 int const y = at.y < static_cast<float>(half) ? 0 : 2;
                 ++quarters[static_cast<std::size_t>(x + y)];
-                EXPECT_FLOAT_EQ(place.probes[i].luma, static_cast<float>(std::lround(255 * still(at.x, at.y))) / 255);
+                EXPECT_FLOAT_EQ(region.probes[i].luma, static_cast<float>(std::lround(255 * still(at.x, at.y))) / 255);
             }
             EXPECT_EQ(quarters, (std::array{4, 4, 4, 4})) << viewport.width << " level " << level;
         }
     }
 }
 
-TEST(PlaceField, AStepIsNotMotion) {
+TEST(RegionField, AStepIsNotMotion) {
     Learner learner({64, 64});
     learner.learn(learner.patch(3), 1, still);
-    Place& place = learner.field[0];
-    std::vector<float> luma(place.probe_count, 0.9f);
-    learn_probes(place, luma, 1.1);
-    EXPECT_GT(place.model.motion, 1) << "for all that is known";
-    float const drift = place.drift;
+    Region& region = learner.field[0];
+    std::vector<float> luma(region.probe_count, 0.9f);
+    learn_probes(region, luma, 1.1);
+    EXPECT_GT(region.model.motion, 1) << "for all that is known";
+    float const drift = region.drift;
     EXPECT_GT(drift, 0);
-    learn_probes(place, luma, 1.2);
-    EXPECT_LE(place.model.motion, 1.001f) << "it stands";
-    EXPECT_GE(place.drift, drift) << "and is not what the viewer has";
-    EXPECT_EQ(place.changed, 1.1);
-    luma.assign(place.probe_count, 0.2f);
-    learn_probes(place, luma, 1.3);
-    EXPECT_GT(place.model.motion, 1);
-    EXPECT_EQ(place.changed, 1.3);
+    learn_probes(region, luma, 1.2);
+    EXPECT_LE(region.model.motion, 1.001f) << "it stands";
+    EXPECT_GE(region.drift, drift) << "and is not what the viewer has";
+    EXPECT_EQ(region.changed, 1.1);
+    luma.assign(region.probe_count, 0.2f);
+    learn_probes(region, luma, 1.3);
+    EXPECT_GT(region.model.motion, 1);
+    EXPECT_EQ(region.changed, 1.3);
 }
 
-TEST(PlaceField, ProbesTellStandingFromMoving) {
+TEST(RegionField, ProbesTellStandingFromMoving) {
     Learner learner({64, 64});
     learner.learn(learner.patch(3), 1, still);
-    Place place = learner.field[0];
+    Region region = learner.field[0];
     std::vector<float> luma;
-    for (std::size_t i = 0; i < place.probe_count; ++i) {
-        luma.push_back(place.probes[i].luma);
+    for (std::size_t i = 0; i < region.probe_count; ++i) {
+        luma.push_back(region.probes[i].luma);
     }
-    place.drift = 3;
-    learn_probes(place, luma, 2);
-    EXPECT_EQ(place.drift, 0);
-    EXPECT_EQ(place.checked, 2);
-    EXPECT_LT(place.changed, 2);
+    region.drift = 3;
+    learn_probes(region, luma, 2);
+    EXPECT_EQ(region.drift, 0);
+    EXPECT_EQ(region.checked, 2);
+    EXPECT_LT(region.changed, 2);
     luma[3] += 0.2f; // one is enough
-    learn_probes(place, luma, 2.5);
-    EXPECT_GT(place.drift, 0);
-    EXPECT_GT(place.model.motion, 0);
-    EXPECT_EQ(place.changed, 2.5);
+    learn_probes(region, luma, 2.5);
+    EXPECT_GT(region.drift, 0);
+    EXPECT_GT(region.model.motion, 0);
+    EXPECT_EQ(region.changed, 2.5);
 }
 
-TEST(PlaceField, DriftsAsItMovesAndIsBounded) {
+TEST(RegionField, DriftsAsItMovesAndIsBounded) {
     Learner learner({64, 64});
     for (std::uint32_t const index : learner.field.visible()) {
         learner.learn(learner.patch(3, index), 1, still);
     }
     Camera const camera;
     ViewRays const here = make_view_rays(camera, {64, 64});
-    Place& place = learner.field[0];
-    place.model.motion = 2;
+    Region& region = learner.field[0];
+    region.model.motion = 2;
     drift_on(learner.field, here, here, false, 1);
-    EXPECT_EQ(place.drift, 0) << "nothing moves";
+    EXPECT_EQ(region.drift, 0) << "nothing moves";
     drift_on(learner.field, here, here, true, 0.5f);
-    EXPECT_FLOAT_EQ(place.drift, 1);
+    EXPECT_FLOAT_EQ(region.drift, 1);
     Camera moved;
     moved.position.x = 0.1f;
     float const before = learner.field[1].drift;
@@ -234,19 +234,19 @@ TEST(PlaceField, DriftsAsItMovesAndIsBounded) {
     for (int n = 0; n < 1000; ++n) {
         drift_on(learner.field, here, make_view_rays(moved, {64, 64}), true, 1);
     }
-    EXPECT_TRUE(std::isfinite(place.drift));
-    EXPECT_LE(shown_error(place, 0), unresolved_error(place.model, 3) + drift_bounds(place.model, 3).most * 1.0001f);
+    EXPECT_TRUE(std::isfinite(region.drift));
+    EXPECT_LE(shown_error(region, 0), unresolved_error(region.model, 3) + drift_bounds(region.model, 3).most * 1.0001f);
     invalidate(learner.field);
-    EXPECT_GT(shown_error(place, 0), 0.9f * drift_bounds(place.model, 3).most);
+    EXPECT_GT(shown_error(region, 0), 0.9f * drift_bounds(region.model, 3).most);
 }
 
 /// A step ahead moves what is near over a background that stays where it is.
-TEST(PlaceField, WhatComesIsNoLessNewThanWhatGoes) {
+TEST(RegionField, WhatComesIsNoLessNewThanWhatGoes) {
     Viewport const viewport{512, 512};
-    PlaceField field{ImagePlane(viewport)};
-    int const side = field.place_side();
+    RegionField field{ImagePlane(viewport)};
+    int const side = field.region_side();
     ASSERT_LE(side, 64);
-    auto const at = [&](int x, int y) -> Place& {
+    auto const at = [&](int x, int y) -> Region& {
         return field[morton_index(static_cast<std::uint32_t>(x / side), static_cast<std::uint32_t>(y / side))];
     };
     for (std::uint32_t const index : field.visible()) {

@@ -1,4 +1,4 @@
-// What the server knows of every place of one viewer's picture, and what the viewer holds there: a field over the image
+// What the server knows of every region of one viewer's picture, and what the viewer holds there: a field over the image
 // plane in Morton order. In: time and camera as they go on, and what was rendered. Out: the error that is shown.
 #pragma once
 
@@ -9,14 +9,14 @@
 #include "server/render/probe.h"
 #include "server/render/rays_per_sample.h"
 #include "server/sampling/field/density_tiling.h"
-#include "server/sampling/model/place_model.h"
+#include "server/sampling/model/region_model.h"
 #include "server/sampling/model/sampling_choice.h"
 
 namespace framelet {
 
 inline constexpr double never = -std::numeric_limits<double>::infinity();
 
-inline constexpr std::size_t probes_per_place = 16;
+inline constexpr std::size_t probes_per_region = 16;
 
 /// Drift of one pixel of displacement: detail of a pixel is elsewhere after two.
 inline constexpr float drift_per_pixel = 0.5f;
@@ -28,8 +28,8 @@ struct TakenSamples {
     double when = never; ///< seconds
 };
 
-struct Place {
-    PlaceModel model = unknown_place();
+struct Region {
+    RegionModel model = unknown_region();
     int level = -1; ///< of what the viewer holds; -1: nothing
     float drift = 0; ///< since that was rendered
     TakenSamples taken;
@@ -45,15 +45,15 @@ struct Place {
     float inverse_depth = 0; ///< mean, 1/metres
     float arriving = 0; ///< the farthest way, pixels, by which the camera's last step brought something here
     float speed = 0; ///< of the camera's motion here, pixels a second, when `model.motion` was learnt
-    std::array<Probe, probes_per_place> probes{};
+    std::array<Probe, probes_per_region> probes{};
     std::size_t probe_count = 0;
-    std::array<float, probes_per_place> seen{}; ///< what the probes last were: their luma
+    std::array<float, probes_per_region> seen{}; ///< what the probes last were: their luma
 };
 
-class PlaceField {
+class RegionField {
 public:
-    PlaceField() : PlaceField(ImagePlane()) {}
-    explicit PlaceField(ImagePlane plane);
+    RegionField() : RegionField(ImagePlane()) {}
+    explicit RegionField(ImagePlane plane);
 
     ImagePlane const& plane() const { return plane_; }
     int depth() const { return depth_; }
@@ -62,19 +62,19 @@ public:
     int level_of(int tile_depth) const { return tile_depth - plane_.pixel_depth() + pixel_level; }
     int depth_of(int level) const { return level + plane_.pixel_depth() - pixel_level; }
 
-    /// Morton indices of the places of which something is in the viewport.
+    /// Morton indices of the regions of which something is in the viewport.
     std::span<std::uint32_t const> visible() const { return visible_; }
-    Place& operator[](std::uint32_t index) { return places_[index]; }
-    Place const& operator[](std::uint32_t index) const { return places_[index]; }
-    std::size_t size() const { return places_.size(); }
+    Region& operator[](std::uint32_t index) { return regions_[index]; }
+    Region const& operator[](std::uint32_t index) const { return regions_[index]; }
+    std::size_t size() const { return regions_.size(); }
     /// Pixels along a side, and of the part inside the viewport.
-    int place_side() const { return plane_.side() >> depth_; }
+    int region_side() const { return plane_.side() >> depth_; }
     PixelRect rect_of(std::uint32_t index) const;
-    /// The place alone, of tiles of a depth that is no less than the field's.
+    /// The region alone, of tiles of a depth that is no less than the field's.
     Patch patch_of(std::uint32_t index, int tile_depth) const { return {{(1u << (2 * depth_)) + index}, tile_depth}; }
     float pixels_of(std::uint32_t index) const { return pixels_[index]; }
 
-    /// Indices of the places under a node.
+    /// Indices of the regions under a node.
     struct Range {
         std::uint32_t first = 0, last = 0;
 
@@ -85,28 +85,28 @@ public:
 private:
     ImagePlane plane_;
     int depth_;
-    std::vector<Place> places_;
+    std::vector<Region> regions_;
     std::vector<float> pixels_;
     std::vector<std::uint32_t> visible_;
 };
 
-/// The error that the viewer sees at this place once what was taken has been rendered and `more` drift has been added.
-float shown_error(Place const& place, float more);
-/// Error of a place of which the viewer has nothing.
+/// The error that the viewer sees at this region once what was taken has been rendered and `more` drift has been added.
+float shown_error(Region const& region, float more);
+/// Error of a region of which the viewer has nothing.
 inline constexpr float bare_error = 0.25f;
 
 /// Time goes on by `seconds` while the camera moves from one view to the other. `moving`: the scene's own things may
-/// move as well. A place drifts as it was found to, more where the camera has become faster, less where slower; as much
+/// move as well. A region drifts as it was found to, more where the camera has become faster, less where slower; as much
 /// as what it shows is carried away, or as what comes there instead.
-void drift_on(PlaceField& field, ViewRays const& from, ViewRays const& to, bool moving, float seconds);
+void drift_on(RegionField& field, ViewRays const& from, ViewRays const& to, bool moving, float seconds);
 /// What a patch shows with so many rays a sample: means of four are as good as samples of the next level.
-int shown_level(PlaceField const& field, Patch const& patch, int rays_per_sample);
+int shown_level(RegionField const& field, Patch const& patch, int rays_per_sample);
 
 /// A patch has been taken to be rendered, with so many rays a sample.
-void take(PlaceField& field, Patch const& patch, double now, int rays_per_sample);
+void take(RegionField& field, Patch const& patch, double now, int rays_per_sample);
 /// What of these was taken at `when`, and not later again, is taken no longer.
-void release(PlaceField& field, std::span<Patch const> patches, double when);
+void release(RegionField& field, std::span<Patch const> patches, double when);
 /// Nothing that is held is true any more (a cut, another exposure).
-void invalidate(PlaceField& field);
+void invalidate(RegionField& field);
 
 } // namespace framelet

@@ -1,5 +1,5 @@
-// Places of a picture at equal distances, of which only some are looked at each time. In: spacing, how often they were
-// looked at. Out: places that were not looked at lately.
+// Positions in a picture at equal distances, of which only some are looked at each time. In: spacing, how often they were
+// looked at. Out: positions that were not looked at lately.
 #pragma once
 
 #include <cmath>
@@ -11,13 +11,13 @@
 namespace framelet {
 
 /// Those that lie in the picture, in rows.
-struct PlaceGrid {
+struct RayGrid {
     Vec2 first{0.5f}; ///< pixels, within the spacing
     int spacing = 1; ///< pixels
 
     int columns(Viewport viewport) const { return count(viewport.width, first.x); }
     int rows(Viewport viewport) const { return count(viewport.height, first.y); }
-    Vec2 place(int column, int row) const { return first + static_cast<float>(spacing) * Vec2(column, row); }
+    Vec2 position(int column, int row) const { return first + static_cast<float>(spacing) * Vec2(column, row); }
 
 private:
     int count(int pixels, float from) const {
@@ -28,7 +28,7 @@ private:
 
 /// Middles of cells of `cell` pixels, one in each square of `spacing` pixels (a power of two times as large): another
 /// each `turn` until all had theirs, far apart from one to the next.
-inline PlaceGrid cell_grid(int cell, int spacing, std::uint32_t turn) {
+inline RayGrid cell_grid(int cell, int spacing, std::uint32_t turn) {
     int x = 0, y = 0;
     for (int half = spacing / 2; half >= cell; half /= 2, turn >>= 2) {
         x += (turn & 1) != 0 ? half : 0;

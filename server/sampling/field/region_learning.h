@@ -1,4 +1,4 @@
-// Learning from what was rendered, in two steps: what the framelets of a patch say of its places (for all patches in
+// Learning from what was rendered, in two steps: what the framelets of a patch say of its regions (for all patches in
 // parallel), and then what the server knows of them from now on. In: framelets, probes. Out: the field, brought up to
 // date, and whether the viewer needs what was rendered.
 #pragma once
@@ -6,15 +6,15 @@
 #include <span>
 
 #include "server/sampling/field/meeting_bodies.h"
-#include "server/sampling/field/place_field.h"
+#include "server/sampling/field/region_field.h"
 #include "server/sampling/model/luma_history.h"
 
 namespace framelet {
 
-/// What was seen of one place.
-struct PlaceFindings {
+/// What was seen of one region.
+struct RegionFindings {
     Observation seen;
-    std::array<Probe, probes_per_place> probes{};
+    std::array<Probe, probes_per_region> probes{};
     std::size_t probe_count = 0;
     float inverse_depth = 0; ///< mean, 1/metres
     float meeting_speed = 0; ///< of bodies, pixels a second
@@ -27,25 +27,25 @@ struct RenderedTimes {
 };
 
 /// Of one patch. `framelets`: of its tiles, all the visible ones; `rendered`: the same with depth. Fills `entries` (a
-/// framelet each) and `places` (a place of the patch each). Returns since when all of it is what `history` remembers
+/// framelet each) and `regions` (a region of the patch each). Returns since when all of it is what `history` remembers
 /// and the viewer shows in its place: the same picture may be of a body that has moved, or from before the camera has,
 /// and the viewer has moved it away. `never` where it is not.
-double examine_patch(PlaceField const& field, Patch const& patch, std::span<DisplayFramelet const> framelets,
+double examine_patch(RegionField const& field, Patch const& patch, std::span<DisplayFramelet const> framelets,
                      std::span<Framelet const> rendered, RenderedTimes times, RenderedMoment const& moment,
                      LumaHistory const& history, std::span<LumaHistory::Entry> entries,
-                     std::span<PlaceFindings> places);
+                     std::span<RegionFindings> regions);
 
 /// Takes the findings of a patch that was rendered at `now` into account. `same_since`: what `examine_patch` returned;
 /// `still_since`: when anything that is to be seen moved last.
 /// Returns whether the viewer needs the patch: false where it holds the very same and `withholds`, since what the
 /// viewer moves takes the place of what it holds there, finer or not.
-bool learn_patch(PlaceField& field, Patch const& patch, std::span<PlaceFindings const> places, double same_since,
+bool learn_patch(RegionField& field, Patch const& patch, std::span<RegionFindings const> regions, double same_since,
                  double still_since, double now, bool withholds);
 
 /// Drift since a rendering of it that was planned at `now`, which may have been a while ago.
-float drift_since(Place const& place, double now);
+float drift_since(Region const& region, double now);
 
-/// Takes the answers to a place's probes into account: their luma now.
-void learn_probes(Place& place, std::span<float const> luma, double now);
+/// Takes the answers to a region's probes into account: their luma now.
+void learn_probes(Region& region, std::span<float const> luma, double now);
 
 } // namespace framelet

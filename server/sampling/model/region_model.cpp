@@ -1,4 +1,4 @@
-#include "server/sampling/model/place_model.h"
+#include "server/sampling/model/region_model.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 namespace framelet {
 namespace {
 
-/// No place is taken to be flatter than a quarter of a display step, so that each is looked at in full some time.
+/// No region is taken to be flatter than a quarter of a display step, so that each is looked at in full some time.
 constexpr float least_energy = 1e-6f;
 /// Of the display's range, with much to spare: what nothing exceeds.
 constexpr float most_energy = 4;
@@ -36,75 +36,75 @@ float to_energy(float value) {
 
 } // namespace
 
-PlaceModel unknown_place() {
-    PlaceModel place;
+RegionModel unknown_region() {
+    RegionModel region;
     float energy = 0.02f;
-    for (float& band : place.energy) {
+    for (float& band : region.energy) {
         band = energy;
         energy *= band_falloff;
     }
-    return place;
+    return region;
 }
 
-LevelErrors level_errors(PlaceModel const& place) {
+LevelErrors level_errors(RegionModel const& region) {
     LevelErrors errors;
-    float unsampled = tail * place.energy.back(); // finer than the level
+    float unsampled = tail * region.energy.back(); // finer than the level
     float missing = 0; // of that, what a pixel could show
     for (int level = sampling_levels - 1; level >= 0; --level) {
         auto const l = static_cast<std::size_t>(level);
         // From a pixel on, the mean over its samples.
         errors.unresolved[l] =
             level >= pixel_level ? unsampled / samples_per_pixel(level) : missing + alias_share * unsampled;
-        unsampled += place.energy[l];
-        missing += level <= pixel_level ? place.energy[l] : 0;
+        unsampled += region.energy[l];
+        missing += level <= pixel_level ? region.energy[l] : 0;
     }
     DriftBounds sum;
     for (std::size_t level = 0; level < errors.drift.size(); ++level) {
         if (level == shown_band(static_cast<int>(level))) {
-            sum.most += 2 * place.energy[level];
-            sum.growth += 2 * place.energy[level] * place.pace[level];
+            sum.most += 2 * region.energy[level];
+            sum.growth += 2 * region.energy[level] * region.pace[level];
         }
         errors.drift[level] = sum;
     }
     return errors;
 }
 
-float unresolved_error(PlaceModel const& place, int level) {
-    return level_errors(place).unresolved[static_cast<std::size_t>(level)];
+float unresolved_error(RegionModel const& region, int level) {
+    return level_errors(region).unresolved[static_cast<std::size_t>(level)];
 }
 
-float drift_error(PlaceModel const& place, int level, float drift) {
+float drift_error(RegionModel const& region, int level, float drift) {
     float sum = 0;
     if (!(drift > 0)) {
         return sum;
     }
     for (std::size_t band = 0; band <= shown_band(level); ++band) {
-        sum += 2 * place.energy[band] * (1 - std::exp(-drift * place.pace[band]));
+        sum += 2 * region.energy[band] * (1 - std::exp(-drift * region.pace[band]));
     }
     return sum;
 }
 
-DriftBounds drift_bounds(PlaceModel const& place, int level) {
-    return level_errors(place).drift[static_cast<std::size_t>(level)];
+DriftBounds drift_bounds(RegionModel const& region, int level) {
+    return level_errors(region).drift[static_cast<std::size_t>(level)];
 }
 
-float drift_of_error(PlaceModel& place, int level, float error) {
+float drift_of_error(RegionModel& region, int level, float error) {
     if (!(error > 0)) {
         return 0;
     }
-    DriftBounds const bounds = drift_bounds(place, level);
+    DriftBounds const bounds = drift_bounds(region, level);
     if (error > most_share * bounds.most) {
-        place.energy[0] = to_energy(place.energy[0] + 0.5f * (error / most_share - bounds.most));
+        region.energy[0] = to_energy(region.energy[0] + 0.5f * (error / most_share - bounds.most));
     }
     if (!(bounds.growth > 0)) {
-        place.pace = PlaceModel::unknown_pace();
+        region.pace = RegionModel::unknown_pace();
     }
     // Monotone: halving the interval of the logarithm.
     float low = 1e-6f;
     float high = most_drift;
     for (int step = 0; step < 20; ++step) {
         float const middle = std::sqrt(low * high);
-        (drift_error(place, level, middle) < error ? low : high) = middle;
+        (drift_error(region, level, middle) < error ? low : high) = middle;
     }
     return high;
 }
@@ -169,24 +169,24 @@ std::size_t coarsest_band(int level) {
 }
 
 /// Carries what is known of finer bands along.
-void learn_energy(PlaceModel& place, Observation const& seen) {
+void learn_energy(RegionModel& region, Observation const& seen) {
     auto const found = by_band(seen.level, seen.energy);
     auto const finest = static_cast<std::size_t>(seen.level);
-    float const scale = place.finest_seen >= seen.level
-                            ? std::clamp(to_energy(found[finest]) / to_energy(place.energy[finest]), 0.25f, 4.0f)
+    float const scale = region.finest_seen >= seen.level
+                            ? std::clamp(to_energy(found[finest]) / to_energy(region.energy[finest]), 0.25f, 4.0f)
                             : 0;
     for (std::size_t band = coarsest_band(seen.level); band <= finest; ++band) {
-        place.energy[band] = to_energy(found[band]);
+        region.energy[band] = to_energy(found[band]);
     }
-    for (std::size_t band = finest + 1; band < place.energy.size(); ++band) {
-        bool const known = static_cast<int>(band) <= place.finest_seen;
-        place.energy[band] = to_energy(known ? scale * place.energy[band] : band_falloff * place.energy[band - 1]);
+    for (std::size_t band = finest + 1; band < region.energy.size(); ++band) {
+        bool const known = static_cast<int>(band) <= region.finest_seen;
+        region.energy[band] = to_energy(known ? scale * region.energy[band] : band_falloff * region.energy[band - 1]);
     }
-    place.finest_seen = std::max(place.finest_seen, seen.level);
+    region.finest_seen = std::max(region.finest_seen, seen.level);
 }
 
 /// Drift a second of each band, from what has changed of it; then what they have in common, and each one's own pace.
-void learn_motion(PlaceModel& place, Observation const& seen) {
+void learn_motion(RegionModel& region, Observation const& seen) {
     auto change = by_band(seen.level, seen.change);
     std::size_t const coarsest = coarsest_band(seen.level);
     auto const finest = static_cast<std::size_t>(seen.level);
@@ -199,19 +199,19 @@ void learn_motion(PlaceModel& place, Observation const& seen) {
     constexpr float forgetting = 0.25f;
     std::array<float, sampling_levels> rates{};
     for (std::size_t band = 0; band < rates.size(); ++band) {
-        float const before = place.motion * place.pace[band];
+        float const before = region.motion * region.pace[band];
         float const coarser = band > 0 ? 2 * rates[band - 1] : before;
         if (band <= finest && (band >= coarsest || change[band] > 0)) {
             float const gone = std::min(change[band], most_energy);
-            place.energy[band] = std::max(place.energy[band], to_energy(0.5f * gone / most_share));
-            float const share = std::min(gone / (2 * place.energy[band]), most_share);
+            region.energy[band] = std::max(region.energy[band], to_energy(0.5f * gone / most_share));
+            float const share = std::min(gone / (2 * region.energy[band]), most_share);
             float const rate = -std::log1p(-share) / seconds;
             bool const passed = share >= 0.99f * most_share; // at least that fast
             rates[band] = passed ? std::max(rate, std::min(before, coarser))
                                  : before + (rate > 0 ? trust : 1.0f) * (rate - before);
         } else if (band > finest) {
             float const doubled = static_cast<float>(1 << (band - finest));
-            float const known = place.pace[finest] > 0 ? place.pace[band] / place.pace[finest] : doubled;
+            float const known = region.pace[finest] > 0 ? region.pace[band] / region.pace[finest] : doubled;
             rates[band] = rates[finest] * (known + forgetting * (doubled - known));
         } else {
             rates[band] = before;
@@ -219,19 +219,19 @@ void learn_motion(PlaceModel& place, Observation const& seen) {
     }
     float growth = 0;
     float as_one = 0;
-    auto const unknown = PlaceModel::unknown_pace();
+    auto const unknown = RegionModel::unknown_pace();
     for (std::size_t band = 0; band <= shown_band(seen.level); ++band) {
-        growth += place.energy[band] * rates[band];
-        as_one += place.energy[band] * unknown[band];
+        growth += region.energy[band] * rates[band];
+        as_one += region.energy[band] * unknown[band];
     }
-    place.motion = std::min(growth / as_one, most_motion);
-    if (place.motion > 0) {
+    region.motion = std::min(growth / as_one, most_motion);
+    if (region.motion > 0) {
         for (std::size_t band = 0; band < rates.size(); ++band) {
-            place.pace[band] = std::min(rates[band] / place.motion, most_pace);
+            region.pace[band] = std::min(rates[band] / region.motion, most_pace);
         }
     } else {
-        place.motion = 0;
-        place.pace = unknown;
+        region.motion = 0;
+        region.pace = unknown;
     }
 }
 
@@ -242,10 +242,10 @@ float unresolved_error(Observation const& seen) {
     return tail * to_energy(seen.energy[0]) / samples_per_pixel(seen.level);
 }
 
-void learn(PlaceModel& place, Observation const& seen) {
-    learn_energy(place, seen);
+void learn(RegionModel& region, Observation const& seen) {
+    learn_energy(region, seen);
     if (seen.has_change) {
-        learn_motion(place, seen);
+        learn_motion(region, seen);
     }
 }
 

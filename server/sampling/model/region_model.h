@@ -1,4 +1,4 @@
-// What the server knows of one place of the picture: how much detail it has at each spacing of samples and how fast
+// What the server knows of one region of the picture: how much detail it has at each spacing of samples and how fast
 // that detail passes. In: rendered framelets, beside what the same tile showed before. Out: the error that a viewer
 // would see, in mean squared difference of display-encoded luma, for any spacing and any age.
 //
@@ -29,7 +29,7 @@ constexpr float samples_per_pixel(int level) {
                                 : 1.0f / static_cast<float>(1 << (2 * (pixel_level - level)));
 }
 
-struct PlaceModel {
+struct RegionModel {
     /// Energy of band b: what level b resolves beyond level b - 1. Band 0: all that level 0 resolves.
     std::array<float, sampling_levels> energy{};
     int finest_seen = -1; ///< finer bands are extrapolated; -1: nothing is known
@@ -46,35 +46,35 @@ struct PlaceModel {
         return pace;
     }
 
-    bool operator==(PlaceModel const&) const = default;
+    bool operator==(RegionModel const&) const = default;
 };
 
-/// A place that nothing is known of: detail as pictures have it on average (their power falls with the square of
+/// A region that nothing is known of: detail as pictures have it on average (their power falls with the square of
 /// frequency, which halves the energy from band to band).
-PlaceModel unknown_place();
+RegionModel unknown_region();
 
 /// Mean squared error of sampling at this level, fresh: what is missing, and what it puts into the wrong bands.
-float unresolved_error(PlaceModel const& place, int level);
+float unresolved_error(RegionModel const& region, int level);
 
 /// Mean squared error by what has changed since, for samples of this level: 0 at drift 0, growing, bounded.
-float drift_error(PlaceModel const& place, int level, float drift);
+float drift_error(RegionModel const& region, int level, float drift);
 
 /// drift_error for ever (its bound), and its growth at drift 0.
 struct DriftBounds {
     float most = 0, growth = 0;
 };
-DriftBounds drift_bounds(PlaceModel const& place, int level);
+DriftBounds drift_bounds(RegionModel const& region, int level);
 
 /// `unresolved_error` and `drift_bounds` of every level.
 struct LevelErrors {
     std::array<float, sampling_levels> unresolved{};
     std::array<DriftBounds, sampling_levels> drift{};
 };
-LevelErrors level_errors(PlaceModel const& place);
+LevelErrors level_errors(RegionModel const& region);
 
 /// The drift at which `drift_error` is `error`. Where the bands have too little energy for so much error, band 0 is
 /// given more: something has come that they knew nothing of.
-float drift_of_error(PlaceModel& place, int level, float error);
+float drift_of_error(RegionModel& region, int level, float error);
 
 /// What one rendered framelet says of a part of its samples.
 struct Observation {
@@ -93,7 +93,7 @@ Observation observe(int level, std::span<float const, framelet_samples> luma,
                     std::optional<std::span<float const, framelet_samples>> change, float seconds, std::size_t first,
                     std::size_t count);
 
-/// Mean of the observations of tiles that share a place.
+/// Mean of the observations of tiles that share a region.
 void accumulate(Observation& sum, Observation const& more);
 Observation mean_of(Observation const& sum, int count);
 
@@ -101,6 +101,6 @@ Observation mean_of(Observation const& sum, int count);
 float unresolved_error(Observation const& seen);
 
 /// Takes an observation into account. All results are finite and not below 0 for any finite input.
-void learn(PlaceModel& place, Observation const& observation);
+void learn(RegionModel& region, Observation const& observation);
 
 } // namespace framelet
