@@ -44,10 +44,10 @@ void write_maps(WarpPatch const& patch, std::uint32_t* to) {
 }
 
 /// Which samples it has.
-void write_samples(WarpPatch const& patch, GridPart const& part, SampleAtlas::Place place, std::uint32_t* to) {
+void write_samples(WarpPatch const& patch, GridPart const& part, SampleAtlas::Position position, std::uint32_t* to) {
     std::uint32_t const flags = (patch.hides ? hides_flag : 0) | (patch.has_ends ? ends_flag : 0);
-    to[13] = (place.x + static_cast<std::uint32_t>(part.column)) |
-             (place.y + static_cast<std::uint32_t>(part.row)) << 10 | place.layer << 20;
+    to[13] = (position.x + static_cast<std::uint32_t>(part.column)) |
+             (position.y + static_cast<std::uint32_t>(part.row)) << 10 | position.layer << 20;
     to[14] = static_cast<std::uint32_t>(patch.side) | part.number << 8 | flags << 16;
     std::ranges::copy(part.ends_before, to + 16);
 }
@@ -147,16 +147,16 @@ void PatchTable::find_small(CanvasJobs const& jobs) {
 void PatchTable::write_square(CanvasJobs const& jobs, SampleAtlas const& atlas, std::size_t index) {
     auto const [slot, square, samples] = grids_[index];
     WarpPlan const& plan = jobs.plans[slot];
-    SampleAtlas::Place const place = atlas.place(slot, square);
+    SampleAtlas::Position const position = atlas.position(slot, square);
     std::size_t small_grid = first_small_[index];
     std::uint32_t* to = patches.data() + words_of_patch * first_patch_[slot][square];
     for (WarpPatch const& patch : plan.patches_of(square)) {
         write_maps(patch, to);
         if (!patch.is_outlier) {
             if (auto const part = plan.grid_part(patch)) {
-                write_samples(patch, *part, place, to);
+                write_samples(patch, *part, position, to);
             } else {
-                write_samples(patch, {0, 0, patch.layer, patch.ends_before}, atlas.small_place(small_grid++), to);
+                write_samples(patch, {0, 0, patch.layer, patch.ends_before}, atlas.small_position(small_grid++), to);
             }
         }
         to += words_of_patch;

@@ -38,7 +38,7 @@ void SampleAtlas::clear() {
     used_layers_ = 0;
 }
 
-SampleAtlas::Place SampleAtlas::place_of(std::int32_t number, std::size_t size) {
+SampleAtlas::Position SampleAtlas::position_of(std::int32_t number, std::size_t size) {
     int const across = layer_side / side_of(size);
     int const page = number % (across * across);
     return {static_cast<std::uint32_t>(page % across * side_of(size)),
@@ -46,9 +46,9 @@ SampleAtlas::Place SampleAtlas::place_of(std::int32_t number, std::size_t size) 
             static_cast<std::uint32_t>(number / (across * across))};
 }
 
-SampleAtlas::Place SampleAtlas::place(std::size_t slot, std::uint32_t square) const {
+SampleAtlas::Position SampleAtlas::position(std::size_t slot, std::uint32_t square) const {
     Page const& page = pages_[slot][square];
-    return place_of(page.number, page.size);
+    return position_of(page.number, page.size);
 }
 
 /// What this picture has not used makes room.
@@ -143,7 +143,7 @@ void SampleAtlas::upload(Grid const& grid, Page& page) {
     }
     int const side = samples.side();
     PixelRect const rect = is_whole ? PixelRect{0, 0, side, side} : rect_of(samples, written);
-    Place const at = place_of(page.number, page.size);
+    Position const at = position_of(page.number, page.size);
     glPixelStorei(GL_UNPACK_ROW_LENGTH, side);
     glTexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, static_cast<GLint>(at.x) + rect.left, static_cast<GLint>(at.y) + rect.top,
                     static_cast<GLint>(at.layer), rect.width(), rect.height(), 1, GL_RED_INTEGER, GL_UNSIGNED_INT,
@@ -164,7 +164,7 @@ void SampleAtlas::update(std::span<Grid const> grids, std::span<SmallGrid const>
     }
     for (std::size_t i = 0; i < small_ones.size(); ++i) {
         int const side = small_ones[i].side;
-        Place const at = small_place(i);
+        Position const at = small_position(i);
         glPixelStorei(GL_UNPACK_ROW_LENGTH, side);
         glTexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, static_cast<GLint>(at.x), static_cast<GLint>(at.y),
                         static_cast<GLint>(at.layer), side, side, 1, GL_RED_INTEGER, GL_UNSIGNED_INT,

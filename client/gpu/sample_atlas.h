@@ -18,7 +18,7 @@ public:
     static constexpr int most_layers = 256; ///< likewise: 1 GB
 
     /// Where a grid's first sample lies.
-    struct Place {
+    struct Position {
         std::uint32_t x = 0, y = 0, layer = 0;
     };
 
@@ -42,9 +42,9 @@ public:
     /// there is no room.
     void update(std::span<Grid const> grids, std::span<SmallGrid const> small_ones);
     /// Of one of the last update's grids.
-    Place place(std::size_t slot, std::uint32_t square) const;
+    Position position(std::size_t slot, std::uint32_t square) const;
     /// Of its small ones, by number.
-    Place small_place(std::size_t number) const { return place_of(small_pages_[number], 0); }
+    Position small_position(std::size_t number) const { return position_of(small_pages_[number], 0); }
 
     std::uint32_t texture() const { return texture_.get(); }
     std::size_t memory_bytes() const;
@@ -63,7 +63,7 @@ private:
     void evict();
     void grow();
     static int side_of(std::size_t size) { return least_side << size; }
-    static Place place_of(std::int32_t number, std::size_t size);
+    static Position position_of(std::int32_t number, std::size_t size);
 
     static constexpr int least_side = 16;
     static constexpr std::size_t sizes = 4; ///< 16, 32, 64, 128 samples along a side

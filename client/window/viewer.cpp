@@ -63,10 +63,10 @@ void Viewer::adopt(std::unique_ptr<ClientCore> core) {
 void Viewer::look_at_scene() {
     Welcome const welcome = core_->welcome();
     scene_number_ = core_->scene_number();
-    bool const is_changed = controller_ && welcome.scene_name == scene_name_ && welcome.scene_place == scene_place_;
+    bool const is_changed = controller_ && welcome.scene_name == scene_name_ && welcome.scene_source == scene_source_;
     std::optional<Camera> const before = is_changed ? std::optional(controller_->camera()) : std::nullopt;
     if (!bookmarks_ || !is_changed) {
-        bookmarks_.emplace(bookmark_files(welcome.scene_name, welcome.scene_place));
+        bookmarks_.emplace(bookmark_files(welcome.scene_name, welcome.scene_source));
         bookmark_ = -1;
         is_at_bookmark_ = false;
         if (!bookmarks_->complaint().empty()) {
@@ -75,7 +75,7 @@ void Viewer::look_at_scene() {
         }
     }
     scene_name_ = welcome.scene_name;
-    scene_place_ = welcome.scene_place;
+    scene_source_ = welcome.scene_source;
     controller_.emplace(welcome.start_camera, welcome.scene_bounds);
     if (before) {
         controller_->set_camera(*before);

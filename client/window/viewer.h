@@ -90,7 +90,7 @@ private:
     bool interrupted_ = false; ///< the core tries for another session
     bool controlled_ = true; ///< what `ClientCore::controls` said last
     std::string scene_name_;
-    std::uint64_t scene_place_ = 0; ///< as in Welcome
+    std::uint64_t scene_source_ = 0; ///< as in Welcome
     std::optional<CameraController> controller_;
     int scene_camera_ = -1;
     std::optional<Bookmarks> bookmarks_; ///< the scene's

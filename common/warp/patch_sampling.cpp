@@ -10,7 +10,7 @@ namespace framelet {
 namespace {
 
 /// Between which samples pixels fall: the upper left one of four in the grid, and the weights of columns and rows.
-struct Places {
+struct SamplePositions {
     WideInts corner;
     WideFloats left_weight, right_weight, above_weight, below_weight;
 };
@@ -24,13 +24,13 @@ struct Homogeneous {
 /// is the last one that has neighbours, and tents give the weights: 0 from a sample's distance on. Outside of the box
 /// (where `in_box` is 0) and behind the camera there is no weight.
 template <bool inside>
-Places find_places(Homogeneous const& at, WarpPatch const& patch, WideInts in_box) {
+SamplePositions find_positions(Homogeneous const& at, WarpPatch const& patch, WideInts in_box) {
     auto const stride = static_cast<float>(patch.stride);
     WideFloats const zero{};
     WideFloats const z = 1 / at.inverse_z;
     WideFloats const u = at.u * z;
     WideFloats const v = at.v * z;
-    Places out;
+    SamplePositions out;
     if constexpr (inside) {
         // Rounding adds up along large grids that are seen at a low angle: what is read stays within the grid.
         WideInts const first{};
@@ -82,15 +82,15 @@ WideInts contains(LayerSet const& set, WideInts samples) {
 }
 
 /// `layer`: the bits of its samples.
-void interpolate(std::int32_t layer, WarpPatch const& patch, Places const& places, SamplesAround const& samples,
+void interpolate(std::int32_t layer, WarpPatch const& patch, SamplePositions const& positions, SamplesAround const& samples,
                  Candidate& out) {
     auto const weight = [layer](WideInts sample, WideFloats product) {
         return (sample & layer_bits) == layer ? product : WideFloats{};
     };
-    WideFloats const a00 = weight(samples.above_left, places.left_weight * places.above_weight);
-    WideFloats const a10 = weight(samples.above_right, places.right_weight * places.above_weight);
-    WideFloats const a01 = weight(samples.below_left, places.left_weight * places.below_weight);
-    WideFloats const a11 = weight(samples.below_right, places.right_weight * places.below_weight);
+    WideFloats const a00 = weight(samples.above_left, positions.left_weight * positions.above_weight);
+    WideFloats const a10 = weight(samples.above_right, positions.right_weight * positions.above_weight);
+    WideFloats const a01 = weight(samples.below_left, positions.left_weight * positions.below_weight);
+    WideFloats const a11 = weight(samples.below_right, positions.right_weight * positions.below_weight);
     auto const sum = [&](int shift) {
         return (a00 * squares_of(samples.above_left >> shift) + a10 * squares_of(samples.above_right >> shift)) +
                (a01 * squares_of(samples.below_left >> shift) + a11 * squares_of(samples.below_right >> shift));
@@ -99,9 +99,9 @@ void interpolate(std::int32_t layer, WarpPatch const& patch, Places const& place
     out.red = sum(0);
     out.green = sum(8);
     out.blue = sum(16);
-    WideInts const right = places.right_weight >= 0.5f;
-    WideInts const below = places.below_weight >= 0.5f;
-    WideInts const in_cell = (right | (places.left_weight >= 0.5f)) & (below | (places.above_weight >= 0.5f));
+    WideInts const right = positions.right_weight >= 0.5f;
+    WideInts const below = positions.below_weight >= 0.5f;
+    WideInts const in_cell = (right | (positions.left_weight >= 0.5f)) & (below | (positions.above_weight >= 0.5f));
     WideInts const nearest =
         below ? (right ? samples.below_right : samples.below_left) : (right ? samples.above_right : samples.above_left);
     out.is_firm = in_cell & ((nearest & layer_bits) == layer);
@@ -121,24 +121,24 @@ void sample_column(WarpPatch const& patch, float x, float y, int count, Candidat
     WideFloats const zero{};
     WideInts const in_box = (column >= 0) & (column < static_cast<float>(patch.box.width()));
     // One step after the other for all of them: the steps of one wait for each other.
-    std::array<Places, std::tuple_size_v<CandidateColumn>> places;
+    std::array<SamplePositions, std::tuple_size_v<CandidateColumn>> positions;
     auto const last = static_cast<std::size_t>(count);
     for (std::size_t i = 0; i < last; ++i) {
-        places[i] = find_places<inside>(at, patch, in_box);
+        positions[i] = find_positions<inside>(at, patch, in_box);
         at.u += step * patch.dy[0];
         at.v += step * patch.dy[1];
         at.inverse_z += step * patch.dy[2];
     }
     if constexpr (!inside && wide_rows > 1) { // rows may be above the box or below it
-        auto const leave_out = [&](Places& some, WideInts flags) {
+        auto const leave_out = [&](SamplePositions& some, WideInts flags) {
             some.above_weight = flags ? some.above_weight : zero;
             some.below_weight = flags ? some.below_weight : zero;
         };
-        leave_out(places[0], row >= 0);
-        leave_out(places[last - 1], row < static_cast<float>(patch.box.height() - (count - 1) * wide_rows));
+        leave_out(positions[0], row >= 0);
+        leave_out(positions[last - 1], row < static_cast<float>(patch.box.height() - (count - 1) * wide_rows));
     }
     for (std::size_t i = 0; i < last; ++i) {
-        interpolate(static_cast<std::int32_t>(patch.layer << 24), patch, places[i], look_up(patch, places[i].corner),
+        interpolate(static_cast<std::int32_t>(patch.layer << 24), patch, positions[i], look_up(patch, positions[i].corner),
                     out[i]);
         out[i].inverse_depth = larger(depth, zero);
         depth += step * patch.inverse_depth_dy;

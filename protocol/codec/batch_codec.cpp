@@ -74,7 +74,7 @@ std::span<std::uint8_t const> numbers(ByteView bytes) {
     return {reinterpret_cast<std::uint8_t const*>(bytes.data()), bytes.size()};
 }
 
-TilePlace place_of(ImagePlane const& plane, Tile tile) {
+TilePosition place_of(ImagePlane const& plane, Tile tile) {
     PixelRect const rect = plane.tile_rect(tile);
     auto const side = static_cast<unsigned>(plane.tile_side(tile));
     return {rect.left, rect.top, static_cast<std::int32_t>(std::bit_width(side | 1u)) - 1};

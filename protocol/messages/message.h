@@ -117,7 +117,7 @@ struct Welcome {
     Ticket ticket{}; ///< for the viewer's next Hello
     bool resumed = false; ///< the session before goes on: what the viewer holds of it stays, what it lacks comes again
     std::uint64_t evicted = 0; ///< as in Status
-    std::uint64_t scene_place = 0; ///< the same where it is the same file, whatever is in it by now; 0: not known
+    std::uint64_t scene_source = 0; ///< the same where it is the same file, whatever is in it by now; 0: not known
 };
 
 /// How the samples of a batch are coded.

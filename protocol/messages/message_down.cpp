@@ -72,7 +72,7 @@ Offset<wire::Welcome> write(Builder& builder, Welcome const& value) {
     return wire::CreateWelcome(builder, value.version, server, scene, value.scene_bounds.empty() ? nullptr : &box,
                                start, builder.CreateVector(cameras), value.animation_duration, &clock,
                                value.scene_identity, value.controls, value.ticket ? &ticket : nullptr, value.resumed,
-                               value.evicted, value.scene_place);
+                               value.evicted, value.scene_source);
 }
 
 Welcome read(wire::Welcome const& wire) {
@@ -102,7 +102,7 @@ Welcome read(wire::Welcome const& wire) {
     value.ticket = read(wire.ticket());
     value.resumed = wire.resumed();
     value.evicted = wire.evicted();
-    value.scene_place = wire.scene_place();
+    value.scene_source = wire.scene_source();
     return value;
 }
 

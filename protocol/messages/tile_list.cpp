@@ -12,7 +12,7 @@ constexpr int digit_bits = 7;
 constexpr std::uint64_t more = 1u << digit_bits;
 
 /// Where the next tile is expected: behind the last one.
-class Place {
+class Cursor {
 public:
     int depth() const { return depth_; }
     /// Index of the tile of that depth.
@@ -54,16 +54,16 @@ std::uint64_t read_number(ByteView& bytes) {
 Bytes write_tiles(std::span<Tile const> tiles) {
     Bytes bytes;
     bytes.reserve(2 * tiles.size());
-    Place place;
+    Cursor cursor;
     for (Tile const tile : tiles) {
-        std::int64_t const distance = std::int64_t{tile.index()} - place.index(tile.depth());
+        std::int64_t const distance = std::int64_t{tile.index()} - cursor.index(tile.depth());
         auto const size = static_cast<std::uint64_t>(distance < 0 ? -distance : distance);
-        bool const is_other_depth = tile.depth() != place.depth();
+        bool const is_other_depth = tile.depth() != cursor.depth();
         write_number(size << 2 | (distance < 0 ? 2u : 0u) | (is_other_depth ? 1u : 0u), bytes);
         if (is_other_depth) {
             bytes.push_back(static_cast<std::byte>(tile.depth()));
         }
-        place.pass(tile);
+        cursor.pass(tile);
     }
     return bytes;
 }
@@ -71,10 +71,10 @@ Bytes write_tiles(std::span<Tile const> tiles) {
 std::vector<Tile> read_tiles(ByteView bytes) {
     std::vector<Tile> tiles;
     tiles.reserve(std::min(bytes.size(), max_batch_framelets)); // more is refused
-    Place place;
+    Cursor cursor;
     while (!bytes.empty()) {
         std::uint64_t const number = read_number(bytes);
-        int depth = place.depth();
+        int depth = cursor.depth();
         if ((number & 1) != 0) {
             if (bytes.empty()) {
                 throw ProtocolError("a batch's list of tiles is cut off");
@@ -86,7 +86,7 @@ std::vector<Tile> read_tiles(ByteView bytes) {
         if (depth > most_depth) {
             throw ProtocolError("a batch has a tile of a depth beyond 15");
         }
-        std::int64_t const index = place.index(depth) + ((number & 2) != 0 ? -size : size);
+        std::int64_t const index = cursor.index(depth) + ((number & 2) != 0 ? -size : size);
         std::int64_t const tiles_there = std::int64_t{1} << 2 * depth;
         if (index < 0 || index >= tiles_there) {
             throw ProtocolError("a batch has a tile outside of its plane");
@@ -95,7 +95,7 @@ std::vector<Tile> read_tiles(ByteView bytes) {
             throw ProtocolError("a batch has more than 32768 framelets");
         }
         tiles.push_back({static_cast<std::uint32_t>(tiles_there + index)});
-        place.pass(tiles.back());
+        cursor.pass(tiles.back());
     }
     return tiles;
 }

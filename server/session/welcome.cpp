@@ -18,7 +18,7 @@ Welcome make_welcome(Scene const& scene, std::vector<Index> const& clips) {
         welcome.cameras.empty() ? default_camera(welcome.scene_bounds) : welcome.cameras.front().camera;
     welcome.animation_duration = animation_duration(scene, clips);
     welcome.scene_identity = scene_identity(scene);
-    welcome.scene_place = scene_place(scene);
+    welcome.scene_source = scene_source(scene);
     return welcome;
 }
 

@@ -46,7 +46,7 @@ bool BatchWork::learn(PosedScene const& scene, ViewerKnowledge& viewer) {
         needed_ = viewer.refresh.learn(order.plan, display_, rendered_, probes_.luma());
         figures.learnt_samples = display_.size() * framelet_samples;
     }
-    if (!order.withholds) {
+    if (!order.skips) {
         std::ranges::fill(needed_, std::uint8_t{1});
     }
     choose_qps(ImagePlane(order.state.view.viewport), order.plan.tiles, needed_, order.qp, order.still,

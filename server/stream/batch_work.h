@@ -35,7 +35,7 @@ struct BatchOrder {
     RefreshPlan plan;
     std::uint8_t qp = lossless_qp;
     bool takes_shapes = false;
-    bool withholds = true; ///< what the viewer has already
+    bool skips = true; ///< what the viewer has already
     bool still = false; ///< nothing moves: what is finest is sent without loss
     bool again = false; ///< what the viewer holds with loss: there is nothing to learn
 };

@@ -183,7 +183,7 @@ Step FrameletStream::plan_batch(Turn const& turn, ViewState const& present, Pose
         order.qp = choice_.choose(link, sent_share_.value() * rendered, turn.now);
     }
     order.takes_shapes = takes_shapes();
-    order.withholds = options_.withholds;
+    order.skips = options_.skips;
     order.still = still;
     order.again = false;
     viewer_.refresh.plan(wanted, order.plan);

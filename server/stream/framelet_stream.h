@@ -20,7 +20,7 @@ struct StreamOptions {
     // The evaluation leaves parts out, to see what each is worth.
     ResponseLimits limits{};
     bool follows_link = true; ///< rate and batches are bounded by what the link carries
-    bool withholds = true; ///< what the viewer has already is not sent again
+    bool skips = true; ///< what the viewer has already is not sent again
     bool prices_bytes = true; ///< where the link is scarce samples cost by the bytes that they take
     double moment_seconds = framelet::moment_seconds; ///< that a moment lasts
     bool looks_ahead = true; ///< a moment is of when it ends, not of when it begins

@@ -37,7 +37,7 @@ constexpr Part parts[] = {
     {"price", &FrameletParts::price},
     {"probes", &FrameletParts::probes},
     {"periodic refresh", &FrameletParts::periodic_refresh},
-    {"withholding", &FrameletParts::withholding},
+    {"skip", &FrameletParts::skip},
     {"reprojection", &FrameletParts::reprojection},
     {"few moments", &FrameletParts::few_moments},
     {"look ahead", &FrameletParts::look_ahead},

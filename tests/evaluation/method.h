@@ -39,7 +39,7 @@ struct FrameletParts {
     bool periodic_refresh = true;
     bool link_budget = true; ///< rate and batches are bounded by what the link carries
     bool loss = true; ///< where the link asks for it
-    bool withholding = true; ///< of what the viewer has already
+    bool skip = true; ///< of what the viewer has already
     bool reprojection = true; ///< by the viewer
     bool byte_prices = true; ///< samples cost by the bytes that they take, where the link is scarce
     bool predictions = true; ///< of colour, from what the viewer holds

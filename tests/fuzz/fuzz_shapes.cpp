@@ -10,7 +10,7 @@ namespace {
 using namespace framelet;
 
 /// Tiles of all sizes, here and there.
-TilePlace place_of(std::size_t number) {
+TilePosition place_of(std::size_t number) {
     constexpr std::int32_t least_bits = 2, sizes = 6;
     auto const i = static_cast<std::int32_t>(number);
     std::int32_t const bits = least_bits + i % sizes;

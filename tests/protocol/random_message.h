@@ -81,7 +81,7 @@ public:
         welcome.ticket = ticket();
         welcome.resumed = coin();
         welcome.evicted = any64();
-        welcome.scene_place = any64();
+        welcome.scene_source = any64();
         return welcome;
     }
 
@@ -184,7 +184,7 @@ inline bool same(Message const& left, Message const& right) {
                a->start_camera == b->start_camera && a->cameras == b->cameras &&
                a->animation_duration == b->animation_duration && a->clock == b->clock &&
                a->scene_identity == b->scene_identity && a->controls == b->controls && a->ticket == b->ticket &&
-               a->resumed == b->resumed && a->evicted == b->evicted && a->scene_place == b->scene_place;
+               a->resumed == b->resumed && a->evicted == b->evicted && a->scene_source == b->scene_source;
     }
     return std::visit(
         [&](auto const& value) {

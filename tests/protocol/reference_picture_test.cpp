@@ -156,7 +156,7 @@ struct FlatPicture {
 
     std::uint8_t& at(int x, int y) { return points[static_cast<std::size_t>(y * width + x)]; }
 
-    void take(ReferencePicture::Place place, std::array<std::uint8_t, framelet_samples> const& samples) {
+    void take(ReferencePicture::Square place, std::array<std::uint8_t, framelet_samples> const& samples) {
         auto const sample = [&](int x, int y) {
             return unsigned{samples[morton_index(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y))]};
         };
@@ -171,7 +171,7 @@ struct FlatPicture {
         }
     }
 
-    int predicted(ReferencePicture::Place place, MotionVector vector, int i, int j) {
+    int predicted(ReferencePicture::Square place, MotionVector vector, int i, int j) {
         int const left = std::clamp(place.left + vector.x, 0, width - place.side);
         int const top = std::clamp(place.top + vector.y, 0, height - place.side);
         int const t = place.side / framelet_side;
@@ -213,7 +213,7 @@ TEST(ReferencePicture, PredictsAsIfAllOfItWerePoints) {
         }
         MotionVector const vector{component(), component()};
         DisplayFramelet const out = predicted(held, tile, vector);
-        ReferencePicture::Place const place = held.place(tile);
+        ReferencePicture::Square const square = held.square(tile);
         for (std::uint32_t k = 0; k < framelet_samples; ++k) {
             int const x = static_cast<int>(morton_x(k)), y = static_cast<int>(morton_y(k));
             ASSERT_EQ(out.red[k], flat.predicted(place, vector, x, y)) << i << " tile " << tile.code;
@@ -223,7 +223,7 @@ TEST(ReferencePicture, PredictsAsIfAllOfItWerePoints) {
             int const step = SearchPicture::is_coarse(place.side) ? SearchPicture::coarse : 1;
             MotionVector const to = step > 1 ? vector : MotionVector{};
             SearchPicture::Source const source = held.searched(place, to);
-            ReferencePicture::Place const from = held.moved(place, to);
+            ReferencePicture::Square const from = held.moved(place, to);
             int const y = static_cast<int>(random() % unsigned(from.side / step));
             for (int x = 0; x < from.side / step; ++x) {
                 auto const green = source.first[static_cast<std::size_t>(y) * source.stride + std::size_t(x)];

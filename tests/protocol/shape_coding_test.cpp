@@ -13,8 +13,8 @@ namespace {
 using Plain = std::vector<std::uint8_t>;
 
 /// Of tiles of 2^side_bits pixels, side by side.
-std::vector<TilePlace> places_of(std::span<std::uint8_t const> side_bits) {
-    std::vector<TilePlace> places;
+std::vector<TilePosition> places_of(std::span<std::uint8_t const> side_bits) {
+    std::vector<TilePosition> places;
     std::int32_t left = 0;
     for (std::uint8_t const bits : side_bits) {
         places.push_back({left, 3 * left, bits});
@@ -201,11 +201,11 @@ TEST(ShapeCoding, GoldenBytes) {
 
 TEST(ShapeCoding, APlaneGoesOnInTilesOfAnySizeAndUnit) {
     // w = 0.5 + x / 128 - y / 64 from the corner of a tile of 16 pixels at (32, 48).
-    TilePlace const from{32, 48, 4};
+    TilePosition const from{32, 48, 4};
     CodedLayer const layer{quantise({0.5f, 0.0078125f, -0.015625f, 0, static_body, Vec3(0)}, 4), static_body, from};
     for (std::int32_t side_bits = 2; side_bits <= 7; ++side_bits) {
         for (int const finer : {-2, 0, 3}) {
-            TilePlace const to{32 + 64, 48 + 8, side_bits};
+            TilePosition const to{32 + 64, 48 + 8, side_bits};
             auto const unit = static_cast<UnitCode>(layer.code.unit - finer);
             Layer const on = dequantise(continued(layer, unit, to), side_bits);
             double const off = 1.01 * unit_of(unit);

@@ -41,7 +41,7 @@ public:
         for (LumaHistory::Entry const& entry : entries) {
             history.store(entry);
         }
-        return learn_patch(field, patch, regions, same_since, still_since, now, withholds);
+        return learn_patch(field, patch, regions, same_since, still_since, now, skips);
     }
     Patch patch(int level, std::uint32_t index = 0) const {
         return {{(1u << (2 * field.depth())) + index}, field.depth_of(level)};
@@ -51,7 +51,7 @@ public:
     LumaHistory history;
     RenderedMoment moment; ///< the viewer moves nothing
     double still_since = 0;
-    bool withholds = true;
+    bool skips = true;
     std::vector<BodyNumber> bodies; ///< of the samples; empty: none
 };
 
@@ -108,10 +108,10 @@ TEST(RegionField, WhatIsSentThoughItIsTheSameIsWhatTheViewerHolds) {
     Patch const fine = learner.patch(5);
     EXPECT_TRUE(learner.learn(coarse, 1, still));
     EXPECT_TRUE(learner.learn(fine, 2, still));
-    learner.withholds = false; // as of what the viewer moves: it takes the place of the finer samples
+    learner.skips = false; // as of what the viewer moves: it takes the place of the finer samples
     EXPECT_TRUE(learner.learn(coarse, 3, still));
     EXPECT_EQ(learner.field[0].level, 3);
-    learner.withholds = true;
+    learner.skips = true;
     EXPECT_TRUE(learner.learn(fine, 4, still)) << "or it would never be fine again";
 }
 

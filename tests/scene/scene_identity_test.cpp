@@ -28,15 +28,15 @@ TEST(SceneIdentity, IsTheSameForTheSameSceneOnly) {
 
 TEST(SceneIdentity, APlaceIsTheSameForTheSameFileOnly) {
     Scene scene = moving_scene();
-    EXPECT_EQ(scene_place(scene), 0u);
+    EXPECT_EQ(scene_source(scene), 0u);
     scene.files = {"/somewhere/model.glb"};
-    std::uint64_t const place = scene_place(scene);
+    std::uint64_t const place = scene_source(scene);
     EXPECT_NE(place, 0u);
     Scene changed = triangle_scene();
     changed.files = {"/somewhere/else/../model.glb", "/somewhere/texture.png"};
-    EXPECT_EQ(scene_place(changed), place);
+    EXPECT_EQ(scene_source(changed), place);
     scene.files = {"/elsewhere/model.glb"};
-    EXPECT_NE(scene_place(scene), place);
+    EXPECT_NE(scene_source(scene), place);
 }
 
 } // namespace

@@ -84,11 +84,11 @@ bool paint_layer(int patch_texel, int own_group, uint own_leader, vec2 from) {
     vec4 a = uintBitsToFloat(texel_of(patches, patch_texel + 1));
     vec4 b = uintBitsToFloat(texel_of(patches, patch_texel + 2));
     uvec4 grid = texel_of(patches, patch_texel + 3);
-    vec3 place = (a.xyz + from.y * vec3(b.zw, uintBitsToFloat(grid.x))) + from.x * vec3(a.w, b.xy);
-    if (!(place.z > 0.0)) {
+    vec3 position = (a.xyz + from.y * vec3(b.zw, uintBitsToFloat(grid.x))) + from.x * vec3(a.w, b.xy);
+    if (!(position.z > 0.0)) {
         return false;
     }
-    vec2 uv = place.xy / place.z;
+    vec2 uv = position.xy / position.z;
     int side = int(grid.z & 255u);
     uint number = (grid.z >> 8) & 255u;
     uint flags = grid.z >> 16;

@@ -160,18 +160,18 @@ void Bookmarks::save() {
     write_user_file(file_, bookmarks_text(all_));
 }
 
-BookmarkFiles bookmark_files(std::string const& scene_name, std::uint64_t scene_place) {
+BookmarkFiles bookmark_files(std::string const& scene_name, std::uint64_t scene_source) {
     if (config_folder().empty()) {
         return {};
     }
     std::filesystem::path const folder = config_folder() / "cameras";
     std::string const stem = file_stem_for(scene_name);
     std::filesystem::path const of_name = folder / (stem + ".json");
-    if (scene_place == 0) {
+    if (scene_source == 0) {
         return {of_name, {}};
     }
     std::array<char, 24> place{};
-    std::snprintf(place.data(), place.size(), "-%016llx", static_cast<unsigned long long>(scene_place));
+    std::snprintf(place.data(), place.size(), "-%016llx", static_cast<unsigned long long>(scene_source));
     return {folder / (stem + place.data() + ".json"), of_name};
 }
 

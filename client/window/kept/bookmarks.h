@@ -32,9 +32,9 @@ struct BookmarkFiles {
     std::filesystem::path older; ///< to begin with: what earlier versions kept, for whatever scene had the name
 };
 
-/// Where those of a scene are kept. `scene_place` as in Welcome: that of another folder has others; where it is not
+/// Where those of a scene are kept. `scene_source` as in Welcome: that of another folder has others; where it is not
 /// known (0) the name alone counts.
-BookmarkFiles bookmark_files(std::string const& scene_name, std::uint64_t scene_place);
+BookmarkFiles bookmark_files(std::string const& scene_name, std::uint64_t scene_source);
 
 /// Those of one scene, kept in a file.
 class Bookmarks {

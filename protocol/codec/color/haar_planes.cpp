@@ -36,7 +36,7 @@ Fours details_of(Fours const& levels, std::uint16_t base) {
     for (std::size_t octave = 0; octave < haar_octaves; ++octave) {
         std::uint16_t const step = octave_step(base, octave);
         std::size_t const first = first_four[octave];
-        std::transform(&levels[first], &levels[first] + 4 * haar_places(octave), &details[first],
+        std::transform(&levels[first], &levels[first] + 4 * haar_blocks(octave), &details[first],
                        [step](std::int16_t level) { return times(level, step); });
     }
     return details;
@@ -47,7 +47,7 @@ int quantise(Fours const& details, std::uint16_t base, Fours& levels) {
     int bits = 0;
     for (std::size_t octave = 0; octave < haar_octaves; ++octave) {
         std::size_t const first = first_four[octave];
-        bits += quantise(&details[first], haar_places(octave), DetailStep(octave_step(base, octave)), &levels[first]);
+        bits += quantise(&details[first], haar_blocks(octave), DetailStep(octave_step(base, octave)), &levels[first]);
     }
     return bits;
 }
@@ -69,7 +69,7 @@ void synthesise(Fours& levels, std::uint16_t base, std::int16_t mean, std::int16
     for (std::size_t octave = haar_octaves; octave-- > 0;) {
         std::int16_t* const fours = &levels[first_four[octave]];
         std::int16_t* const out = octave == 0 ? values : fours;
-        haar_inverse(means, fours, base == 0 ? one : octave_step(base, octave), haar_places(octave), out);
+        haar_inverse(means, fours, base == 0 ? one : octave_step(base, octave), haar_blocks(octave), out);
         means = out;
     }
 }
@@ -117,7 +117,7 @@ int code(DisplayValues const& values, std::uint8_t qp, int most, HaarCode& out) 
         for (std::size_t octave = 0; octave < haar_octaves; ++octave) {
             std::size_t const first = first_four[octave];
             std::int16_t* const means = octave + 1 < haar_octaves ? &details[first_four[octave + 1]] : &mean;
-            bits += haar_forward(fours, haar_places(octave), DetailStep(octave_step(base, octave)), means,
+            bits += haar_forward(fours, haar_blocks(octave), DetailStep(octave_step(base, octave)), means,
                                  &details[first], &levels[first]);
             if (bits > most) {
                 return bits;
@@ -139,10 +139,10 @@ namespace {
 int fitted_share(Fours const& luma, Fours const& chroma) {
     float products = 0, squares = 0;
     for (std::size_t octave = 0; octave < haar_octaves; ++octave) {
-        // Below 1.5e9: details of a place have at most the squares of its samples, 64 times 4080^2 together; rounding
+        // Below 1.5e9: details of a block have at most the squares of its samples, 64 times 4080^2 together; rounding
         // adds at most 349 to each of 192 of luma.
         std::int32_t product = 0, square = 0;
-        for (std::size_t i = first_four[octave]; i < first_four[octave] + 4 * haar_places(octave); ++i) {
+        for (std::size_t i = first_four[octave]; i < first_four[octave] + 4 * haar_blocks(octave); ++i) {
             product += luma[i] * chroma[i];
             square += luma[i] * luma[i];
         }

@@ -12,16 +12,16 @@ namespace framelet {
 
 inline constexpr std::size_t haar_octaves = 4;
 /// Of an octave, from the finest (0).
-constexpr std::size_t haar_places(std::size_t octave) {
+constexpr std::size_t haar_blocks(std::size_t octave) {
     return std::size_t{framelet_samples} >> (2 * (octave + 1));
 }
-/// Details of the octaves of one plane, the coarsest first, each [0, h, v, d] a place.
+/// Details of the octaves of one plane, the coarsest first, each [0, h, v, d] a block.
 inline constexpr std::array<std::size_t, haar_octaves> first_four{84, 20, 4, 0};
 
-/// Of one plane, its octaves from the coarsest, each [mean, h, v, d] a place.
+/// Of one plane, its octaves from the coarsest, each [mean, h, v, d] a block.
 using Fours = std::array<std::int16_t, 4 * (64 + 16 + 4 + 1)>;
 
-/// Details of a framelet's three planes and the planes' means, quantised; 0 instead of the means of places.
+/// Details of a framelet's three planes and the planes' means, quantised; 0 instead of the means of blocks.
 struct HaarLevels {
     std::array<Fours, 3> details;
     std::array<std::int16_t, 3> means;

@@ -1,4 +1,4 @@
-// One octave of the Haar transform of a plane of samples in Morton order, where the four children of a place are
+// One octave of the Haar transform of a plane of samples in Morton order, where the four children of a block are
 // neighbours, and its quantisation. In: fours of values. Out: their means, details and levels of these, and back.
 #pragma once
 
@@ -20,19 +20,19 @@ struct DetailStep {
 /// What a level that is not zero takes behind the entropy stage, roughly: this and its size, as far as that counts.
 inline constexpr std::uint16_t bits_of_any = 5, most_bits_of_size = 8;
 
-/// Arithmetic is modulo 2^16. `fours` has four values for each place: children a b / c d. Their mean (a+b+c+d)/4 and
+/// Arithmetic is modulo 2^16. `fours` has four values for each block: children a b / c d. Their mean (a+b+c+d)/4 and
 /// the details (a-b+c-d)/4, (a+b-c-d)/4, (a-b-c+d)/4, each rounded, become four `details`; `means` gets the means
 /// alone, and `levels` the same as `quantise` gives. `details` may be `fours`. Returns the bits of the levels, of
-/// at most 1000 places.
-int haar_forward(std::int16_t const* fours, std::size_t places, DetailStep const& step, std::int16_t* means,
+/// at most 1000 blocks.
+int haar_forward(std::int16_t const* fours, std::size_t blocks, DetailStep const& step, std::int16_t* means,
                  std::int16_t* details, std::int16_t* levels);
 
-/// Levels of details, 0 in place of the means. Returns their bits.
-int quantise(std::int16_t const* details, std::size_t places, DetailStep const& step, std::int16_t* levels);
+/// Levels of details, 0 instead of the means. Returns their bits.
+int quantise(std::int16_t const* details, std::size_t blocks, DetailStep const& step, std::int16_t* levels);
 
 /// The other way: details h, v, d, which are levels times `step`, and the means m give m+h+v+d, m-h+v-d, m+h-v-d,
 /// m-h-v+d. The first of each four is not read. `out` may be `levels`.
-void haar_inverse(std::int16_t const* means, std::int16_t const* levels, std::uint16_t step, std::size_t places,
+void haar_inverse(std::int16_t const* means, std::int16_t const* levels, std::uint16_t step, std::size_t blocks,
                   std::int16_t* out);
 
 } // namespace framelet

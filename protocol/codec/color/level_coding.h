@@ -60,9 +60,9 @@ private:
         bool before = false;
         for (std::size_t octave = haar_octaves; octave-- > 0;) {
             std::int16_t* const fours = &details[first_four[octave]];
-            std::size_t const places = haar_places(octave);
+            std::size_t const blocks = haar_blocks(octave);
             bool const luma = plane > 0 && sizes[0].is_coded[octave];
-            bool const has_any = !Coder::reads && std::any_of(fours, fours + 4 * places, [](auto v) { return v != 0; });
+            bool const has_any = !Coder::reads && std::any_of(fours, fours + 4 * blocks, [](auto v) { return v != 0; });
             bool const any = coder.bit(coded_[kind][octave][(before ? 1u : 0u) + (luma ? 2u : 0u)], has_any);
             sizes[plane].is_coded[octave] = any;
             before = any;
@@ -77,7 +77,7 @@ private:
         std::size_t context; ///< of whether there is any
         std::size_t size; ///< of how large it is
     };
-    /// `here`: the largest of the place's bands before.
+    /// `here`: the largest of the block's bands before.
     static Around look_around(std::array<Sizes, 3> const& sizes, std::size_t plane, std::size_t octave,
                               std::size_t band, std::size_t x, std::size_t y, unsigned here) {
         std::size_t const at = (y + 1) * Sizes::stride + x + 1;

@@ -94,8 +94,8 @@ int difference(Rows const& rows, SearchPicture::Source const& from, int most) {
 template <typename Reading>
 class Search {
 public:
-    Search(ReferencePicture const& reference, Rows const& rows, ReferencePicture::Place const& place)
-        : reference_(reference), rows_(rows), place_(place) {}
+    Search(ReferencePicture const& reference, Rows const& rows, ReferencePicture::Square const& square)
+        : reference_(reference), rows_(rows), square_(square) {}
 
     MotionVector best() const { return best_; }
     bool leaves_hardly_any() const { return least_ <= hardly_any; }
@@ -134,13 +134,13 @@ private:
     int cost(MotionVector vector) const {
         int const of_length = length_cost * (std::abs(int{vector.x}) + std::abs(int{vector.y}));
         constexpr int by = static_cast<int>(apart);
-        return by * difference<Reading, apart>(rows_, reference_.searched(place_, vector), (least_ - of_length) / by) +
+        return by * difference<Reading, apart>(rows_, reference_.searched(square_, vector), (least_ - of_length) / by) +
                of_length;
     }
 
     ReferencePicture const& reference_;
     Rows const& rows_;
-    ReferencePicture::Place const place_;
+    ReferencePicture::Square const square_;
     MotionVector best_;
     int least_ = std::numeric_limits<int>::max();
 };
@@ -158,17 +158,17 @@ void search_in_steps(Search<Reading>& search, std::span<MotionVector const> foun
 }
 
 template <typename Reading>
-MotionVector search_coarsely(ReferencePicture const& reference, Rows const& rows, ReferencePicture::Place const& place,
+MotionVector search_coarsely(ReferencePicture const& reference, Rows const& rows, ReferencePicture::Square const& square,
                               std::span<MotionVector const> found) {
-    Search<Reading> search(reference, rows, place);
+    Search<Reading> search(reference, rows, square);
     search_in_steps<Reading, 2>(search, found, SearchPicture::coarse);
     return search.best();
 }
 
 template <typename Reading>
-MotionVector search_finely(ReferencePicture const& reference, Rows const& rows, ReferencePicture::Place const& place,
+MotionVector search_finely(ReferencePicture const& reference, Rows const& rows, ReferencePicture::Square const& square,
                             std::span<MotionVector const> found) {
-    Search<Reading> search(reference, rows, place);
+    Search<Reading> search(reference, rows, square);
     search_in_steps<Reading, 4>(search, found, near_step);
     search.template compare_rows<2>();
     search.template consider_around<2>(2);
@@ -177,21 +177,21 @@ MotionVector search_finely(ReferencePicture const& reference, Rows const& rows, 
     return search.best();
 }
 
-MotionVector search(ReferencePicture const& reference, Rows const& rows, ReferencePicture::Place const& place,
+MotionVector search(ReferencePicture const& reference, Rows const& rows, ReferencePicture::Square const& square,
                      std::span<MotionVector const> found) {
-    switch (place.pitch()) {
+    switch (square.pitch()) {
     case -1:
-        return search_finely<Reading<1, doubled_row_at>>(reference, rows, place, found);
+        return search_finely<Reading<1, doubled_row_at>>(reference, rows, square, found);
     case 0:
-        return search_finely<Reading<2, row_at<std::uint8_t>>>(reference, rows, place, found);
+        return search_finely<Reading<2, row_at<std::uint8_t>>>(reference, rows, square, found);
     case 1:
-        return search_finely<Reading<4, row_at<std::uint16_t>>>(reference, rows, place, found);
+        return search_finely<Reading<4, row_at<std::uint16_t>>>(reference, rows, square, found);
     case 2:
-        return search_finely<Reading<8, row_at<std::uint32_t>>>(reference, rows, place, found);
+        return search_finely<Reading<8, row_at<std::uint32_t>>>(reference, rows, square, found);
     case 3: // of the coarse points, as all that is coarser
-        return search_coarsely<Reading<4, row_at<std::uint16_t>>>(reference, rows, place, found);
+        return search_coarsely<Reading<4, row_at<std::uint16_t>>>(reference, rows, square, found);
     default:
-        return search_coarsely<Reading<8, row_at<std::uint32_t>>>(reference, rows, place, found);
+        return search_coarsely<Reading<8, row_at<std::uint32_t>>>(reference, rows, square, found);
     }
 }
 
@@ -201,7 +201,7 @@ MotionVector MotionSearch::find(ReferencePicture const& reference, DisplayFramel
     if (!reference.is_searched()) {
         return {};
     }
-    MotionVector const best = search(reference, rows_of(framelet.green), reference.place(framelet.tile), found_);
+    MotionVector const best = search(reference, rows_of(framelet.green), reference.square(framelet.tile), found_);
     if (std::find(found_.begin(), found_.end(), best) == found_.end()) {
         found_[next_] = best;
         next_ = (next_ + 1) % found_.size();

@@ -17,16 +17,16 @@ void PlaneModel::code_head(Coder& coder, bool may_be_predicted, std::uint8_t& qp
     }
     qp_ = qp;
     if (!may_be_predicted) {
-        kind = PredictionKind::none;
+        kind = PredictionKind::intra;
         return;
     }
     unsigned const number = kinds_[qp == lossless_qp ? 0 : 1].code(coder, static_cast<unsigned>(kind));
-    if (number > static_cast<unsigned>(PredictionKind::moved)) {
+    if (number > static_cast<unsigned>(PredictionKind::displaced)) {
         throw ProtocolError("a batch has a framelet of an unknown prediction");
     }
     kind = static_cast<PredictionKind>(number);
-    vector = kind == PredictionKind::moved ? vector : MotionVector{};
-    if (kind == PredictionKind::moved) {
+    vector = kind == PredictionKind::displaced ? vector : MotionVector{};
+    if (kind == PredictionKind::displaced) {
         if (coder.bit(same_vector_, vector == vector_)) {
             vector = vector_;
         } else {
@@ -53,7 +53,7 @@ void expect_next(ReferencePicture const& reference, std::span<DisplayFramelet co
 }
 
 void add_prediction(DisplayValues const& left, Prediction const& prediction, DisplayFramelet& framelet) {
-    if (prediction.kind == PredictionKind::none) {
+    if (prediction.kind == PredictionKind::intra) {
         to_samples(left, framelet);
     } else {
         add_to_samples(left, prediction.samples, framelet);
@@ -72,7 +72,7 @@ bool resembles(DisplayFramelet const& framelet, DisplayFramelet const& reference
 }
 
 DisplayFramelet const* samples_of(Prediction const& prediction) {
-    return prediction.kind == PredictionKind::none ? nullptr : &prediction.samples;
+    return prediction.kind == PredictionKind::intra ? nullptr : &prediction.samples;
 }
 
 } // namespace
@@ -88,13 +88,13 @@ std::span<std::uint8_t const> PlaneCodec::encode(std::span<DisplayFramelet const
         FRAMELET_CHECK(qp[i] <= coarsest_qp);
         DisplayFramelet const& framelet = framelets[i];
         bool const is_exact = qp[i] == lossless_qp;
-        prediction_.kind = PredictionKind::none;
+        prediction_.kind = PredictionKind::intra;
         prediction_.vector = {};
         HaarLevels levels;
         if (reference != nullptr && is_exact) {
             reference->predict(framelet.tile, {}, prediction_.samples);
             prediction_.kind =
-                resembles(framelet, prediction_.samples) ? PredictionKind::same_place : PredictionKind::none;
+                resembles(framelet, prediction_.samples) ? PredictionKind::colocated : PredictionKind::intra;
         } else if (reference != nullptr) {
             expect_next(*reference, framelets, i);
             levels = predict(*reference, framelet, qp[i], search_, prediction_);
@@ -113,7 +113,7 @@ std::span<std::uint8_t const> PlaneCodec::encode(std::span<DisplayFramelet const
                 decoded[i] = framelet;
             }
         } else {
-            model.levels.code(writer_, prediction_.kind != PredictionKind::none, levels);
+            model.levels.code(writer_, prediction_.kind != PredictionKind::intra, levels);
             if (reference != nullptr) {
                 add_prediction(dequantise(levels, qp[i]), prediction_, decoded[i]);
             }
@@ -129,7 +129,7 @@ void PlaneCodec::decode(std::span<std::uint8_t const> bytes, std::span<DisplayFr
     Prediction prediction;
     for (std::size_t i = 0; i < framelets.size(); ++i) {
         model.code_head(reader, reference != nullptr, qp[i], prediction.kind, prediction.vector);
-        if (prediction.kind != PredictionKind::none) {
+        if (prediction.kind != PredictionKind::intra) {
             expect_next(*reference, framelets, i);
             reference->predict(framelets[i].tile, prediction.vector, prediction.samples);
         }
@@ -137,7 +137,7 @@ void PlaneCodec::decode(std::span<std::uint8_t const> bytes, std::span<DisplayFr
             model.exact.code(reader, samples_of(prediction), framelets[i]);
         } else {
             HaarLevels levels{};
-            model.levels.code(reader, prediction.kind != PredictionKind::none, levels);
+            model.levels.code(reader, prediction.kind != PredictionKind::intra, levels);
             add_prediction(dequantise(levels, qp[i]), prediction, framelets[i]);
         }
     }

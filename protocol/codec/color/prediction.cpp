@@ -21,9 +21,9 @@ struct Way {
 
 HaarLevels predict(ReferencePicture const& reference, DisplayFramelet const& framelet, std::uint8_t qp, MotionSearch& search,
                    Prediction& prediction) {
-    Way at_place, alone, moved;
-    at_place.prediction.kind = PredictionKind::same_place;
-    moved.prediction.kind = PredictionKind::moved;
+    Way colocated, alone, moved;
+    colocated.prediction.kind = PredictionKind::colocated;
+    moved.prediction.kind = PredictionKind::displaced;
     Way* best = nullptr;
     int least = std::numeric_limits<int>::max();
     // The way that is likely the best one comes first: all others end where they take more.
@@ -41,7 +41,7 @@ HaarLevels predict(ReferencePicture const& reference, DisplayFramelet const& fra
     };
     bool const may_have_moved = search.has_moved();
     if (!may_have_moved) {
-        consider_from({}, at_place, bits_of_kind);
+        consider_from({}, colocated, bits_of_kind);
     }
     if (least > few_bits) {
         MotionVector const vector = search.find(reference, framelet);
@@ -49,7 +49,7 @@ HaarLevels predict(ReferencePicture const& reference, DisplayFramelet const& fra
             consider_from(vector, moved, bits_of_kind + bits_of_vector);
         }
         if (may_have_moved) {
-            consider_from({}, at_place, bits_of_kind);
+            consider_from({}, colocated, bits_of_kind);
         }
         if (least > few_bits) {
             consider(alone, display_values(framelet), 0);

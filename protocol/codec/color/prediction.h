@@ -12,10 +12,10 @@
 namespace framelet {
 
 /// As on the wire.
-enum class PredictionKind : std::uint8_t { none = 0, same_place = 1, moved = 2 };
+enum class PredictionKind : std::uint8_t { intra = 0, colocated = 1, displaced = 2 };
 
 struct Prediction {
-    PredictionKind kind = PredictionKind::none;
+    PredictionKind kind = PredictionKind::intra;
     MotionVector vector; ///< zero where it has not moved
     DisplayFramelet samples; ///< predicted; only where there is a prediction
 };

@@ -93,8 +93,8 @@ void put_row(PointRow const& row, SamplePlane& rows, int y) {
     std::memcpy(rows.data() + y * framelet_side, &row, sizeof row);
 }
 
-/// The point of each sample, `pitch` as of `ReferencePicture::Place`, whatever levels these are of.
-void look_up(PointGrids const& points, ReferencePicture::Place const& from, int level, Planes& rows) {
+/// The point of each sample, `pitch` as of `ReferencePicture::Square`, whatever levels these are of.
+void look_up(PointGrids const& points, ReferencePicture::Square const& from, int level, Planes& rows) {
     int const twice = from.pitch() < 0 ? 1 : 0, pitch = std::max(from.pitch(), 0);
     PointRows reader(points, from.left, pitch, level, twice);
     for (int y = 0; y < framelet_side; ++y) {
@@ -106,7 +106,7 @@ void look_up(PointGrids const& points, ReferencePicture::Place const& from, int 
 }
 
 /// The mean of the four points about each sample's centre.
-void look_up_means(PointGrids const& points, ReferencePicture::Place const& from, int level, Planes& rows) {
+void look_up_means(PointGrids const& points, ReferencePicture::Square const& from, int level, Planes& rows) {
     using Sums [[gnu::vector_size(2 * framelet_side)]] = std::uint16_t;
     int const pitch = from.pitch();
     int const before_centre = (1 << pitch) / 2 - 1;
@@ -153,18 +153,18 @@ void ReferencePicture::prepare_search(std::span<DisplayFramelet const> framelets
         search_.copy(points_, green);
     }
     for (DisplayFramelet const& framelet : framelets) {
-        Place const at = place(framelet.tile);
+        Square const at = square(framelet.tile);
         search_.prepare(at.left, at.top, at.side);
     }
 }
 
-ReferencePicture::Place ReferencePicture::place(Tile tile) const {
+ReferencePicture::Square ReferencePicture::square(Tile tile) const {
     PixelRect const rect = plane_.tile_rect(tile);
     return {values_per_pixel * rect.left, values_per_pixel * rect.top, values_per_pixel * rect.width()};
 }
 
 void ReferencePicture::expect(Tile tile) const {
-    Place const from = place(tile);
+    Square const from = square(tile);
     if (is_searched()) {
         search_.expect(from.left, from.top, from.side);
     }
@@ -190,7 +190,7 @@ void ReferencePicture::expect(Tile tile) const {
 }
 
 void ReferencePicture::predict(Tile tile, MotionVector vector, DisplayFramelet& out) const {
-    Place const from = moved(place(tile), vector);
+    Square const from = moved(square(tile), vector);
     int const pitch = from.pitch();
     int const level = points_.level_in(from.left, from.top, from.side);
     bool const is_one = level != PointGrids::mixed_levels;
@@ -214,7 +214,7 @@ void ReferencePicture::predict(Tile tile, MotionVector vector, DisplayFramelet& 
 }
 
 void ReferencePicture::write(DisplayFramelet const& framelet) {
-    Place const to = place(framelet.tile);
+    Square const to = square(framelet.tile);
     int const level = std::max(to.pitch(), 0);
     std::size_t plane = 0;
     for_each_plane([&](auto const samples) {

@@ -44,29 +44,29 @@ public:
     /// Samples of `out` as the picture has them `vector` away from its tile, or as far as the picture reaches.
     void predict(Tile tile, MotionVector vector, DisplayFramelet& out) const;
 
-    /// Says that a prediction from near the tile's place will be asked for soon.
+    /// Says that a prediction from near the tile will be asked for soon.
     void expect(Tile tile) const;
 
     /// Where a tile lies, or what is moved from there: half pixels.
-    struct Place {
+    struct Square {
         int left, top, side;
         /// Half pixels from sample to sample, logarithm to base 2; -1: two samples a half pixel.
         int pitch() const {
             return static_cast<int>(std::bit_width(static_cast<unsigned>(side / (framelet_side / 2)))) - 2;
         }
     };
-    Place place(Tile tile) const;
+    Square square(Tile tile) const;
     /// Moved, as far as the picture reaches.
-    Place moved(Place const& place, MotionVector vector) const {
-        return {std::clamp(place.left + vector.x, 0, points_.width() - place.side),
-                std::clamp(place.top + vector.y, 0, points_.height() - place.side), place.side};
+    Square moved(Square const& square, MotionVector vector) const {
+        return {std::clamp(square.left + vector.x, 0, points_.width() - square.side),
+                std::clamp(square.top + vector.y, 0, points_.height() - square.side), square.side};
     }
     /// For whoever is about to look for vectors of these framelets. From the first call on more is kept, until another
     /// viewport is shown.
     void prepare_search(std::span<DisplayFramelet const> framelets);
     bool is_searched() const { return search_.is_kept(); }
-    SearchPicture::Source searched(Place const& place, MotionVector vector) const {
-        Place const from = moved(place, vector);
+    SearchPicture::Source searched(Square const& square, MotionVector vector) const {
+        Square const from = moved(square, vector);
         return search_.source(from.left, from.top, from.side);
     }
 

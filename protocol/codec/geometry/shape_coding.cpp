@@ -102,7 +102,7 @@ void check(FrameletShape const& shape) {
 
 } // namespace
 
-LayerCode continued(CodedLayer const& layer, UnitCode unit, TilePlace const& place) {
+LayerCode continued(CodedLayer const& layer, UnitCode unit, TilePosition const& place) {
     LayerCode const& code = layer.code;
     int const bits = layer.place.side_bits;
     int const finer = int{code.unit} - int{unit}; // how much larger the old unit is
@@ -127,7 +127,7 @@ BodyNumber ShapeModel::BodyModel::code(Coder& coder, BodyNumber last, BodyNumber
 }
 
 /// The one beside which it takes least.
-std::size_t ShapeModel::nearest(LayerCode const& code, BodyNumber body, TilePlace const& place) const {
+std::size_t ShapeModel::nearest(LayerCode const& code, BodyNumber body, TilePosition const& place) const {
     std::size_t best = 0;
     int least = std::numeric_limits<int>::max();
     for (std::size_t i = 0; i < layers_.size(); ++i) {
@@ -148,7 +148,7 @@ void ShapeModel::remember(CodedLayer const& layer) {
 }
 
 template <class Coder, class AnyLayer>
-void ShapeModel::code_layer(Coder& coder, TilePlace const& place, std::size_t number, AnyLayer& layer) {
+void ShapeModel::code_layer(Coder& coder, TilePosition const& place, std::size_t number, AnyLayer& layer) {
     LayerCode code;
     if (!Coder::reads) {
         code = quantise(layer, place.side_bits);
@@ -277,7 +277,7 @@ void ShapeModel::code_velocities(Coder& coder, Shape& shape) {
 }
 
 template <class Coder, class Shape>
-void ShapeModel::code(Coder& coder, TilePlace const& place, Shape& shape) {
+void ShapeModel::code(Coder& coder, TilePosition const& place, Shape& shape) {
     constexpr unsigned outlier_bit = 4;
     unsigned const own = shape.layer_count + (shape.outliers.empty() ? 0u : outlier_bit);
     unsigned const head = heads_[head_].code(coder, own);
@@ -311,12 +311,12 @@ void ShapeModel::code(Coder& coder, TilePlace const& place, Shape& shape) {
     code_velocities(coder, shape);
 }
 
-void ShapeModel::write(RangeWriter& writer, TilePlace const& place, FrameletShape const& shape) {
+void ShapeModel::write(RangeWriter& writer, TilePosition const& place, FrameletShape const& shape) {
     check(shape);
     code(writer, place, shape);
 }
 
-void ShapeModel::read(RangeReader& reader, TilePlace const& place, FrameletShape& shape) {
+void ShapeModel::read(RangeReader& reader, TilePosition const& place, FrameletShape& shape) {
     shape.layers = {};
     shape.decorrelation = 0;
     shape.layer_count = 0;

@@ -12,7 +12,7 @@
 namespace framelet {
 
 /// Where a tile lies: its upper left corner, pixels, and its side, 2^side_bits pixels.
-struct TilePlace {
+struct TilePosition {
     std::int32_t left = 0, top = 0;
     std::int32_t side_bits = 0; ///< 0..31
 };
@@ -21,18 +21,18 @@ struct TilePlace {
 struct CodedLayer {
     LayerCode code;
     BodyNumber body = static_body;
-    TilePlace place;
+    TilePosition place;
 };
 
 /// What its plane is at another place, in that unit, as near as the numbers hold.
-LayerCode continued(CodedLayer const& layer, UnitCode unit, TilePlace const& place);
+LayerCode continued(CodedLayer const& layer, UnitCode unit, TilePosition const& place);
 
 /// What is known of the shapes that were coded before. Both sides know the same.
 class ShapeModel {
 public:
-    void write(RangeWriter& writer, TilePlace const& place, FrameletShape const& shape);
+    void write(RangeWriter& writer, TilePosition const& place, FrameletShape const& shape);
     /// Fills a shape. ProtocolError where there is no such one.
-    void read(RangeReader& reader, TilePlace const& place, FrameletShape& shape);
+    void read(RangeReader& reader, TilePosition const& place, FrameletShape& shape);
 
 private:
     static constexpr int unary = 3; // of numbers that may be large
@@ -56,16 +56,16 @@ private:
 
     // What is written is const, what is read is not.
     template <class Coder, class Shape>
-    void code(Coder& coder, TilePlace const& place, Shape& shape);
+    void code(Coder& coder, TilePosition const& place, Shape& shape);
     template <class Coder, class AnyLayer>
-    void code_layer(Coder& coder, TilePlace const& place, std::size_t number, AnyLayer& layer);
+    void code_layer(Coder& coder, TilePosition const& place, std::size_t number, AnyLayer& layer);
     template <class Coder, class Shape>
     void code_kinds(Coder& coder, unsigned kinds, Shape& shape);
     template <class Coder, class Shape>
     void code_outliers(Coder& coder, Shape& shape);
     template <class Coder, class Shape>
     void code_velocities(Coder& coder, Shape& shape);
-    std::size_t nearest(LayerCode const& code, BodyNumber body, TilePlace const& place) const;
+    std::size_t nearest(LayerCode const& code, BodyNumber body, TilePosition const& place) const;
     void remember(CodedLayer const& layer);
 
     std::array<CodedLayer, remembered> layers_{}; ///< lately, the newest first

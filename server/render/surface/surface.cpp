@@ -102,14 +102,14 @@ float cut_or_blend_alpha(RenderMaterial const& material, float alpha) {
 }
 
 /// A point's texture coordinates in both sets, and what the sample covers of them.
-struct TexturePlace {
+struct TexturePoint {
     std::array<Vec2, 2> uv{};
     std::array<UvFootprint, 2> footprint{};
 };
 
-TexturePlace texture_place(HitFrame const& frame, int lane, float width) {
+TexturePoint texture_point(HitFrame const& frame, int lane, float width) {
     std::size_t const i = static_cast<std::size_t>(lane);
-    TexturePlace place;
+    TexturePoint place;
     for (std::size_t set = 0; set < 2; ++set) {
         std::vector<Vec2> const& uv = frame.geometry[i]->source->uv[set];
         if (!uv.empty()) {
@@ -120,7 +120,7 @@ TexturePlace texture_place(HitFrame const& frame, int lane, float width) {
     return place;
 }
 
-void set_material(Geometry const& geometry, TrianglePoint const& point, int lane, TexturePlace const& place,
+void set_material(Geometry const& geometry, TrianglePoint const& point, int lane, TexturePoint const& place,
                   SurfacePacket& out) {
     RenderMaterial const& m = *geometry.material;
     auto look_up = [&](TextureSampler const& map) {
@@ -236,7 +236,7 @@ LaneMask make_surfaces(std::span<Instance const> instances, RayPacket const& ray
         std::size_t const i = static_cast<std::size_t>(lane);
         Geometry const& geometry = *frame.geometry[i];
         RenderMaterial const& material = *geometry.material;
-        TexturePlace const place = material.uses_uv ? texture_place(frame, lane, out.width[lane]) : TexturePlace{};
+        TexturePoint const place = material.uses_uv ? texture_point(frame, lane, out.width[lane]) : TexturePoint{};
         if (material.normal_map) {
             std::size_t const set = static_cast<std::size_t>(material.normal_map.uv_set());
             out.normal.set(lane, mapped_normal(frame, lane, place.uv[set], place.footprint[set]));

@@ -37,7 +37,7 @@ struct Region {
     float left = 0; ///< mean squared error that the finest samples leave, by their last rendering alone
     double supersampled = never; ///< when the viewer got it with four rays a sample, seconds
     double changed = never; ///< when it was last seen to be different
-    double doubted = never; ///< when it was last rendered with nothing to compare with, and might have changed
+    double suspected = never; ///< when it was last rendered with nothing to compare with, and might have changed
     double checked = never; ///< when it was last rendered or probed
     double asked = never; ///< the same, learnt or not
     bool settled = true; ///< false from a change that was seen until two renderings are the same

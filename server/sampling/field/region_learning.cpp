@@ -176,16 +176,16 @@ double examine_patch(RegionField const& field, Patch const& patch, std::span<Dis
 }
 
 bool learn_patch(RegionField& field, Patch const& patch, std::span<RegionFindings const> regions, double same_since,
-                 double still_since, double now, bool withholds) {
+                 double still_since, double now, bool skips) {
     int const level = field.level_of(patch.depth);
     RegionField::Range const range = field.range_of(patch.node);
     FRAMELET_CHECK(regions.size() == range.last - range.first);
     // The viewer has it, or better, and either has had it since before it looked the same, or what it got later is of a
     // region that has not changed meanwhile: nothing to send.
-    bool known = withholds && same_since > never;
+    bool known = skips && same_since > never;
     for (std::uint32_t i = range.first; i < range.last; ++i) {
         Region const& region = field[i];
-        bool const goes_on = std::min(region.rendered, std::max(region.changed, region.doubted)) <= same_since;
+        bool const goes_on = std::min(region.rendered, std::max(region.changed, region.suspected)) <= same_since;
         known = known && (field.pixels_of(i) == 0 || (region.level >= level && goes_on));
     }
     for (std::uint32_t i = range.first; i < range.last; ++i) {
@@ -208,7 +208,7 @@ bool learn_patch(RegionField& field, Patch const& patch, std::span<RegionFinding
             region.changed = now;
         }
         if (!found.seen.has_change && region.rendered < still_since) {
-            region.doubted = now;
+            region.suspected = now;
         }
         region.checked = now;
         if (level >= pixel_level) {

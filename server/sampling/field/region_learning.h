@@ -37,10 +37,10 @@ double examine_patch(RegionField const& field, Patch const& patch, std::span<Dis
 
 /// Takes the findings of a patch that was rendered at `now` into account. `same_since`: what `examine_patch` returned;
 /// `still_since`: when anything that is to be seen moved last.
-/// Returns whether the viewer needs the patch: false where it holds the very same and `withholds`, since what the
+/// Returns whether the viewer needs the patch: false where it holds the very same and `skips`, since what the
 /// viewer moves takes the place of what it holds there, finer or not.
 bool learn_patch(RegionField& field, Patch const& patch, std::span<RegionFindings const> regions, double same_since,
-                 double still_since, double now, bool withholds);
+                 double still_since, double now, bool skips);
 
 /// Drift since a rendering of it that was planned at `now`, which may have been a while ago.
 float drift_since(Region const& region, double now);

@@ -36,7 +36,7 @@ struct Cell {
     float covered_share() const { return static_cast<float>(std::popcount(covered)) / cell_pixels; }
 };
 
-/// Cells around a place that show something else than is to be seen.
+/// Cells around a position that show something else than is to be seen.
 struct CellFault {
     Vec2 at{0}; ///< pixels
     int side = cell_side; ///< of the square of cells, pixels

@@ -52,7 +52,7 @@ void Mirror::look(MirrorView const& view, BodyMotions const& motions) {
 
 float Mirror::luma_of(Cell const& cell, Vec2 at) const {
     Piece const& piece = piece_of(cell);
-    return piece.luma + glm::dot(piece.slope, at - place_of(cell)) / scale_of(cell);
+    return piece.luma + glm::dot(piece.slope, at - position_of(cell)) / scale_of(cell);
 }
 
 bool Mirror::mark(std::span<CellFault const> faults) {
@@ -202,7 +202,7 @@ void Mirror::give_back_room(Moment& moment) {
     }
 }
 
-/// What a viewer holds of one moment is the newest at each place: what is older than these goes.
+/// What a viewer holds of one moment is the newest at each position: what is older than these goes.
 void Mirror::replace(Moment& moment, std::span<Piece const> pieces) {
     if (moment.pieces.empty() || pieces.empty()) {
         return;

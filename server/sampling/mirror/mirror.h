@@ -34,9 +34,9 @@ public:
     Piece const& piece_of(Cell const& cell) const { return moments_[cell.moment].pieces[cell.piece]; }
     /// Where the middle of that piece is in the picture of the cell, pixels; how much larger it is than it was
     /// rendered; of when it is.
-    Vec2 place_of(Cell const& cell) const { return moments_[cell.moment].reprojected[cell.piece].at; }
+    Vec2 position_of(Cell const& cell) const { return moments_[cell.moment].reprojected[cell.piece].at; }
     float scale_of(Cell const& cell) const { return moments_[cell.moment].reprojected[cell.piece].scale; }
-    /// The luma that a cell shows at a place of its picture, display-encoded.
+    /// The luma that a cell shows at a position in its picture, display-encoded.
     float luma_of(Cell const& cell, Vec2 at) const;
     SceneTime time_of(Cell const& cell) const { return piece_of(cell).scene_time; }
     /// True where a new framelet takes the place of what shows, be it better or not: it is of the base of the camera

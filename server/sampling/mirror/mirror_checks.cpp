@@ -16,9 +16,9 @@ Cell const& cell_at(Mirror const& mirror, Vec2 at) {
     return mirror.cell(static_cast<int>(at.x) / cell_side, static_cast<int>(at.y) / cell_side);
 }
 
-/// Calls `look` with each place of a grid.
+/// Calls `look` with each position of a grid.
 template <class Look>
-void for_each_place(RayGrid const& grid, Viewport viewport, Look look) {
+void for_each_position(RayGrid const& grid, Viewport viewport, Look look) {
     int const columns = grid.columns(viewport);
     int const rows = grid.rows(viewport);
     for (int row = 0; row < rows; ++row) {
@@ -28,7 +28,7 @@ void for_each_place(RayGrid const& grid, Viewport viewport, Look look) {
     }
 }
 
-/// The cell of a place or one beside it.
+/// The cell of a position or one beside it.
 bool shows_as_near(Mirror const& mirror, Vec2 at, float inverse_depth) {
     int const column = static_cast<int>(at.x) / cell_side;
     int const row = static_cast<int>(at.y) / cell_side;
@@ -78,7 +78,7 @@ std::vector<CellFault> find_wrong(Mirror const& mirror, RayGrid const& grid, std
     FRAMELET_CHECK(inverse_depth.size() == columns * static_cast<std::size_t>(grid.rows(mirror.viewport())));
     std::vector<CellFault> faults;
     auto seen = inverse_depth.begin();
-    for_each_place(grid, mirror.viewport(), [&](Vec2 at) {
+    for_each_position(grid, mirror.viewport(), [&](Vec2 at) {
         if (!shows_as_near(mirror, at, *seen++)) {
             faults.push_back({.at = at, .side = grid.spacing, .is_wrong = true});
         }
@@ -88,7 +88,7 @@ std::vector<CellFault> find_wrong(Mirror const& mirror, RayGrid const& grid, std
 
 void list_probes(Mirror const& mirror, RayGrid const& grid, std::vector<Probe>& probes) {
     probes.clear();
-    for_each_place(grid, mirror.viewport(), [&](Vec2 at) {
+    for_each_position(grid, mirror.viewport(), [&](Vec2 at) {
         Cell const& shown = cell_at(mirror, at);
         if (shown.share == cell_pixels && !mirror.piece_of(shown).is_outlier &&
             mirror.time_of(shown) != mirror.view().scene_time) {

@@ -91,7 +91,7 @@ std::uint64_t scene_identity(Scene const& scene) {
     return std::max<std::uint64_t>(digest.value(), 1);
 }
 
-std::uint64_t scene_place(Scene const& scene) {
+std::uint64_t scene_source(Scene const& scene) {
     if (scene.files.empty()) {
         return 0;
     }

@@ -14,6 +14,6 @@ std::uint64_t scene_identity(Scene const& scene);
 /// The same for the same file of the same machine, whatever is in it and whichever build of this program asks, and
 /// never 0 then: what people keep for a scene outlives a change of it, and is not another folder's. 0 where the scene
 /// is of no file.
-std::uint64_t scene_place(Scene const& scene);
+std::uint64_t scene_source(Scene const& scene);
 
 } // namespace framelet

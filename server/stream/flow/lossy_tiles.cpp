@@ -57,11 +57,11 @@ void LossyTiles::list(std::size_t most, std::vector<Tile>& tiles) const {
 }
 
 void choose_qps(ImagePlane const& plane, std::span<Tile const> tiles, std::span<std::uint8_t> needed,
-                      std::uint8_t qp, bool finish, LossyTiles& places, std::vector<std::uint8_t>& qps) {
+                      std::uint8_t qp, bool finish, LossyTiles& lossy, std::vector<std::uint8_t>& qps) {
     FRAMELET_CHECK(tiles.size() == needed.size());
     qps.clear();
     for (std::size_t i = 0; i < tiles.size(); ++i) {
-        bool const again = needed[i] == 0 && places.is_held(plane, tiles[i]);
+        bool const again = needed[i] == 0 && lossy.is_held(plane, tiles[i]);
         needed[i] = needed[i] != 0 || again ? 1 : 0;
         if (needed[i] != 0) {
             bool const last = finish && tiles[i].depth() == plane.max_depth();
@@ -75,7 +75,7 @@ void choose_qps(ImagePlane const& plane, std::span<Tile const> tiles, std::span<
             if (needed[i] != 0) {
                 std::uint8_t const chosen = qps[next++];
                 if (tiles[i].depth() == depth) {
-                    places.sent(plane, tiles[i], chosen);
+                    lossy.sent(plane, tiles[i], chosen);
                 }
             }
         }

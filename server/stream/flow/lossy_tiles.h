@@ -1,5 +1,5 @@
 // Where a viewer holds samples that were coded with loss, so that they can be sent once more without. In: what was
-// sent. Out: what is to be sent exactly. A byte for each place of the finest tiles.
+// sent. Out: what is to be sent exactly. A byte for each of the finest tiles.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ public:
     bool empty() const { return count_ == 0; }
     /// True where the viewer shows nothing but this very tile, with loss: once more without would be all that it lacks.
     bool is_held(ImagePlane const& plane, Tile tile) const;
-    /// Replaces `tiles` by the finest tiles of places held with loss, at most so many.
+    /// Replaces `tiles` by the finest tiles held with loss, at most so many.
     void list(std::size_t most, std::vector<Tile>& tiles) const;
 
 private:
@@ -32,7 +32,7 @@ private:
     Range range_of(Tile tile) const;
 
     ImagePlane plane_;
-    std::vector<std::uint8_t> depth_; ///< of the lossy tile that a finest tile's place shows, and 1; by Morton index
+    std::vector<std::uint8_t> depth_; ///< of the lossy tile that a finest tile shows, and 1; by Morton index
     std::size_t count_ = 0; ///< visible ones that are not 0
 };
 
@@ -40,8 +40,8 @@ private:
 /// that are not, because they have not changed, are added where the viewer holds them with loss. `qp`: of the
 /// batch. `finish`: the picture stands still, and its finest tiles are the last that come: they are sent exactly.
 /// Replaces `qps` by one for each framelet that is sent, in order, or by none where all are exact; keeps account
-/// in `places`.
+/// in `lossy`.
 void choose_qps(ImagePlane const& plane, std::span<Tile const> tiles, std::span<std::uint8_t> needed,
-                      std::uint8_t qp, bool finish, LossyTiles& places, std::vector<std::uint8_t>& qps);
+                      std::uint8_t qp, bool finish, LossyTiles& lossy, std::vector<std::uint8_t>& qps);
 
 } // namespace framelet

@@ -303,7 +303,7 @@ LayerTolerance layer_tolerance(float median_depth, ViewRays const& rays, float s
 }
 
 float median_depth(std::span<Framelet const> framelets) {
-    constexpr std::size_t step = 17; // odd: every place in the blocks is met
+    constexpr std::size_t step = 17; // odd: every position in the blocks is met
     constexpr std::size_t most_framelets = 64;
     std::size_t const stride = std::max<std::size_t>(framelets.size() / most_framelets, 1);
     std::vector<float> depths;

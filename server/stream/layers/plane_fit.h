@@ -27,7 +27,7 @@ constexpr int block_order(int morton) {
 
 void to_block_order(std::array<float, framelet_samples> const& morton, GridFloats& out);
 
-/// Column and row of the sample at a place in block order, from the middle of the grid: -7.5 .. 7.5.
+/// Column and row of the sample at a position in block order, from the middle of the grid: -7.5 .. 7.5.
 struct GridCoordinates {
     GridFloats x, y;
 };
@@ -38,7 +38,7 @@ struct GridPlane {
     float centre = 0, dx = 0, dy = 0;
 };
 
-/// Value of the sample at place i in block order minus the plane.
+/// Value of the sample at position i in block order minus the plane.
 inline float residual(GridFloats const& values, GridPlane const& plane, int i) {
     return values[i] - (plane.centre + plane.dx * grid_coordinates.x[i] + plane.dy * grid_coordinates.y[i]);
 }

@@ -128,7 +128,7 @@ private:
         options.bias = setup_.bias;
         options.limits = limits_of(parts);
         options.follows_link = parts.link_budget;
-        options.withholds = parts.withholding;
+        options.skips = parts.skip;
         options.prices_bytes = parts.byte_prices;
         options.moment_seconds = parts.few_moments ? options.moment_seconds : double{least_cycle_seconds};
         options.looks_ahead = parts.look_ahead;

@@ -1,8 +1,8 @@
 // Means of four blocks, or of four such means, as `FarMeans`; beyond the last one it is repeated.
 uniform sampler2D fine;
 out vec4 mean;
-vec4 at(ivec2 place) {
-    return texelFetch(fine, min(place, textureSize(fine, 0) - 1), 0);
+vec4 at(ivec2 position) {
+    return texelFetch(fine, min(position, textureSize(fine, 0) - 1), 0);
 }
 void main() {
     ivec2 first = 2 * ivec2(gl_FragCoord.xy);

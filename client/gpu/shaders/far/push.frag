@@ -8,12 +8,12 @@ vec4 at(int x, int y) {
     return texelFetch(coarse, clamp(ivec2(x, y) + coarse_border, ivec2(0), textureSize(coarse, 0) - 1), 0);
 }
 void main() {
-    ivec2 place = ivec2(gl_FragCoord.xy) - 1;
-    bool is_there = all(greaterThanEqual(place, ivec2(0))) && all(lessThan(place, textureSize(fine, 0)));
-    cell = is_there ? texelFetch(fine, place, 0) : vec4(0.0, 0.0, 0.0, nothing);
+    ivec2 position = ivec2(gl_FragCoord.xy) - 1;
+    bool is_there = all(greaterThanEqual(position, ivec2(0))) && all(lessThan(position, textureSize(fine, 0)));
+    cell = is_there ? texelFetch(fine, position, 0) : vec4(0.0, 0.0, 0.0, nothing);
     if (is_nothing(cell)) {
-        ivec2 own = parent_of(place);
-        ivec2 other = other_of(place);
+        ivec2 own = parent_of(position);
+        ivec2 other = other_of(position);
         cell = farthest_of(vec4(9.0, 3.0, 3.0, 1.0), at(own.x, own.y), at(other.x, own.y), at(own.x, other.y),
                            at(other.x, other.y));
     }
