@@ -225,11 +225,11 @@ void PatchTable::write_row(CanvasJobs const& jobs, RowJobs const& from, Row& row
             std::size_t const slot = slot_of_group(patch.group);
             std::uint32_t const number =
                 first_patch_[slot][patch.square] + static_cast<std::uint32_t>(jobs.plans[slot].number_of(patch));
-            row.entries.insert(row.entries.end(),
-                               {number | leader_of(patch.group, i, row.groups, row.leaders) << 24,
-                                local_box(patch.box, job) | (patch.is_outlier ? outlier_flag : 0),
-                                static_cast<std::uint32_t>(patch.group),
-                                patch.is_outlier ? add_splats(job, view, i, row) : pair(patch.box.left, patch.box.top)});
+            row.entries.insert(row.entries.end(), {number | leader_of(patch.group, i, row.groups, row.leaders) << 24,
+                                                   local_box(patch.box, job) | (patch.is_outlier ? outlier_flag : 0),
+                                                   static_cast<std::uint32_t>(patch.group),
+                                                   patch.is_outlier ? add_splats(job, view, i, row)
+                                                                    : pair(patch.box.left, patch.box.top)});
         }
     }
 }

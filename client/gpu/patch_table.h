@@ -24,11 +24,12 @@ public:
     /// `ends_before`.
     std::vector<std::uint32_t> patches;
     /// One of four for each patch of each block: the patch, and from bit 24 on the first of its group in the block; its
-    /// box there, four bits each of first column, first row, last column, last row, and whether it is of outliers; group; the
-    /// corner of its box in the picture, or where the lists of its splats begin among those of the block's row.
+    /// box there, four bits each of first column, first row, last column, last row, and whether it is of outliers;
+    /// group; the corner of its box in the picture, or where the lists of its splats begin among those of the block's
+    /// row.
     std::vector<std::uint32_t> entries;
-    /// For each patch of outliers of each block where the splats begin of each 4x4 pixels, in rows, and where the last end;
-    /// then these, numbers among the block's row's.
+    /// For each patch of outliers of each block where the splats begin of each 4x4 pixels, in rows, and where the last
+    /// end; then these, numbers among the block's row's.
     std::vector<std::uint32_t> lists;
     /// Two texels of four: x, y, inverse depth, spacing; colour, its block among `blocks`, number of its patch there.
     std::vector<std::uint32_t> splats;

@@ -60,7 +60,8 @@ void hold_outliers(FrameletShape const& shape, std::vector<HeldOutlier>& outlier
         }
     }
     FRAMELET_CHECK(outliers.size() == shape.outliers.size());
-    std::sort(outliers.begin(), outliers.end(), [](HeldOutlier const& a, HeldOutlier const& b) { return a.place < b.place; });
+    std::sort(outliers.begin(), outliers.end(),
+              [](HeldOutlier const& a, HeldOutlier const& b) { return a.place < b.place; });
 }
 
 using ReducedSamples = std::array<PackedSample, framelet_samples / 4>;

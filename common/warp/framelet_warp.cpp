@@ -138,8 +138,8 @@ void FrameletWarp::add(MergedLayer const& merged, std::vector<WarpPatch>& patche
     add_layer(merged.view, merged.layer, merged.decorrelation, merged.signature, patch, patches);
 }
 
-void FrameletWarp::add_layer(std::uint32_t view, HeldLayer const& layer, DecorrelationCode decorrelation, std::uint64_t content,
-                             WarpPatch& patch, std::vector<WarpPatch>& patches) {
+void FrameletWarp::add_layer(std::uint32_t view, HeldLayer const& layer, DecorrelationCode decorrelation,
+                             std::uint64_t content, WarpPatch& patch, std::vector<WarpPatch>& patches) {
     if (layer.last_column < layer.first_column || !is_usable(layer.layer)) {
         return;
     }

@@ -82,8 +82,8 @@ WideInts contains(LayerSet const& set, WideInts samples) {
 }
 
 /// `layer`: the bits of its samples.
-void interpolate(std::int32_t layer, WarpPatch const& patch, SamplePositions const& positions, SamplesAround const& samples,
-                 Candidate& out) {
+void interpolate(std::int32_t layer, WarpPatch const& patch, SamplePositions const& positions,
+                 SamplesAround const& samples, Candidate& out) {
     auto const weight = [layer](WideInts sample, WideFloats product) {
         return (sample & layer_bits) == layer ? product : WideFloats{};
     };
@@ -138,8 +138,8 @@ void sample_column(WarpPatch const& patch, float x, float y, int count, Candidat
         leave_out(positions[last - 1], row < static_cast<float>(patch.box.height() - (count - 1) * wide_rows));
     }
     for (std::size_t i = 0; i < last; ++i) {
-        interpolate(static_cast<std::int32_t>(patch.layer << 24), patch, positions[i], look_up(patch, positions[i].corner),
-                    out[i]);
+        interpolate(static_cast<std::int32_t>(patch.layer << 24), patch, positions[i],
+                    look_up(patch, positions[i].corner), out[i]);
         out[i].inverse_depth = larger(depth, zero);
         depth += step * patch.inverse_depth_dy;
     }

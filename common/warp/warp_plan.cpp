@@ -220,8 +220,8 @@ void WarpPlan::plan(Square& square, bool outliers, FrameletWarp& warp) {
         }
     }
     std::span<MergedSquare::Child const> const children = square.merged.children();
-    for (std::uint64_t left = alone[0] | alone[1] | alone[2] | (outliers ? square.merged.children_with_outliers() : 0); left != 0;
-         left &= left - 1) {
+    for (std::uint64_t left = alone[0] | alone[1] | alone[2] | (outliers ? square.merged.children_with_outliers() : 0);
+         left != 0; left &= left - 1) {
         auto const place = static_cast<std::size_t>(std::countr_zero(left));
         unsigned parts = outliers && children[place].has_outliers ? 1u << FrameletShape::outlier : 0u;
         for (std::size_t k = 0; k < max_layers; ++k) {

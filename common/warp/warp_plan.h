@@ -39,8 +39,8 @@ public:
 
     /// Replaces the plan; `cache` and `slot` are always the same ones. Squares of which all stays as it was planned
     /// last are kept. Runs in parallel; allocates only where more is held than ever before.
-    void make(FrameletCache const& cache, std::size_t slot, bool outliers, Camera const& display, SceneTime display_time,
-              BodyMotions const& motions);
+    void make(FrameletCache const& cache, std::size_t slot, bool outliers, Camera const& display,
+              SceneTime display_time, BodyMotions const& motions);
 
     int columns() const { return columns_; }
     int rows() const { return rows_; }
@@ -60,8 +60,8 @@ public:
     }
     /// The samples of a square, among which those of all its patches are.
     MergedSquare& square_grid(std::uint32_t square) { return squares_[square].merged; }
-    /// Where a patch, which is not of outliers, has its samples there. Nothing where they are in its own grid alone: there
-    /// they are told from those of another layer, with which they are merged in the square's.
+    /// Where a patch, which is not of outliers, has its samples there. Nothing where they are in its own grid alone:
+    /// there they are told from those of another layer, with which they are merged in the square's.
     std::optional<GridPart> grid_part(WarpPatch const& patch) const;
     /// The blocks' numbers of patches, all together.
     std::size_t entry_count() const { return entries_.size(); }

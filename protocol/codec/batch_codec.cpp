@@ -185,9 +185,9 @@ EncodedBatch BatchCodec::encode(Batch const& batch, BatchMemory* memory, bool pr
     if (memory != nullptr && std::exchange(memory->moment, encoded.moment) == encoded.moment) {
         encoded.moment.reset();
     }
-    encoded.encoding = is_predicted      ? SampleEncoding::predicted
+    encoded.encoding = is_predicted ? SampleEncoding::predicted
                        : qp.empty() ? SampleEncoding::exact
-                                         : SampleEncoding::haar;
+                                    : SampleEncoding::haar;
     encoded.tiles.reserve(count);
     for (DisplayFramelet const& framelet : batch.framelets) {
         encoded.tiles.push_back(framelet.tile);

@@ -169,8 +169,8 @@ struct Failure {
     bool operator==(Failure const&) const = default;
 };
 
-using Message =
-    std::variant<Hello, CameraUpdate, ViewerSettings, ClockRequest, Ack, Evicted, Welcome, EncodedBatch, Status, Failure>;
+using Message = std::variant<Hello, CameraUpdate, ViewerSettings, ClockRequest, Ack, Evicted, Welcome, EncodedBatch,
+                             Status, Failure>;
 
 /// Largest message body that either side accepts, bytes: what one cycle's worst batch needs, with room.
 inline constexpr std::size_t max_message_bytes = 64u << 20;

@@ -1,5 +1,5 @@
-// Positions in a picture at equal distances, of which only some are looked at each time. In: spacing, how often they were
-// looked at. Out: positions that were not looked at lately.
+// Positions in a picture at equal distances, of which only some are looked at each time. In: spacing, how often they
+// were looked at. Out: positions that were not looked at lately.
 #pragma once
 
 #include <cmath>

@@ -40,8 +40,8 @@ void look(PreparedScene const& scene, ViewRays const& view, Place&& place, LaneF
 
 } // namespace
 
-std::uint64_t render_visibility(RenderScene const& scene, ViewRays const& view, Viewport viewport,
-                                RayGrid const& grid, std::vector<float>& inverse_depth) {
+std::uint64_t render_visibility(RenderScene const& scene, ViewRays const& view, Viewport viewport, RayGrid const& grid,
+                                std::vector<float>& inverse_depth) {
     int const columns = grid.columns(viewport);
     int const rows = grid.rows(viewport);
     inverse_depth.resize(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));

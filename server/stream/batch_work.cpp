@@ -49,8 +49,8 @@ bool BatchWork::learn(PosedScene const& scene, ViewerKnowledge& viewer) {
     if (!order.skips) {
         std::ranges::fill(needed_, std::uint8_t{1});
     }
-    choose_qps(ImagePlane(order.state.view.viewport), order.plan.tiles, needed_, order.qp, order.still,
-                     viewer.lossy, batch_.qp);
+    choose_qps(ImagePlane(order.state.view.viewport), order.plan.tiles, needed_, order.qp, order.still, viewer.lossy,
+               batch_.qp);
     fill_batch(viewer);
     if (batch_.framelets.empty()) {
         return false;

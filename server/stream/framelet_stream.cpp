@@ -208,8 +208,7 @@ Step FrameletStream::plan_batch(Turn const& turn, ViewState const& present, Pose
 void FrameletStream::plan_exactly(ViewState const& present, PosedScene const& scene) {
     constexpr std::size_t most_framelets = 1024;
     BatchWork& work = free_work();
-    work.order = {present, present, moving_camera(scene), 0, false, {}, lossless_qp, takes_shapes(), true,
-                  true,    true};
+    work.order = {present, present, moving_camera(scene), 0, false, {}, lossless_qp, takes_shapes(), true, true, true};
     viewer_.lossy.list(std::min(bounded_batch(link_.state()), most_framelets), work.order.plan.tiles);
     work.figures = {};
     work.figures.framelets = work.order.plan.tiles.size();

@@ -47,8 +47,7 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
     std::vector<DisplayFramelet> said = framelets, arrived = framelets;
     for (int round = 0; round < 2; ++round) {
         std::vector<std::uint8_t> arrived_qp(qp.size());
-        PlaneCodec::decode(codec.encode(framelets, qp, writer, held, said), arrived, arrived_qp, reader,
-                           held);
+        PlaneCodec::decode(codec.encode(framelets, qp, writer, held, said), arrived, arrived_qp, reader, held);
         FRAMELET_CHECK(arrived_qp == qp);
         FRAMELET_CHECK(held == nullptr || arrived == said);
         for (std::size_t i = 0; i < framelets.size(); ++i) {

@@ -30,8 +30,8 @@ void read(ShapeModel& model, std::span<std::uint8_t const> bytes, std::span<Fram
 /// Whether a shape is what a reader makes of another one: its planes are quantised, the rest but for depths of
 /// samples and velocities is the same, and these are within half a unit.
 bool is_quantised(FrameletShape const& got, FrameletShape const& sent, int side_bits) {
-    if (got.layer_count != sent.layer_count || got.decorrelation != sent.decorrelation || got.layer_of != sent.layer_of ||
-        got.outliers.size() != sent.outliers.size()) {
+    if (got.layer_count != sent.layer_count || got.decorrelation != sent.decorrelation ||
+        got.layer_of != sent.layer_of || got.outliers.size() != sent.outliers.size()) {
         return false;
     }
     float deepest = 0, fastest = 0;
@@ -64,12 +64,11 @@ bool is_quantised(FrameletShape const& got, FrameletShape const& sent, int side_
         }
     }
     double const half_unit = unit_of(unit_above(static_cast<double>(deepest) / largest_inverse_depth_code)) / 2;
-    return std::equal(got.outliers.begin(), got.outliers.end(), sent.outliers.begin(),
-                      [&](Outlier const& a, Outlier const& b) {
-                          double const off =
-                              std::abs(static_cast<double>(a.inverse_depth) - static_cast<double>(b.inverse_depth));
-                          return a.body == b.body && off <= half_unit && is_near(a.velocity, b.velocity);
-                      });
+    return std::equal(
+        got.outliers.begin(), got.outliers.end(), sent.outliers.begin(), [&](Outlier const& a, Outlier const& b) {
+            double const off = std::abs(static_cast<double>(a.inverse_depth) - static_cast<double>(b.inverse_depth));
+            return a.body == b.body && off <= half_unit && is_near(a.velocity, b.velocity);
+        });
 }
 
 } // namespace

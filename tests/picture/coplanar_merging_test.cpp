@@ -233,8 +233,9 @@ TEST(CoplanarMerging, DifferencesAreBounds) {
                     EXPECT_LE(largest_difference(piece_of(layer), quad.plane), quad.difference + 1e-12);
                 }
             }
-            quads += std::ranges::count_if(
-                merging.coplanar(), [&](CoplanarLayers const& found) { return (quad.parts[0] & ~found.parts[0]) == 0; });
+            quads += std::ranges::count_if(merging.coplanar(), [&](CoplanarLayers const& found) {
+                return (quad.parts[0] & ~found.parts[0]) == 0;
+            });
         }
         quads -= static_cast<std::ptrdiff_t>(merging.quads().size()); // each is in one
         for (TestLayer const& layer : layers) {

@@ -118,7 +118,8 @@ TEST(ReprojectorRest, IncrementalEqualsWholeAndThreadsMakeNoDifference) {
         double const time = static_cast<double>(number / 4) / body_keys_per_second;
         Batch batch = scene.batch(plane, number, camera, time, tiles);
         for (FrameletShape& shape : batch.shapes) {
-            shape.decorrelation = decorrelation_code(number % 3 == 0 ? 0.0f : std::exp2(static_cast<float>(random() % 8)));
+            shape.decorrelation =
+                decorrelation_code(number % 3 == 0 ? 0.0f : std::exp2(static_cast<float>(random() % 8)));
         }
         pool.insert(batch, scene.motions);
         if (number % 5 == 0) {

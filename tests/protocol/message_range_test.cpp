@@ -252,7 +252,7 @@ TEST(MessageRange, Encodings) {
 
 TEST(MessageRange, WhatIsEvictedAddsUp) {
     auto const evicted = [](std::vector<std::uint64_t> const& batches, std::vector<std::uint16_t> const& counts,
-                           std::vector<std::uint32_t> const& tiles) {
+                            std::vector<std::uint32_t> const& tiles) {
         Builder builder;
         return finish(builder, wire::CreateEvictedDirect(builder, &batches, &counts, &tiles));
     };

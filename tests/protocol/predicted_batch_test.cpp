@@ -69,8 +69,7 @@ TEST(PredictedBatch, BothSidesHoldTheSameAfterAnySequence) {
             viewport = random() % 16 == 0 ? viewports[random() % viewports.size()] : viewport;
             Batch batch = make_batch(random, viewport, random() % 60, 0.3 * i, static_cast<int>(random() % 30));
             for (std::size_t f = 0; f < batch.framelets.size() && i % 5 != 0; ++f) {
-                batch.qp.push_back(
-                    static_cast<std::uint8_t>(random() % 4 == 0 ? 0 : random() % (coarsest_qp + 1)));
+                batch.qp.push_back(static_cast<std::uint8_t>(random() % 4 == 0 ? 0 : random() % (coarsest_qp + 1)));
             }
             auto const arrived = std::get<EncodedBatch>(decode_message(encode_message(encoder.encode(batch, &sent))));
             Batch const decoded = decoder.decode(arrived, &received);

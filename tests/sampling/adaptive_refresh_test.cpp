@@ -445,8 +445,8 @@ TEST(AdaptiveRefresh, EveryRegionIsRefreshed) {
                     oldest = std::max(oldest, synthetic.input.now - refreshed);
                 }
             });
-            std::printf("periodic refreshes, %.0f pictures/s, batch %zu: oldest %.2f s, period %.2f\n", pictures_a_second,
-                        batch, oldest, period);
+            std::printf("periodic refreshes, %.0f pictures/s, batch %zu: oldest %.2f s, period %.2f\n",
+                        pictures_a_second, batch, oldest, period);
             EXPECT_LT(oldest, 2 * period);
         }
     }

@@ -47,7 +47,8 @@ TEST(Decorrelation, WhatTurnsInTheLightDecorrelatesUnlessItRests) {
 TEST(Decorrelation, IsTheShareOfWhatChanges) {
     std::array<Piece, 2> pieces{detailed_piece(), detailed_piece()};
     pieces[0].reflects = true;
-    EXPECT_EQ(expect_decorrelation(pieces, false, false), decorrelation_code(0.5f * decorrelation_rate(code_of(pieces[0], false, false))));
+    EXPECT_EQ(expect_decorrelation(pieces, false, false),
+              decorrelation_code(0.5f * decorrelation_rate(code_of(pieces[0], false, false))));
     EXPECT_EQ(pieces[0].decorrelation, pieces[1].decorrelation);
 }
 

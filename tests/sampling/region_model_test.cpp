@@ -186,7 +186,7 @@ TEST(RegionModel, LearnsNothingUnsound) {
         RegionModel const before = region;
         learn(region, seen);
         ASSERT_TRUE(is_sound(region)) << "observation " << n << ", seconds " << seen.seconds << ", motion before "
-                                     << before.motion << ", after " << region.motion;
+                                      << before.motion << ", after " << region.motion;
         ASSERT_TRUE(std::isfinite(unresolved_error(region, seen.level)));
         if (n % 16 == 0) {
             region = random_region(random);

@@ -206,8 +206,8 @@ CoplanarMerging::Group CoplanarMerging::alone(std::size_t seed) const {
     return {Bits::only(seed), sums_over(own), own.plane(), own.extent(), difference_[seed], cost, cost};
 }
 
-/// What can be merged with one of the `open`: all that may be of its plane at once, else what is near, and near to that,
-/// and then all once more. (Around a single layer too little of what is far is of its plane to begin with all.)
+/// What can be merged with one of the `open`: all that may be of its plane at once, else what is near, and near to
+/// that, and then all once more. (Around a single layer too little of what is far is of its plane to begin with all.)
 CoplanarMerging::Group CoplanarMerging::grow(std::size_t seed, Bits const& open) const {
     Group group = alone(seed);
     Bits rest = open.without(group.members);

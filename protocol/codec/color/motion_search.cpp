@@ -110,7 +110,7 @@ public:
     template <std::size_t apart>
     void consider(int x, int y) {
         MotionVector const vector{static_cast<std::int8_t>(std::clamp(x, -farthest, farthest)),
-                                   static_cast<std::int8_t>(std::clamp(y, -farthest, farthest))};
+                                  static_cast<std::int8_t>(std::clamp(y, -farthest, farthest))};
         if (int const there = cost<apart>(vector); there < least_) {
             least_ = there;
             best_ = vector;
@@ -158,8 +158,8 @@ void search_in_steps(Search<Reading>& search, std::span<MotionVector const> foun
 }
 
 template <typename Reading>
-MotionVector search_coarsely(ReferencePicture const& reference, Rows const& rows, ReferencePicture::Square const& square,
-                              std::span<MotionVector const> found) {
+MotionVector search_coarsely(ReferencePicture const& reference, Rows const& rows,
+                             ReferencePicture::Square const& square, std::span<MotionVector const> found) {
     Search<Reading> search(reference, rows, square);
     search_in_steps<Reading, 2>(search, found, SearchPicture::coarse);
     return search.best();
@@ -167,7 +167,7 @@ MotionVector search_coarsely(ReferencePicture const& reference, Rows const& rows
 
 template <typename Reading>
 MotionVector search_finely(ReferencePicture const& reference, Rows const& rows, ReferencePicture::Square const& square,
-                            std::span<MotionVector const> found) {
+                           std::span<MotionVector const> found) {
     Search<Reading> search(reference, rows, square);
     search_in_steps<Reading, 4>(search, found, near_step);
     search.template compare_rows<2>();
@@ -178,7 +178,7 @@ MotionVector search_finely(ReferencePicture const& reference, Rows const& rows, 
 }
 
 MotionVector search(ReferencePicture const& reference, Rows const& rows, ReferencePicture::Square const& square,
-                     std::span<MotionVector const> found) {
+                    std::span<MotionVector const> found) {
     switch (square.pitch()) {
     case -1:
         return search_finely<Reading<1, doubled_row_at>>(reference, rows, square, found);

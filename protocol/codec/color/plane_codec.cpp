@@ -79,7 +79,8 @@ DisplayFramelet const* samples_of(Prediction const& prediction) {
 
 std::span<std::uint8_t const> PlaneCodec::encode(std::span<DisplayFramelet const> framelets,
                                                  std::span<std::uint8_t const> qp, PlaneModel& model,
-                                                 ReferencePicture const* reference, std::span<DisplayFramelet> decoded) {
+                                                 ReferencePicture const* reference,
+                                                 std::span<DisplayFramelet> decoded) {
     FRAMELET_CHECK(framelets.size() == qp.size());
     FRAMELET_CHECK(reference == nullptr || decoded.size() == qp.size());
     writer_.begin();

@@ -19,8 +19,7 @@ class PlaneModel {
 public:
     /// QP and prediction of the next framelet: codes both ways, as everything here.
     template <class Coder>
-    void code_head(Coder& coder, bool may_be_predicted, std::uint8_t& qp, PredictionKind& kind,
-                   MotionVector& vector);
+    void code_head(Coder& coder, bool may_be_predicted, std::uint8_t& qp, PredictionKind& kind, MotionVector& vector);
 
     LevelModel levels;
     ExactModel exact;
@@ -41,9 +40,9 @@ public:
     /// `qp`: one for each framelet, 0 (exact) .. coarsest_qp. `reference`: what the viewer holds, from which they
     /// are predicted, and `decoded` as many framelets that get the samples which the viewer will see; null: each is
     /// coded alone. The bytes are valid until the next call.
-    std::span<std::uint8_t const> encode(std::span<DisplayFramelet const> framelets,
-                                         std::span<std::uint8_t const> qp, PlaneModel& model,
-                                         ReferencePicture const* reference = nullptr, std::span<DisplayFramelet> decoded = {});
+    std::span<std::uint8_t const> encode(std::span<DisplayFramelet const> framelets, std::span<std::uint8_t const> qp,
+                                         PlaneModel& model, ReferencePicture const* reference = nullptr,
+                                         std::span<DisplayFramelet> decoded = {});
 
     /// Fills samples and QPs of so many framelets, whose tiles are set and within the picture `reference`. That is
     /// null where they are coded alone. Throws ProtocolError.

@@ -19,8 +19,8 @@ struct Way {
 
 } // namespace
 
-HaarLevels predict(ReferencePicture const& reference, DisplayFramelet const& framelet, std::uint8_t qp, MotionSearch& search,
-                   Prediction& prediction) {
+HaarLevels predict(ReferencePicture const& reference, DisplayFramelet const& framelet, std::uint8_t qp,
+                   MotionSearch& search, Prediction& prediction) {
     Way colocated, alone, moved;
     colocated.prediction.kind = PredictionKind::colocated;
     moved.prediction.kind = PredictionKind::displaced;

@@ -6,8 +6,8 @@
 #include <cstdint>
 
 #include "protocol/codec/color/haar_planes.h"
-#include "protocol/codec/color/reference_picture.h"
 #include "protocol/codec/color/motion_search.h"
+#include "protocol/codec/color/reference_picture.h"
 
 namespace framelet {
 
@@ -21,7 +21,7 @@ struct Prediction {
 };
 
 /// Levels of what is left of the framelet at this QP, 1..coarsest_qp.
-HaarLevels predict(ReferencePicture const& reference, DisplayFramelet const& framelet, std::uint8_t qp, MotionSearch& search,
-                   Prediction& prediction);
+HaarLevels predict(ReferencePicture const& reference, DisplayFramelet const& framelet, std::uint8_t qp,
+                   MotionSearch& search, Prediction& prediction);
 
 } // namespace framelet

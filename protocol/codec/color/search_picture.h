@@ -1,6 +1,6 @@
 // Green of what a viewer holds, as its writer searches it: all of it points of one spacing, so that any place is read
-// alike, and again with every fourth point of every fourth row, for coarse framelets. In: framelets as the reference picture
-// takes them. Out: rows of points.
+// alike, and again with every fourth point of every fourth row, for coarse framelets. In: framelets as the reference
+// picture takes them. Out: rows of points.
 #pragma once
 
 #include <array>

@@ -65,8 +65,8 @@ Demand demand_of(RegionField const& field, Budget const& budget, std::span<float
         steady += choice.recurring ? samples / static_cast<double>(choice.period) : 0;
         float const error = due[index];
         if (error > choice.due_error) {
-            bool const is_true =
-                region.taken.level < 0 && region.level >= 0 && unresolved_error(region.model, region.level) > 0.5f * error;
+            bool const is_true = region.taken.level < 0 && region.level >= 0 &&
+                                 unresolved_error(region.model, region.level) > 0.5f * error;
             (is_true ? coarse : stale) += samples;
         }
     }

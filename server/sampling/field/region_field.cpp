@@ -51,7 +51,8 @@ void find_arrivals(RegionField& field, ViewRays const& from, ViewRays const& to)
         }
         for (int row = cell(low.y, rows); row <= cell(high.y, rows); ++row) {
             for (int column = cell(low.x, columns); column <= cell(high.x, columns); ++column) {
-                Region& region = field[morton_index(static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row))];
+                Region& region =
+                    field[morton_index(static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row))];
                 region.arriving = std::max(region.arriving, pixels);
             }
         }

@@ -1,5 +1,5 @@
-// What the server knows of every region of one viewer's picture, and what the viewer holds there: a field over the image
-// plane in Morton order. In: time and camera as they go on, and what was rendered. Out: the error that is shown.
+// What the server knows of every region of one viewer's picture, and what the viewer holds there: a field over the
+// image plane in Morton order. In: time and camera as they go on, and what was rendered. Out: the error that is shown.
 #pragma once
 
 #include <limits>
@@ -96,8 +96,8 @@ float shown_error(Region const& region, float more);
 inline constexpr float bare_error = 0.25f;
 
 /// Time goes on by `seconds` while the camera moves from one view to the other. `moving`: the scene's own things may
-/// move as well. A region drifts as it was found to, more where the camera has become faster, less where slower; as much
-/// as what it shows is carried away, or as what comes there instead.
+/// move as well. A region drifts as it was found to, more where the camera has become faster, less where slower; as
+/// much as what it shows is carried away, or as what comes there instead.
 void drift_on(RegionField& field, ViewRays const& from, ViewRays const& to, bool moving, float seconds);
 /// What a patch shows with so many rays a sample: means of four are as good as samples of the next level.
 int shown_level(RegionField const& field, Patch const& patch, int rays_per_sample);

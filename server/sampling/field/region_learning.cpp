@@ -200,7 +200,8 @@ bool learn_patch(RegionField& field, Patch const& patch, std::span<RegionFinding
             region.left = unresolved_error(found.seen);
         }
         // What is uncovered there may look like what was rendered there before. It fills a region in so long.
-        region.model.motion = std::max(region.model.motion, found.meeting_speed / static_cast<float>(field.region_side()));
+        region.model.motion =
+            std::max(region.model.motion, found.meeting_speed / static_cast<float>(field.region_side()));
         if (found.seen.has_change) {
             region.settled = !is_change(found.seen);
         }

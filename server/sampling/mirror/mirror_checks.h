@@ -1,18 +1,19 @@
 // What a mirror shows compared with what is really to be seen of the moment. In: a mirror, and inverse depths or luma
-// that were rendered of the moment. Out: positions around which the viewer shows something else; where to look for such.
+// that were rendered of the moment. Out: positions around which the viewer shows something else; where to look for
+// such.
 #pragma once
 
 #include <span>
 #include <vector>
 
-#include "server/render/ray_grid.h"
 #include "server/render/probe.h"
+#include "server/render/ray_grid.h"
 #include "server/sampling/mirror/mirror.h"
 
 namespace framelet {
 
-/// Inverse depths of the positions of a grid, 1 / metres, row by row, < 0 where that is not known: of those where neither
-/// the cell of the position nor those beside it show anything about as near, the cells around are wrong.
+/// Inverse depths of the positions of a grid, 1 / metres, row by row, < 0 where that is not known: of those where
+/// neither the cell of the position nor those beside it show anything about as near, the cells around are wrong.
 std::vector<CellFault> find_wrong(Mirror const& mirror, RayGrid const& grid, std::span<float const> inverse_depth);
 
 /// Replaces `probes` by one for each position of a grid that shows, well within a surface, what is of another time:

@@ -1,5 +1,5 @@
-// The best way to sample a region for a given price of samples. In: what is known of the region, the price, how late what
-// is rendered shows. Out: how finely, how often, and what error that leaves.
+// The best way to sample a region for a given price of samples. In: what is known of the region, the price, how late
+// what is rendered shows. Out: how finely, how often, and what error that leaves.
 //
 // A region that is refreshed at level l every P seconds shows on average the error
 //     F = unresolved(l) + mean over ages a in [latency, latency + P] of drift_error(l, motion a),

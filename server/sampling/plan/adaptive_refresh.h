@@ -39,8 +39,8 @@ public:
     void note_sent(RefreshPlan const& plan, std::uint64_t batch, std::span<DisplayFramelet const> framelets,
                    std::span<Framelet const> rendered, std::span<std::uint8_t const> sent,
                    std::span<FrameletShape> shapes);
-    /// What is really to be seen of the moment of a plan that asks for it: inverse depths at the positions of its grid, 1
-    /// / metres, row by row; < 0: not known.
+    /// What is really to be seen of the moment of a plan that asks for it: inverse depths at the positions of its grid,
+    /// 1 / metres, row by row; < 0: not known.
     void note_visibility(RefreshPlan const& plan, std::span<float const> inverse_depth);
     /// The viewer no longer holds these.
     void forget(std::span<SentTile const> framelets) { moments_.forget(framelets); }

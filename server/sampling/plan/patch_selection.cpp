@@ -97,8 +97,8 @@ double refresh_period(RegionField const& field, Budget const& budget) {
     return std::max(least_refresh_period, pixels / (budget.limits.periodic_share * budget.samples_per_second));
 }
 
-void select_periodic_refreshes(RegionField const& field, double now, Budget const& budget, std::vector<std::uint32_t>& scratch,
-                        std::vector<Patch>& patches) {
+void select_periodic_refreshes(RegionField const& field, double now, Budget const& budget,
+                               std::vector<std::uint32_t>& scratch, std::vector<Patch>& patches) {
     double const latest = now - refresh_period(field, budget);
     scratch.clear();
     for (std::uint32_t const index : field.visible()) {

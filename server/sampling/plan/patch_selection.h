@@ -28,13 +28,13 @@ void select_patches(double budget, double most_samples, std::vector<RatedPatch>&
 /// Appends a patch unless it is among the first `count` already: once is enough. Returns whether it was appended.
 bool append_new(Patch const& patch, std::size_t count, std::vector<Patch>& patches);
 
-/// How long a region may go without a look at all of its pixels, seconds: at least two, and so long that looking takes a
-/// twentieth of the samples. It bounds how long anything small can stay unseen.
+/// How long a region may go without a look at all of its pixels, seconds: at least two, and so long that looking takes
+/// a twentieth of the samples. It bounds how long anything small can stay unseen.
 double refresh_period(RegionField const& field, Budget const& budget);
 
-/// Appends a patch at one sample a pixel for regions that have not been looked at for so long, within their twentieth of
-/// a cycle's samples, those that have waited longest first. `scratch` is overwritten.
-void select_periodic_refreshes(RegionField const& field, double now, Budget const& budget, std::vector<std::uint32_t>& scratch,
-                        std::vector<Patch>& patches);
+/// Appends a patch at one sample a pixel for regions that have not been looked at for so long, within their twentieth
+/// of a cycle's samples, those that have waited longest first. `scratch` is overwritten.
+void select_periodic_refreshes(RegionField const& field, double now, Budget const& budget,
+                               std::vector<std::uint32_t>& scratch, std::vector<Patch>& patches);
 
 } // namespace framelet

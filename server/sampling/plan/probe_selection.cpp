@@ -12,8 +12,8 @@ constexpr double most_unseen = 0.5;
 
 } // namespace
 
-void select_probed(RegionField const& field, Choices const& choices, double now, std::size_t most, ProbeScratch& scratch,
-                   std::vector<std::uint32_t>& probed) {
+void select_probed(RegionField const& field, Choices const& choices, double now, std::size_t most,
+                   ProbeScratch& scratch, std::vector<std::uint32_t>& probed) {
     scratch.active.assign(field.size(), 0);
     for (std::uint32_t const index : field.visible()) {
         scratch.active[index] = field[index].model.motion > 0 ? 1 : 0;

@@ -10,11 +10,12 @@ namespace framelet {
 
 struct ProbeScratch {
     std::vector<std::uint8_t> active; ///< of the regions: whether it moves
-    std::vector<double> suspicions; ///< of the regions: how long nothing was seen, seconds, times more beside what moves
+    std::vector<double>
+        suspicions; ///< of the regions: how long nothing was seen, seconds, times more beside what moves
 };
 
 /// Replaces `probed` by at most so many regions, the neighbours of what moves first.
-void select_probed(RegionField const& field, Choices const& choices, double now, std::size_t most, ProbeScratch& scratch,
-                   std::vector<std::uint32_t>& probed);
+void select_probed(RegionField const& field, Choices const& choices, double now, std::size_t most,
+                   ProbeScratch& scratch, std::vector<std::uint32_t>& probed);
 
 } // namespace framelet

@@ -20,7 +20,8 @@ using UnresolvedRegions = std::vector<std::pair<float, std::uint32_t>>;
 /// All of these append to `patches` until their samples are used.
 /// Of a moment that is not to be seen for long: a level finer where that shows most for its samples, but not what is
 /// among `patches` already.
-void select_refinement(RegionField const& field, double samples, UnresolvedRegions& scratch, std::vector<Patch>& patches);
+void select_refinement(RegionField const& field, double samples, UnresolvedRegions& scratch,
+                       std::vector<Patch>& patches);
 /// What stands still is finished in the end, whatever the model says of it.
 void select_completion(RegionField const& field, double still_since, bool scene_moves, double samples,
                        std::vector<Patch>& patches);

@@ -56,8 +56,8 @@ void LossyTiles::list(std::size_t most, std::vector<Tile>& tiles) const {
     }
 }
 
-void choose_qps(ImagePlane const& plane, std::span<Tile const> tiles, std::span<std::uint8_t> needed,
-                      std::uint8_t qp, bool finish, LossyTiles& lossy, std::vector<std::uint8_t>& qps) {
+void choose_qps(ImagePlane const& plane, std::span<Tile const> tiles, std::span<std::uint8_t> needed, std::uint8_t qp,
+                bool finish, LossyTiles& lossy, std::vector<std::uint8_t>& qps) {
     FRAMELET_CHECK(tiles.size() == needed.size());
     qps.clear();
     for (std::size_t i = 0; i < tiles.size(); ++i) {

@@ -41,7 +41,7 @@ private:
 /// batch. `finish`: the picture stands still, and its finest tiles are the last that come: they are sent exactly.
 /// Replaces `qps` by one for each framelet that is sent, in order, or by none where all are exact; keeps account
 /// in `lossy`.
-void choose_qps(ImagePlane const& plane, std::span<Tile const> tiles, std::span<std::uint8_t> needed,
-                      std::uint8_t qp, bool finish, LossyTiles& lossy, std::vector<std::uint8_t>& qps);
+void choose_qps(ImagePlane const& plane, std::span<Tile const> tiles, std::span<std::uint8_t> needed, std::uint8_t qp,
+                bool finish, LossyTiles& lossy, std::vector<std::uint8_t>& qps);
 
 } // namespace framelet

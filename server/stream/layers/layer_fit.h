@@ -39,8 +39,8 @@ LayerTolerance layer_tolerance(float median_depth, ViewRays const& rays, float s
 /// Median of the finite depths in the framelets, from a part of their samples; 1 where there are none.
 float median_depth(std::span<Framelet const> framelets);
 
-/// Up to `max_layers` layers, the samples that none of them takes being outliers. The inverse depth of every sample of a
-/// layer is within its `error` of the layer, and that within the tolerance (times `wide_tolerances` and
+/// Up to `max_layers` layers, the samples that none of them takes being outliers. The inverse depth of every sample of
+/// a layer is within its `error` of the layer, and that within the tolerance (times `wide_tolerances` and
 /// `isolated_tolerances`, where these apply), or what single precision resolves. Finite for any depths > 0. The sky is
 /// at inverse depth 0. `shape` is overwritten; its memory is used again.
 void fit_layers(Framelet const& framelet, ImagePlane const& plane, LayerTolerance const& tolerance,

@@ -20,7 +20,8 @@ DecorrelationCode expect_decorrelation(std::span<Piece> pieces, bool camera_stan
         detail += area * piece.detail;
     }
     // Per pixel of spacing, error grows by about so much of the detail.
-    DecorrelationCode const code = decorrelation_code(detail > 0 ? expected_change * changing / (detail * error_growth) : 0);
+    DecorrelationCode const code =
+        decorrelation_code(detail > 0 ? expected_change * changing / (detail * error_growth) : 0);
     for (Piece& piece : pieces) {
         piece.decorrelation = decorrelation_rate(code);
     }

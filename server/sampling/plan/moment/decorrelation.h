@@ -10,8 +10,8 @@
 
 namespace framelet {
 
-/// Sets the pieces' `decorrelation` and returns its code. `camera_stands`: it does not move; `has_outline`: the framelet shows
-/// more than one surface.
+/// Sets the pieces' `decorrelation` and returns its code. `camera_stands`: it does not move; `has_outline`: the
+/// framelet shows more than one surface.
 DecorrelationCode expect_decorrelation(std::span<Piece> pieces, bool camera_stands, bool has_outline);
 
 } // namespace framelet

@@ -83,8 +83,8 @@ void MomentRefresh::note_sent(RenderedMoment const& moment, std::uint64_t batch,
             bool const rests = is_at_rest(*shape, moment.scene_time, *moment.motions);
             std::ranges::for_each(pieces, [&](Piece& piece) { piece.rests = rests; });
             bool const has_outline = shape->layer_count > 1 || !shape->outliers.empty();
-            shape->decorrelation =
-                expects_change ? expect_decorrelation(pieces, mirror_.camera_stands(), has_outline) : DecorrelationCode{0};
+            shape->decorrelation = expects_change ? expect_decorrelation(pieces, mirror_.camera_stands(), has_outline)
+                                                  : DecorrelationCode{0};
             ++shape;
         }
     }

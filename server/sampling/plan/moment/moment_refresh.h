@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "server/render/ray_grid.h"
 #include "server/render/probe.h"
+#include "server/render/ray_grid.h"
 #include "server/sampling/field/meeting_bodies.h"
 #include "server/sampling/mirror/mirror.h"
 #include "server/sampling/plan/moment/moment_plan.h"
@@ -43,8 +43,8 @@ public:
     /// Replaces `rated` by where what the viewer holds shows the moment worst: see `MomentPlan`.
     void plan(RegionField const& field, MomentBudget const& budget, std::vector<RatedPatch>& rated);
 
-    /// What checks of a moment have shown: inverse depths at the positions of their grid, 1 / metres, row by row (< 0: not
-    /// known), and luma of the probes, in order. Not taken in where another moment is looked at by now.
+    /// What checks of a moment have shown: inverse depths at the positions of their grid, 1 / metres, row by row (< 0:
+    /// not known), and luma of the probes, in order. Not taken in where another moment is looked at by now.
     void note_visibility(RenderedMoment const& moment, RayGrid const& grid, std::span<float const> inverse_depth);
     void note_looks(RenderedMoment const& moment, std::span<Probe const> probes, std::span<float const> luma,
                     int probe_spacing);
