@@ -1,5 +1,5 @@
 // Random well-formed shapes for property tests. In: a seeded generator. Out: shapes with every number of layers,
-// outliers samples or none, magnitudes over many decades.
+// outliers or none, magnitudes over many decades.
 #pragma once
 
 #include <cmath>
