@@ -1,4 +1,4 @@
-// The five vehicle animations of 004 section 7.1.1.1: one world, one car (or two), different cameras.
+// The five vehicle animations of [Stephens 2011] section 7.1.1.1: one world, one car (or two), different cameras.
 #pragma once
 
 #include "scenes/gltf/gltf_document.h"

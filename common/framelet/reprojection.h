@@ -1,7 +1,7 @@
-// From the pixels of one view to the pixels of another (002, 003; layers: a homography each). A point of the source
-// view is its pixel (x, y) and its inverse view depth w. Its homogeneous display pixel is affine in (x, y, w); on a
-// plane w is affine in (x, y), so the whole plane moves by one 3x3 matrix, and its inverse depth is affine in the
-// display too. In: cameras, motion of what is shown. Out: matrices. Perspective cameras only.
+// From the pixels of one view to the pixels of another ([Nehab 2006], [Yang 2011]; layers: a homography each). A point
+// of the source view is its pixel (x, y) and its inverse view depth w. Its homogeneous display pixel is affine in (x,
+// y, w); on a plane w is affine in (x, y), so the whole plane moves by one 3x3 matrix, and its inverse depth is affine
+// in the display too. In: cameras, motion of what is shown. Out: matrices. Perspective cameras only.
 #pragma once
 
 #include <optional>

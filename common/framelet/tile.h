@@ -1,4 +1,5 @@
-// Tiles: nodes of a quadtree over a square image plane (004 section 4.1), named by a Morton code with a leading 1.
+// Tiles: nodes of a quadtree over a square image plane ([Stephens 2011] section 4.1), named by a Morton code with a
+// leading 1.
 #pragma once
 
 #include <bit>

@@ -1,5 +1,5 @@
 // Squares of cells, each with the mean of what is farthest in it, and how coarser cells come of finer ones (pull-push,
-// 000 section 3.3): what a moving edge uncovers belongs to the background.
+// [Scherzer 2012] section 3.3): what a moving edge uncovers belongs to the background.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,6 @@
-// From held framelets to pixels (004 section 4.2): tent filter where samples are coarser than pixels, box filter where
-// they are finer, both in linear light; the newest batch wins. In: cache and what changed. Out: those pixels.
+// From held framelets to pixels ([Stephens 2011] section 4.2): tent filter where samples are coarser than pixels, box
+// filter where they are finer, both in linear light; the newest batch wins. In: cache and what changed. Out: those
+// pixels.
 #pragma once
 
 #include <span>

@@ -1,4 +1,4 @@
-// The picture from any camera at any scene time, from what is held (002, 003; one homography a layer,
+// The picture from any camera at any scene time, from what is held ([Nehab 2006], [Yang 2011]; one homography a layer,
 // docs/ALGORITHM.md). In: cache, what changed in it, camera, time, motions of bodies. Out: the picture, and which parts
 // of it changed.
 #pragma once

@@ -1,5 +1,5 @@
 // The picture of a scene as it was a little while ago, between the content before that moment and the content after it
-// (003: bidirectional reprojection), where `Reprojector` alone can only go on from what is newest. In: what
+// ([Yang 2011]: bidirectional reprojection), where `Reprojector` alone can only go on from what is newest. In: what
 // `Reprojector` takes, and every batch. Out: the picture, and which parts of it changed.
 #pragma once
 

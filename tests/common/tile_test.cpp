@@ -6,7 +6,7 @@ namespace framelet {
 namespace {
 
 TEST(Tile, VectorsOfTheSource) {
-    // 004 section 4.1: (x=3, y=2) on a 4x4 grid is index 13, tile 29.
+    // [Stephens 2011] section 4.1: (x=3, y=2) on a 4x4 grid is index 13, tile 29.
     EXPECT_EQ(morton_index(3, 2), 13u);
     EXPECT_EQ(make_tile(2, 3, 2).code, 29u);
     // Tile 4, two levels down, is [64, 80).

@@ -247,7 +247,7 @@ void calibrate_density_response(ImagePlane const& plane, std::vector<Framelet> c
         cost(rounds, count, [&] { make_density_tiling(plane, density.space, density.depth, framelet_samples); });
 }
 
-/// Reconstruction of 004: a picture of one sample a pixel, and the same colours a level finer.
+/// Reconstruction of [Stephens 2011]: a picture of one sample a pixel, and the same colours a level finer.
 void calibrate_blending(BenchScene const& scene, ImagePlane const& plane, std::vector<Framelet> const& rendered,
                         int rounds, CostTable& costs) {
     std::vector<DisplayFramelet> coarse, fine;

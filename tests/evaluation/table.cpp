@@ -41,7 +41,7 @@ json run_scene(PublishedTable const& table, BenchScene& scene, StudyOptions opti
         double const machine = machine_factor(scene, options.run, options.costs);
         auto const record = [&](std::string const& method, int batch) {
             options.run.batch_framelets = static_cast<std::size_t>(batch);
-            // What all are divided by is what 004 divided by.
+            // What all are divided by is what [Stephens 2011] divided by.
             options.run.rivals = method == "framed" ? plain_rivals : rivals;
             return record_method(scene, reference, method, options.run, machine, options.costs);
         };

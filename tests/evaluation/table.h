@@ -1,5 +1,5 @@
-// The 16 runs and five scenes of Table 7.2 of the dissertation (004), ours beside the published. In: which runs and
-// scenes. Out: suitable percentile, median ratio and cost of every method in every run.
+// The 16 runs and five scenes of Table 7.2 of the dissertation ([Stephens 2011]), ours beside the published. In: which
+// runs and scenes. Out: suitable percentile, median ratio and cost of every method in every run.
 #pragma once
 
 #include <string>

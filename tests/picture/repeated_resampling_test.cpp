@@ -71,8 +71,8 @@ double spread(Picture const& picture) {
     return second / light - first * first / (light * light);
 }
 
-/// 000 section 4.2: n bilinear resamplings at a fractional velocity v blur by n v (1 - v); and the filter each time,
-/// until too little of an outline is left.
+/// [Scherzer 2012] section 4.2: n bilinear resamplings at a fractional velocity v blur by n v (1 - v); and the filter
+/// each time, until too little of an outline is left.
 TEST(RepeatedResampling, OfPicturesBlursMoreEveryTime) {
     for (double const v : {0.5, 0.25, 0.1}) {
         Picture picture = impulse();

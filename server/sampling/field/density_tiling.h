@@ -1,5 +1,6 @@
-// Tiling from density: the quadtree cut in which every tile is worth about one framelet (004 section 4.1.6). In:
-// samples per pixel over a field of elements in Morton order. Out: patches, which are parts of a tiling, and tiles.
+// Tiling from density: the quadtree cut in which every tile is worth about one framelet ([Stephens 2011]
+// section 4.1.6). In: samples per pixel over a field of elements in Morton order. Out: patches, which are parts of a
+// tiling, and tiles.
 #pragma once
 
 #include <cstdint>

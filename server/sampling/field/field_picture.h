@@ -1,5 +1,5 @@
-// What the server knows of a viewer's picture, drawn to be looked at (004 fig. 3.4, 7.25). In: a field, the choices,
-// the cut that follows from them. Out: a picture of the viewport's size, brighter where there is more.
+// What the server knows of a viewer's picture, drawn to be looked at ([Stephens 2011] fig. 3.4, 7.25). In: a field, the
+// choices, the cut that follows from them. Out: a picture of the viewport's size, brighter where there is more.
 #pragma once
 
 #include <span>

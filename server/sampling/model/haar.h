@@ -13,9 +13,9 @@ namespace framelet {
 /// Octaves of a framelet; 0 is the finest (differences of neighbouring samples).
 inline constexpr std::size_t framelet_octaves = 4;
 
-/// `samples`: 4^n values. Low pass is the mean of a pair, high pass half its difference (004 eq. 5.16). In Morton order
-/// the four values of a block lie side by side; of a block at index i of octave o, the mean stays at i and the
-/// differences in x, in y and in both go to i + 4^o, i + 2 * 4^o and i + 3 * 4^o.
+/// `samples`: 4^n values. Low pass is the mean of a pair, high pass half its difference ([Stephens 2011] eq. 5.16). In
+/// Morton order the four values of a block lie side by side; of a block at index i of octave o, the mean stays at i and
+/// the differences in x, in y and in both go to i + 4^o, i + 2 * 4^o and i + 3 * 4^o.
 void haar_forward(std::span<float> samples);
 
 /// Mean energy of one octave of the coefficients [first, first + count), `count` a power of 4, or of the block that

@@ -43,8 +43,8 @@ struct ErrorSeries {
     std::vector<double> refreshes; ///< seconds at which a new picture was displayed; may be empty
 };
 
-/// Mean squared error against time, logarithmic, with a row of ticks below for each method that has refreshes (004 figs
-/// 7.8 and 7.14).
+/// Mean squared error against time, logarithmic, with a row of ticks below for each method that has refreshes
+/// ([Stephens 2011] figs 7.8 and 7.14).
 struct ErrorOverTime {
     std::string title;
     std::string y_title = "mean squared error";

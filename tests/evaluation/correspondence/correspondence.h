@@ -1,4 +1,5 @@
-// How far off the viewer shows what it moves (003 figure 11). In: scenes. Out: a table, one row a scene and time ahead.
+// How far off the viewer shows what it moves ([Yang 2011] figure 11). In: scenes. Out: a table, one row a scene and
+// time ahead.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -1,5 +1,5 @@
-// The oracle of the ideal sample density (004 section 5.1.2): a place of the image, rendered far more densely than the
-// renderer ever would, and the frequencies below which nearly all of its energy lies.
+// The oracle of the ideal sample density ([Stephens 2011] section 5.1.2): a place of the image, rendered far more
+// densely than the renderer ever would, and the frequencies below which nearly all of its energy lies.
 #pragma once
 
 #include <vector>
@@ -30,8 +30,8 @@ struct IdealDensity {
 
 /// fs: the least frequency such that the square band max(|fx|, |fy|) <= fs has its share of the energy, at all temporal
 /// frequencies; ft the same in time, at the spatial frequencies that a pixel's mean lets pass: detail that is finer is
-/// never displayed, and would flicker in time whenever anything moves. (004 eq. 5.3 looks for a small gradient of the
-/// cumulative norm and leaves the threshold open; a share is the same whatever the contrast.)
+/// never displayed, and would flicker in time whenever anything moves. ([Stephens 2011] eq. 5.3 looks for a small
+/// gradient of the cumulative norm and leaves the threshold open; a share is the same whatever the contrast.)
 ///
 /// By Parseval's theorem the power spectrum in three dimensions, summed over all temporal frequencies, is the sum of
 /// the spatial spectra of all times, and the same the other way round: these are what is computed. In time: mean of

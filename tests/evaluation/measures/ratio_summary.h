@@ -1,4 +1,4 @@
-// One method's error over another's at many times, in two numbers (004 eq. 7.2, Table 7.2).
+// One method's error over another's at many times, in two numbers ([Stephens 2011] eq. 7.2, Table 7.2).
 #pragma once
 
 #include <span>

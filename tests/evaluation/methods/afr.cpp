@@ -1,5 +1,5 @@
-// `afr`: adaptive frameless rendering (Dayal et al. 2005; 004 section 2.5): single pixels, each in a leaf chosen with
-// equal probability; leaves are small where the picture's error is great.
+// `afr`: adaptive frameless rendering (Dayal et al. 2005; [Stephens 2011] section 2.5): single pixels, each in a leaf
+// chosen with equal probability; leaves are small where the picture's error is great.
 #include <random>
 
 #include "tests/evaluation/methods/kd_leaves.h"

@@ -1,4 +1,5 @@
-// `frameless`: single pixels in random order, shown as soon as they arrive (Bishop et al. 1994; 004 section 2.5).
+// `frameless`: single pixels in random order, shown as soon as they arrive (Bishop et al. 1994; [Stephens 2011]
+// section 2.5).
 #include <random>
 
 #include "tests/evaluation/methods/methods.h"

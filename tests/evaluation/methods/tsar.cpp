@@ -32,7 +32,7 @@ std::unique_ptr<Method> make_tsar_fill(MethodSetup const& setup) {
 }
 
 std::unique_ptr<Method> make_tsar_surplus(MethodSetup const& setup) {
-    constexpr double most_saved = 0.1; // 004 names no size of the account
+    constexpr double most_saved = 0.1; // [Stephens 2011] names no size of the account
     return std::make_unique<Tsar>(setup, TsarParameters{.most_saved = most_saved});
 }
 

@@ -1,5 +1,5 @@
-// Which tiles there are and which come next, as 004 places samples (sections 3.4.4.1 and 4.1.6). In: sample density.
-// Out: a tiling, and the tiles of the next batch.
+// Which tiles there are and which come next, as [Stephens 2011] places samples (sections 3.4.4.1 and 4.1.6). In: sample
+// density. Out: a tiling, and the tiles of the next batch.
 #pragma once
 
 #include <span>
@@ -10,9 +10,9 @@
 
 namespace framelet::bench {
 
-/// Serial construction of 004 section 4.1.6.1: a tile whose integral of density is above `most_samples` is replaced by
-/// its children, down to the plane's limit; integrals by prefix sums along the Morton curve. `samples_per_pixel`:
-/// 4^field_depth elements. Along the Morton curve, visible tiles only.
+/// Serial construction of [Stephens 2011] section 4.1.6.1: a tile whose integral of density is above `most_samples` is
+/// replaced by its children, down to the plane's limit; integrals by prefix sums along the Morton curve.
+/// `samples_per_pixel`: 4^field_depth elements. Along the Morton curve, visible tiles only.
 Tiling make_density_tiling(ImagePlane const& plane, std::span<double const> samples_per_pixel, int field_depth,
                            double most_samples);
 

@@ -17,7 +17,8 @@ namespace {
 
 /// Table 7.1: framelets rendered per cycle.
 constexpr std::size_t default_batch = 128;
-/// A place is refreshed at least so often while `framed` shows one frame. 004 states bounds but not their values.
+/// A place is refreshed at least so often while `framed` shows one frame. [Stephens 2011] states bounds but not their
+/// values.
 constexpr double slowest_refresh = 1.0 / 8;
 constexpr std::size_t most_blocks = framelet_samples;
 
@@ -43,7 +44,7 @@ DensityBounds realisable(ImagePlane const& plane, double frames_per_second, std:
 
 TsarServer::TsarServer(MethodSetup const& setup, TsarParameters const& parameters)
     : setup_(setup), parameters_(parameters), plane_(setup.viewport),
-      // Never more than a frame: 004 admits no batch that costs more (section 7.1.3).
+      // Never more than a frame: [Stephens 2011] admits no batch that costs more (section 7.1.3).
       batch_framelets_(std::min(setup.batch_framelets > 0 ? setup.batch_framelets : default_batch,
                                 uniform_tile_count(plane_, plane_.pixel_depth()))),
       response_{realisable(plane_, setup.frames_per_second, batch_framelets_), parameters.gain,

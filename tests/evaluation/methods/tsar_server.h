@@ -1,4 +1,4 @@
-// The server's half of `tsar` (004 chapters 3 to 6): density -> tiling -> batch -> error -> density.
+// The server's half of `tsar` ([Stephens 2011] chapters 3 to 6): density -> tiling -> batch -> error -> density.
 #pragma once
 
 #include <unordered_map>
@@ -11,7 +11,7 @@
 
 namespace framelet::bench {
 
-/// 004 leaves these to experiment ("determined empirically", section 7.1.2.1).
+/// [Stephens 2011] leaves these to experiment ("determined empirically", section 7.1.2.1).
 struct TsarParameters {
     RateTemplates templates = haar_templates;
     double gain = 1; ///< samples per pixel, and slowest rates of refresh, that an error of 1 asks for: eq. 6.11 has 1

@@ -14,8 +14,8 @@ namespace {
 constexpr int channels = 5;
 constexpr int band = 16; ///< rows that one task draws
 
-/// Width of the age field's smoothing: 128 pixels of 512 (Table 7.1). 004 does not say how it goes with resolution, nor
-/// what shape it has: a box, the same part of the picture.
+/// Width of the age field's smoothing: 128 pixels of 512 (Table 7.1). [Stephens 2011] does not say how it goes with
+/// resolution, nor what shape it has: a box, the same part of the picture.
 int smoothing_radius(Viewport viewport) {
     return std::max(viewport.width, viewport.height) / 8;
 }

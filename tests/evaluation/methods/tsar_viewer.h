@@ -1,5 +1,5 @@
-// The viewer's half of `tsar`: cached framelets of many ages to one picture, as 004 section 4.2 does it. In: framelets.
-// Out: the picture, all of it anew each time.
+// The viewer's half of `tsar`: cached framelets of many ages to one picture, as [Stephens 2011] section 4.2 does it.
+// In: framelets. Out: the picture, all of it anew each time.
 #pragma once
 
 #include <array>

@@ -3,17 +3,17 @@
 
 namespace framelet {
 
-/// Spatial and temporal density (004 section 6.1): samples per pixel and refreshes in some unit of time.
+/// Spatial and temporal density ([Stephens 2011] section 6.1): samples per pixel and refreshes in some unit of time.
 struct Density {
     double space = 0;
     double time = 0;
 
     bool operator==(Density const&) const = default;
-    /// Combined density (004 eq. 6.3): what sampling costs.
+    /// Combined density ([Stephens 2011] eq. 6.3): what sampling costs.
     double area() const { return space * time; }
 };
 
-/// Smallest and greatest densities (004 eq. 6.10), inclusive: 0 < least <= most.
+/// Smallest and greatest densities ([Stephens 2011] eq. 6.10), inclusive: 0 < least <= most.
 struct DensityBounds {
     Density least, most;
 

@@ -1,5 +1,5 @@
-// Sample density over the image plane (004 section 3.1.1): two scalar fields over equal elements, the tiles of one
-// depth, in Morton order. In and out: fields of other resolution, and values of the tiles of a tiling.
+// Sample density over the image plane ([Stephens 2011] section 3.1.1): two scalar fields over equal elements, the tiles
+// of one depth, in Morton order. In and out: fields of other resolution, and values of the tiles of a tiling.
 #pragma once
 
 #include <cstdint>
@@ -23,11 +23,11 @@ struct DensityField {
 
 DensityField make_uniform_density(int depth, Density density);
 
-/// Sum of samples per pixel and second over the elements: conserved by the response (004 eq. 6.24).
+/// Sum of samples per pixel and second over the elements: conserved by the response ([Stephens 2011] eq. 6.24).
 double combined_density(DensityField const& field);
 
 /// The field of 4^k values at 4^depth elements: the mean of what a coarser element covers, a copy for each of the finer
-/// ones. Either way the integral over the plane stays (004 section 4.1.3.4).
+/// ones. Either way the integral over the plane stays ([Stephens 2011] section 4.1.3.4).
 std::vector<double> resample_field(std::span<double const> field, int depth);
 
 /// Mean of the field (4^k values) over each tile; a tile within one element has that element's value.

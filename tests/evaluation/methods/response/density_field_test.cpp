@@ -42,7 +42,7 @@ TEST(DensityField, ResamplingKeepsTheIntegral) {
     EXPECT_EQ(resample_field(four, 2)[4], 2) << "Morton order";
 }
 
-/// Tiling of 004 fig. 4.3, in depth-first order.
+/// Tiling of [Stephens 2011] fig. 4.3, in depth-first order.
 std::vector<Tile> const tiling{{4}, {20}, {21}, {88}, {89}, {90}, {91}, {23}, {24}, {25}, {26}, {27}, {7}};
 
 double integral(std::vector<double> const& values) {

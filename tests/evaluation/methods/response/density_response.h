@@ -1,5 +1,5 @@
-// The response decision (004 chapter 6) in its three stages: local constraints, transport, mixture. In: sample density
-// and the errors of some elements. Out: the new density, of the same integral.
+// The response decision ([Stephens 2011] chapter 6) in its three stages: local constraints, transport, mixture. In:
+// sample density and the errors of some elements. Out: the new density, of the same integral.
 #pragma once
 
 #include <cstdint>

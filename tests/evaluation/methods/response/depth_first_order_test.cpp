@@ -21,7 +21,7 @@ TEST(DepthFirstOrder, KnownPlaces) {
     EXPECT_EQ(subtree_size(64, max_depth), 1u);
 }
 
-TEST(DepthFirstOrder, TheTilingOf004) {
+TEST(DepthFirstOrder, TheTilingOfThePaper) {
     // Eq. 4.9 in the order of eq. 4.14.
     std::vector<std::uint32_t> const tiles{4, 20, 21, 88, 89, 90, 91, 23, 24, 25, 26, 27, 7};
     std::vector<std::uint64_t> const places{3, 36, 43, 53, 54, 56, 57, 58, 68, 75, 83, 90, 97};

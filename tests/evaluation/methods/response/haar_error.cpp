@@ -20,8 +20,8 @@ bool is_square(std::size_t count) {
 }
 
 /// One octave: the transform of each 2x2 block, the step in time against `cached`, which is replaced. `cached`: the
-/// four quadrants hh, gh, hg, gg, each in Morton order (004 fig. 5.15: packed apart, so that hh is the next octave's
-/// input).
+/// four quadrants hh, gh, hg, gg, each in Morton order ([Stephens 2011] fig. 5.15: packed apart, so that hh is the next
+/// octave's input).
 template <bool has_history>
 void transform(float const* input, std::size_t blocks, float* cached, Blocks& low, Blocks& space, Blocks& time) {
     Blocks hh, gh, hg, gg; // apart from all that is read: the loops below become vectors

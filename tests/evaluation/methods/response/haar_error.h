@@ -1,5 +1,5 @@
-// Error estimate by a streaming Haar transform (004 section 5.3). In: the samples of a framelet and the coefficients of
-// the previous one of the same place. Out: sample-rate errors by block, and the coefficients to keep.
+// Error estimate by a streaming Haar transform ([Stephens 2011] section 5.3). In: the samples of a framelet and the
+// coefficients of the previous one of the same place. Out: sample-rate errors by block, and the coefficients to keep.
 #pragma once
 
 #include "tests/evaluation/methods/response/rate_error.h"
@@ -12,7 +12,7 @@ using HaarHistory = ErrorHistory;
 /// Templates of `estimate_haar`, fitted to errors of rendered pictures.
 inline constexpr RateTemplates haar_templates{{-16.5f, 5.25f}, {-11.75f, -3.125f}};
 
-/// Error of each block (004 section 5.3.4).
+/// Error of each block ([Stephens 2011] section 5.3.4).
 ///
 /// `samples`: display-encoded luma in [0, 1], Morton order; 256 or 1024 (framelets of 16x16 or 32x32).
 /// `history`: of a framelet of the same place and size; is replaced by what the next call needs.

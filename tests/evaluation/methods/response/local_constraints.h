@@ -1,5 +1,5 @@
-// What one element asks for within its own bounds (004 section 6.2). In: its density and sample-rate error. Out: in
-// which direction it moves, by how much its combined density would change, and by how much at most.
+// What one element asks for within its own bounds ([Stephens 2011] section 6.2). In: its density and sample-rate error.
+// Out: in which direction it moves, by how much its combined density would change, and by how much at most.
 #pragma once
 
 #include "tests/evaluation/methods/response/density.h"

@@ -1,4 +1,4 @@
-// Splits an element's change of combined density between space and time (004 section 6.4).
+// Splits an element's change of combined density between space and time ([Stephens 2011] section 6.4).
 #pragma once
 
 #include "tests/evaluation/methods/response/density.h"

@@ -6,7 +6,7 @@
 
 namespace framelet {
 
-/// Sample-rate error (004 ch. 5), each in [-1, 1]: above 0 undersampled, below 0 redundant.
+/// Sample-rate error ([Stephens 2011] ch. 5), each in [-1, 1]: above 0 undersampled, below 0 redundant.
 struct RateError {
     float space = 0;
     float time = 0;

@@ -1,5 +1,6 @@
 // Scales the changes of combined density that elements ask for so that they add up to nothing, or to no more than has
-// been saved (004 section 6.3). In: changes and their limits. Out: changes of the same signs within the limits.
+// been saved ([Stephens 2011] section 6.3). In: changes and their limits. Out: changes of the same signs within the
+// limits.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +11,7 @@ namespace framelet {
 
 /// A: sum of the positive changes, B: of the negative ones, both as magnitudes.
 enum class Transport {
-    shrink_larger, ///< one weight below 1 for the greater of A and B: point b of 004 section 6.3.2.3
+    shrink_larger, ///< one weight below 1 for the greater of A and B: point b of [Stephens 2011] section 6.3.2.3
     grow_smaller, ///< one weight for A, one for B, as large as the tightest limit of an element allows: points e and f
     fill_smaller, ///< the lesser of A and B grows, every element up to its own limit; then the greater one shrinks
 };
