@@ -8,7 +8,7 @@
 
 namespace framelet {
 
-/// What was written on the command line.
+/// The connection options as they were written on the command line.
 struct ConnectionArguments {
     std::string server; ///< HOST[:PORT]
     std::string token_file;
@@ -22,10 +22,10 @@ struct ConnectionArguments {
 /// parsing.
 CLI::Option* add_connection_options(CLI::App& app, ConnectionArguments& arguments);
 
-/// All but the token. Throws InputError.
+/// Makes connection options of all arguments but the token, which `read_token` reads. Throws InputError.
 ConnectionOptions make_connection_options(ConnectionArguments const& arguments);
 
-/// From --token-file; empty without one. Throws InputError.
+/// The token that --token-file has; empty without that option. Throws InputError.
 std::string read_token(ConnectionArguments const& arguments);
 
 } // namespace framelet

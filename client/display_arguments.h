@@ -6,14 +6,14 @@
 
 namespace framelet {
 
-/// What was written on the command line.
+/// The display options as they were written on the command line.
 struct DisplayArguments {
     float exposure_ev = 0;
     bool unwarped = false;
     double smooth_ms = 0;
 
     ViewerSettings settings() const { return {exposure_ev, 0, !unwarped}; }
-    /// For `ClientCore::set_smoothing`.
+    /// The lag for `ClientCore::set_smoothing`, seconds.
     double lag_seconds() const { return 1e-3 * smooth_ms; }
 };
 

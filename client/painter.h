@@ -1,4 +1,4 @@
-// What is to paint, as the command line says it.
+// The choice of what paints, as the command line says it.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@ namespace framelet {
 /// `automatic` is the graphics card where there is one.
 enum class Painter : std::uint8_t { automatic, cpu, gpu };
 
-/// `auto`, `cpu` or `gpu`. Throws InputError.
+/// Reads `auto`, `cpu` or `gpu`. Throws InputError of anything else.
 inline Painter parse_painter(std::string const& text) {
     if (text == "auto") {
         return Painter::automatic;

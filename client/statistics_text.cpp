@@ -11,7 +11,7 @@ namespace framelet {
 
 namespace {
 
-/// Null where a time was not reached.
+/// The time, seconds, as JSON; null where it was not reached.
 nlohmann::json reached(double seconds) {
     return seconds < 0 ? nlohmann::json() : nlohmann::json(seconds);
 }

@@ -1,4 +1,4 @@
-// What the windowless client prints at its end.
+// The statistics that the windowless client prints at its end.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace framelet {
 
-/// What only the program knows.
+/// Figures of a run that only the program knows.
 struct RunFigures {
     std::string scene;
     Viewport viewport;
@@ -20,7 +20,7 @@ struct RunFigures {
 
 /// One JSON object, indented.
 std::string statistics_json(ClientStatistics const& statistics, RunFigures const& run);
-/// A few lines for people, and below them those for who looks into what it costs.
+/// A few lines for people, and below them details for who looks into what it costs.
 std::string statistics_summary(ClientStatistics const& statistics, RunFigures const& run);
 
 } // namespace framelet

@@ -58,9 +58,9 @@ int main(int argc, char** argv) {
         ->check(readable_by(parse_painter))
         ->capture_default_str();
     add_display_options(app, display);
-    // As framelet starts it: a descriptor for SceneOpener.
+    // framelet gives this to the viewer that it starts: a descriptor for SceneOpener.
     app.add_option("--server-needed", server_needed)->group("")->configurable(false);
-    app.add_option("--server-option", server_options) // of the servers of scenes that are dropped
+    app.add_option("--server-option", server_options) // for the servers of scenes that are dropped
         ->group("")
         ->configurable(false)
         ->expected(1)
@@ -68,7 +68,7 @@ int main(int argc, char** argv) {
     add_config_option(app);
 
     Viewport viewport;
-    // A token is of one server: it is looked for anew for each that is named.
+    // A token belongs to one server: it is looked for anew for each that is named.
     OptionsFor const options_for = [&arguments](std::string const& address) {
         ConnectionArguments named = arguments;
         named.server = address;

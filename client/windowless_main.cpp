@@ -88,7 +88,7 @@ at once.)",
         {"framelet-server", "framelet-viewer", "framelet"}};
 }
 
-/// The number of the kind in place of its name, which is what CLI11 reads an enumeration from.
+/// Puts the number of the kind of overlay in place of its name, which is what CLI11 reads an enumeration from.
 CLI::Validator overlay_kind() {
     return {[](std::string& input) {
                 bool const outlines = input == "outlines";
@@ -107,7 +107,7 @@ void end_on_signals() {
     for (int const number : {SIGINT, SIGTERM}) {
         std::signal(number, [](int received) {
             told_to_end = 1;
-            std::signal(received, SIG_DFL); // who reads the video may have stopped reading: the second one ends that
+            std::signal(received, SIG_DFL); // the video's reader may have stopped reading: the second signal ends that
         });
     }
 }
@@ -143,7 +143,7 @@ void ask_clock(ClientCore& core, Options const& options) {
     }
 }
 
-/// Returns early where the session has ended.
+/// Waits until that time; returns early where the session has ended.
 void wait_until(ClientCore& core, Clock::time_point time) {
     while (Clock::now() < time && !core.end_reason()) {
         core.wait_for_news(time - Clock::now());
@@ -161,7 +161,7 @@ bool tell_interruption(ClientCore const& core, bool interrupted) {
     return reason.has_value();
 }
 
-/// -1 of nothing.
+/// The median; -1 where there are no values.
 double median(std::vector<double> values) {
     if (values.empty()) {
         return -1;
@@ -236,7 +236,7 @@ RunFigures show(ClientCore& core, Options const& options, std::optional<CameraPa
     bool interrupted = false;
     run.viewport = viewport;
     Picture picture = bare_picture(viewport);
-    Picture overlaid; //< and what is drawn over it
+    Picture overlaid; //< the picture and what is drawn over it
     std::vector<PixelRect> changed;
     std::vector<double> photon_seconds;
     FrameChoice choice(options.output_times);
@@ -301,7 +301,7 @@ RunFigures show(ClientCore& core, Options const& options, std::optional<CameraPa
     }
 }
 
-/// Throws InputError.
+/// Throws InputError where no video can be written with these options.
 void check_video_options(Options const& options) {
     if (options.output == standard_output && ::isatty(STDOUT_FILENO) == 1) {
         throw InputError(
@@ -313,7 +313,8 @@ void check_video_options(Options const& options) {
     }
 }
 
-/// Once its stills have come. Throws as `SheetMoments::take_stills`, and InputError where it cannot be written.
+/// Writes the contact sheet once its stills have come. Throws as `SheetMoments::take_stills`, and InputError where it
+/// cannot be written.
 void write_sheet(SheetMoments& sheet, ClientCore& core, std::string const& file) {
     std::cerr << "framelet-client: waiting for the stills of the contact sheet" << std::endl;
     sheet.take_stills(core);
@@ -330,8 +331,8 @@ struct Session {
     std::optional<std::string> end_reason; ///< where the server ended it, or was gone at the end
 };
 
-/// The whole session: its figures are of what was shown, whatever is still to be written then. Throws InputError and
-/// ConnectionError.
+/// Runs the whole session: its figures are of what was shown, whatever is still to be written then. Throws InputError
+/// and ConnectionError.
 Session look(Options const& options, ConnectionOptions const& connection, std::optional<CameraPath> const& path,
              Viewport viewport, FrameSinks const& sinks) {
     std::optional<SheetMoments> sheet;

@@ -13,7 +13,7 @@ ViewRays make_view_rays(Camera const& camera, Viewport viewport) {
     float const width = static_cast<float>(viewport.width);
     float const extent = camera.projection == Projection::perspective ? 2 * std::tan(0.5f * camera.vertical_extent)
                                                                       : camera.vertical_extent;
-    float const pixel = extent / height; // at depth 1, or in metres
+    float const pixel = extent / height; // a pixel's side at depth 1, or in metres if orthographic
     Vec3 const dx = camera.right() * pixel;
     Vec3 const dy = camera.up() * -pixel;
     Vec3 const corner = -0.5f * width * dx - 0.5f * height * dy;

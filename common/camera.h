@@ -10,8 +10,8 @@ namespace framelet {
 
 enum class Projection : std::uint8_t { perspective = 0, orthographic = 1 };
 
-/// What a camera's numbers may be. Far from where single precision overflows, and far above denormals, so that every
-/// thread sees the same camera whatever it does with those.
+/// Bounds of a camera's numbers: far from where single precision overflows, and far above denormals, so that every
+/// thread sees the same camera however it treats those.
 inline constexpr float max_camera_coordinate = 1e10f; ///< metres, on each axis and side
 inline constexpr float least_field_of_view = 1e-4f, most_field_of_view = 3.13f; ///< radians
 inline constexpr float least_view_height = 1e-4f, most_view_height = 1e10f; ///< metres, orthographic
@@ -58,8 +58,8 @@ Camera look_at(Vec3 position, Vec3 target, Vec3 up, float vertical_fov_radians);
 /// True when every number is within the bounds above and the orientation is a rotation.
 bool is_valid(Camera const& camera);
 
-/// The nearest position and extent within the bounds. For cameras of finite numbers that are ours: a scene's animation
-/// or a user's hand may lead them out.
+/// Moves position and extent to the nearest values within the bounds. For cameras of finite numbers that this program
+/// has made itself: a scene's animation or a user's hand may lead them out.
 Camera within_bounds(Camera camera);
 
 } // namespace framelet

@@ -1,4 +1,5 @@
-// What the scene clock stands at, and what a viewer may ask of it. The clock is shared by all viewers of a server.
+// The state of the scene clock: what it is, and what a viewer may ask for. The clock is shared by all viewers of a
+// server.
 #pragma once
 
 #include "common/framelet/framelet.h"

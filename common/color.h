@@ -1,4 +1,4 @@
-// From scene-linear radiance to display bytes and back: exposure, tone curve, sRGB transfer function.
+// Converts scene-linear radiance to display bytes and back: exposure, tone curve, sRGB transfer function.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@ namespace framelet {
 /// Khronos PBR Neutral tone curve: leaves base colours below 0.8 as they are and rolls highlights off towards white.
 /// In: linear Rec.709 colour, >= 0. Out: [0, 1]. (Khronos Group, "PBR Neutral Tone Mapper", 2024.)
 Vec3 tone_map(Vec3 linear);
-/// The same in place, without branches, so that a loop over samples becomes vector code.
+/// Applies the same curve in place, without branches, so that a loop over samples becomes vector code.
 inline void tone_map(float& red, float& green, float& blue) {
     auto const smaller = [](float a, float b) { return a < b ? a : b; };
     auto const larger = [](float a, float b) { return a > b ? a : b; };
@@ -57,7 +57,7 @@ TransferTables const& transfer_tables();
 constexpr float display_luma(std::uint8_t red, std::uint8_t green, std::uint8_t blue) {
     return static_cast<float>(red + 2 * green + blue) / (4 * 255.0f);
 }
-/// The same of radiance as a viewer sees it. `exposure` multiplies it (2^EV).
+/// The same luma of radiance as a viewer sees it, tone-mapped; `exposure` (2^EV) multiplies the radiance.
 float display_luma(Vec3 radiance, float exposure);
 
 } // namespace framelet

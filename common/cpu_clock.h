@@ -5,8 +5,8 @@
 
 namespace framelet {
 
-/// `clock`: CLOCK_THREAD_CPUTIME_ID, CLOCK_PROCESS_CPUTIME_ID, or what clock_getcpuclockid gave. 0 where there is no
-/// such clock, or no longer.
+/// CPU seconds that `clock` has counted: CLOCK_THREAD_CPUTIME_ID, CLOCK_PROCESS_CPUTIME_ID, or what clock_getcpuclockid
+/// gave. 0 where there is no such clock, or no longer.
 inline double cpu_seconds_of(clockid_t clock) {
     timespec time{};
     clock_gettime(clock, &time);

@@ -18,8 +18,8 @@ struct ProtocolError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// A message of ours would break the protocol, for whatever a viewer or a scene has led to; ends the session that it is
-/// for.
+/// A message of this program would break the protocol, whatever in a scene or from a viewer has led to that; ends the
+/// session that the message is for.
 struct UnsendableMessage : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
@@ -29,7 +29,7 @@ struct ConnectionError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// It could not be made, and would not another time: the server is there and refuses this viewer.
+/// The connection could not be made, and would not be another time: the server is there and refuses this viewer.
 struct ConnectionRefusal : ConnectionError {
     using ConnectionError::ConnectionError;
 };

@@ -11,12 +11,13 @@
 
 namespace framelet {
 
-/// TBB's own of this kind destroys values that it has never made where memory runs out, and its memory is not searched
-/// by leak checkers.
+/// A value for each thread of a loop. TBB's own class for this destroys values that it has never made where memory runs
+/// out, and leak checkers do not search its memory.
 template <typename Value>
 class PerThread {
 public:
-    /// Makes room for all threads that may take part in a loop of the caller's: before each loop that asks for values.
+    /// Makes room for all threads that may take part in a loop of the caller's; to be called before each loop that asks
+    /// for values.
     void prepare() {
         auto const threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()) + 1;
         if (values_.size() < threads) {
@@ -24,7 +25,7 @@ public:
         }
     }
 
-    /// The calling thread's, made when it first asks.
+    /// The calling thread's value, made when it first asks.
     Value& local() {
         int const index = std::max(tbb::this_task_arena::current_thread_index(), 0); // negative before any loop
         std::unique_ptr<Value>& value = values_.at(static_cast<std::size_t>(index));
@@ -34,7 +35,7 @@ public:
         return *value;
     }
 
-    /// `see(value)` for each that was made. Not while a loop runs.
+    /// Calls `see(value)` for each value that was made. Not to be called while a loop runs.
     template <typename See>
     void for_each(See const& see) const {
         for (std::unique_ptr<Value> const& value : values_) {

@@ -11,8 +11,8 @@ void say(char const* text) {
     [[maybe_unused]] auto const ignored = ::write(STDERR_FILENO, text, std::strlen(text));
 }
 
-/// 101: before everything else of the program, which is compiled with these instructions. That of its libraries has
-/// been.
+/// Priority 101: runs before all other initialisation of the program, which is compiled with these instructions. That
+/// of its libraries has run by then.
 [[gnu::constructor(101)]] void require_processor() {
     __builtin_cpu_init();
     if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma") || !__builtin_cpu_supports("bmi") ||

@@ -10,7 +10,7 @@ namespace framelet {
 /// Thin lattice sails, and a wheel of thin vanes, turn quickly before windows and pales.
 struct WindmillParameters {
     double duration = 4; ///< seconds
-    int sail_turns = 5, vane_turns = 9; ///< in that time
+    int sail_turns = 5, vane_turns = 9; ///< within `duration`
     int sails = 4, vanes = 16;
 };
 GltfDocument make_windmill_scene(WindmillParameters const& parameters);

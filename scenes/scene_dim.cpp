@@ -9,7 +9,8 @@ namespace {
 
 constexpr D3 half_stage{9, 6.5, 7}; // metres
 
-/// Floor, walls and what turns on one half of the stage; `shade` multiplies every colour. Returns what turns.
+/// Adds floor, walls and what turns on one half of the stage; `shade` multiplies every colour. Returns the nodes that
+/// turn.
 std::vector<int> add_half(GltfDocument& document, double left, double shade) {
     // Metal has no reflection that keeps its strength when the colour is taken away, as plastic has.
     auto const surface = [&](char const* name, D3 color, int image = no_index) {

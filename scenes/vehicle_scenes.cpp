@@ -9,7 +9,8 @@
 namespace framelet {
 namespace {
 
-/// Wheels roll: distance / radius, rounded to a whole number of spokes so that the loop has no jump.
+/// Angle by which wheels roll, radians: distance / radius, rounded to a whole number of spokes so that the loop has no
+/// jump.
 double rolling_angle(double distance) {
     double const spoke = 2 * pi / wheel_spokes;
     return std::round(distance / wheel_radius / spoke) * spoke;

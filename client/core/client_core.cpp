@@ -31,7 +31,7 @@ Clock::duration clock_duration(double seconds) {
     return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
 }
 
-/// What a batch takes on the wire besides its bytes and one for each tile, about.
+/// Bytes, about, that a batch takes on the wire besides its payloads and one byte for each tile.
 constexpr std::size_t batch_header_bytes = 96;
 
 } // namespace
@@ -39,12 +39,12 @@ constexpr std::size_t batch_header_bytes = 96;
 struct ClientCore::Impl {
     std::function<void()> on_news;
     Clock::time_point const start = Clock::now();
-    // The connection's thread only; of this session, as all that follows.
+    // State of this session's stream, used by the connection's thread only.
     std::optional<BatchCodec> codec{std::in_place};
     std::optional<BatchMemory> memory{std::in_place};
-    bool is_whole = true; ///< all that has come is in them and among what has arrived
+    bool is_whole = true; ///< every batch that has come is decoded and among `arrived`, or taken in already
 
-    /// Guards what pictures are made of. Whoever has it may take `mutex` as well, not the other way round.
+    /// Guards what pictures are made of. Whoever holds it may lock `mutex` as well, not the other way round.
     std::mutex picture_mutex;
     SessionPictures pictures;
     std::vector<Batch> taken; ///< scratch
@@ -52,7 +52,7 @@ struct ClientCore::Impl {
     mutable std::mutex mutex; // guards all that follows, but the connection; never held for long
     std::condition_variable news_arrived;
     bool news = false;
-    ArrivedBatches arrived; ///< and not in the maker yet
+    ArrivedBatches arrived; ///< batches that are not in the maker yet
     std::vector<SentTile> evicted; ///< scratch
     ToldEvictions told_evictions;
     AskedView asked;
@@ -60,7 +60,7 @@ struct ClientCore::Impl {
     PictureSettings picture_settings;
     bool has_picture = false; ///< something is held of the newest viewport
     std::uint64_t last_batch = 0;
-    bool is_on_canvas = false; ///< the last picture is
+    bool is_on_canvas = false; ///< the last picture is on the canvas
     Camera shown_camera;
     SceneTime shown_time = 0;
     Clock::time_point shown_at; ///< when the last picture was to be seen; does not go back
@@ -69,7 +69,7 @@ struct ClientCore::Impl {
     ServerState server;
     Welcome welcome;
     std::uint64_t scene_number = 1;
-    bool starts_clean = false; ///< the picture is of another scene
+    bool starts_clean = false; ///< what is shown is of another scene, and is to be cleared
     std::optional<std::string> interruption;
     std::optional<std::string> end_reason;
     ClientStatistics statistics;
@@ -98,7 +98,7 @@ struct ClientCore::Impl {
         auto opened = std::make_unique<ServerConnection>(options, std::move(handlers));
         std::lock_guard const lock(mutex);
         connection = std::move(opened);
-        if (statistics.reconnections == 0) { // its thread has not been through all that already
+        if (statistics.reconnections == 0) { // the connection's thread has not opened another session meanwhile
             welcome = connection->welcome();
             shown_camera = welcome.start_camera;
             picture_settings.scene_moves = welcome.animation_duration > 0;
@@ -113,7 +113,7 @@ struct ClientCore::Impl {
         return asked.view();
     }
 
-    /// What has come is kept for the time without a session.
+    /// Interrupts the session; what has come is kept for the time without one.
     void pause_session(std::string reason) {
         {
             std::lock_guard const picture_lock(picture_mutex);
@@ -126,7 +126,8 @@ struct ClientCore::Impl {
         tell_news();
     }
 
-    /// Where what is held is what the server thinks it is, but for batches that are still to come.
+    /// Asks to go on with the session before, where the viewer holds what the server thinks it holds, but for batches
+    /// that are still to come.
     void ask_to_go_on(Hello& hello) {
         std::lock_guard const lock(mutex);
         if (is_whole && !told_evictions.is_lost()) {
@@ -161,8 +162,8 @@ struct ClientCore::Impl {
         tell_news();
     }
 
-    /// The next one has nothing of it, but shows on what it showed if it is of the same scene. Under the picture's
-    /// lock.
+    /// Drops the state of the session that has ended. Its picture goes on being shown if the next session is of the
+    /// same scene. Call it with `picture_mutex` held.
     void forget_session(Welcome const& next) {
         is_whole = false;
         if (pictures.is_for(wanted_view())) {
@@ -196,7 +197,8 @@ struct ClientCore::Impl {
         }
     }
 
-    /// One camera in the network's queue at most: a newer one replaces it while it waits. Under the lock.
+    /// Sends the newest view where nothing else is queued: one camera at most is in the network's queue, and of those
+    /// that are set while it waits only the newest is sent. Call it with `mutex` held.
     void send_view() {
         if (asked.is_unsent() && !interruption && connection && connection->all_sent()) {
             ++statistics.cameras_sent;
@@ -256,7 +258,7 @@ struct ClientCore::Impl {
             if (!is_stale) {
                 arrived.add(std::move(batch));
             }
-            is_full = arrived.is_full(); // for want of a painter: what would be more is taken in at once
+            is_full = arrived.is_full(); // nobody paints: what has arrived is taken in at once
         }
         if (is_full) {
             std::lock_guard const lock(picture_mutex);
@@ -265,7 +267,8 @@ struct ClientCore::Impl {
         is_whole = true;
     }
 
-    /// Puts all that has arrived into what pictures are made of. Under the picture's lock, and not the other one.
+    /// Puts all batches that have arrived into what pictures are made of. Call it with `picture_mutex` held, without
+    /// `mutex`.
     void take_in() {
         NumberedView wanted;
         PictureSettings settings;
@@ -293,7 +296,7 @@ struct ClientCore::Impl {
         arrived.give_back(taken);
     }
 
-    /// Under the picture's lock.
+    /// Tells the server of all framelets that the maker has evicted. Call it with `picture_mutex` held.
     void tell_evicted(PictureMaker& maker) {
         maker.take_evicted(evicted);
         for (Evicted& told : evicted_messages(evicted)) {
@@ -307,7 +310,7 @@ struct ClientCore::Impl {
         }
     }
 
-    /// Under the lock. `coverage` < 0: nothing has come.
+    /// Notes in the statistics what is held. Call it with `mutex` held. `coverage` < 0: nothing has come.
     void note_held(PictureMaker const& maker, double coverage, Clock::time_point now) {
         if (coverage >= 0) {
             statistics.coverage = coverage;
@@ -321,7 +324,8 @@ struct ClientCore::Impl {
         }
     }
 
-    /// The server says so of what was asked last, and all of it has come. Under the lock.
+    /// True once the server has said that the newest view has converged, and all its batches have come. Call it with
+    /// `mutex` held.
     bool is_settled() const {
         Status const& status = server.status();
         return status.converged && asked.exists() && status.camera_number == asked.view().number &&
@@ -334,7 +338,7 @@ struct ClientCore::Impl {
         return std::exchange(starts_clean, false);
     }
 
-    /// Of what will be the present when the picture is seen.
+    /// The request for a picture of what will be the present when it is seen.
     PictureRequest picture_request() const {
         std::lock_guard const lock(mutex);
         ClockState const clock = server.clock_at(shown_at);
@@ -347,7 +351,9 @@ struct ClientCore::Impl {
                 is_settled()};
     }
 
-    /// How old what the last picture, of the camera of this number, shows is; -1: nothing new. Under the lock.
+    /// Age in seconds of what the last picture shows, which is of the camera of this number, when it is seen: since
+    /// that camera was set or, through a camera of the scene, since its moment was the present; -1: it shows nothing
+    /// new. Call it with `mutex` held.
     double photon_seconds(std::uint64_t number, Clock::time_point seen) {
         if (asked.scene_camera() >= 0) {
             ClockState const clock = server.clock_at(seen);
@@ -357,7 +363,8 @@ struct ClientCore::Impl {
         return asked.since_set(number, seen).value_or(-1);
     }
 
-    /// Under the lock.
+    /// Notes the time from when this camera was sent until the first batch seen from it was received. Call it with
+    /// `mutex` held.
     void note_round_trip(std::uint64_t camera_number, Clock::time_point received) {
         if (auto const seconds = asked.since_sent(camera_number, received)) {
             double& smoothed = statistics.round_trip_seconds;
@@ -388,7 +395,7 @@ std::uint64_t ClientCore::scene_number() const {
 }
 
 void ClientCore::set_view(Camera const& wanted, Viewport viewport, int scene_camera) {
-    Camera const camera = within_bounds(wanted); // a hand may lead it out
+    Camera const camera = within_bounds(wanted); // the user may have moved it out of bounds
     std::lock_guard const lock(impl_->mutex);
     AskedView& asked = impl_->asked;
     if (!asked.equals(camera, viewport, scene_camera)) {
@@ -467,7 +474,7 @@ bool ClientCore::update_picture(Picture& picture, std::vector<PixelRect>& change
     }
     std::lock_guard const lock(core.mutex);
     core.is_on_canvas = is_on_canvas;
-    if (camera_number > 0) { // else nothing has been shown, and one looks from where one is to begin
+    if (camera_number > 0) { // else nothing has been shown, and the start camera stays
         core.shown_camera = camera;
     }
     core.shown_time = time;

@@ -20,9 +20,9 @@
 
 namespace framelet {
 
-/// Most that the scene may be shown late.
+/// Greatest lag with which the scene may be shown, seconds.
 inline constexpr double max_lag_seconds = 1;
-/// What is late enough where a server renders some ten whole frames a second.
+/// Lag that suffices where a server renders some ten whole frames a second, seconds.
 inline constexpr double usual_lag_seconds = 0.1;
 
 /// All members may be called from any thread; `update_picture` and `draw_overlay` from one at a time. Painting holds
@@ -36,39 +36,40 @@ public:
     ClientCore(ClientCore const&) = delete;
     ClientCore& operator=(ClientCore const&) = delete;
 
-    /// What the user should know of how the session was opened, one line; mostly empty.
+    /// One line that the user should know of how the session was opened; mostly empty.
     std::string const& notice() const;
-    /// The newest session's.
+    /// The Welcome of the newest session.
     Welcome welcome() const;
-    /// Counts up where a session is of another scene than the one before, of which nothing is held any more then.
+    /// A number that counts up where a session is of another scene than the one before, of which nothing is held any
+    /// more then.
     std::uint64_t scene_number() const;
 
     /// Asks for this view. Only the newest one is kept while the network is busy. `scene_camera` >= 0: through that
     /// camera of the scene. Call it at most once a display frame; a view that equals the last one costs nothing.
     void set_view(Camera const& camera, Viewport viewport, int scene_camera = -1);
     void set_settings(ViewerSettings const& settings);
-    /// Shows the scene, not the camera, so many seconds late, [0, `max_lag_seconds`], and between what came before that
-    /// moment and what came after it instead of going on from what came last; 0: does not. To no effect without
-    /// `ViewerSettings::reproject` and where the scene never moves. Through a camera of the scene that camera is late
-    /// too. While it is on, a second cache, two pictures and the batches of that time are held.
+    /// Shows the scene, not the camera, `lag_seconds` late, in [0, `max_lag_seconds`], interpolated between what was
+    /// rendered before that moment and after it instead of extrapolated from what came last; 0: not late. Has no effect
+    /// without `ViewerSettings::reproject` and where the scene never moves. A camera of the scene that is looked
+    /// through is late too. While it is on, a second cache, two pictures and the batches of that time are held.
     void set_smoothing(double lag_seconds);
-    /// `clock` answers as if it were granted, until the server says how it is. Does nothing where `controls` is false
-    /// or the session is interrupted.
+    /// Asks for the scene's clock to be set; `clock` answers as if that were granted, until the server says how it is.
+    /// Does nothing where `controls` is false or the session is interrupted.
     void request_clock(ClockRequest const& request);
 
     /// Brings `picture` up to date with what has come, and with the newest camera and the present scene time: what is
     /// held is moved to where it belongs now (`ViewerSettings::reproject`). Call it for every display frame. True when
     /// it changed. `changed` gets the rectangles that may differ. While nothing has come for a new viewport, the
     /// picture stays as it is, in its old size. A picture that is not the one of the last call is written as a whole.
-    /// `shown_at`: when it will be seen, and what it is to be of; the past: as soon as it is ready. Throws
-    /// std::bad_alloc where memory is missing for it: nothing more is to be asked of the core then.
-    /// With a canvas what is moved is painted there, in the calling thread, and `picture` has its size alone:
-    /// `is_on_canvas` says so. Throws CanvasError where that fails; called again without a canvas it goes on.
+    /// `shown_at`: the time when it will be seen, of which it is to be; in the past: as soon as it is ready. Throws
+    /// std::bad_alloc where memory is missing for it: nothing more is to be asked of the core then. With a canvas what
+    /// is moved is painted there, in the calling thread, and `picture` has its size alone: `is_on_canvas` says so.
+    /// Throws CanvasError where that fails; called again without a canvas it goes on.
     bool update_picture(Picture& picture, std::vector<PixelRect>& changed,
                         std::chrono::steady_clock::time_point shown_at = {}, BlockCanvas* canvas = nullptr);
-    /// Where the last picture is.
+    /// True when the last picture is on the canvas and not in memory.
     bool is_on_canvas() const;
-    /// What `update_picture` will take, most likely no longer.
+    /// Seconds that `update_picture` will take, most likely no longer.
     double making_seconds() const;
 
     /// Draws over a copy of the picture that `update_picture` made: outlines of the framelets that are held, as
@@ -79,26 +80,27 @@ public:
     /// The point of the world that this place of the last picture shows, pixel coordinates; nothing where that is not
     /// known, or infinitely far. Takes about as long as a picture.
     std::optional<Vec3> point_at(Vec2 place) const;
-    /// How deep the pixels of the last picture are, as `find_shown_depths`. Takes longer than a picture.
+    /// The depths of the last picture's pixels, as `find_shown_depths` gives them. Takes longer than a picture.
     std::vector<float> picture_depths() const;
 
     /// Waits until something has come since the last call, or the time is over; true when something has.
     bool wait_for_news(std::chrono::nanoseconds at_most);
 
-    /// Why the session ended for good, one line; nothing while it is open or another is tried for.
+    /// The reason why the session ended for good, one line; nothing while it is open or another is tried for.
     std::optional<std::string> end_reason() const;
-    /// Why it was interrupted, one line; nothing while one is open. Meanwhile what is held is shown, the scene's clock
-    /// stands, and what is asked for is asked of the next session. With `ConnectionOptions::reconnect` only.
+    /// The reason why the session was interrupted, one line; nothing while one is open. Meanwhile what is held is
+    /// shown, the scene's clock stands, and the view and settings that are set go to the next session. With
+    /// `ConnectionOptions::reconnect` only.
     std::optional<std::string> interruption() const;
-    /// Whether this viewer may set the scene's clock, which another may have at its disposal.
+    /// True when this viewer may set the scene's clock; false while another viewer controls it.
     bool controls() const;
     /// True when the server has nothing more to say about the newest view and all of it has arrived.
     bool is_complete() const;
-    /// What the server said last.
+    /// The server's last Status; `clock` has the present time.
     Status status() const;
     /// The scene clock as it should stand now.
     ClockState clock() const;
-    /// What the last picture was seen from; before the first one, where the scene begins.
+    /// The camera of the last picture; before the first one, the scene's start camera.
     Camera shown_camera() const;
     ClientStatistics statistics() const;
 
@@ -107,8 +109,8 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-/// What a viewer looks through until the user moves: the scene's first camera, its animation included; -1 where the
-/// scene has none (then `Welcome::start_camera`).
+/// The camera of the scene that a viewer looks through until the user moves: the first one, its animation included; -1
+/// where the scene has none (then `Welcome::start_camera`).
 inline int start_scene_camera(Welcome const& welcome) {
     return welcome.cameras.empty() ? -1 : 0;
 }

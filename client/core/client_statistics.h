@@ -5,7 +5,7 @@
 
 namespace framelet {
 
-/// What has happened since the session was opened.
+/// Counts and times since the viewer's first session was opened.
 struct ClientStatistics {
     double seconds = 0;
     std::uint64_t pictures = 0; ///< calls of `update_picture` that changed something
@@ -19,10 +19,10 @@ struct ClientStatistics {
     double insert_seconds = 0;
     double reconstruct_seconds = 0;
     double first_picture_seconds = -1; ///< from the first camera to the first picture; -1: not yet
-    double full_picture_seconds = -1; ///< until no pixel was bare any more
+    double full_picture_seconds = -1; ///< from the first camera until no pixel was bare any more; -1: not yet
     double round_trip_seconds = -1; ///< camera sent -> first batch seen from it received; smoothed
     double least_round_trip_seconds = -1;
-    double coverage = 0; ///< of the viewport now, [0, 1]
+    double coverage = 0; ///< share of the viewport that is covered now, [0, 1]
     std::uint64_t cached_framelets = 0;
     std::uint64_t cached_bytes = 0;
     std::uint64_t waiting_bytes = 0; ///< of batches that have been decoded, for the next picture
@@ -30,8 +30,8 @@ struct ClientStatistics {
     double server_samples_per_second = 0;
     double server_busy = 0; ///< the share of the last second that it had something to do, [0, 1]
     bool converged = false;
-    /// From when the camera of the last picture was set, or the moment that it shows was the present, until the picture
-    /// was seen; -1: it shows no new one.
+    /// Seconds from when the camera of the last picture was set, or the moment that it shows was the present, until the
+    /// picture was seen; -1: it shows nothing new.
     double photon_seconds = -1;
     double lag_seconds = 0; ///< by which the scene is shown late, as asked for; 0: it is not
     std::uint64_t reconnections = 0;

@@ -15,13 +15,13 @@ struct FrameEntry {
     double unix_seconds = 0; ///< when the picture was ready to be shown
     double scene_seconds = 0; ///< what the scene's clock stood at, as far as the client knew
     bool changed = false; ///< the picture differs from the one before
-    bool complete = false; ///< as good as it gets
+    bool complete = false; ///< the picture is as good as it gets
     std::uint64_t bytes = 0; ///< of batches, received since the start
     double cpu_seconds = 0; ///< of the client since its start, writing of pictures apart
     std::uint64_t samples = 0; ///< received since the start
     double photon_seconds = -1; ///< as `ClientStatistics` says
-    int scene_camera = -1; ///< that was looked through; -1: `camera`
-    Camera camera; ///< that was asked for
+    int scene_camera = -1; ///< camera of the scene that was looked through; -1: `camera`
+    Camera camera; ///< the one that was asked for
 };
 
 class FrameLog {
@@ -29,7 +29,7 @@ public:
     /// Throws InputError where the file cannot be written.
     explicit FrameLog(std::filesystem::path const& file);
 
-    /// The line can be read at once. Throws InputError where it cannot be written.
+    /// Writes a line, which can be read at once. Throws InputError where it cannot be written.
     void add(FrameEntry const& entry);
 
 private:

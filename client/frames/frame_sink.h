@@ -1,4 +1,4 @@
-// Where framelet-client puts what it shows: files, a video, another program. In: one picture a display frame.
+// A destination of what framelet-client shows: files, a video, another program. In: one picture a display frame.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ struct ShownFrame {
     Picture const& picture;
     bool changed; ///< differs from the frame before
     bool chosen; ///< by --output-times
-    double seconds; ///< since the run began, when it was shown
+    double seconds; ///< when it was shown, since the run began
 };
 
 class FrameSink {
@@ -25,11 +25,12 @@ public:
     virtual void show(ShownFrame const& frame) = 0;
     /// Waits until everything is written; nothing may be shown afterwards. Throws InputError where writing failed.
     virtual void finish() = 0;
-    /// After `finish`: a line for people about what was written; empty where the names of the files say it all.
+    /// A line for people about what was written, once `finish` has returned; empty where the names of the files say it
+    /// all.
     virtual std::string result() const { return {}; }
-    /// Nobody takes any more, for this reason, which is no failure; empty while somebody does.
+    /// The reason why nobody takes frames any more, which is no failure; empty while somebody does.
     virtual std::string end_reason() const { return {}; }
-    /// What its threads have cost so far. From any thread.
+    /// Processor seconds that its threads have taken so far. May be called from any thread.
     virtual double cpu_seconds() const = 0;
 };
 

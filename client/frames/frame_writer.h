@@ -28,7 +28,7 @@ public:
 
 private:
     std::string before_, after_;
-    int digits_ = -1; ///< at least so many; -1: no number
+    int digits_ = -1; ///< at least so many are written; -1: the name has no number
     char fill_ = ' ';
 };
 
@@ -63,15 +63,15 @@ private:
 
     FramePattern const pattern_;
     std::uint64_t frames_ = 0;
-    bool is_new_ = true; ///< what was added since the last frame that was taken
-    std::optional<Picture> last_; ///< of a pattern without number
+    bool is_new_ = true; ///< the picture has changed since the last frame that was taken
+    std::optional<Picture> last_; ///< the newest picture, where the pattern has no number
     std::atomic<double> cpu_seconds_ = 0;
-    std::filesystem::path newest_file_; ///< that was written; the writing thread's
+    std::filesystem::path newest_file_; ///< the newest that was written; used by the writing thread only
 
     mutable std::mutex mutex_; // guards what follows
     std::condition_variable changed_;
     std::deque<Frame> waiting_;
-    bool writes_; ///< what waits; else it is kept
+    bool writes_; ///< what waits is written; else it is kept
     bool stopping_ = false;
     std::optional<std::string> failure_;
 

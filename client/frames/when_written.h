@@ -1,4 +1,4 @@
-// When pictures are written.
+// The choice of when pictures are written.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@ namespace framelet {
 
 enum class WhenWritten : std::uint8_t {
     at_once,
-    /// As long as there is room for them: writing takes nothing from what is shown.
+    /// Pictures are kept until then as long as there is room for them: writing takes nothing from what is shown.
     at_the_end,
 };
 

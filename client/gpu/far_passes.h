@@ -18,8 +18,8 @@ public:
     /// Makes room for pictures of this size. Throws CanvasError where there is none.
     void set_size(Viewport viewport);
 
-    /// Draws over what is a hole in `depths` (1 / metres; -1 in holes). `colors`: alpha does not count; `target` is
-    /// that plane's. `figures`: a texel for each block, whose third number says how many holes it has.
+    /// Draws over the pixels that are holes in `depths` (1 / metres; -1 in holes). `colors`: alpha does not count;
+    /// `target` is that plane's. `figures`: a texel for each block, whose third number says how many holes it has.
     void fill(GlPlane const& colors, GlPlane const& depths, GlPlane const& figures, GlTarget const& target) const;
 
 private:
@@ -34,10 +34,10 @@ private:
     GlCount& count_;
     RenderPass pull_pixels_, pull_, block_mean_, pull_means_, push_means_, push_, fill_;
     Viewport viewport_{0, 0};
-    std::vector<Cells> pulled_; ///< of 2, 4 and 8 pixels
-    std::vector<Cells> means_; ///< of 16, 32 ... pixels, to a single one
-    std::vector<Cells> pushed_means_; ///< without nothing; of all but the coarsest
-    std::vector<Cells> pushed_; ///< of 8, 4 and 2 pixels, with a border of one cell
+    std::vector<Cells> pulled_; ///< of 2, 4 and 8 pixels, each from finer ones
+    std::vector<Cells> means_; ///< of blocks (16 pixels) and of ever larger squares of them, to a single one
+    std::vector<Cells> pushed_means_; ///< the same but for the coarsest, with no cell left that is nothing
+    std::vector<Cells> pushed_; ///< of 8, 4 and 2 pixels, filled from coarser ones, with a border of one cell
 };
 
 } // namespace framelet

@@ -23,9 +23,9 @@ namespace framelet {
 namespace {
 
 constexpr int side = WarpedBlock::side;
-constexpr std::size_t words_of_report = 4; ///< of each of the two planes
+constexpr std::size_t words_of_report = 4; ///< that each of the two planes has for a block
 
-/// All that has the size of a picture.
+/// All planes, targets and buffers whose size is that of a picture.
 struct Planes {
     Planes(Viewport viewport, int columns, int rows, GlCount& count)
         : colors(TexelFormat::color, viewport.width, viewport.height, count),
@@ -47,14 +47,14 @@ struct Planes {
     }
 
     GlPlane colors, depths, claims, winners; ///< as paint.frag writes them
-    GlPlane picture; ///< filtered
+    GlPlane picture; ///< the picture, filtered
     GlPlane block_claims, block_figures; ///< as report.frag writes them
     GlTarget painted, filled, filtered, depths_alone, reported;
     GlName report_buffer;
     std::vector<std::uint32_t> report_words; ///< claims of all blocks, figures of all blocks
 };
 
-/// What is known of a block since it was painted last.
+/// The report on a block from when it was painted last.
 class ReportedBlock {
 public:
     ReportedBlock(std::vector<std::uint32_t> const& words, std::size_t index)
@@ -63,8 +63,9 @@ public:
 
     BlockReport report() const { return {static_cast<std::int32_t>(figures_[2]), figures_[3]}; }
 
-    /// As `paint_warped_block` notes it: of the first patches where enough of their groups shows. Of what has no bit of
-    /// its own all is noted where something of it showed.
+    /// Notes which patches showed, as `paint_warped_block` does: of the first `most_counted` those of whose group
+    /// enough shows, of the others those of which something showed. Patches without a bit of their own are noted all
+    /// together.
     void note_shown(std::span<PatchView const> patches) const {
         for (std::uint32_t word = 0; word < words_of_report; ++word) {
             for (std::uint32_t left = claims_[word]; left != 0; left &= left - 1) {
@@ -120,12 +121,12 @@ struct GpuCanvas::Impl {
     GlTable lists{TexelFormat::number, 1, count};
     GlTable splats{TexelFormat::four_numbers, 4, count};
     GlTable blocks{TexelFormat::four_numbers, 4, count};
-    /// By splat: found by one pass and by the next.
+    /// A number for each splat, 1 where it is hidden: as the first pass finds it, and as the second one does.
     std::array<GlPlane, 2> hidden;
     std::array<GlTarget, 2> hidden_targets;
     std::optional<Planes> planes;
-    bool is_asked_for = false; ///< the picture of these planes
-    GlPlane kept; ///< that of the planes before, which may be on the display
+    bool is_asked_for = false; ///< the picture of these planes has been asked for
+    GlPlane kept; ///< the picture of the planes before, which may be on the display
     void const* owner = nullptr;
     Viewport viewport{0, 0};
     int columns = 0, rows = 0;
@@ -172,7 +173,7 @@ struct GpuCanvas::Impl {
         blocks.upload(table.blocks);
     }
 
-    /// Which splats are not to show.
+    /// Finds which splats are mostly hidden, so that nothing of them is to show.
     void find_hidden() {
         auto const count_of_splats = static_cast<int>(table.splat_count());
         auto const height = static_cast<unsigned>((count_of_splats + table_width - 1) / table_width);
@@ -205,7 +206,8 @@ struct GpuCanvas::Impl {
         glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, count_of_blocks);
     }
 
-    /// What is not to be moved has its colours in memory. Blocks beside each other go as one.
+    /// Uploads the colours of blocks in place: what is not to be moved has them in memory. Blocks beside each other go
+    /// as one.
     void upload_in_place(CanvasJobs const& jobs) const {
         glBindTexture(GL_TEXTURE_2D, planes->colors.texture());
         glPixelStorei(GL_UNPACK_ROW_LENGTH, viewport.width);
@@ -230,7 +232,7 @@ struct GpuCanvas::Impl {
         glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
     }
 
-    /// The card writes it to a buffer while it goes on with the picture.
+    /// Begins to report what showed: the card writes that to a buffer while it goes on with the picture.
     void begin_report() {
         report_pass.begin(planes->reported, {planes->claims.texture(), planes->winners.texture()});
         report_pass.set("viewport", viewport.width, viewport.height);
@@ -357,7 +359,8 @@ std::size_t GpuCanvas::made_objects() const {
 }
 
 std::size_t GpuCanvas::memory_bytes() const {
-    constexpr std::size_t bytes_of_pixel = 4 + 4 + 16 + 4 + 4 + 2 * 16 / 3; // the cells are a third of a pixel, twice
+    // The cells of the far passes are a third as many as the pixels, 16 bytes each, and are there twice.
+    constexpr std::size_t bytes_of_pixel = 4 + 4 + 16 + 4 + 4 + 2 * 16 / 3;
     return impl_->atlas.memory_bytes() + bytes_of_pixel * static_cast<std::size_t>(impl_->viewport.width) *
                                              static_cast<std::size_t>(impl_->viewport.height);
 }

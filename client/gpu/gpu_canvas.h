@@ -23,18 +23,18 @@ public:
     bool begin(void const* owner, bool is_new, Viewport viewport) override;
     void paint(CanvasJobs const& jobs, std::vector<BlockReport>& reports) override;
 
-    /// The picture, rows from the top; 0 before there is one. It stays as it is when pictures get another size, until
-    /// one of that size has been asked for and they get yet another.
+    /// The texture of the picture, rows from the top; 0 before there is one. It stays as it is when pictures get
+    /// another size, until one of that size has been asked for and they get yet another.
     std::uint32_t texture();
     Viewport size() const;
-    /// Copies it to memory; waits for the card. `picture` gets its size.
+    /// Copies the picture to memory; waits for the card. `picture` gets its size.
     void read(Picture& picture) const;
     /// Inverse depths of what was painted last, 1 / metres, `hole_depth` in holes; for tests.
     void read_inverse_depths(std::vector<float>& out) const;
 
     /// Objects of OpenGL that it has made since it began.
     std::size_t made_objects() const;
-    /// On the card, about.
+    /// Bytes that it takes on the card, about.
     std::size_t memory_bytes() const;
 
 private:

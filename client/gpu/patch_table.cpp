@@ -30,7 +30,7 @@ std::uint32_t pair(int low, int high) {
     return static_cast<std::uint32_t>(low) | static_cast<std::uint32_t>(high) << 16;
 }
 
-/// Where a patch is.
+/// Writes where a patch lies: its inverse depth, and its maps from the picture to the grid.
 void write_maps(WarpPatch const& patch, std::uint32_t* to) {
     to[0] = word(patch.inverse_depth);
     to[1] = word(patch.inverse_depth_dx);
@@ -43,7 +43,7 @@ void write_maps(WarpPatch const& patch, std::uint32_t* to) {
     }
 }
 
-/// Which samples it has.
+/// Writes which samples a patch has.
 void write_samples(WarpPatch const& patch, GridPart const& part, SampleAtlas::Position position, std::uint32_t* to) {
     std::uint32_t const flags = (patch.hides ? hides_flag : 0) | (patch.has_ends ? ends_flag : 0);
     to[13] = (position.x + static_cast<std::uint32_t>(part.column)) |
@@ -52,7 +52,7 @@ void write_samples(WarpPatch const& patch, GridPart const& part, SampleAtlas::Po
     std::ranges::copy(part.ends_before, to + 16);
 }
 
-/// The part of a box in a block.
+/// The part of a box that lies in a block: four bits each of first column, first row, last column, last row.
 std::uint32_t local_box(PixelRect const& box, BlockJob const& job) {
     auto const within = [](int value) { return static_cast<std::uint32_t>(std::clamp(value, 0, side - 1)); };
     int const left = job.column * side;
@@ -66,7 +66,8 @@ struct Parts {
     int first = 0, last = -1;
 };
 
-/// `at`: from the centre of the block's first pixel.
+/// The parts that a splat reaches in one direction. `at`: its middle, pixels from the centre of the block's first
+/// pixel. `spacing`: how far it reaches, pixels.
 Parts parts_of(float at, float spacing) {
     auto const first = static_cast<int>(std::max(std::ceil(at - spacing), 0.0f));
     auto const last = static_cast<int>(std::min(std::floor(at + spacing), side - 1.0f));
@@ -86,7 +87,7 @@ std::uint32_t leader_of(std::int32_t group, std::uint32_t index, std::vector<std
     return leaders.back();
 }
 
-/// Numbers the patches of all squares of which one is painted.
+/// Numbers the patches of all squares of which at least one patch is painted.
 void PatchTable::find_used(CanvasJobs const& jobs) {
     first_patch_.resize(jobs.plans.size());
     for (std::size_t slot = 0; slot < jobs.plans.size(); ++slot) {
@@ -119,7 +120,7 @@ void PatchTable::find_used(CanvasJobs const& jobs) {
     patches.resize(words_of_patch * next);
 }
 
-/// Of patches that have samples in no square's grid.
+/// Finds the grids of patches that have their samples in no square's grid.
 void PatchTable::find_small(CanvasJobs const& jobs) {
     auto const is_small = [](WarpPlan const& plan, WarpPatch const& patch) {
         return !patch.is_outlier && !plan.grid_part(patch);
@@ -143,7 +144,7 @@ void PatchTable::find_small(CanvasJobs const& jobs) {
     }
 }
 
-/// The patches of one of the squares that are used.
+/// Writes the patches of one of the squares that are used.
 void PatchTable::write_square(CanvasJobs const& jobs, SampleAtlas const& atlas, std::size_t index) {
     auto const [slot, square, samples] = grids_[index];
     WarpPlan const& plan = jobs.plans[slot];
@@ -163,7 +164,7 @@ void PatchTable::write_square(CanvasJobs const& jobs, SampleAtlas const& atlas, 
     }
 }
 
-/// The outliers that reach into the block, which is the row's last. Returns where their lists begin.
+/// Adds the outliers of a patch that reach into the block, which is the row's last. Returns where their lists begin.
 std::uint32_t PatchTable::add_splats(BlockJob const& job, PatchView const& view, std::uint32_t number, Row& row) {
     WarpPatch const& patch = *view.patch;
     std::span<Splat const> const splats(view.splats + patch.first_splat, patch.splats);
@@ -234,7 +235,7 @@ void PatchTable::write_row(CanvasJobs const& jobs, RowJobs const& from, Row& row
     }
 }
 
-/// All rows, one after the other.
+/// Joins the tables of all rows, one after the other.
 void PatchTable::join(std::span<Row const> rows) {
     entries.clear();
     lists.clear();

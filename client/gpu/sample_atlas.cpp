@@ -51,7 +51,7 @@ SampleAtlas::Position SampleAtlas::position(std::size_t slot, std::uint32_t squa
     return position_of(page.number, page.size);
 }
 
-/// What this picture has not used makes room.
+/// Frees the pages that this picture has not used.
 void SampleAtlas::evict() {
     for (auto& slot : pages_) {
         for (Page& page : slot) {
@@ -63,7 +63,7 @@ void SampleAtlas::evict() {
     }
 }
 
-/// To twice as many textures; what was in them has to be uploaded once more.
+/// Grows to twice as many layers; what was in them has to be uploaded once more.
 void SampleAtlas::grow() {
     GLint most = 0;
     glGetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &most);
@@ -88,7 +88,7 @@ void SampleAtlas::grow() {
     }
 }
 
-/// The number of a free page.
+/// Takes a free page of this size, and returns its number.
 std::int32_t SampleAtlas::take(std::size_t size) {
     auto& free = free_[size];
     if (free.empty()) {
@@ -109,7 +109,7 @@ std::int32_t SampleAtlas::take(std::size_t size) {
     return number;
 }
 
-/// Its page, which it may not have been uploaded to.
+/// The page of a grid, taken for it where it has none; the grid may not have been uploaded to it yet.
 SampleAtlas::Page& SampleAtlas::prepare(Grid const& grid) {
     if (pages_.size() <= grid.slot) {
         pages_.resize(grid.slot + 1);

@@ -14,17 +14,17 @@ namespace framelet {
 
 class SampleAtlas {
 public:
-    static constexpr int layer_side = 1024; ///< of its textures, samples; every card has at least that
-    static constexpr int most_layers = 256; ///< likewise: 1 GB
+    static constexpr int layer_side = 1024; ///< side of each layer of the texture, samples; every card can have that
+    static constexpr int most_layers = 256; ///< every card can have so many: 1 GB
 
-    /// Where a grid's first sample lies.
+    /// The position of a grid's first sample in the texture.
     struct Position {
         std::uint32_t x = 0, y = 0, layer = 0;
     };
 
     explicit SampleAtlas(GlCount& count) : count_(count) {}
 
-    /// Nothing is in it any more; its memory stays.
+    /// Empties the atlas; its memory stays.
     void clear();
     /// The grid of a square of a slot's plan.
     struct Grid {
@@ -32,7 +32,7 @@ public:
         std::uint32_t square = 0;
         MergedSquare* samples = nullptr;
     };
-    /// What is in no square's grid, 16 samples along a side at most, `side` from one row to the next.
+    /// Samples that are in no square's grid, 16 along a side at most, `side` from one row to the next.
     struct SmallGrid {
         PackedSample const* samples = nullptr;
         int side = 0;
@@ -41,9 +41,9 @@ public:
     /// picture. Other grids may be evicted: nobody has asked for them for this picture. Throws CanvasError where
     /// there is no room.
     void update(std::span<Grid const> grids, std::span<SmallGrid const> small_ones);
-    /// Of one of the last update's grids.
+    /// The position of one of the last update's grids.
     Position position(std::size_t slot, std::uint32_t square) const;
-    /// Of its small ones, by number.
+    /// The position of one of the last update's small grids, by number.
     Position small_position(std::size_t number) const { return position_of(small_pages_[number], 0); }
 
     std::uint32_t texture() const { return texture_.get(); }
@@ -52,9 +52,9 @@ public:
 private:
     struct Page {
         std::int32_t number = -1; ///< -1: none
-        std::uint8_t size = 0; ///< of which: an index of `free_`
+        std::uint8_t size = 0; ///< an index of `free_`
         bool is_uploaded = false;
-        std::uint64_t picture = 0; ///< in which it was used last
+        std::uint64_t picture = 0; ///< number of the one in which it was used last
     };
 
     Page& prepare(Grid const& grid);
@@ -74,7 +74,7 @@ private:
     std::uint64_t picture_ = 0;
     std::array<std::vector<std::int32_t>, sizes> free_; ///< numbers of pages: layer * pages of a layer + page
     std::vector<std::vector<Page>> pages_; ///< by slot and square
-    std::vector<std::int32_t> small_pages_; ///< of the smallest size
+    std::vector<std::int32_t> small_pages_; ///< numbers of pages of the smallest size
 };
 
 } // namespace framelet

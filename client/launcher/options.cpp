@@ -27,7 +27,8 @@ ProgramNotes notes() {
         {"framelet-server", "framelet-viewer", "framelet-client"}};
 }
 
-/// As it was written, for another program. `--server-config` and the like stand for that program's `--config`.
+/// Passes the options of a group on to another program as they were written. `--server-config` and the like stand for
+/// that program's `--config`.
 void pass_on(CLI::App const& app, std::string const& group, std::vector<std::string>& to) {
     for (CLI::Option const* const option : options_of_group(app, group)) {
         std::string const name = option->get_name().ends_with("-config") ? "--config" : option->get_name();
@@ -37,8 +38,8 @@ void pass_on(CLI::App const& app, std::string const& group, std::vector<std::str
     }
 }
 
-/// Of those of a server what is for its scene alone, as a name of one of its clips, or cannot be had twice, as a port
-/// or a file that is written, is left out.
+/// The options of a server without those for its scene alone, as a name of one of its clips, and those that cannot be
+/// had twice, as a port or a file that is written.
 std::vector<std::string> kept_for_other_scenes(std::vector<std::string> const& options) {
     std::vector<std::string> out;
     for (std::size_t i = 0; i < options.size(); ++i) {

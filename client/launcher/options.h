@@ -7,7 +7,7 @@
 
 namespace framelet {
 
-/// What the two programs are to be started with.
+/// Arguments with which the two programs are to be started.
 struct ViewOptions {
     std::string scene;
     std::vector<std::string> server; ///< all but the port and the scene

@@ -26,7 +26,7 @@ namespace {
 
 namespace asio = boost::asio;
 
-/// How long the server may take to tell its viewers that it ends.
+/// Time that the programs may take to end: the server has to tell its viewers.
 constexpr std::chrono::seconds patience(5);
 
 class View {
@@ -54,7 +54,8 @@ public:
 
 private:
     void start_viewer(std::string const& address) {
-        // While its other end is open the server is needed: the viewer closes it where it opens another scene.
+        // While the other end of the pipe is open the server is needed: the viewer closes it where it opens another
+        // scene.
         std::array<int, 2> needed{};
         if (::pipe2(needed.data(), O_CLOEXEC) != 0) {
             throw std::system_error(errno, std::generic_category(), "cannot make a pipe");
@@ -90,7 +91,7 @@ private:
         });
     }
 
-    /// False when both have ended.
+    /// Ends both programs where one has ended. False when both have.
     bool look_after_children() {
         bool const serving = server_->process().running();
         bool const viewing = viewer_ && viewer_->running();

@@ -53,7 +53,7 @@ Child::Child(std::filesystem::path const& program, std::vector<std::string> cons
     }
     if (pid_ == 0) {
         ::prctl(PR_SET_PDEATHSIG, SIGTERM);
-        if (::getppid() != parent) { // it has ended before that
+        if (::getppid() != parent) { // the parent has ended before that
             ::_exit(1);
         }
         if (files.input) {
@@ -68,7 +68,7 @@ Child::Child(std::filesystem::path const& program, std::vector<std::string> cons
         if (files.is_alone) {
             ::close_range(STDERR_FILENO + 1, ~0u, CLOSE_RANGE_CLOEXEC);
         }
-        ::signal(SIGPIPE, SIG_DFL); // whatever this program makes of it
+        ::signal(SIGPIPE, SIG_DFL); // whatever this program does on it
         ::execv(program.c_str(), argv.data());
         ::_exit(127);
     }

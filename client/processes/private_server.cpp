@@ -18,10 +18,10 @@ namespace {
 
 constexpr char const* program = "framelet-server";
 
-/// How long it may take to end when it is told to; then it is killed.
+/// Time that the server may take to end when it is told to; then it is killed.
 constexpr std::chrono::seconds patience(2);
 
-/// Of a line "loading PERCENT% STAGE".
+/// The progress that a line "loading PERCENT% STAGE" tells; nothing of other lines.
 std::optional<LoadProgress> load_progress_of(std::string const& line) {
     constexpr std::string_view loading = "loading ";
     std::size_t const end = line.find("% ");
@@ -70,7 +70,7 @@ PrivateServer::~PrivateServer() {
     read_to_the_end();
 }
 
-/// Of one that has ended.
+/// Waits until all that a server has printed is read, once it has ended.
 void PrivateServer::read_to_the_end() {
     if (reader_.joinable()) {
         reader_.join(); // nobody has the other end of the pipe any more

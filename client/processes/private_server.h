@@ -14,13 +14,13 @@
 
 namespace framelet {
 
-/// Where its complaints go.
+/// The place where the server's complaints go.
 enum class ServerErrors {
-    shown, ///< where this program's go; its progress too, where that is a terminal
-    kept, ///< there as well, line by line, and the last of them is kept; so is how far loading has come
+    shown, ///< to this program's standard error; its progress too, where that is a terminal
+    kept, ///< there as well, line by line, and the last of them is kept; so is the progress of loading
 };
 
-/// As framelet-server tells it.
+/// Progress of loading, as framelet-server tells it.
 struct LoadProgress {
     std::string stage;
     int percent = 0; ///< of the stage
@@ -34,18 +34,18 @@ public:
     /// std::system_error.
     PrivateServer(std::filesystem::path scene, std::vector<std::string> const& options, ServerErrors errors,
                   std::function<void()> on_news);
-    /// Ends it, and waits for that.
+    /// Ends the server, and waits until it has ended.
     ~PrivateServer();
     PrivateServer(PrivateServer const&) = delete;
     PrivateServer& operator=(PrivateServer const&) = delete;
 
     std::filesystem::path const& scene() const { return scene_; }
     Child& process() { return *process_; }
-    /// Nothing before it says so, and of one whose errors are shown.
+    /// The progress of loading; nothing before the server tells it, and of one whose errors are shown.
     std::optional<LoadProgress> progress() const;
-    /// HOST:PORT once it listens.
+    /// The server's address, HOST:PORT, once it listens.
     std::optional<std::string> address() const;
-    /// Of one that has ended: why, in one line; of one whose errors are shown, how.
+    /// The reason why a server that has ended did so, one line; of one whose errors are shown, how it ended.
     std::string end_reason();
 
 private:

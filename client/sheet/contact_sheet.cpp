@@ -44,7 +44,7 @@ Picture contact_sheet(std::span<ShownAndStill const> pairs) {
 double mean_difference(Picture const& a, Picture const& b) {
     FRAMELET_CHECK(is_alike(a, b) && !a.rgba.empty());
     std::uint64_t sum = 0;
-    for (std::size_t i = 0; i < a.rgba.size(); ++i) { // that of alpha is 0
+    for (std::size_t i = 0; i < a.rgba.size(); ++i) { // the difference of alpha is 0
         sum += static_cast<std::uint64_t>(std::abs(a.rgba[i] - b.rgba[i]));
     }
     return static_cast<double>(sum) / (255.0 * 0.75 * static_cast<double>(a.rgba.size()));

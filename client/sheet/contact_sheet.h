@@ -9,14 +9,14 @@ namespace framelet {
 
 struct ShownAndStill {
     Picture shown;
-    Picture still; ///< what that comes to once it stands still
+    Picture still; ///< what the same view comes to once all stands still
 };
 
 /// The pairs side by side, what was shown above its still, with white lines between. At least one pair; all pictures of
 /// one size.
 Picture contact_sheet(std::span<ShownAndStill const> pairs);
 
-/// Of two pictures of one size: the mean over pixels and colours, 1 being that of black and white.
+/// The difference of two pictures of one size: the mean over pixels and colours, 1 being that of black and white.
 double mean_difference(Picture const& a, Picture const& b);
 
 } // namespace framelet

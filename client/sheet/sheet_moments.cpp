@@ -11,10 +11,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// What the view comes to with the clock standing there.
+/// The picture that the view comes to with the clock standing at that moment. Throws ConnectionError.
 Picture still_of(ClientCore& core, ShownMoment const& moment, Viewport viewport, bool sets_clock) {
     constexpr std::chrono::seconds patience(60);
-    // What comes meanwhile need not be painted: the server may want this machine's processors for it.
+    // The pictures meanwhile need not be painted: the server may want this machine's processors for what it renders.
     constexpr std::chrono::milliseconds look(200);
     if (sets_clock) {
         core.request_clock({ClockRequest::time | ClockRequest::playing, {moment.time, false, 1}});
@@ -27,7 +27,7 @@ Picture still_of(ClientCore& core, ShownMoment const& moment, Viewport viewport,
         if (auto const reason = core.end_reason()) {
             throw ConnectionError(*reason);
         }
-        // What the server said of the moment before may still be on its way.
+        // The server's Status of the moment before may still be on its way.
         bool const stands = !sets_clock || core.status().clock.time == moment.time;
         if (stands && core.is_complete()) {
             core.update_picture(out, changed, Clock::now()); // what came since

@@ -1,5 +1,5 @@
-// What a run of framelet-client showed at some moments, and the stills of these, which it waits for when the run is
-// over. In: frames, then the session. Out: pairs for a contact sheet.
+// Keeps what a run of framelet-client showed at some moments, and gets the stills of these, for which it waits when the
+// run is over. In: frames, then the session. Out: pairs for a contact sheet.
 #pragma once
 
 #include <span>
@@ -10,10 +10,10 @@
 
 namespace framelet {
 
-/// What a frame was of.
+/// The camera and the scene time of a frame.
 struct ShownMoment {
     Camera camera;
-    int scene_camera = -1; ///< as of `ClientCore::set_view`
+    int scene_camera = -1; ///< as in `ClientCore::set_view`
     SceneTime time = 0;
 };
 
@@ -24,17 +24,17 @@ public:
     /// Moments after a quarter, a half and three quarters of a run of that length.
     explicit SheetMoments(double run_seconds) : run_seconds_(run_seconds) {}
 
-    /// Of each frame, so long after the run began: keeps the first one at each of the moments.
+    /// Notes a frame that was shown `seconds` after the run began: keeps the first one at each of the moments.
     void note(double seconds, Picture const& shown, ShownMoment const& of);
 
-    /// Asks the server for each moment, standing, and waits for what it comes to; the clock goes on afterwards where
-    /// it was. Throws InputError where another viewer controls the clock that has to be set for it, ConnectionError
-    /// where the session ends or the pictures are not complete within a minute each.
+    /// Asks the server for each moment with the clock standing, and waits for its still; the clock goes on afterwards
+    /// where it was. Throws InputError where another viewer controls the clock that has to be set for it,
+    /// ConnectionError where the session ends or the pictures are not complete within a minute each.
     void take_stills(ClientCore& core);
 
-    /// What `take_stills` has made; empty where the run ended before the first moment.
+    /// The pairs, whose stills `take_stills` has made; empty where the run ended before the first moment.
     std::span<ShownAndStill const> pairs() const { return pairs_; }
-    /// The mean of theirs, as `mean_difference`; -1 of none.
+    /// The mean of all pairs' `mean_difference`; -1 where there are none.
     double difference() const;
 
 private:

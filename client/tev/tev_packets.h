@@ -1,5 +1,5 @@
-// What the image viewer tev is told through its port: in, names and pictures; out, packets as src/Ipc.cpp of tev reads
-// them. Each begins with its length, 32 bits, and its kind; numbers are little-endian, texts end with a zero byte.
+// Packets for the port of the image viewer tev. In: names and pictures. Out: packets as src/Ipc.cpp of tev reads them.
+// Each begins with its length, 32 bits, and its kind; numbers are little-endian, texts end with a zero byte.
 #pragma once
 
 #include <string>
@@ -9,10 +9,11 @@
 
 namespace framelet {
 
-/// An empty image of this size with the channels R, G and B, which tev then shows. `name` without zero bytes.
+/// The packet that makes an empty image of this size with the channels R, G and B, which tev then shows. `name` without
+/// zero bytes.
 std::string tev_create_image(std::string const& name, Viewport size);
 
-/// All of an image that was created. tev takes its values for linear light.
+/// The packet that replaces all of an image that was created. tev takes its values for linear light.
 std::string tev_update_image(std::string const& name, Picture const& picture);
 
 } // namespace framelet

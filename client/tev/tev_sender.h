@@ -25,7 +25,7 @@ public:
     TevSender(ServerAddress const& tev, std::string const& image_name, Viewport size);
     ~TevSender() override;
 
-    /// Of pictures that come while one is on its way only the newest is sent.
+    /// Sends the picture where it has changed; of those that come while one is on its way, only the newest.
     void show(ShownFrame const& frame) override;
     /// Waits until the last picture is sent.
     void finish() override;

@@ -1,4 +1,4 @@
-// What FFmpeg's libraries allocate, freed by itself.
+// Pointers to what FFmpeg's libraries allocate, freed by themselves.
 #pragma once
 
 #include <memory>

@@ -9,7 +9,7 @@ namespace framelet {
 
 namespace {
 
-/// Pictures of that size that are kept until they are written.
+/// Number of pictures of that size, at most, that are kept until they are written.
 std::size_t most_kept(Viewport size) {
     constexpr std::size_t most_bytes = std::size_t{256} << 20;
     return std::max(most_bytes /

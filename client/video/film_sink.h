@@ -1,5 +1,5 @@
-// What framelet-client shows, as a film. In: frames. Out: a file, written when the run is over as long as there is room
-// to keep the pictures, so that nothing is taken from what is shown.
+// Writes what framelet-client shows as a film. In: frames. Out: a file, written when the run is over as long as there
+// is room to keep the pictures, so that nothing is taken from what is shown.
 #pragma once
 
 #include <filesystem>
@@ -26,7 +26,7 @@ private:
 
     Recorder recorder_;
     std::optional<double> begin_; ///< when the first picture was shown: until then there is nothing to see
-    double seconds_ = 0; ///< of the newest frame, since then
+    double seconds_ = 0; ///< when the newest frame was shown, since `begin_`
 };
 
 } // namespace framelet

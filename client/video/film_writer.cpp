@@ -44,11 +44,11 @@ struct Setting {
     char const* value;
 };
 
-/// Half the processor time of "superfast", which is what the picture and its server have left, for about as many bytes
-/// and a decibel less of some 50.
+/// Settings of H.264. This preset takes half the processor time of "superfast", which is what the picture and its
+/// server leave, for about as many bytes and a decibel less of some 50.
 constexpr Setting mp4_settings[] = {{"preset", "ultrafast"}, {"crf", "18"}};
-/// A picture of 1280x720 takes 50 ms of a core; 4 takes twice as long for a twentieth fewer bytes (cwebp -m, two
-/// scenes).
+/// Settings of WebP. A picture of 1280x720 takes 50 ms of a core; compression level 4 takes twice as long for a
+/// twentieth fewer bytes (cwebp -m, two scenes).
 constexpr Setting webp_settings[] = {{"compression_level", "2"}, {"quality", "80"}};
 
 struct FilmFormat {
@@ -56,15 +56,14 @@ struct FilmFormat {
     char const* encoder;
     AVPixelFormat pixels;
     int side; ///< width and height are a multiple of it
-    int ticks; ///< a second: in what its times are counted
+    int ticks; ///< units a second in which its times are counted
     std::span<Setting const> settings;
 };
 
 constexpr FilmFormat formats[] = {
     {".mp4", "libx264", AV_PIX_FMT_YUV420P, 2, 90000,
      mp4_settings}, // colour at half the resolution, as all players want it
-    {".webp", "libwebp_anim", AV_PIX_FMT_RGB32, 1, 1000,
-     webp_settings}, // its encoder makes what colours it likes of that
+    {".webp", "libwebp_anim", AV_PIX_FMT_RGB32, 1, 1000, webp_settings}, // its encoder converts the colours itself
 };
 
 FilmFormat const& format_of(fs::path const& file) {
@@ -74,7 +73,7 @@ FilmFormat const& format_of(fs::path const& file) {
     return *found;
 }
 
-/// Each picture with its own time, so that the film runs as what was shown did.
+/// A film in which each picture has its own time, so that it runs as what was shown did.
 class Film final : public FilmWriter {
 public:
     explicit Film(fs::path file) : path_(std::move(file)), format_(format_of(path_)) { av_log_set_level(AV_LOG_QUIET); }
@@ -141,7 +140,7 @@ private:
         check(avcodec_parameters_from_context(stream_->codecpar, &c), "encode");
         check(avio_open(&file->pb, path_.c_str(), AVIO_FLAG_WRITE), "write");
         AVDictionary* options = nullptr;
-        av_dict_set(&options, "loop", "0", 0); // for ever; what knows no such option leaves it
+        av_dict_set(&options, "loop", "0", 0); // repeated for ever; formats without this option ignore it
         int const written = avformat_write_header(file, &options);
         av_dict_free(&options);
         check(written, "write");
@@ -155,12 +154,12 @@ private:
     int whole_side(int length) const { return std::max(length - length % format_.side, format_.side); }
 
     void scale(Picture const& picture) {
-        // Of a side that is odd the last line is left out, not squeezed in.
+        // The last line of a side that is odd is left out, not squeezed in.
         bool const is_cropped =
             whole_side(picture.width) == frame_->width && whole_side(picture.height) == frame_->height;
         int const width = is_cropped ? frame_->width : picture.width;
         int const height = is_cropped ? frame_->height : picture.height;
-        // The one of before where it is for these sizes.
+        // The scaler of before is used again where it is for these sizes.
         scaler_.reset(sws_getCachedContext(scaler_.release(), width, height, AV_PIX_FMT_RGBA, frame_->width,
                                            frame_->height, format_.pixels, SWS_BILINEAR, nullptr, nullptr, nullptr));
         FRAMELET_CHECK(scaler_);
@@ -192,7 +191,7 @@ private:
     AvPicture frame_{av_frame_alloc()};
     AvData packet_{av_packet_alloc()};
     AvScaler scaler_;
-    AVStream* stream_ = nullptr; ///< the file's
+    AVStream* stream_ = nullptr; ///< owned by the file
 };
 
 } // namespace

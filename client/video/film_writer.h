@@ -9,26 +9,27 @@
 
 namespace framelet {
 
-/// Where the pictures go. All calls come from one thread, and may take long.
+/// The destination of a film's pictures. All calls come from one thread, and may take long.
 class FilmWriter {
 public:
     virtual ~FilmWriter() = default;
-    /// `seconds` since the film began, never less than the time before. Pictures of other sizes than the first are
-    /// scaled to it. Throws InputError, one line.
+    /// Adds a picture that is shown `seconds` after the film began, never less than the time before. Pictures of other
+    /// sizes than the first are scaled to it. Throws InputError, one line.
     virtual void add(Picture const& picture, double seconds) = 0;
-    /// After the last one. Throws likewise.
+    /// Completes the film after its last picture. Throws InputError, one line.
     virtual void finish() = 0;
     /// The file, or the folder of many.
     virtual std::filesystem::path path() const = 0;
 };
 
-/// Whether a file of that name is a film: .mp4 or .webp.
+/// True where a file of that name is a film: .mp4 or .webp.
 bool is_film_name(std::filesystem::path const& file);
 
-/// Whether the program was built with the libraries for such a film, and they can make it.
+/// True where the program was built with the libraries for such a film, and they can make it.
 bool can_write_film(std::filesystem::path const& file);
 
-/// What `can_write_film` says can be written; throws InputError of others. The file is made with the first picture.
+/// Makes a writer of what `can_write_film` says can be written; throws InputError of others. The file is made with the
+/// first picture.
 std::unique_ptr<FilmWriter> make_film_writer(std::filesystem::path const& file);
 
 } // namespace framelet

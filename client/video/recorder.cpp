@@ -112,9 +112,9 @@ void Recorder::run() {
 
 namespace {
 
-/// Of the film; what is left out is none of it.
+/// The film's pictures a second, as text; those that are left out do not count.
 std::string rate_text(Recorder::Progress const& progress) {
-    constexpr double least_seconds = 1; // before that it would jump about
+    constexpr double least_seconds = 1; // before that the rate would jump about
     if (progress.seconds < least_seconds) {
         return "";
     }

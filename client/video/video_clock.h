@@ -1,5 +1,5 @@
-// At what places of a video of constant rate the pictures come that were shown when they were ready. In: times. Out:
-// how often the picture before is repeated, and whether a place is left for the new one.
+// Gives pictures that were shown when they were ready their places in a video of constant rate. In: times. Out: how
+// often the picture before is repeated, and whether a place is left for the new one.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ struct PictureRate {
     int pictures = 1;
     int seconds = 1;
 
-    /// The nearest one of whole thousandths. `rate`: 0.1 to 1000.
+    /// The nearest rate of whole thousandths of a picture a second. `rate`: 0.1 to 1000.
     static PictureRate of(double rate) {
         int const thousandths = static_cast<int>(std::lround(rate * 1000));
         int const divisor = std::gcd(thousandths, 1000);
@@ -30,13 +30,13 @@ public:
     explicit VideoClock(PictureRate rate) : rate_(rate.per_second()) {}
 
     struct Places {
-        std::uint64_t before; ///< of the picture shown until now
+        std::uint64_t before; ///< so many repeat the picture shown until now
         bool own; ///< there is one for the new picture
         bool operator==(Places const&) const = default;
     };
 
-    /// Of a picture that is shown from `seconds` on. It gets the place nearest to that, so that being shown a little
-    /// early or late changes nothing. Time does not go back.
+    /// The places of a picture that is shown from `seconds` on. It gets the one nearest to that, so that being shown a
+    /// little early or late changes nothing. Time does not go back.
     Places show(double seconds) {
         auto const place = static_cast<std::uint64_t>(std::llround(std::max(seconds, 0.0) * rate_));
         if (place < next_) {

@@ -77,7 +77,7 @@ void VideoWriter::throw_if_failed() const {
 
 void VideoWriter::run() {
     YuvMatrix const matrix = yuv_matrix(size_);
-    std::string picture; // of before anything was shown: black
+    std::string picture; // as bytes; black before anything was shown
     encode_y4m_picture(Picture(size_.width, size_.height), matrix, picture);
     std::unique_lock lock(mutex_, std::defer_lock);
     try {

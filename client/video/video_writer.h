@@ -17,8 +17,8 @@
 
 namespace framelet {
 
-/// YUV4MPEG2. The video is as long as the run is, whatever the reader's speed: pictures are repeated where none was
-/// shown in time or too many wait, and left out where several were.
+/// Writes YUV4MPEG2. The video is as long as the run is, whatever the reader's speed: pictures are repeated where none
+/// was shown in time or too many wait, and left out where several were.
 class VideoWriter : public FrameSink {
 public:
     /// `descriptor` stays open. From then on the program ignores SIGPIPE: a reader that goes is an end reason.
@@ -38,7 +38,7 @@ private:
     static constexpr std::size_t most_waiting = 4;
 
     void run();
-    /// False where nobody reads any more. Throws InputError.
+    /// Writes all bytes; false where nobody reads any more. Throws InputError.
     bool write(std::string const& bytes);
     void stop();
     void throw_if_failed() const;
@@ -47,7 +47,7 @@ private:
     Viewport const size_;
     PictureRate const rate_;
     VideoClock clock_;
-    bool is_new_ = true; ///< what was shown since the last picture that got a place
+    bool is_new_ = true; ///< the picture has changed since the last one that got a place
     std::atomic<double> cpu_seconds_ = 0;
 
     mutable std::mutex mutex_; // guards what follows

@@ -8,7 +8,7 @@ namespace {
 
 constexpr int fraction_bits = 16;
 
-/// Of the bytes red, green and blue, in units of 2^-fraction_bits.
+/// Weights of the bytes red, green and blue in Y, Cb and Cr, in units of 2^-fraction_bits.
 struct Weights {
     std::array<int, 3> y, cb, cr;
 };
@@ -17,7 +17,8 @@ int fixed(double value) {
     return static_cast<int>(std::lround(value * (1 << fraction_bits)));
 }
 
-/// Y takes 219 steps from 16 on, Cb and Cr 224 around 128. `red` and `blue`: their shares of luma.
+/// The weights of limited range: Y takes 219 steps from 16 on, Cb and Cr 224 around 128. `red` and `blue`: their shares
+/// of luma.
 Weights weights(double red, double blue) {
     double const luma = 219.0 / 255;
     double const from_blue = 112.0 / 255 / (1 - blue);

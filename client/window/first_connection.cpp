@@ -27,7 +27,7 @@ public:
 
     ConnectionOptions const& options() const { return options_; }
     std::string const& failure() const { return failure_; } ///< of the last attempt; empty: none has ended
-    bool is_refused() const { return is_refused_; } ///< there will be no other by itself
+    bool is_refused() const { return is_refused_; } ///< no other attempt follows by itself
 
     void hurry() {
         back_off_.reset();
@@ -35,7 +35,8 @@ public:
         is_refused_ = false;
     }
 
-    /// Null while there is no session. `is_refusal_fatal`: a refusal is thrown.
+    /// The session once there is one, else null; begins attempts when they are due. `is_refusal_fatal`: a refusal is
+    /// thrown.
     std::unique_ptr<ClientCore> poll(bool is_refusal_fatal) {
         if (!attempt_.valid() && !is_refused_ && Clock::now() >= next_) {
             std::packaged_task<std::unique_ptr<ClientCore>()> task([options = options_] {
@@ -100,9 +101,9 @@ Connection wait_for_server(Window& window, std::string const& address, OptionsFo
     Overlay overlay(window.handle(), window.content_scale());
     std::optional<Attempts> attempts(options_for(address));
     bool is_from_command_line = true;
-    std::string complaint; // of an address that was typed, or a file that was dropped
+    std::string complaint; // about an address that was typed, or a file that was dropped
     OverlayContent shown;
-    int frames = 1; // to be drawn; what the mouse presses is seen in one, what it releases in the next
+    int frames = 1; // still to be drawn; what the mouse presses is seen in one, what it releases in the next
     for (;;) {
         if (auto core = attempts->poll(is_from_command_line)) {
             return {std::move(core), attempts->options()};
@@ -139,7 +140,7 @@ Connection wait_for_server(Window& window, std::string const& address, OptionsFo
                 continue;
             }
         }
-        // Whether it is time for another attempt, or one has ended, is looked at so often.
+        // The time between two looks at whether an attempt is due or has ended.
         constexpr double look_seconds = 0.1;
         WindowInput const input = window.wait(frames > 0 ? 0 : look_seconds);
         if (!input.dropped.empty()) {

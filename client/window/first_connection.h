@@ -1,5 +1,6 @@
-// The time before there is a server. In: the window, where the server will be. Out: a session, or that the user has
-// given up; meanwhile the window says what is waited for, and why, and another server can be named or a scene dropped.
+// Waits for a server when the window is opened. In: the window, where the server will be. Out: a session, or that the
+// user has given up; meanwhile the window says what is waited for, and why, and another server can be named or a scene
+// dropped.
 #pragma once
 
 #include <functional>
@@ -12,7 +13,7 @@
 
 namespace framelet {
 
-/// What it takes to connect to HOST[:PORT]. Throws InputError.
+/// Makes what it takes to connect to HOST[:PORT]. Throws InputError.
 using OptionsFor = std::function<ConnectionOptions(std::string const& address)>;
 
 /// Tries for as long as it takes, less often the longer, and at once when the user asks for it. A server that refuses

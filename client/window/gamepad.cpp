@@ -10,7 +10,8 @@ namespace {
 constexpr float least_stick = 0.15f;
 constexpr float least_trigger = 0.1f;
 
-/// From nothing at `least` to 1, slowly at first, since small movements are to be small.
+/// The share of the whole speed for a deflection: from 0 at `least` to 1, slowly at first, since small movements are to
+/// be small.
 float response(float deflection, float least) {
     float const share = std::clamp((deflection - least) / (1 - least), 0.0f, 1.0f);
     return share * share;

@@ -1,4 +1,4 @@
-// How a gamepad flies the camera. In: its axes, as GLFW gives them. Out: what the flying keys are replaced by.
+// Makes a gamepad fly the camera. In: its axes, as GLFW gives them. Out: the input that the flying keys would give.
 #pragma once
 
 #include "client/core/camera/camera_controller.h"
@@ -15,7 +15,7 @@ struct GamepadAxes {
 /// Shift. Sticks and triggers that are let go are never quite in their middle: what is near it is nothing.
 FlyInput fly_input(GamepadAxes const& axes);
 
-/// Of keys and gamepad at once.
+/// The input of keys and gamepad together.
 FlyInput operator+(FlyInput const& a, FlyInput const& b);
 
 } // namespace framelet

@@ -1,4 +1,4 @@
-// A picture on the graphics card and the two triangles that show it. Needs a current OpenGL 3.3 context, at destruction
+// A picture on the graphics card and the triangle that shows it. Needs a current OpenGL 3.3 context, at destruction
 // too.
 #pragma once
 
@@ -21,7 +21,7 @@ public:
     /// Copies the changed rectangles; everything where the size is another than before. Rectangles that begin at the
     /// same row go as one.
     void upload(Picture const& picture, std::span<PixelRect const> changed);
-    /// Another texture of this size is drawn instead, rows from the top, until something is uploaded; it is to stay as
+    /// Draws another texture of this size instead, rows from the top, until something is uploaded; it has to stay as
     /// long.
     void show(std::uint32_t texture, int width, int height);
     /// Fills a framebuffer of this size, stretching the picture; black before the first upload.
@@ -33,7 +33,7 @@ private:
     std::uint32_t vertices_ = 0; ///< an empty array: the corners come from their number
     int width_ = 0; ///< of the texture
     int height_ = 0;
-    std::uint32_t shown_ = 0; ///< what is drawn
+    std::uint32_t shown_ = 0; ///< texture that is drawn; 0: none
     int shown_width_ = 0;
     int shown_height_ = 0;
 };

@@ -1,5 +1,5 @@
-// What is shown while the window changes its size. In: sizes, how much of the new picture is known, time. Out: which
-// size to ask for, and whether the picture of before, stretched, is still better than the new one.
+// Decides what is shown while the window changes its size. In: sizes, how much of the new picture is known, time. Out:
+// which size to ask for, and whether the picture of before, stretched, is still better than the new one.
 #pragma once
 
 #include "common/camera.h"
@@ -22,7 +22,7 @@ public:
         }
         return steady_;
     }
-    /// It will change by itself.
+    /// True while the size to ask for will still change without the window's changing.
     bool waits() const { return steady_ != newest_; }
 
     static constexpr double rest_seconds = 0.1;
@@ -33,10 +33,11 @@ private:
     double since_ = 0;
 };
 
-/// The first picture of a new size has holes, which are grey.
+/// Decides how long the picture of the old size is shown: the first picture of a new size has holes, which are grey.
 class OldPicture {
 public:
-    /// True: it is to be shown on, for `most_seconds` at most. `covered`: share of the new picture that is known.
+    /// True while the old picture is to be shown on, for `most_seconds` at most. `covered`: share of the new picture
+    /// that is known.
     bool is_better(bool has_other_size, double covered, double now_seconds) {
         if (!has_other_size) {
             since_ = -1;

@@ -53,7 +53,7 @@ std::optional<Connection> SceneOpener::poll() {
     }
 }
 
-/// Throws where it will not come to be.
+/// The session with the scene that is being opened, once there is one. Throws where there will be none.
 std::optional<Connection> SceneOpener::session() {
     if (connecting_.valid()) {
         bool const is_ready = connecting_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;

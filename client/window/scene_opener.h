@@ -1,6 +1,6 @@
-// Scene files that the user opens in the window: a private server for the newest, as `framelet view` starts one. In:
-// names of files. Out: a session where that came to be, else a line that says why not, and what was served before goes
-// on being served.
+// Opens scene files that the user drops on the window: with a private server for the newest, as `framelet view` starts
+// one. In: names of files. Out: a session where that came to be, else a line that says why not, and what was served
+// before goes on being served.
 #pragma once
 
 #include <functional>
@@ -23,26 +23,26 @@ public:
 
     /// `connect` (blocks) and `wake` are called from other threads; `wake` whenever `poll` may have something to say.
     /// `server_needed`: a descriptor that is closed once another scene is open, which tells who started this program
-    /// that the server it was started for is not needed any more.
-    /// `server_options`: of framelet-server, for all that are started.
+    /// that the server it was started for is not needed any more. `server_options`: options of framelet-server for
+    /// every one that is started.
     SceneOpener(Connect connect, std::function<void()> wake, std::optional<int> server_needed = {},
                 std::vector<std::string> server_options = {});
     SceneOpener(SceneOpener const&) = delete;
     SceneOpener& operator=(SceneOpener const&) = delete;
 
-    /// What was dropped on the window: one file. One that is still being opened is given up.
+    /// Begins to open what was dropped on the window: one file. One that is still being opened is given up.
     void open(std::vector<std::string> const& files);
-    /// A session with the new scene; the server of the one that was open before has ended then.
+    /// The session with the new scene, once there is one; the server of the one that was open before has ended then.
     std::optional<Connection> poll();
-    /// Why nothing was opened, once.
+    /// The reason why nothing was opened, told once; empty where there is none.
     std::string take_complaint() { return std::exchange(complaint_, {}); }
     /// The file that is being opened, without its folder; empty while none is.
     std::string opening() const;
-    /// That file, and how far it has been loaded: sign and bar; nothing while none is opened.
+    /// Shows that file, and how far it has been loaded, as sign and bar; nothing while none is opened.
     void show(OverlayContent& content) const;
 
     bool has_open() const { return open_ != nullptr; }
-    /// Of the server of the scene that is open, where it has ended by itself: why. Empty: it runs, or is not ours.
+    /// The reason why the server of the open scene has ended by itself; empty: it runs, or is not ours.
     std::string end_reason();
     /// Opens the scene again whose server has ended.
     void reopen();
@@ -56,7 +56,7 @@ private:
     std::vector<std::string> const server_options_;
     std::string complaint_;
     std::unique_ptr<PrivateServer> open_;
-    std::future<Connection> connecting_; ///< to what follows, whose end ends the attempt
+    std::future<Connection> connecting_; ///< session with the server that follows, whose end ends the attempt
     std::unique_ptr<PrivateServer> opening_;
 };
 

@@ -12,7 +12,7 @@ namespace framelet {
 
 namespace {
 
-/// How often to look around while nothing happens: figures on the overlay, a note to take away.
+/// Time between two looks around while nothing happens: figures on the overlay, a note to take away. Seconds.
 constexpr double idle_seconds = 0.25;
 
 } // namespace
@@ -58,8 +58,8 @@ void Viewer::adopt(std::unique_ptr<ClientCore> core) {
     }
 }
 
-/// As one looks at a scene at first. One of the same file is the same after a change: one goes on looking from where
-/// one is.
+/// Looks at the core's scene as one does at first. A scene of the same file is the same one after a change: the camera
+/// stays where it is.
 void Viewer::look_at_scene() {
     Welcome const welcome = core_->welcome();
     scene_number_ = core_->scene_number();
@@ -92,7 +92,7 @@ int Viewer::run() {
     bool moving = false;
     bool pending = true; // there may be something to show in the next display frame
     bool redraw = true;
-    int overlay_frames = 0; ///< to be drawn for its sake
+    int overlay_frames = 0; ///< frames to be drawn for the overlay's sake
     OverlayContent shown;
     while (!quit_) {
         bool const hidden = window_.is_hidden();
@@ -107,7 +107,7 @@ int Viewer::run() {
         moving = apply(input, moving ? now - last_look : 0);
         last_look = now;
         redraw = redraw || input.redraw;
-        // What the mouse presses is seen in one frame, what it releases in the next, and what came of it in a third.
+        // A press of the mouse is seen in one frame, its release in the next, and what came of it in a third.
         overlay_frames = input.touched_overlay ? 3 : overlay_frames;
         opener_.open(input.dropped);
         watch_opener();
@@ -135,7 +135,7 @@ int Viewer::run() {
             window_.present();
             showing_.note(seconds_now() - made_);
             shown = std::move(content);
-            // A little early: where the swap waits for the display, that sets the pace.
+            // The next frame begins a little early: where the swap waits for the display, that sets the pace.
             next_frame = now + 0.9 / window_.refresh_rate();
             redraw = false;
             overlay_frames = std::max(overlay_frames - 1, 0);
@@ -155,7 +155,8 @@ void Viewer::remember() {
     memory_.fullscreen = window_.is_fullscreen();
 }
 
-/// On the graphics card, unless something is to be drawn over it in memory. Once that has failed the processor paints.
+/// Makes the picture on the graphics card, unless something is to be drawn over it in memory. Once that has failed the
+/// processor paints.
 bool Viewer::make_picture(Clock::time_point shown_at) {
     if (painter_.canvas && drawn_over_ == DrawnOver::nothing) {
         try {
@@ -169,7 +170,7 @@ bool Viewer::make_picture(Clock::time_point shown_at) {
     return core_->update_picture(picture_, changed_, shown_at);
 }
 
-/// The last one, in memory.
+/// The last picture, in memory.
 Picture const& Viewer::shown_picture() {
     if (is_on_canvas_) {
         painter_.canvas->read(picture_);
@@ -260,7 +261,7 @@ void Viewer::watch_connection() {
     controlled_ = controls;
 }
 
-/// What is shown stays where a scene cannot be opened.
+/// Shows a scene that has been opened; where it cannot be opened, what is shown stays.
 void Viewer::watch_opener() {
     if (reconnecting_.valid()) { // whose session would take the place of the new one
         return;
@@ -274,7 +275,7 @@ void Viewer::watch_opener() {
     }
 }
 
-/// Also while nobody looks at them: plots show what was before.
+/// Takes the figures of the overlay, also while nobody looks at them: plots show what was before.
 void Viewer::take_figures() {
     ClientStatistics const statistics = core_->statistics();
     if (!meter_.update(seconds_now(), statistics.bytes) && !figures_.plots.empty()) {
@@ -319,7 +320,7 @@ OverlayContent Viewer::overlay_content() {
         out.cameras = camera_menu(welcome);
         out.bias = settings_.bias;
     }
-    // Where nothing is moved, the core draws outlines instead.
+    // The core draws outlines instead where nothing is moved.
     out.legend =
         legend_of(drawn_over_ == DrawnOver::confidence && !settings_.reproject ? DrawnOver::outlines : drawn_over_);
     if (seconds_now() < note_until_) {

@@ -32,7 +32,7 @@ public:
     Viewer(Window& window, Connection connection, SceneOpener& opener, ViewerSettings const& settings,
            double lag_seconds, ViewerMemory& memory, CanvasChoice painter);
 
-    /// Until the user quits. Returns the program's exit code: 1 where the server was gone.
+    /// Runs until the user quits. Returns the program's exit code: 1 where the server was gone.
     int run();
 
     /// Connects so that news wake the window.
@@ -41,7 +41,7 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
     static constexpr double note_seconds = 2;
-    static constexpr double long_note_seconds = 6; ///< of what is to be read
+    static constexpr double long_note_seconds = 6; ///< for notes that are to be read
 
     void adopt(std::unique_ptr<ClientCore> core);
     void look_at_scene();
@@ -86,7 +86,7 @@ private:
     ViewerMemory& memory_;
     Overlay overlay_;
     std::unique_ptr<ClientCore> core_;
-    std::uint64_t scene_number_ = 0; ///< of the core's; 0: none yet
+    std::uint64_t scene_number_ = 0; ///< the core's; 0: none yet
     bool interrupted_ = false; ///< the core tries for another session
     bool controlled_ = true; ///< what `ClientCore::controls` said last
     std::string scene_name_;
@@ -94,20 +94,20 @@ private:
     std::optional<CameraController> controller_;
     int scene_camera_ = -1;
     std::optional<Bookmarks> bookmarks_; ///< the scene's
-    int bookmark_ = -1; ///< gone to last
-    bool is_at_bookmark_ = false; ///< and the camera has not been moved since
-    std::optional<Vec3> grabbed_; ///< what the hands have taken hold of, until the camera moves
+    int bookmark_ = -1; ///< the one gone to last; -1: none
+    bool is_at_bookmark_ = false; ///< the camera has not been moved since
+    std::optional<Vec3> grabbed_; ///< point of the world that the hands have taken hold of, until the camera moves
     ViewerSettings settings_;
     double lag_seconds_; ///< 0: the scene is not smoothed
-    double const chosen_lag_seconds_; ///< when it is
+    double const chosen_lag_seconds_; ///< the lag when it is smoothed
     std::string lost_; ///< why there is no session; empty while there is one
     std::future<std::unique_ptr<ClientCore>> reconnecting_;
 
     CanvasChoice painter_;
-    Picture picture_; ///< where it is not on the canvas; of its size there, too
+    Picture picture_; ///< where it is not on the canvas; else it has its size alone
     bool is_on_canvas_ = false;
-    double made_ = 0; ///< when
-    MakingTime showing_; ///< from then until it is on the display
+    double made_ = 0; ///< when the picture was made, by `seconds_now`
+    MakingTime showing_; ///< from when a picture is made until it is on the display
     std::vector<PixelRect> changed_;
     SteadySize steady_size_;
     OldPicture old_picture_;

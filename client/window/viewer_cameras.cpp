@@ -1,4 +1,4 @@
-// What a viewer looks through: cameras of the scene, bookmarks, and its own camera as a file.
+// The cameras that a viewer looks through: those of the scene, bookmarks, and its own as a file.
 #include <filesystem>
 #include <utility>
 
@@ -60,7 +60,7 @@ Camera Viewer::present_camera() const {
     return scene_camera_ >= 0 ? core_->shown_camera() : controller_->camera();
 }
 
-/// Says why not where that fails.
+/// Changes the bookmarks; says why not where that fails.
 void Viewer::change_bookmarks(std::function<void()> const& change) {
     try {
         change();

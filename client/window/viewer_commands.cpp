@@ -1,4 +1,4 @@
-// What the hands and the keys do to a viewer.
+// Carries out what the hands and the keys ask of a viewer.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -30,7 +30,7 @@ constexpr float bias_step = 0.25f;
 
 } // namespace
 
-/// Returns true while a key keeps the camera moving.
+/// Carries out what the hands did. Returns true while a key keeps the camera moving.
 bool Viewer::apply(WindowInput const& input, double seconds) {
     for (Command const command : input.commands) {
         apply(command);
@@ -59,7 +59,7 @@ bool Viewer::apply(WindowInput const& input, double seconds) {
     return input.fly.moving();
 }
 
-/// What lies under the pointer is what the hands take hold of; where that is not known the pivot stays.
+/// Takes hold of the point under the pointer; where that is not known the pivot stays.
 void Viewer::take_pivot(WindowInput const& input) {
     std::optional<Vec2> const place = input.focused ? input.focused : input.grabbed;
     if (!place) {
@@ -252,7 +252,7 @@ void Viewer::apply(Command command) {
     }
 }
 
-/// Empty: it is ours to set.
+/// The reason why the clock cannot be set from here; empty: it can.
 std::string Viewer::clock_fixed_because() const {
     bool const is_gone = interrupted_ || !lost_.empty();
     return is_gone ? "the server is gone: its clock cannot be set" : core_->controls() ? "" : watching_text;

@@ -18,7 +18,7 @@ namespace framelet {
 
 namespace {
 
-/// A gamepad wakes nobody: while one is connected, it is looked at so often.
+/// Time between two looks at a gamepad that is connected, which wakes nobody; seconds.
 constexpr double gamepad_seconds = 1.0 / 60;
 constexpr double double_click_seconds = 0.4;
 constexpr float double_click_pixels = 6;
@@ -29,7 +29,7 @@ std::string last_glfw_error() {
     return text == nullptr ? "no reason given" : text;
 }
 
-/// Of the first gamepad; nothing where none is connected.
+/// The axes of the first gamepad; nothing where none is connected.
 std::optional<GamepadAxes> read_gamepad() {
     GLFWgamepadstate state;
     for (int number = GLFW_JOYSTICK_1; number <= GLFW_JOYSTICK_LAST; ++number) {
@@ -45,7 +45,7 @@ std::optional<GamepadAxes> read_gamepad() {
     return {};
 }
 
-/// GLFW for as long as this lives.
+/// Has GLFW initialised for as long as it lives.
 struct GlfwSession {
     GlfwSession() {
         if (glfwInit() != GLFW_TRUE) {
@@ -68,17 +68,17 @@ struct Window::Impl {
     Vec2 cursor{0, 0}; ///< pixels of the framebuffer
     bool zooms = false; ///< the wheel has turned since the pointer moved
     Vec2 click{0, 0}; ///< where the left button was pressed last
-    double click_time = -1; ///< and when; < 0: what comes next is no double click
-    std::vector<PixelRect> overlay; ///< its areas
+    double click_time = -1; ///< when that was; < 0: what comes next is no double click
+    std::vector<PixelRect> overlay; ///< areas of the overlay
     bool is_typing = false;
     bool looks = false; ///< the mouse turns the head
-    bool begins_to_look = false; ///< it has not been moved since
-    bool overlay_drag = false; ///< a button was pressed there
+    bool begins_to_look = false; ///< it has not been moved since it began to
+    bool overlay_drag = false; ///< a button was pressed in the overlay
     bool has_gamepad = false;
     Viewport size;
     struct {
         int x = 0, y = 0, width = 0, height = 0;
-    } windowed; ///< where to go back to from the full screen
+    } windowed; ///< place and size to go back to from the full screen
 
     ~Impl() {
         texture.reset(); // while there is a context
@@ -107,7 +107,7 @@ struct Window::Impl {
         }
     }
 
-    /// Pixels of the framebuffer.
+    /// The pointer's position, pixels of the framebuffer.
     Vec2 pointer() const {
         double x = 0;
         double y = 0;
@@ -227,7 +227,7 @@ struct Window::Impl {
         input.fly.fast = !is_typing && shift();
     }
 
-    /// Other windows may be flown by it: it is this one's that has the keys.
+    /// Adds what the gamepad asks for, if this window has the keys: other windows may be flown by it.
     void add_gamepad() {
         bool const has_keys = glfwGetWindowAttrib(window, GLFW_FOCUSED) != 0;
         std::optional<GamepadAxes> const axes = has_keys ? read_gamepad() : std::nullopt;

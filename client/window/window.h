@@ -1,5 +1,5 @@
 // The window: GLFW and OpenGL 3.3. In: a picture and what changed of it. Out: what the user's hands did since the last
-// look, as plain values. Everything from the main thread, but `wake`.
+// look, as plain values. All but `wake` is called from the main thread.
 #pragma once
 
 #include <memory>
@@ -17,17 +17,17 @@ struct GLFWwindow;
 
 namespace framelet {
 
-/// What happened since the last look.
+/// The input since the last look.
 struct WindowInput {
     std::vector<Command> commands; ///< in order
     Vec2 orbit{0, 0}; ///< dragged, pixels of the framebuffer, x right, y down
     Vec2 pan{0, 0};
     float dolly = 0; ///< steps, positive: nearer
-    Vec2 look{0, 0}; ///< moved while that turns the head
-    float speed = 0; ///< steps of the wheel meanwhile
+    Vec2 look{0, 0}; ///< way of the mouse while it turns the head, likewise
+    float speed = 0; ///< steps of the wheel while the mouse turns the head
     std::optional<Vec2> grabbed; ///< where a drag has begun, or the wheel has turned first; pixels of the framebuffer
-    std::optional<Vec2> focused; ///< likewise: where a double click was
-    FlyInput fly; ///< held now
+    std::optional<Vec2> focused; ///< where a double click was; pixels of the framebuffer
+    FlyInput fly; ///< by what is held now
     std::vector<std::string> dropped; ///< names of files
     bool redraw = false; ///< exposed or resized
     bool touched_overlay = false; ///< the pointer did something in its area, or has left it, or a key was typed into it
@@ -45,15 +45,16 @@ public:
     Window(Window const&) = delete;
     Window& operator=(Window const&) = delete;
 
-    /// Pixels to fill; each side at least 1. An iconified window keeps its size.
+    /// Size of the framebuffer, pixels; each side at least 1. An iconified window keeps its size.
     Viewport framebuffer_size() const;
     /// Pixels of the framebuffer for one unit of text size.
     float content_scale() const;
     double refresh_rate() const;
-    /// Iconified, or on no screen at all: nobody sees what is drawn. A window that others cover is not told of it.
+    /// True where the window is iconified, or on no screen at all: nobody sees what is drawn. A window that others
+    /// cover is not told of it.
     bool is_hidden() const;
     bool is_fullscreen() const;
-    /// The window's size, or where it would go back to from the full screen; in the units of the constructor.
+    /// The window's size, or the one that it would go back to from the full screen; in the units of the constructor.
     Viewport windowed_size() const;
     void set_title(std::string const& title);
     void show();
@@ -61,7 +62,7 @@ public:
 
     /// Sleeps until something happens, somebody calls `wake` or the time is over; then returns what happened.
     WindowInput wait(double at_most_seconds);
-    /// From any thread: ends `wait`.
+    /// Ends `wait`. May be called from any thread.
     static void wake();
 
     /// Uploads the changed rectangles of the picture (as `FrameletCache::take_changed` orders them: by rows).
@@ -73,16 +74,16 @@ public:
     /// Shows what was drawn.
     void present();
 
-    /// Pixels of the framebuffer in which the mouse is the overlay's and not the camera's; a drag belongs to where it
-    /// began.
+    /// Sets the areas, pixels of the framebuffer, in which the mouse is the overlay's and not the camera's; a drag
+    /// belongs to where it began.
     void set_overlay_areas(std::span<PixelRect const> areas);
-    /// The keys are the overlay's, and neither commands nor ways to fly.
+    /// Gives the keys to the overlay: they are neither commands nor ways to fly.
     void set_typing(bool is_typing);
-    /// There is no pointer: the mouse turns the head, the wheel is the speed, and a click is `Command::mouse_look`.
+    /// Takes the pointer away: the mouse turns the head, the wheel is the speed, and a click is `Command::mouse_look`.
     void set_mouse_look(bool looks);
     bool has_mouse_look() const;
     void set_clipboard(std::string const& text);
-    /// For the overlay's backend.
+    /// GLFW's window, for the overlay's backend.
     GLFWwindow* handle() const;
 
 private:

@@ -8,7 +8,7 @@
 namespace framelet {
 namespace {
 
-/// For the word after an option, by what it says of its value.
+/// Shell code that completes the word after an option, by what the option says of its value.
 std::string action_for(std::string const& value) {
     return value == "FILE" ? "_filedir; " : value == "FOLDER" ? "_filedir -d; " : "";
 }
@@ -17,7 +17,7 @@ std::string words_of(std::vector<std::string> const& words) {
     return "COMPREPLY=($(compgen -W '" + CLI::detail::join(words, " ") + "' -- \"$cur\"))";
 }
 
-/// For a word that stands alone.
+/// Shell code that completes a word that stands alone.
 std::string action_alone(CLI::App const& app) {
     std::vector<std::string> commands;
     for (CLI::App const* const command : app.get_subcommands({})) {

@@ -1,4 +1,4 @@
-// What bash completes of a program's command line, from what its --help is made of.
+// Bash's completion of a program's command line, made from what its --help is made of.
 #pragma once
 
 #include <string>

@@ -44,8 +44,8 @@ bool is_option(std::string const& word) {
     return word.size() > 1 && word.front() == '-';
 }
 
-/// What is on a line of the file, as CLI11 reads it, which takes up what it finds without a word about the file: this
-/// looks at each key and value before, so that what is wrong can be told with both.
+/// The reader of the configuration file. CLI11 takes its values without naming the file where one is wrong: this class
+/// looks at each key and value before, so that the complaint can name file and key.
 class ConfigFile : public CLI::ConfigTOML {
 public:
     explicit ConfigFile(CLI::App* app) : app_(app) {}
@@ -75,7 +75,7 @@ private:
                 CLI::ExitCodes::ConfigError};
     }
 
-    /// Gives the item the name by which CLI11 finds the same option.
+    /// Finds the option of an item and gives the item the name by which CLI11 finds it; null where there is none.
     CLI::Option* find(CLI::ConfigItem& item) const {
         for (CLI::Option* const option : app_->get_options()) {
             std::string const& alone = option->get_positional() ? option->get_name(true) : "";
@@ -88,7 +88,8 @@ private:
         return app_->get_option_no_throw("--" + item.name);
     }
 
-    /// False where it says no more than nothing would: a flag that is not set.
+    /// Checks an item's value; false where the item says no more than its absence would: a flag that is not set. Throws
+    /// CLI::ConfigError where the option cannot have the value.
     bool check(CLI::Option& option, std::string const& key, CLI::ConfigItem& item) const {
         if (item.inputs.size() != 1 && option.get_items_expected_max() <= 1) {
             throw complaint(key + "it takes one value; a text with spaces or commas stands in quotes");
@@ -104,7 +105,7 @@ private:
             return true;
         }
         if (is_flag && item.inputs.front() == "true") {
-            item.inputs.front().clear(); // for CLI11 the value that the flag has by itself
+            item.inputs.front().clear(); // CLI11 then takes the value that the flag has by itself
             return true;
         }
         for (std::string input : item.inputs) {
@@ -148,7 +149,7 @@ std::string footer_of(ProgramNotes const& notes) {
     return out.substr(0, out.find_last_not_of('\n') + 1); // CLI11 ends the line
 }
 
-/// How many letters have to be added, left out or changed to make one of the other (Levenshtein).
+/// Number of letters that have to be added, left out or changed to make one word of the other (Levenshtein).
 std::size_t spelling_distance(std::string const& a, std::string const& b) {
     std::vector<std::size_t> row(b.size() + 1);
     std::iota(row.begin(), row.end(), std::size_t{0});
@@ -163,7 +164,7 @@ std::size_t spelling_distance(std::string const& a, std::string const& b) {
     return row.back();
 }
 
-/// The words of the line that nothing is known of, and what the first of them was most likely meant for.
+/// The complaint about unknown words: these, and what the first of them was most likely meant for.
 std::string unknown_text(CLI::App const& app) {
     std::vector<std::string> const words = app.remaining(true);
     std::string const meant = words.front().substr(0, words.front().find('='));
@@ -259,7 +260,7 @@ void parse_command_line(CLI::App& app, int argc, char const* const* argv) {
             --alone;
         }
     }
-    std::reverse(joined.begin(), joined.end()); // as CLI11 wants them
+    std::reverse(joined.begin(), joined.end()); // CLI11 takes the last word first
     try {
         app.parse(std::move(joined));
     } catch (CLI::ParseError const& error) {

@@ -1,4 +1,4 @@
-// What the programs' command lines have in common: how they are read, how --help looks, and what is said of a line that
+// The common part of the programs' command lines: how they are read, how --help looks, and what is said of a line that
 // cannot be used.
 #pragma once
 
@@ -25,12 +25,12 @@ inline constexpr std::size_t help_columns = 100;
 /// Sets the formatter, --help, --version and, for the build alone, --help-as: the manual page or bash's completion.
 void prepare_command_line(CLI::App& app, ProgramNotes const& notes = {});
 
-/// Adds --config: a file in the TOML that CLI11 reads, whose keys are the options without their dashes, and what stands
-/// alone on the command line by its name in lower case. To be called after all other options; what the command line
-/// says counts. Options that print something and exit are to be made not configurable before.
+/// Adds --config: a file in the TOML that CLI11 reads. Its keys are the options without their dashes, and the names of
+/// positional arguments in lower case. The command line has precedence over it. To be called after all other options
+/// have been added; options that print something and exit are to be made not configurable before.
 void add_config_option(CLI::App& app);
 
-/// What `read` throws no InputError for.
+/// Accepts a value for which `read` throws no InputError.
 template <typename Read>
 CLI::Validator readable_by(Read read) {
     return {[read](std::string& input) {
@@ -44,13 +44,13 @@ CLI::Validator readable_by(Read read) {
             ""};
 }
 
-/// A flag with a value of its own, as "--smooth{100}", takes another one as `--smooth=50` and as `--smooth 50`. The
-/// next word is taken for its value where it could be one, or where more words stand alone than the program takes.
-/// Throws CLI::ParseError.
+/// Parses the command line. A flag with a value of its own, as "--smooth{100}", takes another one as `--smooth=50` and
+/// as `--smooth 50`: the next word is taken for its value where it could be one, or where more words stand alone than
+/// the program takes. Throws CLI::ParseError.
 void parse_command_line(CLI::App& app, int argc, char const* const* argv);
 
-/// The exit code of a command line that is not to be run: 0 after --help and --version, else one line on stderr and 1
-/// where the file that --config names cannot be read, 2 otherwise.
+/// Ends a command line that is not to be run: returns 0 after printing --help or --version; else prints one line on
+/// stderr and returns 1 where the file that --config names cannot be read, 2 otherwise.
 int exit_usage(CLI::App const& app, CLI::ParseError const& error);
 /// The same for a value that cannot be used.
 int exit_usage(CLI::App const& app, std::string const& text);

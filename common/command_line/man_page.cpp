@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t line_columns = 78;
 
-/// A word as it is to be read, whatever roff makes of its characters.
+/// A word in roff that is read as it stands, whatever roff makes of its characters.
 std::string plain(std::string const& word) {
     std::string out;
     for (char const c : word) {
@@ -20,7 +20,7 @@ std::string plain(std::string const& word) {
             break;
         case '-':
             out += word.front() == '-' || word.starts_with("framelet") ? "\\-" : "-";
-            break; // to be typed so
+            break; // options and programs are typed with a minus
         case '~':
             out += "\\(ti";
             break;
@@ -37,7 +37,7 @@ std::string plain(std::string const& word) {
     return out;
 }
 
-/// A paragraph. A line must not begin as roff's own do.
+/// A paragraph. No line of it may begin as roff's own commands do.
 std::string prose(std::string const& text) {
     std::string words;
     std::istringstream in(text);
@@ -87,7 +87,7 @@ std::string entry(CLI::Option const& option) {
     return ".TP\n" + names + "\n" + prose(text.description);
 }
 
-/// `prefix` says of which command they are; its --help is not told of once more.
+/// The options of a program or of one of its commands, which `prefix` names; a command's --help is not listed again.
 std::string options(CLI::App const& app, std::string const& prefix) {
     std::string out;
     for (CLI::Option const* const option : positionals(app)) {
@@ -112,7 +112,7 @@ std::string in_capitals(std::string text) {
     return text;
 }
 
-/// "does this and that", as the line of `whatis` has it.
+/// The description as the line of `whatis` has it: "does this and that".
 std::string short_description(std::string text) {
     text.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(text.front())));
     return text.substr(0, text.find('.'));
@@ -132,7 +132,7 @@ std::string man_page(CLI::App const& app, ProgramNotes const& notes) {
     std::string const name = app.get_name();
     std::vector<CLI::App const*> const commands = app.get_subcommands({});
     std::string out = ".TH \"" + in_capitals(name) + "\" 1 \"\" \"framelet " FRAMELET_VERSION "\" \"User Commands\"\n";
-    out += ".nh\n.ad l\n"; // no word is an option's by half
+    out += ".nh\n.ad l\n"; // no hyphenation: no option is split
     out += ".SH NAME\n" + plain(name) + " \\-\n" + prose(short_description(app.get_description()));
     out += ".SH SYNOPSIS\n";
     for (CLI::App const* const command : commands) {

@@ -9,7 +9,7 @@
 
 namespace framelet {
 
-/// Of section 1. What the commands of the program take is in it, too.
+/// The page, of section 1; the options of the program's commands are in it, too.
 std::string man_page(CLI::App const& app, ProgramNotes const& notes);
 
 } // namespace framelet

@@ -9,7 +9,8 @@
 
 namespace framelet {
 
-/// A number of [low, high]; neither NaN nor, so, infinite. Whole where the bounds are of a whole type.
+/// Accepts a number in [low, high], so neither NaN nor infinity; a whole number where the bounds are of an integral
+/// type.
 template <typename T>
 CLI::Validator number_in(T low, T high) {
     std::ostringstream range;

@@ -21,7 +21,7 @@ OptionText option_text(CLI::Option const& option) {
     for (std::string const& name : option.get_lnames()) {
         out.names.push_back("--" + name);
     }
-    // "KIND:RANGE", where either may be missing.
+    // The type's name is "KIND:RANGE", where either may be missing.
     std::string const type = option.get_type_name();
     std::size_t const colon = std::min(type.find(':'), type.size());
     if (!positional && has_optional_value(&option)) {
@@ -70,7 +70,7 @@ std::vector<CLI::Option const*> options_of_group(CLI::App const& app, std::strin
 std::vector<std::string> option_groups(CLI::App const& app) {
     std::vector<std::string> groups = app.get_groups();
     std::erase_if(groups, [&](std::string const& group) { return options_of_group(app, group).empty(); });
-    // The first option of all is --help: what it stands with comes last.
+    // The first option of all is --help: its group comes last.
     if (CLI::Option const* const help = app.get_help_ptr()) {
         std::stable_partition(groups.begin(), groups.end(),
                               [&](std::string const& group) { return group != help->get_group(); });

@@ -8,24 +8,24 @@
 
 namespace framelet {
 
-/// A flag that stands for a value and takes another one, as "--smooth{100}".
+/// True for a flag that stands for a value and takes another one, as "--smooth{100}".
 bool has_optional_value(CLI::Option const* option);
 
 struct OptionText {
-    std::vector<std::string> names; ///< with dashes; of what stands alone its name
-    std::string value; ///< as "FILE", or "[KIND]" where it may be left out; empty: it takes none
-    std::string description; ///< range, default and what it excludes at its end
+    std::vector<std::string> names; ///< with dashes; of a positional argument its name
+    std::string value; ///< as "FILE", or "[KIND]" where it may be left out; empty: the option takes none
+    std::string description; ///< ends with range, default and what the option excludes
 };
 OptionText option_text(CLI::Option const& option);
 
-/// In lines of at most `columns`, each with this before it.
+/// `text` in lines of at most `columns`, each with `indent` before it.
 std::string wrapped(std::string const& text, std::size_t columns, std::string const& indent = "");
 
-/// What stands alone, in order.
+/// The positional arguments, in order.
 std::vector<CLI::Option const*> positionals(CLI::App const& app);
-/// All others of a group, without those that nobody is told of.
+/// All other options of a group; hidden ones, whose group is empty, are of none.
 std::vector<CLI::Option const*> options_of_group(CLI::App const& app, std::string const& group);
-/// The groups that have some.
+/// The groups that have options; that of --help comes last.
 std::vector<std::string> option_groups(CLI::App const& app);
 
 } // namespace framelet

@@ -1,4 +1,4 @@
-// What a program says when it ends by an exception.
+// The line that a program prints when it ends by an exception.
 #pragma once
 
 #include <exception>
@@ -6,7 +6,7 @@
 
 namespace framelet {
 
-/// One line, valid as long as `error`.
+/// One line of text, valid as long as `error`.
 inline char const* failure_text(std::exception const& error) {
     bool const memory = dynamic_cast<std::bad_alloc const*>(&error) != nullptr;
     return memory ? "there is not enough memory left: ask for a smaller picture or scene" : error.what();

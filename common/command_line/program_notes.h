@@ -1,4 +1,4 @@
-// What --help and the manual page say of a program beside its options.
+// Text of --help and the manual page of a program beside its options.
 #pragma once
 
 #include <string>

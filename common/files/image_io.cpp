@@ -57,7 +57,7 @@ std::unique_ptr<OIIO::ImageInput> open(std::string const& name, OIIO::Filesystem
     return input;
 }
 
-/// Formats that scenes use for compressed textures and that nobody here decodes.
+/// Refuses formats that scenes use for compressed textures and that nothing here decodes; throws InputError.
 void check_format(std::span<std::byte const> start, std::string const& name) {
     constexpr std::pair<std::string_view, char const*> refused[] = {
         {"\xabKTX 20", "KTX2"}, {"\xabKTX 11", "KTX"}, {"sB", "Basis Universal"}};

@@ -1,4 +1,4 @@
-// Image files in, through OpenImageIO and libpng. Every failure is an InputError that names the file.
+// Reads image files through OpenImageIO and libpng. Every failure is an InputError that names the file.
 #pragma once
 
 #include <filesystem>

@@ -15,7 +15,7 @@
 namespace framelet {
 namespace {
 
-/// What the library has to say of a failure.
+/// The library's message about a failure.
 struct Complaint {
     char text[120] = "";
 };
@@ -42,7 +42,7 @@ struct Writer {
     png_infop info;
 };
 
-/// False where it failed. Nothing here has a destructor: failures jump.
+/// Writes the whole PNG file; false where that failed. Nothing here has a destructor: failures jump.
 bool write_all(Writer const& writer, std::FILE* stream, Picture const& picture) {
     constexpr int compression_level = 3; // pictures of a moving scene are written as they are shown
     if (setjmp(png_jmpbuf(writer.png)) != 0) {
@@ -68,7 +68,8 @@ InputError failure(std::filesystem::path const& file, std::string const& why) {
     return InputError("cannot write image '" + file.string() + "': " + why);
 }
 
-/// Opens the file, lets `write` fill it (a failure's text, or none) and closes it again.
+/// Opens the file, lets `write` fill it (which returns the text of a failure, or none) and closes it again. Throws
+/// InputError, which names the file.
 template <typename Write>
 void write_file(std::filesystem::path const& file, Write const& write) {
     std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "wb"), std::fclose);

@@ -1,4 +1,4 @@
-// Pictures out: PNG files through libpng, PPM files, which cost nothing to make, or EXR files with depth. The thin
+// Writes pictures: PNG files through libpng, PPM files, which cost nothing to make, or EXR files with depth. The thin
 // programs need no more of an image library.
 #pragma once
 
@@ -15,7 +15,8 @@ void write_png(std::filesystem::path const& file, Picture const& picture);
 /// The same without compression (binary PPM, "P6").
 void write_ppm(std::filesystem::path const& file, Picture const& picture);
 
-/// Linear, with the depth of each pixel, as `exr_bytes` has them. Throws InputError, which names the file.
+/// Writes linear light with the depth of each pixel, in the form of `exr_bytes`. Throws InputError, which names the
+/// file.
 void write_exr(std::filesystem::path const& file, Picture const& picture, std::vector<float> const& depths);
 
 } // namespace framelet

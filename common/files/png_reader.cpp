@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t signature_bytes = 8;
 
-/// What is left to read, and what the library has to say of a failure.
+/// The bytes left to read, and the library's message about a failure.
 struct Source {
     std::span<std::byte const> left;
     char complaint[120] = "";
@@ -52,7 +52,8 @@ struct Reader {
     png_infop info;
 };
 
-/// Asks for 8-bit RGBA, values as stored. False where it failed. Nothing here has a destructor: failures jump.
+/// Reads the header and asks for 8-bit RGBA, values as stored; false where that failed. Nothing here has a destructor:
+/// failures jump.
 bool read_header(Reader const& reader) {
     if (setjmp(png_jmpbuf(reader.png)) != 0) {
         return false;

@@ -1,5 +1,5 @@
-// PNG files in memory, through libpng: OpenImageIO's reader lets it print lines of its own.
-// In: a file's bytes. Out: a picture as `read_picture` promises, or a PngError with the reason.
+// Reads PNG files in memory through libpng: OpenImageIO's reader lets libpng print lines of its own. In: a file's
+// bytes. Out: a picture as `read_picture` promises, or a PngError with the reason.
 #pragma once
 
 #include <cstddef>

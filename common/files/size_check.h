@@ -1,11 +1,11 @@
-// What whoever reads a picture is asked before memory is taken for it.
+// A check of a picture's size that its reader makes before it takes memory for the pixels.
 #pragma once
 
 #include <functional>
 
 namespace framelet {
 
-/// Told the size that the header gives before memory is taken for so many pixels. May throw; that ends the reading.
+/// Is told the size that the header gives before memory is taken for so many pixels. May throw; that ends the reading.
 using SizeCheck = std::function<void(int width, int height)>;
 
 } // namespace framelet

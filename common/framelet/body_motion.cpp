@@ -13,14 +13,14 @@ namespace framelet {
 
 namespace {
 
-/// Where a time is among the keys, clamped to where poses still change.
+/// Position of a time among the keys, in keys from the first one on, clamped to where poses still change.
 double key_at(BodyTrack const& track, SceneTime time) {
     auto const last = static_cast<double>(track.keys.size() - 1);
     return std::clamp(time * body_keys_per_second - static_cast<double>(track.first_key), 0.0,
                       last + max_pose_extrapolation_seconds * body_keys_per_second);
 }
 
-/// Linear part and offset of world from body.
+/// The map from body to world of a pose.
 Motion placement(BodyPose const& pose) {
     glm::dmat3 linear = glm::mat3_cast(glm::normalize(glm::dquat(pose.rotation)));
     for (int axis = 0; axis < 3; ++axis) {

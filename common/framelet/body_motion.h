@@ -1,4 +1,4 @@
-// Where bodies are at any scene time, from their tracks, and how each has moved between two times.
+// Computes from tracks where bodies are at any scene time, and how each has moved between two times.
 #pragma once
 
 #include <array>
@@ -14,16 +14,17 @@
 
 namespace framelet {
 
-/// How much later than its last key a body is moved on as it moved between the last two. Beyond that, and before the
+/// Seconds after its last key for which a body goes on moving as between its last two keys. Beyond that, and before the
 /// first key, it rests.
 inline constexpr SceneTime max_pose_extrapolation_seconds = 0.1;
 
 /// Keys that a viewer keeps of a body: half a minute.
 inline constexpr std::size_t kept_track_keys = 30 * body_keys_per_second;
-/// And of all bodies together, whoever says that there are so many: where they are more than a thousand, fewer of each.
+/// Keys that a viewer keeps of all bodies together, however many a server says there are: of more than a thousand
+/// bodies it keeps fewer keys each.
 inline constexpr std::size_t most_kept_keys = std::size_t{1} << 21;
 
-/// World at one time to world at another: x -> linear * x + offset, metres.
+/// Maps the world at one time to the world at another: x -> linear * x + offset, metres.
 struct Motion {
     glm::dmat3 linear{1};
     glm::dvec3 offset{0};
@@ -31,39 +32,39 @@ struct Motion {
     bool operator==(Motion const&) const = default;
 };
 
-/// Translation and scale interpolated linearly between the keys, rotation along the shorter arc. No keys: at rest in
-/// the origin.
+/// The pose of a body at a time: translation and scale are interpolated linearly between keys, rotation along the
+/// shorter arc. A track without keys rests at the origin.
 BodyPose pose_at(BodyTrack const& track, SceneTime time);
 
-/// The motion that takes a point of the body from where it is at `from` to where it is at `to`. Exactly none where
-/// the poses are equal; none where a scale of 0 leaves it undefined.
+/// The motion that takes a point of the body from where it is at `from` to where it is at `to`. Exactly the identity
+/// where the poses are equal; the identity, too, where a scale of 0 leaves it undefined.
 Motion motion_between(BodyTrack const& track, SceneTime from, SceneTime to);
 
 /// The tracks of all bodies that a viewer knows.
 class BodyMotions {
 public:
     BodyMotions() = default;
-    /// `knows_rest`: else whatever has a track is taken to move, always.
+    /// Where `knows_rest` is false, whatever has a track (of two keys or more) is taken to move, always.
     explicit BodyMotions(bool knows_rest) : knows_rest_(knows_rest) {}
 
     /// Takes in keys of a body. They replace those of the same times and later; keys that neither overlap nor follow
     /// what is known replace all of it. Of each body the last `kept_keys` are kept.
     void extend(BodyTrack const& track);
-    /// `kept_track_keys`, or what share each body has of `most_kept_keys`. It shrinks where bodies double in number, so
-    /// that what is held is rarely gone through.
+    /// Keys that are kept of each body: `kept_track_keys`, or each body's share of `most_kept_keys`. The share shrinks
+    /// only where the number of bodies passes a power of two, so that what is held is rarely gone through.
     std::size_t kept_keys() const;
 
-    /// None for bodies that have no track, `static_body` among them.
+    /// The motion of a body between two times; the identity for bodies that have no track, `static_body` among them.
     Motion between(BodyNumber body, SceneTime from, SceneTime to) const;
-    /// True only where `between` is none for any two times from `from` to `to`.
+    /// True only where `between` is the identity for any two times from `from` to `to`.
     bool rests(BodyNumber body, SceneTime from, SceneTime to) const;
-    /// Null where nothing is known of it.
+    /// The track of a body; null where nothing is known of it.
     BodyTrack const* find(BodyNumber body) const;
 
-    /// All may look otherwise from this scene time on: what was rendered before is out of date after it. Two such times
-    /// are known, one of which may still be to come.
+    /// Notes a jump of the scene: all may look otherwise from this scene time on, and what was rendered before is out
+    /// of date after it. The last two such times are known, one of which may still be to come.
     void jump_at(SceneTime time);
-    /// The latest one that is not after `time`; less than any time where there is none.
+    /// The latest jump that is not after `time`; less than any time where there is none.
     SceneTime last_jump(SceneTime time) const;
 
 private:
@@ -74,10 +75,11 @@ private:
     std::array<SceneTime, 2> jumps_{-INFINITY, -INFINITY}; ///< the older one first
 };
 
-/// What rests for so long before and after it was rendered, seconds of scene time, is held as what stands.
+/// Seconds of scene time before and after its rendering for which something has to rest to be held with what stands.
 inline constexpr SceneTime resting_seconds = 0.2;
 
-/// Whether nothing in it moves about the time when it was rendered: all that is on bodies rests, nothing deforms.
+/// True when nothing in a framelet moves about the time when it was rendered: the bodies in it rest, and nothing
+/// deforms.
 bool is_at_rest(FrameletShape const& shape, SceneTime scene_time, BodyMotions const& motions);
 
 } // namespace framelet

@@ -1,4 +1,4 @@
-// How a rigid body moves: poses at a fixed rate, a little ahead of the scene's clock.
+// The motion of a rigid body: poses at a fixed rate, a little ahead of the scene's clock.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,8 @@
 
 namespace framelet {
 
-/// World from body: scale, then rotation, then translation. Bodies that shear are not rigid and have velocities
-/// instead.
+/// A body's pose: world from body by scale, then rotation, then translation. Bodies that shear are not rigid and have
+/// velocities instead.
 struct BodyPose {
     Vec3 translation{0};
     Quat rotation{1, 0, 0, 0};
@@ -22,7 +22,7 @@ struct BodyPose {
 /// Keys a second of scene time. Key k stands for the time k / body_keys_per_second.
 inline constexpr int body_keys_per_second = 60;
 
-/// Of all tracks that are given out together: what they take is bounded.
+/// Largest number of keys that all tracks which are given out together may have, so that what they take is bounded.
 inline constexpr std::size_t max_batch_keys = 131072;
 
 struct BodyTrack {
@@ -33,7 +33,7 @@ struct BodyTrack {
     bool operator==(BodyTrack const&) const = default;
 };
 
-/// Under which number a track is of a camera of the scene, and not of a body.
+/// The number, in place of a body's, under which the track of a camera of the scene is given out.
 constexpr BodyNumber camera_body(int scene_camera) {
     return static_cast<BodyNumber>(scene_camera + 1);
 }

@@ -25,10 +25,10 @@ struct Framelet {
     std::array<float, framelet_samples> red, green, blue;
     /// View depth, metres along the camera's forward axis; +infinity where nothing was hit.
     std::array<float, framelet_samples> depth;
-    /// What carries each sample. Empty: the static body carries them all.
+    /// The body that carries each sample. Empty: the static body carries them all.
     std::vector<BodyNumber> body;
-    /// Of samples on what deforms, and of shadows that pass over the static body: metres a second in the world at the
-    /// scene time; 0 of all others. Empty: all are 0.
+    /// Velocities, metres a second in the world at the scene time, of samples on what deforms and of shadows that pass
+    /// over the static body; 0 for all others. Empty: all are 0.
     std::vector<Vec3> velocity;
     /// Bit i: sample i shows a mirror reflection, which moves otherwise than the surface that it is seen in.
     std::bitset<framelet_samples> reflects;
@@ -48,8 +48,8 @@ struct NumberedView {
     std::uint64_t number = 0;
     Camera camera;
     Viewport viewport;
-    /// The number of the view since which the viewer holds what it was sent: another viewport begins with nothing, and
-    /// so does the same one once more, whoever of the two has never heard of the one between.
+    /// The number of the view since which the viewer holds what it was sent: another viewport begins with nothing. So
+    /// does a return to the same one, even if viewer or server has never heard of the viewport in between.
     std::uint64_t held_since = 0;
 
     bool operator==(NumberedView const&) const = default;
@@ -58,7 +58,8 @@ struct NumberedView {
 /// Most framelets that one batch may carry: 8 Mi samples.
 inline constexpr std::size_t max_batch_framelets = 32768;
 
-/// How a framelet was coded: 0 without loss, else with quantisation steps that grow with the number.
+/// The quantisation parameter (QP) of a framelet: 0 is without loss; above that quantisation steps grow with the
+/// number.
 inline constexpr std::uint8_t lossless_qp = 0;
 inline constexpr std::uint8_t coarsest_qp = 127;
 
@@ -67,16 +68,18 @@ struct Batch {
     std::uint64_t number = 0; ///< counts up by one within a session, from 1
     NumberedView view;
     SceneTime scene_time = 0;
-    /// The scene time before which its framelets are not to be shown: it jumps then. In the past: at once.
+    /// The scene time before which its framelets are not to be shown, since the scene jumps then. In the past: they are
+    /// shown at once.
     SceneTime shown_from = 0;
-    bool outdates = false; ///< what was rendered for before that looks otherwise from then on
+    bool outdates = false; ///< what was rendered for times before `shown_from` looks otherwise from then on
     std::vector<DisplayFramelet> framelets;
     std::vector<std::uint8_t> qp{}; ///< of each framelet, 0..coarsest_qp; empty: all are exact
-    /// One for each framelet; none at all where the viewer has no use for them.
+    /// A shape for each framelet; none at all where the viewer has no use for them.
     std::vector<FrameletShape> shapes{};
-    /// How the bodies of the shapes move: what the viewer has not been told yet.
+    /// Tracks of the bodies of the shapes: what the viewer has not been told yet.
     std::vector<BodyTrack> tracks{};
-    /// How the camera of the scene goes through which the viewer looks, likewise: as `camera_body` of it.
+    /// Track of the scene's camera through which the viewer looks: what it has not been told yet. Its body is
+    /// `camera_body` of that camera.
     std::optional<BodyTrack> camera_track{};
 
     bool operator==(Batch const&) const = default;

@@ -1,6 +1,6 @@
-// Where the samples of a framelet lie in the world and what carries them, so that a viewer can show them from another
-// camera at another time. A framelet is nearly always one or two planes, each on one rigid body: such a plane moves by
-// one homography, and its depth costs a few bytes for all of its samples.
+// The shape of a framelet: where its samples lie in the world and what carries them, so that a viewer can show them
+// from another camera at another time. A framelet is nearly always one or two planes, each on one rigid body: such a
+// plane moves by one homography, and its depth costs a few bytes for all of its samples.
 #pragma once
 
 #include <algorithm>
@@ -13,24 +13,25 @@
 
 namespace framelet {
 
-/// What carries a sample: 0 is what never moves; others are numbered by the server and have a BodyTrack.
+/// The number of the body that carries a sample: 0 is what never moves; others are numbered by the server and have a
+/// BodyTrack.
 using BodyNumber = std::uint16_t;
 inline constexpr BodyNumber static_body = 0;
 
 inline constexpr std::size_t max_layers = 3;
 
-/// How soon the looks of a surface are no longer what they were (a shadow passes, a light changes), where it is: see
-/// `common/framelet/sample_worth.h`. 0: they do not change.
+/// A decorrelation rate as a code: how soon a surface looks otherwise than it did (a shadow passes, a light changes)
+/// though it stays where it is. See `common/framelet/sample_worth.h`. 0: its looks do not change.
 using DecorrelationCode = std::uint8_t;
 
 /// A plane on one body. The inverse of the view depth (1 / metres, 0 at infinity) is affine on the image plane:
 /// at + dx * (x - left) + dy * (y - top), where (x, y) is in pixels and (left, top) the tile's upper left corner.
 struct Layer {
     float at = 0, dx = 0, dy = 0;
-    float error = 0; ///< largest difference from the inverse depth of a sample that lies on it
+    float error = 0; ///< largest difference from the inverse depth of a sample that lies on it, 1 / metres
     BodyNumber body = static_body;
-    /// What deforms, and a shadow that passes over the plane, moves so besides (metres a second in the world, at the
-    /// framelet's scene time); else 0.
+    /// Velocity besides the body's motion of what deforms and of a shadow that passes over the plane, metres a second
+    /// in the world at the framelet's scene time; else 0.
     Vec3 velocity{0};
 
     bool operator==(Layer const&) const = default;
@@ -40,12 +41,12 @@ struct Layer {
 struct Outlier {
     float inverse_depth = 0;
     BodyNumber body = static_body;
-    Vec3 velocity{0}; ///< as of a layer
+    Vec3 velocity{0}; ///< as that of a layer, metres a second
 
     bool operator==(Outlier const&) const = default;
 };
 
-/// Whether what is carried so may be elsewhere at another time.
+/// True when a sample of this body and velocity may be elsewhere at another time.
 inline bool moves(BodyNumber body, Vec3 const& velocity) {
     return body != static_body || velocity != Vec3(0);
 }
@@ -54,14 +55,14 @@ struct FrameletShape {
     static constexpr std::uint8_t outlier = max_layers;
 
     std::uint8_t layer_count = 0;
-    DecorrelationCode decorrelation = 0; ///< of what it shows
+    DecorrelationCode decorrelation = 0; ///< of what the framelet shows
     std::array<Layer, max_layers> layers;
-    /// In Morton order: which layer the sample lies on, or `outlier`.
+    /// The layer that each sample lies on, or `outlier`, in Morton order.
     std::array<std::uint8_t, framelet_samples> layer_of{};
-    /// Those that are `outlier`, in Morton order.
+    /// The samples whose layer is `outlier`, in Morton order.
     std::vector<Outlier> outliers;
 
-    /// Whether something in it may be elsewhere at another time.
+    /// True when something in the framelet may be elsewhere at another time.
     bool moves() const {
         auto const one_moves = [](auto const& one) { return framelet::moves(one.body, one.velocity); };
         return std::any_of(layers.begin(), layers.begin() + layer_count, one_moves) ||

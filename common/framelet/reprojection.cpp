@@ -11,7 +11,8 @@ namespace framelet {
 
 namespace {
 
-/// Nearer than this (display depth over source depth) nothing is drawn: it would fill the picture.
+/// Least display depth as a share of the source depth at which something is drawn: what is nearer would fill the
+/// picture.
 constexpr double nearest = 1e-3;
 
 /// Smallest share of its area that a plane may keep in front of the display camera: less is edge-on.

@@ -15,7 +15,7 @@ namespace framelet {
 inline constexpr int framelet_side = 16;
 inline constexpr int framelet_samples = framelet_side * framelet_side;
 
-/// How much coarser and finer than one sample per pixel a tile may be, in quadtree levels (a level is a factor of 4).
+/// How many quadtree levels coarser and finer than one sample per pixel a tile may be (a level is a factor of 4).
 inline constexpr int coarsest_levels = 3;
 inline constexpr int finest_levels = 2;
 
@@ -31,7 +31,7 @@ struct Tile {
     /// Column and row among the 2^depth x 2^depth tiles of the same depth.
     constexpr std::uint32_t column() const { return morton_x(index()); }
     constexpr std::uint32_t row() const { return morton_y(index()); }
-    /// Place along the Morton curve of its depth.
+    /// Position along the Morton curve of its depth.
     constexpr std::uint32_t index() const { return code - (1u << (2 * depth())); }
 };
 

@@ -8,7 +8,7 @@
 
 namespace framelet {
 
-/// `n`: 2, 4, 8 or 16; as many of `sums` are set as there are squares.
+/// Sums `values` over each square of n x n. `n`: 2, 4, 8 or 16; as many of `sums` are set as there are squares.
 inline void box_sums(std::array<float, framelet_samples> const& values, std::size_t n,
                      std::array<float, framelet_samples / 4>& sums) {
     constexpr std::size_t side = framelet_side;

@@ -99,7 +99,7 @@ void FrameletCache::take(FrameletCache const& other, std::vector<SentTile>& left
     }
 }
 
-/// The entry for a camera and a scene time.
+/// The index in `views_` of the entry for a camera and a scene time.
 std::uint32_t FrameletCache::view_of(std::uint64_t number, Camera const& camera, SceneTime scene_time) {
     std::size_t index = views_.size();
     for (std::size_t i = views_.size(); i-- > 0;) {
@@ -133,7 +133,7 @@ bool FrameletCache::insert_one(DisplayFramelet const& framelet, FrameletShape co
     return true;
 }
 
-/// Of another cache.
+/// Takes a framelet of another cache; false where nothing of it would show.
 bool FrameletCache::take_one(CachedFramelet const& framelet, std::uint32_t view) {
     CachedFramelet* const cached = make_place(framelet.tile, framelet.moment, view);
     if (cached == nullptr) {
@@ -147,7 +147,7 @@ bool FrameletCache::take_one(CachedFramelet const& framelet, std::uint32_t view)
     return true;
 }
 
-/// For a framelet whose samples and shape are still to come; null where nothing of it would show.
+/// Makes a place for a framelet whose samples and shape are still to come; null where nothing of it would show.
 CachedFramelet* FrameletCache::make_place(Tile tile, Moment const& moment, std::uint32_t view) {
     int const depth = tile.depth();
     int const column = static_cast<int>(tile.column());
@@ -171,7 +171,7 @@ CachedFramelet* FrameletCache::make_place(Tile tile, Moment const& moment, std::
     return &cached;
 }
 
-/// After its samples and shape have come.
+/// Counts a framelet in, once its samples and shape have come, and marks what it changes.
 void FrameletCache::note_placed(CachedFramelet const& cached) {
     int const depth = cached.tile.depth();
     int const column = static_cast<int>(cached.tile.column());
@@ -186,7 +186,8 @@ void FrameletCache::note_placed(CachedFramelet const& cached) {
     mark_neighbours(cached.tile, cached.moment);
 }
 
-/// Nothing of a framelet would show: something at least as new lies over it or the newer ones below it leave no gap.
+/// True when nothing of a framelet would show: something at least as new lies over it or the newer ones below it leave
+/// no gap.
 bool FrameletCache::is_hidden(int depth, int column, int row, std::uint64_t batch) const {
     for (int d = plane_.min_depth(); d <= depth; ++d) {
         std::int32_t const slot = node(d, column >> (depth - d), row >> (depth - d)).slot;

@@ -1,6 +1,6 @@
-// For every place of the image plane the newest framelet that arrived, as a quadtree of pooled framelets. In: batches
-// in any order. Out: what is shown where, which parts of the picture changed, and how much of it is covered. The set
-// that shows in its places depends on the batches inserted, not on the order in which they came.
+// Holds for every place of the image plane the newest framelet that arrived, as a quadtree of pooled framelets. In:
+// batches in any order. Out: what is shown where, which parts of the picture changed, and how much of it is covered.
+// The set that shows in its places depends on the batches inserted, not on the order in which they came.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace framelet {
 
-/// When and from where samples were taken. Samples of one moment may be interpolated with each other.
+/// The batch, camera and scene time that samples are of. Samples of one moment may be interpolated with each other.
 struct Moment {
     std::uint64_t batch = 0;
     std::uint64_t camera = 0;
@@ -32,45 +32,46 @@ struct HeldView {
     std::uint64_t number = 0; ///< the camera's
     Camera camera;
     SceneTime scene_time = 0;
-    std::uint32_t framelets = 0; ///< that show in their places; 0: the entry is free
-    std::uint32_t moving_framelets = 0; ///< those of them that show something other than `static_body` at rest
+    std::uint32_t framelets = 0; ///< number of those that show in their places; 0: the entry is free
+    std::uint32_t moving_framelets = 0; ///< number of those that show something other than `static_body` at rest
 };
 
-/// A framelet as it is held: samples in rows, sample (i, j) at [16 * j + i]. In lines of the processor's cache, since
-/// few are looked at: the first one has what all framelets need.
+/// A framelet as it is held: samples in rows, sample (i, j) at [16 * j + i]. Its parts begin lines of the processor's
+/// cache, since few are looked at: the first line has what is needed of every framelet.
 struct CachedFramelet {
     alignas(64) Tile tile{0};
-    std::uint32_t view = 0; ///< in the cache's `views`
+    std::uint32_t view = 0; ///< index in the cache's `views`
     Moment moment;
     HeldShape shape;
     alignas(64) std::array<PackedSample, framelet_samples> samples;
 };
 
-/// What has changed where, in a square of 8x8 tiles of one depth.
+/// Numbers that tell what has changed in a square of 8x8 tiles of one depth.
 struct SquareVersions {
     static constexpr int levels = 3; ///< of the tiles below the square
     static constexpr std::uint32_t side = 1u << levels;
 
-    /// In Morton order: another number for another framelet that `find` finds, 0 where there is none.
+    /// A number for each tile, in Morton order: another one for another framelet that `find` finds, 0 where there is
+    /// none.
     std::array<std::uint64_t, side * side> tiles{};
 };
 
 /// Code 0 names no tile.
 inline constexpr Tile no_tile{0};
 
-/// Room for framelets that the caches of one viewer hand on to each other: each would keep what it needed at most
-/// otherwise, a picture at rest many times what a moment of a moving one does.
+/// Memory for framelets that the caches of one viewer hand on to each other. Otherwise each would keep the most that it
+/// ever needed: a picture at rest needs many times what a moment of a moving one does.
 class FrameletRoom {
 public:
     using Chunk = std::array<CachedFramelet, 64>;
 
-    /// `most_spare`: chunks that wait for their next use; what is beyond goes back to the system.
+    /// `most_spare`: how many chunks wait for their next use at most; what is beyond goes back to the system.
     explicit FrameletRoom(std::size_t most_spare) : most_spare_(most_spare) {}
 
     std::unique_ptr<Chunk> take();
-    /// Nothing must be in place in it.
+    /// Takes back a chunk, in which no framelet may be held any more.
     void give(std::unique_ptr<Chunk> chunk);
-    /// Of the spare ones.
+    /// Bytes of the spare chunks.
     std::size_t memory_bytes() const { return spare_.size() * sizeof(Chunk); }
 
 private:
@@ -100,14 +101,15 @@ public:
     /// batch; nothing is allocated unless more framelets are held than ever since the last `clear`. Where there are
     /// flags, only those framelets whose flag is not 0 count.
     std::size_t insert(Batch const& batch, std::span<std::uint8_t const> chosen = {});
-    /// As if what another cache of this plane holds had been inserted. Appends what of it is not taken.
+    /// Takes what another cache of this plane holds as if it had been inserted. Appends the framelets that are not
+    /// taken to `left`.
     void take(FrameletCache const& other, std::vector<SentTile>& left);
 
-    /// Nothing is held any more; the room goes to who needs it.
+    /// Drops all framelets; their memory goes to whoever needs it.
     void clear();
-    /// Nothing but these is; appends what was.
+    /// Drops all framelets but those of `tiles`; appends those that were dropped to `gone`.
     void keep(std::span<Tile const> tiles, std::vector<SentTile>& gone);
-    /// Appends all that is held.
+    /// Appends all framelets that are held.
     void add_held(std::vector<SentTile>& framelets) const;
 
     /// The cameras and scene times of which framelets are held, and free entries.
@@ -119,12 +121,12 @@ public:
 
     /// Share of the viewport's area that some framelet covers, [0, 1].
     double coverage() const;
-    /// True when framelets of this depth or deeper cover all of it.
+    /// True when framelets of this depth or deeper cover all of the viewport.
     bool is_covered_from(int depth) const;
     std::size_t framelet_count() const { return count_; }
     std::size_t memory_bytes() const;
 
-    // How `reconstruct` looks at the quadtree.
+    // Read access to the quadtree, as for `reconstruct`.
 
     /// The framelet held for exactly this tile, or null. Any column and row may be asked for; the depth must be within
     /// the plane's limits.
@@ -136,23 +138,24 @@ public:
         std::int32_t const slot = node(depth, column, row).slot;
         return slot == no_slot ? nullptr : &held(slot);
     }
-    /// All that is in place, in no particular order: from 0 to `slot_count()` - 1, null where there is nothing.
+    /// The framelets that are held, by slot in no particular order: from 0 to `slot_count()` - 1, null where a slot is
+    /// free.
     std::size_t slot_count() const { return chunks_.size() * std::tuple_size_v<Chunk>; }
     CachedFramelet const* at_slot(std::size_t slot) const {
         return tile_at_slot(slot) == no_tile ? nullptr : &held(static_cast<std::int32_t>(slot));
     }
-    /// Its tile, without a look at it; `no_tile` where there is nothing.
+    /// The tile of a slot's framelet, without a look at the framelet; `no_tile` where the slot is free.
     Tile tile_at_slot(std::size_t slot) const { return slot_tiles_[slot]; }
-    /// Of the tiles of that depth in a square that is visible, which is counted in squares.
+    /// The versions of the tiles of a depth in a visible square, whose column and row are counted in squares.
     SquareVersions const& versions(int depth, std::uint32_t square_column, std::uint32_t square_row) const {
         return versions_[square_index(depth, square_column, square_row)];
     }
-    /// Its index in `square_changes`.
+    /// The index of a square in `square_changes`.
     std::size_t square_index(int depth, std::uint32_t square_column, std::uint32_t square_row) const {
         Level const& l = level(depth);
         return l.first_square + square_row * l.square_columns + square_column;
     }
-    /// Of all squares: another number where anything of its versions is another.
+    /// A number for each square, which becomes another one where one of its versions does.
     std::span<std::uint64_t const> square_changes() const { return square_changes_; }
     /// The lowest batch number that shows through where only the tiles below this one are looked at; 0 where they leave
     /// a part of it bare. The tile must be visible.
@@ -214,13 +217,13 @@ private:
     std::vector<Level> levels_;
     std::vector<Node> nodes_;
     std::vector<std::unique_ptr<Chunk>> chunks_;
-    std::vector<Tile> slot_tiles_; ///< of what is in place
+    std::vector<Tile> slot_tiles_; ///< by slot; `no_tile` where it is free
     std::vector<SquareVersions> versions_; ///< squares of each level in rows
-    std::vector<std::uint64_t> square_changes_; ///< of those, close together: many are looked at
-    std::uint64_t changes_ = 0; ///< of these
+    std::vector<std::uint64_t> square_changes_; ///< by square, kept together since many are looked at
+    std::uint64_t changes_ = 0; ///< how many there have been: the newest version
     std::vector<std::int32_t> free_slots_;
     std::vector<HeldView> views_;
-    std::size_t shape_bytes_ = 0; ///< what the shapes hold besides
+    std::size_t shape_bytes_ = 0; ///< bytes that the shapes hold outside of the chunks
     std::vector<std::uint8_t> changed_blocks_; ///< a byte for each block, in rows
     std::size_t count_ = 0;
     bool has_changes_ = false;

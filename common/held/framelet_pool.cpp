@@ -18,7 +18,8 @@ bool moves(Batch const& batch, BodyMotions const& motions) {
                                [&](FrameletShape const& shape) { return moves(shape, batch.scene_time, motions); });
 }
 
-/// For a sample a pixel, twice: about what a moment brings while things move, and what is evicted meanwhile.
+/// Chunks for two pictures of a sample a pixel: about what a moment brings while things move, and what is evicted
+/// meanwhile.
 std::size_t chunks_of_two_pictures(ImagePlane const& plane) {
     Viewport const viewport = plane.viewport();
     auto const framelets =
@@ -33,7 +34,8 @@ FrameletPool::FrameletPool(ImagePlane plane, std::size_t most)
     slots_.push_back({std::make_unique<FrameletCache>(plane, room_.get()), {}});
 }
 
-/// Samples that cannot be moved share a cache with those of any camera.
+/// True when a batch is of another camera than the base, or the first one. Samples that cannot be moved share a cache
+/// with those of any camera.
 bool FrameletPool::begins_base(Batch const& batch) const {
     Slot const& slot = slots_[base_];
     return moments_ == 0 || (!(slot.camera == batch.view.camera) && is_reprojectable(batch.view.camera) &&
@@ -72,7 +74,7 @@ std::size_t FrameletPool::insert(Batch const& batch, BodyMotions const& motions,
     return splits && moves(batch, motions) ? insert_moving(batch, motions) : base.cache->insert(batch);
 }
 
-/// What moves into the slot of its time, the rest into the base.
+/// Puts the framelets in which something moves into the slot of their time, the rest into the base.
 std::size_t FrameletPool::insert_moving(Batch const& batch, BodyMotions const& motions) {
     stands_.clear();
     moves_.clear();
@@ -91,7 +93,8 @@ std::size_t FrameletPool::insert_moving(Batch const& batch, BodyMotions const& m
     return slots_[base_].cache->insert(batch, stands_) + slots_[slot].cache->insert(batch, moves_);
 }
 
-/// Of the base, since it is as old by now as what moved in other slots gets; what deforms goes astray with time.
+/// Evicts from the base what moves, since it is as old by now as what moved in other slots gets; what deforms goes
+/// astray with time.
 void FrameletPool::evict_moving(SceneTime now, BodyMotions const& motions) {
     FrameletCache& base = *slots_[base_].cache;
     std::vector<Tile> kept;
@@ -106,7 +109,8 @@ void FrameletPool::evict_moving(SceneTime now, BodyMotions const& motions) {
     base.keep(kept, evicted_);
 }
 
-/// Where what moves before the newest camera is held; `slot_count()` where it has no slot yet.
+/// The slot that holds what moves in front of the newest camera at a scene time; `slot_count()` where there is none
+/// yet.
 std::size_t FrameletPool::moving_slot(SceneTime scene_time) const {
     for (std::size_t i = 0; i < slots_.size(); ++i) {
         if ((i == base_ || belongs_to_base(i)) && slots_[i].scene_time == scene_time) {
@@ -135,7 +139,7 @@ void FrameletPool::settle() {
     base.begun = newest;
 }
 
-/// One that is free, a new one, or that of which least shows, the oldest of those.
+/// The slot for a new moment: a free one, a new one, or that of which least shows, the oldest of those.
 std::size_t FrameletPool::free_slot() {
     auto const free = std::ranges::find(slots_, 0u, &Slot::begun);
     if (free != slots_.end()) {

@@ -1,5 +1,5 @@
-// What a viewer holds that moves its samples: the framelets of several moments. Each camera has a cache, its base, for
-// what stands or rests; what moves before a camera that stands has a cache for each scene time. What is held stays
+// Holds the framelets of several moments, for a viewer that moves its samples. Each camera has a cache, its base, for
+// what stands or rests; what moves in front of a standing camera has a cache for each scene time. What is held stays
 // until something better has come, wherever it lies in the picture by then. In: batches in the order in which they were
 // sent. Out: caches, from all of which a picture is made.
 #pragma once
@@ -14,16 +14,17 @@
 
 namespace framelet {
 
-/// A moment's framelets keep their slot as long as they are held. When the slots are used up the moment goes of which
-/// the last pictures showed least, but never the newest camera's base: what something covers for a while is needed when
-/// that has gone by.
+/// A moment's framelets keep their slot as long as they are held. When the slots are used up, the moment of which the
+/// last pictures showed least is evicted, but never the newest camera's base: what something covers for a while is
+/// needed when that has gone by.
 class FrameletPool {
 public:
-    /// Where things move there are some ten moments a second; a picture shows more than a second of them.
+    /// Largest number of moments that are held: where things move there are some ten a second, and a picture shows more
+    /// than a second of them.
     static constexpr std::size_t most_moments = 16;
-    /// What came so lately has hardly been shown.
+    /// Number of the newest moments, which have hardly been shown yet.
     static constexpr std::uint64_t untried_moments = 3;
-    /// Of what lies on no plane only so many moments show: what more of them would cost to paint shows hardly.
+    /// Number of the newest moments whose outliers show: those of more would cost much to paint and hardly show.
     static constexpr std::uint64_t recent_moments = 3;
 
     /// `most`: moments that are held, at least `untried_moments` and the base.
@@ -31,17 +32,18 @@ public:
 
     ImagePlane const& plane() const { return plane_; }
 
-    /// As `FrameletCache::insert`. `motions`: of bodies about the batch's scene time; what is at rest by them is held
-    /// with what stands, where it takes the place of what shows the same. `begins_moments`: where its camera is another
-    /// than the last batch's, and where something moves before the same one, which samples that are not to be moved
-    /// make no use of: then the newest of a place are held, whatever their cameras and times.
+    /// Takes a batch as `FrameletCache::insert` does. `motions`: of bodies about the batch's scene time; what is at
+    /// rest by them is held with what stands, where it replaces what shows the same. `begins_moments`: a moment begins
+    /// where the camera is another than the last batch's, and where something moves in front of the same one. Where it
+    /// is false, as for samples that are not to be moved, the newest of each place are held, whatever their cameras and
+    /// times.
     std::size_t insert(Batch const& batch, BodyMotions const& motions, bool begins_moments = true);
 
-    /// True where `insert` would begin a moment.
+    /// True when `insert` would begin a moment.
     bool begins_moment(Batch const& batch, BodyMotions const& motions) const;
 
-    /// All of the newest camera is of one moment by now: the newest of each place are held in its base, as if all its
-    /// batches had been inserted there.
+    /// Moves all that the newest camera saw to its base, since it is of one moment by now: the newest framelets of each
+    /// place are held there, as if all its batches had been inserted there.
     void settle();
 
     /// The caches by slot.
@@ -52,24 +54,24 @@ public:
     FrameletCache const& newest() const { return slot(base_); }
     FrameletCache& newest() { return *slots_[base_].cache; }
 
-    /// Whether it has what the newest camera saw moving since its base began.
+    /// True for a slot of what the newest camera saw moving since its base began.
     bool belongs_to_base(std::size_t slot) const { return slots_[slot].begun > slots_[base_].begun; }
-    /// Whether anything is held in such slots.
+    /// True when anything is held in such slots.
     bool has_moving() const;
-    /// Whether it is one of the last few, or the newest camera's base.
+    /// True for a slot of one of the last `recent_moments` moments, and for the newest camera's base.
     bool is_recent(std::size_t slot) const;
-    /// Whether the slot's moment has been shown long enough to tell what of it is of no use. Never true of the base of
-    /// the newest camera.
+    /// True when the slot's moment has been shown long enough to tell what of it is of no use. Never true of the base
+    /// of the newest camera.
     bool is_tried(std::size_t slot) const;
-    /// Nothing else of the slot is held any more.
+    /// Evicts all framelets of a slot but those of `tiles`.
     void keep(std::size_t slot, std::span<Tile const> tiles) { slots_[slot].cache->keep(tiles, evicted_); }
     /// Replaces `framelets` by those that have been evicted since the last call, other than for newer ones in their
     /// places of the same moment.
     void take_evicted(std::vector<SentTile>& framelets);
-    /// Of slots: in how many blocks of the last picture something of it showed. For what goes next.
+    /// Takes, by slot, in how many blocks of the last picture something of it showed: what shows least is evicted next.
     void note_shown(std::span<std::uint32_t const> blocks);
 
-    /// All moments together.
+    /// Number of framelets of all moments together.
     std::size_t framelet_count() const;
     std::size_t memory_bytes() const;
 
@@ -79,7 +81,7 @@ private:
         Camera camera; ///< of its framelets
         SceneTime scene_time = 0; ///< of those of its framelets in which something moves
         std::uint64_t begun = 0; ///< counts moments; 0: free
-        std::uint32_t shown = 0; ///< blocks of the last picture
+        std::uint32_t shown = 0; ///< blocks of the last picture in which it showed
     };
 
     bool begins_base(Batch const& batch) const;
@@ -91,7 +93,7 @@ private:
 
     ImagePlane plane_;
     std::size_t most_;
-    std::unique_ptr<FrameletRoom> room_; ///< of all of them
+    std::unique_ptr<FrameletRoom> room_; ///< shared by all caches
     std::vector<Slot> slots_;
     std::size_t base_ = 0;
     std::uint64_t moments_ = 0;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t side = framelet_side;
 
-/// Room for so many outliers is kept for the next framelet of a place.
+/// Number of outliers for which room is kept for the next framelet of a place.
 constexpr std::size_t most_spare_outliers = 16;
 
 /// Inverse depths that differ by more than this share are of different surfaces.
@@ -22,7 +22,7 @@ constexpr float clearly = 0.02f;
 
 using Samples = std::array<PackedSample, framelet_samples>;
 
-/// Where in rows sample i in Morton order lies.
+/// The index in rows of each sample in Morton order.
 constexpr auto row_places = [] {
     std::array<std::uint8_t, framelet_samples> out{};
     for (std::uint32_t i = 0; i < framelet_samples; ++i) {
@@ -120,7 +120,7 @@ void reduce_colors(Samples const& samples, std::size_t n, Weights const* weights
     }
 }
 
-/// Of the outliers of a pixel the nearest one stands for all.
+/// Keeps one outlier, the nearest, for each pixel most of whose samples are outliers.
 void reduce_outliers(std::size_t n, ReducedSamples const& reduced, std::vector<HeldOutlier>& outliers) {
     std::size_t const pixels = side / n;
     std::array<HeldOutlier const*, framelet_samples> nearest{};
@@ -213,7 +213,7 @@ void find_ends(double spacing, Samples const& samples, HeldShape& held) {
         return;
     }
     PackedSample const* const grid = held.side == framelet_side ? samples.data() : held.reduced.data();
-    // For each two neighbours on different layers: on which one the nearer of them lies, and on which one the other.
+    // times[a][b]: how often, of two neighbours on different layers, the nearer lies on a and the other one on b.
     std::array<std::array<int, max_layers>, max_layers> times{};
     auto const compare = [&](int x, int y, int dx, int dy) {
         std::uint32_t const one = layer_of(grid[y * held.side + x]);

@@ -1,5 +1,6 @@
-// Where blocks of a moved picture are painted if not in memory: on a graphics card. In: the blocks that are to be
-// painted, with their patches in order. Out: what showed of them; the picture itself stays on the canvas.
+// The interface to a canvas on which blocks of a moved picture are painted if not in memory: on a graphics card. In:
+// the blocks that are to be painted, with their patches in order. Out: what showed of them; the picture itself stays on
+// the canvas.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +13,13 @@
 
 namespace framelet {
 
-/// A block of 16x16 pixels that is to be painted, or of which only is asked what showed when it was.
+/// A block of 16x16 pixels that is to be painted, or of which it is only asked what showed when it was painted.
 struct BlockJob {
     int column = 0, row = 0;
-    std::uint32_t first_patch = 0, patches = 0; ///< in the row's
-    bool is_painted = true; ///< else it stays as it is on the canvas
-    /// The picture in memory has its colours; what it lacks inverse depths for is infinitely far and no hole.
+    std::uint32_t first_patch = 0, patches = 0; ///< range in the row's `patches`
+    bool is_painted = true; ///< is to be painted; else it stays as it is on the canvas
+    /// The picture in memory has the block's colours; pixels for which the block lacks inverse depths are infinitely
+    /// far, not holes.
     bool is_in_place = false;
 };
 
@@ -32,13 +34,13 @@ struct RowJobs {
     }
 };
 
-/// What was painted in a block.
+/// A report of what was painted in a block.
 struct BlockReport {
     std::int32_t holes = 0; ///< pixels within the viewport that nothing shows
     std::uint32_t slots = 0; ///< a bit for each slot of which something shows
 };
 
-/// What is to be made of a picture.
+/// All that is to be painted of a picture.
 struct CanvasJobs {
     Viewport viewport;
     int columns = 0, rows = 0; ///< of blocks
@@ -59,13 +61,13 @@ class BlockCanvas {
 public:
     virtual ~BlockCanvas() = default;
 
-    /// Before all jobs of a picture. True where nothing that was painted before is there any more, since another
-    /// owner's pictures were painted meanwhile, or they had another size: then all blocks are to be painted. `is_new`:
-    /// so is the owner, though an earlier one may have had its address.
+    /// Begins a picture; to be called before all its jobs. True when nothing that was painted before is there any more,
+    /// since another owner's pictures were painted meanwhile, or they had another size: then all blocks are to be
+    /// painted. `is_new`: the owner is new, though an earlier one may have had its address.
     virtual bool begin(void const* owner, bool is_new, Viewport viewport) = 0;
 
-    /// Paints all of them, fills holes and filters outlines. `reports` gets one for each job, row by row; what showed
-    /// of patches is noted in their `PatchView::shows`. Throws CanvasError where the card cannot do it; what is on the
+    /// Paints all jobs, fills holes and filters outlines. `reports` gets one for each job, row by row; what showed of
+    /// patches is noted in their `PatchView::shows`. Throws CanvasError where the card cannot do it; what is on the
     /// canvas is lost then.
     virtual void paint(CanvasJobs const& jobs, std::vector<BlockReport>& reports) = 0;
 };

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int side = WarpedBlock::side;
 
-/// Of a pixel of the block that is no hole.
+/// The confidence of a pixel that shows a sample of this group, so of no hole.
 PixelConfidence confidence_of(FrameletPool const& pool, SceneTime now, std::int32_t group) {
     std::size_t const slot = slot_of_group(group);
     HeldView const& view = pool.slot(slot).views()[view_of_group(group)];

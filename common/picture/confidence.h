@@ -1,5 +1,5 @@
-// How far each pixel of a moved picture is to be trusted: how old what it shows is, how coarse, or whether it is made
-// up. In: pool, display camera and time, motions of bodies. Out: a picture of that.
+// Finds how far each pixel of a moved picture is to be trusted: how old what it shows is, how coarse, or whether it is
+// made up. In: pool, display camera and time, motions of bodies. Out: a picture of that.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace framelet {
 
-/// Of what a pixel shows.
+/// Age and spacing of what a pixel shows.
 struct PixelConfidence {
     static constexpr float made_up = -1; ///< seconds of a hole, which is filled from what is around it
 

@@ -46,11 +46,12 @@ void put(FarMean const& mean, std::size_t i, FarGrid<n>& grid) {
     grid.inverse_depth[i] = mean.inverse_depth;
 }
 
-/// What is so much nearer than the farthest of its neighbours does not spread: a share and, for the sky, 1 / metres.
+/// A cell that is nearer by more than this than the farthest of its neighbours does not spread: a factor of inverse
+/// depth and, for the sky, 1 / metres besides.
 inline constexpr float foreground_share = 1.15f;
 inline constexpr float foreground_least = 1e-4f;
 
-/// The weighted mean of those of four that are about as far as the farthest. Of numbers or of lanes.
+/// The weighted mean of those of four cells that are about as far as the farthest. T: numbers or lanes of them.
 template <class T>
 struct FarthestOfFour {
     std::array<T, 4> take;
@@ -68,7 +69,7 @@ struct FarthestOfFour {
     T mean(T a, T b, T c, T d) const { return scale * ((take[0] * a + take[1] * b) + (take[2] * c + take[3] * d)); }
 };
 
-/// Cells of twice the side, each of the farthest of four.
+/// Makes cells of twice the side, each of the farthest of four.
 template <int n>
 void pull(FarGrid<2 * n> const& fine, FarGrid<n>& coarse) {
     using T = std::conditional_t<n % lane_count == 0, FloatLanes, std::conditional_t<n == 1, float, HalfFloats>>;

@@ -32,7 +32,7 @@ FarMean known_mean(std::array<float, 4> const& weights, std::array<FarMean const
 FarMean far_mean(WarpedBlock const& block) {
     FarGrid<4> fours;
     if (block.holes == 0) {
-        // Of rows 1, 5, 9, 13 the same columns, two rows at a time.
+        // Columns 1, 5, 9, 13 of rows 1, 5, 9, 13, two rows at a time.
         auto const pick = [](std::array<float, WarpedBlock::pixels> const& plane, std::size_t row) {
             auto const odd_ones = [&](std::size_t y) {
                 float const* const from = &plane[y * block_side];

@@ -1,5 +1,5 @@
-// What lies around holes, far away: means of whole blocks of a moved picture and of ever larger squares of blocks. In:
-// blocks as painted. Out: a mean for every block, also where nothing shows.
+// Means of what lies around holes, far away: of whole blocks of a moved picture and of ever larger squares of blocks.
+// In: blocks as painted. Out: a mean for every block, also where nothing shows.
 #pragma once
 
 #include <span>
@@ -18,7 +18,8 @@ class FarMeans {
 public:
     /// `columns` x `rows` blocks in rows. Squares of which nothing shows get their colour from larger ones.
     void make(std::span<FarMean const> blocks, int columns, int rows);
-    /// Block coordinates are clamped to the picture. Nothing shows anywhere: `nothing`.
+    /// The mean for a block, whose coordinates are clamped to the picture; `FarMean::nothing` where nothing shows
+    /// anywhere.
     FarMean const& at(int column, int row) const;
 
 private:

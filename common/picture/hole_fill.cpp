@@ -34,9 +34,9 @@ struct Row {
 };
 
 /// Values for n x n fine cells: interpolated between those of the four coarse cells around each that are about as far
-/// as the farthest. Where those are nothing (no picture at all) the value is. `parent` and `other` give the coarse
-/// column (or row) that a fine one lies in and the nearest other one. (No branch depends on a cell: eight are worked on
-/// at a time. A coarse row is spread once for all fine rows that lie in it or beside it.)
+/// as the farthest. Where those are nothing (no picture at all) the value is nothing, too. `parent` and `other` give
+/// the coarse column (or row) that a fine one lies in and the nearest other one. (No branch depends on a cell: eight
+/// are worked on at a time. A coarse row is spread once for all fine rows that lie in it or beside it.)
 template <int n, int m>
 class Pushed {
 public:
@@ -48,7 +48,7 @@ public:
         }
     }
 
-    /// Cells of one fine row from `first` on and before `last`.
+    /// Computes the cells of one fine row from `first` on and before `last`.
     void row(int parent, int other, std::size_t first, std::size_t last, Row<n>& out) const {
         Row<n> const& own = own_[static_cast<std::size_t>(parent)];
         Row<n> const& beside = beside_[static_cast<std::size_t>(parent)];
@@ -93,7 +93,7 @@ void push(FarGrid<n / 2> const& coarse, FarGrid<n>& fine) {
         [](int i) { return std::clamp(i / 2 + (i % 2 == 0 ? -1 : 1), 0, n / 2 - 1); });
 }
 
-/// A block's pixels; those outside of the picture are holes.
+/// Reads a block's pixels; those outside of the picture are holes.
 void read_block(std::span<float const> inverse_depth, Picture const& picture, int left, int top, FarGrid<16>& block) {
     auto const width = static_cast<std::size_t>(std::min(block_side, picture.width - left));
     for (int y = 0; y < block_side; ++y) {
@@ -121,7 +121,7 @@ void read_block(std::span<float const> inverse_depth, Picture const& picture, in
     }
 }
 
-/// Of what lies outside of the picture.
+/// Cells of a block outside of the picture.
 FarCells const no_cells = [] {
     FarCells out{};
     out.twos.inverse_depth.fill(FarMean::nothing);
@@ -146,7 +146,8 @@ struct CellsAround {
     }
 };
 
-/// What of the window the blocks `dx` to the right of the middle give; of a width that the compiler knows.
+/// Reads the part of the window that the blocks `dx` to the right of the middle give; its width is one that the
+/// compiler knows.
 template <int margin, int n, int dx>
 void read_column(CellsAround const& around, FarGrid<n / 2> FarCells::*level, FarGrid<n>& window) {
     constexpr int side = n / 2; // cells of a block
@@ -170,7 +171,7 @@ void read_column(CellsAround const& around, FarGrid<n / 2> FarCells::*level, Far
     }
 }
 
-/// Of cells around a block, half a block more on each side; those within the margin are not needed.
+/// Reads the cells of a block and of half a block more on each side; those within the margin are not needed.
 template <int margin, int n>
 void read_window(CellsAround const& around, FarGrid<n / 2> FarCells::*level, FarGrid<n>& window) {
     read_column<margin, n, -1>(around, level, window);
@@ -194,7 +195,7 @@ std::uint32_t byte_of(float square) {
         static_cast<std::int32_t>(std::min(std::sqrt(std::max(square, 0.0f)) + 0.5f, 255.0f)));
 }
 
-/// The holes of a block from the means of 2x2 pixels around it.
+/// Writes the holes of a block from the means of 2x2 pixels around it.
 void write_holes(FarGrid<16> const& twos, std::span<float const> inverse_depth, int left, int top, Picture& picture) {
     auto const parent = [](int i) { return i / 2 + 4; };
     auto const other = [](int i) { return i / 2 + 4 + (i % 2 == 0 ? -1 : 1); };

@@ -25,7 +25,7 @@ bool is_equal(Picture const& a, Picture const& b, PixelRect const& rect) {
     return true;
 }
 
-/// Both products are whole numbers below 2^24: exact in single precision.
+/// Mixes squares of bytes. Both products are whole numbers below 2^24: exact in single precision.
 void mix_row(std::uint8_t const* first, std::uint8_t const* second, float first_share, float second_share,
              std::size_t bytes, std::uint8_t* mixed) {
     constexpr float scale = 1 / static_cast<float>(whole_share);
@@ -37,7 +37,7 @@ void mix_row(std::uint8_t const* first, std::uint8_t const* second, float first_
     }
 }
 
-/// Where exactly one of the two shows something there, it alone.
+/// Writes pixels for which exactly one of the two pictures shows something from that one alone.
 void show_behind_holes(MixSource const& first, MixSource const& second, int y, PixelRect const& rect, Picture& mixed) {
     if (first.inverse_depth.empty() && second.inverse_depth.empty()) {
         return;

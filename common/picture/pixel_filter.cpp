@@ -17,7 +17,7 @@ Words channel_of(Words pixels, int shift) {
     return pixels >> shift & 255u;
 }
 
-/// Of byte `shift` / 8 of each.
+/// The filtered byte `shift` / 8 of each pixel, in its place.
 Words filtered_channel(Words middle, std::array<Words, 4> const& beside, int shift) {
     auto const square = [shift](Words pixels) {
         Words const value = channel_of(pixels, shift);
@@ -25,12 +25,12 @@ Words filtered_channel(Words middle, std::array<Words, 4> const& beside, int shi
     };
     Words const sum =
         4u * square(middle) + square(beside[0]) + square(beside[1]) + square(beside[2]) + square(beside[3]);
-    // Below 2^24: exact.
+    // The sum is below 2^24: exact as a float.
     WideFloats const mean = __builtin_convertvector(reinterpret_cast<WideInts>(sum), WideFloats) * 0.125f;
     return reinterpret_cast<Words>(__builtin_convertvector(root(mean) + 0.5f, WideInts)) << shift;
 }
 
-/// Where the picture has no outline to smooth: green, of which most of brightness consists, hardly differs.
+/// -1 where the picture has no outline to smooth: green, of which most of brightness consists, hardly differs.
 WideInts is_flat(Words middle, std::array<Words, 4> const& beside, int contrast) {
     constexpr int green = std::endian::native == std::endian::little ? 8 : 16;
     auto const value = [](Words pixels) { return reinterpret_cast<WideInts>(channel_of(pixels, green)); };
@@ -57,7 +57,7 @@ Words filtered_pixels(Words middle, std::array<Words, 4> const& beside, int cont
     return (is_kept ? middle : mixed) | opaque;
 }
 
-/// Pixels of one row, of which so many are to be read: one that is not there repeats the last one.
+/// Loads pixels of a row of `width` pixels; those beyond its ends repeat the last one.
 Words load_pixels(std::uint8_t const* row, int x, int width) {
     if (x >= 0 && x + wide_count <= width) {
         return load_lanes<Words>(row + 4 * x);

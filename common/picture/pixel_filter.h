@@ -1,6 +1,6 @@
-// The mean over a pixel's area, of pictures of samples that do not lie on pixels: what was moved to another camera has
-// a sample at each pixel's centre, and outlines of it are stairs. In: a picture, and which of its pixels were moved.
-// Out: the picture with these filtered.
+// Filters outlines of a moved picture to about the mean over a pixel's area: what was moved to another camera has a
+// sample at each pixel's centre, and its outlines are stairs. In: a picture, and which of its pixels were moved. Out:
+// the picture with these filtered.
 #pragma once
 
 #include "common/framelet/tile.h"
@@ -8,7 +8,7 @@
 
 namespace framelet {
 
-/// Differences of green bytes up to this are none of an outline: what a surface shows stays sharp.
+/// Largest difference of green bytes that is not an outline: what a surface shows stays sharp.
 inline constexpr int flat_contrast = 26;
 
 /// Alpha of a pixel that `filter_pixels` is to leave as it is (filled holes too), and of one that it filters.

@@ -1,6 +1,6 @@
-// Where all that a pool holds shows in the picture of a camera at a time, to look at parts of that picture. In: pool,
-// camera, time, motions of bodies. Out: blocks of the picture, as `Reprojector::show` would paint them if the camera
-// has not cut.
+// Plans where all that a pool holds shows in the picture of a camera at a time, to look at parts of that picture. In:
+// pool, camera, time, motions of bodies. Out: blocks of the picture, as `Reprojector::show` would paint them if the
+// camera has not cut.
 #pragma once
 
 #include <vector>
@@ -24,7 +24,7 @@ public:
     int columns() const { return plans_[0].columns(); }
     int rows() const { return plans_[0].rows(); }
 
-    /// Different blocks may be painted at the same time. `patches` is scratch.
+    /// Paints a block; different ones may be painted at the same time. `patches` is scratch.
     void paint(int column, int row, std::vector<PatchView>& patches, WarpedBlock& block) {
         patches.clear();
         for (WarpPlan& plan : plans_) {

@@ -25,7 +25,7 @@ struct LinearColor {
     float red = 0, green = 0, blue = 0;
 };
 
-/// Place in the table of bytes. Means and interpolations of table values stay in [0, 1].
+/// Index in the table of bytes (`encoded`). Means and interpolations of table values stay in [0, 1].
 std::int32_t step_of(float linear) {
     return static_cast<std::int32_t>(linear * TransferTables::steps +
                                      0.5f); // NOLINT(bugprone-incorrect-roundings): >= 0
@@ -57,8 +57,8 @@ LinearColor mean_at(TransferTables const& tables, CachedFramelet const& framelet
     return {sum.red * scale, sum.green * scale, sum.blue * scale};
 }
 
-/// Sample (x, y) of the sampling grid of one depth, counted over the whole image plane, if somebody holds it at the
-/// moment asked for.
+/// Finds sample (x, y) of the sampling grid of one depth, counted over the whole image plane; false where no framelet
+/// of this moment has it.
 bool find_sample(TransferTables const& tables, FrameletCache const& cache, Moment const& moment, int depth, int x,
                  int y, LinearColor& out) {
     if (x < 0 || y < 0) {
@@ -123,7 +123,7 @@ Neighbourhood<spacing> gather(TransferTables const& tables, FrameletCache const&
     return out;
 }
 
-/// Between which samples of a neighbourhood the pixels of a block's row (or column) lie.
+/// The samples of a neighbourhood between which the pixels of a block's row (or column) lie.
 template <int spacing>
 struct Places {
     std::array<int, side> index{};
@@ -182,7 +182,8 @@ void paint_pixels(CachedFramelet const& framelet, Block& block) {
     }
 }
 
-/// Out of line: inlined next to arithmetic, the table look-ups get entangled in it by the vectoriser.
+/// Decodes one colour of the samples to linear light. Out of line: inlined next to arithmetic, the table look-ups get
+/// entangled in it by the vectoriser.
 [[gnu::noinline]] void to_linear(TransferTables const& tables,
                                  std::array<PackedSample, framelet_samples> const& samples, std::size_t color,
                                  std::array<float, framelet_samples>& out) {
@@ -191,7 +192,7 @@ void paint_pixels(CachedFramelet const& framelet, Block& block) {
     }
 }
 
-/// A framelet of 2^levels x 2^levels samples a pixel, whose first pixel is (left, top) of the block.
+/// Paints a framelet of 2^levels x 2^levels samples a pixel, whose first pixel is (left, top) of the block.
 template <int levels>
 void paint_fine(TransferTables const& tables, CachedFramelet const& framelet, int left, int top, Block& block) {
     constexpr std::size_t n = 1 << levels;

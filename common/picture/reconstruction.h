@@ -1,4 +1,4 @@
-// From held framelets to pixels ([Stephens 2011] section 4.2): tent filter where samples are coarser than pixels, box
+// Makes pixels of held framelets ([Stephens 2011] section 4.2): tent filter where samples are coarser than pixels, box
 // filter where they are finer, both in linear light; the newest batch wins. In: cache and what changed. Out: those
 // pixels.
 #pragma once

@@ -22,11 +22,12 @@ namespace {
 
 constexpr int side = WarpedBlock::side;
 
-/// Where less than this share of what is held would show (after a cut), the rest being made up, all of it stays where
+/// Share of what is held that must show. Where less would (after a cut), the rest being made up, all of it stays where
 /// it was rendered: that is nearer to what comes (measured on cuts of one scene).
 constexpr double least_kept = 0.1;
 
-/// Nothing of a framelet of this view leaves its place; of those that hold something moving only if no time has passed.
+/// True when nothing of a framelet of this view leaves its place; where it holds something moving (`moves`) only if no
+/// time has passed.
 bool is_in_place(HeldView const& view, bool moves, Camera const& camera, SceneTime scene_time) {
     bool const same_camera = view.camera == camera || !is_reprojectable(view.camera) || !is_reprojectable(camera);
     return same_camera && (!moves || view.scene_time == scene_time);
@@ -38,7 +39,7 @@ bool is_all_in_place(FrameletCache const& cache, Camera const& camera, SceneTime
     });
 }
 
-/// Also true where bodies that could move have come to rest.
+/// The same for one framelet; also true where bodies that could move have come to rest.
 bool is_in_place(CachedFramelet const& framelet, HeldView const& view, Camera const& camera, SceneTime scene_time,
                  BodyMotions const& motions) {
     return is_in_place(view, framelet.shape.moves, camera, scene_time) ||
@@ -74,7 +75,7 @@ bool is_block_in_place(FrameletCache const& cache, Camera const& camera, SceneTi
     return is_covered;
 }
 
-/// The moment that has most of its picture.
+/// The moment whose framelets cover most of the picture.
 FrameletCache const& fullest_of(FrameletPool const& pool) {
     std::size_t most = 0;
     for (std::size_t i = 1; i < pool.slot_count(); ++i) {
@@ -83,7 +84,7 @@ FrameletCache const& fullest_of(FrameletPool const& pool) {
     return pool.slot(most);
 }
 
-/// Of pixels of a block: a bit for each slot of which something shows.
+/// A bit for each slot of which something shows in a block.
 std::uint32_t slots_of(WarpedBlock const& block) {
     std::uint32_t slots = 0;
     for (std::int32_t const group : block.group) {
@@ -116,7 +117,7 @@ void copy_rows(void const* block, Viewport viewport, int left, int top, void* pl
     }
 }
 
-/// With `moved_alpha` where what shows was moved.
+/// Writes a block's colours, with `moved_alpha` where what shows was moved.
 void write_colors(WarpedBlock const& block, int left, int top, Picture& picture) {
     alignas(64) std::array<std::uint32_t, WarpedBlock::pixels> colors;
     for (std::size_t i = 0; i < WarpedBlock::pixels; i += wide_count) {
@@ -131,8 +132,8 @@ void write_colors(WarpedBlock const& block, int left, int top, Picture& picture)
     copy_rows(colors.data(), {picture.width, picture.height}, left, top, picture.rgba.data());
 }
 
-/// A block that stands in its place has the picture's colours; what it lacks inverse depths for is infinitely far and
-/// no hole. Beyond the picture's border there is nothing.
+/// Gives a block that stands in its place the picture's colours; pixels for which it lacks inverse depths are
+/// infinitely far, not holes. Beyond the picture's border there is nothing.
 void take_picture(Picture const& picture, int left, int top, WarpedBlock& block) {
     block.holes = 0;
     for (int y = 0; y < std::min(side, picture.height - top); ++y) {
@@ -155,7 +156,7 @@ void write_plane(std::array<float, WarpedBlock::pixels> const& from, int left, i
 
 } // namespace
 
-/// All that is held stays where it is, and no other moment may have what the base of the newest camera lacks.
+/// True when all that is held stays where it is and no other moment may have what the base of the newest camera lacks.
 bool Reprojector::is_in_place(FrameletPool const& pool, Camera const& camera, SceneTime scene_time) const {
     FrameletCache const& newest = pool.newest();
     return !pool.has_moving() && is_all_in_place(newest, camera, scene_time) &&
@@ -178,8 +179,8 @@ void Reprojector::show_exact(FrameletPool const& pool, std::span<PixelRect const
     hole_share_ = 0;
 }
 
-/// After an exact picture no block is known to be as the plan says; nor is it after one that was painted elsewhere,
-/// where it is blank.
+/// Prepares what is known of blocks. After an exact picture no block is known to be as the plan says; nor is it after
+/// one that was painted elsewhere, where it is blank.
 void Reprojector::start_moving(Viewport viewport, std::size_t blocks, bool is_blank) {
     bool const is_new = is_exact_ || is_blank || blocks_.size() != blocks;
     if (is_new) {
@@ -196,7 +197,8 @@ void Reprojector::start_moving(Viewport viewport, std::size_t blocks, bool is_bl
     is_exact_ = false;
 }
 
-/// All of them where what shows in its place is another slot's.
+/// Flags the blocks whose patches may be others than the last time; all of them where other slots are the newest one or
+/// belong to it.
 void Reprojector::flag_replanned(FrameletPool const& pool) {
     std::uint32_t base_slots = 0;
     for (std::size_t i = 0; i < pool.slot_count(); ++i) {
@@ -260,7 +262,7 @@ void Reprojector::show(FrameletPool const& pool, std::span<PixelRect const> chan
     has_shown_ = true;
 }
 
-/// True when something had to be painted.
+/// Paints the blocks that have changed; true when there were any.
 bool Reprojector::paint_blocks(FrameletPool const& pool, Camera const& camera, SceneTime scene_time,
                                BodyMotions const& motions) {
     std::atomic<bool> any = false;
@@ -280,7 +282,7 @@ bool Reprojector::paint_blocks(FrameletPool const& pool, Camera const& camera, S
     return any;
 }
 
-/// Likewise. What is to be painted is collected here, where the plan is.
+/// The same on a canvas. What is to be painted is collected here, where the plan is.
 bool Reprojector::paint_on(BlockCanvas& canvas, FrameletPool const& pool, Camera const& camera, SceneTime scene_time,
                            BodyMotions const& motions) {
     std::atomic<bool> any = false, any_job = false;
@@ -340,7 +342,7 @@ bool Reprojector::paint_on(BlockCanvas& canvas, FrameletPool const& pool, Camera
     return any;
 }
 
-/// As it was.
+/// Shows a moment as it was rendered.
 void Reprojector::show_cut(FrameletCache const& moment, Picture& picture, std::vector<PixelRect>& repainted) {
     is_on_canvas_ = false;
     blocks_.clear(); // no block is as the plan says

@@ -21,7 +21,7 @@ int blocks_of(int pixels) {
     return (pixels + side - 1) / side;
 }
 
-/// As many as a cache holds at most.
+/// Largest number of framelets that wait: as many as a cache holds at most.
 std::size_t most_waiting(Viewport viewport) {
     constexpr int finest = side >> finest_levels;
     return static_cast<std::size_t>((viewport.width + finest - 1) / finest) *
@@ -47,7 +47,7 @@ SceneSmoother::SceneSmoother(ImagePlane plane)
 
 void SceneSmoother::start_picture() {
     shares_.assign(dirty_.size(), whole_share);
-    shown_shares_.assign(dirty_.size(), -1); // none: nothing is as it should be
+    shown_shares_.assign(dirty_.size(), -1); // no share: every block is to be written
     std::ranges::fill(equal_, std::uint8_t{0});
 }
 
@@ -85,7 +85,7 @@ void SceneSmoother::settle() {
     }
 }
 
-/// `changed`: of the base.
+/// Brings the times of a side up to date. `changed`: rectangles of the base.
 void SceneSmoother::update_times(FrameletPool const& pool, std::span<PixelRect const> changed, Side& shown) const {
     update_shown_times(pool.newest(), changed, shown.base_times);
     shown.times = shown.base_times;

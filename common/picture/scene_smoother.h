@@ -22,33 +22,33 @@ public:
 
     /// Takes what the cache that `show` is given has taken, or is about to take, with the same motions.
     void insert(Batch const& batch, BodyMotions const& motions);
-    /// As `FrameletPool::settle`, once all that came is shown.
+    /// Does as `FrameletPool::settle` with what is held here, once all that came is shown.
     void settle();
 
-    /// As `Reprojector::show`; `newest` holds all that was inserted, and perhaps more. `lag`, >= 0, is how many seconds
-    /// `scene_time` is behind the scene's clock: a change takes no longer, since what changes for the first time in
-    /// long would else show as soon as it came. Where nothing that was inserted is of later than `scene_time`, the
-    /// picture is byte by byte what `Reprojector` shows, for a copy more; elsewhere it takes about twice as long. A
-    /// clock that is set back ends what is going on.
+    /// Shows a picture as `Reprojector::show` does; `newest` holds all that was inserted, and perhaps more. `lag`, at
+    /// least 0, is how many seconds `scene_time` is behind the scene's clock: a change takes no longer, since what
+    /// changes for the first time in long would else show as soon as it came. Where nothing that was inserted is later
+    /// than `scene_time`, the picture is byte by byte what `Reprojector` shows, at the cost of one more copy; elsewhere
+    /// it takes about twice as long. A clock that is set back ends what is going on.
     void show(FrameletPool const& newest, std::span<PixelRect const> changed, Camera const& camera,
               SceneTime scene_time, SceneTime lag, BodyMotions const& motions, Picture& picture,
               std::vector<PixelRect>& repainted);
 
-    /// The picture of the next `show` is written as a whole.
+    /// Makes the next `show` write its picture as a whole.
     void start_picture();
 
-    /// As `Reprojector::shown_blocks`, of the pool that `show` was given.
+    /// `Reprojector::shown_blocks` of the pool that `show` was given.
     std::span<std::uint32_t const> shown_blocks() const { return newer_.reprojector.shown_blocks(); }
 
-    /// Of all that a viewer would not hold without this.
+    /// Bytes of all that a viewer would not hold without this.
     std::size_t memory_bytes() const;
 
 private:
     struct Side {
         Reprojector reprojector;
         Picture picture;
-        ShownTimes base_times; ///< of the base of the newest camera
-        ShownTimes times; ///< of all that it sees
+        ShownTimes base_times; ///< times of the base of the newest camera
+        ShownTimes times; ///< times of all that the newest camera sees
         std::vector<PixelRect> repainted;
 
         MixSource source() const;
@@ -63,15 +63,15 @@ private:
     Viewport const viewport_;
     int const columns_;
     FrameletPool older_pool_;
-    std::deque<Batch> waiting_; ///< for their scene time to be shown, without tracks
+    std::deque<Batch> waiting_; ///< batches that wait for their scene time to be shown, without tracks
     std::size_t waiting_framelets_ = 0;
     SceneTime shown_time_ = 0;
     Side older_, newer_;
     std::vector<PixelRect> changed_; ///< scratch: of the older cache
-    std::vector<SentTile> evicted_; ///< scratch: nobody is to know
-    // Of blocks of 16x16 pixels, in rows.
+    std::vector<SentTile> evicted_; ///< scratch: nobody is told
+    // By block of 16x16 pixels, in rows.
     std::vector<MixShare> shares_, shown_shares_;
-    std::vector<std::uint8_t> dirty_; ///< one of the two pictures has changed
+    std::vector<std::uint8_t> dirty_; ///< one of the two pictures has changed there
     std::vector<std::uint8_t> equal_; ///< the two pictures are known to be equal there
     std::vector<std::uint8_t> painted_;
 };

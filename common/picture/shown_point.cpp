@@ -14,7 +14,8 @@ constexpr int side = WarpedBlock::side;
 /// Cracks and the edges of what is torn are narrower than this; pixels.
 constexpr int most_pixels_away = 4;
 
-/// Of the pixel in that column and row of the block, or of its nearest neighbour in the block; `hole_depth`: none.
+/// The inverse depth of the pixel in that column and row of the block, or of its nearest neighbour in the block;
+/// `hole_depth`: there is none.
 float inverse_depth_near(WarpedBlock const& block, int column, int row) {
     float const own = block.inverse_depth[static_cast<std::size_t>(row * side + column)];
     if (own != hole_depth) {
@@ -35,7 +36,7 @@ float inverse_depth_near(WarpedBlock const& block, int column, int row) {
     return out;
 }
 
-/// So far that no camera's numbers reach there.
+/// True for what is so far that no camera's numbers reach there.
 bool is_infinitely_far(float inverse_depth) {
     return !(inverse_depth * max_camera_coordinate > 1);
 }

@@ -1,4 +1,4 @@
-// A set of numbers from 0 on, a bit each, that is looked at as many at a time as lanes hold.
+// A set of whole numbers from 0 on, a bit each, of which as many are looked at at a time as lanes hold.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace framelet {
 
-/// Of `count` numbers, a multiple of 64.
+/// A set of numbers below `count`, which is a multiple of 64.
 template <std::size_t count>
 class LaneBits {
 public:
@@ -29,7 +29,7 @@ public:
         return out;
     }
 
-    /// Of the lanes of doubles from `number` on, a multiple of these.
+    /// A bit for each of `wide_doubles` numbers from `number` on, which is a multiple of that.
     unsigned lanes(std::size_t number) const {
         return static_cast<unsigned>(words_[number / 64] >> number % 64) & ((1u << wide_doubles) - 1);
     }
@@ -38,7 +38,7 @@ public:
     bool any() const {
         return std::ranges::any_of(words_, [](std::uint64_t word) { return word != 0; });
     }
-    /// Of any.
+    /// The least number of the set, which must not be empty.
     std::size_t lowest() const {
         std::size_t i = 0;
         while (words_[i] == 0) {

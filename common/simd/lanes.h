@@ -24,10 +24,10 @@ using FloatLanes = float __attribute__((vector_size(4 * lane_count)));
 /// Comparisons of lanes yield these: 0 or -1.
 using IntLanes = std::int32_t __attribute__((vector_size(4 * lane_count)));
 
-/// Half of them.
+/// Half as many lanes.
 using HalfFloats = float __attribute__((vector_size(2 * lane_count)));
 
-/// As many as the processor's widest registers take.
+/// Lanes of 32 bits in the processor's widest registers: 8, or 16 with AVX-512.
 #ifdef __AVX512F__
 inline constexpr int wide_count = 16;
 #else
@@ -37,16 +37,16 @@ using WideFloats = float __attribute__((vector_size(4 * wide_count)));
 using WideInts = std::int32_t __attribute__((vector_size(4 * wide_count)));
 using WideWords = std::uint32_t __attribute__((vector_size(4 * wide_count)));
 using FourDoubles = double __attribute__((vector_size(32)));
-/// In a register as wide.
+/// Doubles in a vector of the same width.
 inline constexpr int wide_doubles = wide_count / 2;
 using WideDoubles = double __attribute__((vector_size(8 * wide_doubles)));
 
-/// They stand for eight pixels of a row, and where there are more for those of the rows below too: what has edges in it
-/// takes less of these than of longer rows.
+/// Wide lanes stand for eight pixels of a row and, where there are more lanes, of the rows below it: content with edges
+/// takes fewer of such groups than of longer rows.
 inline constexpr int wide_columns = lane_count;
 inline constexpr int wide_rows = wide_count / lane_count;
 
-/// Where in that each of them lies.
+/// Column and row of each lane in such a group of pixels.
 #ifdef __AVX512F__
 inline constexpr WideInts wide_column{0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7};
 inline constexpr WideInts wide_row{0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1};
@@ -55,7 +55,7 @@ inline constexpr WideInts wide_column{0, 1, 2, 3, 4, 5, 6, 7};
 inline constexpr WideInts wide_row{};
 #endif
 
-// Wherever they lie in memory.
+// Lanes may lie anywhere in memory, aligned or not.
 template <class Lanes = FloatLanes>
 Lanes load_lanes(void const* from) {
     Lanes out;
@@ -67,7 +67,7 @@ void store_lanes(Lanes const& from, void* to) {
     std::memcpy(to, &from, sizeof from);
 }
 
-/// Every other one of those in two registers, from the first on and from the second on.
+/// Every other lane of two registers, from the first on (`even_of`) and from the second on (`odd_of`).
 inline FloatLanes even_of(FloatLanes a, FloatLanes b) {
     return __builtin_shufflevector(a, b, 0, 2, 4, 6, 8, 10, 12, 14);
 }
@@ -82,8 +82,8 @@ inline HalfFloats odd_of(HalfFloats a, HalfFloats b) {
 }
 
 #ifdef __AVX2__
-// (The compiler makes two operations of a comparison with 0.)
-/// `b` where one of them is not a number.
+// (Intrinsics: the compiler makes two operations of a comparison with 0.)
+/// The smaller and the larger one in each lane; `b` where one of them is not a number.
 inline FloatLanes smaller(FloatLanes a, FloatLanes b) {
     return _mm256_min_ps(a, b);
 }
@@ -91,7 +91,7 @@ inline FloatLanes larger(FloatLanes a, FloatLanes b) {
     return _mm256_max_ps(a, b);
 }
 #ifdef __AVX512F__
-// (With a mask of all: GCC 12 warns of what the plain ones leave unset.)
+// (With a mask of all lanes: GCC 12 warns of what the plain intrinsics leave unset.)
 inline WideFloats smaller(WideFloats a, WideFloats b) {
     return _mm512_maskz_min_ps(0xffff, a, b);
 }
@@ -109,7 +109,8 @@ inline FloatLanes larger(FloatLanes a, FloatLanes b) {
 #endif
 
 #ifdef __AVX512F__
-/// Within 2^-22 of it: one step of Newton's after the processor's estimate, in a third of the time. Not of less than 0.
+/// The square root, within 2^-22 of it: one step of Newton's method after the processor's estimate, in a third of the
+/// time. No value may be less than 0.
 inline WideFloats root(WideFloats value) {
     __mmask16 const is_more = _mm512_cmp_ps_mask(value, _mm512_setzero_ps(), _CMP_GT_OQ);
     WideFloats const estimate = _mm512_maskz_rsqrt14_ps(is_more, value);
@@ -129,7 +130,7 @@ inline WideFloats root(WideFloats value) {
 }
 #endif
 
-/// For each lane one of eight, by its index.
+/// Picks for each lane one of eight words by the lane's index, 0 to 7.
 inline WideInts pick_of_eight(std::uint32_t const* eight, WideInts index) {
 #if defined(__AVX512F__)
     __m512i const all = _mm512_castsi256_si512(_mm256_loadu_si256(reinterpret_cast<__m256i const*>(eight)));
@@ -146,7 +147,7 @@ inline WideInts pick_of_eight(std::uint32_t const* eight, WideInts index) {
 #endif
 }
 
-/// True where a bit is set in any of them.
+/// True when a bit is set in any lane.
 inline bool any_lane(WideInts flags) {
 #ifdef __AVX512F__
     auto const all = reinterpret_cast<__m512i>(flags);
@@ -187,14 +188,14 @@ inline unsigned bits_of(std::int64_t __attribute__((vector_size(64))) flags) {
 }
 #endif
 
-/// One of them, or lanes.
+/// A double, or lanes of doubles.
 template <class Numbers>
 concept OfDoubles = sizeof(Numbers) % sizeof(double) == 0 && !std::is_integral_v<Numbers>;
 
 /// Comparisons of doubles yield these: 0 or -1.
 using WideLongs = std::int64_t __attribute__((vector_size(8 * wide_doubles)));
 
-/// -1 where the bit of the lane is set.
+/// Lanes that are -1 where their bit is set, else 0.
 inline WideLongs lanes_of(unsigned bits) {
 #ifdef __AVX512F__
     constexpr WideLongs bit{1, 2, 4, 8, 16, 32, 64, 128};
@@ -204,7 +205,7 @@ inline WideLongs lanes_of(unsigned bits) {
     return (bit & bits) != 0;
 }
 
-// `b` where one of them is not a number.
+// The smaller and the larger one; `b` where one of them is not a number.
 template <OfDoubles Doubles>
 Doubles smaller(Doubles a, Doubles b) {
     return a < b ? a : b;
@@ -218,7 +219,7 @@ Doubles absolute(Doubles value) {
     return value < 0 ? -value : value;
 }
 
-/// Of all lanes, `combine`d pairwise.
+/// All lanes `combine`d pairwise into one number.
 template <class Combine>
 double of_all(WideDoubles lanes, Combine const& combine) {
 #ifdef __AVX512F__

@@ -17,16 +17,16 @@ namespace {
 /// A sample nearer to the display camera than this share of its depth in the source is not drawn.
 constexpr double nearest = 1e-3;
 
-/// No splat is smaller (between pixels' centres it would vanish) or larger than this, pixels.
+/// Bounds of a splat's radius, pixels: a smaller one would vanish between pixels' centres.
 constexpr double smallest_splat = 0.75;
 constexpr double largest_splat = 32;
 
 /// Numbers as large as this, and what is not a number, do not get into a patch.
 constexpr double largest = 1e18;
 
-/// Of the worn spacing of what leads: nothing else is as good.
+/// Factor of the worn spacing of what leads: nothing else is as good.
 constexpr float ahead_of_all = 1.0f / 64;
-/// Of the worn spacing of what is out of date: all that is not is better.
+/// Factor of the worn spacing of what is out of date: all that is not is better.
 constexpr float behind_all = 2 * worst_worn;
 
 /// Order-dependent hash of what a patch is made of.
@@ -151,7 +151,8 @@ void FrameletWarp::add_layer(std::uint32_t view, HeldLayer const& layer, Decorre
     }
 }
 
-/// As `worn_step` has it.
+/// The worn spacing of samples in steps, as `worn_step` has it; limits `lasts_` to the times for which the step is the
+/// same.
 float FrameletWarp::worn(std::uint32_t view, DecorrelationCode decorrelation, float spacing, float misplaced) {
     SceneTime const rendered = cache_.views()[view].scene_time;
     float const rate = decorrelation_rate(decorrelation);
@@ -176,14 +177,14 @@ void FrameletWarp::rate(std::uint32_t view, DecorrelationCode decorrelation, Lay
     float const z = at(2);
     float const u = at(0) / z;
     float const v = at(1) / z;
-    // Samples a pixel, by the derivatives there; where they are farthest apart counts.
+    // Samples a pixel, from the derivatives there; the direction in which they are farthest apart counts.
     float const ux = (patch.dx[0] - u * patch.dx[2]) / z, uy = (patch.dy[0] - u * patch.dy[2]) / z;
     float const vx = (patch.dx[1] - v * patch.dx[2]) / z, vy = (patch.dy[1] - v * patch.dy[2]) / z;
     float const squares = ux * ux + uy * uy + vx * vx + vy * vy;
     float const area = ux * vy - uy * vx;
     float const least = 0.5f * (squares - std::sqrt(std::max(squares * squares - 4 * area * area, 0.0f)));
     float const spacing = 1 / std::sqrt(std::max(least, 1e-6f));
-    // By so many pixels its samples may be shown off their places: their inverse depths are not quite the plane's.
+    // Pixels by which its samples may be shown off their places: their inverse depths are not quite the plane's.
     glm::dvec2 const middle = 0.5 * glm::dvec2(patch.box.left + patch.box.right, patch.box.top + patch.box.bottom);
     float const misplaced = is_still_ ? 0 : layer.error * z * parallax_at(middle);
     patch.worn = worn(view, decorrelation, spacing, misplaced);
@@ -194,7 +195,7 @@ void FrameletWarp::rate(std::uint32_t view, DecorrelationCode decorrelation, Lay
     }
     patch.hides = hides(spacing, misplaced) && !is_adrift(layer.body, layer.velocity, age);
     if (is_astray(spacing, misplaced)) {
-        patch.tolerance = static_cast<float>(largest); // nearer than nothing
+        patch.tolerance = static_cast<float>(largest); // it never counts as the nearer one
     }
 }
 
@@ -220,7 +221,7 @@ double FrameletWarp::inverse_depth_within(double pixels, MergedLayer const& merg
     double const dx = transform_.far[0].z + layer.dx * parallax.z;
     double const dy = transform_.far[1].z + layer.dy * parallax.z;
     double const z = transform_.map(rect.left + middle.x, rect.top + middle.y, w).z -
-                     0.5 * (std::abs(dx) * (high.x - low.x) + std::abs(dy) * (high.y - low.y)); // the least one
+                     0.5 * (std::abs(dx) * (high.x - low.x) + std::abs(dy) * (high.y - low.y)); // the least z
     double const within = pixels * std::max(z, nearest) / parallax_;
     return within > 0 ? within : 0;
 }
@@ -245,7 +246,7 @@ void FrameletWarp::turn_to(std::uint32_t view, BodyNumber body, Vec3 const& velo
                            : make_view_transform(make_view_rays(from.camera, cache_.plane().viewport()), display_rays_,
                                                  motion, drift);
     glm::dvec3 const& parallax = transform_.parallax;
-    // What is shown at X moves by (parallax.xy - X parallax.z) / z for each 1 / metre.
+    // A sample that is shown at X moves by (parallax.xy - X parallax.z) / z for each 1 / metre.
     Viewport const viewport = cache_.plane().viewport();
     double const x = std::max(std::abs(parallax.x), std::abs(parallax.x - viewport.width * parallax.z));
     double const y = std::max(std::abs(parallax.y), std::abs(parallax.y - viewport.height * parallax.z));
@@ -253,7 +254,7 @@ void FrameletWarp::turn_to(std::uint32_t view, BodyNumber body, Vec3 const& velo
     lens_ratio_ = std::sqrt(std::abs(glm::determinant(transform_.far)));
 }
 
-/// Where the layer's samples and half a sample's cell more reach, pixels from the tile's corner.
+/// Corners of what the layer's samples cover, half a sample's cell more included; pixels from the tile's corner.
 glm::dvec2 FrameletWarp::low(HeldLayer const& layer) const {
     return spacing_ * (glm::dvec2(layer.first_column, layer.first_row) - 0.5);
 }

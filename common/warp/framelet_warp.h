@@ -1,5 +1,5 @@
-// Where one framelet shows in the picture of another camera at another time. In: a framelet, display camera and time,
-// motions. Out: a patch for each of its layers, a splat for each of its outliers.
+// Finds where one framelet shows in the picture of another camera at another time. In: a framelet, display camera and
+// time, motions. Out: a patch for each of its layers, a splat for each of its outliers.
 #pragma once
 
 #include <cmath>
@@ -14,32 +14,33 @@
 
 namespace framelet {
 
-/// From one scene time to another, seconds; empty where that comes before.
+/// Scene times from `first` to `last`, both included, seconds; empty where `last` comes before `first`.
 struct TimeSpan {
     SceneTime first = 0, last = 0;
 
     bool contains(SceneTime time) const { return first <= time && time <= last; }
 };
 
-/// Transforms one framelet after the other; neighbours mostly share view and body. What is not finite or too large for
-/// single precision does not show.
+/// Transforms one framelet after the other and keeps the last transform, since neighbours mostly share view and body.
+/// What is not finite or too large for single precision does not show.
 class FrameletWarp {
 public:
-    /// `slot`: of the cache in its pool.
+    /// `slot`: that of the cache in its pool.
     FrameletWarp(FrameletCache const& cache, std::size_t slot, Camera const& display, SceneTime time,
                  BodyMotions const& motions);
 
-    /// Bit i of `parts`: layer i; bit `FrameletShape::outlier`: the outliers.
+    /// Adds the patches and splats of a framelet's `parts`. Bit i of `parts`: layer i; bit `FrameletShape::outlier`:
+    /// the outliers.
     void add(CachedFramelet const& framelet, unsigned parts, std::vector<WarpPatch>& patches,
              std::vector<Splat>& splats);
     void add(MergedLayer const& merged, std::vector<WarpPatch>& patches);
 
-    /// By how much inverse depths may differ from the plane so that it is shown less than so many pixels off, anywhere
-    /// in the picture. 0 where it stays in its place.
+    /// The most by which inverse depths may differ from the plane, 1 / metres, so that it is shown less than so many
+    /// pixels off, anywhere in the picture. 0 where it stays in its place.
     double inverse_depth_within(double pixels, MergedLayer const& merged);
 
-    /// For which display times all that was added would be as it is, if the camera stays: neither does anything carry
-    /// it then, nor is it worn by a step more or less. Maybe less than that.
+    /// The display times for which all that was added would be as it is, if the camera stays: nothing carries it then,
+    /// nor is it worn by a step more or less. The true span may be longer.
     TimeSpan lasts() const { return lasts_; }
 
 private:
@@ -50,7 +51,7 @@ private:
                    WarpPatch& patch, std::vector<WarpPatch>& patches);
     float worn(std::uint32_t view, DecorrelationCode decorrelation, float spacing, float misplaced);
     void rate(std::uint32_t view, DecorrelationCode decorrelation, Layer const& layer, WarpPatch& patch);
-    /// Pixels for each 1 / metre, of what is shown at a pixel at depth 1.
+    /// Pixels by which what is shown at a pixel at depth 1 moves for each 1 / metre.
     float parallax_at(glm::dvec2 pixel) const;
     bool place_still(HeldLayer const& held, WarpPatch& patch) const;
     bool place(HeldLayer const& held, WarpPatch& patch) const;
@@ -67,8 +68,8 @@ private:
 
     TimeSpan lasts_{-INFINITY, INFINITY};
 
-    PixelRect rect_; // of the framelet at hand
-    double spacing_ = 1; // of its moving grid
+    PixelRect rect_; // of the tile at hand, pixels
+    double spacing_ = 1; // of its moving grid, pixels
 
     bool has_transform_ = false;
     std::uint32_t view_ = 0;
@@ -76,7 +77,7 @@ private:
     Vec3 velocity_{0};
     bool is_still_ = false;
     ViewTransform transform_;
-    double parallax_ = 0; ///< at most, anywhere in the picture: pixels for each 1 / metre at depth 1
+    double parallax_ = 0; ///< the most anywhere in the picture: pixels for each 1 / metre at depth 1
     double lens_ratio_ = 1;
 };
 

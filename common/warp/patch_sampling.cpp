@@ -9,20 +9,21 @@ namespace framelet {
 
 namespace {
 
-/// Between which samples pixels fall: the upper left one of four in the grid, and the weights of columns and rows.
+/// The samples between which pixels fall: the index in the grid of the upper left one of four, and the weights of
+/// columns and rows.
 struct SamplePositions {
     WideInts corner;
     WideFloats left_weight, right_weight, above_weight, below_weight;
 };
 
-/// Where pixels lie in the grid: homogeneous, see `WarpPatch`.
+/// Homogeneous coordinates of pixels in the grid, see `WarpPatch`.
 struct Homogeneous {
     WideFloats u, v, inverse_z;
 };
 
-/// Of pixels between samples, whose four neighbours there all are, or of any. Beyond the outermost samples the corner
-/// is the last one that has neighbours, and tents give the weights: 0 from a sample's distance on. Outside of the box
-/// (where `in_box` is 0) and behind the camera there is no weight.
+/// Finds the positions of pixels: with `inside` pixels whose four neighbours are all in the grid, else any. Beyond the
+/// outermost samples the corner is the last one that has neighbours, and tents give the weights: 0 from a sample's
+/// distance on. Outside of the box (where `in_box` is 0) and behind the camera there is no weight.
 template <bool inside>
 SamplePositions find_positions(Homogeneous const& at, WarpPatch const& patch, WideInts in_box) {
     auto const stride = static_cast<float>(patch.stride);
@@ -74,14 +75,14 @@ WideFloats squares_of(WideInts bytes) {
 
 constexpr auto layer_bits = static_cast<std::int32_t>(0xff000000u);
 
-/// Whether the layers of samples are in the set.
+/// -1 for samples whose layer is in the set, else 0.
 WideInts contains(LayerSet const& set, WideInts samples) {
     WideInts const layers = samples >> 24 & 255;
     WideInts const bits = pick_of_eight(set.data(), layers >> 5) >> (layers & 31);
     return (bits & 1) != 0;
 }
 
-/// `layer`: the bits of its samples.
+/// Sums up the four samples around each pixel that lie on the layer. `layer`: its number, where samples have it.
 void interpolate(std::int32_t layer, WarpPatch const& patch, SamplePositions const& positions,
                  SamplesAround const& samples, Candidate& out) {
     auto const weight = [layer](WideInts sample, WideFloats product) {
@@ -120,7 +121,7 @@ void sample_column(WarpPatch const& patch, float x, float y, int count, Candidat
     WideFloats depth = (patch.inverse_depth + row * patch.inverse_depth_dy) + column * patch.inverse_depth_dx;
     WideFloats const zero{};
     WideInts const in_box = (column >= 0) & (column < static_cast<float>(patch.box.width()));
-    // One step after the other for all of them: the steps of one wait for each other.
+    // Each step is done for all rows before the next one: the steps of one row wait for each other.
     std::array<SamplePositions, std::tuple_size_v<CandidateColumn>> positions;
     auto const last = static_cast<std::size_t>(count);
     for (std::size_t i = 0; i < last; ++i) {
@@ -145,14 +146,14 @@ void sample_column(WarpPatch const& patch, float x, float y, int count, Candidat
     }
 }
 
-/// All of these pixels lie in the box and between four samples.
+/// True when all of these pixels lie in the box and between four samples.
 bool is_inside(WarpPatch const& patch, float x, float y, int rows) {
     constexpr float margin = 1e-3f; // more than rounding
     if (!(x >= 0 && x + wide_columns <= static_cast<float>(patch.box.width()) && y >= 0 &&
           y + static_cast<float>(rows) <= static_cast<float>(patch.box.height()))) {
         return false;
     }
-    // At four corners.
+    // Places in the grid of the four outermost pixels.
     using Four = float __attribute__((vector_size(16)));
     auto const right = static_cast<float>(wide_columns - 1);
     auto const below = static_cast<float>(rows - 1);

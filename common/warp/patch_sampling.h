@@ -1,4 +1,4 @@
-// The samples of a layer at a few pixels of some rows: bilinear interpolation between those that lie on the layer. In:
+// Interpolates the samples of a layer at a few pixels of some rows, bilinearly between those that lie on the layer. In:
 // a patch, a place in the picture. Out: weighted sums that compete for the pixels.
 #pragma once
 
@@ -15,7 +15,7 @@ namespace framelet {
 struct Candidate {
     WideFloats red, green, blue, weight, inverse_depth;
     WideInts is_firm;
-    WideInts ends; ///< the surface does not go as far as here: the nearest sample is farther. Only of patches with ends
+    WideInts ends; ///< the surface ends before here: the nearest sample is farther. Only of patches with ends
 };
 
 /// The square of a byte, which stands for linear light.
@@ -24,18 +24,18 @@ inline float square(std::uint32_t byte) {
     return value * value;
 }
 
-/// The same for as many pixels of a block's rows, one below the other.
+/// Candidates for all rows of a block, in groups of `wide_rows` rows, one below the other.
 using CandidateColumn = std::array<Candidate, static_cast<std::size_t>(FrameletCache::block_side / wide_rows)>;
 static_assert(FrameletCache::block_side % wide_columns == 0 && FrameletCache::block_side % wide_rows == 0);
 
-/// At the first `count` of them, the first pixel of the first of which lies (x, y) from the centre of the box's first
-/// pixel. Firm is what lies in the cell of an own sample, half a
-/// sample around it: an outline is midway between the last sample that hit and the first that missed, where it is on
-/// the average, and of framelets that meet one is firm. Pixels outside of the box get no weight: those beside it, and
-/// where lanes have two rows those of the row above its first or below its last.
+/// Samples a patch for the first `count` candidates of a column, of which the first pixel of the first one lies (x, y)
+/// from the centre of the box's first pixel. Firm is what lies in the cell of an own sample, half a sample around it:
+/// an outline is midway between the last sample that hit and the first that missed, where it is on the average, and of
+/// framelets that meet one is firm. Pixels outside of the box get no weight: those beside it, and where lanes have two
+/// rows those of the row above its first or below its last.
 void sample_patch(WarpPatch const& patch, float x, float y, int count, CandidateColumn& out);
 
-/// False where all of them would get no weight, since none of the patch's samples is near: looks at `occupied`.
+/// False when all these pixels would get no weight, since none of the patch's samples is near; looks at `occupied`.
 bool may_show(WarpPatch const& patch, float x, float y, int count);
 
 } // namespace framelet

@@ -1,5 +1,5 @@
-// The four samples around each of several pixels: from registers where they lie near each other, else gathered. In: a
-// patch's grid, the upper left ones' places in it. Out: samples.
+// Looks up the four samples around each of several pixels: from registers where they lie near each other, else
+// gathered. In: a patch's grid, the indices of the upper left samples in it. Out: samples.
 #pragma once
 
 #include <algorithm>
@@ -43,7 +43,7 @@ private:
     PackedSample const* const grid = patch.grid;
     std::int32_t const n = patch.stride;
     SamplesAround out;
-    std::int32_t const last = n * (patch.side - 2) + patch.side; // where samples end of which the row below is there
+    std::int32_t const last = n * (patch.side - 2) + patch.side; // end of the samples that have a row below them
     auto const corner = reinterpret_cast<__m512i>(corners);
     if (last < register_samples) { // the smallest grid fits into one register
         __m512i const all = _mm512_loadu_si512(grid);
@@ -57,7 +57,7 @@ private:
         out.below_right = pick(n + 1);
         return out;
     }
-    // From the first pixel's sample on in each row of pixels.
+    // In each row of pixels, samples are loaded from the first pixel's sample on.
     __m512i const first_ones = reinterpret_cast<__m512i>(wide_columns * wide_row);
     __m512i const base =
         _mm512_maskz_min_epi32(all_lanes, _mm512_maskz_permutexvar_epi32(all_lanes, first_ones, corner),
@@ -111,7 +111,7 @@ private:
     __m256i low_, high_;
 };
 
-/// Two neighbours at each of eight places.
+/// Gathers two neighbours at each of eight indices.
 inline void gather_pairs(PackedSample const* grid, __m256i index, WideInts& left, WideInts& right) {
     auto const* const pairs = reinterpret_cast<long long const*>(grid);
     __m256 const low = _mm256_castsi256_ps(_mm256_i32gather_epi64(pairs, _mm256_castsi256_si128(index), 4));
@@ -128,9 +128,9 @@ inline void gather_pairs(PackedSample const* grid, __m256i index, WideInts& left
     std::int32_t const n = patch.stride;
     auto const corner = reinterpret_cast<__m256i>(corners);
     std::int32_t const first = corners[0];
-    std::int32_t const last = n * (patch.side - 2) + patch.side; // where samples end of which the row below is there
+    std::int32_t const last = n * (patch.side - 2) + patch.side; // end of the samples that have a row below them
     SamplesAround out;
-    // One register from which all left ones are picked, one for all right ones.
+    // One register has all left samples, another one all right ones.
     std::int32_t base = std::min(first, last - register_samples - 1);
     __m256i index = _mm256_sub_epi32(corner, _mm256_set1_epi32(base));
     if (_mm256_testz_si256(index, _mm256_set1_epi32(-register_samples)) != 0) {
@@ -142,7 +142,7 @@ inline void gather_pairs(PackedSample const* grid, __m256i index, WideInts& left
         return out;
     }
     base = std::max(std::min(first, last - 2 * register_samples), 0);
-    // Those of the row below must end within the grid, of which the smallest fits into two registers.
+    // The samples of the row below must end within the grid, the smallest of which fits into two registers.
     std::int32_t const below = base + (last >= 2 * register_samples ? n : 0);
     index = _mm256_sub_epi32(corner, _mm256_set1_epi32(base));
     __m256i const next = _mm256_add_epi32(index, _mm256_set1_epi32(1));

@@ -14,32 +14,31 @@ namespace {
 constexpr int side = WarpedBlock::side;
 constexpr std::size_t pixels = WarpedBlock::pixels;
 
-/// Of an outlier's tent: within half its spacing.
+/// Weight from which on an outlier's tent is firm: within half its spacing.
 constexpr float firm_tent = 0.25f;
-/// Less than this is no cover at all.
+/// Weight up to which a candidate covers nothing.
 constexpr float faint = 1e-3f;
 /// Inverse depths that differ by this share belong to one surface.
 constexpr float same_surface = 0.01f;
 
-/// What is in front at each pixel so far. The left half of the block comes first, so that what is worked on together
-/// lies together.
+/// The surface in front at each pixel so far. The left half of the block comes first, so that what is worked on
+/// together lies together.
 struct Layers {
     alignas(64) std::array<float, pixels> red, green, blue, weight, inverse_depth;
     alignas(64) std::array<std::int32_t, pixels> group, is_firm;
-    /// Inverse depth of a surface that is known not to go as far as here; less than 0: of none.
+    /// Inverse depth of a surface that is known not to go as far as here; less than 0: there is none.
     alignas(64) std::array<float, pixels> ended;
 };
 
-/// Where a pixel lies in `Layers`.
+/// Index of a pixel in `Layers`.
 constexpr std::size_t place_of(int x, int y) {
     return static_cast<std::size_t>(x / wide_columns * (wide_columns * side) + y * wide_columns + x % wide_columns);
 }
 
-/// Lets candidates compete with what pixels have. Of two that cover firmly or both do not, the clearly nearer
-/// one wins; else the one that was there, which is the better one. Those of one group on one surface add up. Where
-/// better samples show that a surface has ended, others of it are not firm: else it would be as wide as all together
-/// say, and one that is wrong would suffice. True
-/// where one of the candidates shows.
+/// Lets candidates compete with what pixels have; true when one of them shows. Firm wins over not firm. Of two alike
+/// the clearly nearer one wins, else the one that was there, which is the better one. Those of one group on one surface
+/// add up. Where better samples show that a surface has ended, others of it are not firm: else it would be as wide as
+/// all together say, and one that is wrong would suffice.
 bool merge(Candidate const& candidate, std::int32_t group, float tolerance, std::size_t first, bool has_ends,
            Layers& layers) {
     WideFloats const there = load_lanes<WideFloats>(&layers.inverse_depth[first]);
@@ -73,11 +72,11 @@ bool merge(Candidate const& candidate, std::int32_t group, float tolerance, std:
     return any_lane(wins | joins);
 }
 
-/// True where nothing of the patch can show in so many rows of lanes, the first of which lies (x, y) from the centre of
+/// True when nothing of the patch can show in so many rows of lanes, the first of which lies (x, y) from the centre of
 /// its box's first pixel: they are covered firmly, by what is near enough, and by nothing that its samples would add up
 /// with.
 bool is_hidden(WarpPatch const& patch, float x, float y, int column, int first_row, int count, Layers const& layers) {
-    constexpr float rounding = 1e-5f; // what the sums here and those of `sample_patch` may differ by
+    constexpr float rounding = 1e-5f; // largest difference of the sums here from those of `sample_patch`
     WideFloats const from_left = x + __builtin_convertvector(wide_column, WideFloats);
     WideFloats const from_top = y + __builtin_convertvector(wide_row, WideFloats);
     WideFloats depth = (patch.inverse_depth + from_top * patch.inverse_depth_dy) + from_left * patch.inverse_depth_dx;
@@ -93,7 +92,7 @@ bool is_hidden(WarpPatch const& patch, float x, float y, int column, int first_r
     return !any_lane(shows);
 }
 
-/// They show where nothing firm does.
+/// Makes candidates show only where nothing firm does.
 void fade(std::span<Candidate> candidates) {
     constexpr float share = 0.1f;
     for (Candidate& candidate : candidates) {
@@ -104,7 +103,7 @@ void fade(std::span<Candidate> candidates) {
     }
 }
 
-/// True where something of it shows.
+/// Paints the patch of a layer; true when something of it shows.
 bool paint_layer(WarpPatch const& patch, int left, int top, Layers& layers) {
     bool shows = false;
     CandidateColumn column;
@@ -131,7 +130,7 @@ bool paint_layer(WarpPatch const& patch, int left, int top, Layers& layers) {
     return shows;
 }
 
-/// Fetches from memory the rows of the grid that painting will read, about.
+/// Fetches from memory about the rows of the grid that painting will read.
 void prefetch_grid(WarpPatch const& patch, int left, int top) {
     constexpr int line = 64 / sizeof(PackedSample);
     auto const x = static_cast<float>(std::max(left - patch.box.left, 0));
@@ -151,12 +150,12 @@ void prefetch_grid(WarpPatch const& patch, int left, int top) {
     }
 }
 
-/// 1 at no distance, falling to 0 at 1 / scale.
+/// Weights of a tent: 1 at no distance, falling to 0 at 1 / scale.
 WideFloats tent(WideFloats distance, float scale) {
     return larger(1 - larger(distance, -distance) * scale, WideFloats{});
 }
 
-/// True where the pixel nearest to the splat's middle is covered firmly, by what is near enough and no part of what the
+/// True when the pixel nearest to the splat's middle is covered firmly, by what is near enough and no part of what the
 /// splat adds up with: most of the splat is hidden then.
 bool is_hidden(Splat const& splat, std::int32_t group, float x, float y, Layers const& layers) {
     auto const pixel = [](float at) { return static_cast<int>(std::clamp(at + 0.5f, 0.0f, side - 1.0f)); };
@@ -165,7 +164,7 @@ bool is_hidden(Splat const& splat, std::int32_t group, float x, float y, Layers 
            layers.inverse_depth[at] >= (1 - same_surface) * splat.inverse_depth;
 }
 
-/// Outliers: a tent each, as wide as its neighbours are far.
+/// Paints an outlier as a tent as wide as its neighbours are far; true when something of it shows.
 bool paint_splat(Splat const& splat, std::int32_t group, int left, int top, Layers& layers) {
     float const x = splat.x - static_cast<float>(left) - 0.5f;
     float const y = splat.y - static_cast<float>(top) - 0.5f;
@@ -197,7 +196,7 @@ bool paint_splat(Splat const& splat, std::int32_t group, int left, int top, Laye
     return shows;
 }
 
-/// True where something of it shows.
+/// Paints a patch; true when something of it shows.
 bool paint_patch(PatchView const& view, int left, int top, Layers& layers) {
     WarpPatch const& patch = *view.patch;
     if (!patch.is_outlier) {
@@ -210,7 +209,7 @@ bool paint_patch(PatchView const& view, int left, int top, Layers& layers) {
     return shows;
 }
 
-/// To the rows of a block what lies together in `Layers`.
+/// Stores values that lie together in `Layers` into the rows of a block.
 template <class Lanes, class T>
 void store_pixels(Lanes const& values, int x, int y, std::array<T, pixels>& plane) {
     T* const to = &plane[static_cast<std::size_t>(y * side + x)];
@@ -222,7 +221,7 @@ void store_pixels(Lanes const& values, int x, int y, std::array<T, pixels>& plan
 #endif
 }
 
-/// Divides by the weights.
+/// Divides the sums by their weights and counts the holes.
 void finish(Layers const& layers, int width, int height, WarpedBlock& block) {
     WideFloats const zero{};
     WideInts holes{};
@@ -247,7 +246,7 @@ void finish(Layers const& layers, int width, int height, WarpedBlock& block) {
     }
 }
 
-/// Less than this of a block is not worth keeping a patch for.
+/// Pixels of a block that are enough for a patch to be worth keeping.
 constexpr int enough_pixels = 6;
 
 bool shows_enough(std::int32_t group, Layers const& layers) {
@@ -262,7 +261,7 @@ bool shows_enough(std::int32_t group, Layers const& layers) {
     return sum >= enough_pixels;
 }
 
-/// Other blocks note the same.
+/// Notes that a patch shows; other blocks may note the same at the same time.
 void note_shown(PatchView const& view) {
     if (view.shows != nullptr) {
         std::atomic_ref(*view.shows).store(1, std::memory_order_relaxed);
@@ -284,7 +283,7 @@ void paint_warped_block(std::span<PatchView const> patches, int column, int row,
     int const left = column * side;
     int const top = row * side;
     constexpr std::size_t most_claims = 64;
-    std::uint64_t claims = 0; // bits of patches of which something showed once
+    std::uint64_t claims = 0; // bits of patches of which something showed when they were painted
     for (std::size_t i = 0; i < patches.size(); ++i) {
         if (i + 1 < patches.size()) {
             prefetch_grid(*patches[i + 1].patch, left, top);

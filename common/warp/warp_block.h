@@ -1,7 +1,6 @@
 // Paints one block of a moved picture from its patches: samples of one layer are interpolated with each other, never
-// with another layer's; what is nearer hides, of one surface the best
-// samples show. In: patches, the best first. Out: colour and inverse
-// depth of 16x16 pixels.
+// with another layer's; what is nearer hides what is behind it, and of one surface the best samples show. In: patches,
+// the best first. Out: colour and inverse depth of 16x16 pixels.
 #pragma once
 
 #include <array>
@@ -24,7 +23,7 @@ struct WarpedBlock {
     /// them nearly as on light (at most 0.04 of full light away), and bytes come back exactly.
     std::array<std::array<float, pixels>, 3> squares;
     std::array<float, pixels> inverse_depth; ///< 1 / metres; `hole_depth` in holes, where the colour is 0
-    std::array<std::int32_t, pixels> group; ///< of the patch that shows, as `WarpPatch::group`
+    std::array<std::int32_t, pixels> group; ///< of the patch that shows, as `WarpPatch::group`; -1 in holes
     int holes = 0;
 };
 

@@ -13,11 +13,11 @@ namespace framelet {
 
 namespace {
 
-/// What is merged takes the place of two layers or more.
+/// Largest number of patches of a square: what is merged takes the place of two layers or more.
 constexpr std::uint32_t patches_per_square = MergedSquare::most_children * (max_layers + 1);
 constexpr int block_side = FrameletCache::block_side;
 
-/// How far off merging may show a sample.
+/// Largest distance, pixels, by which merging may show a sample off its place.
 constexpr double merging_pixels = 1.0 / 16;
 
 /// The blocks that a box which is not empty touches.
@@ -47,7 +47,7 @@ std::size_t block_count(PixelRect const& box) {
     return static_cast<std::size_t>(blocks.width()) * static_cast<std::size_t>(blocks.height());
 }
 
-/// Numbers that are not below 0 compare as their bits do.
+/// The rank of a patch in the order of painting. Floats that are not below 0 compare as their bits do.
 std::uint64_t rank_of(WarpPatch const& patch) {
     return std::uint64_t{std::bit_cast<std::uint32_t>(patch.worn)} << 32 | (~patch.batch & 0xffffffffu);
 }
@@ -119,8 +119,8 @@ void WarpPlan::make(FrameletCache const& cache, std::size_t slot, bool outliers,
         square.note_number(index);
         known_[index].lasts = warp.lasts();
         known_[index].is_empty = square.patches.empty();
-        // What is finer than pixels is held where the camera rests, of one moment after the other: else each would keep
-        // the room for it.
+        // Framelets finer than pixels are held where the camera rests, of one moment after the other: else each moment
+        // would keep the memory for them.
         if (square.depth > cache.plane().pixel_depth() && square.merged.is_empty()) {
             square.give_back_room();
         }
@@ -139,7 +139,8 @@ void WarpPlan::make(FrameletCache const& cache, std::size_t slot, bool outliers,
     }
 }
 
-/// Where patches of replanned squares were, where they are, and the squares, whose samples may show in their places.
+/// Flags the blocks where patches of replanned squares were, where they are, and those of the squares themselves, whose
+/// samples may show in their places.
 void WarpPlan::flag_replanned(std::vector<std::uint8_t>& blocks) const {
     auto const flag = [&](PixelRect const& box) {
         for_each_block(box, columns_, [&](std::size_t block) { blocks[block] = 1; });
@@ -184,7 +185,8 @@ void WarpPlan::set_squares(FrameletCache const& cache) {
     }
 }
 
-/// Nothing is added where it is out of the picture. False where what is merged is not near enough to its parts.
+/// Adds the patch of what is merged, unless it is out of the picture. False where it is not near enough to the layers
+/// that it was merged from.
 bool WarpPlan::add_merged(MergedLayer const& merged, FrameletWarp& warp, Square& square) {
     if (merged.difference > 0 && !(merged.difference <= warp.inverse_depth_within(merging_pixels, merged))) {
         return false;
@@ -194,7 +196,7 @@ bool WarpPlan::add_merged(MergedLayer const& merged, FrameletWarp& warp, Square&
     return true;
 }
 
-/// Quads as far as they are near enough; what is left is `alone`.
+/// Adds those quads of what is merged that are near enough; the layers that are left are added to `alone`.
 void WarpPlan::add_parts(MergedLayer const& merged, FrameletWarp& warp, Square& square, LayerBits& alone) {
     LayerBits left = merged.parts;
     for (CoplanarLayers const& quad : square.merged.quads()) {
@@ -210,7 +212,7 @@ void WarpPlan::add_parts(MergedLayer const& merged, FrameletWarp& warp, Square& 
     }
 }
 
-/// What is merged, then what is left of the framelets.
+/// Plans a square: what is merged, then what is left of the framelets.
 void WarpPlan::plan(Square& square, bool outliers, FrameletWarp& warp) {
     square.clear();
     LayerBits alone{};
@@ -232,7 +234,7 @@ void WarpPlan::plan(Square& square, bool outliers, FrameletWarp& warp) {
     }
 }
 
-/// How many patches each block has, in `first_entry_`, unless they are more than `most` together.
+/// Counts the patches of each block into `first_entry_`; false where they are more than `most` together.
 bool WarpPlan::count_entries(std::size_t most) {
     first_entry_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_) + 1, 0);
     std::size_t total = 0;
@@ -261,7 +263,7 @@ void WarpPlan::limit_entries(std::size_t most) {
         total += block_count(patch->box);
         if (total > most) {
             patch->box = {};
-            total = most; // of those that follow none has room
+            total = most; // none of those that follow has room
         }
     }
 }
@@ -299,7 +301,7 @@ void WarpPlan::add_block(std::size_t index, std::vector<PatchView>& patches) {
         WarpPatch const& own = square.patches[patch];
         patches.push_back({&own, square.splats.data(), &square.shows[patch], rank_of(own)});
     }
-    // Those of the block that is most likely asked for next.
+    // Fetches from memory the patches of the block that is most likely asked for next.
     std::size_t const next = std::min(index + 2, first_entry_.size() - 1);
     for (std::uint32_t i = first_entry_[index + 1]; i < first_entry_[next]; ++i) {
         auto const* const patch = reinterpret_cast<char const*>(&patch_at(entries_[i]));

@@ -1,6 +1,6 @@
-// Where everything that is held shows in the picture of another camera at another time: a patch for each layer, a splat
-// for each outlier, and for each block of the picture the patches that may touch it. In: cache, display camera and
-// time, motions. Out: the plan, from which every block is painted on its own.
+// Plans where everything that is held shows in the picture of another camera at another time: a patch for each layer, a
+// splat for each outlier, and for each block of the picture the patches that may touch it. In: cache, display camera
+// and time, motions. Out: the plan, from which every block is painted on its own.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@
 
 namespace framelet {
 
-/// Where a patch has its samples in the grid of its square: from this column and row on, with this number in place of
+/// The place of a patch's samples in the grid of its square: from this column and row on, with this number in place of
 /// a layer's.
 struct GridPart {
     int column = 0, row = 0;
@@ -28,8 +28,8 @@ struct GridPart {
 
 class WarpPlan {
 public:
-    /// As many patches are kept for a block, on the average. Where a camera goes so near that there would be more, the
-    /// newest ones are.
+    /// Largest number of patches that are kept for a block, on the average. Where a camera goes so near that there
+    /// would be more, the first ones in the order of painting are kept.
     static constexpr std::size_t most_patches_per_block = 256;
 
     WarpPlan();
@@ -37,8 +37,9 @@ public:
     WarpPlan(WarpPlan&&) noexcept;
     WarpPlan& operator=(WarpPlan&&) noexcept;
 
-    /// Replaces the plan; `cache` and `slot` are always the same ones. Squares of which all stays as it was planned
-    /// last are kept. Runs in parallel; allocates only where more is held than ever before.
+    /// Replaces the plan; `cache` and `slot` are always the same ones. `outliers`: whether these are planned too.
+    /// Squares of which all stays as it was planned last are kept. Runs in parallel; allocates only where more is held
+    /// than ever before.
     void make(FrameletCache const& cache, std::size_t slot, bool outliers, Camera const& display,
               SceneTime display_time, BodyMotions const& motions);
 
@@ -46,24 +47,25 @@ public:
     int rows() const { return rows_; }
     /// Sets the flags of those blocks whose plan may not be what it was before `make` was called last.
     void flag_replanned(std::vector<std::uint8_t>& blocks) const;
-    /// Adds what may touch a block to `patches`.
+    /// Adds the patches that may touch a block to `patches`.
     void add_block(std::size_t index, std::vector<PatchView>& patches);
-    /// Adds the tiles of what was noted to show since the plan was made; some come more than once.
+    /// Adds the tiles of those framelets that were noted to show since the plan was made; some come more than once.
     void add_shown(std::vector<Tile>& tiles) const;
-    /// The squares of the plan, whether anything is held of them or not.
+    /// Number of the squares of the plan, whether anything is held of them or not.
     std::size_t square_count() const { return squares_.size(); }
     std::size_t patch_count(std::uint32_t square) const { return squares_[square].patches.size(); }
     std::span<WarpPatch const> patches_of(std::uint32_t square) const { return squares_[square].patches; }
-    /// In `patches_of`, of one of these.
+    /// Index of a patch in `patches_of` its square.
     std::size_t number_of(WarpPatch const& patch) const {
         return static_cast<std::size_t>(&patch - squares_[patch.square].patches.data());
     }
     /// The samples of a square, among which those of all its patches are.
     MergedSquare& square_grid(std::uint32_t square) { return squares_[square].merged; }
-    /// Where a patch, which is not of outliers, has its samples there. Nothing where they are in its own grid alone:
-    /// there they are told from those of another layer, with which they are merged in the square's.
+    /// The place of a patch's samples in the grid of its square; the patch must not be of outliers. Nothing where they
+    /// are in the patch's own grid alone: there they are told from those of another layer, with which they are merged
+    /// in the square's.
     std::optional<GridPart> grid_part(WarpPatch const& patch) const;
-    /// The blocks' numbers of patches, all together.
+    /// Number of patches of all blocks together.
     std::size_t entry_count() const { return entries_.size(); }
 
 private:
@@ -76,27 +78,28 @@ private:
 
         std::vector<WarpPatch> patches;
         std::vector<Splat> splats;
-        std::vector<std::uint64_t> places; ///< of what framelets each patch is: bits, as `MergedLayer::parts`
-        std::vector<std::uint8_t> shows; ///< of patches: whether something of it showed when blocks were painted
+        /// By patch: bits of the places of its framelets, as in `MergedLayer::parts`.
+        std::vector<std::uint64_t> places;
+        std::vector<std::uint8_t> shows; ///< by patch: whether something of it showed when blocks were painted
 
         void clear();
-        /// Of a square of which nothing is held.
+        /// Frees the memory of a square of which nothing is held.
         void give_back_room();
-        /// Patches that have been added since the last call are of these.
+        /// Notes that the patches that have been added since the last call are of the framelets at these places.
         void note_places(std::uint64_t some) { places.resize(patches.size(), some); }
-        /// Likewise, once all are there.
+        /// Notes the square's number in all its patches, once all are there.
         void note_number(std::uint32_t number);
     };
 
-    /// Of a square, close together: all are looked at each time.
+    /// Facts about a square, kept close together since all are looked at each time.
     struct Known {
-        std::size_t index = 0; ///< in the cache's `square_changes`
-        std::uint64_t change = 0; ///< of it, when it was planned
+        std::size_t index = 0; ///< of the square in the cache's `square_changes`
+        std::uint64_t change = 0; ///< its entry there when it was planned
         TimeSpan lasts{0, -1}; ///< display times for which the plan holds
         bool is_empty = true; ///< has no patches
     };
 
-    /// Bit p of word k: layer k of the framelet at place p.
+    /// A set of layers: bit p of word k is layer k of the framelet at place p.
     using LayerBits = std::array<std::uint64_t, max_layers>;
 
     WarpPatch const& patch_at(std::uint32_t entry) const;
@@ -111,17 +114,17 @@ private:
 
     int columns_ = 0, rows_ = 0;
     ImagePlane plane_; ///< of the squares
-    std::vector<Square> squares_; ///< all that can be held
-    std::vector<Known> known_; ///< of these
-    std::vector<std::uint32_t> replanned_; ///< those that were planned when the plan was made last
-    std::vector<std::uint32_t> occupied_; ///< those with patches
+    std::vector<Square> squares_; ///< all squares in which something can be held
+    std::vector<Known> known_; ///< by square
+    std::vector<std::uint32_t> replanned_; ///< squares that were planned when the plan was made last
+    std::vector<std::uint32_t> occupied_; ///< squares with patches
     struct Mergings;
     std::unique_ptr<Mergings> mergings_; ///< scratch
-    Camera display_; ///< of the plan
+    Camera display_; ///< the camera that the plan is for
     bool outliers_ = false; ///< whether outliers are in it
-    SceneTime last_jump_ = -INFINITY; ///< of the scene, before what is displayed
-    bool is_limited_ = false; ///< not all of it has room
-    std::vector<std::uint32_t> first_entry_; ///< by block; one more at the end
+    SceneTime last_jump_ = -INFINITY; ///< the scene's last jump before what is displayed
+    bool is_limited_ = false; ///< there is no room for all patches
+    std::vector<std::uint32_t> first_entry_; ///< index of each block's first entry; one more at the end
     std::vector<std::uint32_t> next_entry_;
     std::vector<std::uint32_t> entries_; ///< square * patches_per_square + patch
 };

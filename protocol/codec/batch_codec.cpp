@@ -33,7 +33,7 @@ struct Worker {
     PlaneCodec planes;
     RangeWriter shapes;
 
-    /// Without loss, in encoding 1.
+    /// Compresses the samples of a group without loss, in encoding 1.
     void encode(std::span<DisplayFramelet const> group, Bytes& frame) {
         content.resize(group.size() * exact_framelet_bytes);
         std::uint8_t* to = content.data();
@@ -46,7 +46,7 @@ struct Worker {
         frames.compress(content, frame);
     }
 
-    /// The frame has been checked.
+    /// Decompresses a frame, which must have been checked, into the samples of a group.
     void decode(ByteView frame, std::span<DisplayFramelet> group) {
         std::uint8_t const* from = frames.decompress(frame).data();
         for_each_plane([&](auto const plane) {
@@ -64,7 +64,7 @@ struct Worker {
     }
 };
 
-/// To bytes that are reused.
+/// Copies into bytes whose memory is reused.
 void copy(std::span<std::uint8_t const> from, Bytes& to) {
     auto const bytes = std::as_bytes(from);
     to.assign(bytes.begin(), bytes.end());
@@ -80,17 +80,18 @@ TilePosition place_of(ImagePlane const& plane, Tile tile) {
     return {rect.left, rect.top, static_cast<std::int32_t>(std::bit_width(side | 1u)) - 1};
 }
 
-/// Of a list that has something for every framelet or for none.
+/// Part of a list that has something for every framelet or is empty.
 template <typename Value>
 std::span<Value> part_of(std::span<Value> all, std::size_t first, std::size_t size) {
     return all.empty() ? all : all.subspan(first, size);
 }
 
-/// What each group knows before it: the same. What the first one has learnt stays.
+/// The models of the groups of a batch. All begin with what earlier batches have taught; what the first group learns
+/// stays for the next batch, what the others learn is forgotten.
 template <class Model>
 class GroupModels {
 public:
-    /// `others`: scratch, for all groups but the first.
+    /// `others`: scratch for the models of all groups but the first.
     GroupModels(Model& model, std::size_t groups, std::vector<Model>& others) : model_(model), others_(others) {
         others_.assign(groups > 1 ? groups - 1 : 0, model);
     }
@@ -101,7 +102,7 @@ private:
     std::vector<Model>& others_;
 };
 
-/// Its own, or that of the batch before, which it takes the place of.
+/// Moment of a batch: its own, which is remembered, or that of the batch before. ProtocolError where there is neither.
 BatchMoment moment_of(EncodedBatch const& encoded, BatchMemory* memory) {
     if (!encoded.moment && (memory == nullptr || !memory->moment)) {
         throw ProtocolError("a batch has no moment, and none came before it");
@@ -116,10 +117,10 @@ BatchMoment moment_of(EncodedBatch const& encoded, BatchMemory* memory) {
 
 struct BatchCodec::Scratch {
     PerThread<Worker> workers;
-    std::vector<Bytes> frames; ///< of each group
-    std::vector<DisplayFramelet> decoded; ///< of a batch that is encoded
-    std::unique_ptr<BatchModels> alone; ///< of a batch without a memory
-    std::vector<PlaneModel> planes; ///< of groups
+    std::vector<Bytes> frames; ///< one of each group
+    std::vector<DisplayFramelet> decoded; ///< what a viewer will see of the batch that is being encoded
+    std::unique_ptr<BatchModels> alone; ///< models for a batch without a memory
+    std::vector<PlaneModel> planes; ///< models of all groups but the first; `shapes` likewise
     std::vector<ShapeModel> shapes;
 
     std::span<Bytes> frames_of(std::size_t groups) {

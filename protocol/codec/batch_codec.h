@@ -1,5 +1,5 @@
-// Samples and shapes of a batch to bytes and back, in groups of framelets: without loss as planes and zstd, else, as
-// the shapes, by a range coder.
+// Encodes samples, shapes and tracks of a batch to bytes and back, in groups of framelets: samples without loss as
+// planes and zstd; samples with loss, and shapes, by a range coder.
 #pragma once
 
 #include <memory>
@@ -13,19 +13,20 @@ namespace framelet {
 
 struct BatchModels;
 
-/// What both sides of a session know of the batches before, the same after each batch.
+/// Memory of the earlier batches of a session, the same on both sides after each batch.
 struct BatchMemory {
     BatchMemory();
     ~BatchMemory();
     BatchMemory(BatchMemory&&) noexcept;
     BatchMemory& operator=(BatchMemory&&) noexcept;
 
-    std::optional<BatchMoment> moment; ///< of the newest batch
-    ReferencePicture picture; ///< that the viewer holds
-    std::unique_ptr<BatchModels> models; ///< how likely which decisions of the range coder are
+    std::optional<BatchMoment> moment; ///< that of the newest batch; none before the first
+    ReferencePicture picture; ///< what the viewer holds, as far as framelets are predicted from it
+    std::unique_ptr<BatchModels> models; ///< how likely each decision of the range coder is
 };
 
-/// Reusable scratch of the encoder and the decoder; the steady state allocates nothing that the result does not need.
+/// Encodes and decodes batches, with scratch that is reused: in the steady state it allocates nothing that the result
+/// does not need.
 class BatchCodec {
 public:
     BatchCodec();
@@ -33,16 +34,16 @@ public:
     BatchCodec(BatchCodec&&) noexcept;
     BatchCodec& operator=(BatchCodec&&) noexcept;
 
-    /// Without loss where the batch has no QPs; else each framelet with its own, and `decode` gives what the
-    /// viewer will see. Shapes always lose a little (`shape_quantisation.h`). `memory`: of all batches before this one,
-    /// which then knows this one as well; null: this batch stands alone. `predicts`: samples with loss are predicted
-    /// from the picture in the memory.
+    /// Encodes a batch: without loss where it has no QPs, else each framelet with its own QP, and `decode` gives what
+    /// the viewer will see. Shapes always lose a little (`shape_quantisation.h`). `memory`: that of all batches before
+    /// this one, to which this one is added; null: this batch stands alone. `predicts`: framelets of a batch with QPs
+    /// are predicted from the picture in the memory.
     EncodedBatch encode(Batch const& batch, BatchMemory* memory = nullptr, bool predicts = true);
-    /// `memory`: as it was for the encoder; null: a batch that is predicted is refused. Throws ProtocolError where
-    /// payload and shapes are not exactly what the tiles ask for.
+    /// Decodes a batch. `memory`: as it was for the encoder; null: a batch that is predicted is refused. Throws
+    /// ProtocolError where payload and shapes are not exactly what the tiles ask for.
     Batch decode(EncodedBatch const& encoded, BatchMemory* memory = nullptr);
-    /// The same, into the memory of a batch that was decoded before, which grows to what the largest one needs. What is
-    /// in it after an error says nothing.
+    /// Decodes likewise, into the memory of a batch that was decoded before, which grows to what the largest one needs.
+    /// After an error the content of `batch` means nothing.
     void decode(EncodedBatch const& encoded, BatchMemory* memory, Batch& batch);
 
 private:

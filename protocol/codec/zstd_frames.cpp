@@ -9,13 +9,14 @@ namespace framelet {
 namespace {
 
 constexpr int compression_level = 1;
-/// Shorter repetitions, bytes, are left to the entropy stage: in differences of neighbours they are chance.
+/// Least length of a repetition, bytes: shorter ones are left to the entropy stage, since in differences of neighbours
+/// they are chance.
 constexpr int least_match = 7;
 constexpr std::size_t length_bytes = 4;
 /// First bytes of a zstd frame (RFC 8878); other kinds of frames that the library knows are not part of the format.
 constexpr std::array<std::uint8_t, 4> zstd_magic{0x28, 0xb5, 0x2f, 0xfd};
 
-/// The last frame takes what is left.
+/// Number of lengths that are stated: the last frame takes what is left.
 std::size_t stated_lengths(std::size_t groups) {
     return groups > 0 ? groups - 1 : 0;
 }
@@ -81,7 +82,7 @@ void check_frame(ByteView frame, std::size_t least, std::size_t most) {
     if (frame.size() < zstd_magic.size() || std::memcmp(frame.data(), zstd_magic.data(), zstd_magic.size()) != 0) {
         throw ProtocolError("a group of a batch is not a zstd frame");
     }
-    // Where the size is unknown or the header damaged this is near 2^64.
+    // The size is near 2^64 where it is unknown or the header damaged.
     unsigned long long const size = ZSTD_getFrameContentSize(frame.data(), frame.size());
     if (size < least || size > most) {
         throw ProtocolError("a group of a batch does not hold what its tiles need");

@@ -1,4 +1,4 @@
-// What the sections of a batch have in common: groups of framelets, a frame of bytes each, and the lengths of the
+// Groups of framelets, which the sections of a batch have in common: a frame of bytes for each, and the lengths of the
 // frames in front of them; and frames of zstd. PROTOCOL.md has the layout.
 #pragma once
 
@@ -15,8 +15,8 @@
 
 namespace framelet {
 
-/// Framelets that are compressed together, and apart from the others: enough for the compressor to learn from, few
-/// enough to stay in the cache and to give every core some.
+/// Framelets of a group, which are compressed together, and apart from the others: enough for the compressor to learn
+/// from, few enough to stay in the cache and to give every core some.
 inline constexpr std::size_t group_framelets = 128;
 
 constexpr std::size_t group_count(std::size_t framelets) {
@@ -32,23 +32,25 @@ void for_each_group(std::size_t framelets, Body const& body) {
     });
 }
 
-/// Lengths of all frames but the last, and the frames, one behind the other.
+/// Joins frames into a payload: the lengths of all but the last, then the frames, one behind the other.
 Bytes join_frames(std::span<Bytes const> frames);
 
-/// The frames, where the lengths in front of them say they are; the last one is what is left. Nothing is decompressed
-/// yet. ProtocolError where the payload is too short for them, or where there is something and no group.
+/// Splits a payload into its frames, by the lengths in front of them; the last one is what is left. Nothing is
+/// decompressed yet. ProtocolError where the payload is too short for them, or where there is something and no group.
 std::vector<ByteView> split_frames(ByteView payload, std::size_t groups);
 
-/// ProtocolError for all but one zstd frame that says how many bytes it holds, and these from `least` to `most`.
+/// Throws ProtocolError unless the bytes are one zstd frame that says how many bytes it holds, and these are `least` to
+/// `most`.
 void check_frame(ByteView frame, std::size_t least, std::size_t most);
 
-/// Scratch of the compressor and the decompressor, which is reused.
+/// Compresses and decompresses zstd frames, with scratch that is reused.
 class FrameCodec {
 public:
-    /// One frame, in memory that is reused.
+    /// Compresses the content into one frame, whose memory is reused.
     void compress(std::span<std::uint8_t const> content, Bytes& frame);
 
-    /// What a checked frame holds; valid until the next call. ProtocolError where it is damaged.
+    /// Decompresses a checked frame; the content is valid until the next call. ProtocolError where the frame is
+    /// damaged.
     std::span<std::uint8_t const> decompress(ByteView frame);
 
 private:

@@ -1,4 +1,5 @@
-// What the two programs say to each other, as values. PROTOCOL.md is the specification, framelet.fbs the schema.
+// Messages: what the two programs say to each other, as values. PROTOCOL.md is the specification, framelet.fbs the
+// schema.
 #pragma once
 
 #include <cstddef>
@@ -20,20 +21,21 @@ using ByteView = std::span<std::byte const>;
 
 inline constexpr std::uint16_t protocol_version = 6;
 
-/// What lets a viewer go on where its connection was cut: 128 random bits. All of them 0: none.
+/// A ticket lets a viewer go on where its connection was cut: 128 random bits. All of them 0: none.
 struct Ticket {
     std::uint64_t high = 0, low = 0;
     explicit operator bool() const { return (high | low) != 0; }
-    /// In a time that says nothing of where they differ.
+    /// Takes a time that does not depend on where they differ.
     bool operator==(Ticket const& other) const { return ((high ^ other.high) | (low ^ other.low)) == 0; }
 };
 
 // --- upstream
 // ---------------------------------------------------------------------------------------------------------
 
-/// What a viewer can read; a server sends nothing else. Sums of these; bits that a server does not know are left out.
+/// Bits for what a viewer can read; a server sends nothing else. `Hello::codings` is a sum of these; bits that a server
+/// does not know mean nothing to it.
 namespace coding {
-inline constexpr std::uint32_t exact_colour = 1; ///< every viewer can
+inline constexpr std::uint32_t exact_colour = 1; ///< every viewer can read it
 inline constexpr std::uint32_t haar_colour = 2; ///< framelets with a QP
 inline constexpr std::uint32_t predicted_colour = 8; ///< framelets predicted from those of earlier batches
 inline constexpr std::uint32_t shapes_and_tracks = 32;
@@ -45,8 +47,8 @@ struct Hello {
     std::uint16_t version = protocol_version;
     std::string token; ///< empty where the server asks for none
     std::uint32_t codings = coding::exact_colour;
-    Ticket ticket{}; ///< of the session before, to go on with it
-    std::uint64_t last_batch = 0; ///< of that session, the newest that the viewer has as a whole
+    Ticket ticket{}; ///< that of the session before, to go on with it
+    std::uint64_t last_batch = 0; ///< the newest of that session that the viewer has, with all before it; 0: none
     bool operator==(Hello const&) const = default;
 };
 
@@ -57,12 +59,12 @@ struct CameraUpdate {
     bool operator==(CameraUpdate const&) const = default;
 };
 
-/// How this viewer wants its picture.
+/// Settings of a viewer: how it wants its picture.
 struct ViewerSettings {
     float exposure_ev = 0; ///< stops, added to the server's own exposure, [-16, 16]
     float bias = 0; ///< -1 (spatial fidelity) .. 1 (temporal)
-    /// Whether it moves samples to where they are seen later; false: it shows them where they were rendered, and has no
-    /// use for shapes.
+    /// True where it moves samples to where they are seen later; false: it shows them where they were rendered, and has
+    /// no use for shapes.
     bool reproject = true;
     /// Nobody sees its picture: it wants nothing until it says otherwise.
     bool paused = false;
@@ -80,7 +82,7 @@ struct ClockRequest {
 /// A batch has been decoded.
 struct Ack {
     std::uint64_t batch = 0;
-    std::uint64_t received_us = 0; ///< viewer's steady clock when the batch's last byte had arrived
+    std::uint64_t received_us = 0; ///< viewer's steady clock, microseconds, when the batch's last byte had arrived
     std::uint32_t decode_us = 0;
     bool operator==(Ack const&) const = default;
 };
@@ -90,7 +92,7 @@ struct Evicted {
     std::vector<SentTile> framelets; ///< those of a batch together; at most `max_evicted`
     bool operator==(Evicted const&) const = default;
 };
-/// More are several messages.
+/// Most framelets of one message; more are several messages.
 inline constexpr std::size_t max_evicted = 4096;
 
 // --- downstream
@@ -116,18 +118,18 @@ struct Welcome {
     bool controls = true; ///< whether this viewer's clock requests count
     Ticket ticket{}; ///< for the viewer's next Hello
     bool resumed = false; ///< the session before goes on: what the viewer holds of it stays, what it lacks comes again
-    std::uint64_t evicted = 0; ///< as in Status
+    std::uint64_t evicted = 0; ///< how many messages Evicted have come, as in Status
     std::uint64_t scene_source = 0; ///< the same where it is the same file, whatever is in it by now; 0: not known
 };
 
-/// How the samples of a batch are coded.
+/// Encoding of the samples of a batch.
 enum class SampleEncoding : std::uint8_t {
-    exact = 1, ///< all without loss
-    haar = 7, ///< each with a QP of its own
-    predicted = 8, ///< the same, beside what the viewer holds
+    exact = 1, ///< all samples without loss
+    haar = 7, ///< each framelet with a QP of its own
+    predicted = 8, ///< the same, but framelets may be predicted from the reference picture
 };
 
-/// What the framelets of a batch show; the fields are as those of a Batch.
+/// The moment of a batch: its camera, its scene time and when it is shown; the fields are as those of a Batch.
 struct BatchMoment {
     NumberedView view;
     SceneTime scene_time = 0;
@@ -143,7 +145,7 @@ struct EncodedBatch {
     std::vector<Tile> tiles;
     Bytes payload;
     SampleEncoding encoding = SampleEncoding::exact;
-    Bytes shapes{}; ///< of all framelets; empty: the viewer has no use for them
+    Bytes shapes{}; ///< those of all framelets; empty: the viewer has no use for them
     Bytes tracks{}; ///< empty: nothing moves but as the viewer knows
     bool operator==(EncodedBatch const&) const = default;
 };
@@ -174,7 +176,7 @@ using Message = std::variant<Hello, CameraUpdate, ViewerSettings, ClockRequest, 
 
 /// Largest message body that either side accepts, bytes: what one cycle's worst batch needs, with room.
 inline constexpr std::size_t max_message_bytes = 64u << 20;
-/// Before the handshake is over, and upstream at all times.
+/// The same limit before the handshake is over, and upstream at all times.
 inline constexpr std::size_t max_upstream_message_bytes = 64u << 10;
 
 } // namespace framelet

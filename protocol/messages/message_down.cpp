@@ -9,8 +9,8 @@
 namespace framelet {
 namespace {
 
-/// A Welcome has to fit into the limit before the handshake is over: the cameras' names and lenses take no more than
-/// this (and one longest), which leaves room for their list, the other names and the rest.
+/// Bytes of a Welcome that its cameras' names and lenses take at most (and one longest): a Welcome has to fit into the
+/// limit before the handshake is over, and this leaves room for their list, the other names and the rest.
 constexpr std::size_t max_cameras_bytes = max_upstream_message_bytes - 8192;
 
 bool is_finite_box(Bounds const& box) {
@@ -31,7 +31,7 @@ Offset<flatbuffers::Vector<std::uint8_t>> write_bytes(Builder& builder, ByteView
     return builder.CreateVector(reinterpret_cast<std::uint8_t const*>(bytes.data()), bytes.size());
 }
 
-/// Nothing where there is nothing.
+/// Writes bytes as a field, which is left out where there are none.
 Offset<flatbuffers::Vector<std::uint8_t>> write_some(Builder& builder, ByteView bytes) {
     return bytes.empty() ? Offset<flatbuffers::Vector<std::uint8_t>>() : write_bytes(builder, bytes);
 }
@@ -166,7 +166,7 @@ char const* problem(BatchMoment const& moment) {
 
 } // namespace
 
-/// Whether the tiles are of the viewport is seen when the batch is decoded.
+/// Does not ask whether the viewport has these tiles: that is seen when the batch is decoded.
 char const* problem(EncodedBatch const& value) {
     if (value.number == 0) {
         return "a batch has the number 0";

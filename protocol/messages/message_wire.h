@@ -1,6 +1,6 @@
-// Between values and FlatBuffers tables, for the sources of this folder: `write` puts a value into a builder, `read`
-// takes one out of a verified table (ProtocolError for what a value cannot hold: long text, unknown enum values),
-// `problem` names the first field whose number is out of its range, nullptr where all are fine.
+// Turns values into FlatBuffers tables and back, for the sources of this folder: `write` puts a value into a builder,
+// `read` takes one out of a verified table (ProtocolError for what a value cannot hold: long text, unknown enum
+// values), `problem` names the first field whose number is out of its range, nullptr where all are fine.
 #pragma once
 
 #include <cmath>
@@ -40,7 +40,7 @@ char const* problem(Camera const& value);
 Offset<wire::View> write(Builder& builder, NumberedView const& value);
 NumberedView read(wire::View const& wire);
 char const* problem(NumberedView const& value);
-/// Text is made one line and cut on writing, because it comes from files; on reading it is refused.
+/// Writes text, made one line and cut, because it comes from files; on reading such text is refused.
 Offset<flatbuffers::String> write_text(Builder& builder, std::string const& text, std::size_t max_bytes);
 std::string read_text(flatbuffers::String const* wire, std::size_t max_bytes);
 

@@ -5,7 +5,8 @@
 namespace framelet {
 namespace {
 
-/// Bytes of the well-formed, printable character at the start of `text`; 0 where there is none. `text` is not empty.
+/// Number of bytes of the well-formed, printable character at the start of `text`; 0 where there is none. `text` is not
+/// empty.
 std::size_t character_length(std::string_view text) {
     auto const byte = [&](std::size_t i) { return static_cast<std::uint32_t>(static_cast<unsigned char>(text[i])); };
     std::uint32_t const lead = byte(0);

@@ -11,11 +11,11 @@ constexpr int most_depth = 15;
 constexpr int digit_bits = 7;
 constexpr std::uint64_t more = 1u << digit_bits;
 
-/// Where the next tile is expected: behind the last one.
+/// The place where the next tile is expected: behind the last one.
 class Cursor {
 public:
     int depth() const { return depth_; }
-    /// Index of the tile of that depth.
+    /// Index of the expected tile, if it is of that depth.
     std::int64_t index(int depth) const { return end_ >> 2 * (most_depth - depth); }
     void pass(Tile tile) {
         depth_ = tile.depth();
@@ -24,10 +24,10 @@ public:
 
 private:
     int depth_ = 0;
-    std::int64_t end_ = 0; ///< of tiles of the greatest depth
+    std::int64_t end_ = 0; ///< index of the expected tile among those of the greatest depth
 };
 
-/// Seven bits a byte, the lowest first.
+/// Writes a number as seven bits a byte, the lowest first; bit 7 is set in all bytes but the last.
 void write_number(std::uint64_t number, Bytes& bytes) {
     for (; number >= more; number >>= digit_bits) {
         bytes.push_back(static_cast<std::byte>(number | more));

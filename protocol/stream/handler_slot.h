@@ -1,4 +1,5 @@
-// Whom a connection tells what comes, until it tells nobody any more. All members are called from any thread.
+// The handlers whom a connection tells what comes, until it tells nobody any more. All members may be called from any
+// thread.
 #pragma once
 
 #include <atomic>
@@ -14,7 +15,7 @@ class HandlerSlot {
 public:
     using Handlers = FramedStream::Handlers;
 
-    /// False where nobody is to be told any more.
+    /// Sets the handlers; false where nobody is to be told any more.
     bool set(Handlers handlers) {
         std::scoped_lock const lock(mutex_);
         if (is_closed_) {
@@ -23,12 +24,12 @@ public:
         handlers_ = std::make_shared<Handlers>(std::move(handlers));
         return true;
     }
-    /// Null: nobody. Kept alive while they run, whatever they close.
+    /// The handlers; null: nobody is to be told. They are kept alive while they run, whatever they close.
     std::shared_ptr<Handlers> get() {
         std::scoped_lock const lock(mutex_);
         return handlers_;
     }
-    /// From here on no callback begins.
+    /// Takes the handlers out: from here on no callback begins.
     std::shared_ptr<Handlers> take() {
         std::scoped_lock const lock(mutex_);
         is_closed_ = true;

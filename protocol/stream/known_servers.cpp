@@ -12,7 +12,7 @@
 namespace framelet {
 namespace {
 
-/// In place of a fingerprint.
+/// Stands in place of a fingerprint where an authority vouches for the certificate.
 constexpr char const* vouched = "authorities";
 
 std::optional<std::string> find(std::filesystem::path const& file, std::string const& server) {
@@ -27,7 +27,7 @@ std::optional<std::string> find(std::filesystem::path const& file, std::string c
     return std::nullopt;
 }
 
-/// As editors leave it that end no last line.
+/// True for a file whose last line has no end, as some editors leave it.
 bool ends_amid_a_line(std::filesystem::path const& file) {
     std::ifstream bytes(file, std::ios::binary | std::ios::ate);
     if (!bytes || bytes.tellg() <= 0) {
@@ -37,11 +37,11 @@ bool ends_amid_a_line(std::filesystem::path const& file) {
     return bytes.get() != '\n';
 }
 
-/// False where it could not be written.
+/// Adds a line for a server; false where it could not be written.
 bool add(std::filesystem::path const& file, std::string const& server, std::string const& known) {
     int const descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
     std::string const line = (ends_amid_a_line(file) ? "\n" : "") + server + " " + known + "\n";
-    // At once: other viewers may add theirs.
+    // The line is written by one call, because other viewers may add theirs.
     bool const written =
         descriptor >= 0 && ::write(descriptor, line.data(), line.size()) == static_cast<ssize_t>(line.size());
     ::close(descriptor);

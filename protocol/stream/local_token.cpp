@@ -14,14 +14,14 @@
 namespace framelet {
 namespace {
 
-/// The machine is in it because several may share a home folder.
+/// First part of a file's name. The machine is in it because several may share a home folder.
 std::string name_prefix() {
     std::array<char, 256> machine{};
     ::gethostname(machine.data(), machine.size() - 1);
     return "token-" + std::string(machine.data()) + "-";
 }
 
-/// While it lives, no other server of this user changes the folder.
+/// Lock of a folder: while it lives, no other server of this user changes the folder.
 class FolderLock {
 public:
     explicit FolderLock(std::filesystem::path const& folder)
@@ -36,7 +36,7 @@ private:
     int const descriptor_;
 };
 
-/// Of servers that were killed. Under the folder's lock.
+/// Removes the files of servers that were killed. Must be called under the folder's lock.
 void remove_abandoned(std::filesystem::path const& folder) {
     std::error_code ignored;
     for (auto const& entry : std::filesystem::directory_iterator(folder, ignored)) {
@@ -85,7 +85,7 @@ bool LocalToken::write(std::filesystem::path const& folder, std::vector<std::str
     remove_abandoned(folder);
     for (std::string const& address : addresses) {
         std::filesystem::path const path = folder / (name_prefix() + address);
-        ::unlink(path.c_str()); // of a server that listened there before: none else can listen there now
+        ::unlink(path.c_str()); // left by a server that listened there before: none else can listen there now
         int const descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);
         if (descriptor < 0) {
             remove_files();
@@ -116,7 +116,7 @@ std::string read_local_token(std::string const& address) {
         if (is_private_folder(folder) && is_of_this_user_alone(file)) {
             try {
                 return read_token_file(file);
-            } catch (InputError const&) { // it has gone meanwhile
+            } catch (InputError const&) { // the file has gone meanwhile
             }
         }
     }

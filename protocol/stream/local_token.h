@@ -10,10 +10,11 @@
 
 namespace framelet {
 
-/// A fresh token in files, for as long as this lives.
+/// A fresh token, in files for as long as this lives.
 class LocalToken {
 public:
-    /// `addresses` as in "127.0.0.1:7070". Throws InputError where there is no folder for such a file.
+    /// Writes a file for each of the addresses, which are written as in "127.0.0.1:7070". Throws InputError where there
+    /// is no folder for such a file.
     explicit LocalToken(std::vector<std::string> const& addresses);
     ~LocalToken();
     LocalToken(LocalToken const&) = delete;
@@ -22,7 +23,8 @@ public:
     std::string const& token() const { return token_; }
 
 private:
-    /// Locked while the server lives, so that others can tell which files are of servers that ended without a word.
+    /// A file of the token, locked while the server lives, so that others can tell which files are of servers that
+    /// ended without a word.
     struct File {
         std::filesystem::path path;
         int descriptor;
@@ -35,7 +37,7 @@ private:
     std::vector<File> files_;
 };
 
-/// What the server of this user at that address wrote; empty where there is none.
+/// The token that the server of this user at that address wrote; empty where there is none.
 std::string read_local_token(std::string const& address);
 
 } // namespace framelet

@@ -19,11 +19,11 @@ public:
     void announce(std::size_t bytes) { unsent_ += bytes; }
     std::size_t unsent() const { return unsent_; }
 
-    /// A frame that was announced: to be sent, or not any more.
+    /// Takes a frame that was announced: to be sent, or not any more.
     void push(Bytes frame) { frames_.push_back({std::move(frame), false}); }
     void refuse(Bytes const& frame) { unsent_ -= frame.size(); }
-    /// One that says all that an earlier one said, only newer: of these the newest waits, in the place of the first, so
-    /// that it comes through however often it is replaced.
+    /// Takes a frame that says all that an earlier one said, only newer: of these the newest waits, in the place of the
+    /// first, so that it comes through however often it is replaced.
     void push_newest(Bytes frame) {
         // The first of all frames may be with the socket already.
         auto const behind_first = frames_.begin() + (frames_.empty() ? 0 : 1);
@@ -37,10 +37,11 @@ public:
     }
 
     bool empty() const { return frames_.empty(); }
-    /// Not yet taken of the first frame. Stays where it is until `took` or `release`.
+    /// Bytes of the first frame that the socket has not taken yet. They stay where they are until `took` or `release`.
     ByteView rest() const { return ByteView(frames_.front().bytes).subspan(taken_); }
 
-    /// The socket took so many bytes of `rest`. Returns the frame's size if it was the last of them, otherwise 0.
+    /// Notes that the socket took so many bytes of `rest`. Returns the frame's size if it was the last of them,
+    /// otherwise 0.
     std::size_t took(std::size_t bytes) {
         unsent_ -= bytes;
         taken_ += bytes;
@@ -60,7 +61,7 @@ public:
         }
     }
 
-    /// Nothing more will be taken; the memory stays until `release`, because the socket may still refer to it.
+    /// Gives up all frames; the memory stays until `release`, because the socket may still refer to it.
     void abandon() {
         for (Frame const& frame : frames_) {
             unsent_ -= frame.bytes.size();
@@ -72,11 +73,11 @@ public:
 private:
     struct Frame {
         Bytes bytes;
-        bool replaceable; ///< by a newer one of its kind
+        bool replaceable; ///< a newer one of its kind may take its place
     };
 
     std::deque<Frame> frames_;
-    std::size_t taken_ = 0; ///< of the first frame
+    std::size_t taken_ = 0; ///< bytes taken of the first frame
     std::atomic<std::size_t> unsent_ = 0;
 };
 

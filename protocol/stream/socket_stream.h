@@ -1,5 +1,6 @@
-// Messages over a connected socket, plain or with TLS: what is read, what is written, and how it ends. In: messages,
-// bytes of the socket. Out: the same the other way; why it ended. stream_opening.cpp alone includes it.
+// Sends and receives messages over a connected socket, plain or with TLS: what is read, what is written, and how it
+// ends. In: messages, bytes of the socket. Out: the same the other way; why it ended. stream_opening.cpp alone includes
+// it.
 #pragma once
 
 #include <algorithm>
@@ -30,7 +31,7 @@ namespace framelet {
 
 namespace asio = boost::asio;
 
-/// `Stream`: asio's TCP socket, or its TLS stream over one.
+/// A connection over `Stream`: asio's TCP socket, or its TLS stream over one.
 template <typename Stream>
 class SocketStream final : public FramedStream {
     using Socket = asio::ip::tcp::socket;
@@ -41,7 +42,7 @@ public:
     static constexpr std::chrono::seconds ending_time{1};
     static constexpr bool secure = std::is_same_v<Stream, asio::ssl::stream<Socket>>;
 
-    /// `peer`: its address. `role` has a meaning for TLS only.
+    /// `peer`: address of the other side. `role` has a meaning for TLS only.
     SocketStream(Stream stream, std::string peer, asio::ssl::stream_base::handshake_type role)
         : stream_(std::move(stream)), executor_(stream_.get_executor()), handshake_timer_(executor_),
           ending_timer_(executor_), role_(role), peer_(std::move(peer)) {}
@@ -91,7 +92,7 @@ public:
         handlers_.take();
         asio::post(executor_, [self = self()] {
             self->contain([&] { self->begin_ending(); });
-        }); // behind the messages sent before
+        }); // queued behind the messages sent before
     }
 
     void close() override {
@@ -108,8 +109,8 @@ public:
     std::string peer() const override { return peer_; }
 
 private:
-    /// Goes with a handler, and counts it for as long as it exists. One whose operation is of several steps is lost
-    /// where memory is missing for one of them, without having been called.
+    /// Goes with a handler of asio, and counts it for as long as it exists. A handler whose operation is of several
+    /// steps is lost where memory is missing for one of them, without having been called.
     class Awaited {
     public:
         Awaited(std::shared_ptr<SocketStream> connection, int SocketStream::*count)
@@ -131,7 +132,7 @@ private:
     Awaited reading() { return {self(), &SocketStream::awaited_reads_}; }
     Awaited writing() { return {self(), &SocketStream::awaited_writes_}; }
 
-    /// Where memory is missing for the next step, this connection ends, and no other.
+    /// Does the next step; where memory is missing for it, this connection ends, and no other.
     template <typename Work>
     void contain(Work const& work) {
         try {
@@ -240,8 +241,8 @@ private:
         }
     }
 
-    /// The connection is about to end: what arrives is read, because a socket that closes with unread bytes would take
-    /// back what it sent last.
+    /// Reads on and throws away what arrives, because the connection is about to end: a socket that closes with unread
+    /// bytes would take back what it sent last.
     void discard() {
         if (finished_) {
             return;
@@ -266,7 +267,7 @@ private:
         lose(stream_reason(error, within_message) + (within_message ? hint() : ""));
     }
 
-    /// What a first message that makes no sense may be: bytes of a TLS record (RFC 8446 section 5.1).
+    /// Says what a first message that makes no sense may be: bytes of a TLS record (RFC 8446 section 5.1).
     std::string hint() const {
         bool const tls = !secure && first_ && prefix_[0] >= 20 && prefix_[0] <= 23 && prefix_[1] == 3;
         return tls ? "; the other side uses TLS and this side does not" : "";
@@ -333,7 +334,7 @@ private:
         write_next();
     }
 
-    /// A peer that went away may have said why: reading goes on for what it sent, and finds the end by itself.
+    /// Writes no more, but reads on: a peer that went away may have said why, and reading finds the end by itself.
     void writing_failed(Error error) {
         unwritable_ = true;
         outbox_.abandon();
@@ -350,14 +351,15 @@ private:
 
     // --- ending
 
-    /// The peer broke the protocol: tells both sides why, then ends. Nothing is being read.
+    /// Ends because the peer broke the protocol: tells both sides why first. Nothing is being read.
     void refuse(std::string const& reason) {
         send_failure(reason);
         discard();
         tell(reason);
     }
 
-    /// This side cannot go on: the same, from any thread. What is being read goes on being read.
+    /// Ends because this side cannot go on: tells both sides why first, from any thread. What is being read goes on
+    /// being read.
     void give_up(std::string const& reason) {
         giving_up_ = true;
         asio::post(executor_, [self = self(), reason] {
@@ -379,7 +381,7 @@ private:
         begin_ending();
     }
 
-    /// The connection is gone.
+    /// Ends because the connection is gone.
     void lose(std::string const& reason) {
         cut_ = true;
         finish();
@@ -406,7 +408,7 @@ private:
         write_next();
     }
 
-    /// All is sent: says that no more comes, and leaves the rest to the peer, or to the timer.
+    /// Says that no more comes, since all is sent, and leaves the rest to the peer, or to the timer.
     void say_goodbye() {
         if (peer_done_) {
             finish();
@@ -448,7 +450,7 @@ private:
     std::atomic<bool> giving_up_ = false; ///< nothing more is sent, for a reason that both sides are about to be told
     Outbox outbox_;
 
-    // Only for the io_context's thread.
+    // What follows is only for the io_context's thread.
     int awaited_reads_ = 0, awaited_writes_ = 0; ///< handlers that are still to be called
     std::size_t max_body_ = 0;
     FramePrefix prefix_{};

@@ -15,10 +15,10 @@ namespace {
 
 using SecureStream = asio::ssl::stream<StreamSocket>;
 
-/// What the system may hold before it has a place on the way: more would only grow old there.
+/// Most bytes that the system may hold before there is a place for them on the way: more would only grow old there.
 [[maybe_unused]] constexpr int most_unsent_bytes = 128 << 10;
 
-/// The peer may be gone already: reading will find out.
+/// Sets the options of a socket. Errors are ignored: the peer may be gone already, which reading will find out.
 void set_options(StreamSocket& socket) {
     boost::system::error_code ignored;
     socket.set_option(asio::ip::tcp::no_delay(true), ignored);

@@ -1,4 +1,4 @@
-// Of a connected socket, a stream of messages.
+// Makes a stream of messages of a connected socket.
 #pragma once
 
 #include <memory>
@@ -14,10 +14,11 @@ namespace framelet {
 
 using StreamSocket = boost::asio::ip::tcp::socket;
 
-/// Plain TCP. Sets TCP_NODELAY, and where there is TCP_NOTSENT_LOWAT keeps what waits in the system short.
+/// Makes a stream over plain TCP. Sets TCP_NODELAY, and where there is TCP_NOTSENT_LOWAT keeps what waits in the system
+/// short.
 std::shared_ptr<FramedStream> plain_stream(StreamSocket socket);
-/// TLS as the server or as the client; `host` is the name or the address that the certificate is checked against
-/// (InputError where it is neither).
+/// Make a stream over TLS, as the server or as the client; `host` is the name or the address that the certificate is
+/// checked against (InputError where it is neither).
 std::shared_ptr<FramedStream> tls_server_stream(StreamSocket socket,
                                                 std::shared_ptr<boost::asio::ssl::context> const& context);
 std::shared_ptr<FramedStream> tls_client_stream(StreamSocket socket,

@@ -42,7 +42,7 @@ std::string handshake_reason(boost::system::error_code const& error, SSL* ssl) {
     if (code == SSL_R_CERTIFICATE_VERIFY_FAILED && verified != X509_V_OK) {
         reason += std::string(" (") + X509_verify_cert_error_string(verified) + ")";
     }
-    // What the first bytes of something that is not TLS look like.
+    // These are the errors by which bytes that are not TLS show.
     if (code == SSL_R_WRONG_VERSION_NUMBER || code == SSL_R_HTTP_REQUEST || code == SSL_R_PACKET_LENGTH_TOO_LONG ||
         code == SSL_R_UNEXPECTED_MESSAGE || code == SSL_R_UNSUPPORTED_PROTOCOL) {
         reason += "; the other side may not use TLS";

@@ -63,7 +63,8 @@ std::string fingerprint_of(X509 const* certificate) {
     return text;
 }
 
-/// Nobody who is known has signed it; whatever else may be wrong with a certificate is wrong whoever signed it.
+/// True where nobody who is known has signed the certificate; whatever else may be wrong with one is wrong whoever
+/// signed it.
 bool is_of_unknown_origin(int error) {
     return error == X509_V_ERR_DEPTH_ZERO_SELF_SIGNED_CERT || error == X509_V_ERR_SELF_SIGNED_CERT_IN_CHAIN ||
            error == X509_V_ERR_UNABLE_TO_GET_ISSUER_CERT_LOCALLY || error == X509_V_ERR_UNABLE_TO_VERIFY_LEAF_SIGNATURE;
@@ -74,7 +75,7 @@ struct JudgedContext {
     CertificateJudge judge;
 };
 
-/// In place of the library's own verification, which it begins with.
+/// Verifies in place of the library's own function, which it calls first.
 int verify(X509_STORE_CTX* store, void* judged) {
     CertificateJudge const& judge = static_cast<JudgedContext const*>(judged)->judge;
     if (X509_verify_cert(store) == 1) {
@@ -111,7 +112,7 @@ std::shared_ptr<ssl::context> make_tls_server_context(std::string const& certifi
     context->set_password_callback([](std::size_t, ssl::context::password_purpose) { return std::string(); }, error);
     context->use_certificate_chain_file(certificate_file, error);
     require(error, "TLS certificate", certificate_file);
-    // Also checks that the key is the certificate's.
+    // This also checks that the key is the certificate's.
     context->use_private_key_file(key_file, ssl::context::pem, error);
     require(error, "TLS key", key_file);
     return context;

@@ -1,5 +1,5 @@
-// TLS: what each side shows, and whom to believe. In: files, a connection before its handshake and the name of the
-// host.
+// TLS: which certificate each side shows, and whom it believes. In: files, a connection before its handshake and the
+// name of the host.
 #pragma once
 
 #include <functional>
@@ -11,10 +11,10 @@
 
 namespace framelet {
 
-/// Contexts for TLS 1.3 and later. Throw InputError that names the file.
+/// Make contexts for TLS 1.3 and later. Throw InputError that names the file.
 std::shared_ptr<boost::asio::ssl::context> make_tls_server_context(std::string const& certificate_file,
                                                                    std::string const& key_file);
-/// Whether to trust a certificate for which no authority vouches, by its fingerprint; empty: one does, and what is
+/// Says whether to trust a certificate for which no authority vouches, by its fingerprint; empty: one does, and what is
 /// returned does not count.
 using CertificateJudge = std::function<bool(std::string const& fingerprint)>;
 /// `authority_file` empty: the system's certificate authorities. `judge` is called in each handshake, unless the

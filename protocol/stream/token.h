@@ -10,20 +10,20 @@
 
 namespace framelet {
 
-/// A shorter one can be guessed.
+/// Least length of a token, bytes: a shorter one can be guessed.
 inline constexpr std::size_t min_token_bytes = 16;
 
-/// 128 bits of the system's randomness, in 32 hexadecimal digits.
+/// Makes a token: 128 bits of the system's randomness, in 32 hexadecimal digits.
 std::string make_token();
 
-/// As many, for one viewer that comes back.
+/// Makes a ticket of as many bits, for one viewer that comes back.
 Ticket make_ticket();
 
 /// True when both are the same. Takes a time that depends on their lengths only.
 bool same_token(std::string_view left, std::string_view right);
 
-/// The first line of `file` without the white space around it. InputError where the file cannot be read, or the line is
-/// empty, shorter than `min_token_bytes`, longer than 4096 bytes or not UTF-8 text.
+/// Reads a token: the first line of `file` without the white space around it. InputError where the file cannot be read,
+/// or the line is empty, shorter than `min_token_bytes`, longer than 4096 bytes or not UTF-8 text.
 std::string read_token_file(std::filesystem::path const& file);
 
 } // namespace framelet

@@ -12,7 +12,8 @@ namespace {
 
 std::filesystem::path const own_name = "framelet";
 
-/// Empty where the variable does not hold an absolute path: the specification of these variables says to pass it over.
+/// Value of an environment variable; empty where it is not an absolute path: the specification of these variables says
+/// to pass it over.
 std::filesystem::path path_variable(char const* name) {
     char const* const value = std::getenv(name);
     std::filesystem::path const path = value == nullptr ? "" : value;

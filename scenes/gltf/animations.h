@@ -1,4 +1,4 @@
-// Keys for motions: along a line, round an axis, along any path, in jumps.
+// Makes keys for motions: along a line, round an axis, along any path, in jumps.
 #pragma once
 
 #include <functional>
@@ -12,10 +12,11 @@ GltfTrack line_track(int node, D3 from, D3 to, double duration);
 /// Turns nodes about a unit axis at constant speed, by `angle` radians in all, keyed at least every 90 degrees, on top
 /// of the rotation `start`.
 GltfTrack spin_track(std::vector<int> nodes, D3 axis, double angle, double duration, DQuat start = {1, 0, 0, 0});
-/// `keys` + 1 keys, evenly spaced over the duration.
+/// A track of `keys` + 1 keys, evenly spaced over the duration.
 GltfTrack translation_track(int node, double duration, int keys, std::function<D3(double seconds)> const& at);
 GltfTrack rotation_track(int node, double duration, int keys, std::function<DQuat(double seconds)> const& at);
-/// One value an interval, all intervals equally long; jumps between them. The last value is held to `duration`.
+/// A track of one value an interval, all intervals equally long, that jumps between them. The last value is held to
+/// `duration`.
 GltfTrack step_track(int node, GltfPath path, double duration, std::vector<D4> const& values);
 
 /// A rotation as the x, y, z, w of a key.

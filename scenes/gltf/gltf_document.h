@@ -1,4 +1,4 @@
-// What a glTF 2.0 file holds, as values: the scenes fill a GltfDocument, gltf_writer puts it into a file.
+// The content of a glTF 2.0 file as values: the scenes fill a GltfDocument, gltf_writer puts it into a file.
 #pragma once
 
 #include <array>
@@ -52,7 +52,7 @@ struct GltfCamera {
     double vertical_fov = 0.7; ///< radians
 };
 
-/// KHR_lights_punctual. Shines along its node's -Z.
+/// A light as in KHR_lights_punctual; it shines along its node's -Z.
 struct GltfLight {
     std::string type; ///< "directional", "point"
     D3 color{1, 1, 1};
@@ -84,7 +84,7 @@ struct GltfDocument {
     int add_image(std::string png);
     int add_material(GltfMaterial material);
     int add_mesh(std::string name, std::vector<GltfPrimitive> primitives);
-    /// A mesh of one material, shown by one node.
+    /// Adds a mesh of one material and a node that shows it; returns the node.
     int add_object(std::string name, MeshData data, int material, Placement const& place = {}, int parent = no_index);
     /// Adds the node, to `parent` where one is given.
     int add_node(GltfNode node, int parent = no_index);

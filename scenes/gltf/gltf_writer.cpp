@@ -64,7 +64,7 @@ struct Binary {
         return known->second;
     }
 
-    /// `components` floats an element; positions and key times must state their range.
+    /// Adds an accessor of `components` floats an element; positions and key times must state their range.
     int add_floats(std::vector<float> const& values, int components, int target, bool with_range) {
         auto const width = static_cast<std::size_t>(components);
         Json accessor{{"bufferView", add_view(values.data(), values.size() * sizeof(float), target)},
@@ -149,7 +149,7 @@ Json write_primitive(Binary& binary, GltfPrimitive const& primitive, bool textur
             {"material", primitive.material}};
 }
 
-/// Adds what it makes use of to `extensions`.
+/// The material as JSON; adds the glTF extensions that it uses to `extensions`.
 Json write_material(GltfMaterial const& material, std::set<std::string>& extensions) {
     Json surface{
         {"baseColorFactor", numbers({material.base_color.x, material.base_color.y, material.base_color.z, 1.0})},

@@ -1,4 +1,4 @@
-// A GltfDocument in, the bytes of a binary glTF 2.0 file (.glb) out. The same document gives the same bytes.
+// Writes binary glTF 2.0 files (.glb). In: a GltfDocument. Out: the bytes; the same document gives the same bytes.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// What the generator computes with: double-precision vectors, placed meshes, repeatable noise. In double, rounded to
-// float only when written, so that the files come out the same on every machine.
+// Values that the generator computes with: double-precision vectors, placed meshes, repeatable noise. They are rounded
+// to float only when written, so that the files come out the same on every machine.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@ struct MeshData {
     std::vector<std::uint32_t> indices;
 };
 
-/// Translation, rotation, scale, applied as T * R * S.
+/// Translation, rotation and scale, applied as T * R * S.
 struct Placement {
     D3 translation{0, 0, 0};
     DQuat rotation{1, 0, 0, 0};
@@ -43,7 +43,7 @@ DQuat looking_at(D3 eye, D3 target);
 /// Adds `part`, moved to `place`. Both have texture coordinates or neither has; the same for colours.
 void append(MeshData& mesh, MeshData const& part, Placement const& place = {});
 
-/// Uniform in [0, 1), the same for the same arguments everywhere.
+/// A number, uniform in [0, 1), that is the same for the same arguments everywhere.
 double random_unit(std::uint32_t seed, std::int32_t a, std::int32_t b = 0, std::int32_t c = 0);
 /// Smooth noise in [-1, 1] with lattice spacing 1; repeats every `period` lattice cells where that is above 0.
 double value_noise(std::uint32_t seed, D2 at, int period = 0);

@@ -1,4 +1,4 @@
-// Bytes of pixels in, a PNG file in memory out.
+// Encodes pictures. In: bytes of pixels. Out: a PNG file in memory.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace framelet {
 
-/// sRGB bytes, rows from the top, `channels` 1 (grey), 3 (RGB) or 4 (RGBA) interleaved.
+/// Pixels as sRGB bytes, rows from the top, `channels` 1 (grey), 3 (RGB) or 4 (RGBA) interleaved.
 struct TexturePixels {
     int width = 0;
     int height = 0;

@@ -9,7 +9,7 @@
 namespace framelet {
 namespace {
 
-/// `levels` steps from 0 to 255: fewer steps make a smaller file.
+/// The value as a byte, in `levels` steps from 0 to 255: fewer steps make a smaller file.
 std::uint8_t stepped(double value, int levels) {
     double const step = std::round(std::clamp(value, 0.0, 1.0) * (levels - 1)) / (levels - 1);
     return static_cast<std::uint8_t>(std::lround(step * 255));

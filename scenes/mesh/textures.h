@@ -5,25 +5,25 @@
 
 namespace framelet {
 
-/// Grey, mean about 0.7: stones of a few pixels, coarser stains.
+/// A grey texture, mean about 0.7: stones of a few pixels, coarser stains.
 std::string asphalt_texture();
-/// Grey: short blades in all directions, light on dark.
+/// A grey texture: short blades in all directions, light on dark.
 std::string grass_texture();
-/// Grey: two by two squares, light and dark.
+/// A grey texture: two by two squares, light and dark.
 std::string checker_texture();
-/// Colour: one bay of a building, a window with a frame in plaster.
+/// A colour texture: one bay of a building, a window with a frame in plaster.
 std::string facade_texture();
-/// Grey: courses of bricks.
+/// A grey texture: courses of bricks.
 std::string brick_texture();
-/// Grey: planks with grain, running along v.
+/// A grey texture: planks with grain, running along v.
 std::string plank_texture();
-/// Colour: clouds over a gradient from the horizon (lower edge) to 50 degrees; repeats sideways only.
+/// A colour texture: clouds over a gradient from the horizon (lower edge) to 50 degrees; repeats sideways only.
 std::string sky_texture();
-/// Grey: slabs of stone, two by two, slightly different.
+/// A grey texture: slabs of stone, two by two, slightly different.
 std::string slab_texture();
-/// Colour, 2:1, equirectangular: land with detail at every scale, sea, ice, a graticule.
+/// A colour texture, 2:1, equirectangular: land with detail at every scale, sea, ice, a graticule.
 std::string globe_texture();
-/// Colour and coverage (alpha mask): a twig with leaves.
+/// A texture of colour and coverage (alpha mask): a twig with leaves.
 std::string leaf_texture();
 
 } // namespace framelet

@@ -28,12 +28,12 @@ MeshData make_tinted_grid(D2 size, int columns, int rows, double texture_size, d
     return grid;
 }
 
-/// Coarse light and dark of the fields; repeats along Z.
+/// Factor of the fields' colour: coarse light and dark; repeats along Z.
 double field_tint(D2 at) {
     return std::clamp(0.74 + 0.30 * fractal_noise(100, {at.x / 20, at.y / roadside_period * 6}, 3, 6), 0.3, 1.0);
 }
 
-/// Worn tracks where the wheels run, stains along them.
+/// Factor of the road's colour: worn tracks where the wheels run, stains along them.
 double road_tint(D2 at) {
     double const lane = std::abs(std::abs(at.x) - 2);
     double const track = std::abs(lane - 0.8) < 0.3 ? -0.12 : 0.0;
@@ -84,7 +84,7 @@ struct Scenery {
     int small_house, large_house, mast;
 };
 
-/// What stands along one stretch; the same for every stretch.
+/// Adds what stands along one stretch; it is the same for every stretch.
 void add_scenery(GltfDocument& document, Scenery const& scenery, int stretch) {
     for (int i = 0; i < 26; ++i) {
         auto const random = [i](int what) { return random_unit(103, i, what); };

@@ -7,17 +7,17 @@ namespace framelet {
 
 /// Everything along the road repeats after so many metres, so that an animation may loop after driving them.
 inline constexpr double roadside_period = 120;
-/// Middle of the lane of traffic towards +Z (it keeps to the right), and of the other one.
+/// x of the middle of the lane of traffic towards +Z (it keeps to the right), and of the other one, metres.
 inline constexpr double near_lane_x = -2;
 inline constexpr double far_lane_x = 2;
 
-/// Stretches first .. last (inclusive) of the road, each `roadside_period` long, stretch 0 centred on z = 0.
+/// Adds stretches first .. last (inclusive) of the road, each `roadside_period` long, stretch 0 centred on z = 0.
 void add_roadside(GltfDocument& document, int first, int last);
 /// A meadow about the origin, `side` metres square.
 void add_meadow(GltfDocument& document, double side);
 /// A paved yard beside the road, slabs of 2 m, centred on `center`.
 void add_yard(GltfDocument& document, D3 center, D2 size);
-/// What is far away: a plain, a ring of hills, a sky with clouds up to 50 degrees (the sun shines in from above).
+/// Adds what is far away: a plain, a ring of hills, a sky with clouds up to 50 degrees (the sun shines in from above).
 /// Returns the node of all this, which may ride along with a camera.
 int add_surroundings(GltfDocument& document);
 /// Sunlight that falls along -`towards_sun`. The sun lights a grey of 0.5 to 0.5 * cosine: intensity pi.

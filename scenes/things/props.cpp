@@ -30,7 +30,7 @@ int add_conifer_mesh(GltfDocument& document, std::uint32_t seed) {
             double const height = low + 0.25 * v - 0.035 * (1 - v) * (point % 2 == 0 ? 1 : 0);
             return D3(ring * std::sin(angle), height, ring * std::cos(angle));
         });
-        for (std::size_t i = 0; i < cone.normals.size(); ++i) { // as of a plain cone: the points are for the outline
+        for (std::size_t i = 0; i < cone.normals.size(); ++i) { // a plain cone's: the points are for the outline
             D3 const p = cone.positions[i];
             cone.normals[i] = glm::normalize(D3(p.x, 0, p.z) / (std::hypot(p.x, p.z) + 1e-9) + D3(0, 0.6, 0));
             cone.colors.push_back(D3(p.y > low + 0.1 ? 0.55 : 1.0));

@@ -47,13 +47,13 @@ double superellipse(double angle, double exponent) {
                     -1 / exponent);
 }
 
-/// 1 in the middle of the car, 0 at its ends.
+/// Factor that rounds off the car's ends: 1 in its middle, 0 at its ends.
 double rounding(double z, double exponent, double root) {
     return std::pow(std::max(0.0, 1 - std::pow(std::min(std::abs(z) / half_length, 1.0), exponent)), 1 / root);
 }
 
-/// Bonnet, shoulders, boot. The angle runs from the left side (0) over the top to the right side (pi); below 0 and
-/// above pi the sides tuck in towards the sill.
+/// A point of the body: bonnet, shoulders, boot. The angle runs from the left side (0) over the top to the right side
+/// (pi); below 0 and above pi the sides tuck in towards the sill.
 D3 body_point(double z, double angle) {
     static constexpr std::array<D2, 8> top{D2(-2.25, 0.95), D2(-1.75, 0.99), D2(-0.8, 0.95), D2(0.3, 0.92),
                                            D2(0.95, 0.91),  D2(1.55, 0.84),  D2(2.0, 0.76),  D2(2.25, 0.70)};
@@ -71,7 +71,7 @@ D3 body_point(double z, double angle) {
     return {width * radius * std::cos(angle), waist_height + height * radius * std::sin(angle), z};
 }
 
-/// Windows and roof.
+/// A point of the cabin: windows and roof.
 D3 cabin_point(double z, double angle) {
     static constexpr std::array<D2, 8> roof{D2(-1.98, 0.90), D2(-1.7, 1.02), D2(-1.15, 1.27), D2(-0.65, 1.38),
                                             D2(-0.1, 1.41),  D2(0.22, 1.36), D2(0.62, 1.15),  D2(1.04, 0.88)};
@@ -218,7 +218,7 @@ void add_wheel_wells(MeshData& trim) {
 
 VehicleBody make_vehicle_body() {
     VehicleBody body;
-    // Which part of the surface is what; angles from the side (0) to the middle of the top (90 degrees).
+    // The surface is cut into parts by z and by the angle from the side (0) to the middle of the top (90 degrees).
     auto const side_angle = [](double angle) { return std::min(angle, pi - angle) * 180 / pi; };
     Loft const shell = make_loft(body_stations(), 48, body_point, lowest_angle_at);
     deal_out(shell, [&](double z, double angle) {

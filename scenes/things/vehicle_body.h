@@ -5,7 +5,7 @@
 
 namespace framelet {
 
-/// Metres. The wheels fit the body's arches.
+/// Measures of the wheels, which fit the body's arches, in metres.
 inline constexpr double wheel_radius = 0.34;
 inline constexpr double front_axle_z = 1.35;
 inline constexpr double rear_axle_z = -1.32;
@@ -14,7 +14,7 @@ struct VehicleBody {
     MeshData paint, glass, trim, head_lamps, tail_lamps, plate;
 };
 
-/// Faces +Z, stands on y = 0; wheel arches are cut where the axles are.
+/// Makes a body that faces +Z and stands on y = 0; wheel arches are cut where the axles are.
 VehicleBody make_vehicle_body();
 
 } // namespace framelet

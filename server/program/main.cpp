@@ -55,8 +55,8 @@ void read_files(Options& options) {
     }
 }
 
-/// What viewers had that have left goes back to the system. Left to itself the allocator of glibc keeps such blocks
-/// once one has been freed, between smaller ones, and a server takes twice the memory after a while.
+/// Gives the memory of viewers that have left back to the system. Left to itself the allocator of glibc keeps such
+/// blocks once one has been freed, between smaller ones, and a server takes twice the memory after a while.
 void give_back_large_blocks() {
 #ifdef __GLIBC__
     constexpr int least_bytes = 256 << 10, most_free_bytes = 16 << 20;
@@ -69,14 +69,15 @@ std::vector<Index> chosen_clips(Scene const& scene, ImportOptions const& import)
     return import.clips.empty() ? default_clips(scene) : clips_named(scene, import.clips);
 }
 
-/// Of a scene that a server would refuse because there is nothing to see in it, too: that is what one asks about.
+/// Prints what is in the scene, also where a server would refuse it because there is nothing to see: that is what one
+/// asks about.
 void print_info(Options const& options) {
     Scene const scene = import_scene(options.scene, make_progress_bar(options.quiet), options.import);
     std::vector<Index> const clips = chosen_clips(scene, options.import);
     std::cout << (options.json ? scene_summary_json(scene, clips) : scene_summary_text(scene, clips)) << std::flush;
 }
 
-/// Throws InputError where the files are of no use.
+/// Loads scene and environment. Throws InputError where the files are of no use.
 std::unique_ptr<LoadedScene> load_scene(Options const& options, Progress const& progress) {
     std::optional<Environment> environment; // first: it takes less time to find out what is wrong with it
     if (options.environment) {
@@ -100,7 +101,7 @@ std::unique_ptr<LoadedScene> load_scene(Options const& options, Progress const& 
     return loaded;
 }
 
-/// Whether the terminal that it was started in, if any, is still there.
+/// True where the terminal that the program was started in is still there.
 bool has_terminal() {
     int const terminal = ::open("/dev/tty", O_RDWR | O_CLOEXEC | O_NOCTTY);
     if (terminal >= 0) {

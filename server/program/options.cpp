@@ -141,7 +141,7 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
         ->needs(metrics)
         ->capture_default_str();
     app.add_flag("--quiet", options.quiet, "Print warnings and errors only");
-    // As PrivateServer of the viewer starts it.
+    // The viewer's PrivateServer starts the server with this.
     app.add_flag("--progress-lines", options.progress_lines)->group("")->configurable(false);
     app.add_option(
            "--record", options.record,

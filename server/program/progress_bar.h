@@ -1,11 +1,11 @@
-// Progress of loading: on a terminal one line that is redrawn, for a program lines of their own.
+// Shows the progress of loading: on a terminal one line that is redrawn, for a program lines of their own.
 #pragma once
 
 #include "server/scene/reading/progress.h"
 
 namespace framelet {
 
-/// Prints to stderr. Nothing when `quiet` or where stderr is no terminal.
+/// Prints to stderr; nothing when `quiet` or where stderr is no terminal.
 Progress make_progress_bar(bool quiet);
 
 /// Prints to stdout a line "loading PERCENT% STAGE" for each percent, for who started this program.

@@ -49,7 +49,7 @@ void SceneReloader::run(std::stop_token const& stop) {
     }
 }
 
-/// True where there is something to load, false where it is to end.
+/// Waits. True where there is something to load, false where it is to end.
 bool SceneReloader::wait(std::stop_token const& stop) {
     std::unique_lock lock(mutex_);
     auto const is_asked = [this] { return asked_; };

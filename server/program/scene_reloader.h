@@ -26,7 +26,7 @@ public:
     SceneReloader(std::optional<FileWatch> watch, std::filesystem::path const& scene_file,
                   std::filesystem::path environment_file, std::vector<std::filesystem::path> files, Load load,
                   Take take);
-    /// From any thread: whether anything has changed or not.
+    /// Asks for the scene to be loaded again, whether anything has changed or not. May be called from any thread.
     void ask();
 
 private:
@@ -39,8 +39,8 @@ private:
 
     std::optional<FileWatch> file_watch_;
     std::filesystem::path const scene_file_, environment_file_;
-    std::vector<std::filesystem::path> files_; ///< that the scene was made of
-    bool failed_ = false; ///< the last time: what was missing may be any file of the folder
+    std::vector<std::filesystem::path> files_; ///< files that the scene was made of
+    bool failed_ = false; ///< loading failed the last time: what was missing may be any file of the folder
     Load load_;
     Take take_;
     std::mutex mutex_;

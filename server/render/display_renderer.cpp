@@ -11,7 +11,7 @@
 namespace framelet {
 namespace {
 
-/// All but the radiance, which would crowd the caches for nothing; what `from` has room for is reused.
+/// Moves all but the radiance, which would crowd the caches for nothing. Memory of `from` is reused.
 void move_geometry(Framelet& from, Framelet& to) {
     to.tile = from.tile;
     to.depth = from.depth;
@@ -24,10 +24,10 @@ void move_geometry(Framelet& from, Framelet& to) {
 /// Inverse depths that differ by less than this share of the greater one are of one surface.
 constexpr float same_surface = 0.05f;
 
-/// What most of four rays hit.
+/// The surface that most of four rays hit.
 struct Majority {
-    std::size_t ray = 0; ///< one of them
-    float depth = 0; ///< at the middle of those
+    std::size_t ray = 0; ///< one of those that hit it
+    float depth = 0; ///< mean of those that hit it, taken of their inverse depths; metres along the view
 };
 
 Majority majority_of(Framelet const& child, std::size_t first) {

@@ -93,7 +93,7 @@ std::uint64_t render_framelets(RenderScene const& scene, Camera const& camera, I
 
 namespace {
 
-/// `spacing(i)`: footprint of place i, pixels.
+/// Renders the radiance at `places`. `spacing(i)`: footprint of place i, pixels. Returns how many rays that took.
 template <class Spacing>
 std::uint64_t render_places(RenderScene const& scene, ViewRays const& view, std::span<Vec2 const> places,
                             Spacing const& spacing, std::span<Vec3> radiance) {
@@ -106,7 +106,7 @@ std::uint64_t render_places(RenderScene const& scene, ViewRays const& view, std:
         FlushDenormals const flush;
         std::size_t const first = packet * lanes;
         std::size_t const count = std::min<std::size_t>(lanes, places.size() - first);
-        // What is left over of the last packet repeats its last place.
+        // Unused lanes of the last packet repeat its last place.
         auto const of_lane = [&](int i) { return first + std::min(static_cast<std::size_t>(i), count - 1); };
         Footprint footprint;
         for (int i = 0; i < lanes; ++i) {

@@ -1,4 +1,4 @@
-// Tiles in, framelets of samples out.
+// Renders framelets, single samples and whole pictures. In: a prepared scene, a camera, tiles or places. Out: samples.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace framelet {
 
-/// Where samples lie in their cells: 0 puts each at its cell's centre; any other seed places each at a point of its
-/// cell hashed from seed, tile and sample.
+/// Chooses where samples lie in their cells: 0 puts each at its cell's centre; any other seed places each at a point of
+/// its cell hashed from seed, tile and sample.
 using Seed = std::uint32_t;
 
 /// Renders one framelet per tile into `out` (same length), in parallel over framelets on the calling TBB arena.
@@ -19,12 +19,12 @@ using Seed = std::uint32_t;
 std::uint64_t render_framelets(RenderScene const& scene, Camera const& camera, ImagePlane const& plane,
                                std::span<Tile const> tiles, Seed seed, std::span<Framelet> out);
 
-/// One framelet, on the calling thread. The bare loop that `framelet-bench limits` compares the server with.
+/// Renders one framelet on the calling thread: the bare loop that `framelet-bench limits` compares the server with.
 std::uint32_t render_framelet(RenderScene const& scene, ViewRays const& rays, ImagePlane const& plane, Tile tile,
                               Seed seed, Framelet& out);
 
-/// Scene-linear radiance at any places of the image plane (pixels), each of a footprint of `spacing` pixels, into
-/// `radiance` (same length). Places that follow each other are traced together: neighbours are cheaper. Parallel;
+/// Renders scene-linear radiance at any places of the image plane (pixels), each of a footprint of `spacing` pixels,
+/// into `radiance` (same length). Places that follow each other are traced together: neighbours are cheaper. Parallel;
 /// returns how many rays that took.
 std::uint64_t render_samples(RenderScene const& scene, ViewRays const& rays, std::span<Vec2 const> places,
                              float spacing, std::span<Vec3> radiance);
@@ -32,14 +32,14 @@ std::uint64_t render_samples(RenderScene const& scene, ViewRays const& rays, std
 std::uint64_t render_samples(RenderScene const& scene, ViewRays const& rays, std::span<Vec2 const> places,
                              std::span<float const> spacings, std::span<Vec3> radiance);
 
-/// The whole picture by the same renderer without tiling, wire or cache: `samples_per_side`^2 samples a pixel on the
-/// same grid that framelets use, each tone-mapped and quantised as `to_display` does, then averaged in linear light
-/// (box filter). 1, 2, 4 or 8.
+/// Renders the whole picture by the same renderer without tiling, wire or cache: `samples_per_side`^2 samples a pixel
+/// on the same grid that framelets use, each tone-mapped and quantised as `to_display` does, then averaged in linear
+/// light (box filter). `samples_per_side`: 1, 2, 4 or 8.
 Picture render_picture(RenderScene const& scene, Camera const& camera, Viewport viewport, float exposure,
                        int samples_per_side);
 
 /// The exposure that shows this view well: 1 where the log-average luminance of what is hit is within what a display
-/// shows, else what brings it to a middle grey. From a small probe picture; deterministic.
+/// shows, else what brings it to a middle grey. It is taken from a small probe picture and is deterministic.
 float auto_exposure(RenderScene const& scene, Camera const& camera);
 
 } // namespace framelet

@@ -1,5 +1,5 @@
-// Sixteen rays side by side: the unit that is traced and shaded. Arrays of one component each, so that a plain loop
-// over the lanes becomes vector instructions.
+// Sixteen rays side by side: the unit that is traced and shaded. Each component has an array of its own, so that a
+// plain loop over the lanes becomes vector instructions.
 #pragma once
 
 #include <bit>
@@ -10,10 +10,10 @@
 
 namespace framelet {
 
-/// Lanes of a packet: 4x4 neighbouring samples of a framelet.
+/// Number of lanes of a packet: 4x4 neighbouring samples of a framelet.
 inline constexpr int lanes = 16;
 
-/// Bit i set: lane i takes part.
+/// A set of lanes: bit i is set where lane i takes part.
 using LaneMask = std::uint32_t;
 inline constexpr LaneMask all_lanes = (1u << lanes) - 1;
 
@@ -70,21 +70,21 @@ LaneMask lanes_where(Test&& test) {
     return mask;
 }
 
-/// Coordinates that rays can start from, metres. The BVH squares them, in single precision and in the space of
-/// instances that may be scaled down (to `least_instance_scale`).
+/// Rays can start where no coordinate reaches 1e10 metres: the BVH squares coordinates, in single precision and in the
+/// space of instances that may be scaled down (to `least_instance_scale`).
 inline constexpr float least_instance_scale = 1e-7f;
 inline bool traceable(Vec3 const& position) {
     constexpr float most = 1e10f;
     return std::abs(position.x) < most && std::abs(position.y) < most && std::abs(position.z) < most;
 }
 
-/// Points at origin + t * direction for near < t < far. Directions need not have unit length.
+/// Rays: the points origin + t * direction for near < t < far. Directions need not have unit length.
 struct RayPacket {
     LaneVec3 origin, direction;
     LaneFloats near, far;
 };
 
-/// What a ray met. Barycentric (u, v) weigh a triangle's second and third corner.
+/// Hits of rays, `t` being the ray parameter. Barycentric (u, v) weigh a triangle's second and third corner.
 struct HitPacket {
     LaneFloats t, u, v;
     LaneIndices triangle, geometry, instance;

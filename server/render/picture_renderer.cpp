@@ -1,4 +1,4 @@
-// Whole pictures from the framelet renderer: the reference for what a viewer converges to, and the exposure probe.
+// Renders whole pictures: the reference for what a viewer converges to, and the exposure probe.
 #include <bit>
 #include <cmath>
 #include <numeric>

@@ -1,4 +1,4 @@
-// Probes in, the luma that they show now out.
+// Renders probes again. In: probes. Out: the luma that they show now.
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@ namespace framelet {
 /// Renders single samples and shows them as `to_display` does; keeps its scratch.
 class ProbeRenderer {
 public:
-    /// Returns how many rays that took. Parallel on the calling TBB arena.
+    /// Renders the probes, in parallel on the calling TBB arena. Returns how many rays that took.
     std::uint64_t render(RenderScene const& scene, Camera const& camera, Viewport viewport, float exposure,
                          std::span<Probe const> probes);
     /// Display-encoded luma of the probes rendered last, [0, 1].

@@ -10,7 +10,7 @@
 
 namespace framelet {
 
-/// Those that lie in the picture, in rows.
+/// One such grid: its positions that lie in the picture, by column and row.
 struct RayGrid {
     Vec2 first{0.5f}; ///< pixels, within the spacing
     int spacing = 1; ///< pixels
@@ -26,8 +26,8 @@ private:
     }
 };
 
-/// Middles of cells of `cell` pixels, one in each square of `spacing` pixels (a power of two times as large): another
-/// each `turn` until all had theirs, far apart from one to the next.
+/// The grid of the middles of cells of `cell` pixels, one in each square of `spacing` pixels (a power of two times as
+/// large). Each `turn` takes another cell of the squares until all had theirs, far apart from one turn to the next.
 inline RayGrid cell_grid(int cell, int spacing, std::uint32_t turn) {
     int x = 0, y = 0;
     for (int half = spacing / 2; half >= cell; half /= 2, turn >>= 2) {

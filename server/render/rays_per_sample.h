@@ -1,4 +1,4 @@
-// How many rays a sample is made of.
+// The numbers of rays that a sample may be made of.
 #pragma once
 
 namespace framelet {

@@ -1,4 +1,5 @@
-// Rays through places of a picture, side by side. In: a camera's rays, where each lane looks. Out: a packet to trace.
+// Makes a packet of rays through places of a picture. In: a camera's rays, the place that each lane looks at. Out: a
+// packet to trace.
 #pragma once
 
 #include "common/camera.h"
@@ -6,7 +7,7 @@
 
 namespace framelet {
 
-/// `place(lane)`: where on the image plane that lane looks, pixels.
+/// The rays through `place(lane)`: the point of the image plane that this lane looks at, pixels.
 template <class Place>
 RayPacket rays_through(ViewRays const& view, Place&& place) {
     RayPacket rays;

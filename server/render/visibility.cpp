@@ -12,11 +12,11 @@
 namespace framelet {
 namespace {
 
-/// Places along a side of a packet.
+/// Number of places along a side of a packet.
 constexpr int packet_side = 4;
 static_assert(packet_side * packet_side == lanes);
 
-/// Inverse depths of 4x4 neighbouring places.
+/// Traces 4x4 neighbouring places; gives their inverse depths.
 template <class Place>
 void look(PreparedScene const& scene, ViewRays const& view, Place&& place, LaneFloats& inverse_depth) {
     RayPacket const rays = rays_through(view, place);
@@ -49,7 +49,7 @@ std::uint64_t render_visibility(RenderScene const& scene, ViewRays const& view, 
         FlushDenormals const flush;
         int const top = band * packet_side;
         for (int left = 0; left < columns; left += packet_side) {
-            // What is left over of the last packets repeats their last places.
+            // Unused lanes of the last packets repeat their last places.
             auto const column_of = [&](int i) { return std::min(left + i % packet_side, columns - 1); };
             auto const row_of = [&](int i) { return std::min(top + i / packet_side, rows - 1); };
             LaneFloats found;

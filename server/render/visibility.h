@@ -1,5 +1,5 @@
-// How far away what is to be seen is, and nothing else: rays through places of a picture, not shaded. In: scene, where
-// to look from. Out: inverse depths, by which it is known what a viewer lacks.
+// Measures how far away the visible surfaces are and nothing else, by rays through places of a picture that are not
+// shaded. In: scene, the rays of a view, a grid of places. Out: inverse depths, which tell what a viewer lacks.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +11,12 @@
 
 namespace framelet {
 
-/// Of a place where something see-through is seen, or something from its back: what counts there only shading tells.
+/// Inverse depth of a place where something see-through is seen, or the back of a single-sided surface: which depth
+/// counts there only shading tells.
 inline constexpr float unknown_inverse_depth = -1;
 
-/// Replaces `inverse_depth` by that of what each place shows, 1 / metres along the view, row by row; 0 where that is
-/// the background. Returns how many rays that took. Parallel on the calling TBB arena.
+/// Replaces `inverse_depth` by that of the surface that each place shows, 1 / metres along the view, row by row; 0
+/// where that is the background. Returns how many rays that took. Parallel on the calling TBB arena.
 std::uint64_t render_visibility(RenderScene const& scene, ViewRays const& view, Viewport viewport, RayGrid const& grid,
                                 std::vector<float>& inverse_depth);
 

@@ -1,4 +1,4 @@
-// Where the scene is and how to look at it.
+// Finds where the scene is and how to look at it.
 #include <algorithm>
 
 #include "server/scene/motion/animation.h"

@@ -1,5 +1,5 @@
-// Whether files have changed, and whoever writes them has finished. In: their names, times at which to look. Out: yes
-// or no. It looks by asking for size and times, not by a service of the kernel: so it sees changes on network drives,
+// Tells whether files have changed and their writer has finished. In: their names, times at which to look. Out: yes or
+// no. It looks by asking for size and times, not by a service of the kernel: so it sees changes on network drives,
 // files that are replaced by others and folders that are removed and made again.
 #pragma once
 
@@ -16,17 +16,17 @@ namespace framelet {
 class FileWatch {
 public:
     using Time = std::chrono::steady_clock::time_point;
-    /// As long nothing must change for a file to count as written.
+    /// Time for which nothing must change for a file to count as written.
     static constexpr std::chrono::milliseconds quiet{500};
 
-    /// From now on these are watched, folders for what is added to and removed from them; those that were before keep
-    /// what is known of them.
+    /// Watches these files from now on, and folders for what is added to and removed from them; what is known of those
+    /// that were watched before is kept.
     void watch(std::span<std::filesystem::path const> files);
-    /// True once for all that has changed until `quiet` ago.
+    /// True once for all changes until `quiet` ago.
     bool look(Time now);
 
 private:
-    /// All zero where there is no such file.
+    /// State of a file; all zero where there is no such file.
     struct Stamp {
         std::uint64_t device = 0, number = 0;
         std::int64_t bytes = 0, seconds = 0, nanoseconds = 0;
@@ -35,7 +35,7 @@ private:
     static Stamp stamp_of(std::filesystem::path const& file);
 
     std::map<std::filesystem::path, Stamp> stamps_;
-    std::optional<Time> changed_; ///< when that was seen last; nothing: it has been told
+    std::optional<Time> changed_; ///< when a change was seen last; nothing once `look` has told it
 };
 
 } // namespace framelet

@@ -105,7 +105,7 @@ struct Mesh {
     std::vector<float> morph_weights; ///< defaults, one a morph target
 };
 
-/// Translation, rotation, scale, applied as T * R * S.
+/// Translation, rotation and scale, applied as T * R * S.
 struct Transform {
     Vec3 translation{0, 0, 0};
     Quat rotation{1, 0, 0, 0};
@@ -149,7 +149,7 @@ struct AnimationClip {
 
 enum class LightType : std::uint8_t { directional, point, spot };
 
-/// KHR_lights_punctual; shines along its node's -Z.
+/// A light as in KHR_lights_punctual; it shines along its node's -Z.
 struct Light {
     std::string name;
     LightType type = LightType::point;
@@ -182,7 +182,7 @@ struct Scene {
     std::vector<SceneCamera> cameras;
     std::vector<std::string> warnings; ///< one line each: what of the file was passed over
     std::vector<std::filesystem::path>
-        files; ///< that it was made of, or would be were they there; the scene file first
+        files; ///< that the scene is made of, whether they exist or not; the scene file first
 };
 
 } // namespace framelet

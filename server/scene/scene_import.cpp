@@ -14,7 +14,7 @@
 namespace framelet {
 namespace {
 
-/// One line of bounded length, whatever the file's names and a library's message hold.
+/// The text as one line of bounded length, whatever the file's names and a library's message hold.
 std::string one_line(std::string text) {
     constexpr std::size_t longest = 400;
     std::replace_if(

@@ -1,5 +1,5 @@
-// A scene file in, a Scene value out. glTF goes through tinygltf (exact to the specification: sparse accessors, step
-// and spline keys, samplers, extensions), everything else through Assimp.
+// Reads a scene file. In: its path. Out: a Scene value. glTF goes through tinygltf (exact to the specification: sparse
+// accessors, step and spline keys, samplers, extensions), everything else through Assimp.
 #pragma once
 
 #include <cstdint>
@@ -12,22 +12,23 @@
 
 namespace framelet {
 
-/// What a scene file may ask for.
+/// Limits on what a scene file may ask for, and what it must contain.
 struct ImportOptions {
     /// Files that the scene names may lie outside its folder. A scene from elsewhere could read the server's disk
     /// and show what it finds.
     bool allow_outside = false;
-    /// Most bytes of what is made of the file: geometry, animation, pictures. A file of some KB can ask for any
-    /// number. 4 GiB is 64 pictures of 4096x4096 or a hundred million vertices, and leaves a machine of 16 GB the room
-    /// for what rendering makes of it once more.
+    /// Upper bound of the bytes that geometry, animation and pictures take. A file of some KB can ask for any number. 4
+    /// GiB is 64 pictures of 4096x4096 or a hundred million vertices, and leaves a machine of 16 GB the room for what
+    /// rendering makes of it once more.
     std::uint64_t memory_bytes = std::uint64_t(4) << 30;
     /// Animation clips, by name, that the scene must have. A glTF file is refused without them before its meshes and
     /// pictures are read.
     std::vector<std::string> clips;
 };
 
-/// Throws InputError with one line that names the file where it cannot be loaded. The scene it returns is consistent:
-/// every index is in range, every attribute has the right length, every number is finite, skin weights sum to 1.
+/// Reads and finishes a scene. Throws InputError with one line that names the file where it cannot be loaded. The scene
+/// it returns is consistent: every index is in range, every attribute has the right length, every number is finite,
+/// skin weights sum to 1.
 Scene import_scene(std::filesystem::path const& file, Progress const& progress = {}, ImportOptions const& options = {});
 
 } // namespace framelet

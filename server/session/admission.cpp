@@ -66,7 +66,8 @@ void Admission::seat(std::shared_ptr<Session> const& session, Hello const& hello
     answer.controls = controls(session->id());
 }
 
-/// False where the viewer is another one by what it knows and reads, or lacks what is not kept any more.
+/// Lets a session go on with what its viewer had. False where the viewer is another one by what it knows and reads, or
+/// lacks what is not kept any more.
 bool Admission::resume(Tickets::Holder& holder, std::shared_ptr<Session> const& session, Hello const& hello) {
     auto const earlier = holder.session;
     if (holder.codings != hello.codings || holder.knows_control_token != knows_control_token(hello) ||
@@ -113,7 +114,7 @@ void Admission::give_up_who_stay_away(Time now) {
     }
 }
 
-/// False where nobody is away.
+/// Gives up the viewer that has been away longest; false where nobody is away.
 bool Admission::give_up_longest_parked() {
     Tickets::Holder const* const holder = tickets_.longest_parked();
     if (holder == nullptr) {
@@ -123,7 +124,7 @@ bool Admission::give_up_longest_parked() {
     return true;
 }
 
-/// This viewer, which is away, does not come back, or has to begin anew.
+/// Gives up a viewer that is away: it does not come back, or has to begin anew.
 void Admission::give_up(Tickets::Holder const& holder) {
     std::shared_ptr<Session> const session = holder.session;
     tickets_.erase(&holder);

@@ -1,6 +1,6 @@
-// Who is let in, and what each viewer has: its ticket, its memory, control of the scene's clock; also of those who are
-// away. In: what viewers say of themselves, sessions as they come and go. Out: refusals, the viewer's own part of its
-// Welcome.
+// Decides who is let in, and keeps what each viewer has: its ticket, its memory, control of the scene's clock; also of
+// those who are away. In: what viewers say of themselves, sessions as they come and go. Out: refusals, the viewer's own
+// part of its Welcome.
 #pragma once
 
 #include <chrono>
@@ -20,7 +20,7 @@
 
 namespace framelet {
 
-/// For the io thread only.
+/// May be used on the io thread only.
 class Admission {
 public:
     using Time = std::chrono::steady_clock::time_point;
@@ -28,31 +28,31 @@ public:
     struct Rules {
         std::string token; ///< what a viewer has to say; empty: nothing
         std::string control_token; ///< who says it is let in as well, and may set the scene's clock; empty: nobody
-        bool shared_control = false; ///< every viewer may; otherwise, without a token for it, the first
+        bool shared_control = false; ///< every viewer may set the clock; else, without a control token, the first may
         std::size_t memory_bytes; ///< of all viewers
     };
 
     /// `given_up` is called after each viewer that has been given up.
     Admission(Rules rules, std::function<void()> given_up);
 
-    /// How long somebody who connects from there has to wait.
+    /// Time that somebody who connects from this source has to wait.
     Time::duration delay(std::string const& source, Time now) const { return guesses_.delay(source, now); }
-    /// Why who says this is not let in; nothing: it may be. A wrong token is noted.
+    /// Reason why a viewer that says this is not let in; nothing: it may be. A wrong token is noted.
     std::optional<Failure> refusal(Hello const& hello, std::string const& source, Time now);
     /// The session of the viewer that says it comes back, where the server has not noticed yet that it had gone.
     std::shared_ptr<Session> session_left_behind(Hello const& hello);
     /// Gives a session that is let in what its viewer had, if that is still there, or a ticket of its own.
     void seat(std::shared_ptr<Session> const& session, Hello const& hello, Welcome& answer);
     bool controls(std::uint64_t id) const { return control_.controls(id); }
-    /// As `SessionMemory::reserve`. Viewers that are away leave their memory to those that are here.
+    /// Sets memory aside, as `SessionMemory::reserve`. Viewers that are away leave their memory to those that are here.
     std::optional<std::string> reserve(std::uint64_t id, Viewport viewport, bool predicts);
 
-    /// Gives back all that the session had, but what a viewer that comes back goes on with. Takes no memory for that.
+    /// Gives back all that the session had, but what a viewer that comes back goes on with. Needs no memory to do so.
     /// `session` is null where there is none of this number.
     void leave(std::uint64_t id, Session const* session);
-    /// Of those who are away no more than so many, the last to go, may come back.
+    /// Lets at most `most` of those who are away, the last to go, come back; gives up the others.
     void keep_parked(std::size_t most);
-    /// Nor those who have been away for too long.
+    /// Gives up those who have been away for too long.
     void give_up_who_stay_away(Time now);
 
 private:

@@ -21,27 +21,28 @@ struct Connection {
     std::shared_ptr<Session> session;
     std::shared_ptr<FramedStream> stream;
     std::string source;
-    std::unique_ptr<boost::asio::steady_timer> start; ///< null: at once
+    std::unique_ptr<boost::asio::steady_timer> start; ///< of a delayed start; null: it starts at once
     bool admitted = false;
-    bool was_ended = false; ///< at the last heartbeat, and is here all the same
+    bool was_ended = false; ///< its session had ended at the last heartbeat, and it is here all the same
 };
 
-/// For the io thread, but for `open_sessions`, which may be called from any.
+/// May be used on the io thread only, but for `open_sessions`, which may be called from any.
 class ConnectionTable {
 public:
     void add(std::uint64_t id, Connection connection);
-    /// Null: it has gone. Valid until it goes.
+    /// The connection of this number, valid until it goes; null: it has gone.
     Connection* find(std::uint64_t id);
     void erase(std::uint64_t id);
     std::map<std::uint64_t, Connection> const& all() const { return connections_; }
 
     std::vector<std::shared_ptr<Session>> open_sessions() const;
-    /// Those from which something has been waited for too long, and what.
+    /// Sessions from which something has been waited for too long, and what.
     std::vector<std::pair<std::shared_ptr<Session>, std::string>>
     overdue(std::chrono::steady_clock::time_point now) const;
-    /// Those whose socket waits for nothing any more, for want of memory.
+    /// Sessions whose socket waits for nothing any more, for want of memory.
     std::vector<std::shared_ptr<Session>> stuck() const;
-    /// Those that had ended at the last call already: there was no memory for all that belongs to an end.
+    /// Numbers of connections whose session had ended at the last call already: there was no memory for all that
+    /// belongs to an end.
     std::vector<std::uint64_t> take_remains();
 
 private:

@@ -14,10 +14,10 @@ using Error = boost::system::error_code;
 
 namespace {
 
-/// With port 0: how often all addresses are tried, since the port that is free on the first may not be on the next.
+/// How often all addresses are tried with port 0, since the port that is free on the first may not be on the next.
 constexpr int attempts = 16;
 
-/// A name may stand for an address of a version of IP that this machine does not speak.
+/// True where this machine has no such address: a name may stand for one of a version of IP that it does not speak.
 bool is_absent(Error const& error) {
     return error == asio::error::address_family_not_supported || error == boost::system::errc::address_not_available;
 }
@@ -89,7 +89,7 @@ Error Listener::bind(Endpoint const& endpoint, bool only_this_version) {
     if (!error) {
         acceptor.set_option(tcp::acceptor::reuse_address(true), error);
     }
-    // All addresses of IPv6 are by themselves all of IPv4 as well, which then has none to itself.
+    // A socket for all addresses of IPv6 by itself takes those of IPv4 as well, which could not be bound then.
     if (!error && endpoint.address().is_v6() && only_this_version) {
         acceptor.set_option(asio::ip::v6_only(true), error);
     }

@@ -24,8 +24,8 @@ class Listener {
 public:
     using Endpoint = boost::asio::ip::tcp::endpoint;
 
-    /// After the system could not give a connection, most likely for want of file descriptors. It would say so again at
-    /// once: the connection goes on waiting.
+    /// Time to wait after the system could not give a connection, most likely for want of file descriptors. It would
+    /// say so again at once: the connection goes on waiting.
     static constexpr std::chrono::milliseconds pause{100};
 
     /// Binds to all addresses that `bind`, a name or an address, stands for; port 0: any one that is free on all of
@@ -38,13 +38,13 @@ public:
 
     /// Lets viewers connect. Throws InputError where another program has begun to listen there meanwhile.
     void listen();
-    /// Hands over each that connects, from `io`'s thread, until `close`.
+    /// Hands over each socket that connects, from `io`'s thread, until `close`.
     void accept(std::function<void(boost::asio::ip::tcp::socket)> take);
-    /// Where memory was missing for going on with that, goes on.
+    /// Goes on accepting where memory was missing for that.
     void accept_again();
     void close();
 
-    /// With the real port; at least one.
+    /// Endpoints that it listens on, with the real port; at least one.
     std::vector<Endpoint> endpoints() const;
 
     boost::asio::io_context io{1}; ///< also for what is connected

@@ -39,7 +39,7 @@ using std::chrono::steady_clock;
 namespace {
 
 constexpr std::chrono::seconds heartbeat{1};
-/// Without a heartbeat for so long something is wrong: a scene that is replaced holds it up for a moment.
+/// Longest time without a heartbeat when all is well: a scene that is replaced holds it up for a moment.
 constexpr std::chrono::seconds healthy_pause{10};
 /// A connection whose bytes nobody confirms for so long is dropped by the kernel, milliseconds.
 constexpr unsigned user_timeout_ms = 15000;
@@ -61,24 +61,24 @@ struct Server::Impl {
     std::shared_ptr<asio::ssl::context> tls;
     Welcome welcome;
     SceneClock clock;
-    ClockRequests clock_requests; ///< for the io thread only, as all that follows, but what is said to be for any
+    ClockRequests clock_requests; ///< for the io thread only, as all that follows unless it says otherwise
     Admission admission;
     WaitingRoom waiting;
-    LogLimit turned_away, without_memory; ///< for what the log says of them
+    LogLimit turned_away, without_memory; ///< of what the log says of such connections, and of missing memory
     std::minstd_rand random{std::random_device{}()};
     Farewells farewells;
 
-    ConnectionTable connections; ///< its open sessions: any
+    ConnectionTable connections; ///< its open sessions may be asked for on any thread
     std::uint64_t next_id = 1;
     bool beats = false; ///< the next heartbeat is on its way
-    bool ends = false; ///< and then none is
+    bool ends = false; ///< the server ends: no heartbeat follows
 
     std::atomic<std::uint64_t> sent_bytes = 0, viewers = 0, scenes = 1; ///< counted for those who watch over the server
     std::atomic<steady_clock::time_point> last_beat = steady_clock::now();
     BusyShare busy_share;
 
-    std::shared_ptr<LoadedScene> loaded; ///< that the loop looks at; null: it is the caller's
-    LoopThread loop; ///< replaced on the io thread only; its figures: any
+    std::shared_ptr<LoadedScene> loaded; ///< the scene that the loop looks at; null: it is the caller's
+    LoopThread loop; ///< replaced on the io thread only; its figures may be asked for on any thread
 
     Impl(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene, ServerOptions const& given,
          std::unique_ptr<Listener> bound)
@@ -122,7 +122,7 @@ struct Server::Impl {
         loop.start();
     }
 
-    /// From any thread.
+    /// Has the status sent. May be called from any thread.
     void post_status() {
         try {
             asio::post(io, [this] { send_status(); });
@@ -130,7 +130,7 @@ struct Server::Impl {
         }
     }
 
-    /// Throws std::bad_alloc, and then nothing is left of the connection.
+    /// Adds a connection. Throws std::bad_alloc, and then nothing is left of the connection.
     void add_connection(tcp::socket socket) {
         boost::system::error_code error;
         auto const endpoint = socket.remote_endpoint(error);
@@ -265,7 +265,7 @@ struct Server::Impl {
         send_status(); // it may be another's turn to control
     }
 
-    /// Takes no memory for that.
+    /// Forgets a connection. Needs no memory to do so.
     void forget(std::uint64_t id) {
         waiting.leave(id);
         Connection const* const found = connections.find(id);
@@ -335,7 +335,7 @@ struct Server::Impl {
         beats = true;
     }
 
-    /// Until everything is closed. Memory that is missing for something that is no session's own is missing for a
+    /// Runs until everything is closed. Memory that is missing for something that is no session's own is missing for a
     /// moment, and what has not been done for that is done then.
     void run_io() {
         for (bool is_to_recover = false;;) {

@@ -23,7 +23,7 @@ struct ServerOptions {
     std::uint16_t port = 7070; ///< 0: any free one
     std::string token; ///< what a viewer has to say; empty: nothing
     std::string control_token; ///< who says it is let in as well, and may set the scene's clock; empty: the first may
-    bool shared_control = false; ///< every viewer may
+    bool shared_control = false; ///< every viewer may set the scene's clock
     std::string tls_certificate; ///< PEM file; empty: no TLS
     std::string tls_key; ///< PEM file
     std::size_t max_sessions = 8;
@@ -39,9 +39,9 @@ public:
     /// `render_scene` must outlive the server.
     Server(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene, ServerOptions const& options,
            std::unique_ptr<Listener> listener);
-    /// Its own scene, with its exposure, which another one can replace.
+    /// Serves a scene of its own, with its exposure, which another one can replace.
     Server(std::unique_ptr<LoadedScene> scene, ServerOptions const& options, std::unique_ptr<Listener> listener);
-    /// Binds by itself. Throws InputError where the address cannot be had.
+    /// Binds the address by itself. Throws InputError where it cannot be had.
     Server(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene, ServerOptions const& options);
     ~Server();
 
@@ -54,12 +54,12 @@ public:
     void take_signals(std::function<bool()> hang_up = {});
     /// Serves until `stop` or a signal. The calling thread does the network, one other the loop.
     void run();
-    /// From any thread: serves this scene instead of the one before. All viewers are told to connect again, which those
-    /// that look at a scene for longer do by themselves; the scene's clock goes on.
+    /// Serves this scene instead of the one before. All viewers are told to connect again, which those that look at a
+    /// scene for longer do by themselves; the scene's clock goes on. May be called from any thread.
     void replace_scene(std::shared_ptr<LoadedScene> next);
-    /// From any thread.
+    /// Ends `run`. May be called from any thread.
     void stop();
-    /// What has been going on. From any thread.
+    /// Figures of what has been going on. May be called from any thread.
     ServerFigures figures() const;
 
 private:

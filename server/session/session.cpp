@@ -16,7 +16,7 @@ EncodedBatch const& batch_of(std::shared_ptr<Message const> const& message) {
     return std::get<EncodedBatch>(*message);
 }
 
-/// About.
+/// Bytes that a batch takes, about.
 std::size_t bytes_of(EncodedBatch const& batch) {
     return batch.payload.size() + batch.shapes.size() + batch.tracks.size() + batch.tiles.size() * sizeof(Tile);
 }
@@ -207,7 +207,7 @@ void Session::note_clock_change() {
     add_newest(ClockChanged{});
 }
 
-/// Under the lock.
+/// Replaces an event of this kind that waits. To be called under the lock.
 template <class What>
 void Session::add_newest(What const& what) {
     std::erase_if(waiting_events_, [](StreamEvent const& event) { return std::holds_alternative<What>(event.what); });
@@ -283,13 +283,13 @@ void Session::receive(Message message) {
     }
 }
 
-/// Under the lock.
+/// Drops the oldest batch that is kept. To be called under the lock.
 void Session::drop_kept() {
     kept_bytes_ -= bytes_of(batch_of(kept_.front()));
     kept_.pop_front();
 }
 
-/// False where it answers nothing that waits for an answer.
+/// Takes in an acknowledgement; false where it answers nothing that waits for an answer.
 bool Session::receive_ack(Ack const& ack) {
     std::scoped_lock const lock(mutex_);
     if (ack.batch <= last_ack_ || ack.batch > last_batch_) {
@@ -304,7 +304,8 @@ bool Session::receive_ack(Ack const& ack) {
     return true;
 }
 
-/// What waits is bounded: a viewer that evicts more than it can hold is not heard.
+/// Takes in what the viewer has evicted. What waits is bounded: a viewer that evicts more than it can hold is not
+/// heard.
 void Session::receive_evicted(Evicted gone) {
     constexpr std::size_t most_waiting = std::size_t{1} << 18;
     std::scoped_lock const lock(mutex_);

@@ -21,24 +21,25 @@ namespace framelet {
 
 class Session : public std::enable_shared_from_this<Session> {
 public:
-    /// What the session tells its server; called on the io thread.
+    /// Callbacks by which the session tells its server; on the io thread where nothing else is said.
     struct Events {
-        /// The viewer said hello; the answer is sent back. A Failure ends the connection.
+        /// Called when the viewer has said hello; the answer is sent back. A Failure ends the connection.
         std::function<std::variant<Welcome, Failure>(Hello const&)> admit;
         std::function<void(ClockRequest const&)> clock_request;
-        /// The viewer's picture gets this size; a line that says why it cannot ends the session.
+        /// Called when the viewer's picture gets this size; a line that says why it cannot ends the session.
         std::function<std::optional<std::string>(Viewport, bool predicts)> resize;
-        /// There is new input, or room for another batch.
+        /// Called when there is new input, or room for another batch.
         std::function<void()> changed;
-        /// Once, when the connection is over; `reason` is one line. This one and the next may come from any thread.
+        /// Called once, when the connection is over; `reason` is one line. This one and the next may come from any
+        /// thread.
         std::function<void(std::string const& reason)> ended;
-        /// A batch of so many bytes was handed to the connection; empty: nobody counts them.
+        /// Called when a batch of so many bytes was handed to the connection; empty: nobody counts them.
         std::function<void(std::size_t bytes)> sent = {};
     };
 
-    /// From the start of reading to Hello, a TLS handshake between them.
+    /// Most time from the start of reading to Hello, a TLS handshake between them.
     static constexpr std::chrono::seconds hello_timeout{5};
-    /// From Welcome to the first camera: a viewer that looks nowhere takes the place of one that would.
+    /// Most time from Welcome to the first camera: a viewer that looks nowhere takes the place of one that would.
     static constexpr std::chrono::seconds camera_timeout{10};
     /// A viewer that owes an acknowledgement for so long is taken for gone.
     static constexpr std::chrono::seconds ack_timeout{30};
@@ -47,56 +48,58 @@ public:
 
     /// Begins to read. Does nothing the second time.
     void start();
-    /// `again`: the viewer may come back by itself.
+    /// Ends the session and sends `farewell`; `again`: the viewer may come back by itself.
     void close(std::string const& farewell, bool again = false);
 
-    /// The viewer has come back, before its connection is known to be gone: it is cut here.
+    /// Cuts the connection: the viewer has come back before it was known to be gone.
     void cut();
-    /// Whether a viewer that has all batches up to this one could go on with it, parked.
+    /// True where it is parked, and a viewer that has all batches up to `last_batch` could go on with it.
     bool can_be_resumed(std::uint64_t last_batch) const;
-    /// Before its Welcome: goes on with what `earlier` was doing, parked, once the loop calls `take_over`.
+    /// Lets the session go on with what `earlier`, which is parked, was doing, once the loop calls `take_over`. To be
+    /// called before its Welcome.
     void resume(std::shared_ptr<Session> earlier, std::uint64_t last_batch);
-    /// The viewer does not come back, or the session has ended and leaves nothing to go on with.
+    /// Ends being parked: the viewer does not come back, or the session has ended and leaves nothing to go on with.
     void abandon();
 
     std::uint64_t id() const { return id_; }
     std::string peer() const { return stream_->peer(); }
 
-    // From any thread:
-    /// The server cannot go on with this viewer, which is told the reason, one line, as is whoever waits for `ended`.
+    // The following may be called from any thread:
+    /// Ends the session: the server cannot go on with this viewer, which is told the reason, one line, as is whoever
+    /// waits for `ended`.
     void end(std::string const& reason, bool again = false);
     bool is_open() const;
     bool has_ended() const;
-    /// Cut, and to be gone on with if the viewer comes back.
+    /// True where it was cut, and is gone on with if the viewer comes back.
     bool is_parked() const;
-    /// Open or parked: batches are made for it.
+    /// True where it is open or parked: batches are made for it.
     bool is_served() const;
-    /// False where it has something to take over and no camera has come yet: what is sent now might be before its
+    /// False where it has something to take over and no camera has come yet: what is sent now might come before its
     /// Welcome.
     bool is_ready() const;
-    /// What it has to `take_over`; null: nothing.
+    /// The session that it has to `take_over`; null: none.
     std::shared_ptr<Session> earlier() const;
-    /// From the loop's thread, when nothing more is made for that one: what has come there and was not taken, and what
-    /// the viewer lacks, which is sent once more.
+    /// Takes over what has come to `earlier` and was not taken, and sends once more what the viewer lacks. To be called
+    /// from the loop's thread, when nothing more is made for that session.
     void take_over();
-    /// As of its stream.
+    /// True where its stream is stuck.
     bool is_stuck() const { return stream_->is_stuck(); }
-    /// What the viewer can read, as its Hello said.
+    /// Codings that the viewer can read, as its Hello said.
     std::uint32_t codings() const;
     /// Replaces `events` by those that have come since the last call, in their order; of cameras, settings and changes
     /// of the clock only the newest. Returns the version of what the viewer asks for: it counts these three.
     std::uint64_t take_events(std::vector<StreamEvent>& events);
     void send(Message const& message);
-    /// The same for a batch; that it was sent becomes an event.
+    /// Sends a batch; that it was sent becomes an event.
     void send_batch(EncodedBatch batch);
-    /// The scene's clock was set.
+    /// Notes that the scene's clock was set.
     void note_clock_change();
-    /// What the loop has done for this viewer: for what it asked for in this version nothing is left to refine, or
-    /// something is.
+    /// Notes whether nothing is left to refine of what the viewer asked for in this version. Returns whether that is
+    /// news.
     bool report(std::uint64_t version, bool converged);
     /// The session's part of a status message: newest batch, its camera, convergence.
     Status status() const;
-    /// What the viewer should have sent by now, one line; nothing where it has.
+    /// Says in one line what the viewer should have sent by now; nothing where it has.
     std::optional<std::string> overdue(std::chrono::steady_clock::time_point now) const;
 
 private:
@@ -120,17 +123,17 @@ private:
     bool open_ = false; ///< handshake done, not ended
     bool ended_ = false;
     bool parked_ = false; ///< ended by a cut, and may be gone on with
-    std::shared_ptr<Session> earlier_; ///< to be taken over
+    std::shared_ptr<Session> earlier_; ///< the session to be taken over
     std::uint32_t codings_ = coding::exact_colour;
     std::uint64_t camera_number_ = 0; ///< newest that came; 0: none
-    Viewport viewport_; ///< its
+    Viewport viewport_; ///< of the newest camera
     std::vector<StreamEvent> waiting_events_; ///< few: none of those that a newer one replaces
-    std::size_t waiting_evicted_ = 0; ///< messages and framelets among these
-    std::uint64_t evicted_ = 0; ///< messages that have come, in sessions before this one too
+    std::size_t waiting_evicted_ = 0; ///< messages and framelets of `Evicted` among these
+    std::uint64_t evicted_ = 0; ///< `Evicted` messages that have come, in sessions before this one too
     std::uint64_t version_ = 0;
     std::uint64_t last_batch_ = 0;
     std::uint64_t last_ack_ = 0;
-    std::deque<std::shared_ptr<Message const>> kept_; ///< batches after that one, the last of them the newest
+    std::deque<std::shared_ptr<Message const>> kept_; ///< batches after `last_ack_`, in order
     std::size_t kept_bytes_ = 0;
     std::uint64_t converged_version_ = 0; ///< for which there is nothing left to refine; 0: none
     std::chrono::steady_clock::time_point last_progress_; ///< of what the viewer owes: a hello, a camera or an Ack

@@ -1,5 +1,5 @@
-// What a viewer is told of the scene when it connects. In: the scene and the clips that play. Out: the message, but for
-// what is the viewer's own: clock, ticket and control.
+// Makes what a viewer is told of the scene when it connects. In: the scene and the clips that play. Out: the message,
+// but for what is the viewer's own: clock, ticket and control.
 #pragma once
 
 #include <vector>

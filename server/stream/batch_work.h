@@ -16,28 +16,28 @@
 
 namespace framelet {
 
-/// What is kept of a viewer from batch to batch, and changes as batches are learnt.
+/// State of one viewer that is kept from batch to batch, and changes as batches are learnt.
 struct ViewerKnowledge {
     AdaptiveRefresh refresh;
     ShapeFeed shapes;
     BodyMotions motions; ///< as the viewer knows them
     LossyTiles lossy;
-    std::uint64_t batches = 0; ///< that have been learnt, and are sent
+    std::uint64_t batches = 0; ///< how many have been learnt, and are sent
 };
 
-/// What is made.
+/// Order for a batch: what it is to be made of.
 struct BatchOrder {
     ViewState state; ///< what is rendered
     ViewState present; ///< what is to be seen
-    int scene_camera = -1; ///< >= 0: the viewer looks through that one
-    SceneTime shown_from = 0; ///< as of a Batch
-    bool outdates = false; ///< as of a Batch
+    int scene_camera = -1; ///< moving camera of the scene that the viewer looks through; -1: none
+    SceneTime shown_from = 0; ///< as `Batch::shown_from`
+    bool outdates = false; ///< as `Batch::outdates`
     RefreshPlan plan;
     std::uint8_t qp = lossless_qp;
     bool takes_shapes = false;
-    bool skips = true; ///< what the viewer has already
+    bool skips = true; ///< what the viewer has already is not sent
     bool still = false; ///< nothing moves: what is finest is sent without loss
-    bool again = false; ///< what the viewer holds with loss: there is nothing to learn
+    bool again = false; ///< what the viewer holds with loss is sent once more: there is nothing to learn
 };
 
 class BatchWork {
@@ -45,12 +45,12 @@ public:
     BatchOrder order; ///< set before `render`
     TurnFigures figures;
 
-    /// Parallel on the calling TBB arena.
+    /// Renders what is ordered, in parallel on the calling TBB arena.
     void render(PosedScene const& scene);
-    /// What was rendered: learning, choice of QP, shapes. Not while the viewer's knowledge is used otherwise.
-    /// False where there is nothing to send.
+    /// Learns what was rendered; chooses QPs, makes shapes. Not to be called while the viewer's knowledge is used
+    /// otherwise. False where there is nothing to send.
     bool learn(PosedScene const& scene, ViewerKnowledge& viewer);
-    /// What was learnt. `codec` may keep scratch from batch to batch; the rest as of `BatchCodec::encode`.
+    /// Encodes what was learnt. `codec` may keep scratch from batch to batch; the rest as of `BatchCodec::encode`.
     EncodedBatch encode(BatchCodec& codec, BatchMemory& memory, bool predicts) {
         return codec.encode(batch_, &memory, predicts);
     }
@@ -69,7 +69,7 @@ private:
     std::span<DisplayFramelet> display_;
     ProbeRenderer probes_;
     std::vector<float> visibility_; ///< inverse depths, where the plan asks for them
-    std::vector<std::uint8_t> needed_; ///< whether the viewer gets it, of each
+    std::vector<std::uint8_t> needed_; ///< by framelet: whether the viewer gets it
     Batch batch_;
 };
 

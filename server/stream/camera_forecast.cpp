@@ -12,13 +12,13 @@ namespace framelet {
 namespace {
 
 constexpr double watched_seconds = 0.12;
-/// Of cameras that come sooner after each other only the last one counts: there may be any number of them.
+/// Seconds; of cameras that come sooner after each other only the last one counts: there may be any number of them.
 constexpr double least_seconds = 0.002;
 /// A camera that has stayed for so long stands, seconds: longer than a slow display's frame.
 constexpr double standing_seconds = 0.05;
 
-/// A motion or a turn a second, axis times angle, is what both halves agree in: the later one, as far as the earlier
-/// one was like it.
+/// The motion or turn a second (axis times angle) that both halves agree in: the later one, as far as the earlier one
+/// was like it.
 Vec3 agreed(Vec3 earlier, Vec3 later) {
     float const most = std::max(glm::dot(earlier, earlier), glm::dot(later, later));
     float const share = most > 0 ? std::clamp(glm::dot(earlier, later) / most, 0.0f, 1.0f) : 0.0f;

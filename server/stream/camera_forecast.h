@@ -1,5 +1,5 @@
-// Where a viewer's camera will be. In: its cameras, and when they came. Out: the camera a little later, if it goes on
-// as it does.
+// Forecasts where a viewer's camera will be. In: its cameras, and when they came. Out: the camera a little later, if it
+// goes on as it does.
 #pragma once
 
 #include <vector>
@@ -10,9 +10,9 @@ namespace framelet {
 
 class CameraForecast {
 public:
-    /// Times never fall, seconds.
+    /// Takes in a camera and when it came, seconds; times never fall.
     void add(Camera const& camera, double seconds);
-    /// The camera is another one, and what is known of the last one says nothing of it.
+    /// Forgets all cameras: the next one is another, of which they say nothing.
     void forget() { known_.clear(); }
     /// The camera `ahead` seconds after `now`, which is no earlier than the last that was added, of which there is one.
     /// It has gone on as fast as it did in the last tenth of a second or so, as far as it did so in both halves of

@@ -1,5 +1,5 @@
-// What a cycle did for one viewer, in figures. In: the scheduler when it has planned a batch, and what became of that.
-// Out: a line of JSON.
+// Records what a cycle did for one viewer, in figures. In: the scheduler when it has planned a batch, and what became
+// of that. Out: a line of JSON.
 #pragma once
 
 #include <array>
@@ -23,19 +23,20 @@ struct CycleRecord {
     std::uint64_t framelets_sent = 0;
     std::uint64_t framelets_unchanged = 0; ///< rendered, and the viewer had them
     std::uint64_t probes = 0;
-    std::array<std::uint64_t, sampling_levels + 1> regions_by_level{}; ///< of what the viewer holds; first: bare
-    double mean_shown_error = 0; ///< over the viewport's pixels
+    /// Number of regions by the level that the viewer holds there; first: those without any.
+    std::array<std::uint64_t, sampling_levels + 1> regions_by_level{};
+    double mean_shown_error = 0; ///< mean squared error over the viewport's pixels
     struct {
         double plan = 0, render = 0;
         double learn = 0, shape = 0; ///< while the next batch was being rendered
-        double wait = 0; ///< when it was rendered, until the batch before was encoded and sent
+        double wait = 0; ///< from the end of rendering until the batch before was encoded and sent
     } stage_seconds;
 };
 
 /// Fills in what the scheduler knows of its cycle and field, what was taken for the batch included.
 void describe(AdaptiveRefresh const& refresh, CycleRecord& record);
 
-/// Without the end of line.
+/// The record as a line of JSON, without the end of line.
 std::string to_json_line(CycleRecord const& record);
 
 } // namespace framelet

@@ -35,7 +35,7 @@ void put(Bytes& out, T const& value) {
     out.insert(out.end(), bytes, bytes + sizeof(T));
 }
 
-/// What is left of a record, read from its front.
+/// The rest of a record, read from its front.
 class Content {
 public:
     Content(ByteView bytes, std::filesystem::path const& file) : bytes_(bytes), file_(file) {}

@@ -17,7 +17,7 @@
 
 namespace framelet {
 
-/// What was served.
+/// The scene that was served, and how.
 struct ServedScene {
     std::string scene; ///< file
     std::string environment; ///< file; empty: the scene's own
@@ -27,17 +27,17 @@ struct ServedScene {
     std::uint64_t batch_framelets = 0;
 };
 
-/// A viewer has come, and can read this.
+/// A viewer has come, and can read `codings`.
 struct ViewerCame {
     std::uint32_t codings = 0;
 };
 struct TurnGiven {
     Turn turn;
-    Step step = Step::nothing; ///< what it answered
+    Step step = Step::nothing; ///< what the stream answered
 };
-/// What was rendered was learnt.
+/// The batch that was rendered was learnt.
 struct TurnLearnt {};
-/// What was learnt was encoded: the body of the message.
+/// The batch that was learnt was encoded: the body of its message.
 struct BatchEncoded {
     Bytes body;
 };
@@ -72,7 +72,8 @@ public:
     explicit EventLogReader(std::filesystem::path const& file);
 
     ServedScene const& served() const { return served_; }
-    /// Nothing at the end, or where the last record is not whole. Throws InputError for what cannot be.
+    /// The next record; nothing at the end, or where the last record is not whole. Throws InputError for what cannot be
+    /// a record.
     std::optional<LogRecord> next();
 
 private:

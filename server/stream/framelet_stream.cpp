@@ -50,7 +50,7 @@ void FrameletStream::take(StreamEvent const& event) {
     }
 }
 
-/// It holds nothing and knows of nothing.
+/// Forgets the viewer, which holds nothing and knows of nothing any more; its batches go on counting.
 void FrameletStream::forget_viewer() {
     std::uint64_t const batches = viewer_.batches;
     viewer_ = {};
@@ -70,7 +70,7 @@ ViewState FrameletStream::state_at(SceneTime clock, PosedScene& scene) const {
     return {view, options_.exposure * std::exp2(settings_.exposure_ev), time};
 }
 
-/// The scene's camera whose way the viewer has to know; -1: none.
+/// The scene's camera whose path the viewer has to know; -1: none.
 int FrameletStream::moving_camera(PosedScene const& scene) const {
     return takes_shapes() && scene.camera_moves(camera_->scene_camera) ? camera_->scene_camera : -1;
 }
@@ -107,8 +107,8 @@ Step FrameletStream::plan(Turn const& turn, PosedScene& scene) {
     return has_room(turn.now) ? plan_batch(turn, present, scene) : Step::wait;
 }
 
-/// When the scene will jump, where that is soon enough to be prepared for: within two moments, since what comes after
-/// the jump shares nothing with what is held.
+/// The next time at which the scene jumps, where that is soon enough to be prepared for: within two moments, since what
+/// comes after the jump shares nothing with what is held.
 std::optional<SceneSwitch> FrameletStream::next_switch(Turn const& turn, PosedScene const& scene) const {
     if (!options_.awaits_switches || !(turn.clock_speed > 0)) {
         return std::nullopt;
@@ -203,8 +203,8 @@ Step FrameletStream::plan_batch(Turn const& turn, ViewState const& present, Pose
     return Step::render;
 }
 
-/// The picture is complete, but for what the viewer was sent with loss: some of that once more. What has four rays a
-/// sample is not among it: it was sent exactly, since nothing moved.
+/// Plans some of what the viewer was sent with loss once more, exactly: but for that the picture is complete. What has
+/// four rays a sample is not among it: it was sent exactly, since nothing moved.
 void FrameletStream::plan_exactly(ViewState const& present, PosedScene const& scene) {
     constexpr std::size_t most_framelets = 1024;
     BatchWork& work = free_work();
@@ -216,7 +216,7 @@ void FrameletStream::plan_exactly(ViewState const& present, PosedScene const& sc
     set_planned(work);
 }
 
-/// Neither what is not learnt nor what may be encoded at the moment.
+/// The work that is neither still to be learnt nor may be encoded at the moment.
 BatchWork& FrameletStream::free_work() {
     BatchWork const* const used = planned_ != nullptr ? planned_ : learnt_;
     return works_[used == works_.data() ? 1 : 0];

@@ -22,10 +22,10 @@ struct StreamOptions {
     bool follows_link = true; ///< rate and batches are bounded by what the link carries
     bool skips = true; ///< what the viewer has already is not sent again
     bool prices_bytes = true; ///< where the link is scarce samples cost by the bytes that they take
-    double moment_seconds = framelet::moment_seconds; ///< that a moment lasts
+    double moment_seconds = framelet::moment_seconds; ///< seconds that a moment lasts
     bool looks_ahead = true; ///< a moment is of when it ends, not of when it begins
-    bool awaits_switches = true; ///< where the scene is about to jump it is of what comes after, and shown from then on
-    bool camera_leads = true; ///< its camera is ahead of that by what its first batch takes until it is shown
+    bool awaits_switches = true; ///< a moment is of what comes after a jump that is near, and shown from then on
+    bool camera_leads = true; ///< a moment's camera is ahead of it by what its first batch takes until it is shown
     bool knows_rest = true; ///< what rests is held as what stands
 };
 
@@ -52,7 +52,7 @@ public:
 
     AdaptiveRefresh const* scheduler() const override { return &viewer_.refresh; }
     LinkState link() const { return link_.state(); }
-    /// Of the batch that was learnt last.
+    /// The batch that was learnt last.
     Batch const& learnt_batch() const { return learnt_->batch(); }
 
 private:
@@ -79,15 +79,15 @@ private:
     LinkEstimate link_;
     QpChoice choice_;
     SentShare sent_share_;
-    double rendered_per_second_ = 1; ///< rays, when it was planned last
+    double rendered_per_second_ = 1; ///< rays a second, when a batch was planned last
     CameraForecast forecast_; ///< of a camera that is the viewer's own
     MomentChoice moments_;
     ViewerKnowledge viewer_;
 
     std::array<BatchWork, 2> works_;
-    BatchWork* planned_ = nullptr; ///< last, and not learnt
+    BatchWork* planned_ = nullptr; ///< the work that was planned last, and is not learnt
     BatchWork* earlier_ = nullptr; ///< the one before, while it is not learnt
-    BatchWork* learnt_ = nullptr; ///< last
+    BatchWork* learnt_ = nullptr; ///< the work that was learnt last
     bool complete_ = false;
     BatchCodec codec_;
     BatchMemory memory_; ///< of the batches that were encoded; the viewer has it once they have come

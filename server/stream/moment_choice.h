@@ -1,5 +1,6 @@
-// Which moment is rendered: few of them, since a viewer that moves what it holds loses little by a moment that is a
-// little old, and pays for every one that its picture is made of. In: what is to be seen. Out: what is rendered of it.
+// Chooses which moment is rendered: few of them, since a viewer that moves what it holds loses little by a moment that
+// is a little old, and pays for every one that its picture is made of. In: what is to be seen. Out: what is rendered of
+// it.
 #pragma once
 
 #include <optional>
@@ -10,7 +11,7 @@ namespace framelet {
 
 /// While anything moves a moment lasts until the next multiple of this, seconds: viewers of one scene change together.
 inline constexpr double moment_seconds = 0.1;
-/// What has stayed as it is for so long is at rest, seconds: longer than a slow display's frame.
+/// Seconds after which a picture that has stayed as it is counts as at rest: longer than a slow display's frame.
 inline constexpr double rest_seconds = 0.05;
 
 class MomentChoice {
@@ -24,16 +25,16 @@ public:
     void begin(HeldMoment const& moment) { held_ = moment; }
     /// The moment to render; nothing where the present is.
     std::optional<HeldMoment> const& held() const { return held_; }
-    /// The next moment begins anew: the scene's clock was set.
+    /// Ends the moment that is held, so that the next begins anew, as after the scene's clock was set.
     void forget() { held_.reset(); }
 
 private:
     bool goes_on(ViewState const& present, double now) const;
 
-    double seconds_; ///< that a moment lasts
+    double seconds_; ///< how long a moment lasts
     std::optional<HeldMoment> held_;
     std::optional<ViewState> last_; ///< present
-    double changed_ = 0; ///< when that was last another one, seconds
+    double changed_ = 0; ///< when `last_` was last another one, seconds
 };
 
 } // namespace framelet

@@ -21,14 +21,14 @@ public:
     std::span<Index const> clips() const { return clips_; }
     RenderScene const& render_scene() const { return render_scene_; }
     bool is_animated() const { return animated_; }
-    /// Where its clips jump.
+    /// Times at which its clips jump.
     std::span<ClipSwitches const> switches() const { return switches_; }
 
     /// Moves everything that is rendered to where it is at `time`; nothing where it is there already.
     void pose(SceneTime time);
-    /// Where everything is at `time`; valid until the next call. The renderer's scene stays as it is.
+    /// The pose of everything at `time`; valid until the next call. The renderer's scene stays as it is.
     ScenePose const& pose_of(SceneTime time);
-    /// Where the scene's camera `index` is at `time`. The renderer's scene stays as it is.
+    /// The scene's camera `index` at `time`. The renderer's scene stays as it is.
     Camera camera(Index index, SceneTime time);
     /// True for a camera of the scene that goes with something that moves.
     bool camera_moves(int index) const;
@@ -41,7 +41,8 @@ private:
     std::vector<ClipSwitches> const switches_;
     std::vector<bool> moving_cameras_;
     ScenePose pose_; ///< evaluated last
-    std::optional<SceneTime> rendered_ = 0; ///< as which it is to be rendered; nothing: not before it is posed
+    /// The time that the renderer's scene is posed for; nothing: posing it failed half way.
+    std::optional<SceneTime> rendered_ = 0;
 };
 
 } // namespace framelet

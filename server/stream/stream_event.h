@@ -1,5 +1,5 @@
-// What happens to one viewer's stream, as a value: what the viewer says, what the socket did. In the order in which it
-// came it is all that a stream knows of the world, beside its turns.
+// The events of one viewer's stream, as values: what the viewer says, what the socket did. In the order in which they
+// came they are all that a stream knows of the world, beside its turns.
 #pragma once
 
 #include <cstdint>

@@ -24,7 +24,7 @@ struct Stage {
     }
 };
 
-/// From a watch to a landscape.
+/// The tests run for scenes from the size of a watch to that of a landscape.
 class CameraControllerOfSize : public testing::TestWithParam<float> {};
 INSTANTIATE_TEST_SUITE_P(Sizes, CameraControllerOfSize, testing::Values(0.03f, 1.0f, 50.0f, 2000.0f));
 
@@ -49,7 +49,7 @@ TEST_P(CameraControllerOfSize, PanMovesThePointUnderThePointerWithIt) {
     Stage const stage(size);
     CameraController controller(stage.home, stage.scene);
     controller.pan({100, 40}, viewport);
-    // Where the origin is seen now: it was in the middle.
+    // The origin is seen there now: it was in the middle.
     Camera const& camera = controller.camera();
     Vec3 const from_camera = -camera.position;
     float const depth = glm::dot(from_camera, camera.forward());
@@ -120,7 +120,7 @@ TEST_P(CameraControllerOfSize, HalfADeflectionFliesHalfAsFast) {
     EXPECT_LT(glm::distance(whole.camera().position, half.camera().position), 1e-4f * GetParam());
 }
 
-/// In camera space.
+/// The point in camera space.
 Vec3 seen_from(Camera const& camera, Vec3 point) {
     return glm::conjugate(camera.orientation) * (point - camera.position);
 }

@@ -56,7 +56,7 @@ TEST(ClientCore, CoarseThenFineArrivesAndIsAcknowledged) {
     EXPECT_GE(statistics.full_picture_seconds, 0);
 }
 
-/// Painting takes its time, of which nothing that comes meanwhile has to wait for any.
+/// Painting takes its time, and nothing that comes meanwhile has to wait for it.
 TEST(ClientCore, AnswersWhileItPaints) {
     FakeServer server;
     ClientCore core(options_for(server));
@@ -78,7 +78,7 @@ TEST(ClientCore, AnswersWhileItPaints) {
             ++ended;
         }
     });
-    // One batch that is answered within one picture shows it; that takes a picture that takes longer than the answer.
+    // One batch that is answered within one picture is enough; that takes a picture that takes longer than the answer.
     bool answered_within = false;
     std::uint64_t batches = 1;
     auto const end = std::chrono::steady_clock::now() + patience;
@@ -106,7 +106,7 @@ TEST(ClientCore, CamerasCountUpAndEqualOnesAreNotRepeated) {
         core.set_view(camera, {64, 48}, 3);
         core.set_view(camera, {64, 48}, 3);
     }
-    // The last one arrives whatever was skipped before it.
+    // The last camera arrives whatever was skipped before it.
     ASSERT_TRUE(wait_for(core, [&] {
         core.update_picture(picture, changed);
         auto const cameras = server.received<CameraUpdate>();
@@ -190,7 +190,7 @@ TEST(ClientCore, ANewViewportKeepsTheOldPictureUntilItsOwnContentComes) {
     core.set_view({}, large.viewport());
     EXPECT_FALSE(core.update_picture(picture, changed));
     EXPECT_EQ(picture.width, 32);
-    // What was still on its way for the old one is not shown.
+    // A batch that was still on its way for the old viewport is not shown.
     server.send(constant_batch(small, small.pixel_depth(), 11, 1));
     ASSERT_TRUE(wait_for(core, [&] { return core.statistics().stale_batches == 1; }));
     EXPECT_FALSE(core.update_picture(picture, changed));
@@ -266,7 +266,7 @@ TEST(ClientCore, ASmoothSceneIsShownLateAndArrives) {
     EXPECT_EQ(core.statistics().lag_seconds, 0);
 }
 
-/// As behind a window that is hidden.
+/// Batches wait here as they do behind a window that is hidden.
 TEST(ClientCore, WhatWaitsForAPictureIsBounded) {
     FakeServer server;
     ClientCore core(options_for(server));

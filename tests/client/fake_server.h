@@ -37,16 +37,16 @@ public:
 
     struct Script {
         Welcome welcome = plain_welcome();
-        /// Answered instead of Welcome, if not empty.
+        /// The text of the Failure that is answered instead of Welcome, if not empty.
         std::string refusal;
         bool refusal_again = false; ///< as in Failure
-        /// Sent as they are instead of anything else, if not empty.
+        /// Bytes that are sent as they are instead of anything else, if not empty.
         std::string raw_bytes;
-        /// Neither answers nor closes.
+        /// The server neither answers nor closes.
         bool mute = false;
-        /// What heartbeats say, but for what the server knows better.
+        /// The content of heartbeats, but for what the server knows better.
         Status status;
-        /// Seconds between heartbeats; 0: none.
+        /// Seconds between heartbeats; 0: there are none.
         double heartbeat_seconds = 0.2;
     };
 
@@ -62,7 +62,8 @@ public:
 
     ServerAddress address() const { return {"127.0.0.1", port_}; }
 
-    /// To every viewer, all of which have got the same batches before; numbers the batch if it has no number.
+    /// Sends a batch to every viewer, all of which have got the same batches before; numbers the batch if it has no
+    /// number.
     void send(Batch batch) {
         boost::asio::post(io_, [this, batch = std::move(batch)]() mutable {
             batch.number = batch.number == 0 ? ++last_batch_ : batch.number;
@@ -76,15 +77,6 @@ public:
         boost::asio::post(io_, [this, message = std::move(message)] {
             for (auto const& stream : streams_) {
                 stream->send(message);
-            }
-        });
-    }
-    /// Length-prefixed or not: bytes as they are, after Welcome.
-    void send_raw(std::string bytes) {
-        boost::asio::post(io_, [this, bytes = std::move(bytes)] {
-            for (auto const& socket : raw_sockets_) {
-                boost::system::error_code ignored;
-                boost::asio::write(*socket, boost::asio::buffer(bytes), ignored);
             }
         });
     }
@@ -114,7 +106,7 @@ public:
             greeted_.clear();
         });
     }
-    /// The same, as a server does to which a viewer comes back.
+    /// Cuts every connection, and answers the next as this says, as a server does to which a viewer comes back.
     void cut(Script script) {
         boost::asio::post(io_, [this, script = std::move(script)] {
             script_ = script;
@@ -244,7 +236,7 @@ private:
     std::uint16_t const port_ = acceptor_.local_endpoint().port();
     boost::asio::steady_timer heart_{io_};
     std::vector<std::shared_ptr<FramedStream>> streams_;
-    std::set<FramedStream const*> greeted_; ///< of these, who hear heartbeats
+    std::set<FramedStream const*> greeted_; ///< those that have got Welcome, and hear heartbeats
     std::vector<std::shared_ptr<Tcp::socket>> raw_sockets_;
     BatchCodec codec_;
     BatchMemory memory_;

@@ -25,10 +25,10 @@ struct TevImage {
     std::vector<std::string> channels;
     int updates = 0;
     std::vector<float> values; ///< interleaved
-    std::string complaint; ///< of a packet that tev would not take
+    std::string complaint; ///< about a packet that tev would not take
 };
 
-/// Takes one connection.
+/// A tev that takes one connection.
 class FakeTev {
 public:
     FakeTev() : acceptor_(io_, {boost::asio::ip::address_v4::loopback(), 0}), socket_(io_) {
@@ -47,7 +47,7 @@ public:
         std::lock_guard const lock(mutex_);
         return image_;
     }
-    /// As when its user closes it.
+    /// Ends as when its user closes it.
     void end() {
         std::lock_guard const lock(mutex_);
         ::shutdown(acceptor_.native_handle(), SHUT_RDWR);
@@ -57,7 +57,7 @@ public:
     }
 
 private:
-    /// Throws std::out_of_range where the packet is too short.
+    /// A packet that is read field by field; throws std::out_of_range where it is too short.
     class Packet {
     public:
         explicit Packet(std::string bytes) : bytes_(std::move(bytes)) {}

@@ -1,4 +1,4 @@
-// A folder of the test's own, which goes with it.
+// A folder of the test's own, which is removed with this.
 #pragma once
 
 #include <cstdlib>

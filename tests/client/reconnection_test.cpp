@@ -1,4 +1,4 @@
-// How a viewer comes back after its session was interrupted.
+// Tests of how a viewer comes back after its session was interrupted.
 #include <memory>
 
 #include <glm/gtc/quaternion.hpp>

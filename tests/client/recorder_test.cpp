@@ -15,7 +15,7 @@
 namespace framelet {
 namespace {
 
-/// What a writer was given, and a way to keep it busy.
+/// The record of what a writer was given, and a way to keep it busy.
 struct Log {
     std::mutex mutex;
     std::condition_variable changed;

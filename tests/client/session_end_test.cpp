@@ -1,4 +1,4 @@
-// How a session is opened, or is not, and how it ends.
+// Tests of how a session is opened, or is not, and how it ends.
 #include <thread>
 
 #include <gtest/gtest.h>

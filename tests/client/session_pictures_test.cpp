@@ -10,7 +10,7 @@ namespace {
 
 ImagePlane const plane(Viewport{100, 60});
 
-/// All framelets of the finest tiles in columns left of this one have one value.
+/// A batch of all framelets at a sample a pixel that begin left of this column of pixels, all of one value.
 Batch left_of(int column, std::uint8_t value) {
     Batch batch = make_batch(plane, 1, {});
     for (Tile const tile : visible_tiles(plane, plane.pixel_depth())) {
@@ -34,7 +34,7 @@ struct Shown {
         batch.number = ++batches;
         pictures.prepare(view, {}).insert(batch);
     }
-    /// Another session begins, after one of which this was shown.
+    /// Begins another session after one of which this was shown.
     void begin_after(Batch const& batch) {
         insert(batch);
         EXPECT_EQ(at(10), batch.framelets[0].red[0]);
@@ -51,7 +51,7 @@ struct Shown {
     }
 };
 
-/// As the picture is to be seen at a scene time.
+/// The value near the left edge of the picture that is shown at this scene time.
 int at_time(Shown& shown, SceneTime time) {
     shown.request.present = time;
     return shown.at(10);

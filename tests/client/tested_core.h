@@ -1,4 +1,4 @@
-// What tests of the client core have in common: its options, waiting, batches of one colour.
+// Helpers that tests of the client core share: its options, waiting, batches of one colour.
 #pragma once
 
 #include <algorithm>

@@ -15,7 +15,7 @@ TEST(PictureRate, IsAFractionOfWholeNumbers) {
 TEST(VideoClock, GivesEachPictureItsPlaceWhereAllAreInTime) {
     VideoClock clock(PictureRate::of(10));
     int number = 0;
-    for (double const late : {0.0, 0.04, 0.0, -0.04, 0.0}) { // of less than half a place nothing is seen
+    for (double const late : {0.0, 0.04, 0.0, -0.04, 0.0}) { // less than half a place makes no difference
         EXPECT_EQ(clock.show(0.1 * number++ + late), (VideoClock::Places{0, true}));
     }
 }

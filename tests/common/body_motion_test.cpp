@@ -11,7 +11,8 @@ namespace {
 
 constexpr double key_seconds = 1.0 / body_keys_per_second;
 
-/// Turns about +Y at `speed` (radians a second) around an axle that moves along +X at 2 metres a second.
+/// The track of a wheel that turns about +Y at `speed` (radians a second) around an axle that moves along +X at 2
+/// metres a second.
 BodyTrack wheel(float speed, std::int64_t first_key, int keys) {
     BodyTrack track{7, first_key, {}};
     for (int i = 0; i < keys; ++i) {
@@ -81,7 +82,7 @@ TEST(BodyMotion, RestIsExactlyNoMotion) {
 }
 
 TEST(BodyMotion, WhatRestsIsAtOnePlaceAllTheTime) {
-    // Poses that are few, so that rest and coming back to where it was are both common.
+    // The poses are few, so that rest and coming back to where it was are both common.
     std::mt19937 random(5);
     std::uniform_int_distribution<int> pose(0, 5), keys(0, 8);
     std::uniform_int_distribution<int> half_key(-6, 28);
@@ -121,7 +122,7 @@ TEST(BodyMotion, WhatDeformsOrIsOnABodyThatMovesIsNotAtRest) {
     EXPECT_TRUE(is_at_rest(shape, 0, motions));
     shape.layer_count = 1;
     shape.layers[0].body = 7;
-    shape.layers[1].velocity.x = 1; // is none of its layers
+    shape.layers[1].velocity.x = 1; // not one of its layers
     EXPECT_TRUE(is_at_rest(shape, 0.3, motions));
     EXPECT_FALSE(is_at_rest(shape, 0.3, of_no_rest));
     EXPECT_FALSE(is_at_rest(shape, 39 * key_seconds - 0.9 * resting_seconds, motions)) << "it soon will move";
@@ -138,7 +139,7 @@ TEST(BodyMotion, DegenerateTracksAreFinite) {
     EXPECT_EQ(pose_at({1, 5, {BodyPose{Vec3(1)}}}, 1).translation, Vec3(1));
 }
 
-/// Whatever a server says: a viewer's memory is its own.
+/// A viewer's memory is its own, whatever a server says.
 TEST(BodyMotion, TheKeysOfAllBodiesTogetherAreBounded) {
     BodyMotions motions;
     EXPECT_EQ(motions.kept_keys(), kept_track_keys);

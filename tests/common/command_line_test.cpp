@@ -115,7 +115,7 @@ TEST(CommandLine, HelpHasGroupsAndDefaultsAndFitsTheScreen) {
     }
 }
 
-/// Reads this as --config, beside these words.
+/// The complaint about a file with this text, read as --config beside these words.
 std::string complaint_of_file(Line& line, std::string const& text, std::vector<char const*> words = {}) {
     std::string const file =
         testing::TempDir() + "framelet_options" + std::to_string(::getpid()) + ".toml"; // the cases run side by side
@@ -162,7 +162,7 @@ TEST(CommandLine, WhatIsWrongInAFileIsNamedWithFileAndKey) {
     }
 }
 
-/// One with a command, and texts that roff and the shell would take for their own.
+/// A program with a command, and with texts that roff and the shell would take for their own.
 struct Commands {
     CLI::App app{"Does 'this'. And that.", "framelet-program"};
     ProgramNotes notes{"One.\n\n.Two \\three --four ~.", {{0, "fine"}, {2, "bad usage"}}, {"other"}};

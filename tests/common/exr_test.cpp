@@ -1,4 +1,4 @@
-// EXR files as another library reads them.
+// Tests EXR files by reading them with another library.
 #include "common/files/exr.h"
 
 #include <algorithm>

@@ -64,7 +64,7 @@ TEST(ImageIo, TheSizeIsToldBeforeDecoding) {
     }
 }
 
-/// What is written to stderr meanwhile comes from a library.
+/// The error's message. Nothing may be written to stderr meanwhile: only a library would do so.
 std::string failure_of(std::string const& bytes, std::string const& name) {
     testing::internal::CaptureStderr();
     std::string line = "no error";

@@ -18,7 +18,7 @@ glm::dvec3 point_at(ViewRays const& rays, double x, double y, double depth) {
     return glm::dvec3(rays.origin) + depth * direction;
 }
 
-/// Pixel and depth of a world point, by the camera's axes: nothing in common with what is tested.
+/// Pixel and depth of a world point, from the camera's axes: has nothing in common with what is tested.
 glm::dvec3 project(Camera const& camera, glm::dvec3 point) {
     glm::dvec3 const from = point - glm::dvec3(camera.position);
     double const depth = glm::dot(from, glm::dvec3(camera.forward()));
@@ -158,7 +158,8 @@ TEST(Reprojection, BoxesHoldWhatTheyShouldAndAreNeverStrange) {
             double const py = point.y / point.z;
             if (point.z > 0.01 && px > 0 && py > 0 && px < viewport.width && py < viewport.height) {
                 ++shown;
-                // Half a pixel further there is the centre of one that the box holds, or that nothing need show in.
+                // Half a pixel farther there is the centre of a pixel that the box holds, or of one in which nothing
+                // need show.
                 EXPECT_TRUE(box.left - 0.5 <= px && box.top - 0.5 <= py && box.right + 0.5 >= px &&
                             box.bottom + 0.5 >= py);
             }

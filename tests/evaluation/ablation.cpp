@@ -21,14 +21,15 @@ using nlohmann::json;
 
 LinkParameters const usual_link{.bits_per_second = 5e6, .delay_seconds = 0.02};
 
-/// Moments change at multiples of `moment_seconds` of the server's clock, and what is rendered when follows from where
-/// those lie: a run is made with as many places of theirs, evenly apart, and the mean of their errors is taken.
+/// Number of phases at which a run is made. Moments change at multiples of `moment_seconds` of the server's clock, and
+/// what is rendered when depends on the phase of these: a run is made at several phases, evenly apart, and the mean of
+/// their errors is taken.
 constexpr std::size_t phases = 4;
 
 struct Part {
     char const* name;
-    bool FrameletParts::*left_out; ///< null: nothing
-    bool on_link_only = false; ///< does nothing where no link limits
+    bool FrameletParts::*left_out; ///< null: nothing is left out
+    bool on_link_only = false; ///< the part does nothing where no link limits
 };
 
 constexpr Part parts[] = {
@@ -66,7 +67,7 @@ struct PartRun {
     StageSeconds cpu;
 };
 
-/// FLIP takes longer than the run: it is of every so many pictures.
+/// FLIP is measured on one of so many pictures, since it takes longer than the run.
 constexpr std::size_t flip_every = 4;
 
 PartRun run_without(Part const& part, Subject const& subject, CostTable const& costs) {
@@ -103,7 +104,7 @@ double mean_of(std::array<double, phases> const& values) {
     return std::accumulate(values.begin(), values.end(), 0.0) / phases;
 }
 
-/// Of the mean of errors as a multiple of the whole's, phase by phase.
+/// Standard error of the mean error as a multiple of the whole's, from the phases.
 double standard_error(std::array<double, phases> const& mse, std::array<double, phases> const& whole) {
     double const ratio = mean_of(mse) / mean_of(whole);
     double squares = 0;
@@ -127,19 +128,19 @@ json row_of(Part const& part, PartRun const& run, Subject const& subject) {
             {"viewer_seconds", run.cpu.viewer() / seconds}};
 }
 
-/// Of two errors or costs; both nothing: 1.
+/// Ratio of two errors or costs; 1 where both are nothing.
 double ratio_of(double value, double whole) {
     constexpr double least = 1e-9;
     return std::max(value, least) / std::max(whole, least);
 }
 
-/// What tells bundled scenes apart: vehicle_chase is `chase`.
+/// The part of a bundled scene's name that tells it apart: `chase` of vehicle_chase; eight letters at most.
 std::string short_name(std::string const& scene) {
     std::size_t const from = scene.rfind('_');
     return (from == std::string::npos ? scene : scene.substr(from + 1)).substr(0, 8);
 }
 
-/// Ratios of errors of each part by scene; least, geometric mean and greatest.
+/// Prints the ratios of errors of each part by scene; least, geometric mean and greatest.
 void print_summary(json const& rows, std::string const& link) {
     std::vector<std::string> scenes, titles, figures;
     for (json const& row : rows) {
@@ -181,7 +182,7 @@ bool is_chosen(Part const& part, std::vector<std::string> const& without) {
     return part.left_out == nullptr || without.empty() || std::ranges::find(without, part.name) != without.end();
 }
 
-/// A row for the whole, and one without each part that does something there.
+/// Adds a row for the whole, and one without each part that does something in this run.
 void measure_run(Subject const& subject, StudyOptions const& study, std::vector<std::string> const& without,
                  FigureTable const& table, json& rows) {
     bool const limited = subject.run.link.bits_per_second > 0;

@@ -1,5 +1,5 @@
-// `ablation`: every part of `framelet` left out in turn. Out: what the error, the bytes and the server's work become,
-// as multiples of those of the whole.
+// The verb `ablation`: leaves out every part of `framelet` in turn. In: scenes, the parts. Out: error, bytes and the
+// server's work without each part, as multiples of those of the whole.
 #pragma once
 
 #include <string>
@@ -11,12 +11,12 @@
 
 namespace framelet::bench {
 
-/// Names of the parts.
+/// Names of the parts that can be left out.
 std::vector<std::string> ablation_parts();
 
-/// Each of the scenes, twice: without a limit and over the link of `study`, or where that has no limit over 5 Mbit/s
-/// with 20 ms each way. `without`: which parts are left out; none: each of them. Prints a table and returns the same
-/// figures. Methods are not looked at.
+/// Runs each of the scenes twice: without a limit, and over the link of `study` or, where that has no limit, over 5
+/// Mbit/s with 20 ms each way. `without`: the parts to leave out; empty: each of them in turn. Prints a table and
+/// returns the same figures. Ignores the methods of `study`.
 nlohmann::json measure_ablation(StudyOptions const& study, std::vector<std::string> const& without);
 
 } // namespace framelet::bench

@@ -21,35 +21,36 @@ struct BenchScene {
     std::vector<Index> clips;
     std::unique_ptr<RenderScene> render_scene; ///< reads `scene`
     std::unique_ptr<PosedScene> posed; ///< poses `render_scene`: nobody else does
-    Index scene_camera = none; ///< looked through; none: `default_camera`
+    Index scene_camera = none; ///< number of the scene's camera that is looked through; none: `default_camera`
     Camera default_camera;
-    CameraTurn turn; ///< of whichever camera
-    std::function<Camera(SceneTime)> flown; ///< where there is one: the viewer's own camera, that goes by itself
-    Camera camera; ///< at the time that the scene was posed for last
+    CameraTurn turn; ///< turning added to whichever camera is used
+    /// The viewer's own camera, which flies by itself; empty: there is none.
+    std::function<Camera(SceneTime)> flown;
+    Camera camera; ///< the camera at the time for which the scene was posed last
     float exposure = 1;
     double duration = 0; ///< seconds of animation; 0: nothing moves
-    ScenePose pose; ///< that the scene was posed for last
+    ScenePose pose; ///< the pose for which the scene was posed last
 
-    /// The camera of the scene that is looked through as it goes; -1: the camera is the viewer's own.
+    /// Number of the scene's camera that the viewer follows along its track; -1: the camera is the viewer's own.
     int followed_camera() const { return turn.turns() || flown ? -1 : static_cast<int>(scene_camera); }
 };
 
-/// Which animations play: `none`, and it stands still.
+/// Which animations play: the usual ones, or none, so that the scene stands still.
 enum class Clips { usual, none };
 
-/// Loads the scene and poses it at time 0. It is seen by its first camera, or by the default one where it has none.
-/// Throws InputError.
+/// Loads the scene and poses it at time 0. The viewer looks through its first camera, or through the default one where
+/// it has none. Throws InputError.
 std::unique_ptr<BenchScene> load_bench_scene(std::filesystem::path const& file, Clips clips = Clips::usual);
 
-/// Moves everything, the camera included, to where it is at `time`.
+/// Moves everything, the camera included, to where it is at scene time `time`.
 void pose_at(BenchScene& scene, SceneTime time);
 
-/// Everything stands where it did, whatever the time.
+/// True where everything stands at the same place in both poses, whatever their times.
 bool same_pose(ScenePose const& a, ScenePose const& b);
 
-/// Where the camera is at `time`; the scene stays as it is.
+/// The camera (with its turning or flight) at scene time `time`; the scene stays as it is.
 Camera camera_at(BenchScene const& scene, SceneTime time);
-/// Where the scene itself has it, whatever its viewer does with it.
+/// The scene's own camera at `time`, without what its viewer does with it.
 Camera own_camera_at(BenchScene const& scene, SceneTime time);
 
 } // namespace framelet::bench

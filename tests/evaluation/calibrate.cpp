@@ -63,7 +63,7 @@ void calibrate_rendering(BenchScene& scene, ImagePlane const& plane, int rounds,
     costs.incoherent_segment = median(incoherent);
 }
 
-/// Median nanoseconds a unit.
+/// Median cost of `work`, which does `units` units, in nanoseconds a unit.
 template <class Work>
 double cost(int rounds, double units, Work&& work) {
     std::vector<double> all;
@@ -73,14 +73,15 @@ double cost(int rounds, double units, Work&& work) {
     return median(all);
 }
 
-/// Every framelet lies where another one was before, as far from there as a search has to look in vain.
+/// Measures coding with loss where prediction costs most: every framelet has moved to where another one was before, so
+/// far that the motion search for it takes as long as one in vain.
 void calibrate_prediction(Batch batch, int rounds, CostTable& costs) {
     double const samples = static_cast<double>(batch.framelets.size() * framelet_samples);
     batch.qp.assign(batch.framelets.size(), most_loss);
     BatchCodec codec;
     BatchMemory sent, received;
     std::vector<double> encode, decode;
-    for (int round = -1; round < rounds; ++round) { // the first one finds a grey picture
+    for (int round = -1; round < rounds; ++round) { // round -1 is not counted: it is predicted from a grey picture
         Tile const first = batch.framelets.front().tile;
         for (std::size_t i = 0; i + 1 < batch.framelets.size(); ++i) {
             batch.framelets[i].tile = batch.framelets[i + 1].tile;
@@ -127,7 +128,7 @@ void calibrate_framelets(BenchScene& scene, ImagePlane const& plane, int rounds,
         cache.take_changed(changed);
         coarse.push_back(seconds_of([&] { reconstruct(cache, changed, picture); }));
     }
-    // The same colours once more, a level finer: four framelets where there was one.
+    // Insert the same colours once more, a level finer: four framelets where there was one.
     Batch finer = decoded;
     finer.framelets.clear();
     for (DisplayFramelet framelet : decoded.framelets) {
@@ -156,7 +157,7 @@ void calibrate_framelets(BenchScene& scene, ImagePlane const& plane, int rounds,
     });
 }
 
-/// Shapes of whole framelets, and the picture that another camera sees of them.
+/// Measures the fitting of shapes of whole framelets, and the picture that another camera sees of them.
 void calibrate_reprojection(BenchScene const& scene, ImagePlane const& plane, int rounds,
                             std::vector<Framelet> const& rendered, CostTable& costs) {
     Viewport const viewport = plane.viewport();
@@ -185,7 +186,7 @@ void calibrate_reprojection(BenchScene const& scene, ImagePlane const& plane, in
     });
 }
 
-/// The response on a scene that moves, as a server of ten frames a second sees it.
+/// Measures the response on a scene that moves, as a server of ten frames a second sees it.
 void calibrate_response(BenchScene& scene, Viewport viewport, int rounds, CostTable& costs) {
     double const rate = 10.0 * viewport.width * viewport.height;
     ResponseCost const cost = response_cost(scene, viewport, rate, 0.1 * rounds);
@@ -209,9 +210,9 @@ void calibrate_afr(Viewport viewport, int rounds, CostTable& costs) {
     });
 }
 
-/// Of x264's frames: 5 Mbit/s at 30 frames a second. The more bytes, the longer it takes.
+/// Bytes of one of x264's frames at 5 Mbit/s and 30 frames a second: the more bytes, the longer x264 takes.
 constexpr double streamed_frame_bytes = 5e6 / 8 / 30;
-/// The stages of the response, each alone, on a picture that has just moved.
+/// Measures the stages of the density response, each alone, on a picture that has just moved.
 void calibrate_density_response(ImagePlane const& plane, std::vector<Framelet> const& rendered, int rounds,
                                 CostTable& costs) {
     std::vector<std::array<float, framelet_samples>> luma;
@@ -232,7 +233,7 @@ void calibrate_density_response(ImagePlane const& plane, std::vector<Framelet> c
     std::vector<std::uint32_t> elements(density.size());
     std::iota(elements.begin(), elements.end(), 0u);
     errors.resize(elements.size());
-    // Both signs, so that density is transported.
+    // The errors have both signs, so that density is transported.
     std::mt19937 random(1);
     for (RateError& error : errors) {
         error = {static_cast<float>(random() % 256) / 128 - 1, static_cast<float>(random() % 256) / 128 - 1};
@@ -247,7 +248,7 @@ void calibrate_density_response(ImagePlane const& plane, std::vector<Framelet> c
         cost(rounds, count, [&] { make_density_tiling(plane, density.space, density.depth, framelet_samples); });
 }
 
-/// Reconstruction of [Stephens 2011]: a picture of one sample a pixel, and the same colours a level finer.
+/// Measures the reconstruction of [Stephens 2011]: a picture of one sample a pixel, and the same colours a level finer.
 void calibrate_blending(BenchScene const& scene, ImagePlane const& plane, std::vector<Framelet> const& rendered,
                         int rounds, CostTable& costs) {
     std::vector<DisplayFramelet> coarse, fine;

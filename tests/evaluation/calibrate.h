@@ -6,7 +6,7 @@
 
 namespace framelet::bench {
 
-/// One thread, medians of `rounds`. The scene is posed anew.
+/// Measures on one thread; every cost is a median of `rounds` measurements. Poses the scene anew.
 CostTable calibrate(BenchScene& scene, Viewport viewport, int rounds);
 
 } // namespace framelet::bench

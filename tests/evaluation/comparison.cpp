@@ -20,7 +20,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Errors below this are those of rounding to bytes.
+/// Mean squared errors below this are due to rounding to bytes.
 constexpr double least_mse = 1e-9;
 
 json series(MethodRecord const& record, double Measures::*value) {

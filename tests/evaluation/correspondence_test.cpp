@@ -30,7 +30,7 @@ TEST(ExactMotion, FollowsCameraAndBody) {
     ScenePose after{0.5, {Mat4(1)}, {}};
     after.world_from_node[0][3] = Vec4(1, 0, 0, 1);
     Viewport const viewport{100, 100};
-    Camera const camera{.vertical_extent = 2 * std::atan(0.5f)}; // at depth 1 a metre is as wide as the picture
+    Camera const camera{.vertical_extent = 2 * std::atan(0.5f)}; // at depth 1 m the picture is a metre wide
     Camera moved = camera;
     moved.position.x = 1;
     ExactMotion const body(bodies, {before, camera}, {after, camera}, viewport);

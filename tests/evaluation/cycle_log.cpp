@@ -55,7 +55,7 @@ Conservation measure_conservation(std::vector<CycleEntry> const& entries, double
         if (!is_within(entries[first], from, until)) {
             continue;
         }
-        // A cycle lasts until the next one starts; of the last one nobody knows.
+        // A cycle lasts until the next one starts, so that the last one's length is not known.
         double samples = 0;
         double budget = 0;
         for (std::size_t i = first; i + 1 < entries.size(); ++i) {

@@ -1,4 +1,4 @@
-// The engine of the evaluation: virtual clock, methods, costs. Small pictures, little time.
+// Tests the engine of the evaluation: virtual clock, methods, costs. Small pictures, little time.
 #include <filesystem>
 #include <fstream>
 
@@ -36,7 +36,7 @@ TEST_F(Evaluation, FramedReachesTheRateThatTheMachineIsStatedBy) {
         RunParameters parameters = small_run({64, 48}, 40);
         parameters.seconds = 2;
         parameters.frames_per_second = rate;
-        parameters.rivals = plain_rivals; // what the machine is stated by
+        parameters.rivals = plain_rivals; // the plain frames by which the machine's speed is defined
         std::size_t times = 0;
         RunResult const result = show(*scene, "framed", parameters, [&](std::size_t index, Picture const&, double age) {
             EXPECT_EQ(index, times++);
@@ -65,7 +65,7 @@ TEST_F(Evaluation, AStillSceneIsShownWithoutError) {
     pose_at(*still, 0);
     Picture const first = render_picture(*still->render_scene, still->camera, parameters.viewport, still->exposure, 1);
     for (std::string const name : {"framed", "frameless", "afr"}) {
-        parameters.rivals = plain_rivals; // a sample a pixel and no more, as `first`
+        parameters.rivals = plain_rivals; // one sample a pixel, as `first` has
         show(*still, name, parameters, [&](std::size_t index, Picture const& shown, double) {
             if (index == 0) {
                 EXPECT_LT(mean_squared_error(shown, first), 1e-6) << name;
@@ -79,7 +79,7 @@ TEST_F(Evaluation, ALinkDelaysWhatIsShown) {
     auto const age_with = [&](double delay) {
         parameters.link.delay_seconds = delay;
         double sum = 0;
-        // What moves what it holds may hold it longer.
+        // A method without reprojection: one that moves its framelets may hold them longer.
         show(*scene, "framelet-unwarped", parameters,
              [&](std::size_t, Picture const&, double age) { sum += age / 20; });
         return sum;
@@ -90,7 +90,7 @@ TEST_F(Evaluation, ALinkDelaysWhatIsShown) {
     EXPECT_LT(far, near + 0.25);
 }
 
-/// Delay of what is shown in the last part of a run whose link has lost most of its rate.
+/// Ages of what is shown in the last part of a run whose link has lost most of its rate.
 TEST_F(Evaluation, CodedFramesFollowTheLinkDown) {
     RunParameters parameters = small_run({64, 48}, 40);
     parameters.viewport = {128, 128};

@@ -24,7 +24,7 @@ void FigureTable::print(nlohmann::json const& row) const {
         }
     }
     std::printf("\n");
-    std::fflush(stdout); // whoever reads a pipe wants to see it grow
+    std::fflush(stdout); // a reader of a pipe sees the table grow
 }
 
 } // namespace framelet::bench

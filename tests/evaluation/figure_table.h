@@ -1,5 +1,5 @@
-// A table on stdout of the figures that a verb returns: a column says where in a row's JSON its figure is, and how it
-// is printed.
+// Prints figures that a verb returns as a table on stdout: a column says where in a row's JSON its figure is, and how
+// it is printed.
 #pragma once
 
 #include <vector>
@@ -11,9 +11,9 @@ namespace framelet::bench {
 struct Column {
     char const* title;
     char const* figure; ///< JSON pointer within the row; where nothing is there, a dash is printed
-    int width; ///< characters at least; < 0: text, to the left
-    int digits = 2; ///< after the point
-    double scale = 1; ///< what is printed of a figure of 1
+    int width; ///< least width, characters; < 0: text, aligned to the left
+    int digits = 2; ///< digits after the point
+    double scale = 1; ///< factor on the figure before it is printed
     bool scientific = false;
 };
 

@@ -24,15 +24,16 @@ namespace {
 namespace asio = boost::asio;
 using std::chrono::steady_clock;
 
-/// What the server sent for one still view, from the first camera until it has every tile with one ray a sample.
+/// Record of what the server sent for one still view, from the first camera until it has sent every tile with one ray a
+/// sample.
 struct SinkRecord {
     std::vector<Tile> tiles;
-    double seconds = 0; ///< from the camera's departure to the arrival of the last batch
+    double seconds = 0; ///< time from the camera's departure to the arrival of the last batch
     std::size_t payload_bytes = 0;
 };
 
-/// Connects to 127.0.0.1:port, says hello and hands over each message, the Welcome first, until `receive` returns true:
-/// it has what it wanted. Throws ConnectionError where the server ends the connection before.
+/// Connects to 127.0.0.1:port, says hello and hands over each message, the Welcome first, until `receive` returns true,
+/// which says that it has what it wanted. Throws ConnectionError where the server ends the connection before.
 void visit(std::uint16_t port, std::function<bool(FramedStream& stream, Message const& message)> const& receive) {
     asio::io_context io{1};
     asio::ip::tcp::socket socket(io);
@@ -62,7 +63,7 @@ void visit(std::uint16_t port, std::function<bool(FramedStream& stream, Message 
     }
 }
 
-/// A viewer that looks at nothing: it acknowledges batches without decoding them, so that what is measured is the
+/// Plays a viewer that looks at nothing: it acknowledges batches without decoding them, so that what is measured is the
 /// server. It stays until the picture has converged or a tile comes once more, which takes four rays a sample.
 SinkRecord watch_until_repeated(std::uint16_t port, Camera const& camera, Viewport viewport) {
     SinkRecord record;
@@ -85,7 +86,7 @@ SinkRecord watch_until_repeated(std::uint16_t port, Camera const& camera, Viewpo
             record.payload_bytes += batch->payload.size();
             stream.send(Ack{batch->number, 0, 0});
         } else if (auto const* const status = std::get_if<Status>(&message)) {
-            // The word that it is complete may overtake the last batch, which is still being encoded.
+            // The status that says that the view is complete may overtake the last batch, which is still being encoded.
             return status->converged && status->camera_number == 1 && status->last_batch == newest;
         }
         return false;
@@ -95,7 +96,7 @@ SinkRecord watch_until_repeated(std::uint16_t port, Camera const& camera, Viewpo
     return record;
 }
 
-/// The same tiles as the server's batches, one parallel loop over all of them.
+/// Seconds for rendering the same tiles as the server's batches, in one parallel loop over all of them.
 double bare_loop_seconds(BenchScene& scene, Viewport viewport, std::vector<Tile> const& tiles) {
     ImagePlane const plane(viewport);
     ViewRays const rays = make_view_rays(scene.camera, viewport);

@@ -1,5 +1,5 @@
-// framelet-bench limits: the whole server beside its bare limit, measured in turn in one run, so that the ratio stands
-// on a noisy machine too. What single stages cost is for `calibrate` to say.
+// The verb `limits`: measures the whole server beside its bare limit, in turn in one run, so that the ratio stands on a
+// noisy machine too. Costs of single stages are measured by `calibrate`.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -8,7 +8,7 @@
 
 namespace framelet::bench {
 
-/// Prints and returns medians of so many rounds: samples a second of the whole server, its socket included, and of
+/// Prints and returns medians of `rounds` rounds: samples a second of the whole server, its socket included, and of
 /// Embree and shading alone on the very same framelets.
 nlohmann::json measure_limits(BenchScene& scene, Viewport viewport, int rounds);
 

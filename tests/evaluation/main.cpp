@@ -27,7 +27,7 @@ void write_json(std::string const& file, json const& figures) {
     }
 }
 
-/// The chosen verb puts what it does into `answer`.
+/// Adds a verb to the command line; when it is chosen it puts its work into `answer`.
 void add_verb(CLI::App& app, Verb const& verb, VerbOptions& options, Answer& answer) {
     CLI::App& command = *app.add_subcommand(verb.name, verb.question);
     add_study_options(command, options);
@@ -65,7 +65,7 @@ void add_live_verbs(CLI::App& app, VerbOptions& options, LiveVerbOptions& live, 
     }).group("");
 }
 
-/// Of runs that list what has failed in them.
+/// Number of failures in runs that list what has failed in them.
 std::size_t failures_in(json const& runs) {
     std::size_t count = 0;
     for (json const& run : runs) {
@@ -74,12 +74,12 @@ std::size_t failures_in(json const& runs) {
     return count;
 }
 
-/// As it was typed, but for the folders of whoever did so.
+/// The command as it was typed, but for the folders of whoever typed it.
 std::string command_of(std::vector<std::string> const& words) {
     std::string command = "framelet-bench";
     for (std::size_t i = 0; i < words.size(); ++i) {
         if (words[i] == "--folder" || words[i] == "--documents" || words[i] == "--reference-cache") {
-            ++i; // its value as well
+            ++i; // leave out its value as well
         } else if (words[i] == "--assets") {
             command += " --assets FOLDER";
             ++i;

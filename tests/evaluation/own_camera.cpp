@@ -18,12 +18,12 @@ namespace {
 using nlohmann::json;
 
 constexpr double walking_speed = 1.4; ///< metres a second
-constexpr double begin = 1; ///< scene time; the walk has begun half a second before
-constexpr double settling = 1; ///< of that walk, until its error is that of any time
-constexpr double walking = 2.5, standing = 1; ///< seconds of the run
-constexpr double stay = 0.5; ///< seconds, after a jump
+constexpr double begin = 1; ///< scene time, seconds; the walk has begun half a second before
+constexpr double settling = 1; ///< seconds of the measured walk until the error is that of any later time
+constexpr double walking = 2.5, standing = 1; ///< seconds of the run that the camera walks, then stands
+constexpr double stay = 0.5; ///< seconds that the camera stays after a jump
 constexpr double rate = 30; ///< measurements a second after a jump
-constexpr float most_turn = 40; ///< degrees to either side
+constexpr float most_turn = 40; ///< greatest turn at a jump, degrees to either side
 constexpr double most_rise = 1.02;
 
 double length_of(CameraPath const& path) {
@@ -34,7 +34,7 @@ double length_of(CameraPath const& path) {
     return length;
 }
 
-/// Of `framelet`, at each reference time, against `reference` of that index.
+/// Mean squared errors of `framelet` at each reference time, against `reference` of that index.
 template <class ReferenceOf>
 std::vector<double> errors_of(BenchScene& scene, RunParameters const& run, CostTable const& costs,
                               ReferenceOf&& reference) {
@@ -82,7 +82,7 @@ json jump(BenchScene& scene, CameraPath const& path, OwnCameraOptions const& opt
     std::uniform_real_distribution<double> along(0, path.duration());
     std::uniform_real_distribution<float> turn(-glm::radians(most_turn), glm::radians(most_turn));
     std::vector<Camera> cameras;
-    for (int i = 0; i <= options.jumps; ++i) { // one before the first jump
+    for (int i = 0; i <= options.jumps; ++i) { // one more, for before the first jump
         Camera camera = path.at(along(random));
         camera.orientation = glm::normalize(camera.orientation * glm::angleAxis(turn(random), Vec3(0, 1, 0)));
         cameras.push_back(camera);
@@ -93,7 +93,8 @@ json jump(BenchScene& scene, CameraPath const& path, OwnCameraOptions const& opt
     run.start = begin;
     run.seconds = stay * options.jumps;
     run.reference_rate = rate;
-    scene.flown = [&](SceneTime time) { // at the beginning of the run, when the first jump is due, it has jumped
+    // At the beginning of the run the first jump is due, and has just happened.
+    scene.flown = [&](SceneTime time) {
         double const jumps = std::floor((time - begin) / stay + 1e-6) + 1;
         return cameras[static_cast<std::size_t>(std::clamp(jumps, 0.0, static_cast<double>(options.jumps)))];
     };

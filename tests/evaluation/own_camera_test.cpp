@@ -1,4 +1,4 @@
-// A camera of the viewer's own in a scene that stands still. Nothing here is about how fast.
+// Tests a camera of the viewer's own in a scene that stands still. Nothing here is about speed.
 #include "tests/evaluation/own_camera.h"
 
 #include <gtest/gtest.h>

@@ -16,7 +16,7 @@
 namespace framelet::bench {
 namespace {
 
-/// Pixels that are rendered together: as many as a packet has lanes, close to each other.
+/// Side, in pixels, of a block that is rendered together: as many pixels as a packet has lanes, close to each other.
 constexpr int block = 4;
 
 float fraction(std::uint32_t bits) {
@@ -80,7 +80,7 @@ Picture render_reference(BenchScene const& scene, Viewport viewport, int samples
                 if (x >= viewport.width || y >= viewport.height) {
                     continue;
                 }
-                // Each sample as the display would show it; the filter works on the display's light.
+                // Each sample is tone-mapped as the display would show it; the filter works on the display's light.
                 Vec3 light(0);
                 for (int s = 0; s < strata; ++s) {
                     std::size_t const sample = static_cast<std::size_t>((column * strata + s) * block * block + i);
@@ -119,12 +119,13 @@ Reference::Reference(BenchScene& scene, ReferenceParameters const& p, std::files
     std::size_t rendered = 0;
     for (std::size_t i = 0; i < count_; ++i) {
         if (stale || !std::filesystem::exists(file(i))) {
-            // Under a name of this process first: what is stopped half way, or runs twice, leaves no half picture.
+            // The file has a name of this process first, so that a process that is stopped half-way, or runs twice,
+            // leaves no half picture.
             auto const unfinished = folder_ / printed("unfinished-%d.png", static_cast<int>(getpid()));
             write_png(unfinished, render(i));
             std::filesystem::rename(unfinished, file(i));
             ++rendered;
-            // A terminal gets a line that counts up, a log one line a quarter.
+            // A terminal gets a line that counts up, a log gets one line for each quarter.
             bool const quarter = (i + 1) * 4 / count_ != i * 4 / count_;
             if (terminal || quarter) {
                 std::fprintf(stderr, "%sreference of %s: %zu of %zu%s", terminal ? "\r" : "", scene.name.c_str(), i + 1,

@@ -1,5 +1,5 @@
-// What a perfect viewer would show: the scene at many times, many samples a pixel (stratified, box filter),
-// kept on disk as PNG files, since it takes long. In: scene, size, times. Out: a picture for each time.
+// The reference: pictures that a perfect viewer would show, many samples a pixel (stratified, box filter), kept on disk
+// as PNG files, since rendering takes long. In: scene, size, times. Out: a picture for each time.
 #pragma once
 
 #include <filesystem>
@@ -13,18 +13,18 @@ struct ReferenceParameters {
     Viewport viewport{256, 256};
     double seconds = 1;
     double rate = 120; ///< pictures a second
-    int samples_per_side = 3; ///< of a pixel; samples are jittered in their strata
-    double start = 0; ///< scene time of the first one, seconds
+    int samples_per_side = 3; ///< samples along a side of a pixel, jittered in their strata
+    double start = 0; ///< scene time of the first picture, seconds
 };
 
 class Reference {
 public:
-    /// Renders what the cache lacks and tells on stderr how far it is. What is cached is compared with a picture
-    /// rendered anew, and made again where the renderer has changed.
+    /// Renders what the cache lacks and tells on stderr how far it is. Compares two cached pictures with ones rendered
+    /// anew, and makes all again where the renderer has changed.
     Reference(BenchScene& scene, ReferenceParameters const& parameters, std::filesystem::path const& cache);
 
     std::size_t size() const { return count_; }
-    /// Throws InputError where the file has gone since.
+    /// Reads a picture from its file. Throws InputError where that has gone since.
     Picture picture(std::size_t index) const;
     std::filesystem::path const& folder() const { return folder_; }
 
@@ -35,10 +35,10 @@ private:
     std::size_t count_;
 };
 
-/// One such picture, of the scene as it is posed.
+/// Renders one such picture, of the scene as it is posed.
 Picture render_reference(BenchScene const& scene, Viewport viewport, int samples_per_side);
 
-/// Where references are kept unless told otherwise: $XDG_CACHE_HOME/framelet/reference, else
+/// Folder in which references are kept unless told otherwise: $XDG_CACHE_HOME/framelet/reference, else
 /// ~/.cache/framelet/reference.
 std::filesystem::path default_reference_cache();
 

@@ -1,4 +1,4 @@
-// The report's sums and page, of figures with known answers.
+// Tests the report's sums and page on figures with known answers.
 #include <cmath>
 #include <filesystem>
 #include <fstream>

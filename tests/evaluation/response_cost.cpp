@@ -20,7 +20,7 @@ ResponseCost response_cost(BenchScene& scene, Viewport viewport, double samples_
     input.samples_per_second = samples_per_second;
     double plan_seconds = 0;
     ResponseCost cost;
-    // The first tenth is a picture that appears, which is another matter.
+    // The first tenth of the time is not counted: a picture that first appears costs differently.
     for (double const start = 0.1 * seconds; input.now < seconds;) {
         pose_at(scene, input.now);
         input.state = {{1, scene.camera, viewport}, scene.exposure, input.now};

@@ -1,4 +1,4 @@
-// What response and selection cost a server that serves a moving picture.
+// Measures the cost of response and selection for a server of a moving picture.
 #pragma once
 
 #include "tests/evaluation/bench_scene.h"
@@ -9,7 +9,7 @@ namespace framelet::bench {
 struct ResponseCost {
     double plan = 0, learn = 0;
     std::size_t cycles = 0;
-    std::size_t samples = 0; ///< of framelets
+    std::size_t samples = 0; ///< samples of all framelets
     std::size_t regions = 0;
 };
 

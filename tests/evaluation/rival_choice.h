@@ -1,4 +1,5 @@
-// The rivals' choices that depend on scene and machine: all are tried, and the best is theirs, as if they had known.
+// Choices of a rival that depend on scene and machine: all are tried, and the best one counts, as if the rival had
+// known it.
 #pragma once
 
 #include <string_view>
@@ -8,11 +9,11 @@
 
 namespace framelet::bench {
 
-/// What there is to try: all spacings and margins where the method knows them and `parts` leaves them open. At least
-/// one, with nothing left open.
+/// All choices to try: every spacing and margin where the method knows them and `parts` leaves them open. At least one,
+/// with nothing left open.
 std::vector<RivalParts> rival_choices(std::string_view method, RivalParts const& parts);
 
-/// The index of the least of `errors`, which are not empty; of equal ones the first.
+/// Index of the least of `errors`, which must not be empty; of equal ones the first.
 std::size_t best_choice(std::vector<double> const& errors);
 
 } // namespace framelet::bench

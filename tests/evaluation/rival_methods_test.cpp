@@ -1,4 +1,4 @@
-// The rivals at their best: what each of their parts is for, with known answers.
+// Tests the rivals at their best: what each of their parts is for, with known answers.
 #include <algorithm>
 #include <cmath>
 
@@ -99,8 +99,8 @@ TEST(FrameGrid, TheMeanOfAllPlacesIsTheStratifiedPicture) {
 TEST_F(Rivals, APictureThatStandsStillBecomesAsGoodAsTheReference) {
     auto const scene = load_bench_scene(bundled("teleport"));
     RunParameters parameters = small_run({64, 48}, 20);
-    parameters.frames_per_second = 400; // there is half a second until then
-    parameters.seconds = 0.05; // of which only the first moment is looked at
+    parameters.frames_per_second = 400; // fast enough to converge in the half second before the measured time
+    parameters.seconds = 0.05; // only the first reference time is looked at
     pose_at(*scene, 0);
     Picture const truth = render_reference(*scene, parameters.viewport, 16);
     for (std::string const name : {"framed", "framed+h264", "framed+warp", "interruptible"}) {
@@ -130,7 +130,7 @@ TEST_F(Rivals, NothingIsSentOnceThePictureIsAsGoodAsItGets) {
     }
 }
 
-/// What is shown of a scene that runs, on the average, is neither early nor late.
+/// The picture of a running scene is, on the average, neither early nor late.
 TEST_F(Rivals, FramesAreOfTheMiddleOfTheirTimeOnDisplay) {
     auto const scene = load_bench_scene(bundled("vehicle_chase"));
     RunParameters parameters = small_run({64, 48}, 60);
@@ -168,7 +168,7 @@ TEST(FrameForecast, KnowsTheScenesCameraAndFollowsTheViewers) {
         EXPECT_NEAR(moment.time, now + 0.14 + 0.05, 1e-3);
         Camera const there = camera_at(*scene, moment.time);
         EXPECT_LT(glm::distance(moment.camera.position, there.position), 1e-4f);
-        // The turn is foreseen for 0.2 s of the 0.24 s since the camera that the server knows.
+        // The turn is extrapolated for 0.2 s of the 0.24 s since the camera that the server knows.
         double const late = 0.04 * speed;
         float const cosine = glm::dot(moment.camera.forward(), there.forward());
         EXPECT_NEAR(glm::degrees(std::acos(std::min(cosine, 1.0f))), late, 0.15) << speed;
@@ -199,12 +199,12 @@ TEST(Margin, ShowsTheSamePixelsAndThoseAround) {
     EXPECT_LT(sum / (255.0 * 255 * 3 * viewport.width * viewport.height), 1e-5) << "rounding of edges apart";
 }
 
-/// Nothing of the run knows of the turn, and it goes no further than the margin.
+/// No message of the run knows of the turn, which goes no further than the margin.
 TEST_F(Rivals, APanShowsNoHoleWithinTheMargin) {
     auto const scene = load_bench_scene(bundled("teleport"));
     scene->turn = {.degrees_per_second = 20, .reach_degrees = 30};
     RunParameters parameters = small_run({96, 64}, 20);
-    parameters.seconds = 0.25; // five degrees
+    parameters.seconds = 0.25; // the camera turns by five degrees
     parameters.link.delay_seconds = 0.3;
     parameters.frames_per_second = 60;
     Reference const truth = reference(*scene, parameters);
@@ -217,7 +217,7 @@ TEST_F(Rivals, APanShowsNoHoleWithinTheMargin) {
             }
             Picture const exact = truth.picture(index);
             for (int y = 0; y < shown.height; ++y) {
-                for (int x = 0; x < 4 * 6; ++x) { // the side that comes into view
+                for (int x = 0; x < 4 * 6; ++x) { // pixels at the side that comes into view
                     double const off = shown.row(y)[x] - exact.row(y)[x];
                     sum += off * off;
                 }

@@ -11,9 +11,9 @@
 namespace framelet::bench {
 namespace {
 
-/// How often a server that has nothing to do looks again, as `SessionLoop` does.
+/// Seconds after which a server that has nothing to do looks again, as `SessionLoop` does.
 constexpr double idle_seconds = 0.005;
-/// Of a viewer's display, pictures a second.
+/// Rate of a viewer's display, pictures a second.
 constexpr double display_rate = 60;
 
 void add_server(StageSeconds& sum, StageSeconds const& step, double machine) {
@@ -22,8 +22,8 @@ void add_server(StageSeconds& sum, StageSeconds const& step, double machine) {
     sum.encode += machine * step.encode;
 }
 
-/// One processor: what arrives is decoded at once, and in the time that this leaves a picture is made for each display
-/// frame. As in the client, a picture is of the moment at which it is expected to be ready.
+/// The viewer as one processor: it decodes what arrives at once, and in the time that this leaves makes a picture for
+/// each display frame. As in the client, a picture is of the moment at which it is expected to be ready.
 class SimulatedViewer {
 public:
     SimulatedViewer(BenchScene const& scene, Method& method, RunParameters const& parameters, double machine,
@@ -32,15 +32,16 @@ public:
           count_(reference_count(parameters)), on_reference_time_(on_reference_time), result_(result), free_(now),
           next_frame_(now) {}
 
-    /// Makes all pictures that are begun before `end`.
+    /// Makes all pictures that are to be begun before the time `end`.
     void show_until(double end) {
         for (double begin = next_begin(); begin < end; begin = next_begin()) {
             make_picture(begin);
         }
     }
 
-    /// Decodes a message, `sent` at a time and begun at another; messages come in the order of their arrival. Returns
-    /// when it is done, which the answer says. A picture that is being made meanwhile is late by that.
+    /// Decodes a message that arrived at `arrived` and whose content was begun at `begun`; messages come in the order
+    /// of their arrival. Returns when it is decoded, which the answer says. A picture that is being made meanwhile is
+    /// late by that.
     double receive(double arrived, double begun, std::vector<std::byte> const& message) {
         show_until(arrived);
         StageSeconds const seconds = scaled(method_.consume(message).seconds);
@@ -52,7 +53,7 @@ public:
         return decoder_free_;
     }
 
-    /// Shows what is left to be shown, and brings the result's means up to date.
+    /// Makes the pictures that are left to be shown, and brings the result's means up to date.
     void finish() {
         show_until(std::max(parameters_.seconds, free_));
         while (next_ < count_) {
@@ -61,13 +62,14 @@ public:
         result_.mean_delay = seen_ == 0 ? 0 : delays_ / static_cast<double>(seen_);
     }
 
-    /// That its work took so far.
+    /// Processor seconds that the viewer's work has taken so far.
     double spent_seconds() const { return spent_seconds_; }
 
 private:
     double next_reference() const { return reference_time(parameters_, next_); }
 
-    /// A display frame just before a reference time waits for it, so that what is compared is of that very moment.
+    /// Time at which the next picture is begun. A display frame just before a reference time waits for it, so that the
+    /// compared picture is of that very moment.
     double next_begin() const {
         double const aim = std::max(next_frame_, free_ + making_.expected());
         double const reference = next_ < count_ ? next_reference() : 0;
@@ -134,18 +136,18 @@ private:
     std::size_t const count_;
     OnReferenceTime const& on_reference_time_;
     RunResult& result_;
-    std::size_t next_ = 0; ///< reference time
-    double free_; ///< from when on the processor can make a picture
+    std::size_t next_ = 0; ///< index of the next reference time
+    double free_; ///< time from which on the processor can make a picture
     double decoder_free_ = -INFINITY;
-    double next_frame_; ///< of the display
+    double next_frame_; ///< time of the next display frame
     MakingTime making_;
     double spent_seconds_ = 0;
-    std::vector<double> unseen_; ///< of messages that no picture shows yet: when they were begun
+    std::vector<double> unseen_; ///< for messages that no picture shows yet: when they were begun
     double delays_ = 0;
     std::size_t seen_ = 0;
 };
 
-/// The scene's motion before the measured time.
+/// Seconds that the scene moves before the measured time.
 double running_lead_seconds(RunParameters const& parameters) {
     constexpr double enough = 0.5;
     return std::clamp(parameters.start, 0.0, std::max(enough, parameters.fresh_lead));
@@ -217,13 +219,13 @@ RunResult run_method(BenchScene& scene, Method& method, RunParameters const& par
     SimulatedViewer viewer(scene, method, parameters, shared ? machine : 1, now, on_reference_time, result);
     double viewer_spent = 0;
     Window const window = method.window();
-    std::deque<double> in_flight; // when each message no longer counts
+    std::deque<double> in_flight; // times at which the messages cease to count as in flight
     struct Answer {
         double when = 0, arrived = 0;
         DeliveredMessage message;
     };
     std::deque<Answer> answers;
-    auto const next_look = [&answers](double from) { // an answer wakes it
+    auto const next_look = [&answers](double from) { // an answer wakes an idle server
         double const idle = from + idle_seconds;
         return answers.empty() || answers.front().when <= from ? idle : std::min(idle, answers.front().when);
     };
@@ -248,7 +250,7 @@ RunResult run_method(BenchScene& scene, Method& method, RunParameters const& par
         }
         SceneTime const time = scene_time(parameters, now);
         pose_at(scene, time);
-        // The camera is the viewer's: the server knows it as it was when it set out.
+        // The camera is the viewer's: the server knows the one that was sent one delay ago.
         Camera const camera = parameters.link.delay_seconds > 0
                                   ? camera_at(scene, scene_time(parameters, now - parameters.link.delay_seconds))
                                   : scene.camera;

@@ -10,10 +10,10 @@
 namespace framelet::bench {
 namespace {
 
-/// When a vehicle is before the camera: no track tells.
+/// Scene times at which a vehicle is before the camera, which no track of the document tells.
 constexpr std::array<std::pair<std::string_view, double>, 3> passings{
     {{"vehicle_flyby", 2.6}, {"vehicle_approach", 4}, {"vehicle_crossing", 0.75}}};
-/// When the car has left the picture, and nothing is seen to move.
+/// Scene time at which the car has left the picture, and nothing is seen to move from then on.
 constexpr std::pair<std::string_view, double> leaving{"vehicle_fixed", 3.3};
 
 SceneEntry const* find_scene(std::string const& name) {

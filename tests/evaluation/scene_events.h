@@ -1,5 +1,5 @@
-// What happens when in the scenes of the project's generator. In: a scene's document. Out: when something jumps or
-// comes to rest, when something moves, and which part of a scene a short run should see.
+// Events in the scenes of the project's generator. In: a scene's document. Out: when something jumps or comes to rest,
+// when something moves, and which part of a scene a short run should see.
 #pragma once
 
 #include <string>
@@ -10,26 +10,27 @@
 
 namespace framelet::bench {
 
-/// Times are seconds of the scene's.
+/// Events of one scene; times are scene time, seconds.
 struct SceneEvents {
-    std::vector<double> times; ///< something jumps, or all that moved stands from then on; in (0, duration), ascending
-    std::vector<std::pair<double, double>> motions; ///< from, until: something moves smoothly
+    std::vector<double> times; ///< a jump, or all that moved stands from then on; in (0, duration), ascending
+    std::vector<std::pair<double, double>> motions; ///< smooth motions, from and until
 };
 
 SceneEvents events_of(GltfDocument const& document, double duration);
-/// Of the generator's scene of that name. InputError where it has none.
+/// Events of the generator's scene of that name. Throws InputError where it has none.
 SceneEvents events_of(std::string const& name);
 
 enum class Phase { moving, event, settled };
 
-/// An event lasts for this long.
+/// Seconds that an event lasts.
 inline constexpr double event_seconds = 0.25;
 
-/// `event` goes before `moving`.
+/// Phase of the scene at `time`; `event` takes precedence over `moving`.
 Phase phase_at(SceneEvents const& events, double time);
 
-/// From when on a run of so many seconds sees most of what the scene is for: around its first event, where a vehicle
-/// passes, else in the middle. 0 for a scene that is not the generator's.
+/// Scene time at which a run of `seconds` should begin to see most of what the scene is for: the run is centred on a
+/// vehicle's passing, else on the first event, else on the middle of the animation. 0 for a scene that is not the
+/// generator's.
 double window_start(std::string const& name, double seconds);
 
 } // namespace framelet::bench

@@ -17,18 +17,18 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int cells = 5; ///< along a side of the grid
-constexpr int middle = cells * cells / 2; ///< of the defaults
-constexpr float slope_step = 0.5f; ///< in log2 of energy an octave
+constexpr int cells = 5; ///< number of slopes along a side of the grid
+constexpr int middle = cells * cells / 2; ///< index of the cell with the default slopes
+constexpr float slope_step = 0.5f; ///< step from slope to slope, log2 of energy an octave
 
 /// A steeper line through the same energy at the octave of a framelet's mean: finer octaves are tolerated less, as in
-/// 004, whose offset is that of the mean.
+/// [Stephens 2011], where the offset is that of the mean.
 EnergyTemplate turned(EnergyTemplate line, float steeper) {
     constexpr float mean_octave = 4;
     return {line.offset - steeper * mean_octave, line.slope + steeper};
 }
 
-/// Tiles with their outlines. Each doubling of the rate is one step brighter, up to a refresh each cycle.
+/// Draws the tiles with their outlines. Each doubling of the refresh rate is one step brighter, up to `most_rate`.
 Picture draw_tiling(Tiling const& tiling, std::vector<double> const& rates, double most_rate) {
     Viewport const viewport = tiling.plane.viewport();
     Picture picture(viewport.width, viewport.height);
@@ -48,7 +48,7 @@ Picture draw_tiling(Tiling const& tiling, std::vector<double> const& rates, doub
     return picture;
 }
 
-/// What the server made of its slopes by now.
+/// Figures of the tiling that the server has arrived at with its slopes by now.
 json tiling_figures(TsarServer const& server, std::vector<double> const& rates) {
     Tiling const& tiling = server.tiling();
     Viewport const viewport = tiling.plane.viewport();
@@ -65,7 +65,7 @@ json to_json(EnergyTemplate const& line) {
     return {{"offset", line.offset}, {"slope", line.slope}};
 }
 
-/// One choice of slopes. What is shown at half the run goes to `pictures`, and its tiling to `tilings`.
+/// Runs one choice of slopes. The picture shown at half the run goes to `pictures`, and its tiling to `tilings`.
 json run_cell(Subject const& subject, CostTable const& costs, RateTemplates const& templates,
               std::vector<Picture>& pictures, std::vector<Picture>& tilings) {
     RunParameters const& run = subject.run;

@@ -1,5 +1,5 @@
-// How an error over time answers to an event. In: a series, from the event to the next one. Out: how soon it has
-// settled, and what it did until then.
+// Measures how an error over time answers to an event. In: a series, from the event to the next one. Out: how soon it
+// has settled, and what it did until then.
 #pragma once
 
 #include <cstddef>
@@ -15,12 +15,12 @@ struct Settling {
     double final_level = 0; ///< median of the last quarter, at least settled_floor
     double peak = 0;
     std::optional<double> first; ///< seconds from the event until the error is first within the factor of final_level
-    std::optional<double> settled; ///< and until it stays so; nothing where it does not before the last quarter
+    std::optional<double> settled; ///< seconds until it stays so; nothing where it does not before the last quarter
     double overshoot = 1; ///< greatest error after `first`, as a multiple of final_level; at least 1
 };
 
-/// `times` ascending, the first at the event or after it, as many as `errors`; `event` in the same clock; `factor` > 1.
-/// Needs at least four points.
+/// Measures one event. `times` (ascending, the first at the event or after it) and `errors` have the same length, at
+/// least four; `event` is on the same clock; `factor` > 1.
 Settling measure_settling(std::span<double const> times, std::span<double const> errors, double event, double factor);
 
 } // namespace framelet::bench

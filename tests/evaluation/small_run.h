@@ -1,4 +1,4 @@
-// What tests of whole runs start from: small pictures, little time, references of their own.
+// Fixture for tests of whole runs: small pictures, little time, references of their own.
 #pragma once
 
 #include <filesystem>
@@ -22,7 +22,7 @@ inline std::filesystem::path bundled(std::string const& name) {
     return source / "scenes" / (name + ".glb");
 }
 
-/// Half a second.
+/// Parameters of a run of half a second.
 inline RunParameters small_run(Viewport viewport, double reference_rate) {
     RunParameters parameters;
     parameters.viewport = viewport;
@@ -31,7 +31,7 @@ inline RunParameters small_run(Viewport viewport, double reference_rate) {
     return parameters;
 }
 
-/// References are in a folder of this test, which goes when the test does.
+/// Keeps references in a folder of this test, which is removed with it.
 class SmallRuns : public testing::Test {
 protected:
     ~SmallRuns() override { std::filesystem::remove_all(cache); }
@@ -50,7 +50,7 @@ protected:
         return compare_methods(scene, reference(scene, run), methods, run, costs).records;
     }
 
-    /// A method with what the parameters say and nothing tried out.
+    /// Runs a method with what the parameters say, no choices tried out.
     RunResult show(BenchScene& scene, std::string const& method, RunParameters const& run,
                    OnReferenceTime const& on_reference_time) const {
         double const machine = machine_factor(scene, run, costs);

@@ -19,15 +19,16 @@ namespace {
 
 using nlohmann::json;
 
-/// The still time that hunting is looked for in: the end of an interval, when the error should have settled.
+/// Share of an interval in which hunting is looked for: its end, when the error should have settled.
 constexpr double hunting_share = 0.5;
-/// Settled is what is within so many times its final level.
+/// Factor of its final level within which an error counts as settled.
 constexpr double settled_factor = 2;
 
-/// What an error over time, and the cycles of the scheduler meanwhile, come to from an event to `until`.
+/// Figures of an error over time, and of the scheduler's cycles meanwhile, from an event to `until`.
 json event_figures(std::vector<double> const& times, std::vector<double> const& errors,
                    std::vector<CycleEntry> const& cycles, double event, double until) {
-    // The picture of the event's own moment is not there yet: it belongs to what comes after it.
+    // The picture at the event's own time shows the state after it and is not there yet: it counts to what comes after
+    // the event.
     auto const first = std::ranges::lower_bound(times, event - 1e-9) - times.begin();
     auto const last = std::ranges::lower_bound(times, until - 1e-9) - times.begin();
     auto const part = [&](std::vector<double> const& all) {

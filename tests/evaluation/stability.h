@@ -1,6 +1,6 @@
-// `stability`: does the loop of error, density and tiling come to rest? Scenes with events (everything stops, a lamp
-// switches, the camera cuts), at several batch sizes, on the virtual clock. Out: for every event how soon the error has
-// settled, and how steady tiling, price and budget are.
+// The verb `stability`: does the loop of error, density and tiling come to rest? Scenes with events (everything stops,
+// a lamp switches, the camera cuts), at several batch sizes, on the virtual clock. Out: for every event how soon the
+// error has settled, and how steady tiling, price and budget are.
 #pragma once
 
 #include <vector>
@@ -11,8 +11,8 @@
 
 namespace framelet::bench {
 
-/// Whole scenes, one run for each of `batches` (most framelets of a batch). Of `study`, methods, start, seconds and
-/// batch are not looked at. InputError for a scene that is not the generator's, or in which nothing happens.
+/// Runs whole scenes, once for each of `batches` (most framelets of a batch). Ignores methods, start, seconds and batch
+/// of `study`. Throws InputError for a scene that is not the generator's, or in which nothing happens.
 nlohmann::json measure_stability(StudyOptions const& study, std::vector<std::size_t> const& batches);
 
 } // namespace framelet::bench

@@ -1,4 +1,4 @@
-// Properties of `stability`'s measures, and of the whole verb at a tiny size. Nothing here is about how fast.
+// Tests properties of `stability`'s measures, and the whole verb at a tiny size. Nothing here is about speed.
 #include "tests/evaluation/stability.h"
 
 #include <gtest/gtest.h>
@@ -60,7 +60,7 @@ TEST(CycleLog, HuntingAndConservationAreMeansOverTheirTime) {
     EXPECT_DOUBLE_EQ(conservation.samples, 340) << "the last one has not ended";
     EXPECT_DOUBLE_EQ(conservation.budget, 300);
     EXPECT_DOUBLE_EQ(conservation.largest_share, 1.5);
-    // Short cycles make up for each other within a tenth of a second.
+    // Short cycles compensate each other within a tenth of a second.
     std::vector<CycleEntry> const hasty{
         {0, 1000, 30, 1, 1, 0}, {0.04, 1000, 90, 1, 1, 0}, {0.08, 1000, 10, 1, 1, 0}, {0.2, 1000, 0, 1, 1, 0}};
     EXPECT_DOUBLE_EQ(measure_conservation(hasty, 0, 1).largest_share, 130.0 / 200);
@@ -85,7 +85,8 @@ TEST_F(Stability, EveryEventIsToldOfAndTheBudgetIsKept) {
             }
         }
         EXPECT_GT(run["conservation"]["samples"], 0);
-        // In all; for a while after a cut the samples may be cheaper than those the rate was measured with.
+        // The bound is on the sum of all samples; for a while after a cut they may be cheaper than those with which the
+        // rate was measured.
         EXPECT_LE(run["conservation"]["share"], 1.05);
     }
     options.scenes = {"no such scene.glb"};

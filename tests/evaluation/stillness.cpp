@@ -14,15 +14,15 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double stops = 0.5; ///< seconds of scene time that everything moves
+constexpr double stops = 0.5; ///< seconds of the run at which everything stops
 constexpr int reference_side = 16; ///< samples along a side of the reference's pixel
-/// The first second moves most; after two the picture should be good.
+/// Times after the stop that are listed, seconds: the first second changes most; after two the picture should be good.
 constexpr double listed_seconds[] = {0.25, 0.5, 1, 2, 4};
 
 struct Still {
     PsnrOverTime quality;
-    double last_sent = 0; ///< seconds since the stop
-    double bytes = 0; ///< since the stop
+    double last_sent = 0; ///< last time at which something was sent, seconds since the stop
+    double bytes = 0; ///< bytes sent since the stop
     double last_second_bytes = 0;
 };
 
@@ -31,7 +31,7 @@ Still watch(BenchScene& scene, StudyOptions const& options) {
     run.seconds += stops;
     run.scene_stops = stops;
     double const machine = machine_factor(scene, options.run, options.costs);
-    pose_at(scene, stops);
+    pose_at(scene, run.start + stops);
     Still still;
     Picture const reference = render_reference(scene, run.viewport, reference_side);
     auto const method = make_method("framelet", method_setup(run, machine, options.costs));

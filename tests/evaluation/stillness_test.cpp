@@ -1,4 +1,4 @@
-// Properties of `stillness`' measures, and of the whole verb at a tiny size. Nothing here is about how fast.
+// Tests properties of `stillness`' measures, and the whole verb at a tiny size. Nothing here is about speed.
 #include "tests/evaluation/stillness.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,8 @@ TEST_F(Stillness, ThePictureBecomesTheReferenceAndNothingMoreIsSent) {
     ASSERT_EQ(rows.size(), 2u);
     for (auto const& row : rows) {
         EXPECT_GE(row["final_psnr"], 40) << row["scene"];
-        // Means of four rays, moved, give way to single ones in their places, which alias more.
+        // The picture falls a little where moved means of four rays give way to single rays in their places, which
+        // alias more.
         EXPECT_LE(row["most_fall_db"], 1) << row["scene"];
         EXPECT_GT(row["bytes"], 0);
         EXPECT_LT(row["last_sent_seconds"], options.run.seconds - 1);

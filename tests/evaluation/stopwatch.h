@@ -1,4 +1,4 @@
-// How long something takes.
+// Measures how long something takes.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ double seconds_of(Work&& work) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Processor time of the calling thread alone: what others do meanwhile counts little.
+/// Processor time of the calling thread alone: other threads and programs affect it little.
 template <class Work>
 double processor_seconds_of(Work&& work) {
     auto const now = [] {
@@ -28,7 +28,7 @@ double processor_seconds_of(Work&& work) {
     return now() - start;
 }
 
-/// The upper one of the two middle values where their number is even; 0 where there is none.
+/// Median; the upper one of the two middle values where their number is even; 0 of none.
 inline double median(std::vector<double> values) {
     if (values.empty()) {
         return 0;

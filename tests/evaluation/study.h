@@ -1,4 +1,4 @@
-// What every verb of the virtual clock is told, and a scene made ready for it.
+// Options that every verb of the virtual clock takes, and a scene made ready for it.
 #pragma once
 
 #include <filesystem>
@@ -14,25 +14,25 @@ namespace framelet::bench {
 
 struct StudyOptions {
     std::vector<std::filesystem::path> scenes; ///< files
-    double turn = 0; ///< of the camera, degrees a second (`CameraTurn`)
+    double turn = 0; ///< turning of the camera, degrees a second (`CameraTurn`)
     bool sees_events = false; ///< each scene's run begins where `window_start` says, and not at `run.start`
     std::vector<std::string> methods;
     RunParameters run;
-    int samples_per_side = 3; ///< of the reference
+    int samples_per_side = 3; ///< samples along a side of the reference's pixel
     std::filesystem::path reference_cache = default_reference_cache();
-    std::filesystem::path charts; ///< folder; empty: none are drawn
+    std::filesystem::path charts; ///< folder for charts; empty: none are drawn
     CostTable costs;
 };
 
-/// Renders what the cache lacks of the reference for such a run.
+/// The reference for such a run; renders the pictures of it that the cache lacks.
 Reference reference_of(BenchScene& scene, StudyOptions const& options);
 
 /// A scene with all that its runs need.
 struct Subject {
     std::unique_ptr<BenchScene> scene;
-    RunParameters run; ///< over the scene's window
+    RunParameters run; ///< parameters, beginning where the scene's window does
     Reference reference;
-    double machine; ///< times slower than the calibrated one
+    double machine; ///< how many times slower the machine is than the calibrated one
 };
 
 /// Loads the scene, renders its reference. Throws InputError.

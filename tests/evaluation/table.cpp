@@ -21,8 +21,8 @@ json halves_of(StageSeconds const& cpu) {
     return {{"server", cpu.server()}, {"viewer", cpu.viewer()}};
 }
 
-/// All runs of one scene, picture by picture size, since the runs of one size share reference and framed. A method
-/// without batches does the same in all of them and is run once.
+/// Makes all runs of one scene, one picture size after the other, since the runs of one size share reference and
+/// `framed`. A method without batches does the same in all of them and is run once.
 json run_scene(PublishedTable const& table, BenchScene& scene, StudyOptions options, FigureTable const& progress) {
     auto const column = static_cast<std::size_t>(std::ranges::find(table.scenes, scene.name) - table.scenes.begin());
     if (column == table.scenes.size()) {
@@ -41,7 +41,7 @@ json run_scene(PublishedTable const& table, BenchScene& scene, StudyOptions opti
         double const machine = machine_factor(scene, options.run, options.costs);
         auto const record = [&](std::string const& method, int batch) {
             options.run.batch_framelets = static_cast<std::size_t>(batch);
-            // What all are divided by is what [Stephens 2011] divided by.
+            // All methods are divided by plain whole frames, as in [Stephens 2011].
             options.run.rivals = method == "framed" ? plain_rivals : rivals;
             return record_method(scene, reference, method, options.run, machine, options.costs);
         };
@@ -72,7 +72,7 @@ json run_scene(PublishedTable const& table, BenchScene& scene, StudyOptions opti
     return cells;
 }
 
-/// As Table 7.2 is set: a row a run, in each scene ours beside the published.
+/// Prints a table set as Table 7.2 is: a row for each run, in each scene ours beside the published percentile.
 void print_table(PublishedTable const& table, json const& cells, std::string const& method) {
     std::printf("\n%s: suitable percentile (published)\n%3s %5s %5s", method.c_str(), "run", "batch", "side");
     for (std::string const& scene : table.scenes) {
@@ -129,7 +129,7 @@ PublishedTable const& published_table() {
 
 json run_table(PublishedTable const& table, StudyOptions const& study) {
     StudyOptions options = study;
-    std::erase(options.methods, "framed"); // what the others are divided by
+    std::erase(options.methods, "framed"); // it is run in any case: the others are divided by it
     FigureTable const progress({{"method", "/method", -17},
                                 {"run", "/run", 3, 0},
                                 {"batch", "/batch", 5, 0},

@@ -14,8 +14,8 @@ namespace framelet::bench {
 struct PublishedRun {
     int number = 0;
     int batch = 0; ///< framelets
-    int side = 0; ///< of the picture, pixels
-    std::vector<double> suitable; ///< per cent, one a scene
+    int side = 0; ///< side of the square picture, pixels
+    std::vector<double> suitable; ///< suitable percentile, per cent, one a scene
 };
 
 struct PublishedTable {
@@ -28,8 +28,8 @@ struct PublishedTable {
 /// at equal total cost) is not above 1; 100: better at all times. Scenes are this project's remakes of its five inputs.
 PublishedTable const& published_table();
 
-/// Every run of the table on the study's scenes, cost counted in total as its source did. Of `study`, viewport, batch
-/// and counting are the table's. InputError for a scene that the table does not have.
+/// Every run of the table on the study's scenes, cost counted in total as its source did. The table replaces viewport,
+/// batch and counting of `study`. Throws InputError for a scene that the table does not have.
 nlohmann::json run_table(PublishedTable const& table, StudyOptions const& study);
 
 } // namespace framelet::bench

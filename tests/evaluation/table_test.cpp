@@ -1,4 +1,4 @@
-// The published table, and runs of it: small pictures, little time.
+// Tests the published table, and runs of it: small pictures, little time.
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -41,7 +41,7 @@ TEST_F(Table, BatchesHaveNoMoreFrameletsThanTheRunSays) {
             pose_at(*scene, 0.1 * step);
             auto const message =
                 method->produce({*scene, 0.1 * step, 0.1 * step, {1, scene->camera, {128, 128}}, 0, {}}).message;
-            if (message.empty()) { // it is sent with the next step
+            if (message.empty()) { // the step's framelets are sent with the next one
                 continue;
             }
             most = std::max(most, std::get<EncodedBatch>(decode_message(message)).tiles.size());
@@ -66,7 +66,7 @@ TEST_F(Table, EveryRunOfEverySceneGetsItsFigures) {
         EXPECT_GT(cell["median_ratio"].get<double>(), 0);
         double const spent = cell["cpu_seconds"]["server"].get<double>() + cell["cpu_seconds"]["viewer"].get<double>();
         EXPECT_LE(spent, 0.65) << "equal in total: " << cell;
-        if (spent < 0.35) { // everything is as fine as it gets, and what moves is small
+        if (spent < 0.35) { // less is spent where everything is as fine as it gets, and what moves is small
             EXPECT_EQ(cell["method"], "framelet") << cell;
             EXPECT_EQ(cell["scene"], "vehicle_fixed") << cell;
             EXPECT_LT(cell["median_ratio"].get<double>(), 0.8) << "better all the same: " << cell;

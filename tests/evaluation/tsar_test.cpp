@@ -1,4 +1,4 @@
-// The method `tsar`: where it samples, when, and how its viewer blends framelets of different ages.
+// Tests the method `tsar`: where it samples, when, and how its viewer blends framelets of different ages.
 #include <numeric>
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 namespace framelet::bench {
 namespace {
 
-ImagePlane const plane({64, 64}); // pixel depth 2
+ImagePlane const plane({64, 64}); // tiles of depth 2 have a sample a pixel
 
 double area_of(Tiling const& tiling) {
     double area = 0;
@@ -31,7 +31,7 @@ TEST(TsarSchedule, TilesFollowTheDensity) {
     EXPECT_EQ(tiling.tiles.size(), 64u + 4 + 4 + 1);
     EXPECT_EQ(tiling.tiles.front().depth(), 4);
     EXPECT_EQ(tiling.tiles.back().depth(), 1);
-    // Elements coarser than the finest tiles.
+    // The elements may be coarser than the finest tiles.
     EXPECT_EQ(make_density_tiling(plane, std::vector<double>(1, 16.0), 0, 2 * framelet_samples),
               make_uniform_tiling(plane, 4));
 }
@@ -50,7 +50,7 @@ TEST(TsarSchedule, EveryTileComesAtItsOwnRate) {
     std::vector<int> times(16);
     constexpr int cycles = 1600;
     for (int cycle = 1; cycle <= cycles; ++cycle) {
-        double const now = cycle / 64.0; // two tiles in each: 128 a second is what all ask for together
+        double const now = cycle / 64.0; // two tiles in each cycle: all tiles together ask for 128 a second
         auto const chosen = select_overdue(tiles, density, refreshed, now, 2);
         ASSERT_EQ(chosen.size(), 2u);
         for (std::size_t const i : chosen) {

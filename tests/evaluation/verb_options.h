@@ -1,5 +1,5 @@
 // The command line of framelet-bench. In: words. Out: options as values. All verbs but those of real programs take the
-// same ones; a verb says what it falls back on.
+// same options; each verb has its own defaults.
 #pragma once
 
 #include <algorithm>
@@ -19,10 +19,10 @@ class App;
 
 namespace framelet::bench {
 
-/// Where scenes and tables come from unless told otherwise.
+/// Folder from which scenes and tables come unless told otherwise.
 inline std::filesystem::path const source_folder = FRAMELET_SOURCE_DIR;
 
-/// How much a verb measures where it is not told.
+/// Default amounts of a verb's measurement.
 struct Scale {
     Viewport viewport{640, 360};
     double seconds = 2;
@@ -30,7 +30,7 @@ struct Scale {
 };
 
 struct VerbOptions {
-    std::string command; ///< as it was typed, without the folders
+    std::string command; ///< the command as it was typed, without the folders
     std::filesystem::path json_file;
     std::filesystem::path costs_file = source_folder / "tests/evaluation/costs.json";
     bool quick = false;
@@ -40,15 +40,15 @@ struct VerbOptions {
     double megabits = 0;
     double delay_ms = 0;
     bool total = false;
-    std::vector<std::string> rivals_without; ///< which parts they lack
+    std::vector<std::string> rivals_without; ///< parts that the rivals lack
     StudyOptions study;
 
-    // Of one verb each.
+    // The options below belong to one verb each.
     std::vector<int> table_runs;
     std::vector<std::string> without; ///< parts that the ablation leaves out
-    ObservationOptions observation; ///< of the estimators
+    ObservationOptions observation; ///< for `estimators`
     ReportOptions report;
-    std::vector<std::string> live_scenes, clock_scenes; ///< files or names, of the report
+    std::vector<std::string> live_scenes, clock_scenes; ///< files or names, for the report
     std::filesystem::path assets; ///< folder of models, for the report's flights; empty: none
     bool without_live = false;
 };
@@ -56,22 +56,22 @@ struct VerbOptions {
 /// The project's own scene files, in the order of their names.
 std::vector<std::filesystem::path> bundled_scenes();
 
-/// In the order of their names.
+/// Files in a folder with that extension, in the order of their names.
 std::vector<std::filesystem::path> files_in(std::filesystem::path const& folder, char const* extension);
 
-/// The file itself, or else the bundled scene of that name.
+/// Path of a scene: the file itself, or else the bundled scene of that name.
 std::filesystem::path scene_file(std::string const& file_or_name);
 
-/// Puts what was told, or else what `scale` and `scenes` (names; none: all bundled ones) say, into `options.study`.
-/// Throws InputError where the table of costs cannot be read.
+/// Puts the options that were given, or else the defaults of `scale` and `scenes` (names; empty: all bundled ones),
+/// into `options.study`. Throws InputError where the table of costs cannot be read.
 void settle(VerbOptions& options, Scale const& scale, std::vector<std::string> const& scenes);
 
-// The options must outlive the parsing.
+// The options that these functions bind must outlive the parsing.
 
-/// Of a link: Mbit/s, ms each way.
+/// Adds the options of a link: rate in Mbit/s, delay each way in ms.
 void add_link_options(CLI::App& verb, double& megabits, double& delay_ms);
 
-/// Those that verbs share.
+/// Adds the options that verbs share.
 void add_study_options(CLI::App& verb, VerbOptions& options);
 
 void add_compare_options(CLI::App& verb, VerbOptions& options);

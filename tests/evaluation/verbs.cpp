@@ -87,7 +87,7 @@ void fall_back(List& chosen, List usual) {
     chosen = chosen.empty() ? std::move(usual) : chosen;
 }
 
-/// Methods, machines and links of the report's runs on the virtual clock, where it is not told.
+/// Chooses methods, machines and links of the report's runs on the virtual clock, where they are not given.
 void choose_runs(VerbOptions& options) {
     ReportOptions& report = options.report;
     StudyOptions& study = options.study;
@@ -101,11 +101,11 @@ void choose_runs(VerbOptions& options) {
     fall_back(report.machines, {0.5, 1, 2, 5, 10, 20, 60});
     fall_back(report.links, {0.5, 2, 5, 20, 80});
     std::ranges::copy_if(study.methods, std::back_inserter(report.linked_methods), [](std::string const& method) {
-        return method != "oracle" && method != "tsar" && method != "afr"; // they know no link
+        return method != "oracle" && method != "tsar" && method != "afr"; // these methods do not adapt to a link
     });
 }
 
-/// What it runs of real programs, and what pictures it takes.
+/// Chooses what the report runs of the real programs, and what pictures it takes.
 void choose_programs(VerbOptions& options) {
     ReportOptions& report = options.report;
     report.live.methods = {"framelet", "framelet-unwarped", "framed+h264", "framed+warp"};

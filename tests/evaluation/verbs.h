@@ -1,4 +1,4 @@
-// The verbs of framelet-bench but those of real programs: each is one question. A verb prints what it found, draws
+// The verbs of framelet-bench but those of real programs: each answers one question. A verb prints what it found, draws
 // charts where it is told to, and returns the figures.
 #pragma once
 
@@ -15,10 +15,11 @@ namespace framelet::bench {
 struct Verb {
     char const* name;
     char const* question;
-    nlohmann::json (*answer)(VerbOptions& options); ///< of settled options
-    std::vector<std::string> scenes; ///< where none are told; empty: all bundled ones
+    nlohmann::json (*answer)(VerbOptions& options); ///< takes options after `settle`
+    std::vector<std::string> scenes; ///< default scenes; empty: all bundled ones
     Scale usual{}, quick{.viewport = {256, 144}, .seconds = 1};
-    void (*add_options)(CLI::App& verb, VerbOptions& options) = nullptr; ///< what is its own; null: nothing
+    /// Adds the options of this verb alone; null: it has none.
+    void (*add_options)(CLI::App& verb, VerbOptions& options) = nullptr;
 };
 
 std::span<Verb const> verbs();

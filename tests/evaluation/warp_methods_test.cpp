@@ -1,4 +1,5 @@
-// Methods whose viewer moves what it holds: the camera's own motion, and whole frames with depth beside those without.
+// Tests methods whose viewer moves what it holds: the camera's own motion, and whole frames with depth beside those
+// without.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -38,14 +39,14 @@ TEST_F(Warp, FramesAreMovedToWhereTheCameraIs) {
     auto const scene = load_bench_scene(bundled("vehicle_chase"));
     RunParameters parameters = small_run({96, 64}, 20);
     parameters.link = {.bits_per_second = 20e6, .delay_seconds = 0.05};
-    parameters.rivals = plain_rivals; // which leave all of the delay to the viewer
+    parameters.rivals = plain_rivals; // they leave all of the delay to the viewer
     auto const found = records(*scene, {"framed+h264", "framed+warp"}, parameters);
     EXPECT_LT(mean_mse(found[1]), 0.6 * mean_mse(found[0]));
-    // Shapes and tracks travel as well, within the same limit.
+    // More bytes are sent since shapes and tracks travel as well, within the same limit.
     EXPECT_GT(found[1].run.bytes, found[0].run.bytes);
 }
 
-/// The link is so long that nothing of the run knows of the turn.
+/// The link's delay is so long that no message of the run knows of the turn.
 TEST_F(Warp, ATurnShowsBeforeAnyMessageKnowsOfIt) {
     auto const scene = load_bench_scene(bundled("teleport"));
     scene->turn = {.degrees_per_second = 30, .reach_degrees = 30};

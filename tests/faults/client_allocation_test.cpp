@@ -1,4 +1,4 @@
-// Memory that runs out anywhere in a viewer: a call throws, or the session ends and another begins, or nothing is
+// Lets memory run out anywhere in a viewer: a call throws, or the session ends and another begins, or nothing is
 // missed; what goes on comes to the exact picture.
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ ConnectionOptions options_of(std::string const& address) {
     return options;
 }
 
-/// Until the picture is complete; false where that does not come.
+/// Updates the picture until it is complete; false where that does not come.
 bool come_to_rest(ClientCore& core, Picture& picture) {
     std::vector<PixelRect> changed;
     auto const deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);

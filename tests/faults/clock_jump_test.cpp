@@ -19,7 +19,8 @@ std::atomic<time_t> jump = 0; ///< seconds by which the system's clock has been 
 
 } // namespace
 
-/// Whatever this program and its libraries read of the system's clocks goes through here.
+/// Stands in for the library's function: whatever this program and its libraries read of the system's clocks goes
+/// through here.
 extern "C" int clock_gettime(clockid_t clock, timespec* time) noexcept {
     int const result = static_cast<int>(::syscall(SYS_clock_gettime, clock, time));
     if (result == 0 && clock == CLOCK_REALTIME) {
@@ -69,7 +70,8 @@ TEST(ClockJump, ASessionGoesOn) {
     EXPECT_NEAR(core.clock().time - scene_began, passed, 30) << "nor does the scene's clock jump";
 }
 
-/// Of all that is delivered: a certificate's dates are OpenSSL's, names of files and lines of logs decide nothing.
+/// Looks at the sources of all that is delivered: a certificate's dates are OpenSSL's, names of files and lines of logs
+/// decide nothing.
 TEST(ClockJump, NobodyReadsTheSystemsClockButForNamesAndLogs) {
     std::set<std::string> const names_and_logs{"client/window/kept/user_files.cpp", "client/windowless_main.cpp"};
     char const* const words[] = {"system_clock",   "std::time(", "::time(",    "gettimeofday",

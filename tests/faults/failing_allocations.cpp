@@ -23,7 +23,7 @@ std::atomic<std::int64_t> live = 0;
 std::atomic<bool> is_suspended = false;
 thread_local bool spared = false;
 
-/// Embree does not survive it where several threads build.
+/// True where Embree allocates, which does not survive a failure where several threads build.
 bool is_for_embree() {
     bool const before = std::exchange(spared, true); // the first backtrace loads a library
     std::array<void*, 64> frames{};
@@ -46,7 +46,7 @@ bool is_to_fail() {
         return false;
     }
     if (is_for_embree()) {
-        --counted; // the next one instead
+        --counted; // the next allocation is to fail instead
         return false;
     }
     return true;
@@ -139,7 +139,7 @@ std::int64_t live_allocations() {
 }
 
 std::vector<std::uint64_t> sampled_allocations(std::uint64_t count, std::size_t samples) {
-    // Each is some share larger than the last, and by 1 at least.
+    // Each number is some share larger than the last, and by 1 at least.
     std::vector<std::uint64_t> numbers;
     double const share = std::pow(static_cast<double>(count) + 1, 1.5 / static_cast<double>(samples));
     for (double number = 1; number <= static_cast<double>(count);

@@ -7,9 +7,9 @@
 
 namespace framelet::test {
 
-/// From here on the `number`th allocation of all threads together throws std::bad_alloc, and so do the `more` after it;
-/// 1 is the next one. Threads within `SparedFromFailure` are not counted, and Embree's do
-/// not fail. Ends with its scope.
+/// Makes the `number`th allocation of all threads together from here on throw std::bad_alloc, and the `more` after it;
+/// 1 is the next one. Threads within `SparedFromFailure` are not counted, and Embree's do not fail. Ends with its
+/// scope.
 class FailingAllocation {
 public:
     explicit FailingAllocation(std::uint64_t number, std::uint64_t more = 0);
@@ -17,15 +17,15 @@ public:
     FailingAllocation(FailingAllocation const&) = delete;
     FailingAllocation& operator=(FailingAllocation const&) = delete;
 
-    /// Whether it has come to that.
+    /// True once an allocation was to fail.
     bool has_failed() const;
-    /// So far, failed ones included.
+    /// Allocations that have been counted so far, failed ones included.
     std::uint64_t count() const;
-    /// While it is suspended no thread's allocations count or fail.
+    /// Suspends it or lets it go on: while it is suspended no thread's allocations count or fail.
     void suspend(bool suspended);
 };
 
-/// In its scope this thread's allocations neither count nor fail.
+/// Spares a thread: in its scope this thread's allocations neither count nor fail.
 class SparedFromFailure {
 public:
     SparedFromFailure();
@@ -40,8 +40,8 @@ private:
 /// Allocations that have not been given back, of the whole process.
 std::int64_t live_allocations();
 
-/// Which allocations of `count` are to fail: all of the first ones, then ever fewer, about `samples` together. The last
-/// one is beyond all, so that nothing fails.
+/// Numbers of allocations of `count` that are to fail: all of the first ones, then ever fewer, about `samples`
+/// together. The last one is beyond all, so that nothing fails.
 std::vector<std::uint64_t> sampled_allocations(std::uint64_t count, std::size_t samples);
 
 } // namespace framelet::test

@@ -1,4 +1,4 @@
-// Memory that runs out while several threads ask for values of their own.
+// Lets memory run out while several threads ask for values of their own.
 #include <atomic>
 #include <optional>
 #include <vector>
@@ -16,7 +16,7 @@ namespace {
 TEST(PerThreadAllocation, FailsAndNothingIsDestroyedThatWasNotMade) {
     tbb::global_control const threads(tbb::global_control::max_allowed_parallelism, 4);
     std::atomic<int> started = 0;
-    tbb::parallel_for(0, 10'000, [&](int) { ++started; }); // what starts the threads does not survive it
+    tbb::parallel_for(0, 10'000, [&](int) { ++started; }); // starting the threads now: that would not survive a failure
     int failures = 0;
     for (int turn = 0; turn < 3000; ++turn) {
         for (std::uint64_t number = 1; number <= 14; ++number) {
@@ -26,7 +26,7 @@ TEST(PerThreadAllocation, FailsAndNothingIsDestroyedThatWasNotMade) {
                 values->prepare();
                 tbb::parallel_for(0, 64, [&](int) {
                     for (int i = 0; i < 100; ++i) {
-                        ++started; // so that others come to take a part
+                        ++started; // takes time, so that other threads come to take a part
                     }
                     std::vector<int>& own = values->local();
                     own.resize(own.size() + 1);

@@ -1,4 +1,4 @@
-// docs/SECURITY.md: each promise names tests, and all that it names are there.
+// Checks docs/SECURITY.md: each promise names tests, and all that it names are there.
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -19,7 +19,7 @@ std::string text_of(std::filesystem::path const& file) {
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// As suite.name, fuzz targets by their own names.
+/// Names of all tests as suite.name, and of fuzz targets by their own names.
 std::set<std::string> tests_of_the_sources() {
     std::set<std::string> names{"framelet-bench soak"};
     std::regex const test(R"(TEST(?:_F|_P)?\((\w+),\s*(\w+)\))");

@@ -1,4 +1,4 @@
-// Memory that runs out anywhere in a running server: at most the session for which it was wanted ends, the others and
+// Lets memory run out anywhere in a running server: at most the session for which it was wanted ends, the others and
 // whoever comes next are served, and nothing is kept of who has left.
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ public:
             return batch != nullptr && batch->moment && batch->moment->view.number == number_;
         });
     }
-    /// Its connection is cut, and it resumes its session by another.
+    /// Cuts its connection and resumes its session by another.
     void come_back() {
         viewer_.reset();
         viewer_ = std::make_unique<RawViewer>(port_, hello_);
@@ -43,7 +43,8 @@ private:
     std::uint64_t number_ = 0;
 };
 
-/// One after the other, who may be refused while places are being given back.
+/// True where two viewers are served at once before a minute is over; they may be refused while places are being given
+/// back.
 bool both_are_served(std::uint16_t port) {
     auto const deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
     while (std::chrono::steady_clock::now() < deadline) {
@@ -56,7 +57,8 @@ bool both_are_served(std::uint16_t port) {
     return false;
 }
 
-/// Descriptors come back a moment after a connection has ended.
+/// Waits until the process has so many descriptors: they come back a moment after a connection has ended. False where
+/// that takes more than a minute.
 bool come_back_to(std::size_t descriptors) {
     auto const deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
     while (bench::holdings_of(::getpid()).descriptors != descriptors) {
@@ -68,8 +70,8 @@ bool come_back_to(std::size_t descriptors) {
     return true;
 }
 
-/// What is done while an allocation may fail: of one who was there before, one who comes, and one who comes for a
-/// moment. How many of the two sessions go on.
+/// Does what is done while an allocation may fail: one viewer was there before, one comes, sees something and comes
+/// back. Returns how many of the two sessions go on.
 int busy_moment(std::uint16_t port, Looker& earlier) {
     Looker later(port);
     bool later_goes_on = later.look();
@@ -82,7 +84,7 @@ int busy_moment(std::uint16_t port, Looker& earlier) {
     return (later_goes_on ? 1 : 0) + (earlier_goes_on ? 1 : 0);
 }
 
-/// How many more fail in a row.
+/// The parameter is how many more allocations fail in a row.
 class ServerAllocation : public testing::TestWithParam<std::uint64_t> {};
 INSTANTIATE_TEST_SUITE_P(More, ServerAllocation, testing::Values(0, 4));
 
@@ -94,7 +96,7 @@ TEST_P(ServerAllocation, FailsAndTheOthersGoOn) {
     ASSERT_TRUE(both_are_served(server.port()));
     std::size_t const descriptors = [&] {
         std::size_t least = 1000;
-        for (int i = 0; i < 400; ++i) { // by then those of the viewers before are closed
+        for (int i = 0; i < 400; ++i) { // by then the descriptors of the viewers before are closed
             least = std::min(least, bench::holdings_of(::getpid()).descriptors);
             std::this_thread::sleep_for(std::chrono::milliseconds(5));
         }

@@ -1,4 +1,4 @@
-// Memory that runs out while one viewer's stream is at work: that stream throws and is gone; another of the same scene
+// Lets memory run out while one viewer's stream is at work: that stream throws and is gone; another of the same scene
 // goes on to the byte as if nothing had been.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -23,11 +23,11 @@ struct PlayedScene {
 /// One viewer's stream, on a clock of its own making.
 class PlayedStream {
 public:
-    /// `offset`: by which its camera is apart from another's.
+    /// `offset`: how far its camera is from that of another stream, metres.
     explicit PlayedStream(float offset) : offset_(offset), stream_(StreamOptions{}, coding::all) {}
 
-    /// What comes before the turn, and the turn as a whole; what it sends goes into `bytes`. A narrow link, so that
-    /// there is loss, prediction, and something to send once more.
+    /// Plays what comes before the turn, and the turn as a whole; what the stream sends goes into `bytes`. The link is
+    /// narrow, so that there is loss, prediction, and something to send once more.
     void play(int turn, PosedScene& scene, Bytes& bytes) {
         double const now = 0.02 * turn;
         if (turn == 0) {
@@ -72,10 +72,10 @@ private:
 struct Played {
     Bytes failing, other; ///< what the two have sent
     bool failed = false;
-    std::uint64_t allocations = 0; ///< of the one that may fail, up to then
+    std::uint64_t allocations = 0; ///< of the stream that may fail, until it did
 };
 
-/// Two streams in turn; the first one's allocation of this number fails.
+/// Plays two streams in turn; the first one's allocation of this number fails.
 Played play(PlayedScene& scene, std::uint64_t number) {
     Played played;
     PlayedStream other(0.5f);
@@ -102,7 +102,7 @@ Played play(PlayedScene& scene, std::uint64_t number) {
     return played;
 }
 
-/// One thread, where the same allocation is the same one each time, and several.
+/// The parameter is the number of threads: one, where the same allocation is the same one each time, and several.
 class StreamAllocation : public testing::TestWithParam<std::size_t> {
     tbb::global_control const threads_{tbb::global_control::max_allowed_parallelism, GetParam()};
 };
@@ -128,7 +128,7 @@ TEST_P(StreamAllocation, FailsAndTheOtherStreamGoesOn) {
     EXPECT_LT(live_allocations() - live, failures / 2) << "what has failed gives back what it had";
 }
 
-/// What is left of a pose half taken does not show, whether it or the one before is wanted next.
+/// Nothing of a pose half taken shows, whether it or the one before is wanted next.
 TEST_P(StreamAllocation, APoseThatCouldNotBeTakenDoesNotShow) {
     constexpr SceneTime times[] = {0, 0.7};
     PlayedScene scene;

@@ -1,4 +1,4 @@
-// Payloads of batches. Input: two bytes, the number of tiles; one byte, the encoding; the payload.
+// Decodes payloads of batches. Input: two bytes, the number of tiles; one byte, the encoding; the payload.
 #include <array>
 
 #include "common/error.h"
@@ -26,7 +26,7 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
     try {
         Batch const batch = codec.decode(encoded, &memory);
         FRAMELET_CHECK(batch.framelets.size() == encoded.tiles.size());
-        // What was taken can be sent again.
+        // A batch that was taken can be sent again.
         codec.encode(batch, &memory);
     } catch (ProtocolError const&) {
     }

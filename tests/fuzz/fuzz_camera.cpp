@@ -1,4 +1,4 @@
-// Camera files: what is taken is a camera at any time.
+// Reads camera files: what is taken is a camera at any time.
 #include <string>
 
 #include "client/core/camera/camera_path.h"

@@ -1,5 +1,5 @@
-// Groups of framelets behind their lengths. Input: one byte, the number of framelets; one byte, odd where they are
-// predicted; a frame.
+// Decodes a group of framelets. Input: one byte, the number of framelets; one byte, odd where they are predicted; a
+// frame.
 #include "common/error.h"
 #include "protocol/codec/color/plane_codec.h"
 
@@ -9,7 +9,7 @@ using namespace framelet;
 
 constexpr Viewport viewport{200, 100};
 
-/// Tiles of all depths.
+/// Framelets whose tiles are of all depths.
 std::vector<DisplayFramelet> framelets_of(std::size_t count) {
     ImagePlane const plane(viewport);
     std::vector<DisplayFramelet> framelets;
@@ -41,7 +41,8 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
     } catch (ProtocolError const&) {
         return 0;
     }
-    // What was taken can be sent again, and arrives as its writer says; the second time with what the first has taught.
+    // Framelets that were taken can be sent again, and arrive as their writer says; the second time with what the first
+    // has taught.
     PlaneModel writer;
     reader = {};
     std::vector<DisplayFramelet> said = framelets, arrived = framelets;

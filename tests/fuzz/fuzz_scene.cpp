@@ -1,5 +1,5 @@
-// Scene files. Input: one byte, the format; what is in the file. Formats whose memory only the system bounds are left
-// out: the sanitizer ends a program that is refused memory.
+// Reads scene files. Input: one byte, the format; what is in the file. Formats whose memory only the system bounds are
+// left out: the sanitizer ends a program that is refused memory.
 #include <array>
 #include <filesystem>
 #include <fstream>

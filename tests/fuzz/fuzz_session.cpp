@@ -20,7 +20,7 @@ namespace {
 
 using namespace framelet;
 
-/// Larger pictures are refused, so that one input takes little time.
+/// Most pixels of a picture: larger ones are refused, so that one input takes little time.
 constexpr int most_pixels = 160 * 120;
 constexpr std::size_t most_turns = 64;
 constexpr double turn_seconds = 0.01;
@@ -31,7 +31,7 @@ struct Served {
     PosedScene posed{scene, default_clips(scene), render_scene};
 };
 
-/// What the server and its loop do for one viewer.
+/// A viewer, with what the server and its loop do for it.
 class Viewer {
 public:
     explicit Viewer(Served& served) : served_(served) {
@@ -63,7 +63,7 @@ public:
     int ends() const { return ends_; }
     void say(Message const& message) { connection_->bring(message); }
 
-    /// What fails is our own mistake: no viewer may lead to an exception.
+    /// Gives the viewer a turn. What fails in it is our own mistake: no viewer may lead to an exception.
     void take_turn() {
         now_ += turn_seconds;
         session_->take_events(events_);

@@ -1,4 +1,4 @@
-// Shapes of a group of framelets behind their lengths. Input: one byte, the number of framelets; a frame.
+// Decodes shapes of a group of framelets. Input: one byte, the number of framelets; a frame.
 #include <algorithm>
 #include <cmath>
 
@@ -9,7 +9,7 @@ namespace {
 
 using namespace framelet;
 
-/// Tiles of all sizes, here and there.
+/// Place of a tile: tiles of all sizes, here and there.
 TilePosition place_of(std::size_t number) {
     constexpr std::int32_t least_bits = 2, sizes = 6;
     auto const i = static_cast<std::int32_t>(number);
@@ -27,7 +27,7 @@ void read(ShapeModel& model, std::span<std::uint8_t const> bytes, std::span<Fram
     }
 }
 
-/// Whether a shape is what a reader makes of another one: its planes are quantised, the rest but for depths of
+/// True where a shape is what a reader makes of another one: its planes are quantised, the rest but for depths of
 /// samples and velocities is the same, and these are within half a unit.
 bool is_quantised(FrameletShape const& got, FrameletShape const& sent, int side_bits) {
     if (got.layer_count != sent.layer_count || got.decorrelation != sent.decorrelation ||
@@ -84,7 +84,7 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
     } catch (ProtocolError const&) {
         return 0;
     }
-    // What was taken can be sent again, and arrives; the second time with what the first has taught.
+    // Shapes that were taken can be sent again, and arrive; the second time with what the first has taught.
     reading = {};
     ShapeModel writing;
     RangeWriter writer;

@@ -1,5 +1,5 @@
-// What arrives on a connection, byte by byte, from one who sends it all at once and then says no more. Input: one byte,
-// whether it is a viewer that listens; what the peer sends.
+// Reads what arrives on a connection, byte by byte, from one who sends it all at once and then says no more. Input: one
+// byte, whether it is a viewer that listens; what the peer sends.
 #include <span>
 
 #include <boost/asio/write.hpp>

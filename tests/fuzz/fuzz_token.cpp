@@ -1,5 +1,5 @@
-// What users keep of secrets: files of tokens and of known servers, whatever is in them. Input: one byte, what the file
-// is; its content.
+// Reads what users keep of secrets: files of tokens and of known servers, whatever is in them. Input: one byte, what
+// the file is; its content.
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -16,7 +16,7 @@ namespace {
 
 using namespace framelet;
 
-/// What is read is a token that can be sent, and lets in nobody who knows less or other than it.
+/// Reads a token: what is read can be sent, and lets in nobody who knows less or other than it.
 void read_token(std::filesystem::path const& file) {
     std::string const token = read_token_file(file);
     FRAMELET_CHECK(token.size() >= min_token_bytes);

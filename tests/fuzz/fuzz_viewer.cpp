@@ -1,5 +1,5 @@
-// What a viewer does with the messages of a server, one after the other: batches into the memory that later ones are
-// decoded with, and into the cache. Input: bodies of messages, each with its length, two bytes, in front.
+// Does what a viewer does with the messages of a server, one after the other: batches into the memory that later ones
+// are decoded with, and into the cache. Input: bodies of messages, each with its length, two bytes, in front.
 #include <algorithm>
 
 #include "common/error.h"

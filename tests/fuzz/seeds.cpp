@@ -1,4 +1,4 @@
-// fuzz_seeds FOLDER: well-formed inputs of every fuzz target, one folder each.
+// The program `fuzz_seeds FOLDER`: writes well-formed inputs of every fuzz target, one folder each.
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -13,7 +13,7 @@ namespace {
 
 using namespace framelet;
 
-/// Slopes, an edge, and noise of growing strength; `qp` of the framelets counts up from the first.
+/// A batch of slopes, an edge, and noise of growing strength; `qp` of the framelets counts up from the first.
 Batch make_batch(std::size_t count, std::uint8_t first_qp) {
     std::mt19937 random(static_cast<std::uint32_t>(count));
     Batch batch;
@@ -33,7 +33,7 @@ Batch make_batch(std::size_t count, std::uint8_t first_qp) {
     return batch;
 }
 
-/// An edge between two layers, one of them on a moving body, and an outlier.
+/// Adds shapes: an edge between two layers, one of them on a moving body, and an outlier.
 void add_shapes(Batch& batch) {
     for (std::size_t i = 0; i < batch.framelets.size(); ++i) {
         FrameletShape& shape = batch.shapes.emplace_back();
@@ -61,7 +61,7 @@ void append(std::vector<std::uint8_t>& out, ByteView bytes) {
     }
 }
 
-/// A message alone, and as the only one of a connection.
+/// Writes a message alone, and as the only one of a connection.
 void write_message(std::filesystem::path const& folder, Message const& message, std::string const& name) {
     std::vector<std::uint8_t> body;
     append(body, encode_message(message));
@@ -88,7 +88,7 @@ void write_batch(std::filesystem::path const& folder, EncodedBatch const& encode
     write_message(folder, encoded, "batch_" + name);
 }
 
-/// The batch as it moves right, so that the later ones are predicted from the first.
+/// Writes the batch as it moves right, so that the later ones are predicted from the first.
 void write_sequence(std::filesystem::path const& folder, Batch batch, std::string const& name) {
     BatchCodec codec;
     BatchMemory memory;
@@ -172,7 +172,8 @@ void write_files(std::filesystem::path const& folder) {
                                              "2/1/1 3/1/1\nf 1//1 2//1 3//1\n"));
 }
 
-/// Of a viewer after its hello, which answers what comes as long as it is in order; between them turns without a word.
+/// Writes what a viewer says after its hello, which answers what comes as long as it is in order; between the messages
+/// are turns without a word.
 void write_session(std::filesystem::path const& folder, std::string const& name, std::vector<Message> const& messages) {
     std::vector<std::uint8_t> bytes;
     for (Message const& message : messages) {

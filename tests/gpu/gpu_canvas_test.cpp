@@ -1,5 +1,5 @@
-// What the graphics card paints beside what the processor paints of the same, on whatever OpenGL there is: in tests
-// Mesa's on the processor.
+// Compares what the graphics card paints with what the processor paints of the same, on whatever OpenGL there is: in
+// tests Mesa's on the processor.
 #include "client/gpu/gpu_canvas.h"
 
 #include <algorithm>
@@ -16,10 +16,10 @@ namespace {
 
 constexpr Viewport size{336, 200}; // of whole blocks in neither direction
 
-/// Single pixels of what is thin, of 67200, counted in both pictures: no outline.
+/// Most pixels, counted in both pictures of 67200, that may have strayed: single ones of what is thin, no outline.
 constexpr int most_strayed = 12;
 
-/// Means over all channels of all pixels, channels in [0, 1].
+/// Mean differences over all channels of all pixels, channels in [0, 1].
 struct Difference {
     double absolute = 0, squared = 0;
 };
@@ -38,13 +38,13 @@ Difference difference(Picture const& a, Picture const& b) {
     return {out.absolute / values, out.squared / values};
 }
 
-/// Whether both are holes, or of one surface.
+/// True where both inverse depths are of holes, or of one surface.
 bool is_same_surface(float a, float b) {
     return a == b || (std::min(a, b) >= 0 && std::abs(a - b) <= 0.02f * std::max(a, b) + 1e-6f);
 }
 
-/// Pixels that show another surface than the other picture does there or at any pixel beside it: there an outline is
-/// more than a pixel away.
+/// Number of pixels that show another surface than the other picture does there or at any pixel beside it: there an
+/// outline is more than a pixel away.
 int strayed_pixels(std::span<float const> depths, std::span<float const> other) {
     int out = 0;
     for (int y = 0; y < size.height; ++y) {
@@ -70,7 +70,7 @@ std::vector<Tile> shown_of(Reprojector const& reprojector, std::size_t slot) {
     return tiles;
 }
 
-/// A session that is shown by both.
+/// A session whose pictures are painted by both, the processor and the card.
 struct Both {
     SceneSession session;
     Holder held{size};
@@ -103,7 +103,7 @@ protected:
     }
     void TearDown() override { canvas_.reset(); }
 
-    /// The errors of every fifth of so many pictures, of a camera that goes as it is told.
+    /// Checks the errors of every fifth of so many pictures, seen by a camera that goes as `camera_at` tells.
     void compare(std::string const& scene, int pictures,
                  std::function<Camera(SceneSession&, double)> const& camera_at) {
         Both both(scene);
@@ -157,7 +157,7 @@ TEST_F(GpuCanvasTest, PaintsAsTheProcessorWhereTheCameraStands) {
     }
 }
 
-/// Towards what was never seen: much of the picture is made up.
+/// The camera turns towards what was never seen: much of the picture is made up.
 TEST_F(GpuCanvasTest, PaintsAsTheProcessorWhereTheCameraTurnsQuickly) {
     compare("vehicle_chase", 15, [](SceneSession& session, double now) {
         Camera camera = session.camera_at(now);

@@ -1,5 +1,5 @@
-// A session of a bundled scene on a virtual clock, without a link: what a viewer has been sent at a time. In: a scene
-// file, a size. Out: batches.
+// A session of a bundled scene on a virtual clock, without a link: it has what a viewer has been sent at a time. In: a
+// scene file, a size. Out: batches.
 #pragma once
 
 #include <filesystem>
@@ -33,7 +33,7 @@ public:
         stream_->take({0, ViewerSettings{0, 0, true}});
     }
 
-    /// The scene's own, or the default one.
+    /// The scene's own camera at this time, or the default one.
     Camera camera_at(SceneTime time) {
         return scene_.cameras.empty() ? default_camera(scene_bounds(scene_, posed_.pose_of(0)))
                                       : posed_.camera(0, time);
@@ -90,14 +90,14 @@ private:
     SceneTime scene_time_ = 0;
 };
 
-/// What a viewer holds, as `PictureMaker` does.
+/// Holds what a viewer holds, as `PictureMaker` does.
 struct Holder {
     FrameletPool pool;
     BodyMotions motions;
 
     explicit Holder(Viewport viewport) : pool(ImagePlane(viewport)) {}
 
-    /// `shown`: tells what of a slot showed, as `Reprojector::add_shown`. Returns what is evicted.
+    /// Inserts a batch. `shown` tells what of a slot showed, as `Reprojector::add_shown`. Returns what is evicted.
     std::vector<SentTile> insert(Batch const& batch,
                                  std::function<bool(std::size_t, std::vector<Tile>&)> const& shown) {
         for (BodyTrack const& track : batch.tracks) {

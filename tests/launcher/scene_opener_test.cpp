@@ -1,4 +1,4 @@
-// What the window does with files that are dropped on it, with the real server.
+// Tests of what the window does with files that are dropped on it, with the real server.
 #include "client/window/scene_opener.h"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ std::unique_ptr<ClientCore> connect(ConnectionOptions const& options) {
     return std::make_unique<ClientCore>(options);
 }
 
-/// Nothing where the file is not opened.
+/// The session with the file's scene; nothing where the file is not opened.
 std::optional<Connection> opened(SceneOpener& opener, std::string const& file) {
     opener.open({file});
     std::optional<Connection> out;

@@ -1,5 +1,5 @@
-// framelet with the real server, and with a viewer that needs no display: a script in its place. With the real viewer
-// where there is Xvfb to show it.
+// Tests of framelet with the real server, and with a viewer that needs no display: a script in its place. With the real
+// viewer where there is Xvfb to show it.
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>
@@ -28,8 +28,8 @@ bool lives(pid_t pid) {
     return ::kill(pid, 0) == 0;
 }
 
-/// A folder with framelet in it, the real server and this in place of the viewer. The script has the server's process
-/// in $server, the folder in $here.
+/// A folder with framelet in it, the real server, and this script in place of the viewer. The script has the server's
+/// process in $server, the folder in $here.
 class Programs {
 public:
     explicit Programs(std::string const& viewer) {
@@ -56,7 +56,7 @@ public:
     bool viewer_runs() const {
         return eventually([&] { return std::filesystem::exists(folder_.path() / "pids"); });
     }
-    /// Of viewer and server.
+    /// The processes of viewer and server.
     std::pair<pid_t, pid_t> pids() const {
         std::istringstream text(read("pids"));
         std::pair<pid_t, pid_t> out(0, 0);

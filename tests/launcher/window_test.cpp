@@ -1,5 +1,5 @@
-// The real window on a screen that nobody sees, with keys that come from the X server as a keyboard's do. What they did
-// is read from the files that the window saves into its folder.
+// Tests of the real window on a screen that nobody sees, with keys that come from the X server as a keyboard's do. What
+// they did is read from the files that the window saves into its folder.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -50,7 +50,7 @@ protected:
                                                             "--painter", painter_});
     }
 
-    /// One that the window may not see yet, or that comes too early, is to be pressed again.
+    /// Presses a key. One that the window may not see yet, or that comes too early, is to be pressed again.
     void press(std::string const& key) {
         Process tool("/usr/bin/xdotool", {"key", key});
         EXPECT_EQ(tool.wait(patience), 0) << tool.errors();
@@ -67,7 +67,7 @@ protected:
         return out;
     }
 
-    /// Whether some camera that was saved looks along this axis.
+    /// True where some camera that was saved looks along this axis.
     bool has_looked_along(std::array<double, 3> const& axis) const {
         for (fs::path const& file : saved(".camera.json")) {
             auto const camera = nlohmann::json::parse(content_of(file), nullptr, false);
@@ -87,7 +87,7 @@ protected:
         return false;
     }
 
-    /// What the window looks from now, as it saves it.
+    /// The camera that the window looks from now, as it saves it.
     nlohmann::json newest_camera() {
         auto const before = saved(".camera.json").size();
         std::vector<fs::path> files;
@@ -167,7 +167,7 @@ TEST_F(WindowTest, TheMouseLooksAroundUntilEscapeEndsThat) {
             move_mouse(20, 0);
         }
         camera = newest_camera();
-        if (camera == before) { // it has been switched off again, where the first one was seen late
+        if (camera == before) { // mouse look is off again, where the first key was seen late
             return false;
         }
         press("Escape");
@@ -177,7 +177,7 @@ TEST_F(WindowTest, TheMouseLooksAroundUntilEscapeEndsThat) {
         EXPECT_NEAR(camera["position"][i].get<double>(), before["position"][i].get<double>(), 1e-3);
         EXPECT_NEAR(camera["up"][i].get<double>(), before["up"][i].get<double>(), 1e-3);
     }
-    // To the right of -Z.
+    // The camera looks to the right of -Z.
     EXPECT_GT(camera["target"][0].get<double>() - camera["position"][0].get<double>(), 0.1);
     nlohmann::json const still = newest_camera(); // after Escape, and the window is still there
     move_mouse(-50, 0);
@@ -199,7 +199,7 @@ TEST_F(WindowTest, KeepsBookmarksForTheSceneFile) {
     EXPECT_EQ(name.size(), std::string("windmill-0123456789abcdef.json").size()) << name;
 }
 
-/// What moves is painted by OpenGL here, too, where it is a program on the processor.
+/// OpenGL paints what moves here, also where it is a program on the processor.
 class PaintedWindowTest : public WindowTest {
 protected:
     PaintedWindowTest() {

@@ -1,4 +1,4 @@
-// The real server and the real windowless client as processes, over a loopback socket.
+// Runs the real server and the real windowless client as processes, over a loopback socket.
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
@@ -56,7 +56,8 @@ struct StillCamera {
     Camera camera() const { return look_at(position, target, {0, 1, 0}, fov_degrees * 3.14159265f / 180); }
 };
 
-/// What the server itself would draw of the scene at this time, with neither tiles nor wire, 64 samples a pixel.
+/// The picture that the server itself would draw of the scene at this time, with neither tiles nor wire, 64 samples a
+/// pixel.
 Picture direct_render(Camera const& camera, Viewport viewport, SceneTime time) {
     Scene const scene = import_scene(scene_file);
     auto const clips = default_clips(scene);
@@ -317,7 +318,7 @@ TEST(Loopback, TokenIsAsked) {
     }
 }
 
-/// For 127.0.0.1, signed with its own key; the files of both.
+/// Makes a certificate for 127.0.0.1, signed with its own key; returns the files of both.
 std::pair<std::string, std::string> make_certificate(TemporaryFolder const& folder, std::string const& name) {
     std::string const key = (folder.path() / (name + "-key.pem")).string();
     std::string const certificate = (folder.path() / (name + "-cert.pem")).string();
@@ -451,7 +452,7 @@ TEST(Loopback, BadInputGetsOneLineAndTheRightExitCode) {
         EXPECT_NE(errors.find(usage.says, last), std::string::npos) << errors;
         EXPECT_EQ(std::count(errors.begin() + static_cast<std::ptrdiff_t>(last), errors.end(), '\n'), 1) << errors;
     }
-    // What is no part of the scene is found out before the scene is looked at.
+    // These options are no part of the scene, and are found to be wrong before the scene is looked at.
     ServerProcess const other(scene_file);
     std::string const port = other.address().substr(other.address().rfind(':') + 1);
     std::vector<std::vector<std::string>> const early{{"--port", port},

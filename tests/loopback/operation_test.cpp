@@ -1,4 +1,4 @@
-// What those who run the programs meet: what is asked of a scene without serving it, options in a file, and the
+// Tests what those who run the programs meet: what is asked of a scene without serving it, options in a file, and the
 // port for those who watch over a server.
 #include <algorithm>
 #include <csignal>
@@ -64,7 +64,7 @@ TEST(Operation, OptionsComeFromAFileToo) {
     EXPECT_TRUE(has(absent.errors(), "absent.toml")) << absent.errors();
 }
 
-/// Of a program's first thread; those that it starts have it from there.
+/// Niceness of a program's first thread; those that it starts have it from there.
 int niceness(pid_t pid) {
     return ::getpriority(PRIO_PROCESS, static_cast<id_t>(pid));
 }
@@ -80,7 +80,7 @@ TEST(Operation, AServerGivesWayToOtherProgramsUnlessToldOtherwise) {
     EXPECT_TRUE(has(wrong.errors(), "0 to 19")) << wrong.errors();
 }
 
-/// That a process has in memory, MB.
+/// Resident memory of a process, MB.
 double resident_megabytes(pid_t pid) {
     std::ifstream file("/proc/" + std::to_string(pid) + "/status");
     for (std::string line; std::getline(file, line);) {
@@ -144,7 +144,7 @@ double metric(std::string const& page, std::string const& name) {
     return at == std::string::npos ? -1 : std::stod(page.substr(at + name.size() + 2));
 }
 
-/// Where it answers, as it says it.
+/// Address of the port for figures, as the server says it.
 std::string metrics_address(ServerProcess& server) {
     std::string const before = "metrics at http://";
     for (auto const end = std::chrono::steady_clock::now() + patience; std::chrono::steady_clock::now() < end;) {
@@ -193,7 +193,7 @@ TEST(Operation, WhoAsksWithoutEndKeepsNobodyFromTheScene) {
     Process client(FRAMELET_CLIENT, {server.address(), "--size", "64x64", "--until-converged"});
     EXPECT_EQ(client.wait(patience), 0) << client.errors();
     silent.clear();
-    bool answers = false; // once it has seen that the others are gone
+    bool answers = false; // the port does once it has seen that the others are gone
     for (auto const end = std::chrono::steady_clock::now() + patience;
          !answers && std::chrono::steady_clock::now() < end;) {
         try {

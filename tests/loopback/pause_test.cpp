@@ -17,7 +17,7 @@ using namespace std::chrono_literals;
 constexpr auto patience = 120s;
 constexpr auto pause = 7s; ///< longer than a viewer waits for a word from its server
 
-/// Through keys for so many seconds, and then stands.
+/// A camera path, as JSON, that flies for so many seconds and then stands.
 std::string flight(double seconds) {
     nlohmann::json const keys = {{{"time", 0}, {"position", {9, 4, 12}}, {"target", {0, 1, 0}}},
                                  {{"time", seconds}, {"position", {-6, 3, -10}}, {"target", {0, 1, 0}}}};
@@ -50,7 +50,7 @@ struct Paused : testing::Test {
     ServerProcess server{FRAMELET_SOURCE_DIR "/scenes/vehicle_chase.glb", {"--paused", "--exposure", "0"}};
     Picture const whole = FlyingClient(server.address(), 0.1).finish();
 
-    /// Of one of the two programs, in the middle of a flight.
+    /// The final picture, where one of the two programs has been stopped for a while in the middle of a flight.
     Picture after_pause(FlyingClient& client, Process& stopped) {
         std::this_thread::sleep_for(2s);
         EXPECT_TRUE(client.process().running()) << client.process().errors();

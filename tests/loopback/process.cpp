@@ -32,7 +32,7 @@ std::vector<std::string> server_arguments(std::string const& scene, std::vector<
     return options;
 }
 
-/// Closed at the end of its scope: the child has its own.
+/// A file that is closed at the end of its scope: the child has its own descriptor.
 class File {
 public:
     File(std::filesystem::path const& path, int flags) : descriptor(::open(path.c_str(), flags | O_CLOEXEC, 0600)) {}

@@ -48,7 +48,7 @@ private:
     Child child_;
 };
 
-/// Waits until that holds; false where it does not within two minutes.
+/// Waits until a condition holds; false where it does not within two minutes.
 bool eventually(std::function<bool()> const& holds);
 
 /// framelet-server on a free port of 127.0.0.1, or another program that says where it listens as that does, ready for

@@ -1,5 +1,5 @@
-// docs/python_client.py, which knows of the protocol what PROTOCOL.md says: its picture is the one that framelet-client
-// has of the same scene.
+// Runs docs/python_client.py, which knows of the protocol what PROTOCOL.md says: its picture is the one that
+// framelet-client has of the same scene.
 #include <cstdlib>
 #include <vector>
 
@@ -15,7 +15,7 @@ using namespace std::chrono_literals;
 
 std::string const scene_file = FRAMELET_SOURCE_DIR "/scenes/vehicle_chase.glb";
 std::string const program = FRAMELET_SOURCE_DIR "/docs/python_client.py";
-std::string const python = "/usr/bin/python3"; // the one that Debian's packages are for
+std::string const python = "/usr/bin/python3"; // the Python that Debian's packages are for
 constexpr auto patience = 120s;
 
 class PythonClient : public testing::Test {
@@ -50,7 +50,7 @@ TEST_F(PythonClient, ShowsWhatFrameletClientShows) {
     for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
         sum += std::abs(int{picture.rgba[i]} - int{expected.rgba[i]});
     }
-    // Where the server is so slow that ten seconds are not enough, the finest samples are missing.
+    // The bound allows for a server so slow that ten seconds are not enough, where the finest samples are missing.
     EXPECT_LT(sum / static_cast<double>(picture.rgba.size()), 2) << "levels of 255";
 }
 

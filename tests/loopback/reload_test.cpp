@@ -1,5 +1,5 @@
-// The real server while its scene changes: by itself with --watch, on SIGHUP without; viewers stay, and what does not
-// load costs nobody anything.
+// Runs the real server while its scene changes: by itself with --watch, on SIGHUP without; viewers stay, and what does
+// not load costs nobody anything.
 #include <csignal>
 #include <fstream>
 #include <memory>
@@ -30,7 +30,7 @@ std::size_t times(std::string const& text, std::string const& part) {
     return count;
 }
 
-/// One that looks until it is told otherwise.
+/// A viewer that looks until it is told otherwise.
 struct Viewer {
     explicit Viewer(std::string const& address) {
         ConnectionOptions options;
@@ -65,7 +65,7 @@ struct Reloading : testing::Test {
     std::string const file = (folder.path() / "scene.glb").string();
 
     Reloading() { put("windmill.glb"); }
-    /// As careful programs save: the whole file at once.
+    /// Saves the scene as careful programs do: the whole file at once.
     void put(char const* name) const {
         fs::copy_file(scenes / name, folder.path() / "new", fs::copy_options::overwrite_existing);
         fs::rename(folder.path() / "new", file);

@@ -11,7 +11,7 @@ namespace {
 
 struct Replayed {
     std::unique_ptr<FrameletStream> stream;
-    bool sends = false; ///< what was learnt last
+    bool sends = false; ///< what was learnt last is to be sent
 };
 
 } // namespace

@@ -80,7 +80,7 @@ TEST(Replay, SoIsOneWhoseViewerFliesThroughAStillScene) {
     expect_identical(session.replayed());
 }
 
-/// With so many threads a batch is planned before the last one is learnt.
+/// The server has so many threads that it plans a batch before the last one is learnt.
 TEST(Replay, SoIsOneThatLearnsWhileItRenders) {
     RecordedSession const session(FRAMELET_SOURCE_DIR "/scenes/globe.glb", {"--threads", "8"}, {});
     expect_identical(session.replayed());

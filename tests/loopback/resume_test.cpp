@@ -60,7 +60,7 @@ struct Resumption : testing::Test {
     ServerProcess server{scene_file, {"--paused", "--exposure", "0", "--insecure"}};
     bench::LinkEmulator link{port_of(server.address()), {.bits_per_second = 6e6, .delay_seconds = 0.002}};
 
-    /// Of a viewer that nothing happens to.
+    /// The final picture of a viewer that nothing happens to.
     Picture uncut(float x) const {
         Viewer viewer(port_of(server.address()));
         viewer.look(x);

@@ -42,14 +42,14 @@ private:
     std::vector<boost::asio::ip::tcp::socket> sockets_;
 };
 
-/// One line on stderr where the client could not see a picture, otherwise empty.
+/// Runs a client; returns what it says on stderr, one line, where it could not see a picture, otherwise nothing.
 std::string connect_client(ServerProcess const& server, std::vector<std::string> more = {}) {
     more.insert(more.begin(), {server.address(), "--size", "64x64", "--duration", "60", "--until-converged"});
     Process client(FRAMELET_CLIENT, more);
     return client.wait(patience) == 0 ? "" : client.errors() + "(failed)";
 }
 
-/// The server by a shell that does this before.
+/// Starts the server by a shell that runs these commands before.
 ServerProcess server_after(std::string const& shell, std::vector<std::string> const& options) {
     std::vector<std::string> arguments{"-c", shell + "exec \"$0\" \"$@\"", FRAMELET_SERVER, scene_file, "--port", "0"};
     arguments.insert(arguments.end(), options.begin(), options.end());
@@ -72,7 +72,7 @@ TEST(Unwelcome, WhoLosesItsPlaceIsToldWhy) {
     TemporaryFolder folder;
     std::string const token = folder.write("token", "0123456789abcdef0123456789abcdef\n");
     ServerProcess server(scene_file, {"--token-file", token, "--paused"});
-    for (int wrong = 0; wrong < 2; ++wrong) { // at first it is read at once, then not yet
+    for (int wrong = 0; wrong < 2; ++wrong) { // the connection is first read at once, then, after wrong tokens, not yet
         boost::asio::io_context io;
         boost::asio::ip::tcp::socket socket(io);
         socket.connect({boost::asio::ip::address_v4::loopback(), port_of(server)});
@@ -141,7 +141,7 @@ TEST(Unwelcome, TheTokenIsNotSentToOtherMachinesInClear) {
     EXPECT_EQ(connect_client(server, {"--token-file", token, "--insecure"}), "");
 }
 
-/// What the server at this port says to a viewer that knows no token; empty where it lets it in.
+/// Returns what the server at this port says to a viewer that knows no token; empty where it lets it in.
 std::string word_to_a_stranger(std::uint16_t port) {
     RawViewer viewer(port);
     bool const welcome = viewer.watch([](Message const& message) { return !std::holds_alternative<Failure>(message); });
@@ -157,7 +157,7 @@ TEST(Unwelcome, OtherUsersOfThisMachineAreRefused) {
     EXPECT_EQ(connect_client(open), "");
 }
 
-/// As in a container, or from a job of the system.
+/// The environment is bare as in a container, or for a job of the system.
 TEST(Unwelcome, WithoutAnEnvironmentTheSameUserIsLetInToo) {
     for (std::string const forget : {"unset XDG_RUNTIME_DIR XDG_STATE_HOME HOME; ", "HOME=/dev/null/none; "}) {
         ServerProcess server = server_after(forget, {"--paused"});

@@ -22,11 +22,11 @@ using namespace std::chrono_literals;
 std::string const scene_file = FRAMELET_SOURCE_DIR "/scenes/vehicle_chase.glb";
 constexpr auto patience = 120s;
 
-/// Of 8 bits and 4:4:4.
+/// A Y4M video of 8 bits and 4:4:4.
 struct Video {
     int width = 0, height = 0;
     std::string rate;
-    std::vector<std::string> pictures; ///< Y, Cb, Cr
+    std::vector<std::string> pictures; ///< planes Y, Cb, Cr of each
 };
 
 Video parse_video(std::string const& bytes) {
@@ -89,7 +89,7 @@ TEST(Video, IsWhatWasShownAtAConstantRate) {
     EXPECT_EQ(seen.height, 97);
     EXPECT_EQ(seen.rate, "25:1");
     auto const statistics = nlohmann::json::parse(video.errors());
-    // What is shown when the time is over may be so by a little less or more than a picture's time.
+    // The picture that is shown when the time is over may be so by a little less or more than a picture's time.
     EXPECT_NEAR(static_cast<double>(seen.pictures.size()), 25 * statistics.at("seconds").get<double>(), 5);
     ASSERT_GE(seen.pictures.size(), 75u);
 
@@ -179,7 +179,8 @@ TEST(Sheet, HasTheMomentsAsTheyWereShownAndAsTheyAre) {
                    {server.address(), "--size", "96x64", "--duration", "2", "--sheet", file, "--json"});
     ASSERT_EQ(client.wait(patience), 0) << client.errors();
     auto const statistics = nlohmann::json::parse(client.output());
-    // The same view, a little off; that of another moment, in which cars are elsewhere, is off by much more.
+    // The stills are of the same view, a little off; one of another moment, in which cars are elsewhere, is off by much
+    // more.
     EXPECT_GT(statistics.at("still_difference").get<double>(), 0);
     EXPECT_LT(statistics.at("still_difference").get<double>(), 0.06);
     Picture const sheet = read_picture(file);

@@ -21,7 +21,7 @@ using Color = std::array<float, 3>;
 
 struct Quad {
     glm::dvec3 corner{0}, u{1, 0, 0}, v{0, 1, 0}; ///< at time 0
-    std::function<Color(double u, double v)> texture; ///< of [0, 1]^2
+    std::function<Color(double u, double v)> texture; ///< on [0, 1]^2
     BodyNumber body = static_body;
     glm::dvec3 velocity{0};
 };
@@ -152,7 +152,7 @@ struct AnalyticScene {
         return out;
     }
 
-    /// What a ray through a display pixel hits at the display time, and whether the source saw the same place then.
+    /// The hit of a ray through a display pixel at the display time, and whether the source saw the same place then.
     struct Expected {
         Hit hit;
         bool was_seen = false; ///< the source saw it, and all around it by `margin` pixels the same quad
@@ -166,7 +166,7 @@ struct AnalyticScene {
         std::vector<Quad> const before = at_time(source_time);
         Expected out;
         out.hit = cast(after, to, x, y);
-        glm::dvec3 towards = direction(to, x, y); // of the place, from the source's origin
+        glm::dvec3 towards = direction(to, x, y); // direction of the place, then from the source's origin
         if (out.hit.quad >= 0) {
             auto const i = static_cast<std::size_t>(out.hit.quad);
             glm::dmat3 const axes(after[i].u, after[i].v, glm::cross(after[i].u, after[i].v));

@@ -1,4 +1,4 @@
-// The Reprojector with a canvas: what it asks of one, and what it makes of the answers.
+// Tests the Reprojector with a canvas: what it asks of one, and what it makes of the answers.
 #include "common/picture/block_canvas.h"
 
 #include <algorithm>

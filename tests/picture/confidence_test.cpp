@@ -46,7 +46,7 @@ TEST(Confidence, OfTwoTheOneThatShows) {
     }
 }
 
-/// Where the picture that is shown has holes, nothing is to be trusted, and nowhere else.
+/// The holes of the picture that is shown are made up, and nothing else is.
 TEST(Confidence, HolesAreMadeUp) {
     Camera moved = front();
     moved.position.x += 0.4f;

@@ -20,7 +20,7 @@ struct TestLayer {
     std::size_t layer = 0; ///< set by `coplanar`
 };
 
-/// `plane`: from the square's corner on.
+/// A layer of framelet `part` on a plane, whose pixels are from the square's corner.
 TestLayer layer_at(AffinePlane const& plane, std::uint32_t part) {
     TestLayer out{{}, part};
     double const column = 16.0 * morton_x(part);
@@ -53,7 +53,7 @@ int part_count(CoplanarLayers const& coplanar) {
     return std::popcount(coplanar.parts[0]) + std::popcount(coplanar.parts[1]) + std::popcount(coplanar.parts[2]);
 }
 
-/// Layers of one part come one after the other.
+/// Merges layers, of which those of one part come one after the other.
 CoplanarMerging merging_of(std::vector<TestLayer>& layers) {
     SquareLayers square;
     HeldShape shape;
@@ -69,7 +69,7 @@ CoplanarMerging merging_of(std::vector<TestLayer>& layers) {
     return out;
 }
 
-/// Those of more than one.
+/// The planes that were merged from more than one layer.
 std::vector<CoplanarLayers> several(CoplanarMerging const& merging) {
     std::vector<CoplanarLayers> out;
     std::ranges::copy_if(merging.coplanar(), std::back_inserter(out),
@@ -197,7 +197,7 @@ TEST(CoplanarMerging, DifferencesAreBounds) {
                 double const at = 0.3 * (i + 1) * (1 + rough * normal(random));
                 layers.push_back(layer_at({at, 1e-3 * i, 1e-5 * rough * normal(random)}, part));
                 HeldLayer& held = layers.back().held;
-                if (round % 3 == 0) { // some of its samples
+                if (round % 3 == 0) { // only some of its samples lie on it
                     held.first_column = static_cast<std::int8_t>(random() % 4);
                     held.last_row = static_cast<std::int8_t>(12 + random() % 4);
                 }
@@ -237,7 +237,7 @@ TEST(CoplanarMerging, DifferencesAreBounds) {
                 return (quad.parts[0] & ~found.parts[0]) == 0;
             });
         }
-        quads -= static_cast<std::ptrdiff_t>(merging.quads().size()); // each is in one
+        quads -= static_cast<std::ptrdiff_t>(merging.quads().size()); // each quad is in one
         for (TestLayer const& layer : layers) {
             EXPECT_EQ(std::ranges::count_if(merging.coplanar(),
                                             [&](CoplanarLayers const& found) { return is_part(found, layer); }),
@@ -276,7 +276,7 @@ TEST(CoplanarMerging, TheSkyIsOne) {
     EXPECT_EQ(merging.coplanar()[0].difference, 0);
 }
 
-/// Far apart from each other two cost less than what holds both.
+/// Two layers far apart from each other cost less than what holds both.
 TEST(CoplanarMerging, OnlyWhereThatIsCheaper) {
     std::vector<TestLayer> layers{layer_at({0.5, 0, 0}, 0), layer_at({0.5, 0, 0}, 63)};
     EXPECT_TRUE(several(merging_of(layers)).empty());
@@ -308,7 +308,7 @@ TEST(SquareLayers, MotionsAreNumbered) {
     for (; square.set(sets % 64, view, 1, shape); ++sets) {
         view = sets;
     }
-    EXPECT_GT(sets, 192u); // all that can be held at once
+    EXPECT_GT(sets, 192u); // all layers that can be held at once
     EXPECT_LT(sets, 1000u);
     square.forget_motions();
     for (std::size_t place = 0; place < SquareLayers::places; ++place) {

@@ -18,7 +18,7 @@ AnalyticScene shaded_floor() {
     return scene;
 }
 
-/// Framelets in which there is some of the shadow fade: they change soonest.
+/// A batch whose framelets with some of the shadow in them fade: they change soonest.
 Batch batch_at(AnalyticScene const& scene, std::uint64_t number, Camera const& camera, SceneTime time) {
     ImagePlane const plane(viewport);
     Batch batch = scene.batch(plane, number, camera, time, visible_tiles(plane, plane.pixel_depth()));
@@ -42,7 +42,8 @@ struct Agreement {
     Counts shadow, lit;
 };
 
-/// Away from the shadow's rim, what the source saw: is it shown as it is at the display's time?
+/// Counts, of the pixels that the source saw away from the shadow's rim, those that are shown as they are at the
+/// display's time.
 Agreement compare(AnalyticScene const& scene, SceneTime from, SceneTime to, Shown const& shown) {
     Agreement out;
     for (int y = 0; y < viewport.height; ++y) {
@@ -80,7 +81,7 @@ TEST(DriftingShadow, GoesOverWhatWasSeenLitSince) {
     FrameletPool pool(plane);
     pool.insert(batch_at(scene, 1, front(), 0), scene.motions);
     pool.insert(lit.batch(plane, 2, aside, 0.05, {make_tile(plane.pixel_depth(), 11, 7)}),
-                lit.motions); // where it goes
+                lit.motions); // where the shadow goes
     Agreement const got = compare(scene, 0, 0.15, show(pool, front(), 0.15));
     EXPECT_GE(got.shadow.share(), 0.999);
 }
@@ -99,7 +100,7 @@ TEST(DriftingShadow, IsNotBelievedForLongAgainstWhatWasSeenSince) {
     EXPECT_LE(got.shadow.share(), 0.001);
 }
 
-/// So many of the shadow's patches hide what lies behind them, of all.
+/// The number of the shadow's patches that hide what lies behind them, and the number of all its patches.
 std::pair<int, int> hiding_patches(FrameletCache const& cache, SceneTime time) {
     BodyMotions const motions;
     Camera const camera = front();

@@ -26,7 +26,7 @@ TEST(FarMeans, LargeHolesBesideGroundAreNotFilledWithSky) {
     EXPECT_EQ(means.at(3, 3), FarMean{});
 }
 
-/// Eight cells at a time are what each is alone.
+/// Cells that are computed eight at a time are what each is alone.
 TEST(FarGrid, EachCellIsTheMeanOfTheFarthestOfItsFour) {
     std::mt19937 random(3);
     std::uniform_real_distribution<float> depth(0, 1), byte(0, 255 * 255);

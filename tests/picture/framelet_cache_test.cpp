@@ -11,17 +11,17 @@
 namespace framelet {
 namespace {
 
-/// As FrameletCache states it, for each 4x4 pixels.
+/// Bytes that FrameletCache says it holds at most for each 4x4 pixels.
 constexpr std::size_t most_bytes_per_framelet = 2100;
 
-/// As from a camera of its own for each number.
+/// The batch as if from camera number `camera`, each of which is a camera of its own.
 Batch seen_from(std::uint64_t camera, Batch batch) {
     batch.view.number = camera;
     batch.view.camera.position.x = static_cast<float>(camera);
     return batch;
 }
 
-/// What shows at every finest cell, by the definition: the highest batch, of equals the finest.
+/// The tile that shows at every finest cell, by the definition: the highest batch, of equals the finest.
 std::map<std::pair<int, int>, Tile> shown_cells(ImagePlane const& plane, std::vector<Batch> const& batches) {
     std::map<std::pair<int, int>, std::pair<std::uint64_t, Tile>> cells;
     for (Batch const& batch : batches) {
@@ -112,7 +112,7 @@ TEST(FrameletCache, CoverageIsTheShareOfPixels) {
     // Only 4 columns and 12 rows of this tile are in the viewport.
     cache.insert(make_batch(plane, 2, {constant_framelet(plane, make_tile(depth, 6, 3), 9)}));
     EXPECT_DOUBLE_EQ(cache.coverage(), (256 + 48) / 6000.0);
-    // A finer one inside adds nothing.
+    // A finer framelet inside adds nothing.
     cache.insert(make_batch(plane, 3, {constant_framelet(plane, make_tile(depth + 1, 1, 1), 9)}));
     EXPECT_DOUBLE_EQ(cache.coverage(), (256 + 48) / 6000.0);
     cache.insert(make_batch(plane, 4, shade_tiles(plane, visible_tiles(plane, plane.min_depth()), [](float, float) {

@@ -80,7 +80,7 @@ TEST(FrameletPool, TheMomentGoesOfWhichLeastShows) {
     EXPECT_EQ(gone, (std::vector<SentTile>{{3, place}}));
     pool.take_evicted(gone);
     EXPECT_TRUE(gone.empty()) << "said once";
-    pool.insert(seen_from(101, 101, place), {}); // the oldest of those of which as little shows
+    pool.insert(seen_from(101, 101, place), {}); // evicts the oldest of those that show as little
     EXPECT_FALSE(cameras(pool).contains(1));
     EXPECT_TRUE(cameras(pool).contains(100)) << "what has hardly been shown stays";
 }

@@ -59,7 +59,7 @@ TEST(HeldShape, FineSamplesAreReducedToTheLayerThatMostOfAPixelLieOn) {
     HeldShape held;
     hold(mixed.framelet, &mixed.shape, 4, samples, held);
     EXPECT_EQ(held.side, 4);
-    EXPECT_TRUE(held.outliers.empty()); // a row of four is not most
+    EXPECT_TRUE(held.outliers.empty()); // a row of four of sixteen samples is not most
     for (std::uint32_t i = 0; i < 16; ++i) {
         EXPECT_EQ(layer_of(held.reduced[i]), i % 4 / 2);
         EXPECT_EQ(green_of(held.reduced[i]), 40u);
@@ -91,7 +91,7 @@ TEST(HeldShape, NoShapeIsInfinitelyFar) {
     EXPECT_FALSE(held.moves);
 }
 
-/// Layer 1 is a board before layer 0; where both are at one depth neither ends.
+/// Layer 1 is a board in front of layer 0; where both are at one depth neither ends.
 TEST(HeldShape, WhatIsNearerEndsBeforeWhatIsBehindIt) {
     Mixed mixed;
     mixed.shape.layers[0].at = 0.1f;

@@ -75,7 +75,7 @@ TEST(MergedSquare, WhatIsKeptIsWhatIsThere) {
         }
         Batch batch = scene.batch(plane, number, front(), 0, tiles, random() % 8 == 0);
         batch.view.number = random() % 16 == 0 ? 2 : 1;
-        if (number > 100) { // what deforms, differently everywhere: more than a square numbers
+        if (number > 100) { // what deforms, differently everywhere: more motions than a square numbers
             for (FrameletShape& shape : batch.shapes) {
                 shape.layers[0].velocity.x = static_cast<float>(random() % 10000);
             }
@@ -95,7 +95,7 @@ TEST(MergedSquare, WhatIsKeptIsWhatIsThere) {
     EXPECT_GT(found, 300u);
 }
 
-/// What framelets of a plane say is one plane, seen at the square's corner.
+/// Framelets of a plane are merged to that one plane, seen at the square's corner.
 TEST(MergedSquare, OnePlaneIsFound) {
     ImagePlane const plane(viewport);
     AnalyticScene scene;
@@ -122,7 +122,7 @@ TEST(MergedSquare, OnePlaneIsFound) {
 TEST(MergedSquare, SamplesHaveTheNumberOfTheirLayer) {
     ImagePlane const plane(viewport);
     AnalyticScene scene = room();
-    for (int i = 0; i < 6; ++i) { // more than layers in some framelets
+    for (int i = 0; i < 6; ++i) { // more planes than layers in some framelets
         scene.quads.push_back({{0.2 + 0.04 * i, 1, 2 + 0.1 * i}, {0.04, 0, 0}, {0, 0.3, 0.1}, waves(2, 2)});
     }
     scene.quads[2].body = 3;

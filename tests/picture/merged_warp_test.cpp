@@ -1,4 +1,4 @@
-// What is merged beside what it was merged from.
+// Compares what is merged with what it was merged from.
 #include "common/warp/warp_plan.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr unsigned all_parts = (2u << FrameletShape::outlier) - 1;
 
-/// Each framelet alone, in the order of the plan.
+/// Moves each framelet alone; patches are in the order of the plan.
 void alone(FrameletCache const& cache, Camera const& display, SceneTime time, BodyMotions const& motions,
            std::vector<WarpPatch>& patches, std::vector<Splat>& splats) {
     FrameletWarp warp(cache, 0, display, time, motions);
@@ -29,8 +29,8 @@ void alone(FrameletCache const& cache, Camera const& display, SceneTime time, Bo
     });
 }
 
-/// Several planes in a framelet, bodies, what deforms, outliers; all framelets of one batch, each fifth of one, or
-/// planes of neighbours that do not quite meet.
+/// Scenes of several planes in a framelet, bodies, what deforms, outliers; with all framelets of one batch, with each
+/// fifth of one, or with planes of neighbours that do not quite meet.
 TEST(MergedWarp, WhatIsMergedShowsAsEachFrameletAlone) {
     ImagePlane const plane(viewport);
     AnalyticScene scene = room();
@@ -111,7 +111,7 @@ TEST(MergedWarp, WhatIsMergedShowsAsEachFrameletAlone) {
     }
 }
 
-/// Whoever has uploaded the grids of squares finds all samples of all patches there.
+/// A canvas that has uploaded the grids of squares finds all samples of all patches there.
 TEST(MergedWarp, PatchesHaveTheirSamplesInTheGridOfTheirSquare) {
     ImagePlane const plane(viewport);
     AnalyticScene scene = room();

@@ -30,7 +30,7 @@ TEST(MixAmount, WithoutAnythingOlderTheNewerShows) {
 }
 
 TEST(MixShares, BlocksThatDoNotChangeFollowThoseAroundThem) {
-    // Two that change, far apart in a row of eight; nothing older in the last one.
+    // Two blocks change, far apart in a row of eight; in the last one nothing is older.
     ShownTimes older(16, 0.0), newer(16, 0.0);
     newer[8] = 1;
     newer[13] = 2;
@@ -38,7 +38,7 @@ TEST(MixShares, BlocksThatDoNotChangeFollowThoseAroundThem) {
     std::vector<MixShare> shares;
     mix_shares(older, newer, 8, 0.5, 10, shares);
     MixShare const mean = (128 + 64 + whole_share + 1) / 3;
-    EXPECT_EQ(shares, (std::vector<MixShare>{128, 128, mean, mean, 64, 64, 160, 256, // above
+    EXPECT_EQ(shares, (std::vector<MixShare>{128, 128, mean, mean, 64, 64, 160, 256, // the row above
                                              128, 128, mean, mean, 64, 64, 160, 256}));
 }
 

@@ -13,7 +13,7 @@ struct Expected {
     double weight = 0, red = 0, green = 0, blue = 0;
 };
 
-/// Tents of radius one sample over the samples that lie on the layer.
+/// The expected sums: tents of radius one sample over the samples that lie on the layer.
 Expected expect(WarpPatch const& patch, double x, double y) {
     auto const at = [&](std::size_t i) { return patch.at[i] + x * patch.dx[i] + y * patch.dy[i]; };
     double const u = at(0) / at(2);
@@ -34,7 +34,8 @@ Expected expect(WarpPatch const& patch, double x, double y) {
     return out;
 }
 
-/// Grids of all sizes, parts of larger ones too, nearly upright and tilted, fine and coarse, partly behind the camera.
+/// Samples grids of all sizes, parts of larger ones too, nearly upright and tilted, fine and coarse, partly behind the
+/// camera.
 TEST(PatchSampling, IsBilinearInterpolationWhereverSamplesLie) {
     std::mt19937 random(8);
     auto const uniform = [&](float low, float high) {
@@ -47,7 +48,7 @@ TEST(PatchSampling, IsBilinearInterpolationWhereverSamplesLie) {
         patch.side = 4 << trial % 4;
         patch.stride = trial % 8 < 4 ? patch.side : largest;
         patch.layer = trial % 2 == 0 ? 1 : 201;
-        // No longer than it must be: what is read beyond is found by the sanitizer.
+        // The grid is no longer than it must be, so that the sanitizer finds what is read beyond it.
         std::vector<PackedSample> grid(static_cast<std::size_t>(patch.stride * (patch.side - 1) + patch.side));
         for (PackedSample& sample : grid) {
             PackedSample const layer =
@@ -80,7 +81,7 @@ TEST(PatchSampling, IsBilinearInterpolationWhereverSamplesLie) {
                 if (std::abs(z) < 0.05) {
                     continue; // near the horizon of the plane rounding shows
                 }
-                double const rounding = 1e-4 / (z * z); // samples
+                double const rounding = 1e-4 / (z * z); // in samples
                 ASSERT_NEAR(found.weight[k], expected.weight, rounding) << trial << ' ' << row << ' ' << k;
                 ASSERT_NEAR(found.red[k], expected.red, 65025 * rounding) << trial << ' ' << row << ' ' << k;
                 ASSERT_NEAR(found.green[k], expected.green, 65025 * rounding) << trial << ' ' << row << ' ' << k;

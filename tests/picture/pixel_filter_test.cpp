@@ -43,7 +43,7 @@ std::array<std::uint8_t, 4> filtered_pixel(Picture const& picture, int x, int y)
     return out;
 }
 
-/// Of all sizes, and of rectangles that begin and end anywhere: what lies outside is left alone.
+/// Filters pictures of all sizes, and rectangles that begin and end anywhere: what lies outside is left alone.
 TEST(PixelFilter, IsWhatItSays) {
     std::mt19937 random(1);
     auto const below = [&random](int limit) { return static_cast<int>(random() % static_cast<unsigned>(limit)); };

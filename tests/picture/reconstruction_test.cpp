@@ -98,7 +98,7 @@ TEST(Reconstruction, OtherMomentsAreNotMixed) {
     Picture picture = full_picture(cache);
     EXPECT_EQ(pixel(picture, 63, 10), 20);
     EXPECT_EQ(pixel(picture, 64, 10), 220);
-    // The same two of one moment are interpolated.
+    // The same two framelets, once of one moment, are interpolated.
     right.number = 3;
     right.scene_time = 0;
     cache.insert(right);
@@ -136,7 +136,7 @@ TEST(Reconstruction, FineFrameletIsTheBoxMeanInLinearLight) {
     std::mt19937 random(3);
     for (int levels = 1; levels <= 2; ++levels) {
         int const n = 1 << levels;
-        std::array<std::array<float, 64>, 64> light{}; // of the samples of the whole 16x16 block
+        std::array<std::array<float, 64>, 64> light{}; // linear light of the samples of the whole 16x16 block
         FrameletCache cache(plane);
         std::vector<DisplayFramelet> framelets;
         for (std::uint32_t row = 0; row < static_cast<std::uint32_t>(n); ++row) {
@@ -189,7 +189,7 @@ TEST(Reconstruction, NewestWinsWhateverTheSizeAndNothingIsDarkGrey) {
     EXPECT_EQ(pixel(picture, 63, 47, 3), 255);
 }
 
-/// Batches that share moments now and then, in an order that is not theirs.
+/// Inserts batches, some of which share moments, in their order and in another one.
 TEST(Reconstruction, IncrementalEqualsFullAndOrderDoesNotMatter) {
     for (Viewport const viewport : {Viewport{1, 1}, Viewport{17, 5}, Viewport{200, 90}, Viewport{640, 360}}) {
         ImagePlane const plane(viewport);

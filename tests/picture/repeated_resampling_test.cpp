@@ -17,7 +17,7 @@ Camera sideways(double metres) {
     return camera;
 }
 
-/// By which everything at `inverse_depth` moves in the picture.
+/// Metres that the camera moves sideways for everything at `inverse_depth` to move by a pixel in the picture.
 double metres_per_pixel() {
     ViewTransform const transform =
         make_view_transform(make_view_rays(front(), viewport), make_view_rays(sideways(1), viewport));
@@ -56,7 +56,7 @@ Picture impulse() {
     return picture;
 }
 
-/// Pixels^2 by which `filter_pixels` spreads an outline: an eighth of it to either side.
+/// Variance, pixels^2, by which `filter_pixels` spreads an outline: an eighth of it goes to either side.
 constexpr double filter_spread = 0.25;
 
 /// Variance of the light along the impulse's row, pixels^2.

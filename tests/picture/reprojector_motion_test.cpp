@@ -192,7 +192,7 @@ TEST(ReprojectorMotion, SkyTurnsExactly) {
     };
     Camera display = front();
     display.orientation = glm::normalize(glm::angleAxis(0.1f, Vec3(0.3f, 0.9f, 0.2f)) * display.orientation);
-    display.position += Vec3(3, 0, -2); // which makes no difference
+    display.position += Vec3(3, 0, -2); // which makes no difference to the sky
     Shown const shown = show(filled(scene, front(), 0), display, 0);
     ViewRays const rays = make_view_rays(display, viewport);
     int seen = 0;
@@ -219,7 +219,7 @@ TEST(ReprojectorMotion, NewerWinsOnOneSurfaceNearerWinsElse) {
     FrameletPool pool(plane);
     std::vector<Tile> const all = visible_tiles(plane, plane.pixel_depth());
     pool.insert(old_scene.batch(plane, 1, front(), 0, all), old_scene.motions);
-    std::vector<Tile> left; // of places beside those that show the board
+    std::vector<Tile> left; // tiles beside those that show the board
     for (Tile const tile : all) {
         if (tile.column() < 5) {
             left.push_back(tile);
@@ -261,7 +261,7 @@ TEST(ReprojectorMotion, WhatMayBeFarOffItsPlaceShowsBeforeNothing) {
         Camera aside = front();
         aside.position.x -= 0.5f;
         pool.insert(bare.batch(plane, 2, aside, 0, coarse),
-                    bare.motions); // the board is not seen from there, as it were
+                    bare.motions); // as if the board were not seen from there
         EXPECT_EQ(show(pool, display, 0).picture.row(90)[4 * 163], is_sure ? 200 : 50);
     }
 }

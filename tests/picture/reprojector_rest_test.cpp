@@ -94,7 +94,8 @@ TEST(ReprojectorRest, ACutIsMovedWhereThatIsWished) {
     EXPECT_NE(of_moved, of_kept);
 }
 
-/// Cameras and contents that change now and then: what is kept from the last picture is right, whatever the threads.
+/// Shows cameras and contents that change now and then: what is kept from the last picture is right, whatever the
+/// threads.
 TEST(ReprojectorRest, IncrementalEqualsWholeAndThreadsMakeNoDifference) {
     ImagePlane const plane(viewport);
     AnalyticScene scene = room();
@@ -125,7 +126,7 @@ TEST(ReprojectorRest, IncrementalEqualsWholeAndThreadsMakeNoDifference) {
         if (number % 5 == 0) {
             camera.position += Vec3(0.05f, 0.02f, -0.1f);
         }
-        for (double const later : {0.3, 0.02, -0.04, 0.01}) { // the same, worn more or less
+        for (double const later : {0.3, 0.02, -0.04, 0.01}) { // the same samples, worn more or less
             pool.newest().take_changed(changed);
             kept.show(pool, changed, camera, time + later, scene.motions, picture, repainted);
             ASSERT_EQ(picture, show(pool, camera, time + later, scene.motions).picture) << number << ' ' << later;

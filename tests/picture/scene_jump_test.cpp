@@ -15,7 +15,7 @@ AnalyticScene lit_floor(int level) {
     return scene;
 }
 
-/// Bright at second 1, and coarse, in the left half of the picture; dark and fine all over at second 0.
+/// A floor that is bright and coarse at second 1, in the left half of the picture, dark and fine all over at second 0.
 FrameletPool switched_on() {
     ImagePlane const plane(viewport);
     FrameletPool pool(plane);
@@ -46,7 +46,7 @@ TEST(SceneJump, WhatWasRenderedBeforeShowsOnlyWhereNothingElseDoes) {
     motions.jump_at(1);
     EXPECT_EQ(levels_at(show(pool, front(), 0.9, motions)), (Levels{dark, dark})) << "it has not jumped yet";
     EXPECT_EQ(levels_at(show(pool, front(), 1, motions)), (Levels{bright, dark}));
-    motions.jump_at(3); // will be
+    motions.jump_at(3); // a jump that is still to come
     EXPECT_EQ(levels_at(show(pool, front(), 1.1, motions)), (Levels{bright, dark}));
 }
 

@@ -30,7 +30,7 @@ struct Viewer {
         smoother.show(pool, changed, camera, time, lag, motions, picture, repainted);
         return picture;
     }
-    /// What `Reprojector` alone shows.
+    /// The picture that `Reprojector` alone shows.
     Picture unsmoothed(SceneTime time, Camera const& camera = front()) {
         return framelet::show(pool, camera, time, motions).picture;
     }
@@ -81,7 +81,7 @@ TEST(SceneSmoother, IsTheReprojectorWhereNothingIsToCome) {
     Camera const aside = look_at(Vec3(0.2f, 1.6f, 5.8f), Vec3(0.05f, 0.95f, 0), Vec3(0, 1, 0), 0.8f);
     EXPECT_EQ(viewer.show(0, 1, aside), viewer.unsmoothed(0, aside));
     EXPECT_EQ(viewer.show(0), viewer.unsmoothed(0));
-    // It has smoothed, and everything has come.
+    // The same holds once it has smoothed and everything has come.
     viewer.insert(grey(viewer.plane, 2, 3, 90, 1));
     EXPECT_NE(viewer.show(2.5), viewer.unsmoothed(2.5));
     EXPECT_EQ(viewer.show(3), viewer.unsmoothed(3));
@@ -146,7 +146,7 @@ TEST(SceneSmoother, StepByStepIsAsAllAtOnce) {
             shown = std::max(0.0, time - 0.25 + 0.03 * step);
             Picture const before = stepwise.picture;
             stepwise.show(shown, 0.25);
-            // What was not told of has not changed.
+            // Pixels outside of `repainted` have not changed.
             Picture patched = before;
             for (PixelRect const& rect : stepwise.repainted) {
                 copy_pixels(stepwise.picture, rect, patched);
@@ -168,7 +168,7 @@ TEST(SceneSmoother, AClockThatIsSetBackLeavesNothingBehind) {
     Viewer viewer;
     viewer.insert(grey(viewer.plane, 1, 8, 10));
     viewer.show(8);
-    viewer.insert(grey(viewer.plane, 2, 9, 60)); // never shown, since
+    viewer.insert(grey(viewer.plane, 2, 9, 60)); // never shown, since the clock is set back
     viewer.show(8.5);
     viewer.insert(grey(viewer.plane, 3, 2, 200));
     viewer.show(2);

@@ -10,7 +10,7 @@
 namespace framelet {
 namespace {
 
-/// Where the point is seen, pixels.
+/// The place in the picture at which a point of the world is seen, pixels.
 Vec2 place_of(Camera const& camera, Vec3 point) {
     Vec3 const seen = glm::conjugate(camera.orientation) * (point - camera.position);
     float const pixels = 0.5f * static_cast<float>(viewport.height) / std::tan(0.5f * camera.vertical_extent);

@@ -1,4 +1,4 @@
-// What a viewer holds of bodies that move before a camera that stands.
+// Tests what a viewer holds of bodies that move in front of a camera that stands.
 #include <algorithm>
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 ImagePlane const plane(viewport);
 std::vector<Tile> const all_tiles = visible_tiles(plane, plane.pixel_depth());
 
-/// The board of the room goes to the right, a metre a second.
+/// The room whose board goes to the right, a metre a second.
 AnalyticScene moving_room() {
     AnalyticScene scene = room();
     BodyTrack track{5, 0, {}};
@@ -30,7 +30,7 @@ Batch rendered(AnalyticScene const& scene, std::uint64_t number, SceneTime time,
     return batch;
 }
 
-/// Where the board is seen.
+/// The tiles in which the board is seen.
 std::vector<Tile> board_tiles(AnalyticScene const& scene, SceneTime time) {
     Batch const batch = rendered(scene, 1, time, all_tiles);
     std::vector<Tile> tiles;
@@ -58,7 +58,7 @@ TEST(StandingCamera, ABodyIsHeldWhenItsOldPlaceIsRenderedAgain) {
     EXPECT_TRUE(pool.begins_moment(rendered(scene, 2, 0.5, before), scene.motions));
     pool.insert(rendered(scene, 2, 0.5, before), scene.motions);
     EXPECT_FALSE(pool.begins_moment(rendered(scene, 3, 0.5, before), scene.motions));
-    pool.insert(rendered(scene, 3, 1, before), scene.motions); // most of it is in the open by now
+    pool.insert(rendered(scene, 3, 1, before), scene.motions); // most of the board's old place is in the open by now
     EXPECT_EQ(held_of(pool, 2), before.size());
     EXPECT_GT(pool.newest().framelet_count(), 0U);
 
@@ -84,7 +84,7 @@ TEST(StandingCamera, WhatABodyCoversForAWhileIsHeld) {
     std::vector<Tile> const covered = board_tiles(scene, 1.9);
     FrameletPool pool(plane);
     pool.insert(rendered(scene, 1, 0, all_tiles), scene.motions);
-    pool.insert(rendered(scene, 2, 1.9, board_tiles(scene, 0)), scene.motions); // the wall behind where it began
+    pool.insert(rendered(scene, 2, 1.9, board_tiles(scene, 0)), scene.motions); // the wall at the board's first place
     std::size_t const held = held_of(pool, 1);
     EXPECT_EQ(held_of(pool, 1) + held_of(pool, 2), all_tiles.size());
     pool.insert(rendered(scene, 3, 1.9, covered), scene.motions);
@@ -128,7 +128,7 @@ TEST(StandingCamera, BlocksThatNothingElseTouchesAreExact) {
     }
 }
 
-/// As `moving_room`, but the board sets out after three seconds.
+/// The room as in `moving_room`, but the board sets out after three seconds.
 AnalyticScene resting_room() {
     AnalyticScene scene = moving_room();
     BodyTrack track{5, 0, {}};

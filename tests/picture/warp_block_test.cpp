@@ -7,8 +7,9 @@
 namespace framelet {
 namespace {
 
-/// Boards at many places between the samples, seen from the side: as many pixels as rays hit, on the average. What lies
-/// behind is held from two cameras, so that it shows beside the boards, which are held from one or from several.
+/// Boards at many places between the samples, seen from the side, cover as many pixels as rays hit, on the average.
+/// What lies behind is held from two cameras, so that it shows beside the boards, which are held from one or from
+/// several.
 TEST(WarpBlock, WhatCoversIsAsWideAsItIs) {
     Camera const display = look_at(Vec3(0.1f, 1.5f, 5.9f), Vec3(0.05f, 1, 0), Vec3(0, 1, 0), 0.8f);
     ImagePlane const plane(viewport);

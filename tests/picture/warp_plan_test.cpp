@@ -20,7 +20,7 @@ AnalyticScene wall() {
     return scene;
 }
 
-/// Every framelet flies right before the camera, where it is larger than the picture.
+/// Every framelet flies to right in front of the camera, where it is larger than the picture.
 TEST(WarpPlan, HoldsBoundedlyManyPatchesAndTheNewestOnes) {
     ImagePlane const plane(viewport);
     FrameletCache cache(plane);
@@ -66,7 +66,7 @@ TEST(WarpPlan, FrameletsOfOnePlaneAreOnePatchForManyBlocks) {
     }
 }
 
-/// What is not flagged has the patches that it had, also where one has left.
+/// Blocks that are not flagged have the patches that they had, also where one has left.
 TEST(WarpPlan, FlagsEachBlockOfWhichThePatchesAreOthers) {
     ImagePlane const plane(viewport);
     FrameletCache cache(plane);

@@ -26,7 +26,7 @@ std::uint8_t constant(std::mt19937&, int channel, int, int) {
     return static_cast<std::uint8_t>(40 + channel);
 }
 
-/// The first `count` tiles of 128 columns, one sample a pixel.
+/// A batch of the first `count` tiles of 128 columns, one sample a pixel.
 Batch make_batch(std::size_t count, Sample sample) {
     std::mt19937 random(static_cast<std::uint32_t>(count));
     Batch batch;
@@ -189,7 +189,7 @@ TEST(BatchCodec, GoldenPayload) {
 }
 
 TEST(BatchCodec, LayoutByTheBook) {
-    // The definition, written down a second time and as plainly as possible.
+    // The layout is decoded here by its definition, written down a second time and as plainly as possible.
     Batch const batch = make_batch(130, noise);
     Bytes const payload = BatchCodec().encode(batch).payload;
     std::size_t offset = 4;
@@ -222,12 +222,12 @@ TEST(BatchCodec, LayoutByTheBook) {
 
 TEST(BatchCodec, DecompressionIsBounded) {
     EncodedBatch encoded = BatchCodec().encode(make_batch(1, constant));
-    // 64 MiB of zeros in some kilobytes, for a tile that takes 768 bytes.
+    // The payload is 64 MiB of zeros in some kilobytes, for a tile that takes 768 bytes.
     Bytes const bomb = compress(std::vector<std::uint8_t>(64u << 20));
     EXPECT_LT(bomb.size(), 10000u);
     encoded.payload = bomb;
     expect_refused(encoded, "does not hold");
-    // Many frames whose contents together would be right, and one that hides more behind itself.
+    // The next payloads are frames whose contents together would be right, and one that hides more behind itself.
     Bytes frames = compress(std::vector<std::uint8_t>(768));
     Bytes const right = frames;
     encoded.payload = right;

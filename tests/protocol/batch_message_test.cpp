@@ -1,4 +1,4 @@
-// Whole batches, with shapes and tracks, through codec and message.
+// Sends whole batches, with shapes and tracks, through codec and message.
 #include <string>
 #include <string_view>
 #include <variant>
@@ -37,7 +37,7 @@ Batch small_batch() {
     batch.shapes[1].layer_count = 2;
     batch.shapes[1].decorrelation = 90;
     batch.shapes[1].layers[0].at = 0.5f;
-    batch.shapes[1].layers[1] = {1, 0.0078125f, 0, 0x1p-9f, 3, Vec3(0)}; // off by the unit of its plane
+    batch.shapes[1].layers[1] = {1, 0.0078125f, 0, 0x1p-9f, 3, Vec3(0)}; // its error is the unit of its plane
     for (std::uint32_t i = 0; i < framelet_samples; ++i) {
         batch.shapes[1].layer_of[i] = morton_x(i) < 5 ? 0 : 1;
     }
@@ -59,7 +59,7 @@ TEST(BatchMessage, ShapesAndTracksArrive) {
 }
 
 TEST(BatchMessage, GoldenMessage) {
-    // As one version of the libraries wrote it: others may write it otherwise, all must read it.
+    // The message as one version of the libraries wrote it: others may write it otherwise, all must read it.
     constexpr std::string_view hex =
         "1400000046524d4c0000000008000e00070008000800000000000007180000000000120024001c00080007000c001000"
         "14001800120000000000000124000000780000007c000000a0000000c400000007000000000000000800120004000800"

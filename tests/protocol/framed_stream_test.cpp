@@ -75,7 +75,7 @@ TEST(FramedStream, MessagesOfSeveralThreadsStayInTheirOrder) {
             }
         });
     }
-    left.start(thread); // messages before and after it
+    left.start(thread); // messages are sent before and after this
     for (std::thread& sender : senders) {
         sender.join();
     }
@@ -375,7 +375,7 @@ TEST_F(FramedStreamTest, CloseAfterSendingDoesNotWaitForever) {
     for (std::uint64_t i = 1; i <= 20; ++i) {
         end.stream->send(large_batch(i, 4u << 20));
     }
-    end.stream->close_after_sending(); // and the peer never reads
+    end.stream->close_after_sending(); // the peer never reads
     EXPECT_TRUE(End::eventually([&] { return end.stream->unsent_bytes() == 0; }));
 }
 

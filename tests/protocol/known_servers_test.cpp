@@ -43,7 +43,7 @@ TEST_F(KnownServers, OneThatAnAuthorityVouchedForStaysSo) {
     EXPECT_TRUE(judge_certificate(file_, "one:7070", "").is_trusted);
 }
 
-/// As editors leave it that end no last line.
+/// Some editors leave the last line of a file without an end.
 TEST_F(KnownServers, AFileWhoseLastLineHasNoEndIsAddedTo) {
     std::ofstream(file_) << "one:7070 AA:01";
     EXPECT_TRUE(judge_certificate(file_, "two:7070", "BB:02").is_trusted);

@@ -15,7 +15,7 @@ namespace {
 
 std::string const here = "127.0.0.1:7070";
 
-/// A home folder of its own, and nothing else in the environment.
+/// Gives each test a home folder of its own, and no runtime folder that exists.
 class LocalTokenFile : public testing::Test {
 protected:
     void SetUp() override {
@@ -79,7 +79,7 @@ TEST_F(LocalTokenFile, WhatIsLeftOfOthersGoes) {
     EXPECT_FALSE(std::filesystem::exists(file.string() + "0"));
     EXPECT_EQ(read_local_token(here), token.token());
     ASSERT_TRUE(make_private_folder(home_ / "runtime"));
-    LocalToken const next({here}); // in another folder
+    LocalToken const next({here}); // its file is in another folder
     EXPECT_EQ(read_local_token(here), next.token());
 }
 

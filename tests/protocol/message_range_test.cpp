@@ -1,4 +1,4 @@
-// Every field beyond its range, as a peer that does not check could send it.
+// Messages with every field beyond its range, as a peer that does not check could send them.
 #include <cmath>
 #include <limits>
 
@@ -31,7 +31,7 @@ EncodedBatch batch_of(std::vector<Tile> tiles) {
     return batch;
 }
 
-/// With and without denormals: a reader must not depend on how its thread takes them.
+/// Expects a refusal with and without denormals: a reader must not depend on how its thread takes them.
 void expect_camera_refused(void (*change)(Camera&)) {
     CameraUpdate update;
     change(update.view.camera);

@@ -72,15 +72,15 @@ TEST(Message, AppendsBehindWhatIsThere) {
 TEST(Message, GoldenHello) {
     // The example of PROTOCOL.md.
     Bytes const golden = from_hex("10000000 46524d4c 08000c00 07000800 08000000 00000001 0c000000 08000c00"
-                                  "06000800 08000000 00000500 04000000 06000000 73656372 65740000");
-    EXPECT_EQ(to_hex(encode_message(Hello{5, "secret"})), to_hex(golden));
-    EXPECT_TRUE(same(decode_message(golden), Hello{5, "secret"}));
+                                  "06000800 08000000 00000600 04000000 06000000 73656372 65740000");
+    EXPECT_EQ(to_hex(encode_message(Hello{6, "secret"})), to_hex(golden));
+    EXPECT_TRUE(same(decode_message(golden), Hello{6, "secret"}));
 }
 
 TEST(Message, GoldenHelloOfOneThatComesBack) {
-    Hello const hello{5, {}, coding::all, {0x0102030405060708, 0x1112131415161718}, 9};
+    Hello const hello{6, {}, coding::all, {0x0102030405060708, 0x1112131415161718}, 9};
     Bytes const golden = from_hex("14000000 46524d4c 00000000 08000e00 07000800 08000000 00000001 14000000 00000e00"
-                                  "28000600 08000c00 10002000 0e000000 00000500 20000000 2b000000 08070605 04030201"
+                                  "28000600 08000c00 10002000 0e000000 00000600 20000000 2b000000 08070605 04030201"
                                   "18171615 14131211 09000000 00000000 00000000 00000000");
     EXPECT_EQ(to_hex(encode_message(hello)), to_hex(golden));
     EXPECT_TRUE(same(decode_message(golden), hello));
@@ -108,7 +108,7 @@ TEST(Message, SettingsSayWhetherAnybodyLooks) {
         ViewerSettings const settings{1, 0.5f, false, paused};
         EXPECT_TRUE(same(decode_message(encode_message(settings)), settings));
     }
-    // As a viewer says it that knows nothing of pausing.
+    // These settings are as a viewer sends them that knows nothing of pausing.
     Bytes const golden =
         from_hex("10000000 46524d4c 08000e00 07000800 08000000 00000003 10000000 00000a00 10000800 0c000700"
                  " 0a000000 00000000 0000803f 0000003f");
@@ -149,7 +149,7 @@ TEST(Message, EveryTruncationIsRefusedOrValid) {
         Bytes const whole = encode_message(RandomMessages(seed).message());
         std::size_t const step = std::max<std::size_t>(1, whole.size() / 500);
         for (std::size_t size = 0; size < whole.size(); size += size < 300 ? 1 : step) {
-            Bytes const part(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)); // its own allocation
+            Bytes const part(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)); // allocated by itself
             decodes(part);
         }
     }
@@ -164,7 +164,7 @@ TEST(Message, FlippedBitsAreRefusedOrValid) {
         RandomMessages random(seed);
         Bytes bytes = encode_message(random.message());
         for (std::uint64_t flips = random.integer(1, 4); flips > 0; --flips) {
-            // Mostly in front, where the tables are.
+            // Bits are flipped mostly in front, where the tables are.
             std::size_t const end = random.coin() ? std::min<std::size_t>(bytes.size(), 128) : bytes.size();
             bytes[random.integer(0, end - 1)] ^= static_cast<std::byte>(1u << random.integer(0, 7));
         }
@@ -181,7 +181,7 @@ TEST(Message, RandomBytesAreRefused) {
         for (std::byte& byte : bytes) {
             byte = static_cast<std::byte>(random.any64());
         }
-        if (bytes.size() >= 8 && random.coin()) { // past the identifier
+        if (bytes.size() >= 8 && random.coin()) { // gets past the check of the identifier
             for (std::size_t i = 0; i < 4; ++i) {
                 bytes[4 + i] = static_cast<std::byte>("FRML"[i]);
             }

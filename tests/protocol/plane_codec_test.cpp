@@ -42,7 +42,7 @@ std::vector<DisplayFramelet> make_framelets(std::size_t count) {
     return framelets;
 }
 
-/// As the first group of a session.
+/// Encodes framelets as the first group of a session.
 Bytes8 encoded(std::span<DisplayFramelet const> framelets, Bytes8 const& qp) {
     PlaneModel model;
     PlaneCodec codec;
@@ -125,7 +125,7 @@ TEST(HaarTransform, AllNumbersOfPlacesAreAlike) {
     }
 }
 
-/// Against what the declaration says, for many steps that QPs make and every detail.
+/// Checks levels against what the declaration says, for many steps that QPs make and every detail.
 TEST(HaarTransform, LevelsAreTheNearestButForWhatIsNearerToZero) {
     std::vector<std::int16_t> details, levels;
     for (int value = -32768; value < 32768; value += 1) {
@@ -212,7 +212,7 @@ TEST(PlaneCodec, UniformFrameletsCostFewBytesAndAreNearlyExact) {
 }
 
 TEST(PlaneCodec, GoldenBytes) {
-    // As PROTOCOL.md has it.
+    // The bytes of the example in PROTOCOL.md.
     Bytes8 const golden{0xf6, 0xff, 0x80, 0x0e, 0xe0, 0x00, 0x03, 0x50, 0x00, 0x03, 0xf0, 0x00, 0x01, 0xf0, 0x03, 0xf0,
                         0x07, 0x8e, 0x1d, 0xa2, 0x5b, 0x4f, 0x10, 0x01, 0xd5, 0xa5, 0xd2, 0x1d, 0xac, 0x77, 0x8e, 0xb3,
                         0xd0, 0x1d, 0x95, 0xc8, 0x9a, 0x1a, 0xaf, 0x05, 0x80, 0xdb, 0x31, 0x4b, 0x48, 0xa1, 0xf2, 0xd5,

@@ -14,7 +14,7 @@
 namespace framelet {
 namespace {
 
-/// Waves that a seed moves, with noise.
+/// Fills a framelet with waves, moved by `shift` pixels, and noise of so many levels.
 void fill(DisplayFramelet& framelet, PixelRect rect, double shift, int noise, std::mt19937& random) {
     for (std::uint32_t k = 0; k < framelet_samples; ++k) {
         double const x = rect.left + (morton_x(k) + 0.5) * rect.width() / framelet_side + shift;
@@ -27,7 +27,7 @@ void fill(DisplayFramelet& framelet, PixelRect rect, double shift, int noise, st
     }
 }
 
-/// Different tiles, of any depth where `depth` is negative.
+/// A batch of different tiles, of any depth where `depth` is negative.
 Batch make_batch(std::mt19937& random, Viewport viewport, std::size_t count, double shift, int noise, int depth = -1) {
     ImagePlane const plane(viewport);
     Batch batch;
@@ -83,7 +83,8 @@ TEST(PredictedBatch, BothSidesHoldTheSameAfterAnySequence) {
     }
 }
 
-/// Anything that samples may be: noise, two extremes, one colour, the last framelet with a few samples changed.
+/// Fills a framelet with anything that samples may be: noise, two extremes, one colour, the last framelet with a few
+/// samples changed.
 void fill_with_anything(DisplayFramelet& framelet, std::mt19937_64& random) {
     std::uint64_t const kind = random() % 4;
     for_each_plane([&](auto const plane) {
@@ -145,7 +146,7 @@ TEST(PredictedBatch, WhatIsHeldCostsNearlyNothing) {
     std::size_t const alone = payload_bytes(codec, memory, batch);
     std::size_t const again = payload_bytes(codec, memory, batch);
     EXPECT_LT(again * 10, alone);
-    // The same moved by three pixels: nearly all of it is found elsewhere.
+    // The same batch is moved by three pixels: nearly all of it is found elsewhere.
     std::size_t const moved =
         payload_bytes(codec, memory, with_qp(make_batch(random, small_viewport, 24, 3, 0, depth), 12));
     EXPECT_LT(moved * 2, alone);
@@ -237,7 +238,8 @@ TEST(PredictedBatch, DamagedGroupsAreRefusedOrDecoded) {
 }
 
 TEST(PredictedBatch, GoldenBytes) {
-    // As PROTOCOL.md has it: two framelets of one grey each, over a picture that is grey and one that has been sent.
+    // The example of PROTOCOL.md: two framelets of one grey each, over a picture that is grey and one that has been
+    // sent.
     ReferencePicture held;
     held.show({32, 32});
     std::array<DisplayFramelet, 2> framelets;

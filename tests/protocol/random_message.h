@@ -85,7 +85,7 @@ public:
         return welcome;
     }
 
-    /// Distinct tiles that a plane accepts.
+    /// At most so many tiles that a plane accepts, no two the same.
     std::vector<Tile> tiles(ImagePlane const& plane, std::size_t most) {
         std::set<Tile> tiles;
         for (std::size_t i = 0; i < most; ++i) {
@@ -161,7 +161,7 @@ public:
         }
     }
 
-    /// Any but Status, of which a stream sends only the newest.
+    /// Any message but Status, of which a stream sends only the newest.
     Message lasting_message() {
         Message const any = message();
         return std::holds_alternative<Status>(any) ? lasting_message() : any;
@@ -171,7 +171,7 @@ private:
     std::mt19937_64 generator_;
 };
 
-/// The same in every field. `Bounds` has no comparison of its own.
+/// True where two messages are the same in every field. `Bounds` has no comparison of its own.
 inline bool same(Message const& left, Message const& right) {
     auto const* const a = std::get_if<Welcome>(&left);
     auto const* const b = std::get_if<Welcome>(&right);

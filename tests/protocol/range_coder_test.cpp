@@ -12,7 +12,7 @@ namespace {
 
 using Plain = std::vector<std::uint8_t>;
 
-/// So many decisions, of which a share are yes.
+/// Random decisions, `count` of them, of which a share are yes.
 std::vector<bool> decisions(std::size_t count, double share, std::mt19937& random) {
     std::vector<bool> all(count);
     for (std::size_t i = 0; i < count; ++i) {
@@ -49,7 +49,7 @@ TEST(RangeCoder, DecisionsComeBackAndCostWhatTheyTell) {
     }
 }
 
-/// Of all lengths, so that every end comes up, and with chances that make carries run over many bytes.
+/// Sequences are of all lengths, so that every end comes up, and with chances that make carries run over many bytes.
 TEST(RangeCoder, EndsAndCarriesAreRight) {
     std::mt19937 random(2);
     for (int round = 0; round < 20000; ++round) {
@@ -121,7 +121,7 @@ TEST(AdaptiveNumbers, AllOfThemComeBack) {
 
 TEST(AdaptiveNumbers, TooLargeOnesAreRefused) {
     RangeWriter writer;
-    std::array<AdaptiveBit, 4> chances; // as of a size whose length never ends
+    std::array<AdaptiveBit, 4> chances; // those of a size whose length never ends
     for (int i = 0; i < 100; ++i) {
         writer.bit(chances[0], true);
     }

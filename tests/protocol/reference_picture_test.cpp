@@ -77,7 +77,7 @@ TEST(ReferencePicture, IsGreyAtFirstAndForEveryOtherViewport) {
     Tile const tile = make_tile(pixel_depth, 3, 2);
     EXPECT_EQ(predicted(held, tile).red, framelet_of(tile, [](int, int) { return 128; }).red);
     take(held, framelet_of(tile, [](int x, int y) { return x + y; }));
-    held.show(viewport); // as it is
+    held.show(viewport); // it stays as it is
     EXPECT_EQ(red_at(predicted(held, tile), 5, 6), 11);
     held.show({201, 120});
     EXPECT_FALSE(held.shows(viewport));
@@ -100,18 +100,19 @@ TEST(ReferencePicture, GivesBackWhatItTookUpToHalfThePixelsSpacing) {
 TEST(ReferencePicture, KnownValuesOfOtherDepths) {
     ReferencePicture held = grey_picture();
     take(held, framelet_of(make_tile(pixel_depth, 1, 1), [](int x, int y) { return 10 * x + y; }));
-    // Finer: what covers it. A level finer, sample (2, 4) of the upper right quarter lies in sample (9, 2).
+    // A finer sample gets what covers it. A level finer, sample (2, 4) of the upper right quarter lies in sample (9,
+    // 2).
     DisplayFramelet const finer = predicted(held, make_tile(pixel_depth + 1, 3, 2));
     EXPECT_EQ(red_at(finer, 2, 4), 92);
     EXPECT_EQ(red_at(finer, 3, 5), 92);
     DisplayFramelet const finest = predicted(held, make_tile(pixel_depth + 2, 7, 4));
     EXPECT_EQ(red_at(finest, 0, 0), 120);
     EXPECT_EQ(red_at(finest, 7, 15), 133);
-    // Coarser: the mean of the pixels about a sample's centre; here (0, 0), (1, 0), (0, 1), (1, 1).
+    // A coarser sample gets the mean of the pixels about its centre; here (0, 0), (1, 0), (0, 1), (1, 1).
     DisplayFramelet const coarser = predicted(held, make_tile(pixel_depth - 1, 0, 0));
     EXPECT_EQ(red_at(coarser, 8, 8), (0 + 10 + 1 + 11 + 2) / 4);
     EXPECT_EQ(red_at(coarser, 7, 8), 128);
-    // What is finest is kept as means of four.
+    // The finest samples are kept as means of four.
     take(held, framelet_of(make_tile(pixel_depth + 2, 4, 4), [](int x, int y) { return x + y; }));
     EXPECT_EQ(red_at(predicted(held, make_tile(pixel_depth + 1, 2, 2)), 1, 2), (6 + 7 + 7 + 8 + 2) / 4);
 }
@@ -219,7 +220,8 @@ TEST(ReferencePicture, PredictsAsIfAllOfItWerePoints) {
             ASSERT_EQ(out.red[k], flat.predicted(place, vector, x, y)) << i << " tile " << tile.code;
         }
         if (held.is_searched()) {
-            // Of coarse framelets every fourth point, wherever they may have been; fine ones only where they are.
+            // Coarse framelets are compared at every fourth point, wherever they may have been; fine ones only where
+            // they are.
             int const step = SearchPicture::is_coarse(place.side) ? SearchPicture::coarse : 1;
             MotionVector const to = step > 1 ? vector : MotionVector{};
             SearchPicture::Source const source = held.searched(place, to);
@@ -245,7 +247,7 @@ double scene(double x, double y) {
     return 128 + 60 * std::sin(0.13 * x) + 60 * std::cos(0.17 * y + 0.05 * x);
 }
 
-/// All of the scene, a sample a pixel.
+/// A picture of all of the scene, a sample a pixel, that is kept for searches.
 ReferencePicture searched_picture() {
     ReferencePicture held = grey_picture();
     held.prepare_search({});
@@ -261,7 +263,7 @@ ReferencePicture searched_picture() {
     return held;
 }
 
-/// What is coarse is looked for among coarse points of what is finer.
+/// A coarse framelet is looked for among the coarse points of finer ones.
 TEST(MotionSearch, WhatIsCoarseAndStillHasHardlyMoved) {
     ReferencePicture const held = searched_picture();
     ImagePlane const plane(viewport);

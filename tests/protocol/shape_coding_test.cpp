@@ -12,7 +12,7 @@ namespace {
 
 using Plain = std::vector<std::uint8_t>;
 
-/// Of tiles of 2^side_bits pixels, side by side.
+/// Places of tiles of 2^side_bits pixels a side, side by side.
 std::vector<TilePosition> places_of(std::span<std::uint8_t const> side_bits) {
     std::vector<TilePosition> places;
     std::int32_t left = 0;
@@ -23,7 +23,7 @@ std::vector<TilePosition> places_of(std::span<std::uint8_t const> side_bits) {
     return places;
 }
 
-/// As the first group of a session.
+/// Encodes shapes as the first group of a session.
 Plain bytes_of(std::span<FrameletShape const> shapes, std::span<std::uint8_t const> side_bits) {
     auto const places = places_of(side_bits);
     ShapeModel model;
@@ -63,7 +63,7 @@ float largest(Vec3 const& v) {
     return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
-/// Everything that one framelet's shape may lose. `fastest`: of its group.
+/// Expects that a shape has lost no more than it may. `fastest`: largest component of a velocity in its group.
 void expect_close(FrameletShape const& in, FrameletShape const& out, int side_bits, float fastest) {
     ASSERT_EQ(in.layer_count, out.layer_count);
     ASSERT_EQ(in.layer_of, out.layer_of);
@@ -200,7 +200,7 @@ TEST(ShapeCoding, GoldenBytes) {
 }
 
 TEST(ShapeCoding, APlaneGoesOnInTilesOfAnySizeAndUnit) {
-    // w = 0.5 + x / 128 - y / 64 from the corner of a tile of 16 pixels at (32, 48).
+    // The plane is w = 0.5 + x / 128 - y / 64 from the corner of a tile of 16 pixels at (32, 48).
     TilePosition const from{32, 48, 4};
     CodedLayer const layer{quantise({0.5f, 0.0078125f, -0.015625f, 0, static_body, Vec3(0)}, 4), static_body, from};
     for (std::int32_t side_bits = 2; side_bits <= 7; ++side_bits) {
@@ -233,7 +233,7 @@ TEST(ShapeCoding, APlaneGoesOnWithinWhatNumbersHoldWhateverIsAsked) {
 TEST(ShapeCoding, PlanesOfNeighboursCostLittle) {
     std::vector<FrameletShape> shapes;
     std::vector<std::uint8_t> const side_bits(128, 4);
-    for (int i = 0; i < 128; ++i) { // one plane, from each tile's corner
+    for (int i = 0; i < 128; ++i) { // one plane, stated from each tile's corner
         FrameletShape& shape = shapes.emplace_back();
         shape.layer_count = 1;
         shape.layers[0] = {0.5f + static_cast<float>(16 * i) * 1e-4f - static_cast<float>(48 * i) * 2e-5f,
@@ -246,7 +246,7 @@ TEST(ShapeCoding, PlanesOfNeighboursCostLittle) {
     EXPECT_LT(bytes_of(shapes, side_bits).size(), 128u * 4);
 }
 
-/// What was read can be written, and says the same of every sample.
+/// Expects that shapes which were read can be written, and say the same of every sample.
 void expect_sent_again(std::vector<FrameletShape> const& shapes, std::span<std::uint8_t const> side_bits) {
     std::vector<FrameletShape> const again = shapes_of(bytes_of(shapes, side_bits), side_bits);
     for (std::size_t i = 0; i < shapes.size(); ++i) {

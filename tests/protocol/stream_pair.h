@@ -73,7 +73,7 @@ public:
     bool wait_for_messages(std::size_t count) {
         return notes_->wait([&] { return notes_->messages.size() >= count; });
     }
-    /// The reason, once the end has come; nothing if it does not.
+    /// Waits for the end of the stream and returns its reason; nothing if the end does not come.
     std::optional<std::string> wait_for_close() {
         return notes_->wait([&] { return notes_->closes > 0; }) ? std::optional(notes_->reason) : std::nullopt;
     }
@@ -138,7 +138,7 @@ inline Bytes framed(Bytes const& body) {
     return bytes;
 }
 
-/// Everything until the other side ends the connection.
+/// Reads everything until the other side ends the connection.
 inline Bytes read_to_end(Socket& socket) {
     Bytes all;
     Bytes part(65536);
@@ -150,7 +150,7 @@ inline Bytes read_to_end(Socket& socket) {
     return all;
 }
 
-/// What these bytes are, each with its length in front.
+/// Decodes these bytes as messages, each with its length in front.
 inline std::vector<Message> messages_of(Bytes const& bytes) {
     std::vector<Message> messages;
     for (std::size_t at = 0; at + 4 <= bytes.size();) {

@@ -12,7 +12,8 @@ TEST(Text, OneLineOfUtf8) {
         EXPECT_TRUE(is_one_line(good)) << good;
         EXPECT_EQ(to_one_line(good, 100), good);
     }
-    // Controls (C0, DEL, C1), stray and missing continuations, overlong forms, surrogates, beyond U+10FFFF.
+    // Texts that are refused: controls (C0, DEL, C1), stray and missing continuations, overlong forms, surrogates,
+    // beyond U+10FFFF.
     for (char const* bad : {"\n", "\t", "\x7f", "\xc2\x80", "\xc2\x9f", "\x80", "\xc3", "\xe4\xb8", "\xc0\x80",
                             "\xc1\xbf", "\xe0\x80\x80", "\xe0\x9f\xbf", "\xf0\x8f\xbf\xbf", "\xed\xa0\x80",
                             "\xf4\x90\x80\x80", "\xf5\x80\x80\x80", "\xff"}) {

@@ -18,7 +18,7 @@ Bytes bytes_of(std::initializer_list<int> values) {
 }
 
 TEST(TileList, GoldenBytes) {
-    // The second follows the first, the third skips one, the fourth is coarser and lies before them.
+    // The second tile follows the first, the third skips one, the fourth is coarser and lies before them.
     std::vector<Tile> const tiles{make_tile(7, 0, 0), make_tile(7, 1, 0), make_tile(7, 1, 1), {(1u << 12) + 0}};
     Bytes const bytes = bytes_of({1, 7, 0, 4, 7, 6});
     EXPECT_EQ(write_tiles(tiles), bytes);

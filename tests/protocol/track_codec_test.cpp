@@ -32,7 +32,7 @@ Decoded through(Tracks const& tracks, std::optional<BodyTrack> const& camera_tra
     return decoded(encode_tracks(tracks, camera_track));
 }
 
-/// A wheel of a car that drives a curve.
+/// Track of a wheel of a car that drives a curve.
 BodyTrack wheel(BodyNumber body, std::size_t keys) {
     BodyTrack track{body, 120, {}};
     for (std::size_t k = 0; k < keys; ++k) {
@@ -129,7 +129,7 @@ TEST(TrackCodec, BytesThatAreNotTracksAreRefused) {
     std::vector<std::uint8_t> const good = encode_tracks(tracks, wheel(1, 3));
     for (std::size_t size = 0; size < good.size(); ++size) {
         std::vector<std::uint8_t> const part(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size));
-        if (part != encode_tracks(tracks, {})) { // which is whole
+        if (part != encode_tracks(tracks, {})) { // else the part is a whole, the tracks without the camera's
             EXPECT_THROW(decoded(part), ProtocolError) << size;
         }
     }

@@ -98,7 +98,8 @@ TEST(MergeChild, BodiesAndMotionComeAlong) {
 
 TEST(MergeChild, TheSurfaceIsWhatMostRaysShow) {
     constexpr float far = std::numeric_limits<float>::infinity();
-    // Depths and bodies of four rays; which surface is shown, and the mean inverse depth of what is seen of it.
+    // Depths and bodies of four rays; the body of the surface that is shown, and its depth: the inverse of the mean
+    // inverse depth of the rays that show it.
     struct Case {
         std::array<float, 4> depth;
         std::array<BodyNumber, 4> body;
@@ -107,7 +108,7 @@ TEST(MergeChild, TheSurfaceIsWhatMostRaysShow) {
     };
     for (Case const& one : {Case{{5, 9, 9.1f, 9.2f}, {}, 0, 3 / (1 / 9.0f + 1 / 9.1f + 1 / 9.2f)},
                             Case{{5, 5, 5, 5}, {0, 3, 3, 3}, 3, 5}, Case{{far, far, 2, far}, {0, 0, 7, 0}, 0, far},
-                            Case{{far, 2, 2.02f, far}, {0, 7, 7, 0}, 0, far}, // as many of each: the first
+                            Case{{far, 2, 2.02f, far}, {0, 7, 7, 0}, 0, far}, // a tie: the first is shown
                             Case{{1, 2, 4, 8}, {}, 0, 1}}) {
         Framelet geometry;
         DisplayFramelet display;
@@ -127,7 +128,7 @@ TEST(MergeChild, TheSurfaceIsWhatMostRaysShow) {
 }
 
 TEST(MergeChild, WhatNeverMovesGetsNoLightOfBodiesWhereTheyWillHaveGone) {
-    for (BodyNumber const most : {static_body, BodyNumber{7}}) { // what three of four rays show
+    for (BodyNumber const most : {static_body, BodyNumber{7}}) { // the body that three of four rays show
         for (bool const will_be_moved : {false, true}) {
             Framelet geometry;
             DisplayFramelet display;

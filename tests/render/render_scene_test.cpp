@@ -1,4 +1,4 @@
-// Poses: what moves, what deforms, what vanishes.
+// Tests poses: what moves, what deforms, what vanishes.
 #include "server/render/prepared/render_scene.h"
 
 #include <gtest/gtest.h>

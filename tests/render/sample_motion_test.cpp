@@ -21,7 +21,7 @@ void animate(Scene& scene, Index node, AnimatedProperty property, std::vector<fl
     scene.clips[0].channels.push_back({node, property, Interpolation::linear, components, {0, 2}, std::move(values)});
 }
 
-/// The quarter of the picture above and left of the middle, at a time of the scene's clips.
+/// Renders the quarter of the picture above and left of the middle, at a time of the scene's clips.
 Framelet render(Scene const& scene, SceneTime time) {
     RenderScene ready(scene, black());
     ready.set_clips(clips);
@@ -74,7 +74,8 @@ TEST(SampleMotion, WhatShearsHasTheVelocityOfItsTransform) {
     Node stretching;
     scene.nodes.insert(scene.nodes.begin(), stretching);
     scene.nodes[1].parent = 0;
-    // Stretched by one axis above something that is turned about the view axis: height grows by 0.5 a second.
+    // The node is stretched by one axis above something that is turned about the view axis: height grows by 0.5 a
+    // second.
     animate(scene, 0, AnimatedProperty::scale, {1, 1, 1, 1, 2, 1});
     animate(scene, node + 1, AnimatedProperty::rotation, {0, 0, 0, 1, 0, 0, 0.01f, 0.99995f});
     Framelet const framelet = render(scene, 0.0);

@@ -100,7 +100,7 @@ struct Seen {
     float depth;
 };
 
-/// What one ray sees; `direction` need not be a unit vector, depth counts in its lengths.
+/// Radiance and depth that one ray sees; `direction` need not be a unit vector, depth counts in its lengths.
 inline Seen look_along(RenderScene const& scene, Vec3 origin, Vec3 direction) {
     RayPacket rays{};
     rays.origin.fill(origin);

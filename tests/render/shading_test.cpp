@@ -18,7 +18,7 @@ struct Furnace {
 };
 
 TEST(Shading, WhiteSphereInAWhiteFurnaceIsWhite) {
-    // Rough metal included: light that bounces between facets is accounted for. The tolerance is that of the tables.
+    // Rough metal is included: light that bounces between facets is accounted for. The tolerance is that of the tables.
     for (Furnace const& f :
          {Furnace{"matte", 0, 1, 0.005f}, Furnace{"plastic", 0, 0.3f, 0.005f}, Furnace{"mirror", 1, 0, 0.005f},
           Furnace{"brushed", 1, 0.4f, 0.005f}, Furnace{"rough metal", 1, 1, 0.005f}}) {
@@ -128,7 +128,7 @@ TEST(Shading, ThingsCastShadowsFromBothSides) {
         Vec3 const u(1, 0, 0), v(0, 0, -1);
         add(scene, quad({0, 1, 1}, turned ? v : u, turned ? u : v, 0));
         RenderScene const ready(scene, black());
-        // Looked at from the side, under the sheet.
+        // The floor is looked at from the side, under the sheet.
         EXPECT_EQ(look_along(ready, {0.5f, 0.5f, 0.5f + 4}, {0, -0.125f, -1}).radiance.g, 0);
         EXPECT_GT(look_along(ready, {-0.5f, 0.5f, 0.5f + 4}, {0, -0.125f, -1}).radiance.g, 0.3f);
     }
@@ -178,7 +178,7 @@ TEST(Shading, SmoothLowPolySphereHasACleanTerminator) {
     add_light(scene, sun, {0, 0, 0}, {-1, 0, -0.2f});
     RenderScene const ready(scene, black());
     Vec3 const towards = glm::normalize(Vec3(1, 0, 0.2f));
-    // Across the terminator: wherever the smooth normal sees the sun clearly there is light.
+    // A walk across the terminator: wherever the smooth normal sees the sun clearly there is light.
     for (int i = 0; i < 120; ++i) {
         float const x = -0.15f + 0.5f * static_cast<float>(i) / 120;
         float const y = 0.07f;

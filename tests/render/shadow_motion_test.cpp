@@ -16,7 +16,7 @@ ImagePlane const plane({32, 32});
 Camera const camera = look_at({0, 0, 10}, {0, 0, 0}, {0, 1, 0}, 0.5f);
 Tile const tile = make_tile(plane.pixel_depth(), 0, 0); // the quarter above and left of the middle
 constexpr SceneTime moment = 0.25;
-constexpr float edge = -1.4f; // of the shadow: x
+constexpr float edge = -1.4f; // x of the shadow's edge, metres
 
 Light lamp(LightType type, float intensity) {
     Light light;
@@ -26,7 +26,7 @@ Light lamp(LightType type, float intensity) {
     return light;
 }
 
-/// Where the sample lies on the floor, z = 0.
+/// Point of the floor, z = 0, that the sample shows.
 Vec3 place_of(std::uint32_t sample) {
     float const pixel = 2 * std::tan(0.25f) / 32 * 10;
     return {(static_cast<float>(morton_x(sample)) + 0.5f - 16) * pixel,
@@ -69,7 +69,7 @@ Rendered render(Scene const& scene, bool plays = true) {
     return out;
 }
 
-/// Under a sun from the left, 1 to 2: what is 12 metres up throws its shadow 6 metres farther right.
+/// A scene under a sun from the left, 1 to 2: what is 12 metres up throws its shadow 6 metres farther right.
 Scene sunny_scene(Vec3 const& velocity) {
     Scene scene = floor_scene();
     Index const node = add(scene, board(edge - 6, velocity));
@@ -166,13 +166,13 @@ TEST(ShadowMotion, WhatStandsAndIsInTheWayTooKeepsTheShadowThere) {
     }
 }
 
-/// Of a ball that turns about `axis` as it goes, by so many radians a second.
+/// The shadow of a ball that turns about `axis` as it goes, by `turning` radians a second.
 Framelet shadow_of_ball(Vec3 const& axis, float turning) {
     Scene scene = floor_scene();
     Index const ball = add(scene, sphere(Vec3(0), 4, 0));
     scene.clips.resize(1);
     scene.clips[0].duration = 2;
-    float const half = 0.05f * turning; // in a tenth of a second around the moment
+    float const half = 0.05f * turning; // half the angle that it turns in a tenth of a second
     Vec3 const turned = std::sin(half) * axis;
     scene.clips[0].channels = {
         {ball, AnimatedProperty::translation, Interpolation::linear, 3, {0, 2}, {-6.5f, 0, 16, -4.5f, 0, 16}},
@@ -189,7 +189,7 @@ Framelet shadow_of_ball(Vec3 const& axis, float turning) {
 TEST(ShadowMotion, WhatRollsThrowsAShadowThatGoesWithItsMiddle) {
     Vec3 const to_light = glm::normalize(Vec3(-1, 0, 2));
     for (bool const spins : {false, true}) {
-        // Slowly: its points go along the light or against it. Fast: about any axis.
+        // A ball that turns slowly, so that its points go along the light or against it, or fast, about any axis.
         Framelet const framelet = spins ? shadow_of_ball(to_light, 8) : shadow_of_ball({0, 1, 0}, 1);
         ASSERT_EQ(framelet.velocity.size(), std::size_t{framelet_samples});
         int dark = 0;

@@ -25,7 +25,7 @@ TEST(SplitSum, KnownValues) {
     EXPECT_NEAR(table.at(1, 0).x, 1, 0.01);
     EXPECT_NEAR(table.at(1, 0).y, 0, 0.01);
     EXPECT_NEAR(table.at(0.5f, 0).y, 1.0f / 32, 0.01);
-    // Roughness 1 under normal incidence: the integral of x / (1 + x) over the cosine x.
+    // At roughness 1 under normal incidence it is the integral of x / (1 + x) over the cosine x.
     Vec2 const rough = table.at(1, 1);
     EXPECT_NEAR(rough.x + rough.y, 1 - std::log(2.0f), 0.002f);
 }

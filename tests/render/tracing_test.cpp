@@ -1,4 +1,4 @@
-// What rays pass: cut-outs, see-through and single-sided surfaces; and mirrors.
+// Tests what rays pass, which is cut-outs, see-through and single-sided surfaces, and mirrors.
 #include "server/render/trace/tracing.h"
 
 #include <gtest/gtest.h>

@@ -23,12 +23,12 @@ float flat(float, float, double) {
 float texture(float x, float y, double) {
     return smooth_noise(x / 5, y / 5);
 }
-/// 40 pixels a second to the right.
+/// The texture, which goes 40 pixels a second to the right.
 float moving_texture(float x, float y, double time) {
     return smooth_noise((x - static_cast<float>(40 * time)) / 5, y / 5);
 }
 
-/// Finer than any sample in its right half.
+/// A picture whose right half has detail finer than any sample.
 float half_dust(float x, float y, double time) {
     return x < 128 ? flat(x, y, time) : smooth_noise(9 * x, 9 * y);
 }
@@ -75,7 +75,7 @@ std::multiset<std::uint32_t> regions_of(RegionField const& field, std::vector<Pa
     return regions;
 }
 
-/// What was taken by the last plan is not learnt when the next one is made.
+/// Patches that the last plan took are not learnt yet when the next one is made.
 TEST(AdaptiveRefresh, WhatIsInFlightIsNotTakenAgain) {
     for (std::size_t const batch : {1u, 8u, 64u, 1024u}) {
         SyntheticRefresh synthetic(small, texture);
@@ -129,10 +129,7 @@ TEST(AdaptiveRefresh, PipelinedConvergesToTheSame) {
     }
 }
 
-/// What stood while the clock ran is known to the viewer; it has to be seen once more when the clock stops, but that
-/// has to end.
-/// What is held for a while is rendered once and then more finely, but for patches of which a part was not rendered
-/// yet.
+/// A tile is rendered once in a moment and then more finely, but for patches of which a part was not rendered yet.
 TEST(AdaptiveRefresh, AMomentIsHardlyEverRenderedTwice) {
     for (bool const pipelined : {true, false}) {
         SyntheticRefresh synthetic(small, moving_texture);
@@ -220,6 +217,8 @@ TEST(AdaptiveRefresh, PeriodicRefreshesAndRefinementsAreNotOfTheSameTiles) {
     });
 }
 
+/// What stood while the clock ran is known to the viewer; it has to be seen once more when the clock stops, but that
+/// has to end.
 TEST(AdaptiveRefresh, CompletesAfterTheClockStops) {
     for (auto* const shading : {flat, texture}) {
         SyntheticRefresh synthetic(small, shading);
@@ -231,7 +230,7 @@ TEST(AdaptiveRefresh, CompletesAfterTheClockStops) {
     }
 }
 
-/// Away for one batch, at any point of a cycle: what was rendered there has to be rendered again here.
+/// The camera is away for one batch, at any point of a cycle: what was rendered there has to be rendered again here.
 TEST(AdaptiveRefresh, ACameraThatReturnsWithinACycleIsNotForgotten) {
     int strays = 0;
     for (int stray = 1; stray < 60; ++stray) {
@@ -260,7 +259,7 @@ TEST(AdaptiveRefresh, ACameraThatReturnsWithinACycleIsNotForgotten) {
     EXPECT_GT(strays, 5);
 }
 
-/// Each region once, where that is needed; then nothing.
+/// Each region gets them once, where they are needed; then there is nothing to do.
 TEST(AdaptiveRefresh, WhatTheFinestSamplesDoNotResolveGetsFourRaysASample) {
     SyntheticRefresh synthetic(small, half_dust);
     synthetic.running = false;

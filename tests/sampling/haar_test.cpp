@@ -72,7 +72,8 @@ TEST(Haar, ACheckerboardIsAllInItsOctave) {
     }
 }
 
-/// Of a part, the octaves within it; of blocks larger than it, those that it lies in.
+/// The energy of a part is, in octaves within it, that of its own blocks; in coarser ones, that of the block that it
+/// lies in.
 TEST(Haar, EnergiesOfPartsAverageToThatOfTheWhole) {
     Samples samples = random_samples(1);
     haar_forward(samples);

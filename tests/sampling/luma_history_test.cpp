@@ -115,7 +115,7 @@ TEST(LumaHistory, EveryByteCountsInTheContent) {
             (*plane)[i] = byte;
         }
     }
-    // Equal luma, other colours.
+    // Other colours may have equal luma.
     DisplayFramelet other = framelet;
     other.red[9] = 100;
     other.blue[9] = 50;

@@ -11,12 +11,12 @@ namespace {
 constexpr Viewport viewport{64, 64};
 constexpr BodyNumber car = 7, other = 8;
 
-/// Two keys, between which the body goes so far.
+/// A track of two keys, between which the body goes by `way`.
 BodyTrack going(BodyNumber body, Vec3 way) {
     return {body, 0, {{Vec3(0)}, {way}}};
 }
 
-/// The first `count` samples on one body, the rest on another, all 4 metres away.
+/// A framelet with the first `count` samples on one body, the rest on another, all 4 metres away.
 Framelet parted(BodyNumber first, BodyNumber second, std::size_t count = framelet_samples / 2) {
     Framelet framelet;
     framelet.tile = make_tile(2, 1, 1);

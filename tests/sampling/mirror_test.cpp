@@ -24,7 +24,7 @@ Camera camera_at(Vec3 position) {
 MirrorView view_at(Vec3 position, SceneTime time = 0) {
     return {make_view_rays(camera_at(position), viewport), time};
 }
-/// Metres for each pixel of what is a metre away.
+/// Size of a pixel, metres, of what is a metre away.
 float pixel_size() {
     return view_at(Vec3(0)).rays.direction_dx.x;
 }
@@ -62,7 +62,7 @@ TEST(Mirror, WhatStandsHasNoHolesBetweenItsLayers) {
     }
 }
 
-/// One that was seen to go over all of the wall at second 1; the mirror then looks at what is to be seen at 1.1.
+/// Adds a shadow that was seen to go over all of the wall at second 1; the mirror then looks at second 1.1.
 void add_shadow(Mirror& mirror, int depth) {
     std::vector<Piece> shadow = render_pieces(plane, depth, wall, 1, 2);
     for (Piece& piece : shadow) {
@@ -247,7 +247,7 @@ Look slid(SceneTime time) {
         return at >= 16 && at < 48 && y >= 32 && y < 64 ? Seen{2.5f, 0.1f, 1} : Seen{};
     };
 }
-/// Cells of the square at a time that show it, of 64.
+/// Number of the 64 cells of the square at a time that show it.
 int square_cells(Mirror const& mirror, SceneTime time) {
     int count = 0;
     for (int row = 8; row < 16; ++row) {

@@ -19,7 +19,7 @@ MirrorView view_at(float x) {
     camera.position.x = x;
     return {make_view_rays(camera, viewport), 0};
 }
-/// Left half flat, right half not.
+/// A picture whose left half is flat and whose right half is not.
 Seen half_busy(float x, float y) {
     float const wave = 0.5f + 0.2f * std::sin(1.7f * x) * std::sin(1.3f * y);
     return {10, x < 128 ? 0.5f : wave};

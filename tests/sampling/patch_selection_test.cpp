@@ -74,8 +74,8 @@ TEST(RatedPatches, WhatIsTrueGetsNoCoarserOnceAllStands) {
     EXPECT_TRUE(is_wanted());
 }
 
-/// What takes away the same error goes in the order of its cost, and neither what is spent nor the samples exceed what
-/// there is by more than the last patch.
+/// Patches that take away the same error go in the order of their cost, and neither what is spent nor the samples
+/// exceed what there is by more than the last patch.
 TEST(SelectedPatches, CheaperOnesGoFirst) {
     RegionField field{ImagePlane({128, 128})};
     for (std::uint32_t const index : field.visible()) {

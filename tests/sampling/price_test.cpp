@@ -11,7 +11,7 @@
 namespace framelet {
 namespace {
 
-/// Regions that hold what suits them, some of them moving; a pattern of `kind`.
+/// A field whose regions hold the finest samples, some of them moving.
 RegionField random_field(Viewport viewport, std::mt19937& random) {
     RegionField field{ImagePlane(viewport)};
     auto const between = [&random](float low, float high) {

@@ -9,12 +9,12 @@
 namespace framelet {
 namespace {
 
-/// One patch of a picture, learnt.
+/// Learns patches of a picture, one after the other.
 class Learner {
 public:
     explicit Learner(Viewport viewport) : field(ImagePlane(viewport)) {}
 
-    /// Returns whether it is to be sent.
+    /// Learns a patch; returns whether it is to be sent.
     bool learn(Patch const& patch, double now, std::function<float(float, float)> const& shade) {
         std::vector<Tile> tiles;
         append_tiles(field.plane(), patch, tiles);
@@ -115,7 +115,7 @@ TEST(RegionField, WhatIsSentThoughItIsTheSameIsWhatTheViewerHolds) {
     EXPECT_TRUE(learner.learn(fine, 4, still)) << "or it would never be fine again";
 }
 
-/// In the dark, say.
+/// What a body uncovers may look just as it did, say in the dark.
 TEST(RegionField, WhatLooksAsABodyDidThatHasGoneIsSent) {
     BodyMotions const motions;
     for (bool const moves : {false, true}) {

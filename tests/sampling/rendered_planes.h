@@ -12,7 +12,7 @@
 
 namespace framelet {
 
-/// What is seen at a pixel.
+/// The surface that is seen at a pixel.
 struct Seen {
     float depth = 10; ///< metres
     float luma = 0.5f; ///< display-encoded, [0, 1]
@@ -52,7 +52,7 @@ inline void cut_pieces(RenderedTile const& tile, ImagePlane const& plane, SceneT
     cut_pieces(tile.rendered, tile.shown, tile.shape, plane, time, batch, pieces);
 }
 
-/// All visible tiles of a depth.
+/// Renders the pieces of all visible tiles of a depth.
 inline std::vector<Piece> render_pieces(ImagePlane const& plane, int depth, Look const& look, SceneTime time = 0,
                                         std::uint64_t batch = 1) {
     std::vector<Piece> pieces;

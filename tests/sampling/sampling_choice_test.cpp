@@ -33,7 +33,7 @@ SamplingChoice choose(State const& state, int least = 0, int most = sampling_lev
     return choose_sampling(state.region, state.life, state.price, least, most);
 }
 
-/// What the header says is minimised.
+/// The value that the header says is minimised.
 double paid(State const& state, int level, double period) {
     DriftBounds const bounds = drift_bounds(state.region, level);
     double const rate = double(state.region.motion) * bounds.growth / bounds.most;
@@ -69,8 +69,8 @@ TEST(SamplingChoice, IsTheMinimum) {
     std::printf("worst choice: %.4f above the minimum\n", worst);
 }
 
-/// Over all the pairs: a minimum of error + price * rate cannot ask for more at a higher price; the period's table may
-/// blur that by the share below.
+/// A minimum of error + price * rate over all pairs of level and period cannot ask for more at a higher price; the
+/// period's table may blur that by the share below.
 TEST(SamplingChoice, AHigherPriceNeverAsksForMore) {
     std::mt19937 random(2);
     for (int n = 0; n < 5000; ++n) {

@@ -81,7 +81,7 @@ public:
         return true;
     }
 
-    /// For so many seconds; `each` is called after every batch.
+    /// Goes on for so many seconds; `each` is called after every batch.
     template <class Each>
     void run(double seconds, Each&& each) {
         double const end = input.now + seconds;
@@ -117,7 +117,7 @@ public:
     double moment_length = 0; ///< seconds; > 0: moments are held while the clock runs
     AdaptiveRefresh refresh;
 
-    // Of the last step.
+    // What the last step planned and sent:
     std::vector<Tile> tiles;
     std::vector<Patch> patches;
     int rays_per_sample = single_ray;
@@ -141,7 +141,7 @@ private:
         SceneTime const time = input.moment ? input.moment->state.scene_time : input.state.scene_time;
         return static_cast<std::uint8_t>(std::lround(255 * shading_(x, y, time)));
     }
-    /// Of a cell of this side: in its middle, or the mean of its quarters.
+    /// Shades a cell of this side: in its middle, or the mean of its quarters.
     std::uint8_t shade_cell(float x, float y, float side, int rays) const {
         if (rays == single_ray) {
             return shade(x, y);

@@ -48,7 +48,7 @@ TEST(Keyframes, CubicSplineScalesTangentsByTheInterval) {
     EXPECT_FLOAT_EQ(first_of(square, 1.5f), 2.25f);
 }
 
-/// Pictures of what rests are told from moving ones by their cameras' and bodies' bits.
+/// Pictures of a scene at rest are told from those of a moving one by the bits of their cameras and bodies.
 TEST(Keyframes, RestIsExact) {
     AnimationChannel const channel{0,
                                    AnimatedProperty::rotation,

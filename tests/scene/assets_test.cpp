@@ -1,4 +1,4 @@
-// Real models, against the figures that their list gives. Skipped where they are not beside the checkout.
+// Compares real models with the figures that their list gives. Skipped where they are not beside the checkout.
 #include <gtest/gtest.h>
 
 #include "common/error.h"
@@ -356,7 +356,7 @@ TEST_F(Conformance, NormalTangentTestGetsTangentsOnTheRightSide) {
     expect_consistent(scene);
 }
 
-/// Our tangents against those that the authors' tools made and stored.
+/// Compares our tangents with those that the authors' tools made and stored.
 TEST(AssetTangents, AgreeWithStoredOnes) {
     for (std::string const name : {"FlightHelmet/FlightHelmet.gltf", "WaterBottle/WaterBottle.gltf"}) {
         if (!std::filesystem::exists(assets / name)) {

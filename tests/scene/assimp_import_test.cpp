@@ -161,7 +161,8 @@ TEST(AssimpImport, FilesTooLargeForTheBudgetAreNotRead) {
     EXPECT_THROW(import_scene(file, {}, options), InputError);
 }
 
-/// Counts that no header has, or that its check does not find: what Assimp takes for them is bounded all the same.
+/// Some files have counts that no header has, or that its check does not find: what Assimp takes for them is bounded
+/// all the same.
 TEST(AssimpImport, SmallFilesCannotTakeMuchMemory) {
 #ifdef FRAMELET_SANITIZE
     GTEST_SKIP() << "the sanitizer ends a program that is refused memory";
@@ -188,8 +189,8 @@ TEST(AssimpImport, SmallFilesCannotTakeMuchMemory) {
     EXPECT_NO_THROW(std::make_unique<char[]>(256 << 20)) << "the bound is gone with the import";
 }
 
-/// Assimp reads glTF too: what it makes of a file must be where our own importer puts it. (The camera's node is not
-/// moved and its picture square: of those, Assimp 5.2 makes something else in glTF only.)
+/// Assimp reads glTF too: whatever it reads must lie where our own importer puts it. (The camera's node is not moved
+/// and its picture is square: otherwise Assimp 5.2 reads the camera differently, in glTF only.)
 class AssimpAgainstGltf : public testing::Test {
 protected:
     AssimpAgainstGltf() {

@@ -1,4 +1,4 @@
-// What cannot be loaded: one InputError with one line, whatever the file.
+// Files that cannot be loaded: each gives one InputError with one line.
 #include "server/scene/scene_import.h"
 
 #include <random>
@@ -182,7 +182,7 @@ TEST(BadScene, SmallFilesThatGrowWithoutBound) {
                  "--scene-memory");
 }
 
-/// So that what is too much is little.
+/// Options with a small budget, so that a small file can ask for too much.
 ImportOptions with_megabytes(std::uint64_t megabytes) {
     ImportOptions options;
     options.memory_bytes = megabytes << 20;
@@ -305,7 +305,7 @@ TEST(BadScene, FlippedBytesGiveASceneOrAnError) {
         int const flips = 1 + static_cast<int>(random() % 3);
         for (int i = 0; i < flips; ++i) {
             char& byte = bytes[random() % bytes.size()];
-            // Half of the time a digit, so that the JSON stays whole and its numbers go wrong.
+            // The byte is a digit half of the time, so that the JSON stays whole and its numbers go wrong.
             byte = random() % 2 ? static_cast<char>('0' + random() % 10) : static_cast<char>(random());
         }
         try {

@@ -89,7 +89,7 @@ TEST(Bodies, WhatShearsOrDeformsFlows) {
     Scene scene = empty_scene();
     Index const squashed = add_node(scene, none); // never moves: its own scale shears nothing
     Index const turning = add_node(scene, squashed);
-    Index const pulsing = add_node(scene, none); // by one axis: still translation, rotation, scale
+    Index const pulsing = add_node(scene, none); // scaled along one axis: still translation, rotation, scale
     Index const below = add_node(scene, pulsing); // static below it: carried along
     Index const turned_below = add_node(scene, pulsing);
     Index const morphing = add_node(scene, none);

@@ -1,4 +1,4 @@
-// Files that change, are replaced, removed and come back, while the clock is set by hand.
+// Watches files that change, are replaced, removed and come back, while the clock is set by hand.
 #include "server/scene/file_watch.h"
 
 #include <fstream>

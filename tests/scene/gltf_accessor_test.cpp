@@ -69,7 +69,7 @@ TEST(GltfAccessor, NormalisedIntegers) {
     GltfWriter writer;
     writer.array(triangle_positions, "VEC3");
     std::string const normalized = R"(,"normalized":true)";
-    // A row of four bytes each, so that the stride is a multiple of four.
+    // Each element has four bytes, so that the stride is a multiple of four.
     int const u8 = writer.view(std::vector<std::uint8_t>{255, 0, 51, 0, 0, 255, 0, 0, 102, 0, 0, 0}, 4);
     writer.accessor(R"("bufferView":)" + std::to_string(u8) + R"(,"componentType":5121,"count":3,"type":"VEC3")" +
                     normalized);

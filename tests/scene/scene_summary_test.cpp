@@ -1,4 +1,4 @@
-// What --info says of a scene, as text and as JSON, with names that a terminal would obey.
+// Tests what --info says of a scene, as text and as JSON, with names that a terminal would obey.
 #include "server/scene/summary/scene_summary.h"
 
 #include <gtest/gtest.h>

@@ -84,7 +84,7 @@ TEST(Switches, OnlyALoneOneIsFoundWhateverTurnOfTheLoopItIsIn) {
     EXPECT_EQ(lone_switch({}, 0, 5), std::nullopt);
 }
 
-/// The values that the scene takes say the same.
+/// Compares the switches found with the values that the scene takes.
 TEST(Switches, OfABundledSceneAreWhereItsPoseJumps) {
     Scene const scene = import_scene(FRAMELET_SOURCE_DIR "/scenes/flicker.glb");
     std::vector<Index> const clips = default_clips(scene);

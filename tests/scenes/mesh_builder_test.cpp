@@ -12,7 +12,7 @@ D3 face_cross(MeshData const& mesh, std::size_t i) {
     return glm::cross(mesh.positions[mesh.indices[i + 1]] - a, mesh.positions[mesh.indices[i + 2]] - a);
 }
 
-/// By the divergence theorem; negative where the faces look inward, wrong where the surface has a hole.
+/// Volume by the divergence theorem; negative where the faces look inward, wrong where the surface has a hole.
 double volume(MeshData const& mesh) {
     double sum = 0;
     for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {

@@ -104,7 +104,7 @@ void check_primitive(tinygltf::Model const& model, tinygltf::Primitive const& pr
     }
 }
 
-/// Every key is finite and in order; returns the last time.
+/// Checks that every key is finite and in order; returns the last time.
 double check_animation(tinygltf::Model const& model, tinygltf::Animation const& animation) {
     double last = 0;
     std::set<std::pair<int, std::string>> targets;

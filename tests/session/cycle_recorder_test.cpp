@@ -27,7 +27,7 @@ protected:
     }
 };
 
-/// Has planned its first cycle and rendered nothing.
+/// A refresh that has planned its first cycle and rendered nothing.
 AdaptiveRefresh planned() {
     AdaptiveRefresh refresh;
     RefreshInput input;

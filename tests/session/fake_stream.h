@@ -7,7 +7,7 @@
 
 namespace framelet {
 
-/// The test says what comes.
+/// A stream of which the test says what comes.
 class FakeStream : public FramedStream {
 public:
     void start(Handlers handlers, std::size_t) override { handlers_ = std::move(handlers); }
@@ -19,7 +19,7 @@ public:
     std::string peer() const override { return "nobody"; }
 
     void bring(Message const& message) { handlers_.on_message(message); }
-    /// What the callbacks hold is released, as when a connection has ended.
+    /// Releases what the callbacks hold, as when a connection has ended.
     void forget_handlers() { handlers_ = {}; }
 
     bool is_closed = false;
@@ -28,8 +28,8 @@ private:
     Handlers handlers_;
 };
 
-/// One of a test. A session and the callbacks of its connection hold each other until the connection ends: this is its
-/// end.
+/// A connection of a test, which ends with this object: a session and the callbacks of its connection hold each other
+/// until the connection ends.
 class FakeConnection {
 public:
     FakeConnection() = default;

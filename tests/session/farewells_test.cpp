@@ -11,7 +11,7 @@ TEST(Farewells, TheOldestIsClosedForOneTooMany) {
     Farewells farewells;
     std::vector<std::shared_ptr<FakeStream>> streams;
     for (std::size_t i = 0; i < Farewells::most; ++i) {
-        farewells.add(std::make_shared<FakeStream>()); // is gone at once, and takes no place
+        farewells.add(std::make_shared<FakeStream>()); // this one is gone at once, and takes no place
         streams.push_back(std::make_shared<FakeStream>());
         farewells.add(streams.back());
     }

@@ -13,7 +13,7 @@ CameraUpdate camera_update(std::uint64_t number, Viewport viewport = {64, 48}) {
     return {{number, Camera{}, viewport}, -1};
 }
 
-/// One thread, few, and so many that a batch is planned before the last one is learnt.
+/// The parameter is the number of threads: one, few, and so many that a batch is planned before the last one is learnt.
 class HostileViewer : public testing::TestWithParam<std::size_t> {
     tbb::global_control const threads_{tbb::global_control::max_allowed_parallelism, GetParam()};
 };
@@ -86,7 +86,7 @@ TEST_P(HostileViewer, FloodsTheClock) {
     hostile.send(camera_update(1));
     ASSERT_TRUE(bystander.watch(is_batch));
     auto const start = std::chrono::steady_clock::now();
-    std::thread flood([&] { // and reads nothing of what is answered
+    std::thread flood([&] { // it reads nothing of what is answered
         for (int i = 0; i < 20000; ++i) {
             hostile.send(ClockRequest{ClockRequest::time, {0.001 * i, true, 1}});
         }

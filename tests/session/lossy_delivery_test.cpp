@@ -37,7 +37,7 @@ struct Shown {
     Picture picture;
     bool converged = false;
     std::size_t lossy = 0; ///< framelets that came with loss
-    std::size_t predicted = 0; ///< batches
+    std::size_t predicted = 0; ///< batches that were predicted
 };
 
 /// Looks through one camera after the other, a new one with every batch, until the last one's picture is complete.
@@ -84,7 +84,7 @@ Shown watch(std::uint16_t port, std::uint32_t codings) {
     return shown;
 }
 
-/// One thread, few, and so many that a batch is planned before the last one is learnt.
+/// The parameter is the number of threads: one, few, and so many that a batch is planned before the last one is learnt.
 class LossyDelivery : public testing::TestWithParam<std::size_t> {};
 INSTANTIATE_TEST_SUITE_P(Threads, LossyDelivery, testing::Values(1, 2, 8));
 
@@ -114,7 +114,7 @@ TEST_P(LossyDelivery, ConvergesToTheExactPicture) {
     server.stop();
 }
 
-/// What has been sent waits out the stalls, and whoever is cut off amid a message starts anew.
+/// Batches that have been sent wait out the stalls, and whoever is cut off amid a message starts anew.
 TEST(BadLink, StallsRateStepsAndCutsAmidAMessageEndInTheExactPicture) {
     ServerOptions options;
     options.paused = true;

@@ -31,14 +31,14 @@ public:
     /// Does nothing where the server has ended the connection.
     void send(Bytes const& body) { write(frame_of(body)); }
     void send(Message const& message) { send(encode_message(message)); }
-    /// No more than the first half of it.
+    /// Sends no more than the first half of a message.
     void send_half(Message const& message) {
         Bytes frame = frame_of(encode_message(message));
         frame.resize(frame.size() / 2);
         write(frame);
     }
 
-    /// Nothing once the connection has ended, or where nothing comes.
+    /// Receives a message; nothing once the connection has ended, or where nothing comes.
     std::optional<Message> receive() {
         std::array<std::uint8_t, 4> prefix{};
         if (!read(prefix.data(), prefix.size())) {
@@ -68,7 +68,8 @@ public:
         return false;
     }
 
-    /// What the server says when it ends the session; empty where the connection ends without a word.
+    /// Waits for the end of the session and returns what the server says then; empty where the connection ends without
+    /// a word.
     std::string failure() {
         watch([](Message const& message) { return std::holds_alternative<Failure>(message); });
         return failure_;
@@ -89,7 +90,7 @@ private:
         boost::asio::write(socket_, boost::asio::buffer(bytes), ignored);
     }
 
-    /// By the system's own call: Asio's takes a timeout for a reason to wait on.
+    /// Reads by the system's own call, since Asio's takes a timeout for a reason to wait on.
     bool read(void* to, std::size_t size) {
         return ::recv(socket_.native_handle(), to, size, MSG_WAITALL) == static_cast<ssize_t>(size);
     }

@@ -25,7 +25,7 @@ CameraUpdate camera_update(std::uint64_t number, Viewport size = viewport) {
     return {{number, look_at({9 + turn, 4, 12 - turn}, {0, 1, 0}, {0, 1, 0}, 0.9f), size, 1}, -1};
 }
 
-/// Keeps what it is sent when its connection is cut.
+/// A viewer that keeps what it is sent when its connection is cut.
 class Returning {
 public:
     explicit Returning(std::uint16_t port, std::uint32_t codings = coding::exact_colour) : port_(port) {
@@ -33,7 +33,7 @@ public:
         connect();
     }
 
-    /// Cuts the connection where there is one. False where the server does not let it in.
+    /// Connects, after cutting the connection where there is one. False where the server does not let it in.
     bool connect() {
         connection_.reset();
         connection_ = std::make_unique<RawViewer>(port_, hello);
@@ -97,10 +97,10 @@ public:
     void cut() { connection_.reset(); }
     std::unique_ptr<RawViewer> leave_open() { return std::move(connection_); }
 
-    Hello hello; ///< of the next connection
+    Hello hello; ///< what it says on the next connection
     bool is_resumed = false;
-    bool controls = false; ///< the clock, as its Welcome says
-    std::uint64_t evicted = 0; ///< as the server says
+    bool controls = false; ///< its clock requests count, as its Welcome says
+    std::uint64_t evicted = 0; ///< messages Evicted that have come, as the server says
     std::uint64_t framelets = 0;
     std::vector<EncodedBatch> batches;
     std::function<void()> on_batch;
@@ -133,7 +133,7 @@ ServerOptions still(std::size_t places = 8) {
     return options;
 }
 
-/// One thread, few, and so many that a batch is planned before the last one is learnt.
+/// The parameter is the number of threads: one, few, and so many that a batch is planned before the last one is learnt.
 class Resume : public testing::TestWithParam<std::size_t> {
     tbb::global_control const threads_{tbb::global_control::max_allowed_parallelism, GetParam()};
 };
@@ -169,7 +169,7 @@ TEST_P(Resume, WhatIsLackedComesOnceMoreAsItWas) {
     ASSERT_TRUE(viewer.watch(5));
     ASSERT_TRUE(viewer.watch(3, false)); // as if the answers were lost
     std::vector<EncodedBatch> const came = viewer.batches;
-    // And as if the last two had been lost as well.
+    // The other viewer comes back as if the last two batches had been lost as well.
     Returning other(server.port());
     other.hello = viewer.hello;
     other.hello.last_batch -= 2;
@@ -188,7 +188,7 @@ TEST_P(Resume, WhatIsLackedComesOnceMoreAsItWas) {
     }
 }
 
-/// However often it is cut, amid batches too.
+/// A viewer comes to the exact picture however often it is cut, amid batches too.
 TEST_P(Resume, CutsAmidBatchesEndInTheExactPicture) {
     RunningServer const server(still(), chase());
     Returning uncut(server.port());
@@ -250,12 +250,12 @@ TEST(ResumeTicket, OnlyTheRightOneGoesOn) {
     EXPECT_TRUE(viewer.is_resumed);
 }
 
-/// Each begins anew, and what was kept for the ticket is given up.
+/// Each of these viewers begins anew, and what was kept for the ticket is given up.
 TEST(ResumeTicket, WhatDoesNotFitBeginsAnew) {
     RunningServer const server(still(), chase());
-    std::uint64_t answered = 0; // of which batch the server has heard
+    std::uint64_t answered = 0; // the last batch that the server has heard an Ack of
     std::vector<std::function<void(Hello&)>> const changes{
-        [](Hello& hello) { ++hello.last_batch; }, // which was never sent
+        [](Hello& hello) { ++hello.last_batch; }, // a batch that was never sent
         [&](Hello& hello) { hello.last_batch = answered - 1; },
         [](Hello& hello) { hello.codings |= coding::haar_colour; },
     };

@@ -1,4 +1,4 @@
-// The server in this process, spoken to over loopback sockets by a viewer that sends just what a test wants.
+// Runs the server in this process, spoken to over loopback sockets by a viewer that sends just what a test wants.
 #include "server/session/server.h"
 
 #include <optional>
@@ -52,7 +52,7 @@ CameraUpdate camera_update(std::uint64_t number, Viewport viewport = {64, 48}) {
     return {{number, Camera{}, viewport}, -1};
 }
 
-/// One thread, few, and so many that a batch is planned before the last one is learnt.
+/// The parameter is the number of threads: one, few, and so many that a batch is planned before the last one is learnt.
 class ServerOfThreads : public testing::TestWithParam<std::size_t> {
     tbb::global_control const threads_{tbb::global_control::max_allowed_parallelism, GetParam()};
 };
@@ -112,8 +112,8 @@ TEST_P(ServerOfThreads, WaitsForAcknowledgements) {
 }
 
 TEST(Server, NothingOlderComesFirstWhenThereIsRoomAgain) {
-    // Latest wins without a queue to replace in: while there is no room nothing is rendered, so the first batch after
-    // that is of the newest camera.
+    // The latest camera wins without a queue to replace in: while there is no room nothing is rendered, so the first
+    // batch after that is of the newest camera.
     ServerOptions options;
     options.loop.stream.batch_framelets = 16;
     RunningServer const server(options);

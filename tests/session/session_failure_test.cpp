@@ -59,12 +59,12 @@ CameraUpdate camera_update(std::uint64_t number, Viewport viewport) {
     return {{number, Camera{}, viewport}, -1};
 }
 
-/// One thread, few, and so many that a batch is planned before the last one is learnt.
+/// The parameter is the number of threads: one, few, and so many that a batch is planned before the last one is learnt.
 class SessionFailure : public testing::TestWithParam<std::size_t> {
     tbb::global_control const threads_{tbb::global_control::max_allowed_parallelism, GetParam()};
 
 protected:
-    /// `fails` is served until its session ends; meanwhile and afterwards `goes_on` is.
+    /// Expects that `fails` is served until its session ends, and `goes_on` meanwhile and afterwards.
     static void expect_only_one_ends(RawViewer& fails, RawViewer& goes_on) {
         std::atomic<bool> ended = false;
         std::thread other([&] {
@@ -119,8 +119,8 @@ TEST_P(SessionFailure, WhileABatchIsEncoded) {
     RawViewer small(server.port()), large(link.port());
     small.send(camera_update(1, {64, 48}));
     ASSERT_TRUE(small.watch(is_batch));
-    // Less than a plane of what the viewer is taken to hold, which comes into being with the first batch that is sent
-    // with loss, because the link is slow.
+    // The limit is less than a plane of what the viewer is taken to hold, which comes into being with the first batch
+    // that is sent with loss, because the link is slow.
     ScarceMemory const scarce(24'000'000);
     large.send(camera_update(1, {4096, 2048}));
     expect_only_one_ends(large, small);

@@ -1,4 +1,4 @@
-// How the loop shares its time among viewers, by what their streams are told: streams that render nothing, so that the
+// Tests how the loop shares its time among viewers, by what their streams are told: these render nothing, so that the
 // renderer is never measured and what it is taken for is known.
 #include "server/session/loop/session_loop.h"
 
@@ -16,11 +16,11 @@
 namespace framelet {
 namespace {
 
-/// What a test says of a stream, and what that was told.
+/// Script of a stream: what a test says of it, and what it was told.
 struct Script {
     std::atomic<bool> takes_more = true; ///< there is something to render, and room for it
-    std::atomic<double> samples_per_second = 0; ///< in its last turn
-    std::atomic<double> time_after_change = -1; ///< of the scene, in its first turn that knows the clock was set
+    std::atomic<double> samples_per_second = 0; ///< told in its last turn
+    std::atomic<double> time_after_change = -1; ///< scene time of the last turn that heard the clock was set; -1: none
 };
 
 class ScriptedStream final : public ViewerStream {
@@ -76,7 +76,7 @@ public:
     }
 
     void set_takes_more(std::size_t viewer, bool takes_more) { scripts_[viewer].takes_more = takes_more; }
-    /// The scene's time when the second viewer hears that the clock was set, which is in the first one's turn.
+    /// Has the clock set in the first viewer's turn; returns the scene's time when the second viewer hears of it.
     double time_after_setting(SceneTime time) {
         set_time_ = time;
         auto const end = std::chrono::steady_clock::now() + std::chrono::seconds(20);

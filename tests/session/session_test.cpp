@@ -31,7 +31,7 @@ TEST(Session, AFloodOfWhatAViewerEvictsIsBounded) {
         stream->bring(full);
     }
     EXPECT_EQ(waiting(), most_waiting / (max_evicted + 1));
-    for (std::size_t i = 0; i < 2 * most_waiting; ++i) { // of nothing, each still takes memory
+    for (std::size_t i = 0; i < 2 * most_waiting; ++i) { // each is of nothing, and still takes memory
         stream->bring(Evicted{});
     }
     EXPECT_EQ(waiting(), most_waiting);
@@ -52,7 +52,7 @@ struct Viewed {
         events.ended = [](std::string const& reason) { FAIL() << reason; };
         session = std::make_shared<Session>(1, stream.stream(), std::move(events));
     }
-    /// What is overdue when nothing comes for so long from now on.
+    /// Names what is overdue when nothing comes for so long from now on; empty: nothing is.
     std::string overdue_after(std::chrono::steady_clock::duration wait) const {
         return session->overdue(std::chrono::steady_clock::now() + wait).value_or("");
     }
@@ -62,7 +62,7 @@ TEST(Session, HelloCameraAndAckAreOverdueInTheirTurn) {
     Viewed viewer;
     EXPECT_EQ(viewer.overdue_after(std::chrono::hours(1)), "") << "nothing is read yet";
     viewer.session->start();
-    viewer.session->start(); // which does nothing more
+    viewer.session->start(); // the second call does nothing
     EXPECT_EQ(viewer.overdue_after({}), "");
     EXPECT_NE(viewer.overdue_after(Session::hello_timeout).find("Hello"), std::string::npos);
     viewer.stream->bring(Hello{});
@@ -101,7 +101,7 @@ TEST(Session, GoesOnAfterACutFromWhateverIsKept) {
     viewer.session->cut();
     EXPECT_TRUE(viewer.stream->is_closed);
     EXPECT_TRUE(viewer.session->is_parked());
-    viewer.session->send_batch(batch_of_bytes(6, 1)); // which was being made
+    viewer.session->send_batch(batch_of_bytes(6, 1)); // this one was being made
     EXPECT_FALSE(viewer.session->can_be_resumed(0)) << "it has said that it has more";
     EXPECT_FALSE(viewer.session->can_be_resumed(1)) << "that would be too much to keep";
     for (std::uint64_t const last : {3u, 4u, 5u}) {

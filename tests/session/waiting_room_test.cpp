@@ -11,7 +11,7 @@ namespace {
 constexpr double certainly = 0;
 constexpr double hardly = 0.999999;
 
-/// `count` connections from `first` on, each of a source of its own.
+/// Lets in `count` connections, numbered from `first` on, each of a source of its own.
 void fill(WaitingRoom& room, std::uint64_t first, std::size_t count) {
     for (std::uint64_t i = first; i < first + count; ++i) {
         EXPECT_EQ(room.enter(i, "source " + std::to_string(i), hardly), std::nullopt);

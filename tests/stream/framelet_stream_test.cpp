@@ -39,7 +39,7 @@ TEST(FrameletStream, AMomentIsOfTheTimeAtWhichItEnds) {
     EXPECT_EQ(served.stream.moment(), 0) << "the clock stands there";
 }
 
-/// The triangle stays where it is but for the seconds from 1 to 1.5.
+/// A scene whose triangle stays where it is but for the seconds from 1 to 1.5.
 Scene jumping_scene() {
     Scene scene = moving_scene();
     scene.clips[0].channels[0].interpolation = Interpolation::step;
@@ -81,7 +81,7 @@ TEST(FrameletStream, BeforeAJumpAMomentIsOfWhatComesAfterAndWaits) {
     EXPECT_EQ(shown_from(served), 0);
 }
 
-/// Where a camera is that goes 1 m a second when the first moment begins that it is rendered for.
+/// Distance, metres, of the first moment's camera from where the camera is now, which goes 1 m a second.
 float rendered_ahead(double plan_seconds, StreamOptions const& options = {}) {
     Served served(options);
     double now = 0;
@@ -109,7 +109,8 @@ TEST(FrameletStream, AMomentIsOfTheCameraWithWhichItIsShownLast) {
     EXPECT_NEAR(rendered_ahead(0, {.looks_ahead = false, .camera_leads = false}), 0, 1e-4);
 }
 
-/// Framelets of all batches until nothing is left to do. All must be for a viewer that begins with this view.
+/// Number of framelets of all batches until nothing is left to do. All must be for a viewer that holds what it was sent
+/// since this view.
 std::size_t sent_until_complete(Served& served, std::uint64_t held_since) {
     std::size_t framelets = 0;
     for (double now = 1; !served.stream.is_complete() && now < 100; now += 0.01) {
@@ -141,7 +142,7 @@ TEST(FrameletStream, AViewerThatHasBegunAnewIsSentAllOfItOnceMore) {
     served.stream.take({50, CameraUpdate{{4, {}, {64, 48}, 4}, -1}});
     EXPECT_EQ(sent_until_complete(served, 4), all);
 
-    served.stream.take({50, CameraUpdate{{9, {}, {64, 48}, 9}, -1}}); // of those between nobody has heard
+    served.stream.take({50, CameraUpdate{{9, {}, {64, 48}, 9}, -1}}); // nobody has heard of the views between
     ASSERT_EQ(served.plan(200, 0.5, 0), Step::render);
     served.stream.render(served.posed);
     served.stream.take({50, CameraUpdate{{11, {}, {64, 48}, 11}, -1}});
@@ -149,7 +150,7 @@ TEST(FrameletStream, AViewerThatHasBegunAnewIsSentAllOfItOnceMore) {
     EXPECT_EQ(sent_until_complete(served, 11), all);
 }
 
-/// Whatever was rendered of other cameras meanwhile, and however little of it.
+/// The viewer holds it whatever was rendered of other cameras meanwhile, and however little of it.
 TEST(FrameletStream, AViewerHoldsAllOfAPictureAtRestForItsCamera) {
     for (int const batches_away : {0, 1, 2, 5}) {
         Served served;

@@ -13,7 +13,7 @@ ImagePlane const plane({128, 128});
 Tile const tile = make_tile(plane.pixel_depth(), 3, 2);
 LayerTolerance const tolerance{0.001f, 1.0f};
 
-/// `depth(x, y)` with x and y in pixels from the tile's corner.
+/// A framelet with these depths: `depth(x, y)` with x and y in pixels from the tile's corner.
 Framelet make_framelet(std::function<float(float, float)> const& depth, Tile of = tile) {
     Framelet framelet{};
     framelet.tile = of;
@@ -32,7 +32,7 @@ float layer_value(Framelet const& framelet, Layer const& layer, std::size_t samp
            layer.dy * (static_cast<float>(morton_y(i)) + 0.5f) * spacing;
 }
 
-/// What every shape owes its framelet.
+/// Expects of a shape what every shape owes its framelet.
 void expect_sound(Framelet const& framelet, FrameletShape const& shape, LayerTolerance const& allowed) {
     ASSERT_LE(shape.layer_count, max_layers);
     float const coarse = std::max(1.0f, plane.sample_spacing(framelet.tile));
@@ -304,7 +304,7 @@ TEST(LayerFit, FitsCloserWhereThatLeavesFewOutliers) {
     EXPECT_TRUE(fit(make_framelet(rubble), wanted).outliers.empty());
 }
 
-/// Patches of planes at depths of all sizes, bodies, velocities, sky and noise.
+/// The samples are patches of planes at depths of all sizes, with bodies, velocities, sky and noise.
 TEST(LayerFit, BoundsHoldWhateverTheSamples) {
     std::mt19937 random(5);
     std::uniform_real_distribution<float> unit(0, 1);
@@ -349,7 +349,7 @@ TEST(LayerFit, BoundsHoldWhateverTheSamples) {
         }
         LayerTolerance const allowed{0.0125f / some_depth(), 0.01f};
         SCOPED_TRACE(round);
-        fit_layers(framelet, plane, allowed, shape); // again and again into the same
+        fit_layers(framelet, plane, allowed, shape); // again and again into the same shape
         expect_sound(framelet, shape, allowed);
         if (HasFatalFailure()) {
             return;

@@ -1,4 +1,4 @@
-// The estimate beside simulated links, on the virtual clock.
+// Tests the estimate beside simulated links, on the virtual clock.
 #include "server/stream/flow/link_estimate.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 using bench::LinkParameters;
 using bench::SimulatedLink;
 
-/// What was sent when, and what became of it.
+/// A batch that was sent: when, how large, and what became of it; seconds, bytes.
 struct Delivered {
     double sent = 0, bytes = 0;
     double departed = 0, arrived = 0;
@@ -28,10 +28,10 @@ struct Delivered {
 struct Sender {
     LinkEstimate estimate;
     double produced = 20e6; ///< bytes a second
-    double burst = 1; ///< so many times that for 20 of 60 ms, and for the last fifth of every second
+    double burst = 1; ///< factor of `produced` for 20 of 60 ms, and for the last fifth of every second
     double bytes_per_sample = 0.5;
-    double viewer_clock = -1000; ///< of it when ours is at 0
-    double jump = 0; ///< of the viewer's clock, after 4 seconds
+    double viewer_clock = -1000; ///< the viewer's clock when ours is at 0, seconds
+    double jump = 0; ///< by which the viewer's clock is set after 4 seconds, seconds
     bool tells_time = true;
     std::vector<Delivered> log;
 
@@ -74,7 +74,7 @@ struct Sender {
         }
         return most;
     }
-    /// Share of what the link could carry.
+    /// Share of what the link could carry that was sent in a span of time.
     double used(double from, double to, double bytes_per_second) const {
         double sum = 0;
         for (Delivered const& d : log) {
@@ -88,7 +88,7 @@ TEST(LinkEstimate, SteadySlowLinkIsFilledWithoutAQueue) {
     for (double const delay : {0.0, 0.015, 0.1}) {
         Sender sender;
         sender.run({.bits_per_second = 2.4e6, .delay_seconds = delay}, 8);
-        // What is tried shows only a round trip later.
+        // A rate that is tried shows its queue only a round trip later.
         EXPECT_LT(sender.most_queueing(2, 8), 0.05 + 0.5 * delay) << delay;
         EXPECT_GT(sender.used(2, 8, 300e3), 0.85) << delay;
         EXPECT_NEAR(sender.estimate.state().bytes_per_second, 300e3, 60e3) << delay;
@@ -107,7 +107,7 @@ TEST(LinkEstimate, BurstsOfWhatHardlyFillsTheLinkMakeNoQueue) {
             sender.run({.bits_per_second = 2.4e6, .delay_seconds = delay}, 12);
             EXPECT_LT(sender.most_queueing(3, 12), 0.05) << produced << " " << delay;
             double const offered =
-                produced / 300e3 * (1 + 9 * (0.2 + 0.8 / 3)); // of what the link carries; bursts are longer than queues
+                produced / 300e3 * (1 + 9 * (0.2 + 0.8 / 3)); // load of the link; bursts are longer than queues
             EXPECT_GT(sender.used(3, 12, 300e3), 0.65 * std::min(1.0, offered)) << produced << " " << delay;
         }
     }
@@ -116,7 +116,8 @@ TEST(LinkEstimate, BurstsOfWhatHardlyFillsTheLinkMakeNoQueue) {
 TEST(LinkEstimate, FollowsStepsOfTheRate) {
     for (double const delay : {0.0, 0.03}) {
         Sender sender;
-        // With more in flight than the slow link takes in a second nobody could do it.
+        // The server produces less where there is a delay: with more in flight than the slow link takes in a second
+        // nobody could do it.
         sender.produced = delay > 0 ? 2.5e6 : 20e6;
         sender.run({.bits_per_second = 100e6,
                     .delay_seconds = delay,
@@ -154,7 +155,7 @@ TEST(LinkEstimate, NothingInFlightIsRoomSoonWhateverTheRate) {
     }
     for (double const stall : {2.0, 5.0, 20.0}) {
         deliver(16e3, stall);
-        estimate.begin(16e3); // was made meanwhile
+        estimate.begin(16e3); // a batch that was made meanwhile
         estimate.sent(++batch, now, 16e3);
         now += 0.03;
         estimate.acknowledged(batch, now, now);
@@ -185,7 +186,7 @@ TEST(LinkEstimate, WhatIsNotTheLimitIsNotFelt) {
     EXPECT_GT(sender.used(1, 4, 5e6), 0.95) << "nor is the renderer held up";
 }
 
-/// Values that no viewer's clock has.
+/// Answers may tell times that no viewer's clock has.
 TEST(LinkEstimate, NoAnswerBreaksIt) {
     LinkEstimate estimate;
     double const never = std::numeric_limits<double>::quiet_NaN();
@@ -198,7 +199,7 @@ TEST(LinkEstimate, NoAnswerBreaksIt) {
         if (round % 7 != 0) {
             estimate.sent(batch, now, round % 5 == 0 ? 0 : 900);
         }
-        estimate.acknowledged(batch + 5, now, 1); // was never begun
+        estimate.acknowledged(batch + 5, now, 1); // a batch that was never begun
         estimate.acknowledged(batch, now, times[round % 10]);
         estimate.acknowledged(batch, now, times[round % 10]); // again
         estimate.sent(batch, now, 900); // too late

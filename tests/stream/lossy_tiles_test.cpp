@@ -35,7 +35,7 @@ TEST(LossyTiles, WhatCameLastCounts) {
 TEST(LossyTiles, OnlyVisibleOnesCount) {
     LossyTiles places;
     places.sent(plane, Tile{1}, 3);
-    EXPECT_EQ(listed(places).size(), 60u); // 40x24 pixels of 4x4 each
+    EXPECT_EQ(listed(places).size(), 60u); // tiles of 4x4 pixels over 40x24
     EXPECT_TRUE(places.is_held(plane, Tile{1}));
     std::vector<Tile> few;
     places.list(7, few);

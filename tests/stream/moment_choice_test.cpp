@@ -16,7 +16,7 @@ ViewState state_at(SceneTime time, float x = 0) {
     return state;
 }
 
-/// A moment of the present.
+/// Chooses a moment of the present where one is to be begun; returns the moment that is held.
 std::optional<HeldMoment> choose(MomentChoice& moments, ViewState const& present, double now,
                                  bool viewer_moves_samples) {
     if (moments.observe(present, now, viewer_moves_samples)) {
@@ -60,7 +60,7 @@ TEST(MomentChoice, AtRestThePresentIsRendered) {
     ASSERT_TRUE(choose(moments, state_at(1, 2), 10, true));
     EXPECT_TRUE(choose(moments, state_at(1, 2), 10 + 0.9 * rest_seconds, true));
     EXPECT_FALSE(choose(moments, state_at(1, 2), 10 + 1.1 * rest_seconds, true));
-    // What begins to move is seen at once.
+    // A camera that begins to move is seen at once.
     auto const moment = choose(moments, state_at(1, 3), 12.01, true);
     ASSERT_TRUE(moment);
     EXPECT_EQ(moment->state.view.camera.position.x, 3);

@@ -10,14 +10,14 @@
 namespace framelet {
 namespace {
 
-/// About what the codec makes of a moving picture.
+/// Bytes a sample, about as the codec makes them of a moving picture.
 double bytes_of(std::uint8_t qp) {
     return qp == 0 ? 1.15 : 0.6 / (1 + 0.2 * qp);
 }
 
 struct Outcome {
     int qp = 0;
-    int changes = 0; ///< in the second half
+    int changes = 0; ///< changes of QP in the second half
 };
 
 Outcome outcome_of(double bytes_per_second, double samples_per_second) {

@@ -11,7 +11,7 @@
 namespace framelet {
 namespace {
 
-/// One body, 3 metres a second along x, for a minute.
+/// A scene with one body that goes 3 metres a second along x, for a minute.
 struct Drive {
     Scene scene;
     std::array<Index, 1> clips{0};
@@ -30,7 +30,7 @@ struct Drive {
         bodies = find_bodies(scene, clips);
     }
 
-    /// Keys that the batch of `time` took.
+    /// Number of keys that the batch of `time` took.
     std::size_t batch(SceneTime time) {
         std::vector<BodyTrack> tracks;
         std::optional<BodyTrack> camera;

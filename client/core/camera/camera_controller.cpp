@@ -11,17 +11,18 @@ namespace framelet {
 namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
-/// How near to straight up or down the view may tip.
+/// Steepest pitch of the view, up or down, radians: just short of vertical.
 constexpr float steepest = 0.499f * pi;
 constexpr float dolly_step = 0.9f;
-constexpr float halfway_steps = 6.5788f; ///< of `dolly`: 0.9 to this power is a half
+constexpr float halfway_steps = 6.5788f; ///< steps of `dolly` that go half of the way: 0.9 to this power is a half
 constexpr float fast_factor = 4;
 constexpr float speed_step = 1.25f;
-constexpr float most_speed = 100; ///< times what suits the scene
-/// Up to this size a scene is crossed in the same time; larger ones are travelled faster, but by the square root only:
-/// what one goes past in a landscape is still as large as a house. Metres.
+constexpr float most_speed = 100; ///< greatest factor on the speed that suits the scene, or its inverse the least
+/// Diagonal, metres, up to which all scenes are crossed in the same time; larger ones are travelled faster, but by the
+/// square root only: what one goes past in a landscape is still as large as a house.
 constexpr float room_size = 30;
-/// Beyond this nobody sees anything, and arithmetic stays finite.
+/// Largest coordinate of the camera's position and largest diagonal of a scene that count, metres: nobody sees anything
+/// from farther away, and arithmetic stays finite.
 constexpr float farthest = 1e9f;
 constexpr float largest_scene = 1e7f;
 
@@ -104,7 +105,7 @@ void CameraController::dolly(float steps) {
 void CameraController::set_pivot(Vec3 point) {
     Vec3 const place = glm::conjugate(camera_.orientation) * (point - camera_.position);
     float const distance = glm::length(place);
-    if (place.z < -1e-5f * size_ && distance <= 1e3f * size_) { // false of what is no number, too
+    if (place.z < -1e-5f * size_ && distance <= 1e3f * size_) { // false for NaN, too
         pivot_ = place;
     }
 }
@@ -127,7 +128,7 @@ void CameraController::look_along(Vec3 forward, Vec3 up) {
 }
 
 void CameraController::toggle_projection() {
-    float const slope = 2 * std::tan(0.5f * field_of_view_); // metres of height in the picture a metre away
+    float const slope = 2 * std::tan(0.5f * field_of_view_); // height of the picture at a distance of one metre, metres
     if (camera_.projection == Projection::perspective) {
         camera_.projection = Projection::orthographic;
         camera_.vertical_extent = std::clamp(slope * -pivot_.z, 1e-5f * size_, 1e3f * size_);
@@ -147,8 +148,8 @@ void CameraController::fit(Viewport viewport) {
     float const aspect = static_cast<float>(viewport.width) / static_cast<float>(viewport.height);
     bool const is_perspective = camera_.projection == Projection::perspective;
     float const slope = is_perspective ? std::tan(0.5f * camera_.vertical_extent) : 0;
-    float distance = 0; // from the centre, such that every corner is within the picture
-    float height = 0; // of a picture that has them all, seen from infinitely far
+    float distance = 0; // from the scene's centre, such that every corner is within the picture; metres
+    float height = 0; // of an orthographic picture that has every corner in it; metres
     for (int i = 0; i < 8; ++i) {
         Vec3 const side = Vec3(i & 1, i >> 1 & 1, i >> 2) - 0.5f;
         Vec3 const corner = glm::conjugate(camera_.orientation) * (side * scene_.size());

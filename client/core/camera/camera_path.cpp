@@ -21,7 +21,7 @@ constexpr double largest_coordinate = 1e9;
 constexpr std::size_t most_bytes = 16u << 20;
 constexpr std::size_t most_keys = 100000;
 
-/// Reads fields and says where what is wrong.
+/// Reads fields; its errors name the file and what is wrong with which field.
 struct Reader {
     std::string name;
 
@@ -120,7 +120,7 @@ Camera CameraPath::at(double seconds) const {
     auto const t = static_cast<float>((seconds - a.time) / length);
     auto const piece = [&](auto member) {
         if (a.*member == b.*member) {
-            return a.*member; // to the last bit, so that a picture of what stands still can be completed
+            return a.*member; // equal to the last bit, so that a picture of what stands still can be completed
         }
         bool const rests_before = &before_a != &a && before_a.*member == a.*member;
         bool const rests_after = &after_b != &b && after_b.*member == b.*member;

@@ -29,12 +29,12 @@ struct CameraPath {
     double duration() const { return keys.empty() ? 0 : keys.back().time; }
 };
 
-/// {"position": [x,y,z], "target": [x,y,z], "up": [0,1,0], "fov_degrees": 45}, where "up" and "fov_degrees" may be
-/// left out, or {"keys": [{"time": seconds, "position": ..., ...}, ...]}, or {"scene_camera": 0}. Throws InputError;
+/// Parses {"position": [x,y,z], "target": [x,y,z], "up": [0,1,0], "fov_degrees": 45}, where "up" and "fov_degrees" may
+/// be left out, or {"keys": [{"time": seconds, "position": ..., ...}, ...]}, or {"scene_camera": 0}. Throws InputError;
 /// `name` is for its message.
 CameraPath parse_camera_path(std::string const& json, std::string const& name);
 
-/// The same from a file.
+/// Reads a file and parses it likewise. Throws InputError, also where the file cannot be read.
 CameraPath read_camera_path(std::filesystem::path const& file);
 
 } // namespace framelet

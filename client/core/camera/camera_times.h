@@ -1,5 +1,5 @@
-// When the viewer's cameras were set and sent. In: their numbers, which count up, and times. Out: how long ago that
-// was. A value.
+// The times at which the viewer's cameras were set and sent. In: their numbers, which count up, and times. Out: how
+// long ago that was. A value.
 #pragma once
 
 #include <chrono>
@@ -13,7 +13,7 @@ namespace framelet {
 class CameraTimes {
 public:
     using Time = std::chrono::steady_clock::time_point;
-    /// Of more the oldest are forgotten.
+    /// Most cameras that are remembered; of more the oldest are forgotten.
     static constexpr std::size_t most_cameras = 256;
 
     void note_set(std::uint64_t number, Time time) { note(number, time, set_); }
@@ -47,8 +47,8 @@ private:
         return seconds;
     }
 
-    std::deque<Noted> set_; ///< and not shown yet
-    std::deque<Noted> sent_; ///< of this session, of which no batch has come
+    std::deque<Noted> set_; ///< cameras set and not shown yet, the oldest first
+    std::deque<Noted> sent_; ///< cameras sent in this session of which no batch has come, the oldest first
 };
 
 } // namespace framelet

@@ -10,12 +10,14 @@
 namespace framelet {
 namespace {
 
-/// So many times the steps beside it: a camera that starts or stops within one key goes no faster.
+/// A step is a cut where it is more than so many times as large as the steps beside it: a camera that starts or stops
+/// within one key goes no faster.
 constexpr float cut_factor = 4;
-/// Less is none, whatever is beside it: metres and, as the sine of half an angle, a turn of one degree.
+/// Least step, metres, and least turn, as the sine of half its angle (about one degree), that can be a cut, whatever is
+/// beside it.
 constexpr float least_step = 1e-3f, least_turn = 0.01f;
 
-/// How far a camera goes and turns from a key to the next one; nothing beyond the ends.
+/// A camera's way, metres, and turn, as the sine of half its angle, from a key to the next one; 0 beyond the ends.
 struct KeyStep {
     float distance = 0, turn = 0;
 };
@@ -47,7 +49,7 @@ Camera camera_at(BodyTrack const& track, SceneTime time, Camera const& like) {
     if (place > 0 && place < last && is_cut_after(track, static_cast<std::ptrdiff_t>(place))) {
         shown = (std::floor(place) + static_cast<double>(track.first_key)) / body_keys_per_second;
     } else if (place > last && is_cut_after(track, std::ssize(track.keys) - 2)) {
-        shown = (last + static_cast<double>(track.first_key)) / body_keys_per_second; // a cut is not gone on with
+        shown = (last + static_cast<double>(track.first_key)) / body_keys_per_second; // not extrapolated across a cut
     }
     BodyPose const pose = pose_at(track, shown);
     Camera out = like;

@@ -1,4 +1,5 @@
-// Where a camera of the scene is at any scene time, from its track. In: keys at a fixed rate, a time. Out: the camera.
+// The position of a camera of the scene at any scene time, from its track. In: keys at a fixed rate, a time. Out: the
+// camera.
 #pragma once
 
 #include "common/camera.h"
@@ -7,9 +8,9 @@
 
 namespace framelet {
 
-/// Position and orientation as `pose_at` gives them, but never between two keys among which the camera has been cut:
-/// there it stays at the key before. A cut is a step or a turn several times those before and behind it. The lens is
-/// that of `like`.
+/// The camera with position and orientation as `pose_at` gives them, but never between two keys between which the
+/// camera was cut: there it stays at the key before. A cut is a step or a turn several times as large as those before
+/// and after it. The lens is that of `like`.
 Camera camera_at(BodyTrack const& track, SceneTime time, Camera const& like);
 
 } // namespace framelet

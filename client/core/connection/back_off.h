@@ -1,4 +1,4 @@
-// How long to wait before the next attempt to reach a server that is gone. A value.
+// The pause before the next attempt to reach a server that is gone. A value.
 #pragma once
 
 #include <algorithm>
@@ -10,8 +10,8 @@ public:
     static constexpr double first_seconds = 0.25;
     static constexpr double most_seconds = 8;
 
-    /// Twice as long each time. `chance`, [0, 1), spreads it by a quarter up and down, so that the viewers of a server
-    /// that comes back do not all come at once.
+    /// The next pause, seconds: twice as long each time, up to `most_seconds`. `chance`, [0, 1), spreads it by a
+    /// quarter up and down, so that the viewers of a server that comes back do not all come at once.
     double next(double chance) {
         double const seconds = seconds_ * (0.75 + 0.5 * chance);
         seconds_ = std::min(2 * seconds_, most_seconds);

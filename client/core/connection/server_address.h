@@ -1,4 +1,4 @@
-// Where a server is, as a user writes it, and what it takes to be let in.
+// The address of a server, as a user writes it, and what it takes to be let in.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ struct ServerAddress {
 
 /// Reads HOST, HOST:PORT, [IPV6] or [IPV6]:PORT; without a port it is `default_port`. Throws InputError.
 ServerAddress parse_server_address(std::string const& text);
-/// The same of another program, which listens at that port where `text` has none.
+/// Reads the address of another program likewise; without a port it is `port_without`. Throws InputError.
 ServerAddress parse_address(std::string const& text, std::uint16_t port_without);
 
 struct ConnectionOptions {
@@ -27,10 +27,10 @@ struct ConnectionOptions {
     std::string token;
     bool tls = false;
     bool insecure = false; ///< without TLS the token is sent to other machines too, which whoever is between can read
-    std::string authority_file; ///< for TLS; empty: the system's certificate authorities
+    std::string authority_file; ///< certificates to trust for TLS; empty: the system's certificate authorities
     bool reconnect = false; ///< a session that ends before its time is followed by another as soon as there is a server
-    double connect_seconds = 10; ///< until name, connection and handshake are done
-    double silence_seconds = 5; ///< without a message after which the server is given up
+    double connect_seconds = 10; ///< most time until name, connection and handshake are done
+    double silence_seconds = 5; ///< time without a message after which the server is given up
 };
 
 } // namespace framelet

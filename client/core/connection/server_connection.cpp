@@ -38,7 +38,7 @@ asio::steady_timer::duration duration_of(double seconds) {
     return std::chrono::duration_cast<asio::steady_timer::duration>(std::chrono::duration<double>(seconds));
 }
 
-/// Of this machine itself.
+/// True for an address of this machine itself.
 bool is_loopback(asio::ip::address const& address) {
     if (address.is_v6() && address.to_v6().is_v4_mapped()) {
         return asio::ip::make_address_v4(asio::ip::v4_mapped, address.to_v6()).is_loopback();
@@ -53,7 +53,7 @@ struct ServerConnection::Impl {
 
     ConnectionOptions options;
     Handlers handlers;
-    std::string server; ///< for messages
+    std::string server; ///< its address, for messages
     asio::io_context io;
     asio::ip::tcp::resolver resolver{io};
     asio::ip::tcp::socket socket{io};
@@ -61,32 +61,33 @@ struct ServerConnection::Impl {
     std::shared_ptr<asio::ssl::context> tls;
     std::promise<void> opened;
     Welcome welcome; ///< of the first session
-    std::string notice; ///< likewise
+    std::string notice; ///< of the first session
 
     mutable std::mutex stream_mutex;
     std::shared_ptr<FramedStream> stream; ///< of the newest session that was opened
 
-    // Only for the connection's thread.
+    // All that follows is used by the connection's thread only.
     std::uint64_t attempt = 0;
-    std::shared_ptr<FramedStream> attempted; ///< of this attempt, once it is connected
-    std::string distrust; ///< why its certificate is refused; empty: it is not
-    bool has_ticket = false; ///< in its Hello
-    bool open = false; ///< its Welcome has come
-    bool was_open = false; ///< that of an attempt has
-    /// Counted in ticks of the watch and not by the clock, so that a machine that slept hears what arrived meanwhile.
+    std::shared_ptr<FramedStream> attempted; ///< stream of this attempt, once it is connected
+    std::string distrust; ///< why this attempt's certificate is refused; empty: it is not
+    bool has_ticket = false; ///< this attempt's Hello has a ticket
+    bool open = false; ///< this attempt's Welcome has come
+    bool was_open = false; ///< some attempt's Welcome has come
+    /// Ticks of the watch since the last message. They are counted instead of time by the clock, so that a machine that
+    /// slept hears what arrived meanwhile.
     int silent_ticks = 0;
     std::chrono::steady_clock::time_point opened_at;
     BackOff back_off;
     std::minstd_rand random{std::random_device{}()};
 
-    bool is_over = false; ///< for good
+    bool is_over = false; ///< no other attempt follows
     bool is_to_tell_interruption = false;
 
     std::thread thread;
 
     Impl(ConnectionOptions const& o, Handlers h) : options(o), handlers(std::move(h)), server(o.server.text()) {}
 
-    /// A callback that is not heard any more when this attempt is over.
+    /// Wraps a callback so that it does nothing once this attempt is over.
     template <typename Callback>
     auto heard(Callback callback) {
         return [ this, callback = std::move(callback), number = attempt ]<typename... Arguments>(
@@ -97,7 +98,8 @@ struct ServerConnection::Impl {
         };
     }
 
-    /// The attempt, or the session that came of it, is over.
+    /// Ends the attempt or the session that came of it: tells the handlers, and begins another attempt later where one
+    /// is to follow.
     void end(std::string const& reason, Retry retry = Retry::later) {
         if (is_over) {
             return;
@@ -111,7 +113,7 @@ struct ServerConnection::Impl {
         if (attempted) {
             attempted->close();
         }
-        // What follows may want memory that is missing, and is then done once more.
+        // The rest may want memory that is missing, and is then done once more.
         is_to_tell_interruption = std::exchange(open, false) || is_to_tell_interruption;
         if (!was_open) {
             auto const error = retry == Retry::never ? std::make_exception_ptr(ConnectionRefusal(reason))
@@ -131,7 +133,8 @@ struct ServerConnection::Impl {
         }
     }
 
-    /// Until there is nothing more to do or it is stopped. Where memory is missing the session ends.
+    /// Runs the connection until there is nothing more to do or it is stopped. Where memory is missing the session
+    /// ends.
     void run() {
         for (bool is_to_end = false;;) {
             try {
@@ -148,7 +151,7 @@ struct ServerConnection::Impl {
     }
 
     void begin_later(bool interrupted) {
-        // Not where each session ends at once: such a server is not to be asked four times a second.
+        // The pauses stay long where each session ends at once: such a server is not to be asked four times a second.
         if (interrupted && std::chrono::steady_clock::now() - opened_at > duration_of(BackOff::most_seconds)) {
             back_off.reset();
         }
@@ -196,7 +199,8 @@ struct ServerConnection::Impl {
             }));
     }
 
-    /// What the user gave, or what a server of the same user on this machine has left for its viewers.
+    /// The token that the user gave, or the one that a server of the same user on this machine has left for its
+    /// viewers.
     std::string token_for(asio::ip::tcp::endpoint const& endpoint) const {
         if (!options.token.empty() || !is_loopback(endpoint.address())) {
             return options.token;
@@ -233,7 +237,7 @@ struct ServerConnection::Impl {
         attempted->send(hello);
     }
 
-    /// In the handshake.
+    /// Judges the server's certificate by its fingerprint, during the TLS handshake.
     bool trusts(std::string const& fingerprint) {
         CertificateVerdict verdict = judge_certificate(known_servers_file(), server, fingerprint);
         if (!verdict.is_trusted) {
@@ -307,8 +311,8 @@ struct ServerConnection::Impl {
         }));
     }
 
-    /// So that the server keeps nothing for a viewer that does not come back. Nothing depends on it, and it takes no
-    /// longer than a user waits for a window to close.
+    /// Tells the server that this viewer ends, so that it keeps nothing for one that does not come back. Nothing
+    /// depends on it, and it takes no longer than a user waits for a window to close.
     void say_goodbye() {
         constexpr auto most_time = std::chrono::milliseconds(200);
         ++attempt; // no callback is heard any more

@@ -14,14 +14,17 @@ namespace framelet {
 
 class ServerConnection {
 public:
-    /// Called from the connection's thread. What `on_message` throws as ProtocolError ends the connection.
+    /// Callbacks, all called from the connection's thread. A ProtocolError that `on_message` throws ends the
+    /// connection.
     struct Handlers {
         std::function<void(Message)> on_message;
-        /// Once, when an open session has ended for whatever reason but our own, and no other follows; one line.
+        /// Called once, when an open session has ended for whatever reason but our own, and no other follows; `reason`
+        /// is one line.
         std::function<void(std::string reason)> on_lost;
         /// An open session has ended, and another is tried for, for as long as nobody refuses it for good.
         std::function<void(std::string reason)> on_interrupted;
-        /// Another session is about to be asked for: what goes on with the one before. Empty: nothing does.
+        /// Another session is about to be asked for: adds to Hello what it takes to go on with the one before. Empty:
+        /// none is gone on with.
         std::function<void(Hello&)> on_asking;
         /// Another session is open, of which nothing has been delivered or sent yet; `Welcome::resumed` only where
         /// `on_asking` gave a ticket. Where this is empty, none is tried for, whatever the options say.
@@ -38,13 +41,13 @@ public:
     ServerConnection(ServerConnection const&) = delete;
     ServerConnection& operator=(ServerConnection const&) = delete;
 
-    /// Of the first session.
+    /// The Welcome of the first session.
     Welcome const& welcome() const;
-    /// What the user should know of the certificate that it began with, one line; mostly empty.
+    /// One line that the user should know of the certificate that the first session began with; mostly empty.
     std::string const& notice() const;
-    /// From any thread. Nothing happens while no session is open.
+    /// Sends a message; does nothing while no session is open. May be called from any thread.
     void send(Message const& message);
-    /// True when everything that was queued has been taken by the network. From any thread.
+    /// True when everything that was queued has been taken by the network. May be called from any thread.
     bool all_sent() const;
 
 private:

@@ -10,7 +10,7 @@ namespace framelet {
 /// Red, green, blue, [0, 255].
 using OverlayColor = std::array<float, 3>;
 
-/// From bright yellow at 0 over orange and red to dark blue at 1 and beyond.
+/// The colour of an age, from bright yellow at 0 over orange and red to dark blue at 1 and beyond.
 inline OverlayColor age_color(float age) {
     constexpr std::array<OverlayColor, 4> ramp{{{255, 245, 90}, {255, 120, 20}, {170, 20, 90}, {40, 20, 120}}};
     float const place = std::clamp(age, 0.0f, 1.0f) * static_cast<float>(ramp.size() - 1);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr float youngest = 0.01f, oldest = 10; ///< seconds
 constexpr OverlayColor made_up{255, 0, 255};
-constexpr float coarsest = 8; ///< pixels; as coarse as it gets
+constexpr float coarsest = 8; ///< pixels between samples at which colours are darkest
 constexpr float darkest = 0.4f;
 constexpr float wash = 0.6f; ///< share of the colour
 

@@ -1,5 +1,5 @@
-// How far the pixels of a picture are to be trusted, as colours over it. In: confidence of every pixel, the picture.
-// Out: the picture in grey, washed with the colours of age.
+// Draws over a picture how far its pixels are to be trusted. In: confidence of every pixel, the picture. Out: the
+// picture in grey, washed with the colours of age.
 #pragma once
 
 #include <span>

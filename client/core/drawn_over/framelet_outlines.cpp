@@ -12,9 +12,9 @@ namespace framelet {
 
 namespace {
 
-/// As old as this many batches is as dark as it gets.
+/// Age in batches from which on outlines are darkest.
 constexpr float oldest = 1024;
-/// Small tiles would hide the picture behind their outlines.
+/// Side of a tile, pixels, up to which its outline is faint: it would hide the picture.
 constexpr int small_side = 8;
 
 OverlayColor color_of(std::uint64_t age) {
@@ -33,7 +33,7 @@ void blend(Picture& picture, PixelRect const& rect, OverlayColor const& color, f
     }
 }
 
-/// Left and upper edge: the others are those of neighbours.
+/// Draws a tile's left and upper edges: the others are those of neighbours.
 void draw_edges(Picture& picture, PixelRect const& rect, OverlayColor const& color) {
     float const opacity = rect.width() <= small_side ? 0.35f : 0.8f;
     blend(picture, {rect.left, rect.top, rect.right, rect.top + 1}, color, opacity);
@@ -56,7 +56,7 @@ void draw_outlines(FrameletCache const& cache, Picture& picture) {
             }
         }
     }
-    // What covers is drawn after what it covers: newer, or finer of the same batch.
+    // Framelets are drawn after those that they cover: newer ones, and finer ones of the same batch.
     std::ranges::sort(held, [](CachedFramelet const* a, CachedFramelet const* b) {
         return a->moment.batch != b->moment.batch ? a->moment.batch < b->moment.batch : a->tile < b->tile;
     });

@@ -1,4 +1,4 @@
-// Where the framelets that the viewer holds lie, drawn over its picture. In: the cache, the picture. Out: outlines in
+// Draws outlines of the framelets that the viewer holds over its picture. In: the cache, the picture. Out: outlines in
 // it, bright yellow where the framelet is fresh, over red to dark blue where it is old.
 #pragma once
 

@@ -1,5 +1,5 @@
-// When pictures are begun and shown, so that each is of the moment at which it is seen. In: the display's rate, how
-// long a picture takes, when one was shown. Out: points in time.
+// Decides when pictures are begun and shown, so that each is of the moment at which it is seen. In: the display's rate,
+// how long a picture takes, when one was shown. Out: points in time.
 #pragma once
 
 #include <algorithm>
@@ -18,13 +18,14 @@ public:
         return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
     }
 
-    /// When to begin the next picture, which takes so many seconds.
+    /// The time to begin the next picture, which takes `making_seconds`.
     Clock::time_point begin(double making_seconds) const { return due_ - duration(making_seconds); }
-    /// When to show what is begun now: when it is due, or as soon as it is ready.
+    /// The time to show a picture that is begun now: when it is due, or as soon as it is ready.
     Clock::time_point show(Clock::time_point now, double making_seconds) const {
         return std::max(due_, now + duration(making_seconds));
     }
-    /// True where the one after it is more than a display frame late now; it is due at once then.
+    /// Notes that a picture was shown. True where the next one is more than a display frame late now; it is due at once
+    /// then.
     bool note_shown(Clock::time_point now) {
         due_ += period_;
         bool const late = now > due_ + period_;

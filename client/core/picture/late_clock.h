@@ -1,5 +1,5 @@
-// The moment that a viewer shows that lets the scene be a little late so that it moves smoothly. In: readings of the
-// scene's clock. Out: scene time.
+// The moment of the scene that is shown by a viewer that lets the scene be a little late so that it moves smoothly. In:
+// readings of the scene's clock. Out: scene time.
 #pragma once
 
 #include <deque>
@@ -15,8 +15,8 @@ public:
     explicit LateClock(double lag_seconds) : lag_seconds_(lag_seconds) {}
 
     double lag_seconds() const { return lag_seconds_; }
-    /// Notes what the scene's clock says now and returns what it said then: between the two readings before and after,
-    /// the first one where none is that old. `now_seconds` does not go back.
+    /// Notes what the scene's clock says now and returns what it said a lag ago: interpolated between the readings
+    /// before and after that, the first reading where none is that old. `now_seconds` does not go back.
     SceneTime read(double now_seconds, SceneTime scene_time);
 
 private:
@@ -25,7 +25,7 @@ private:
         SceneTime scene_time = 0;
     };
     double lag_seconds_;
-    std::deque<Reading> readings_; ///< one that is older than the lag, and all later ones
+    std::deque<Reading> readings_; ///< the newest one that is older than the lag, and all later ones
 };
 
 } // namespace framelet

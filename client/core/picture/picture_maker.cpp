@@ -30,11 +30,11 @@ void PictureMaker::set(PictureSettings const& settings) {
     }
 }
 
-/// Where the scene is to be smoothed, from here on.
+/// Begins to smooth the scene anew where the settings ask for it.
 void PictureMaker::start_smoothing() {
     smoother_.reset();
     late_clock_ = LateClock(settings_.lag_seconds);
-    shown_pixels_ = nullptr; // all of it anew
+    shown_pixels_ = nullptr; // the next picture is made as a whole
     if (settings_.lag_seconds > 0 && settings_.reproject && settings_.scene_moves) {
         smoother_.emplace(pool_.plane());
     }
@@ -57,14 +57,14 @@ void PictureMaker::insert(Batch const& batch) {
     }
     waiting_.push_back(batch);
     waiting_framelets_ += batch.framelets.size();
-    constexpr std::size_t most_samples = 4; // a pixel, as no moment before a jump is rendered with
+    constexpr std::size_t most_samples = 4; // samples a pixel: no moment is rendered with more before a jump
     auto const pixels = static_cast<std::size_t>(viewport().width) * static_cast<std::size_t>(viewport().height);
     if (waiting_framelets_ * framelet_samples > most_samples * pixels) {
         take_waiting(waiting_.size());
     }
 }
 
-/// The first of those that wait.
+/// Takes the first `count` of the batches that wait.
 void PictureMaker::take_waiting(std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
         take(waiting_[i]);
@@ -89,7 +89,7 @@ void PictureMaker::take(Batch const& batch) {
     }
 }
 
-/// What of older moments shows nowhere makes room, and no longer costs time.
+/// Evicts the framelets of older moments of which nothing shows: they would take room, and time to paint.
 void PictureMaker::evict() {
     for (std::size_t slot = 0; slot < pool_.slot_count(); ++slot) {
         shown_tiles_.clear();
@@ -106,7 +106,7 @@ void PictureMaker::settle() {
     }
 }
 
-/// The present, or what is late by the lag.
+/// The scene time to show: the present or, where the scene is smoothed, what was the present a lag ago.
 SceneTime PictureMaker::wanted_time(PictureRequest const& request) {
     SceneTime const time = settings_.scene_moves ? request.present : 0;
     return smoother_ ? late_clock_.read(request.now, time) : time;

@@ -13,33 +13,34 @@
 
 namespace framelet {
 
-/// How pictures are made.
+/// Settings by which pictures are made.
 struct PictureSettings {
     bool reproject = true; ///< what is held is moved to where it is now; else it is shown where it was rendered
     bool scene_moves = true;
-    double lag_seconds = 0; ///< > 0: the scene, not the camera, is shown so late, and between what is held
-    // The evaluation leaves parts out, to see what each is worth; those of the first settings stay.
-    std::size_t moments = FrameletPool::most_moments; ///< that are held
-    bool knows_rest = true; ///< what rests is held as what stands
-    ReprojectorParts parts{}; ///< of moving
+    double lag_seconds = 0; ///< > 0: the scene, not the camera, is shown so late, interpolated
+    // The evaluation leaves parts out, to see what each is worth. Later settings do not change `moments` and
+    // `knows_rest`.
+    std::size_t moments = FrameletPool::most_moments; ///< most that are held
+    bool knows_rest = true; ///< bodies at rest are held with what stands
+    ReprojectorParts parts{}; ///< steps of reprojection that are done
     bool operator==(PictureSettings const&) const = default;
 };
 
-/// What a picture is to be of.
+/// The camera and time of a picture that is to be made.
 struct PictureRequest {
-    Camera camera; ///< where `scene_camera` is -1
-    std::uint64_t camera_number = 0; ///< its
-    int scene_camera = -1; ///< >= 0: as that camera of the scene goes
-    SceneTime present = 0; ///< what the scene's clock says
+    Camera camera; ///< used where `scene_camera` is -1
+    std::uint64_t camera_number = 0; ///< number of `camera`
+    int scene_camera = -1; ///< >= 0: seen through that camera of the scene
+    SceneTime present = 0; ///< time of the scene's clock, seconds
     double clock_speed = 1; ///< scene seconds a second
     double now = 0; ///< seconds of the viewer's own clock
     bool is_settled = false; ///< all that belongs to a complete picture of this has been inserted
 };
 
-/// A picture of which nothing is known.
+/// The picture of a viewer that holds nothing.
 Picture bare_picture(Viewport viewport);
 
-/// What drawing over the picture shows.
+/// The kinds of overlay that can be drawn over a picture.
 enum class DrawnOver : std::uint8_t { nothing, outlines, confidence };
 
 class PictureMaker {
@@ -47,15 +48,16 @@ public:
     PictureMaker(Viewport viewport, PictureSettings const& settings);
 
     Viewport viewport() const { return pool_.plane().viewport(); }
-    /// The next picture is made as a whole where they differ from what they were.
+    /// Changes the settings; the next picture is made as a whole where they differ from what they were.
     void set(PictureSettings const& settings);
 
-    /// The batch must be of this viewport. What is not to be shown yet waits, unless something comes after it that is,
-    /// or it gets too much.
+    /// Inserts a batch, which must be of this viewport. One that is not to be shown yet waits, unless one comes after
+    /// it that is, or too many wait.
     void insert(Batch const& batch);
     bool is_empty() const { return pool_.framelet_count() == 0; }
     FrameletPool const& pool() const { return pool_; }
-    /// As of the pool: what the server should know.
+    /// Replaces `framelets` by those evicted since the last call, as `FrameletPool::take_evicted`: the server should
+    /// know of them.
     void take_evicted(std::vector<SentTile>& framelets) { pool_.take_evicted(framelets); }
 
     /// Brings `picture` up to date. True when it changed; `changed` gets the rectangles that may differ. A picture that
@@ -68,19 +70,19 @@ public:
     bool is_on_canvas() const { return settings_.reproject && !smoother_ && reprojector_.is_on_canvas(); }
     /// Draws over a copy of the picture that was shown last.
     void draw_over(DrawnOver what, Picture& picture) const;
-    /// The point of the world that this place of it shows, as `find_shown_point`.
+    /// The point of the world that this place of the last picture shows, as `find_shown_point`.
     std::optional<Vec3> point_at(Vec2 place) const;
-    /// How deep its pixels are, as `find_shown_depths`.
+    /// The depths of the last picture's pixels, as `find_shown_depths`.
     std::vector<float> depths() const;
 
-    /// What the last picture shows; before there is one, what the newest batch was seen from.
+    /// The camera and the scene time of the last picture; before there is one, those of the newest batch.
     Camera const& shown_camera() const { return shown_camera_; }
     SceneTime shown_time() const { return shown_time_; }
     /// The number of that camera, where the viewer gave it.
     std::uint64_t shown_camera_number() const { return shown_camera_number_; }
-    /// True when it was `reconstruct`'s as a whole: nothing in it was moved.
+    /// True when the last picture was made by `reconstruct` as a whole: nothing in it was moved.
     bool is_exact() const { return !settings_.reproject || (!smoother_ && reprojector_.is_exact()); }
-    /// Share of the picture that what is held shows; once moved, of the last picture. [0, 1].
+    /// Share of the picture that is covered by what is held, [0, 1]; once samples are moved, that of the last picture.
     double coverage() const;
     bool is_smooth() const { return smoother_.has_value(); }
     std::size_t memory_bytes() const;
@@ -97,14 +99,14 @@ private:
     PictureSettings settings_;
     FrameletPool pool_;
     BodyMotions motions_;
-    std::vector<Batch> waiting_; ///< for their time to be shown, in the order in which they came
+    std::vector<Batch> waiting_; ///< batches whose time to be shown has not come, in the order in which they came
     std::size_t waiting_framelets_ = 0;
-    BodyMotions cameras_; ///< tracks of the scene's, as `camera_body`
+    BodyMotions cameras_; ///< tracks of the scene's cameras, numbered as `camera_body`
     Reprojector reprojector_;
     LateClock late_clock_{0};
     std::optional<SceneSmoother> smoother_;
     NumberedView batch_view_; ///< of the newest batch
-    SceneTime batch_time_ = 0; ///< likewise
+    SceneTime batch_time_ = 0; ///< of the newest batch
     Camera shown_camera_;
     std::uint64_t shown_camera_number_ = 0;
     SceneTime shown_time_ = 0;

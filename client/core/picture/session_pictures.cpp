@@ -8,7 +8,7 @@ namespace framelet {
 
 PictureMaker& SessionPictures::prepare(NumberedView const& wanted, PictureSettings const& settings) {
     if (!is_for(wanted)) {
-        if (is_paused_) { // nothing comes for the new one yet
+        if (is_paused_) { // nothing comes for the new viewport yet
             keep_as_earlier();
         }
         current_ = std::make_unique<PictureMaker>(wanted.viewport, settings);

@@ -1,6 +1,6 @@
 // The picture of this session and, until that is a whole one, of the session before. In: batches of this session, and
-// what is wanted. Out: pictures of one of both. They are not mixed: the server knows nothing of what is held of before,
-// and would let it stay where it is wrong by now.
+// what is wanted. Out: pictures of one of both. They are not mixed: the server knows nothing of what is held of the
+// session before, and would not correct it where it has become wrong.
 #pragma once
 
 #include <memory>
@@ -12,27 +12,28 @@ namespace framelet {
 
 class SessionPictures {
 public:
-    /// What batches of this view go into; nothing is held in it where `held_since` is another than last time.
+    /// The maker that takes batches of this view; it holds nothing yet where `held_since` is another than last time.
     PictureMaker& prepare(NumberedView const& wanted, PictureSettings const& settings);
-    /// Null before that, in this session.
+    /// The maker of this session; null before `prepare` was called in it.
     PictureMaker const* current() const { return current_.get(); }
-    /// Whether that is for this view.
+    /// True where there is a maker of this session, and it is for this view.
     bool is_for(NumberedView const& view) const { return current_ && since_ == view.held_since; }
 
-    /// This session has ended: what it showed is shown on, at this time of the scene, until one of the next two.
+    /// This session was interrupted: its picture goes on being shown at this scene time, until `resume` or
+    /// `begin_anew`.
     void pause(SceneTime present);
-    /// It goes on.
+    /// The session that was interrupted goes on.
     void resume() { is_paused_ = false; }
-    /// Another one begins, which has sent nothing yet.
+    /// Another session begins, which has sent nothing yet.
     void begin_anew();
-    /// What is held of the session before is of another scene.
+    /// Drops what is held of the session before, as where that was of another scene.
     void forget_earlier();
 
-    /// As `PictureMaker::show`. The session before shows its own until this one's picture has no more holes, or is
-    /// complete: that is seen by making both. After `prepare`.
+    /// Shows a picture as `PictureMaker::show` does: that of the session before until this one's covers as much or is
+    /// complete, which is found out by making both, or has another size and shows anything. Call it after `prepare`.
     bool show(PictureRequest const& request, Picture& picture, std::vector<PixelRect>& changed,
               BlockCanvas* canvas = nullptr);
-    /// Whose the picture is. After `prepare`.
+    /// The maker whose picture is shown. Call it after `prepare`.
     PictureMaker const& shown() const { return earlier_ ? *earlier_ : *current_; }
     std::size_t memory_bytes() const;
 
@@ -41,11 +42,11 @@ private:
     bool replaces_earlier(PictureRequest const& request);
 
     std::unique_ptr<PictureMaker> current_;
-    std::uint64_t since_ = 0; ///< as `held_since` of its views
+    std::uint64_t since_ = 0; ///< `held_since` of the views that `current_` is for
     std::unique_ptr<PictureMaker> earlier_;
     bool is_paused_ = false;
-    SceneTime paused_ = 0; ///< which the earlier one shows
-    Picture unseen_; ///< of this session, while the one before is shown
+    SceneTime paused_ = 0; ///< that `earlier_` shows
+    Picture unseen_; ///< this session's, while that of the one before is shown
     std::vector<PixelRect> unseen_changes_; ///< scratch
 };
 

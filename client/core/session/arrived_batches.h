@@ -11,9 +11,9 @@ namespace framelet {
 
 class ArrivedBatches {
 public:
-    /// What may wait for a painter that is busy, or for a window that is hidden.
+    /// Most bytes that may wait for a painter that is busy, or for a window that is hidden.
     static constexpr std::size_t most_bytes = 256u << 20;
-    /// Batches whose memory is kept.
+    /// Most batches whose memory is kept.
     static constexpr std::size_t most_spares = 4;
 
     void add(Batch batch);
@@ -21,12 +21,12 @@ public:
     std::size_t bytes() const { return bytes_; } ///< of those that wait
     bool is_full() const { return bytes_ > most_bytes; }
     void clear();
-    /// All that wait, in order; `out` is empty before.
+    /// Moves all batches that wait to `out`, in order; `out` is empty before.
     void take(std::vector<Batch>& out);
 
-    /// One to decode into, with whatever is in it.
+    /// A batch to decode into, with whatever is left in it.
     Batch take_spare();
-    /// Empties `used`.
+    /// Takes batches back for the sake of their memory; empties `used`.
     void give_back(std::vector<Batch>& used);
 
 private:

@@ -15,12 +15,12 @@ class AskedView {
 public:
     using Time = CameraTimes::Time;
 
-    /// Whether there is one yet.
+    /// True once the user has asked for a view.
     bool exists() const { return newest_.view.number > 0; }
     bool equals(Camera const& camera, Viewport viewport, int scene_camera) const {
         return has_viewport(viewport) && newest_.view.camera == camera && newest_.scene_camera == scene_camera;
     }
-    /// Whether what is held of it can be shown in such a picture.
+    /// True where the newest view has this viewport, so that what is held of it can be shown.
     bool has_viewport(Viewport viewport) const { return exists() && newest_.view.viewport == viewport; }
     void set(Camera const& camera, Viewport viewport, int scene_camera, Time now) {
         std::uint64_t const number = newest_.view.number + 1;
@@ -30,15 +30,15 @@ public:
         times_.note_set(number, now);
     }
 
-    /// With number 0 where there is none.
+    /// The newest view; its number is 0 where there is none.
     NumberedView const& view() const { return newest_.view; }
     int scene_camera() const { return newest_.scene_camera; }
-    /// Whether the batch is for a picture of this size.
+    /// True where the batch belongs to what is held now: of this viewport, and since it was changed to last.
     bool wants(Batch const& batch) const {
         return batch.view.held_since == newest_.view.held_since && batch.view.viewport == newest_.view.viewport;
     }
 
-    /// One at most waits: a newer one replaces it.
+    /// True while the newest view waits to be sent; a newer one replaces it.
     bool is_unsent() const { return is_unsent_; }
     CameraUpdate const& send(Time now) {
         is_unsent_ = false;
@@ -46,15 +46,15 @@ public:
         times_.note_sent(newest_.view.number, now);
         return newest_;
     }
-    /// Another session knows nothing of what was sent.
+    /// Another session begins, which knows nothing of what was sent.
     void begin_session() {
         is_unsent_ = exists();
         times_.forget_sent();
     }
-    /// When the first of all was.
+    /// The time when the first view of all was sent.
     std::optional<Time> first_sent() const { return first_sent_; }
 
-    /// Seconds, as CameraTimes says.
+    /// Seconds since this view was set or sent, as CameraTimes has them.
     std::optional<double> since_set(std::uint64_t number, Time now) { return times_.since_set(number, now); }
     std::optional<double> since_sent(std::uint64_t number, Time now) { return times_.since_sent(number, now); }
 

@@ -1,5 +1,5 @@
-// What the server has said of itself, and the scene's clock as it goes on from there. In: its messages, what is asked
-// of the clock, and when. Out: how all that stands. A value.
+// The server's last Status, and the scene's clock as it goes on from there. In: its messages, requests for the clock,
+// and when they came. Out: status, and clock at any time. A value.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ class ServerState {
 public:
     using Time = std::chrono::steady_clock::time_point;
 
-    /// Whether anything has been said.
+    /// True once the server has said anything.
     bool has_begun() const { return since_.has_value(); }
     /// A session has been opened.
     void begin(Welcome const& welcome, Time now) {
@@ -34,7 +34,7 @@ public:
         status_.clock.playing = false;
         status_.converged = false;
     }
-    /// As if it were granted.
+    /// Sets the clock as if the request were granted.
     void ask_clock(ClockRequest const& request, Time now) {
         ClockState& clock = status_.clock;
         clock = clock_at(now);
@@ -45,7 +45,7 @@ public:
         status_.converged = false;
     }
 
-    /// As it was said last, but for the clock's time.
+    /// The last Status, in which requests for the clock count as granted; `clock_at` has the clock's present time.
     Status const& status() const { return status_; }
     ClockState clock_at(Time time) const {
         ClockState out = status_.clock;
@@ -58,7 +58,7 @@ public:
 
 private:
     Status status_;
-    std::optional<Time> since_; ///< the clock's time is of that moment; nothing: nothing has been said
+    std::optional<Time> since_; ///< when the clock had its time; nothing: the server has said nothing
 };
 
 } // namespace framelet

@@ -1,5 +1,5 @@
-// What the viewer has told the server of framelets that it holds no longer, for as long as it might be lost with the
-// connection. In: messages, how many of them have come. Out: those to send again. A value.
+// The messages by which the viewer has told the server which framelets it has evicted, kept for as long as they might
+// be lost with the connection. In: messages, how many of them the server has. Out: those to send again. A value.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace framelet {
 
-/// Messages that tell all of that, each as long as one may be. Puts `gone` in order.
+/// Messages that tell the server of all evicted framelets, each with `max_evicted` at most. Sorts `gone`.
 inline std::vector<Evicted> evicted_messages(std::vector<SentTile>& gone) {
     std::ranges::sort(gone);
     std::vector<Evicted> messages;
@@ -27,7 +27,7 @@ inline std::vector<Evicted> evicted_messages(std::vector<SentTile>& gone) {
 
 class ToldEvictions {
 public:
-    /// Of more framelets it is no longer known which have come.
+    /// Most framelets of messages that are kept; of more it is no longer known which the server has heard of.
     static constexpr std::size_t most_framelets = std::size_t{1} << 18;
 
     void keep(Evicted told) {
@@ -41,7 +41,7 @@ public:
             is_lost_ = true;
         }
     }
-    /// The server has so many of all messages, as it says.
+    /// The server says that so many of all messages have come.
     void note_come(std::uint64_t messages) {
         for (; come_ < messages && !messages_.empty(); ++come_) {
             framelets_ -= messages_.front().framelets.size();
@@ -49,15 +49,15 @@ public:
         }
     }
 
-    /// In order.
+    /// The messages that may not have come, in order.
     std::deque<Evicted> const& messages() const { return messages_; }
-    /// There were too many: no session can go on with what is held.
+    /// True where there were too many: no session can go on with what is held.
     bool is_lost() const { return is_lost_; }
 
 private:
     std::deque<Evicted> messages_;
-    std::size_t framelets_ = 0; ///< in these
-    std::uint64_t come_ = 0; ///< messages that have
+    std::size_t framelets_ = 0; ///< in `messages_`
+    std::uint64_t come_ = 0; ///< messages that the server has
     bool is_lost_ = false;
 };
 

@@ -1,5 +1,5 @@
-// Objects of OpenGL 3.3 that give back what they hold. In: sizes and formats. Out: names for OpenGL's functions. Only
-// what WebGL 2 has too. Everything with one context current, destruction too.
+// Objects of OpenGL 3.3 that give back what they hold. In: sizes and formats. Out: names for OpenGL's functions. They
+// use only what WebGL 2 has too, and need one context to be current in all calls, at destruction too.
 #pragma once
 
 #include <cstddef>
@@ -12,12 +12,12 @@
 
 namespace framelet {
 
-/// Counts what is made, so that a test can see that nothing is once all is there.
+/// Counts the objects of OpenGL that are made, so that a test can see that none is once all are there.
 struct GlCount {
     std::size_t made = 0;
 };
 
-/// A name, which is given back by the function of its kind.
+/// The name of an object of OpenGL, which is deleted by the function of its kind.
 class GlName {
 public:
     enum class Kind : std::uint8_t { texture, framebuffer, buffer, vertex_array, program };
@@ -44,7 +44,7 @@ inline constexpr int table_width = 1024;
 
 enum class TexelFormat : std::uint8_t { color, depth, number, four_numbers, four_floats };
 
-/// A plane of texels that are read one by one, and what can be rendered to.
+/// A texture of two dimensions whose texels are read one by one, and which can be rendered to.
 class GlPlane {
 public:
     GlPlane() = default;
@@ -60,12 +60,13 @@ private:
     int width_ = 0, height_ = 0;
 };
 
-/// Numbers that a shader reads, `words` in each texel (1 or 4), `table_width` texels a row.
+/// A table of numbers that a shader reads, `words` in each texel (1 or 4), `table_width` texels a row.
 class GlTable {
 public:
     GlTable(TexelFormat format, std::size_t words, GlCount& count) : format_(format), words_(words), count_(&count) {}
 
-    /// Replaces what it has; grows by doubling. Throws CanvasError where that is too much.
+    /// Replaces what the table has, and fills up `words` to whole rows; grows by doubling. Throws CanvasError where
+    /// that is too much.
     void upload(std::vector<std::uint32_t>& words);
     std::uint32_t texture() const { return plane_.texture(); }
 
@@ -92,7 +93,7 @@ private:
     int width_ = 0, height_ = 0;
 };
 
-/// What others have done wrong is not to be taken for ours.
+/// Clears OpenGL's errors: what others have done wrong is not to be taken for ours.
 void forget_errors();
 /// Throws CanvasError where OpenGL says that memory is missing, or that a call was wrong.
 void check_gl(char const* what);

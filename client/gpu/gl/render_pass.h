@@ -16,13 +16,14 @@ public:
     RenderPass(std::initializer_list<char const*> vertex, std::initializer_list<char const*> fragment,
                std::initializer_list<char const*> textures, GlCount& count);
 
-    /// Everything that follows is drawn into the target by this.
+    /// Begins to draw with this program into the target. `textures` are those that its samplers read, in order;
+    /// `of_layers`: the first of them is an array of textures.
     void begin(GlTarget const& target, std::initializer_list<std::uint32_t> textures, bool of_layers = false) const;
     void set(char const* name, float value) const;
     void set(char const* name, int value) const;
     void set(char const* name, int x, int y) const;
     void set(char const* name, float x, float y) const;
-    /// Every pixel of the target.
+    /// Draws every pixel of the target.
     void draw_all() const;
 
 private:

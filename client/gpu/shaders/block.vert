@@ -1,4 +1,4 @@
-// The square of a block that is painted: one instance each, of four corners.
+// Draws the square of each block that is painted: one instance each, of four corners.
 uniform usampler2D blocks;
 uniform vec2 size; // of the picture, pixels
 flat out uvec4 block; // as `PatchTable::blocks`

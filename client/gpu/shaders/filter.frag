@@ -1,7 +1,7 @@
-// What `filter_pixels` does.
+// Filters outlines as `filter_pixels` does.
 uniform sampler2D colors;
 uniform ivec2 viewport;
-uniform float contrast; // of bytes
+uniform float contrast; // difference of bytes up to which nothing is filtered
 out vec4 color;
 vec4 at(ivec2 pixel) {
     return floor(texelFetch(colors, clamp(pixel, ivec2(0), viewport - 1), 0) * 255.0 + 0.5);

@@ -1,5 +1,5 @@
-// What `paint_warped_block` does, for one pixel: the patches of its block one after the other, the best first. What it
-// says of the reasons is not said again here.
+// Does what `paint_warped_block` does, for one pixel: paints the patches of its block one after the other, the best
+// first. The reasons that are given there are not repeated here.
 uniform usampler2DArray samples;
 uniform usampler2D patches;
 uniform usampler2D entries;
@@ -16,7 +16,7 @@ const int texels_of_patch = 6;
 const uint hides_flag = 1u, ends_flag = 2u; // of patches
 const uint outlier_flag = 1u << 16; // of entries
 
-// What is in front so far.
+// The surface in front at the pixel so far.
 vec3 color = vec3(0.0);
 float weight = 0.0;
 float depth = hole_depth;
@@ -42,7 +42,7 @@ bool is_hidden(float own_depth, float tolerance, int own_group) {
     return firm && group != own_group && depth >= (1.0 + rounding - same_surface) * own_depth - tolerance;
 }
 
-// True where it shows.
+// Lets a candidate compete with what is in front. True where it shows.
 bool merge(Candidate own, int own_group, float tolerance, uint own_leader) {
     float limit = tolerance + same_surface * own.depth;
     bool shows = own.weight > faint;
@@ -67,7 +67,7 @@ bool merge(Candidate own, int own_group, float tolerance, uint own_leader) {
     return joins || wins;
 }
 
-// Of eight words in two texels.
+// True where bit `number` is set of the eight words in two texels.
 bool contains(int first, uint number) {
     uvec4 bits = texel_of(patches, first + int(number >> 7));
     return ((bits[(number >> 5) & 3u] >> (number & 31u)) & 1u) != 0u;
@@ -123,7 +123,7 @@ bool paint_layer(int patch_texel, int own_group, uint own_leader, vec2 from) {
     return merge(own, own_group, tolerance, own_leader);
 }
 
-// Where most of a splat is hidden nothing of it is to show; what says so is in the shader that includes this.
+// True where most of a splat is hidden, so that nothing of it is to show. Defined by the shader that includes this.
 bool is_left_out(int splat);
 
 bool paint_outliers(int list, int own_group, int first_splat, uint own_leader, ivec2 pixel) {
@@ -151,8 +151,8 @@ bool paint_outliers(int list, int own_group, int first_splat, uint own_leader, i
     return shows;
 }
 
-// What of the first patches of a block (`PatchTable::blocks`) shows at a pixel. Returns a bit for each of the first 127
-// of which something did, and one for all others.
+// Paints the first `count` patches of a block (`PatchTable::blocks`) at a pixel. Returns a bit for each of the first
+// 127 of which something showed, and one for all others.
 uvec4 paint(uvec4 block, int first_splat, int count, ivec2 pixel) {
     int first = int(block.y);
     uvec2 own = uvec2(pixel) & 15u; // in the block

@@ -1,10 +1,11 @@
-// What shows in a block, for each block a pixel: which patches did once, of which groups enough does, how many holes
-// there are and of which slots something shows.
+// Reports what shows in a block, for each block in a pixel: which patches showed once, of which groups enough does, how
+// many holes there are and of which slots something shows.
 uniform usampler2D claims;
 uniform usampler2D winners;
 uniform ivec2 viewport;
 layout(location = 0) out uvec4 out_claims;
-layout(location = 1) out uvec4 out_figures; // bits of those of the first 64 patches whose groups show enough; holes; slots
+// A bit for each of the first 64 patches that leads a group of which enough shows; holes; slots.
+layout(location = 1) out uvec4 out_figures;
 const int enough_pixels = 6;
 void main() {
     ivec2 corner = 16 * ivec2(gl_FragCoord.xy);

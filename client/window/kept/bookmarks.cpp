@@ -21,7 +21,7 @@ using Json = nlohmann::ordered_json;
 constexpr double degrees = 180 / std::numbers::pi;
 constexpr std::size_t longest_name = 60;
 
-/// With no more digits than it takes to read the same number again.
+/// The number that is written with no more digits than it takes to read the same float again.
 double shortest(float value) {
     std::array<char, 32> text{};
     auto const written = std::to_chars(text.data(), text.data() + text.size(), value);
@@ -50,7 +50,7 @@ Json camera_json(Camera const& camera) {
     return out;
 }
 
-/// What is not of camera files is taken out before it is read as one.
+/// Reads a bookmark: what camera files do not have is taken out before the rest is read as one.
 Bookmark read_bookmark(Json entry, std::string const& file) {
     Bookmark out;
     if (entry.is_object() && entry.contains("name") && entry["name"].is_string()) {

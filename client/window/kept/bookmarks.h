@@ -1,4 +1,4 @@
-// Views of one's own in a scene, by name. In: cameras. Out: a file of camera files, and back.
+// The user's own views in a scene, by name. In: cameras. Out: a file of camera files, and back.
 #pragma once
 
 #include <cstdint>
@@ -20,37 +20,38 @@ struct Bookmark {
 /// not know.
 std::string camera_file_text(Camera const& camera);
 
-/// {"cameras": [{"name": ..., and as in a camera file, "orthographic_height" in place of "fov_degrees" where it is
-/// that}, ...]}.
+/// The text of a file of bookmarks: {"cameras": [{"name": ..., and as in a camera file, "orthographic_height" in place
+/// of "fov_degrees" where it is that}, ...]}.
 std::string bookmarks_text(std::vector<Bookmark> const& bookmarks);
-/// Throws InputError; `name` of the file is for its message.
+/// Reads such a text. Throws InputError; `name` of the file is for its message.
 std::vector<Bookmark> parse_bookmarks(std::string const& text, std::string const& name);
 
-/// Empty: none.
+/// Files of a scene's bookmarks; empty: there is none.
 struct BookmarkFiles {
     std::filesystem::path own;
-    std::filesystem::path older; ///< to begin with: what earlier versions kept, for whatever scene had the name
+    std::filesystem::path older; ///< read to begin with: what earlier versions kept, for whatever scene had the name
 };
 
-/// Where those of a scene are kept. `scene_source` as in Welcome: that of another folder has others; where it is not
-/// known (0) the name alone counts.
+/// The files in which a scene's bookmarks are kept. `scene_source` as in Welcome: scenes of the same name from other
+/// files have others; where it is not known (0) the name alone counts.
 BookmarkFiles bookmark_files(std::string const& scene_name, std::uint64_t scene_source);
 
-/// Those of one scene, kept in a file.
+/// The bookmarks of one scene, kept in a file.
 class Bookmarks {
 public:
     static constexpr std::size_t most = 1000;
 
-    /// What is in the file, or where there is none in the older one, which is read only. Where that cannot be used
-    /// there are none, and `complaint` is one line.
+    /// Reads the file or, where there is none, the older one, which is never written. Where that cannot be used there
+    /// are none, and `complaint` is one line.
     explicit Bookmarks(std::filesystem::path file, std::filesystem::path const& older = {});
     explicit Bookmarks(BookmarkFiles const& files) : Bookmarks(files.own, files.older) {}
 
     std::vector<Bookmark> const& all() const { return all_; }
     std::string const& complaint() const { return complaint_; }
 
-    /// Its name is "view N", and it is the last. These throw InputError where the file cannot be written; what they
-    /// change is changed for this run all the same. A file that could not be used is kept beside it, as FILE.broken.
+    /// Adds a bookmark named "view N" behind the others. This and what follows throw InputError where the file cannot
+    /// be written; what they change is changed for this run all the same. A file that could not be used is kept beside
+    /// it, as FILE.broken.
     void add(Camera const& camera);
     void rename(std::size_t number, std::string name);
     void remove(std::size_t number);
@@ -61,7 +62,7 @@ private:
     std::filesystem::path file_;
     std::vector<Bookmark> all_;
     std::string complaint_;
-    bool is_broken_ = false; ///< the file
+    bool is_broken_ = false; ///< the file could not be used
 };
 
 } // namespace framelet

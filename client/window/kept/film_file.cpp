@@ -1,4 +1,4 @@
-// What the window records to: a film where the program can make one, else a folder of PNG files.
+// The file that the window records to: a film where the program can make one, else a folder of PNG files.
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -38,7 +38,7 @@ public:
     fs::path path() const override { return folder_; }
 
 private:
-    /// Compressed once, `first`, however often it is shown.
+    /// Writes the picture to the next file. It is compressed once, to `first`, however often it is shown.
     void write(fs::path& first, Picture const& picture) {
         char name[32];
         std::snprintf(name, sizeof name, "%05llu.png", static_cast<unsigned long long>(next_));

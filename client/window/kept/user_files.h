@@ -7,20 +7,22 @@
 
 namespace framelet {
 
-/// framelet/ in $XDG_CONFIG_HOME or ~/.config; empty where there is neither.
+/// The folder framelet/ in $XDG_CONFIG_HOME or ~/.config; empty where there is neither.
 std::filesystem::path config_folder();
 
-/// Nothing where there is no such file. Throws InputError, one line, where there is one that cannot be read, or one of
-/// more than a megabyte.
+/// The text of a file; nothing where there is no such file. Throws InputError, one line, where there is one that cannot
+/// be read, or one of more than a megabyte.
 std::optional<std::string> read_user_file(std::filesystem::path const& file);
 
-/// Makes the folder as well. The file of before stays until the new one is complete. Throws InputError, one line.
+/// Writes a file, and makes its folder. The file of before stays until the new one is complete. Throws InputError, one
+/// line.
 void write_user_file(std::filesystem::path const& file, std::string const& text);
 
-/// A name of a file for what is called so: never one of another folder, never a hidden one, never too long.
+/// A file's name for something with this name: never one of another folder, never a hidden one, never too long.
 std::string file_stem_for(std::string const& name);
 
-/// "framelet-20240131-235959" and what follows, such as ".png"; with a number before that where there is such a file.
+/// The path of a new file: "framelet-20240131-235959" and `extension`, such as ".png"; with a number before that where
+/// there is such a file.
 std::filesystem::path new_file_name(std::filesystem::path const& folder, std::string const& extension);
 
 } // namespace framelet

@@ -28,7 +28,7 @@ std::optional<Viewport> size_of(Json const& value) {
     if (!value.is_array() || value.size() != 2 || !value[0].is_number_integer() || !value[1].is_number_integer()) {
         return std::nullopt;
     }
-    // Smaller ones cannot be taken hold of any more.
+    // Smaller windows cannot be taken hold of any more.
     constexpr std::int64_t least = 100;
     auto const width = value[0].get<std::int64_t>();
     auto const height = value[1].get<std::int64_t>();

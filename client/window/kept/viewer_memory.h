@@ -1,4 +1,4 @@
-// What the window remembers from one run to the next. In and out: a file.
+// The settings that the window remembers from one run to the next. In and out: a file.
 #pragma once
 
 #include <filesystem>
@@ -21,17 +21,17 @@ struct ViewerMemory {
     bool operator==(ViewerMemory const&) const = default;
 
     static constexpr std::size_t most_servers = 8;
-    /// It is the newest now.
+    /// Makes this server the newest.
     void note_server(std::string const& address);
 };
 
 std::string viewer_memory_text(ViewerMemory const& memory);
-/// What is missing or makes no sense is as nothing had been remembered.
+/// Reads such a text; what is missing or makes no sense is as if nothing had been remembered.
 ViewerMemory parse_viewer_memory(std::string const& text);
 
-/// framelet/viewer.json where state is kept; what cannot be read is nothing.
+/// Reads framelet/viewer.json where state is kept; a file that cannot be read is as none.
 ViewerMemory read_viewer_memory();
-/// What cannot be written is forgotten: it is not worth a message.
+/// Writes that file. What cannot be written is forgotten: it is not worth a message.
 void write_viewer_memory(ViewerMemory const& memory);
 
 } // namespace framelet

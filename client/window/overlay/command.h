@@ -1,11 +1,11 @@
-// What the user may ask of the viewer, other than by moving the camera.
+// Commands that the user may give to the viewer, other than by moving the camera.
 #pragma once
 
 #include <cstdint>
 
 namespace framelet {
 
-/// What a key, or a button of the overlay, stands for.
+/// A command that a key, or a button of the overlay, stands for.
 enum class Command : std::uint8_t {
     quit,
     escape, ///< close a menu, or else quit
@@ -24,7 +24,7 @@ enum class Command : std::uint8_t {
     sharper,
     fresher,
     free_camera,
-    mouse_look, ///< or no more
+    mouse_look, ///< begin it, or end it
     fit_scene,
     view_front,
     view_right,
@@ -45,15 +45,15 @@ enum class Command : std::uint8_t {
     screenshot,
     screenshot_with_depth,
     toggle_recording,
-    scene_camera, ///< the first; `scene_camera` + n is the n-th more, up to 8 more
-    bookmark = scene_camera + 9, ///< likewise
+    scene_camera, ///< camera 1 of the scene; `scene_camera` + n is the n-th more, up to 8 more
+    bookmark = scene_camera + 9, ///< bookmark 1, likewise
     last = bookmark + 8,
 };
 
-/// How many cameras of each kind have a key.
+/// Number of cameras of each kind that have a key.
 inline constexpr int numbered_cameras = 9;
 
-/// The n-th of those that are numbered.
+/// The command of number n, from 0, of those that begin with `first`.
 constexpr Command numbered(Command first, int n) {
     return static_cast<Command>(static_cast<int>(first) + n);
 }

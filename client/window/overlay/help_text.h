@@ -1,4 +1,4 @@
-// What F1 shows. In: which commands have an effect now. Out: rows of keys and what they do, in two columns.
+// The help that F1 shows. In: which commands have an effect now. Out: rows of keys and what they do, in two columns.
 #pragma once
 
 #include <string>
@@ -11,16 +11,17 @@ namespace framelet {
 
 using TextRows = std::vector<std::pair<std::string, std::string>>; ///< name and value
 
-/// What is said where another viewer has the scene's clock at its disposal.
+/// Text that is shown where another viewer has the scene's clock at its disposal.
 inline constexpr char const* watching_text = "another viewer controls the scene's clock";
 
-/// What is said while the mouse turns the head.
+/// Text that is shown while the mouse turns the head.
 inline constexpr char const* mouse_look_text = "the mouse looks around, W A S D Q E fly; a click or Esc ends it";
 
-/// `controls`: the keys that set the scene's clock have an effect.
+/// The rows of the help. `controls`: the keys that set the scene's clock have an effect.
 TextRows help_rows(bool controls);
 
-/// The same words, for the tooltip of what does the same by mouse. Of the numbered cameras: of them all.
+/// The help's words for one command, for the tooltip of what does the same by mouse. All numbered cameras of a kind
+/// have the same.
 std::string help_text(Command command);
 
 } // namespace framelet

@@ -86,7 +86,7 @@ std::string name_of_key(int key) {
         return "Left";
     case GLFW_KEY_TAB:
         return "Tab";
-    case GLFW_KEY_EQUAL: // what it is called for, with Shift on many keyboards
+    case GLFW_KEY_EQUAL: // it is pressed for a +, with Shift on many keyboards
         return "+";
     default:
         break;
@@ -100,7 +100,7 @@ std::string name_of_key(int key) {
     return std::string(1, static_cast<char>(key)); // GLFW numbers the others as ASCII does
 }
 
-/// Such keys are told of where they are digits; the others do what their like on the main block does.
+/// True for keys of the keypad that are no digits: they do what their like on the main block does, and are not named.
 bool has_a_double(int key) {
     return key >= GLFW_KEY_KP_DECIMAL && key <= GLFW_KEY_KP_EQUAL;
 }

@@ -1,5 +1,5 @@
-// What lies over the picture: help, statistics, messages, the bar. In: what to say, as plain values. Out: drawn over
-// the picture (Dear ImGui); what the hands did to it.
+// Draws what lies over the picture: help, statistics, messages, the bar. In: what to say, as plain values. Out: drawn
+// over the picture (Dear ImGui); what the hands did to it.
 #pragma once
 
 #include <span>
@@ -21,15 +21,15 @@ public:
     Overlay(Overlay const&) = delete;
     Overlay& operator=(Overlay const&) = delete;
 
-    /// Into the current framebuffer. The hands are looked at meanwhile: what they press and release shows, and counts,
-    /// within the next two calls.
+    /// Draws into the current framebuffer. The hands are looked at meanwhile: what they press and release shows, and
+    /// counts, within the next two calls.
     OverlayActions draw(OverlayContent const& content);
-    /// Of what was drawn last: where the mouse does something. Pixels of the framebuffer.
+    /// Areas of what was drawn last in which the mouse does something, pixels of the framebuffer.
     std::span<PixelRect const> mouse_areas() const { return mouse_areas_; }
-    /// Letters are a text's now, and no commands.
+    /// True while letters go into a text, and are no commands.
     bool is_typed_into() const;
     bool has_menu() const { return has_menu_; }
-    /// With the next `draw`.
+    /// Closes a menu that is open with the next `draw`.
     void close_menu() { closes_menu_ = true; }
 
 private:

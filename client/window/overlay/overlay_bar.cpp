@@ -31,7 +31,7 @@ std::string tip_of(Command command) {
 
 constexpr char const* shown_buttons[] = {"photo", "rec", "stats", "ages", "?"};
 
-/// From which width of the window on, in font sizes, the bar has these; smaller ones have the keys for it.
+/// Widths of the window, in font sizes, from which on the bar has these controls; in smaller ones keys do the same.
 constexpr float room_for_bias = 70;
 constexpr float room_for_exposure = 56;
 constexpr float room_for_speed = 46;
@@ -40,7 +40,7 @@ bool has_room(float for_it) {
     return ImGui::GetIO().DisplaySize.x > for_it * ImGui::GetFontSize();
 }
 
-/// Of what stands to the right of the time line.
+/// Width of what stands to the right of the time line, pixels.
 float right_width() {
     ImGuiStyle const& style = ImGui::GetStyle();
     auto const width_of = [&](char const* text) { return ImGui::CalcTextSize(text).x + style.ItemSpacing.x; };
@@ -56,7 +56,7 @@ float right_width() {
 }
 
 void clock_controls(TimeLine const& line, OverlayFrame& frame) {
-    // What cannot be used says why instead of what it does.
+    // The tooltip of what cannot be used says why, instead of what it does.
     auto const tip = [&](Command command) { return line.fixed_because.empty() ? tip_of(command) : line.fixed_because; };
     ImGui::BeginDisabled(!line.fixed_because.empty());
     button("|<", Command::seek_start, tip(Command::seek_start), frame);
@@ -83,7 +83,7 @@ void clock_controls(TimeLine const& line, OverlayFrame& frame) {
     ImGui::EndDisabled();
 }
 
-/// What was typed becomes the name, unless it is cancelled.
+/// Ends the edit: what was typed becomes the bookmark's name, unless it is cancelled.
 void end_edit(bool is_cancelled, OverlayFrame& frame) {
     NameEdit const edit = std::exchange(frame.edit, NameEdit());
     if (edit.bookmark >= 0 && !is_cancelled) {
@@ -91,7 +91,7 @@ void end_edit(bool is_cancelled, OverlayFrame& frame) {
     }
 }
 
-/// One of the bookmarks: go there, its name, take it away.
+/// Draws the row of one bookmark: going there, its name, taking it away.
 void bookmark_row(int number, std::string const& name, OverlayFrame& frame) {
     ImGui::PushID(number);
     if (ImGui::Button("go")) {
@@ -131,7 +131,7 @@ void draw_camera_menu(CameraMenu const& menu, OverlayFrame& frame) {
     tooltip("what one looks through: cameras of the scene (1 .. 9), bookmarks of your own (Shift+1 .. 9)");
     ImGui::SameLine();
     if (!ImGui::BeginPopup("cameras")) {
-        end_edit(false, frame); // by a click beside the menu
+        end_edit(false, frame); // the menu was closed by a click beside it
         return;
     }
     if (frame.closes_menu) {

@@ -1,4 +1,4 @@
-// What lies over the picture, as plain values, and what the mouse and the keyboard did to it.
+// The content of the overlay, as plain values, and what the mouse and the keyboard did to it.
 #pragma once
 
 #include <optional>
@@ -11,46 +11,46 @@
 
 namespace framelet {
 
-/// A figure, and how it went.
+/// A figure, and its course over time.
 struct Plot {
     std::string name;
     std::string value; ///< now
     std::vector<float> values; ///< the oldest first; a negative one was not measured
-    float whole = 0; ///< what there can be of it; 0: there is no such bound
+    float whole = 0; ///< the most that it can be; 0: there is no such bound
     bool operator==(Plot const&) const = default;
 };
 
 struct StatisticsPanel {
     std::vector<Plot> plots;
-    TextRows rows; ///< below them
+    TextRows rows; ///< below the plots
     bool shows_details = false;
     TextRows details;
     bool operator==(StatisticsPanel const&) const = default;
 };
 
-/// What the colours of age mean.
+/// The meaning of the colours of age.
 struct Legend {
     std::string title;
-    std::string newest, oldest; ///< of both ends of the colours
+    std::string newest, oldest; ///< texts at both ends of the colours
     std::string remark;
     bool operator==(Legend const&) const = default;
 };
 
-/// What one can look through.
+/// The cameras and bookmarks that one can look through.
 struct CameraMenu {
     std::string current;
     std::vector<std::string> scene_cameras; ///< names, for people
-    std::vector<std::string> bookmarks; ///< likewise
+    std::vector<std::string> bookmarks; ///< their names
     bool operator==(CameraMenu const&) const = default;
 };
 
 /// A name while it is being typed: ImGui keeps the field's text only as long as nothing else is clicked.
 struct NameEdit {
-    int bookmark = -1; ///< whose; -1: none
+    int bookmark = -1; ///< whose name it is; -1: none's
     std::string text{};
 };
 
-/// Where another server may be named.
+/// A field in which another server may be named.
 struct AddressField {
     std::string proposed;
     std::vector<std::string> recent;
@@ -67,8 +67,8 @@ struct OverlayContent {
     std::string message; ///< in the middle; empty: none
     std::optional<AddressField> address; ///< below the message
     std::optional<TimeLine> time_line; ///< along the lower edge
-    CameraMenu cameras; ///< in it
-    float bias = 0; ///< likewise, -1: sharp, 1: fresh
+    CameraMenu cameras; ///< in that bar
+    float bias = 0; ///< shown in that bar; -1: sharp, 1: fresh
     bool has_pointer = true; ///< the mouse may be on any of it
 
     bool operator==(OverlayContent const&) const = default;
@@ -77,7 +77,7 @@ struct OverlayContent {
     }
 };
 
-/// What the hands asked for.
+/// Actions that the hands asked for.
 struct OverlayActions {
     std::vector<Command> commands; ///< in order
     std::optional<SceneTime> seek; ///< where the clock is to stand

@@ -33,7 +33,7 @@ void table(char const* name, TextRows const& rows) {
 }
 
 void plot(Plot const& figure) {
-    // From nought, so that heights can be compared, and with some room above.
+    // Plots begin at zero, so that heights can be compared, and have some room above.
     float const highest = std::max(figure.whole, figure.values.empty() ? 0 : *std::ranges::max_element(figure.values));
     float const font = ImGui::GetFontSize();
     ImGui::TableNextColumn();
@@ -67,7 +67,7 @@ void take_area(OverlayFrame& frame) {
 
 void tooltip(std::string const& text) {
     if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) {
-        ImGui::PushStyleVar(ImGuiStyleVar_Alpha, 1); // not as pale as what cannot be used
+        ImGui::PushStyleVar(ImGuiStyleVar_Alpha, 1); // the tooltip is not as pale as what cannot be used
         ImGui::SetTooltip("%s", text.c_str());
         ImGui::PopStyleVar();
     }
@@ -146,7 +146,7 @@ void draw_help(TextRows const& rows, OverlayFrame& frame) {
         name_width = std::max(name_width, ImGui::CalcTextSize(name.c_str()).x);
         text_width = std::max(text_width, ImGui::CalcTextSize(text.c_str()).x);
     }
-    // Two rows side by side where there is room for that with what they say in two lines; what is still higher than the
+    // Two columns of rows where there is room for that with what they say in two lines; what is still higher than the
     // window is turned by the wheel.
     float const inside = room.x - 2 * style.WindowPadding.x - style.ScrollbarSize;
     float const gaps = 2 * style.CellPadding.x;

@@ -1,5 +1,4 @@
-// The words and plots of the overlay. In: statistics now and a moment ago. Out: rows of text, figures and how they
-// went.
+// The words and plots of the overlay. In: statistics now and a moment ago. Out: rows of text, figures and their course.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +15,7 @@ class RateMeter {
 public:
     /// A display frame was shown, which took so long to make.
     void frame(double seconds_taken);
-    /// What is shown has changed; `photon_seconds` as in ClientStatistics.
+    /// The picture that is shown has changed; `photon_seconds` as in ClientStatistics.
     void picture(double photon_seconds);
     /// Closes the interval where it is at least half a second old; true when the figures are new.
     bool update(double now_seconds, std::uint64_t bytes);
@@ -41,12 +40,12 @@ private:
     double bytes_per_second_ = 0;
 };
 
-/// How the figures went in the last minute.
+/// The course of the figures in the last minute.
 class StatisticsHistory {
 public:
-    /// For each interval of the meter.
+    /// Adds the figures of one interval of the meter.
     void add(RateMeter const& meter, ClientStatistics const& statistics);
-    /// With the figures of the newest interval beside them.
+    /// The plots of all figures, with their values in the newest interval beside them.
     std::vector<Plot> plots() const;
 
 private:
@@ -56,18 +55,18 @@ private:
     std::vector<Interval> intervals_; ///< the oldest first
 };
 
-/// What most people want to know.
+/// The figures that most people want to know.
 TextRows figure_rows(ClientStatistics const& statistics, ClockState const& clock, bool controls);
-/// For who looks into what it costs.
+/// The figures for who looks into what it costs.
 TextRows detail_rows(ClientStatistics const& statistics, RateMeter const& meter, Viewport viewport,
                      std::string const& painter);
-/// Of what is drawn over the picture; nothing where it needs none.
+/// The legend of what is drawn over the picture; nothing where it needs none.
 std::optional<Legend> legend_of(DrawnOver drawn);
-/// Of a scene that is being opened, and what is done of it; nothing of nothing.
+/// A text about a scene that is being opened, and the stage that this has reached; empty where there is no scene.
 std::string opening_text(std::string const& scene, std::string const& stage);
-/// "12.34 s, playing at 1x".
+/// The clock's state as text: "12.34 s, playing at 1x".
 std::string clock_text(ClockState const& clock);
-/// "the scene 100 ms late".
+/// The lag as text: "the scene 100 ms late".
 std::string lag_text(double lag_seconds);
 
 } // namespace framelet

@@ -1,4 +1,4 @@
-// Where the scene's clock stands in the animation, which begins anew at its end. In: clock, length of the animation.
+// The place of the scene's clock in the animation, which begins anew at its end. In: clock, length of the animation.
 // Out: a place in it, and the time of the clock that goes with another place.
 #pragma once
 
@@ -20,7 +20,7 @@ struct TimeLine {
 
     /// Seconds since the animation began anew, [0, duration). Only where something moves.
     double place() const { return std::fmod(clock.time, duration); }
-    /// For another place in the same round.
+    /// The clock's time that goes with another place in the same round.
     SceneTime time_at(double other_place) const {
         return std::clamp(clock.time - place() + other_place, 0.0, max_scene_time);
     }

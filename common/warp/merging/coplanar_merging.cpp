@@ -11,19 +11,19 @@ using Floats = float __attribute__((vector_size(4 * wide_doubles)));
 using Ints = std::int32_t __attribute__((vector_size(4 * wide_doubles)));
 using Piece = PieceLanes;
 
-/// Inverse depths that differ by less than this share are the same for all that looks at them.
+/// Share by which inverse depths may differ and still be the same for all that looks at them.
 constexpr double one_surface = 2e-3;
 
-/// What is this many times that off in the middle of a piece is not worth a fit.
+/// A piece whose middle is off by more than this many times that is not worth a fit.
 constexpr double hopeless = 2;
 
-/// So many times what is near is not of the plane until no more is looked for.
+/// Number of times that near pieces prove not to be of the plane after which no more are looked for.
 constexpr int most_failures = 2;
 
-/// The framelets of a quad.
+/// A bit for each framelet of the first quad, by place.
 constexpr std::uint64_t quarters = 0x0001000100010001u;
 
-/// What it costs to show what lies there, in pixels: blocks and lanes reach beyond it.
+/// Cost of showing what lies in a rectangle, in pixels: blocks and lanes reach beyond it.
 template <class Number>
 Number showing_cost(Number half_width, Number half_height) {
     return (2 * half_width + 12) * (2 * half_height + 6);
@@ -60,17 +60,17 @@ constexpr auto coordinates(std::uint32_t (*coordinate)(std::uint32_t)) {
 constexpr auto columns = coordinates(morton_x);
 constexpr auto rows = coordinates(morton_y);
 
-/// Byte `i` of boxes, which is signed.
+/// Byte `i` of each box, which is signed.
 Lanes byte_of(Ints boxes, int i) {
     return doubles_of(boxes << (24 - 8 * i) >> 24);
 }
 
-/// Of the difference of a fit and the inverse depth there.
+/// The difference from a fit as a share of the fit's least inverse depth in a piece.
 Lanes share_of(Lanes difference, AffineOf<Lanes> const& fit, Piece const& piece) {
     return difference == 0 ? Lanes{} : difference / least_value(fit, piece);
 }
 
-/// Of two planes, in the middle of one of them.
+/// Difference of the planes of two pieces in the middle of `at`.
 template <class Number>
 Number difference_in_middle(PieceOf<Number> const& of, PieceOf<Number> const& at) {
     return absolute(of.value + of.dx * (at.x - of.x) + of.dy * (at.y - of.y) - at.value);
@@ -78,7 +78,7 @@ Number difference_in_middle(PieceOf<Number> const& of, PieceOf<Number> const& at
 
 } // namespace
 
-/// Framelets of one layer each first, four at a time; then whatever there is.
+/// Merges framelets of one layer each first, four at a time; then whatever there is.
 void CoplanarMerging::merge(SquareLayers const& layers, SampleGrid const& grid) {
     coplanar_.clear();
     quads_.clear();
@@ -114,7 +114,7 @@ void CoplanarMerging::merge(SquareLayers const& layers, SampleGrid const& grid) 
     }
 }
 
-/// One layer of each framelet.
+/// Loads one layer of each framelet into rows of pieces.
 void CoplanarMerging::load(SquareLayers const& layers, std::size_t layer, SampleGrid const& grid) {
     SquareLayers::Rows const& from = layers.rows(layer);
     double const tile = grid.side * grid.spacing; // pixels
@@ -140,8 +140,8 @@ void CoplanarMerging::load(SquareLayers const& layers, std::size_t layer, Sample
     }
 }
 
-/// Of what is loaded, a lane for each quad, those that are `complete`. Returns a bit for each framelet of those that
-/// one plane is near enough to; these are open then.
+/// Merges the loaded layers of those quads that are `complete`, a lane for each quad. Returns a bit for each framelet
+/// of those quads that one plane is near enough to; these quads are open then.
 std::uint64_t CoplanarMerging::merge_quads(std::uint64_t complete) {
     std::uint64_t out = 0;
     for (std::size_t first = 0; first < SquareLayers::most_quads; first += wide_doubles) {
@@ -176,7 +176,7 @@ std::uint64_t CoplanarMerging::merge_quads(std::uint64_t complete) {
         is_one &= showing_cost(extent) <= cost_of_parts;
         unsigned const found = bits_of(is_one);
         out |= std::uint64_t{found} << first;
-        // All of them, then those that are.
+        // All of them are stored; then those that one plane is near enough to are opened.
         PieceRows<wide_doubles> quads;
         quads.store(piece_of(plane, extent), motion, 0);
         std::array<double, wide_doubles> shares, differences;
@@ -191,7 +191,7 @@ std::uint64_t CoplanarMerging::merge_quads(std::uint64_t complete) {
     return out * quarters;
 }
 
-/// What was last copied to the rows.
+/// Opens the piece that was last copied to the rows.
 void CoplanarMerging::open(double share, double difference, std::size_t place, std::size_t layer) {
     share_[open_count_] = share;
     difference_[open_count_] = difference;
@@ -206,13 +206,14 @@ CoplanarMerging::Group CoplanarMerging::alone(std::size_t seed) const {
     return {Bits::only(seed), sums_over(own), own.plane(), own.extent(), difference_[seed], cost, cost};
 }
 
-/// What can be merged with one of the `open`: all that may be of its plane at once, else what is near, and near to
-/// that, and then all once more. (Around a single layer too little of what is far is of its plane to begin with all.)
+/// The group that can be merged around the piece `seed` from the `open` ones: tries all that may be of its plane at
+/// once, else those that are near, and near to these, and then all once more. (Around a single layer too few of the far
+/// ones are of its plane to begin with all.)
 CoplanarMerging::Group CoplanarMerging::grow(std::size_t seed, Bits const& open) const {
     Group group = alone(seed);
     Bits rest = open.without(group.members);
     bool near = seed >= quad_count_;
-    bool has_grown = false; // since all were tried
+    bool has_grown = false; // since all were tried last
     for (int failures = 0; failures < most_failures && rest.any();) {
         Bits const some = find(seed, group, rest, near);
         if (near && !some.any() && has_grown) {
@@ -230,8 +231,8 @@ CoplanarMerging::Group CoplanarMerging::grow(std::size_t seed, Bits const& open)
     return group;
 }
 
-/// Adds `some` to the group, or those of them that agree, or the first one of those that are `near`. What is merged, or
-/// near and not of the plane, leaves `rest`.
+/// Adds `some` to the group, or those of them that agree, or the first one of those that are `near`; true where any
+/// were added. Pieces that are merged, or near and not of the plane, leave `rest`.
 bool CoplanarMerging::extend(Bits some, bool near, Group& group, Bits& rest) const {
     for (int i = 0; i < 3 && some.any(); ++i) {
         Group extended = group;
@@ -244,7 +245,7 @@ bool CoplanarMerging::extend(Bits some, bool near, Group& group, Bits& rest) con
                 rest = rest.without(group.members);
                 return true;
             }
-            if ((some & agreeing) == some) { // what the group had before does not agree
+            if ((some & agreeing) == some) { // the members that the group had before do not agree
                 break;
             }
             rest = near ? rest.without(some.without(agreeing)) : rest;
@@ -259,8 +260,8 @@ bool CoplanarMerging::extend(Bits some, bool near, Group& group, Bits& rest) con
     return false;
 }
 
-/// Those of the `open` that are of the seed's motion and may be of the group's plane; `near`: and with each of which
-/// alone it would be cheaper to show.
+/// The `open` pieces that are of the seed's motion and may be of the group's plane; with `near` only those with each of
+/// which alone the group would be cheaper to show.
 CoplanarMerging::Bits CoplanarMerging::find(std::size_t seed, Group const& group, Bits const& open, bool near) const {
     Bits out;
     AffineOf<Lanes> const plane = all_of(group.plane);
@@ -286,7 +287,7 @@ CoplanarMerging::Bits CoplanarMerging::find(std::size_t seed, Group const& group
     return out;
 }
 
-/// Without the fit, which is not needed where all together cost more.
+/// Adds pieces to the group without the fit, which is not needed where all together cost more.
 void CoplanarMerging::add(Bits const& added, Group& group) const {
     constexpr double far = 1e30;
     ExtentOf<Lanes> const nothing{all_of(far), all_of(far), all_of(-far), all_of(-far)};
@@ -318,7 +319,7 @@ void CoplanarMerging::add(Bits const& added, Group& group) const {
     }
 }
 
-/// Sets its plane. Returns those that it is near enough to.
+/// Fits the group's plane. Returns those members that it is near enough to.
 CoplanarMerging::Bits CoplanarMerging::fit(Group& group) const {
     group.plane = fit_plane(group.sums);
     AffineOf<Lanes> const plane = all_of(group.plane);
@@ -331,7 +332,7 @@ CoplanarMerging::Bits CoplanarMerging::fit(Group& group) const {
         }
         Piece const piece = open_.load(i);
         Lanes const own = largest_difference(piece, plane);
-        Lanes const share = one_surface - load_lanes<Lanes>(&share_[i]); // that is left
+        Lanes const share = one_surface - load_lanes<Lanes>(&share_[i]); // the share that is left
         out.add_lanes(i, bits_of(own <= share * least_value(plane, piece)) & wanted);
         difference = lanes_of(wanted) ? larger(own + load_lanes<Lanes>(&difference_[i]), difference) : difference;
     }

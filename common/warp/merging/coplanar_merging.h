@@ -1,5 +1,5 @@
-// Which layers of neighbouring framelets are about one plane. In: the layers of a square. Out: planes, each with what
-// is merged with it. None of this depends on the camera that shows it.
+// Finds the layers of neighbouring framelets that lie on about one plane. In: the layers of a square. Out: planes, each
+// with what is merged with it. None of this depends on the camera that shows it.
 #pragma once
 
 #include <array>
@@ -21,40 +21,40 @@ struct SampleGrid {
     double spacing = 1;
 };
 
-/// What layers were merged with, or one that is merged with none.
+/// A plane and the layers that were merged into it, or a single layer that is merged with none.
 struct CoplanarLayers {
     AffinePlane plane; ///< inverse depth, pixels from the square's corner
-    PlaneExtent extent; ///< of its samples
-    double difference = 0; ///< at most: of the plane from the layers that it was merged from, 1 / metres
-    /// Bit p of word k: layer k of the framelet at place p.
+    PlaneExtent extent; ///< of its samples, pixels from the square's corner
+    double difference = 0; ///< largest difference of the plane from the merged layers, 1 / metres
+    /// Bit p of word k is set for layer k of the framelet at place p.
     std::array<std::uint64_t, max_layers> parts{};
 };
 
-/// Merges layers of a square: what is of one view, body and velocity and of about one plane, where all of that together
-/// is cheaper to show than each by itself. Greedily: what is found first may take what would suit others better.
+/// Merges layers of a square that are of one view, body and velocity and of about one plane, where all of them together
+/// are cheaper to show than each by itself. Greedily: what is found first may take what would suit others better.
 class CoplanarMerging {
 public:
     void merge(SquareLayers const& layers, SampleGrid const& grid);
 
-    /// Each layer is part of one of these.
+    /// What the layers were merged into; each layer is part of one of these.
     std::span<CoplanarLayers const> coplanar() const { return coplanar_; }
-    /// Four framelets of one layer and one parent each, which all are part of one of `coplanar`.
+    /// The quads: four sibling framelets of one layer each, which all are part of one of `coplanar`.
     std::span<CoplanarLayers const> quads() const { return quads_; }
 
 private:
-    /// A quad takes the place of four layers.
+    /// Largest number of pieces (quads and layers) that can be open: a quad takes the place of four layers.
     static constexpr std::size_t most_open = max_layers * SquareLayers::places;
 
-    using Bits = LaneBits<most_open>; ///< of what is open
+    using Bits = LaneBits<most_open>; ///< of open pieces
 
-    /// What is about to be merged.
+    /// Pieces that are about to be merged.
     struct Group {
         Bits members;
         PlaneSums sums;
         AffinePlane plane;
         PlaneExtent extent;
         double difference = 0;
-        double cost = 0; ///< of all together
+        double cost = 0; ///< of showing all together, pixels
         double cost_of_parts = 0;
     };
 
@@ -69,13 +69,14 @@ private:
     Bits fit(Group& group) const;
     CoplanarLayers layer_of(Group const& group) const;
 
-    PieceRows<SquareLayers::places> loaded_; ///< of all framelets: one layer each
-    // What is open: quads first, then layers.
+    PieceRows<SquareLayers::places> loaded_; ///< one layer of each framelet
+    // Open pieces, which are still to be merged: quads first, then layers.
     std::size_t quad_count_ = 0, open_count_ = 0;
     PieceRows<most_open> open_;
-    /// Of a quad from its layers at most, in itself and as a share of its inverse depth there; of layers 0.
+    /// Largest difference of each quad from its layers, 1 / metres, and as a share of its inverse depth there; 0 for
+    /// layers.
     alignas(64) std::array<double, most_open> difference_{}, share_{};
-    std::array<std::uint8_t, most_open> place_{}; ///< or which quad
+    std::array<std::uint8_t, most_open> place_{}; ///< of the layer's framelet, or the quad's number
     std::array<std::uint8_t, most_open> layer_{};
     std::vector<CoplanarLayers> coplanar_, quads_;
 };

@@ -17,7 +17,7 @@ constexpr std::uint32_t no_number = 255; ///< of samples that are on no layer
 
 static_assert(MergedSquare::most_children * max_layers <= no_number);
 
-/// The moving grid, of so many samples along a side.
+/// The moving grid of a framelet, of so many samples along a side.
 PackedSample const* samples_of(CachedFramelet const& framelet, int side) {
     return side == framelet_side ? framelet.samples.data() : framelet.shape.reduced.data();
 }
@@ -26,7 +26,7 @@ Tile tile_below(Tile tile, int levels, std::size_t part) {
     return {(tile.code << 2 * levels) + static_cast<std::uint32_t>(part)};
 }
 
-/// Of a layer among all those of a square.
+/// Number of a layer among all layers of a square.
 std::uint32_t number_of(std::size_t place, std::size_t layer) {
     return static_cast<std::uint32_t>(place * max_layers + layer);
 }
@@ -59,7 +59,7 @@ std::uint64_t MergedSquare::changes(SquareVersions const& versions) const {
     return out;
 }
 
-/// What is far away in memory is fetched before it is looked at.
+/// Loads the framelets that have changed. What is far away in memory is fetched before it is looked at.
 void MergedSquare::load(FrameletCache const& cache, std::uint64_t changed) {
     if (children_.empty()) {
         make_room(cache.plane());
@@ -113,7 +113,8 @@ bool MergedSquare::set_layers(std::uint64_t places) {
     return true;
 }
 
-/// Framelets that are as they were and merged as they were are written to the grid already.
+/// Keeps what was merged and writes framelets to the grid; those that are as they were, and merged as they were, are
+/// there already.
 void MergedSquare::keep(CoplanarMerging const& merging) {
     quads_.assign(merging.quads().begin(), merging.quads().end());
     merged_.clear();
@@ -142,7 +143,8 @@ void MergedSquare::keep(CoplanarMerging const& merging) {
     find_ends();
 }
 
-/// Of what is merged, from its parts; where of two layers each ends before the other somewhere, neither counts.
+/// Finds the ends of what is merged from its parts'; where of two layers each ends before the other somewhere, neither
+/// counts.
 void MergedSquare::find_ends() {
     auto const has_ends = [](Child const& child) {
         return child.framelet != nullptr &&
@@ -173,7 +175,7 @@ void MergedSquare::find_ends() {
     }
 }
 
-/// The smallest of framelet, quad and square that has all of them.
+/// The smallest tile (a framelet's, a quad's or the square) that has all of these parts.
 Tile MergedSquare::tile_around(std::array<std::uint64_t, max_layers> const& parts) const {
     std::uint64_t const places = parts[0] | parts[1] | parts[2];
     if (std::has_single_bit(places)) {
@@ -204,7 +206,7 @@ MergedLayer MergedSquare::merge(CoplanarLayers const& coplanar) const {
                 out.view = motion.view;
                 layer.body = motion.body;
                 layer.velocity = motion.velocity;
-                layer.error = rows.error[place]; // also where it is no number
+                layer.error = rows.error[place]; // also where it is not a number
             }
             layer.error = std::max(layer.error, rows.error[place]);
             out.newest_batch = std::max(out.newest_batch, layers_->batch(place));
@@ -236,8 +238,8 @@ std::uint64_t MergedSquare::occupied_parts(std::array<std::uint64_t, max_layers>
     return out;
 }
 
-/// What of a layer depends on the tile that it is looked at in. (Samples beyond the tile are not its own, though they
-/// may have its number.)
+/// Sets what of a layer depends on the tile that it is looked at in. (Samples beyond the tile are not its own, though
+/// they may have its number.)
 void MergedSquare::set_tile(CoplanarLayers const& coplanar, Tile tile, MergedLayer& out) const {
     int const down = tile.depth() - square_.depth();
     out.tile = tile;
@@ -251,7 +253,7 @@ void MergedSquare::set_tile(CoplanarLayers const& coplanar, Tile tile, MergedLay
     held.layer.at = static_cast<float>(coplanar.plane(spacing_ * column, spacing_ * row));
     held.layer.dx = static_cast<float>(coplanar.plane.dx);
     held.layer.dy = static_cast<float>(coplanar.plane.dy);
-    double const samples = 1 / spacing_; // a pixel: a power of two
+    double const samples = 1 / spacing_; // for each pixel: a power of two
     held.first_column = static_cast<std::int8_t>(static_cast<int>(samples * coplanar.extent.left) - column);
     held.first_row = static_cast<std::int8_t>(static_cast<int>(samples * coplanar.extent.top) - row);
     held.last_column = static_cast<std::int8_t>(static_cast<int>(samples * coplanar.extent.right) - 1 - column);
@@ -272,14 +274,14 @@ MergedSquare::GridPlace MergedSquare::place_of_child(std::size_t place) const {
     return {index % side_, index / side_};
 }
 
-/// Where a child's samples lie.
+/// Index in the grid of a child's first sample.
 std::size_t MergedSquare::offset_of(std::size_t place) const {
     auto const part = static_cast<std::uint32_t>(SquareLayers::part_at(place));
     return static_cast<std::uint32_t>(child_side_) *
            (morton_y(part) * static_cast<std::uint32_t>(side_) + morton_x(part));
 }
 
-/// The child's samples to the grid, with the numbers of what they are merged with.
+/// Writes a child's samples to the grid, with the numbers of what they are merged with.
 void MergedSquare::write(Child const& child, PackedSample* to) const {
     switch (child_side_) {
     case 4:

@@ -1,7 +1,7 @@
-// Neighbouring framelets as one where their layers are about one plane: each one's rim costs what its middle costs when
-// they move, and those finer than pixels are hardly more than rim. In: what is held in a square of 8x8 tiles. Out: its
-// samples in one grid, what of them is merged, and what is left. None of this depends on the camera that shows it, so
-// it is kept as long as what is held stays.
+// Merges neighbouring framelets where their layers are about one plane: the rim of each costs as much as its middle
+// when they move, and those finer than pixels are hardly more than rim. In: what is held in a square of 8x8 tiles. Out:
+// its samples in one grid, which of them are merged, and what is left. None of this depends on the camera that shows
+// it, so it is kept as long as what is held stays.
 #pragma once
 
 #include <algorithm>
@@ -19,24 +19,24 @@
 
 namespace framelet {
 
-/// Layers of neighbouring framelets that are about one plane, as one layer of a larger framelet; or one of one framelet
-/// that is merged with none.
+/// Layers of neighbouring framelets that are about one plane, as one layer of a larger framelet; or a single layer that
+/// is merged with none.
 struct MergedLayer {
-    Tile tile; ///< that they are below, or that it is
-    Tile first; ///< of a framelet of theirs
-    std::uint32_t first_layer = 0; ///< its layer
-    std::uint32_t view = 0; ///< of all of them
+    Tile tile; ///< the framelet's, the quad's or the square that all of them are in
+    Tile first; ///< that of one of their framelets
+    std::uint32_t first_layer = 0; ///< the number of that framelet's layer among them
+    std::uint32_t view = 0; ///< the same for all of them
     HeldLayer layer; ///< pixels, columns and rows are from the corner of `tile`
-    float difference = 0; ///< at most: of the plane from theirs, 1 / metres; part of the layer's error
-    std::int32_t side = 0; ///< of the samples in `tile`
-    std::int32_t stride = 0; ///< from one of their rows to the next
+    float difference = 0; ///< largest difference of the plane from theirs, 1 / metres; part of the layer's error
+    std::int32_t side = 0; ///< samples along a side of `tile`
+    std::int32_t stride = 0; ///< samples from one of their rows to the next
     PackedSample const* grid = nullptr;
-    std::uint32_t number = 0; ///< that its samples have in the grid, as it were a layer's
+    std::uint32_t number = 0; ///< the number of its samples in the grid, in place of a layer's
     LayerSet ends_before{}; ///< as in `WarpPatch`
     std::uint64_t newest_batch = 0;
-    DecorrelationCode decorrelation = 0; ///< the soonest
+    DecorrelationCode decorrelation = 0; ///< the soonest of theirs
     std::uint64_t signature = 0; ///< differs where what is held differs
-    /// Bit p of word k: layer k of the framelet at place p.
+    /// Bit p of word k is set for layer k of the framelet at place p.
     std::array<std::uint64_t, max_layers> parts{};
     std::uint64_t occupied = 0; ///< as in `WarpPatch`
 };
@@ -44,47 +44,47 @@ struct MergedLayer {
 /// Framelets of one depth below a larger tile.
 class MergedSquare {
 public:
-    /// As many levels above framelets; less where there are less.
+    /// Levels from the framelets up to the square; fewer where the quadtree has fewer.
     static constexpr int most_levels = SquareLayers::most_levels;
     static_assert(most_levels == SquareVersions::levels);
     static constexpr std::size_t most_children = SquareLayers::places;
 
-    /// What is held for a tile.
+    /// The framelet that is held for a tile.
     struct Child {
         CachedFramelet const* framelet = nullptr;
         std::array<std::uint8_t, max_layers> numbers{}; ///< of its layers in the grid
         bool has_outliers = false;
-        bool is_written = false; ///< to the grid
+        bool is_written = false; ///< its samples are in the grid
     };
 
-    /// Brings it up to date. Always of the same cache, square and depth. Looks at what has changed since the last call
-    /// only; allocates where more is held or merged than ever before. `merging` is scratch.
+    /// Brings the square up to date; cache, square and depth are always the same ones. Looks at what has changed since
+    /// the last call only; allocates where more is held or merged than ever before. `merging` is scratch.
     void update(FrameletCache const& cache, Tile square, int depth, CoplanarMerging& merging);
 
-    /// What is held of that depth below the square, by place (as in `SquareLayers`); empty where nothing ever was. This
-    /// and what follows is valid until the next update.
+    /// The framelets of that depth below the square, by place (as in `SquareLayers`); empty where nothing ever was
+    /// held. This and what follows is valid until the next update.
     std::span<Child const> children() const { return children_; }
-    /// True where nothing is held of it now.
+    /// True when nothing is held of the square now.
     bool is_empty() const {
         return std::ranges::all_of(children_, [](Child const& child) { return child.framelet == nullptr; });
     }
-    /// Each layer is part of one of these.
+    /// What the layers were merged into; each layer is part of one of these.
     std::span<MergedLayer const> merged() const { return merged_; }
-    /// Four framelets each, which are part of one of these.
+    /// Quads, of four framelets each, which are part of one of `merged()`.
     std::span<CoplanarLayers const> quads() const { return quads_; }
-    /// One of these, or a quad.
+    /// Makes one layer of layers that were merged, or of a quad.
     MergedLayer merge(CoplanarLayers const& coplanar) const;
     Tile child_tile(std::size_t place) const;
     /// All samples of the square in rows, `side()` by `side()`; empty where nothing ever was held.
     std::span<PackedSample const> grid() const { return grid_; }
-    int side() const { return side_; } ///< of the grid
-    int child_side() const { return child_side_; } ///< of a child's samples in it
+    int side() const { return side_; } ///< samples along a side of the grid
+    int child_side() const { return child_side_; } ///< samples along a side of a child's part of the grid
     struct GridPlace {
         int column = 0, row = 0;
     };
-    /// Of one of these samples; nothing where it is another grid's.
+    /// The place of a sample of this grid; nothing where it is another grid's.
     std::optional<GridPlace> place_in_grid(PackedSample const* sample) const;
-    /// Where the samples of a child are.
+    /// The place of a child's first sample.
     GridPlace place_of_child(std::size_t place) const;
     /// A bit for each child whose samples have been written since this was called last; all of them where the grid is
     /// new.
@@ -110,10 +110,10 @@ private:
 
     Tile square_;
     int depth_ = 0;
-    double spacing_ = 0; ///< of its samples, pixels
-    int child_side_ = 0; ///< of framelets' grids
-    int side_ = 0; ///< of the grid
-    SquareVersions versions_; ///< that it is up to date with
+    double spacing_ = 0; ///< of the grid's samples, pixels
+    int child_side_ = 0; ///< samples along a side of a framelet's grid
+    int side_ = 0; ///< samples along a side of the grid
+    SquareVersions versions_; ///< the versions that it is up to date with
     std::vector<Child> children_;
     std::unique_ptr<SquareLayers> layers_;
     std::vector<MergedLayer> merged_;

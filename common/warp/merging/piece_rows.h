@@ -11,7 +11,7 @@ namespace framelet {
 
 using PieceLanes = PieceOf<WideDoubles>;
 
-/// `count` of them, a multiple of lanes.
+/// `count` pieces, a multiple of `wide_doubles`.
 template <std::size_t count>
 struct PieceRows {
     using Row = std::array<double, count>;
@@ -26,7 +26,7 @@ struct PieceRows {
         auto const lanes = [i](Row const& row) { return load_lanes<WideDoubles>(&row[i]); };
         return {lanes(x), lanes(y), lanes(half_width), lanes(half_height), lanes(value), lanes(dx), lanes(dy)};
     }
-    /// 0 where it `is` not.
+    /// Loads pieces, whose numbers are 0 in lanes where `is` is 0.
     PieceLanes load(std::size_t i, WideLongs const& is) const {
         auto const lanes = [&](Row const& row) { return is ? load_lanes<WideDoubles>(&row[i]) : WideDoubles{}; };
         return {lanes(x), lanes(y), lanes(half_width), lanes(half_height), lanes(value), lanes(dx), lanes(dy)};

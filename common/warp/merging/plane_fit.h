@@ -1,4 +1,4 @@
-// One plane for several that about agree: the least-squares fit to their values all over the rectangles in which they
+// Fits one plane to several that about agree, by least squares to their values all over the rectangles in which they
 // stand for something. In: pieces of planes. Out: the fit, and how far it is from them. Numbers are doubles, or lanes
 // of them where several are worked on at a time.
 #pragma once
@@ -15,7 +15,7 @@ struct AffineOf {
     Number operator()(Number x, Number y) const { return at + dx * x + dy * y; }
 };
 
-/// Pixels.
+/// A rectangle, pixels.
 template <class Number>
 struct ExtentOf {
     Number left{}, top{}, right{}, bottom{};
@@ -45,14 +45,14 @@ PieceOf<Number> piece_of(AffineOf<Number> const& plane, ExtentOf<Number> const& 
             plane.dx, plane.dy};
 }
 
-/// From a plane, within the rectangle.
+/// Largest difference of a piece from a plane, within the piece's rectangle.
 template <class Number>
 Number largest_difference(PieceOf<Number> const& piece, AffineOf<Number> const& plane) {
     return absolute(plane(piece.x, piece.y) - piece.value) + absolute(plane.dx - piece.dx) * piece.half_width +
            absolute(plane.dy - piece.dy) * piece.half_height;
 }
 
-/// Of a plane, within the piece's rectangle.
+/// Least value of a plane within the piece's rectangle.
 template <class Number>
 Number least_value(AffineOf<Number> const& plane, PieceOf<Number> const& piece) {
     return plane(piece.x, piece.y) - absolute(plane.dx) * piece.half_width - absolute(plane.dy) * piece.half_height;
@@ -96,7 +96,7 @@ SumsOf<Number> sums_over(PieceOf<Number> const& piece) {
             area * (piece.value * y + piece.dy * yy)};
 }
 
-/// Of sums over some area.
+/// The plane that fits sums over some area.
 template <class Number>
 AffineOf<Number> fit_plane(SumsOf<Number> const& sums) {
     Number const scale = 1 / sums.area;

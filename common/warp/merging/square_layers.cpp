@@ -28,7 +28,7 @@ bool SquareLayers::set(std::size_t place, std::uint32_t view, std::uint64_t batc
         rows.dx[place] = held.layer.dx;
         rows.dy[place] = held.layer.dy;
         rows.error[place] = held.layer.error;
-        // Four bytes one after the other.
+        // The box is four bytes one after the other.
         static_assert(offsetof(HeldLayer, last_row) == offsetof(HeldLayer, first_column) + 3);
         std::memcpy(&rows.box[place], &held.first_column, sizeof(std::int32_t));
         rows.motion[place] = motion;
@@ -37,7 +37,7 @@ bool SquareLayers::set(std::size_t place, std::uint32_t view, std::uint64_t batc
     return true;
 }
 
-/// Mostly that of the one before.
+/// The number of a motion; mostly that of the one before.
 std::int32_t SquareLayers::number_of(Motion const& motion) {
     if (last_motion_ < motions_.size() && motions_[last_motion_] == motion) {
         return static_cast<std::int32_t>(last_motion_);

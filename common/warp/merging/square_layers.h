@@ -20,11 +20,11 @@ public:
     static constexpr std::size_t places = 4 * most_quads;
     static_assert(places == 64); // a bit each
 
-    /// Of a part of the square, in Morton order.
+    /// The place of a part of the square, whose number is in Morton order; `part_at` is the inverse.
     static constexpr std::size_t place_of(std::size_t part) { return part % 4 * most_quads + part / 4; }
     static constexpr std::size_t part_at(std::size_t place) { return place % most_quads * 4 + place / most_quads; }
 
-    /// What carries a layer, and from where it was seen.
+    /// The body and velocity of a layer, and the view from which it was seen.
     struct Motion {
         std::uint32_t view = 0;
         BodyNumber body = static_body;
@@ -33,7 +33,7 @@ public:
         bool operator==(Motion const&) const = default;
     };
 
-    /// First layers, or second ones, or third ones.
+    /// The first layers of all framelets, or their second or third ones.
     struct Rows {
         template <class T>
         using Row = std::array<T, places>;
@@ -41,11 +41,12 @@ public:
         alignas(64) Row<float> at{}, dx{}, dy{}, error{}; ///< as in `Layer`
         Row<std::int32_t> box{}; ///< bytes as in `HeldLayer`, lowest first
         Row<std::int32_t> motion{}; ///< index into `motions`
-        std::uint64_t held = 0; ///< a bit for each place where some samples lie on one
+        std::uint64_t held = 0; ///< a bit for each place where some samples lie on such a layer
     };
 
     void clear(std::size_t place);
-    /// False where there are too many motions to number; `forget_motions` then, and set all of them anew.
+    /// Sets the layers of the framelet at a place. False where there are too many motions to number: then
+    /// `forget_motions`, and set all of them anew.
     bool set(std::size_t place, std::uint32_t view, std::uint64_t batch, HeldShape const& shape);
     void forget_motions() { motions_.clear(); }
 
@@ -54,7 +55,8 @@ public:
     std::uint64_t batch(std::size_t place) const { return batches_[place]; }
 
 private:
-    /// More than layers; where there are as many some of them are of no layer.
+    /// Largest number of motions that are numbered: more than there can be layers, so that where there are as many some
+    /// of them are of no layer any more.
     static constexpr std::size_t most_motions = 4 * places;
 
     std::int32_t number_of(Motion const& motion);
@@ -62,7 +64,7 @@ private:
     std::array<Rows, max_layers> rows_;
     Rows::Row<std::uint64_t> batches_{};
     std::vector<Motion> motions_;
-    std::size_t last_motion_ = 0; ///< that was asked for
+    std::size_t last_motion_ = 0; ///< the one that was asked for last
 };
 
 } // namespace framelet

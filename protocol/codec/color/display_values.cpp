@@ -5,7 +5,7 @@ namespace {
 
 constexpr std::uint16_t middle = 2048;
 
-using Value = std::uint16_t; // of 16 bits in every step: as many at a time as a register has
+using Value = std::uint16_t; // 16 bits in every step, so that as many as possible fit a register
 
 void set(DisplayValues& values, std::size_t i, Value red, Value green, Value blue) {
     values.planes[0][i] = static_cast<std::int16_t>(static_cast<Value>(4 * (red + 2 * green + blue)));
@@ -13,14 +13,14 @@ void set(DisplayValues& values, std::size_t i, Value red, Value green, Value blu
     values.planes[2][i] = static_cast<std::int16_t>(static_cast<Value>(4 * (2 * green - red - blue)));
 }
 
-/// Sixteenths, modulo 2^16, to a byte.
+/// Rounds sixteenths, modulo 2^16, to a byte and clamps them.
 std::uint8_t sample(unsigned sixteenths) {
     auto const rounded = static_cast<std::int16_t>(static_cast<std::int16_t>(static_cast<Value>(sixteenths + 8)) >> 4);
     std::int16_t const at_least = rounded < 0 ? std::int16_t{0} : rounded;
     return static_cast<std::uint8_t>(at_least > 255 ? std::int16_t{255} : at_least);
 }
 
-/// `predicted(plane, i)`: sixteenths that are added.
+/// Fills the samples of a framelet. `predicted(plane, i)`: sixteenths that are added to the values.
 template <typename Predicted>
 void put(DisplayValues const& values, Predicted const& predicted, DisplayFramelet& framelet) {
     for (std::size_t i = 0; i < framelet_samples; ++i) {

@@ -16,11 +16,11 @@ struct DisplayValues {
 };
 
 DisplayValues display_values(DisplayFramelet const& framelet);
-/// What `framelet` has more than `predicted`.
+/// The difference `framelet` - `predicted`, of which Y has nothing subtracted.
 DisplayValues difference(DisplayFramelet const& framelet, DisplayFramelet const& predicted);
-/// Rounds and clamps; the tile stays.
+/// Puts the values into the samples of `framelet`, rounded and clamped; its tile stays.
 void to_samples(DisplayValues const& values, DisplayFramelet& framelet);
-/// The same of the sum of `left` and what is predicted.
+/// Puts the sum of `left` and `predicted` into the samples of `framelet`, likewise.
 void add_to_samples(DisplayValues const& left, DisplayFramelet const& predicted, DisplayFramelet& framelet);
 
 } // namespace framelet

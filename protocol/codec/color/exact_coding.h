@@ -1,5 +1,5 @@
-// Samples without loss as decisions of a range coder: what they have more than those of a prediction or of their
-// neighbours, red and blue beside green. In: samples. Out: decisions, and back.
+// Codes samples without loss as decisions of a range coder: their differences from a prediction or from their
+// neighbours, those of red and blue less those of green. In: samples. Out: decisions, and back.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,8 @@ namespace framelet {
 
 class ExactModel {
 public:
-    /// `predicted`: null: each sample is foretold by its neighbours (the median edge detector of [Weinberger 2000]).
+    /// Codes the samples of `framelet`, which are filled where the coder reads. `predicted`: what they are predicted
+    /// by; null: each sample is predicted by its neighbours (the median edge detector of [Weinberger 2000]).
     template <class Coder>
     void code(Coder& coder, DisplayFramelet const* predicted, DisplayFramelet& framelet) {
         Plane green_left{}, left;
@@ -25,7 +26,7 @@ public:
     }
 
 private:
-    /// In rows, with a row above and a column to the left of them.
+    /// Residuals of a plane in rows, with a row of zeros above them and a column of zeros to the left.
     struct Plane {
         static constexpr std::size_t stride = framelet_side + 1;
         std::array<std::int16_t, stride * stride> values{};
@@ -43,7 +44,8 @@ private:
         return std::clamp(left + above - corner, std::min(left, above), std::max(left, above));
     }
 
-    /// `left` becomes what the samples have more than was foretold.
+    /// Codes one plane; `kind` is 0 for green, 1 for red and blue. `left` becomes the coded residuals: each sample less
+    /// its prediction, less `green_left` there.
     template <class Coder>
     void code_plane(Coder& coder, std::size_t kind, DisplayFramelet const* predicted,
                     SamplePlane DisplayFramelet::*plane, Plane const& green_left, DisplayFramelet& framelet,
@@ -80,7 +82,7 @@ private:
         }
     }
 
-    std::array<std::array<std::array<AdaptiveNumber<6>, size_classes>, 2>, 2> sizes_; // predicted; green or not
+    std::array<std::array<std::array<AdaptiveNumber<6>, size_classes>, 2>, 2> sizes_; // if predicted; kind; class
 };
 
 } // namespace framelet

@@ -3,7 +3,8 @@
 namespace framelet {
 namespace {
 
-/// Of two neighbours in a row, the first in an even column: they follow each other in Morton order, from here.
+/// Morton index of the first sample of each pair of neighbours in a row, the pairs in raster order. It is in an even
+/// column, so the second one follows it in Morton order.
 constexpr std::array<std::uint8_t, framelet_samples / 2> make_first_of_pair() {
     std::array<std::uint8_t, framelet_samples / 2> table{};
     for (std::uint32_t pair = 0; pair < table.size(); ++pair) {

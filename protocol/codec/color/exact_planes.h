@@ -10,8 +10,8 @@ namespace framelet {
 
 inline constexpr std::size_t exact_framelet_bytes = std::size_t{3} * framelet_samples;
 
-/// 256 samples in Morton order to 256 differences in raster order, modulo 256: to the left neighbour, in the first
-/// column to the upper one.
+/// Turns 256 samples in Morton order into 256 differences in raster order, modulo 256: from the left neighbour, in the
+/// first column from the upper one.
 void difference(std::array<std::uint8_t, framelet_samples> const& samples, std::uint8_t* out);
 void undo_difference(std::uint8_t const* in, std::array<std::uint8_t, framelet_samples>& samples);
 

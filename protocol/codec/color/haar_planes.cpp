@@ -42,7 +42,7 @@ Fours details_of(Fours const& levels, std::uint16_t base) {
     return details;
 }
 
-/// Returns the bits of the levels.
+/// Quantises the details of a plane; returns the bits that its levels take, roughly.
 int quantise(Fours const& details, std::uint16_t base, Fours& levels) {
     int bits = 0;
     for (std::size_t octave = 0; octave < haar_octaves; ++octave) {
@@ -57,12 +57,13 @@ int bits_of_level(std::int16_t level) {
     return size == 0 ? 0 : std::min(size, int{most_bits_of_size}) + int{bits_of_any};
 }
 
-/// What details of chroma have from those of luma.
+/// Part of a detail of chroma that comes from the detail of luma in its place; `share` is in eighths.
 std::int16_t shared(std::int16_t luma, std::int8_t share) {
     return static_cast<std::int16_t>(times(luma, static_cast<std::uint16_t>(share)) >> 3);
 }
 
-/// Values of a plane from its mean and levels, which are overwritten. `base`: 0 where they are details.
+/// Computes the values of a plane from its mean and its levels, which are overwritten. `base`: quantisation step of the
+/// coarsest octave; 0 where the levels are details already.
 void synthesise(Fours& levels, std::uint16_t base, std::int16_t mean, std::int16_t* values) {
     constexpr std::uint16_t one = 1;
     std::int16_t const* means = &mean;
@@ -74,7 +75,7 @@ void synthesise(Fours& levels, std::uint16_t base, std::int16_t mean, std::int16
     }
 }
 
-/// The levels are overwritten.
+/// Values of the three planes of a framelet from its levels, which are overwritten.
 DisplayValues synthesise(HaarLevels& levels, std::uint8_t qp) {
     DisplayValues out;
     std::array<std::uint16_t, 3> bases;
@@ -134,13 +135,13 @@ int code(DisplayValues const& values, std::uint8_t qp, int most, HaarCode& out) 
 
 namespace {
 
-/// Least squares: how many eighths of luma, as it will be read, the details of chroma have. Each counts as much as it
-/// does in the picture.
+/// Fits by least squares how many eighths of luma, as it will be read, the details of chroma have. Each detail counts
+/// as much as it does in the picture.
 int fitted_share(Fours const& luma, Fours const& chroma) {
     float products = 0, squares = 0;
     for (std::size_t octave = 0; octave < haar_octaves; ++octave) {
-        // Below 1.5e9: details of a block have at most the squares of its samples, 64 times 4080^2 together; rounding
-        // adds at most 349 to each of 192 of luma.
+        // The sums stay below 1.5e9: details of a block have at most the squares of its samples, 64 times 4080^2
+        // together; rounding adds at most 349 to each of 192 of luma.
         std::int32_t product = 0, square = 0;
         for (std::size_t i = first_four[octave]; i < first_four[octave] + 4 * haar_blocks(octave); ++i) {
             product += luma[i] * chroma[i];

@@ -39,7 +39,7 @@ Blocks negate(Blocks const& x, Blocks const& mask) {
     return (x ^ mask) - mask;
 }
 
-/// [a+b+c+d, a-b+c-d, a+b-c-d, a-b-c+d] of each block; twice that gives four times what there was.
+/// Sums [a+b+c+d, a-b+c-d, a+b-c-d, a-b-c+d] of each block; applied twice it gives four times what there was.
 Blocks hadamard(Blocks const& x) {
     constexpr Blocks every_second{0, all, 0, all, 0, all, 0, all, 0, all, 0, all, 0, all, 0, all};
     constexpr Blocks upper_two{0, 0, all, all, 0, 0, all, all, 0, 0, all, all, 0, 0, all, all};
@@ -58,17 +58,17 @@ Means means_of(Blocks const& blocks) {
     return __builtin_shufflevector(blocks, blocks, 0, 4, 8, 12);
 }
 
-/// `means` has four, one after the other.
+/// Children of four blocks from their details and their means, which `means` has one after the other.
 Blocks inverse(std::uint64_t means, Blocks const& details) {
     constexpr Blocks none{};
     auto const everywhere = reinterpret_cast<Blocks>(means - Words{});
-    // Each half of the register has them all: what moves stays in its half.
+    // Each half of the register has all four means, so that the shuffle moves nothing across halves.
     Blocks const spread =
         __builtin_shufflevector(everywhere, none, 0, 16, 16, 16, 1, 16, 16, 16, 10, 16, 16, 16, 11, 16, 16, 16);
     return hadamard(spread | (details & not_mean));
 }
 
-/// The upper halves of 32-bit products.
+/// Upper halves of the 32-bit products of `a` and `b`.
 Blocks high_products(Blocks const& a, std::uint16_t b) {
 #ifdef __AVX2__
     return reinterpret_cast<Blocks>(
@@ -79,12 +79,12 @@ Blocks high_products(Blocks const& a, std::uint16_t b) {
 #endif
 }
 
-/// Quantises, and adds up what the levels take.
+/// Quantises details, and adds up the bits that their levels take, roughly.
 class Quantiser {
 public:
     explicit Quantiser(DetailStep const& step) : step_(step) {}
 
-    /// Levels of details, nothing for the means between them.
+    /// Levels of the details, 0 for the means between them.
     Blocks operator()(Blocks const& details) {
         auto const sign = reinterpret_cast<Blocks>(reinterpret_cast<SignedBlocks>(details) >> 15);
         Blocks size = negate(details, sign);
@@ -127,10 +127,11 @@ template <typename Body>
 } // namespace
 
 DetailStep::DetailStep(std::uint16_t step_of_levels) : step(step_of_levels) {
-    /// Smallest share of a step that rounds up, in 64ths: what is nearer to zero costs more bytes than it removes
-    /// error.
+    /// A size is rounded up where at most this share of a step, in 64ths, is missing to the next level: what is nearer
+    /// to zero costs more bytes than it removes error.
     constexpr unsigned share = 22;
-    // floor(x / step) of 16-bit x, or one more where x is less than x / 2^16 of a step below a multiple.
+    // The upper half of x times this is floor(x / step) for 16-bit x, or one more where x is less than x / 2^16 of a
+    // step below a multiple.
     reciprocal = static_cast<std::uint16_t>(65536u / step + 1);
     rounding = static_cast<std::uint16_t>(step * share / 64);
 }

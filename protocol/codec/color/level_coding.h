@@ -1,6 +1,6 @@
-// Quantised Haar details as decisions of a range coder: each level by how large its neighbours are, the one it is a
-// part of, and those of the other planes there (as [Shapiro 1993] and [Taubman 2000] do). In: levels. Out: decisions,
-// and back.
+// Codes quantised Haar details as decisions of a range coder: each level by how large its neighbours are, the coarser
+// one that covers it, and those of the other planes there (as [Shapiro 1993] and [Taubman 2000] do). In: levels. Out:
+// decisions, and back.
 #pragma once
 
 #include <algorithm>
@@ -14,10 +14,11 @@
 
 namespace framelet {
 
-/// What is known of the levels that were coded before.
+/// Model of levels: how likely each decision is, as the levels that were coded before have taught.
 class LevelModel {
 public:
-    /// `is_predicted`: of what is left beside a prediction. The levels are read where the coder reads.
+    /// Codes the levels of a framelet, which are filled where the coder reads. `is_predicted`: they are of the residual
+    /// beside a prediction.
     template <class Coder>
     void code(Coder& coder, bool is_predicted, HaarLevels& levels) {
         std::array<Sizes, 3> sizes{};
@@ -36,7 +37,7 @@ public:
     }
 
 private:
-    /// Of levels, up to `most`, in rows with a rim of 0.
+    /// Magnitudes of the levels of one plane, `most` at most, in rows with a rim of 0.
     struct Sizes {
         static constexpr std::size_t stride = 10, cells = 9 * stride;
         std::array<std::array<std::array<std::uint8_t, cells>, 3>, haar_octaves> bands;
@@ -72,12 +73,12 @@ private:
         }
     }
 
-    /// What the levels around one, of those that were coded before, say of it.
+    /// Contexts of a level: what those around it that were coded before say of it.
     struct Around {
-        std::size_t context; ///< of whether there is any
-        std::size_t size; ///< of how large it is
+        std::size_t context; ///< for whether it is other than 0
+        std::size_t size; ///< for its magnitude
     };
-    /// `here`: the largest of the block's bands before.
+    /// `here`: the largest magnitude in the bands of the block that were coded before this one.
     static Around look_around(std::array<Sizes, 3> const& sizes, std::size_t plane, std::size_t octave,
                               std::size_t band, std::size_t x, std::size_t y, unsigned here) {
         std::size_t const at = (y + 1) * Sizes::stride + x + 1;
@@ -123,7 +124,7 @@ private:
         }
     }
 
-    /// Of luma or chroma, and of an octave.
+    /// One model for luma and one for chroma, of each octave.
     template <class Model>
     using ByOctave = std::array<std::array<Model, haar_octaves>, 2>;
 

@@ -15,13 +15,14 @@
 namespace framelet {
 namespace {
 
-/// Half pixels.
+/// First and largest step of a search, half pixels.
 constexpr int first_step = 16;
-/// Where a vector that was found before leaves no more than this of a framelet, 8 of a sample, the search begins near
-/// it.
+/// Sum of differences of a framelet, 8 a sample: where a vector that was found before leaves no more than this, the
+/// search begins near it, with steps of `near_step` half pixels.
 constexpr int hardly_any = 2048, near_step = 4;
 constexpr int farthest = 127;
-/// What a vector must gain for each half pixel that it is longer: of two that are as good, the shorter one.
+/// Cost of each half pixel of a vector's length, in the unit of the sum of differences: of two vectors that are as good
+/// the shorter one is taken.
 constexpr int length_cost = 4;
 
 /// A row of samples.
@@ -53,7 +54,7 @@ Row doubled_row_at(std::uint8_t const* points) {
 
 using Sums [[gnu::vector_size(framelet_side)]] = std::uint64_t;
 
-/// Sums of the differences in each half of a row.
+/// Sums of the absolute differences in each half of a row.
 Sums differences(Row const& a, Row const& b) {
 #ifdef __SSE2__
     return reinterpret_cast<Sums>(_mm_sad_epu8(reinterpret_cast<__m128i>(a), reinterpret_cast<__m128i>(b)));
@@ -67,14 +68,14 @@ Sums differences(Row const& a, Row const& b) {
 #endif
 }
 
-/// How a framelet's samples lie in the picture: `twice_pitch` rows of it are two rows of samples.
+/// Layout of a framelet's samples in the picture: `twice_pitch` rows of it are two rows of samples.
 template <std::size_t twice, Row (*at)(std::uint8_t const*)>
 struct Reading {
     static constexpr std::size_t twice_pitch = twice;
     static Row row_at(std::uint8_t const* points) { return at(points); }
 };
 
-/// Sum of differences of rows `apart` from each other, or any number above `most` where it is above that.
+/// Sum of absolute differences of rows `apart` from each other, or any number above `most` where it is above that.
 template <typename Reading, std::size_t apart>
 int difference(Rows const& rows, SearchPicture::Source const& from, int most) {
     constexpr std::size_t rows_at_a_time = 4;
@@ -100,7 +101,7 @@ public:
     MotionVector best() const { return best_; }
     bool leaves_hardly_any() const { return least_ <= hardly_any; }
 
-    /// These rows are compared from now on: begins anew with the best one so far.
+    /// Compares only rows `apart` from each other from now on: begins anew with the best vector so far.
     template <std::size_t apart>
     void compare_rows() {
         least_ = std::numeric_limits<int>::max();
@@ -145,7 +146,7 @@ private:
     int least_ = std::numeric_limits<int>::max();
 };
 
-/// What was found before, and steps from there down to `last_step`.
+/// Tries the vectors found before, then steps from the best one down to `last_step`, half pixels.
 template <typename Reading, std::size_t apart>
 void search_in_steps(Search<Reading>& search, std::span<MotionVector const> found, int last_step) {
     search.template compare_rows<apart>();
@@ -188,7 +189,7 @@ MotionVector search(ReferencePicture const& reference, Rows const& rows, Referen
         return search_finely<Reading<4, row_at<std::uint16_t>>>(reference, rows, square, found);
     case 2:
         return search_finely<Reading<8, row_at<std::uint32_t>>>(reference, rows, square, found);
-    case 3: // of the coarse points, as all that is coarser
+    case 3: // searched among the coarse points, as is all that is coarser
         return search_coarsely<Reading<4, row_at<std::uint16_t>>>(reference, rows, square, found);
     default:
         return search_coarsely<Reading<8, row_at<std::uint32_t>>>(reference, rows, square, found);

@@ -45,7 +45,7 @@ template void PlaneModel::code_head(RangeReader&, bool, std::uint8_t&, Predictio
 
 namespace {
 
-/// Most are predicted from their own places.
+/// Prepares the prediction of the next framelet from its own place, since most are predicted from there.
 void expect_next(ReferencePicture const& reference, std::span<DisplayFramelet const> framelets, std::size_t i) {
     if (i + 1 < framelets.size()) {
         reference.expect(framelets[i + 1].tile);
@@ -60,10 +60,10 @@ void add_prediction(DisplayValues const& left, Prediction const& prediction, Dis
     }
 }
 
-/// What is held in its own place is what an exact framelet is likely to be, if that was sent with loss before: where
-/// it is, green tells.
+/// True where an exact framelet is close to what the reference picture has in its place, as it is where the same was
+/// sent with loss before. Green alone is compared.
 bool resembles(DisplayFramelet const& framelet, DisplayFramelet const& reference) {
-    constexpr int alike = 12; // of a sample, on the average
+    constexpr int alike = 12; // levels a sample, on the average
     int sum = 0;
     for (std::size_t i = 0; i < framelet_samples; ++i) {
         sum += std::abs(framelet.green[i] - reference.green[i]);

@@ -28,7 +28,7 @@ inline PointRow load(std::uint8_t const* from) {
     return row;
 }
 
-/// Every n-th value, n = sizeof(Lane).
+/// Loads every n-th value, n = sizeof(Lane).
 template <typename Lane>
 PointRow every(std::uint8_t const* from) {
     using Lanes [[gnu::vector_size(framelet_side * sizeof(Lane))]] = Lane;
@@ -45,7 +45,7 @@ inline PointRow every_16th(std::uint8_t const* from) {
     return row;
 }
 
-/// Each value n times, the first `skip` of these left out.
+/// Loads values, each repeated n = sizeof(Lane) times, of which the first `skip` are left out.
 template <typename Lane>
 PointRow repeated(std::uint8_t const* from, std::size_t skip) {
     constexpr std::size_t lanes = 2 * framelet_side / sizeof(Lane); // more than are needed
@@ -60,7 +60,8 @@ PointRow repeated(std::uint8_t const* from, std::size_t skip) {
     return load(bytes.data() + skip);
 }
 
-/// Values (first + i 2^pitch) / 2^level of rows alike, i = 0..15.
+/// Reads the values numbered (first + i 2^pitch) / 2^level, i = 0..15, of several rows: those of 16 points, 2^pitch
+/// apart.
 template <std::size_t count>
 [[gnu::always_inline]] inline std::array<PointRow, count> rows_of(std::array<std::uint8_t const*, count> const& rows,
                                                                   int first, int pitch, int level) {
@@ -103,27 +104,27 @@ template <std::size_t count>
 
 } // namespace point_rows
 
-/// Planes alike in what counts where.
+/// Three planes of points, in each place of which the same level counts.
 class PointGrids {
 public:
-    /// Level l has a value for every 2^l x 2^l points.
+    /// Number of levels: level l has a value for every 2^l x 2^l points.
     static constexpr int levels = 5;
     static constexpr int cell_bits = 3, cell_side = 1 << cell_bits;
     static constexpr std::size_t planes = 3;
 
-    /// One value everywhere. Width and height are multiples of 32.
+    /// Sets the size, points, both multiples of 32, and one value everywhere.
     void fill(int width, int height, std::uint8_t value);
     int width() const { return width_; }
     int height() const { return height_; }
 
-    /// That this level counts from now on in a square of `side` points, a multiple of 8, as are left and top.
+    /// Makes this level count from now on in a square of `side` points, a multiple of 8, as are left and top.
     void set_level(int level, int left, int top, int side);
 
     struct Rows {
         std::uint8_t* first;
         std::size_t stride;
     };
-    /// Where the level has its value for the point, and from there the next row.
+    /// Address of the level's value for point (x, y), and the stride from there to the next row of the level.
     Rows rows(std::size_t plane, int level, int x, int y) {
         return {bytes(planes_[plane]) + at(level, x, y), stride(level)};
     }
@@ -137,7 +138,7 @@ public:
     std::size_t stride(int level) const { return static_cast<std::size_t>(width_ >> level); }
 
     static constexpr int mixed_levels = -1;
-    /// Which level counts in all of a square, or `mixed_levels`.
+    /// The level that counts in all of a square, or `mixed_levels`.
     int level_in(int left, int top, int side) const;
     int level_at(int x, int y) const { return bytes(cells_)[cell_at(x, y)]; }
     std::uint8_t const* cells(int y) const { return bytes(cells_) + cell_at(0, y); }
@@ -163,9 +164,9 @@ private:
     }
 
     int width_ = 0, height_ = 0; ///< points
-    std::array<std::size_t, levels> first_{}; ///< value of each level in a plane
+    std::array<std::size_t, levels> first_{}; ///< where the values of each level begin in a plane
     std::array<Lines, planes> planes_; ///< rows from the top; behind the last, room to read a row
-    Lines cells_; ///< level that counts
+    Lines cells_; ///< level that counts in each cell, in rows
 };
 
 /// Reads 16 points of a row of each plane, 2^pitch apart from each other, x being that of the first. All of them are in
@@ -197,8 +198,8 @@ private:
     int level_;
     bool is_mixed_;
     int cell_row_ = -1;
-    PointRow levels_{}; ///< of the points in that row of cells
-    unsigned there_ = 0; ///< a bit for each of these
+    PointRow levels_{}; ///< level that counts at each of the 16 points, in that row of cells
+    unsigned there_ = 0; ///< bit l: level l is among these
 };
 
 } // namespace framelet

@@ -5,16 +5,16 @@
 namespace framelet {
 namespace {
 
-/// What saying so takes, bits.
+/// Bits that the kind of a prediction and its vector take, roughly.
 constexpr int bits_of_kind = 2, bits_of_vector = 12;
-/// Below this, looking further gains nothing.
+/// So few bits that, where a way of coding takes no more, looking for a better one gains nothing.
 constexpr int few_bits = 70;
 
 /// A way of coding a framelet.
 struct Way {
     Prediction prediction;
-    HaarCode code; ///< of what is left
-    int bits = 0; ///< expected; at least so many
+    HaarCode code; ///< of the residual
+    int bits = 0; ///< expected; where `code` gave up, fewer than it would take
 };
 
 } // namespace

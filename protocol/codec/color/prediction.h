@@ -1,6 +1,5 @@
-// How a framelet with loss is coded beside what the viewer holds: on its own, as the difference to what lies at its
-// place, or to what lies elsewhere because it has moved. In: framelet, picture. Out: the cheapest way, and what is left
-// to code.
+// Chooses how a framelet with loss is predicted: not at all, from its own place in the reference picture, or from
+// elsewhere because it has moved. In: framelet, picture. Out: the cheapest way, and the residual to be coded.
 #pragma once
 
 #include <cstdint>
@@ -11,16 +10,16 @@
 
 namespace framelet {
 
-/// As on the wire.
+/// Kind of prediction, numbered as on the wire.
 enum class PredictionKind : std::uint8_t { intra = 0, colocated = 1, displaced = 2 };
 
 struct Prediction {
     PredictionKind kind = PredictionKind::intra;
     MotionVector vector; ///< zero where it has not moved
-    DisplayFramelet samples; ///< predicted; only where there is a prediction
+    DisplayFramelet samples; ///< the predicted ones; not set for `intra`
 };
 
-/// Levels of what is left of the framelet at this QP, 1..coarsest_qp.
+/// Chooses the prediction of a framelet, and returns the levels of its residual at this QP, 1..coarsest_qp.
 HaarLevels predict(ReferencePicture const& reference, DisplayFramelet const& framelet, std::uint8_t qp,
                    MotionSearch& search, Prediction& prediction);
 

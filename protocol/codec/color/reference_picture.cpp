@@ -13,14 +13,14 @@ namespace {
 constexpr std::uint8_t grey = 128;
 constexpr int values_per_pixel = 2;
 
-/// To whole tiles of the coarsest kind.
+/// Rounds a viewport up to whole tiles of the coarsest level.
 Viewport rounded_up(ImagePlane const& plane) {
     int const coarsest = plane.side() >> plane.min_depth();
     auto const up = [coarsest](int pixels) { return (pixels + coarsest - 1) / coarsest * coarsest; };
     return {up(plane.viewport().width), up(plane.viewport().height)};
 }
 
-/// Two rows of two samples for each value.
+/// Fetches samples from values twice as far apart: each value becomes a block of 2x2 samples.
 void fetch_doubled(std::uint8_t const* first, std::size_t stride, SamplePlane& samples) {
     std::array<std::uint8_t, framelet_samples / 4> values;
     quarter_from_rows(first, stride, values.data());
@@ -30,7 +30,8 @@ void fetch_doubled(std::uint8_t const* first, std::size_t stride, SamplePlane& s
     }
 }
 
-/// The mean of the four values about each sample. `Lane` holds a row of those that a sample covers.
+/// Fetches for each sample the mean of the four values about its centre. `Lane` holds a row of those that a sample
+/// covers.
 template <typename Lane>
 void fetch_means(std::uint8_t const* first, std::size_t stride, SamplePlane& rows) {
     constexpr std::size_t pitch = sizeof(Lane);
@@ -61,8 +62,8 @@ void fetch_means_of_coarsest(std::uint8_t const* first, std::size_t stride, Samp
     }
 }
 
-/// Samples 2^pitch values apart, of a level that counts in all of their square, which begins where one of its values
-/// does.
+/// Fetches samples 2^pitch values apart, of a level that counts in all of their square, which begins where one of its
+/// values does.
 void fetch(std::uint8_t const* first, std::size_t stride, int pitch, SamplePlane& samples) {
     SamplePlane rows;
     switch (pitch) {
@@ -93,7 +94,7 @@ void put_row(PointRow const& row, SamplePlane& rows, int y) {
     std::memcpy(rows.data() + y * framelet_side, &row, sizeof row);
 }
 
-/// The point of each sample, `pitch` as of `ReferencePicture::Square`, whatever levels these are of.
+/// Looks up one point of each sample of a square, its upper left one, whatever level counts there.
 void look_up(PointGrids const& points, ReferencePicture::Square const& from, int level, Planes& rows) {
     int const twice = from.pitch() < 0 ? 1 : 0, pitch = std::max(from.pitch(), 0);
     PointRows reader(points, from.left, pitch, level, twice);
@@ -105,7 +106,7 @@ void look_up(PointGrids const& points, ReferencePicture::Square const& from, int
     }
 }
 
-/// The mean of the four points about each sample's centre.
+/// Looks up the mean of the four points about each sample's centre, whatever levels count there.
 void look_up_means(PointGrids const& points, ReferencePicture::Square const& from, int level, Planes& rows) {
     using Sums [[gnu::vector_size(2 * framelet_side)]] = std::uint16_t;
     int const pitch = from.pitch();

@@ -27,7 +27,7 @@ void put_squares(SamplePlane const& samples, std::uint8_t* to, std::size_t strid
     }
 }
 
-/// `pitch`: values from sample to sample; 0: two samples a value.
+/// Writes the samples of a framelet. `pitch`: values from sample to sample; 0: two samples a value.
 void put(SamplePlane const& samples, int pitch, std::uint8_t* to, std::size_t stride) {
     switch (pitch) {
     case 0:
@@ -63,8 +63,8 @@ void SearchPicture::copy(PointGrids const& grids, std::size_t plane) {
     coarse_only_.assign(static_cast<std::size_t>(block_columns() * block_rows()), 0);
 }
 
-/// The first of the points that each stands for: what looks for coarse framelets takes the first one behind the middle
-/// of a sample.
+/// Gives each coarse point the first of the 4x4 points that it stands for: a search reads of each coarse sample the
+/// first coarse point behind its middle.
 void SearchPicture::put_coarse_points(int left, int top, int side) {
     for (int y = top; y < top + side; y += coarse) {
         std::uint8_t const* const row = values() + at(left, y);
@@ -94,8 +94,8 @@ void SearchPicture::write(Samples const& samples, int left, int top, int side) {
     put_coarse_points(left, top, side);
 }
 
-/// Each point of a block gets the coarse one that stands for it. Where there are coarse framelets the picture has whole
-/// blocks.
+/// Gives each point of a block the value of the coarse one that stands for it. Where there are coarse framelets the
+/// picture consists of whole blocks.
 void SearchPicture::spread(int column, int row) {
     using Points [[gnu::vector_size(block_side)]] = std::uint32_t;
     using CoarsePoints [[gnu::vector_size(block_side / coarse)]] = std::uint8_t;
@@ -123,7 +123,7 @@ void SearchPicture::expect(int left, int top, int side) const {
     if (is_coarse(side)) {
         return; // they are few enough to stay in a cache
     }
-    // Of the rows that a sample covers only that in the middle is looked at.
+    // The search looks at the middle one alone of the rows that a sample covers.
     int const pitch = std::max(side / framelet_side, 1);
     for (int y = pitch / 2; y < side; y += pitch) {
         __builtin_prefetch(values() + at(left, top + y)); // all of it: no row is wider than a line

@@ -1,6 +1,6 @@
-// Green of what a viewer holds, as its writer searches it: all of it points of one spacing, so that any place is read
-// alike, and again with every fourth point of every fourth row, for coarse framelets. In: framelets as the reference
-// picture takes them. Out: rows of points.
+// The picture that motion search looks in: green of the reference picture, all of it points of one spacing, so that any
+// place is read alike, and again with every fourth point of every fourth row, for coarse framelets. In: framelets as
+// the reference picture takes them. Out: rows of points.
 #pragma once
 
 #include <array>
@@ -13,18 +13,18 @@
 
 namespace framelet {
 
-/// Four values a pixel, and a quarter of one. What is coarse is written to the coarse points alone, until something
-/// finer is looked for or written in its place.
+/// Has four values a pixel, and a quarter of one for the coarse points. What is coarse is written to the coarse points
+/// alone, until something finer is looked for or written in its place.
 class SearchPicture {
 public:
     using Samples = std::array<std::uint8_t, framelet_samples>;
 
     /// Points from one coarse point to the next.
     static constexpr int coarse = 4;
-    /// That what has so many points to a side is looked for among coarse ones.
+    /// True for squares that are searched among the coarse points, by how many points they have to a side.
     static constexpr bool is_coarse(int side) { return side > coarse * framelet_side; }
 
-    /// What the grids have there.
+    /// Copies one plane of the grids, and its size.
     void copy(PointGrids const& grids, std::size_t plane);
     bool is_kept() const { return width_ != 0; }
 
@@ -32,15 +32,15 @@ public:
     /// each coarse point does. Left, top and side: points.
     void write(Samples const& samples, int left, int top, int side);
 
-    /// To be called before what is there is looked for. What lies farther away may be found as it was when it was last
-    /// prepared or finely written: of two vectors the worse one may be taken for it, sometimes.
+    /// Must be called before vectors of a framelet in this square are searched. What lies farther away may be found as
+    /// it was when it was last prepared or finely written, so that sometimes the worse of two vectors is taken.
     void prepare(int left, int top, int side);
 
     struct Source {
         std::uint8_t const* first;
         std::size_t stride; ///< from one row to the next
     };
-    /// The coarse points where `is_coarse(side)`.
+    /// Source from which a square is read: its coarse points where `is_coarse(side)`, else all of them.
     Source source(int left, int top, int side) const {
         return is_coarse(side) ? Source{&coarse_values_[coarse_at(left, top)], coarse_stride()}
                                : Source{values() + at(left, top), static_cast<std::size_t>(width_)};
@@ -50,11 +50,11 @@ public:
     void expect(int left, int top, int side) const;
 
 private:
-    /// No row of a tile reaches over the end of a line of the cache.
+    /// Unit of alignment: no row of a tile reaches over the end of a line of the cache.
     struct alignas(cache_line) Line {
         std::array<std::uint8_t, cache_line> values;
     };
-    /// A square of points of which only the coarse ones are known, or none.
+    /// Side of a block, points. Of a block either all points are known, or the coarse ones alone.
     static constexpr int block_side = coarse * framelet_side;
 
     std::size_t at(int x, int y) const {
@@ -77,7 +77,7 @@ private:
     int width_ = 0, height_ = 0; ///< points
     std::vector<Line> values_;
     std::vector<std::uint8_t> coarse_values_;
-    std::vector<std::uint8_t> coarse_only_; ///< a flag for each block
+    std::vector<std::uint8_t> coarse_only_; ///< for each block, in rows: the coarse points alone are known
 };
 
 } // namespace framelet

@@ -1,4 +1,4 @@
-// Whole numbers as decisions of a range coder, small ones for little. In: numbers. Out: decisions, and back: each
+// Codes whole numbers as decisions of a range coder, small ones for little. In: numbers. Out: decisions, and back: each
 // function gives the number that was coded, and a reader does not look at the one that it is given.
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace framelet {
 
-/// A number below 2^bits, its highest bit first, each bit after those before it.
+/// Model of a number below 2^bits: its highest bit first, each bit in the context of those before it.
 template <int bits>
 struct AdaptiveTree {
     std::array<AdaptiveBit, std::size_t{1} << bits> nodes;
@@ -27,14 +27,14 @@ struct AdaptiveTree {
     }
 };
 
-/// A number from 0 on: so many yeses up to `unary`, then how many bits the rest has, and these (Exp-Golomb).
+/// Model of a number from 0 on: so many yeses up to `unary`, then how many bits the rest has, and these (Exp-Golomb).
 template <int unary>
 struct AdaptiveSize {
     static constexpr int most_bits = 17;
     std::array<AdaptiveBit, unary> steps;
     std::array<AdaptiveBit, most_bits> lengths, highest;
 
-    /// `number` is at most `unary` + 2^16. ProtocolError where what is read is not.
+    /// Codes `number`, which is at most `unary` + 2^16. ProtocolError where the length that is read is 17 bits or more.
     template <class Coder>
     std::uint32_t code(Coder& coder, std::uint32_t number) {
         for (std::uint32_t i = 0; i < unary; ++i) {
@@ -63,12 +63,12 @@ struct AdaptiveSize {
     }
 };
 
-/// A signed number whose sign is as likely as not.
+/// Model of a signed number whose sign is as likely as not.
 template <int unary>
 struct AdaptiveNumber {
     AdaptiveSize<unary> size;
 
-    /// -2^15 .. 2^15 - 1, or what is read modulo 2^16.
+    /// Codes `number`, -2^15 .. 2^15 - 1; what is read is taken modulo 2^16.
     template <class Coder>
     std::int16_t code(Coder& coder, std::int16_t number) {
         std::uint32_t const magnitude =

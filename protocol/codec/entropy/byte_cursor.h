@@ -15,7 +15,7 @@ struct ByteCursor {
 
     std::size_t left() const { return static_cast<std::size_t>(end - next); }
 
-    /// The next `size` bytes. ProtocolError where there are fewer.
+    /// Takes the next `size` bytes. ProtocolError where there are fewer.
     std::span<std::uint8_t const> take(std::size_t size) {
         if (size > left()) {
             throw ProtocolError("a group of a batch is shorter than its parts");

@@ -1,4 +1,4 @@
-// Samples from Morton order to rows and back, a block of 4x4 at a time: 16 neighbours in Morton order.
+// Moves samples from Morton order to rows and back, a block of 4x4 at a time: 16 neighbours in Morton order.
 #pragma once
 
 #include <array>
@@ -16,14 +16,15 @@ namespace morton_block {
 inline constexpr std::size_t side = 4, samples = 16;
 using Samples [[gnu::vector_size(samples)]] = std::uint8_t;
 
-/// Four rows to Morton order; the same swaps lead back.
+/// Turns the four rows of a block into Morton order; the same swaps lead back.
 inline Samples transposed(Samples block) {
     return __builtin_shufflevector(block, block, 0, 1, 4, 5, 2, 3, 6, 7, 8, 9, 12, 13, 10, 11, 14, 15);
 }
 
 using Rows [[gnu::vector_size(samples)]] = std::uint32_t; ///< a row of a block in each lane
 
-/// Rows of four blocks side by side to rows of 16 samples; the same leads back.
+/// Turns four rows of 16 samples into four blocks side by side, each with its rows one after the other; the same leads
+/// back.
 inline void transpose(std::array<Rows, side>& rows) {
     auto const low = [](Rows const& a, Rows const& b) { return __builtin_shufflevector(a, b, 0, 4, 1, 5); };
     auto const high = [](Rows const& a, Rows const& b) { return __builtin_shufflevector(a, b, 2, 6, 3, 7); };
@@ -32,14 +33,14 @@ inline void transpose(std::array<Rows, side>& rows) {
     rows = {low(ac_low, bd_low), high(ac_low, bd_low), low(ac_high, bd_high), high(ac_high, bd_high)};
 }
 
-/// Where the blocks of a row of blocks are in Morton order.
+/// Numbers in Morton order of the four blocks in a row of blocks.
 inline std::array<std::size_t, side> blocks_of_row(std::size_t row) {
     std::size_t const first = 8 * (row / 2) + 2 * (row % 2);
     return {first, first + 1, first + 4, first + 5};
 }
 } // namespace morton_block
 
-/// The samples of a framelet whose rows are `stride` apart.
+/// Turns the samples of a framelet, whose rows are `stride` apart, into Morton order.
 inline void from_rows(std::uint8_t const* rows, std::size_t stride, std::uint8_t* out) {
     using namespace morton_block;
     for (std::size_t row = 0; row < side; ++row) {
@@ -75,7 +76,7 @@ inline void to_rows(std::uint8_t const* in, std::uint8_t* rows, std::size_t stri
     }
 }
 
-/// The same for a quarter of a framelet, 8x8.
+/// Does what `from_rows` does for a quarter of a framelet, 8x8.
 inline void quarter_from_rows(std::uint8_t const* rows, std::size_t stride, std::uint8_t* out) {
     using namespace morton_block;
     for (std::size_t block = 0; block < 4; ++block) {
@@ -112,7 +113,7 @@ inline std::uint8_t mean_of_four(unsigned a, unsigned b, unsigned c, unsigned d)
     return static_cast<std::uint8_t>((a + b + c + d + 2) >> 2);
 }
 
-/// Each value gets the mean of its four samples.
+/// Gives each of 8x8 values, in rows `stride` apart, the mean of its four samples.
 inline void put_means(SamplePlane const& samples, std::uint8_t* to, std::size_t stride) {
     std::array<std::uint8_t, framelet_samples / 4> means;
     for (std::size_t k = 0; k < means.size(); ++k) { // many at a time

@@ -21,7 +21,7 @@ void RangeWriter::put_byte() {
 }
 
 std::span<std::uint8_t const> RangeWriter::finish() {
-    // Of the numbers in the range that which ends with the most zeros.
+    // Takes that of the numbers in the range which ends with the most zeros.
     std::uint64_t const first = low_, last = low_ + range_ - 1;
     for (int zeros = 32; zeros >= 0; --zeros) {
         std::uint64_t const mask = (std::uint64_t{1} << zeros) - 1;

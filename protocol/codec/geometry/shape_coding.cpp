@@ -12,7 +12,7 @@
 namespace framelet {
 namespace {
 
-/// value * 2^shift, rounded down, as near as 16 bits hold.
+/// Returns value * 2^shift, rounded down and clamped to 16 bits.
 std::int16_t scaled(std::int64_t value, int shift) {
     using Limits = std::numeric_limits<std::int16_t>;
     if (value == 0) {
@@ -32,7 +32,7 @@ std::int16_t sum(std::int16_t a, std::int16_t b) {
     return static_cast<std::int16_t>(a + b);
 }
 
-/// How many bits numbers so far off take, about.
+/// Bits, roughly, that the differences of a plane from the expected one take.
 int cost(LayerCode const& code, LayerCode const& expected) {
     auto const bits = [](int off) { return static_cast<int>(std::bit_width(static_cast<unsigned>(std::abs(off)))); };
     return 2 * (bits(code.at - expected.at) + bits(code.dx - expected.dx) + bits(code.dy - expected.dy));
@@ -56,7 +56,7 @@ void for_each_carried(Shape& shape, Use const& use) {
     }
 }
 
-/// The smallest unit in which the velocities are; 0: nothing moves so.
+/// The smallest unit in which all velocities of the shape fit; 0: nothing has a velocity.
 UnitCode velocity_unit(FrameletShape const& shape) {
     float largest = 0;
     for_each_carried(shape, [&](auto const& carried) {
@@ -76,7 +76,7 @@ UnitCode outlier_unit(FrameletShape const& shape) {
     return unit_above(static_cast<double>(largest) / largest_inverse_depth_code);
 }
 
-/// Kinds beyond the layers are outliers.
+/// Marks samples of a kind beyond the layers as outliers, and makes room for these. ProtocolError where there are none.
 void make_room_for_outliers(FrameletShape& shape) {
     std::size_t outliers = 0;
     for (std::uint8_t& kind : shape.layer_of) { // without an early end: many at a time
@@ -105,7 +105,7 @@ void check(FrameletShape const& shape) {
 LayerCode continued(CodedLayer const& layer, UnitCode unit, TilePosition const& place) {
     LayerCode const& code = layer.code;
     int const bits = layer.place.side_bits;
-    int const finer = int{code.unit} - int{unit}; // how much larger the old unit is
+    int const finer = int{code.unit} - int{unit}; // logarithm to base 2 of how much larger the old unit is
     std::int64_t const right = std::int64_t{place.left} - layer.place.left;
     std::int64_t const down = std::int64_t{place.top} - layer.place.top;
     std::int64_t const at = (std::int64_t{code.at} << bits) + code.dx * right + code.dy * down;
@@ -126,7 +126,7 @@ BodyNumber ShapeModel::BodyModel::code(Coder& coder, BodyNumber last, BodyNumber
     return static_cast<BodyNumber>(upper << 8 | low.code(coder, body & 255u));
 }
 
-/// The one beside which it takes least.
+/// Number of the remembered layer beside which a layer takes the fewest bits.
 std::size_t ShapeModel::nearest(LayerCode const& code, BodyNumber body, TilePosition const& place) const {
     std::size_t best = 0;
     int least = std::numeric_limits<int>::max();
@@ -178,7 +178,7 @@ void ShapeModel::code_layer(Coder& coder, TilePosition const& place, std::size_t
     remember({code, body, place});
 }
 
-/// Which sample is of which kind, row by row: layers by their number, then the outliers.
+/// Codes which sample is of which kind, row by row: layers by their number, then the outliers.
 template <class Coder, class Shape>
 void ShapeModel::code_kinds(Coder& coder, unsigned kinds, Shape& shape) {
     constexpr std::size_t stride = framelet_side + 3; // two before a row, one behind it
@@ -222,7 +222,7 @@ void ShapeModel::code_kinds(Coder& coder, unsigned kinds, Shape& shape) {
     }
 }
 
-/// Inverse depths as differences from the sample before, 0 before the first.
+/// Codes outliers: inverse depths as differences from the outlier before, 0 before the first, and bodies.
 template <class Coder, class Shape>
 void ShapeModel::code_outliers(Coder& coder, Shape& shape) {
     UnitCode const own = Coder::reads ? UnitCode{0} : outlier_unit(shape);
@@ -249,7 +249,7 @@ void ShapeModel::code_outliers(Coder& coder, Shape& shape) {
     }
 }
 
-/// As differences from the one before.
+/// Codes the velocities of layers and outliers, each as a difference from the one before.
 template <class Coder, class Shape>
 void ShapeModel::code_velocities(Coder& coder, Shape& shape) {
     UnitCode const own = Coder::reads ? UnitCode{0} : velocity_unit(shape);

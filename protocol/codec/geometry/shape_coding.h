@@ -1,5 +1,5 @@
-// Shapes as decisions of a range coder: planes beside one that was coded before, which sample lies on which of them by
-// what its neighbours lie on. In: shapes. Out: decisions, and back. PROTOCOL.md has the order.
+// Codes shapes as decisions of a range coder: planes as differences from one that was coded before, and which layer a
+// sample lies on by which its neighbours lie on. In: shapes. Out: decisions, and back. PROTOCOL.md has the order.
 #pragma once
 
 #include <array>
@@ -11,31 +11,32 @@
 
 namespace framelet {
 
-/// Where a tile lies: its upper left corner, pixels, and its side, 2^side_bits pixels.
+/// Place of a tile: its upper left corner, pixels, and its side, 2^side_bits pixels.
 struct TilePosition {
     std::int32_t left = 0, top = 0;
     std::int32_t side_bits = 0; ///< 0..31
 };
 
-/// A layer that was coded, and where.
+/// A layer that was coded, and the tile that it was coded for.
 struct CodedLayer {
     LayerCode code;
     BodyNumber body = static_body;
     TilePosition place;
 };
 
-/// What its plane is at another place, in that unit, as near as the numbers hold.
+/// The plane of a layer as numbers of another tile, in `unit`, clamped to 16 bits; without an error.
 LayerCode continued(CodedLayer const& layer, UnitCode unit, TilePosition const& place);
 
-/// What is known of the shapes that were coded before. Both sides know the same.
+/// Model of shapes: how likely each decision is, as the shapes that were coded before have taught; the same on both
+/// sides.
 class ShapeModel {
 public:
     void write(RangeWriter& writer, TilePosition const& place, FrameletShape const& shape);
-    /// Fills a shape. ProtocolError where there is no such one.
+    /// Reads a shape. ProtocolError where what is read is none.
     void read(RangeReader& reader, TilePosition const& place, FrameletShape& shape);
 
 private:
-    static constexpr int unary = 3; // of numbers that may be large
+    static constexpr int unary = 3; // unary part of numbers that may be large
     static constexpr int remembered_bits = 3;
     static constexpr std::size_t remembered = std::size_t{1} << remembered_bits;
     static constexpr std::size_t size_classes = 6;
@@ -54,7 +55,7 @@ private:
         std::array<AdaptiveNumber<unary>, 3> axes;
     };
 
-    // What is written is const, what is read is not.
+    // The shape and its parts are const where the coder writes, and not where it reads.
     template <class Coder, class Shape>
     void code(Coder& coder, TilePosition const& place, Shape& shape);
     template <class Coder, class AnyLayer>
@@ -68,12 +69,12 @@ private:
     std::size_t nearest(LayerCode const& code, BodyNumber body, TilePosition const& place) const;
     void remember(CodedLayer const& layer);
 
-    std::array<CodedLayer, remembered> layers_{}; ///< lately, the newest first
+    std::array<CodedLayer, remembered> layers_{}; ///< the last ones that were coded, the newest first
     std::uint8_t head_ = 0;
     DecorrelationCode decorrelation_ = 0;
     UnitCode outlier_unit_ = 0;
 
-    std::array<AdaptiveTree<3>, 8> heads_; // by the last one
+    std::array<AdaptiveTree<3>, 8> heads_; // by the head of the last shape
     AdaptiveBit same_decorrelation_;
     AdaptiveTree<8> decorrelations_;
     std::array<AdaptiveTree<remembered_bits>, max_layers> sources_;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int unit_bias = 128;
 
-/// In units, as near as the type holds.
+/// A value in units, rounded and clamped to what the type holds.
 template <typename Number>
 Number rounded(double value, UnitCode unit) {
     using Limits = std::numeric_limits<Number>;

@@ -1,6 +1,6 @@
-// Layers and outliers in 16-bit numbers, each in a unit that is a power of two, and back. PROTOCOL.md says how the
-// bytes are arranged. In: numbers below `most_shape_number` in magnitude. Out: codes, and the very numbers that a
-// reader makes of them.
+// Quantises layers and outliers to numbers of 8 and 16 bits, each in a unit that is a power of two, and back.
+// PROTOCOL.md says how the bytes are arranged. In: finite numbers. Out: codes, and the very numbers that a reader makes
+// of them.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace framelet {
 
-/// 0: the unit is 0, and so is what is stated in it; else the unit is 2^(code - 128).
+/// Code of a unit. 0: the unit is 0, and so is what is stated in it; else the unit is 2^(code - 128).
 using UnitCode = std::uint8_t;
 inline constexpr UnitCode largest_unit = 168;
 double unit_of(UnitCode code);
@@ -23,17 +23,17 @@ struct LayerCode {
     std::int16_t dx = 0, dy = 0; ///< units along the tile's side
 };
 
-/// `side_bits`: the tile's side is 2^side_bits pixels. The decoded plane is within 3/2 units of the layer anywhere on
-/// the tile, and its error is the layer's and the distance between the two planes, rounded up: whatever is within the
-/// layer's error of the layer is within the decoded error of the decoded plane. The unit is at most the larger of an
-/// eighth of the layer's error and 2^-9 of its largest inverse depth: what moves by 32 pixels because the camera moves
-/// is shown a tenth of a pixel off at most, mostly a third of that.
+/// Quantises a layer of a tile whose side is 2^side_bits pixels. The decoded plane is within 3/2 units of the layer
+/// anywhere on the tile, and its error is the layer's and the distance between the two planes, rounded up: whatever is
+/// within the layer's error of the layer is within the decoded error of the decoded plane. The unit is at most the
+/// larger of an eighth of the layer's error and 2^-9 of |at| + side (|dx| + |dy|), about its largest inverse depth:
+/// what moves by 32 pixels because the camera moves is shown a tenth of a pixel off at most, mostly a third of that.
 LayerCode quantise(Layer const& layer, int side_bits);
-/// Without body and velocity.
+/// The layer that a reader makes of the code, without body and velocity.
 Layer dequantise(LayerCode const& code, int side_bits);
 
-/// Units, rounded. The unit is that above the largest of all values that share it, divided by these. Outliers are
-/// few samples: moved by 20 pixels they are shown a twelfth of a pixel off at most.
+/// Largest codes: values are rounded to whole units, and the unit is that above the largest of all values that share
+/// it, divided by these. Outliers are few samples: moved by 20 pixels they are shown a twelfth of a pixel off at most.
 inline constexpr double largest_inverse_depth_code = 255, largest_velocity_code = 32767;
 std::uint8_t quantise_inverse_depth(float inverse_depth, UnitCode unit);
 std::int16_t quantise_velocity(float velocity, UnitCode unit);

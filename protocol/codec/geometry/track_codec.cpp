@@ -16,22 +16,23 @@ namespace framelet {
 namespace {
 
 using Content = std::vector<std::uint8_t>;
-/// Translation, rotation (x y z w) and scale.
+/// Numbers of a key: translation (x y z), rotation (x y z w) and scale (x y z).
 constexpr std::size_t key_numbers = 10;
 using KeyNumbers = std::array<float, key_numbers>;
-/// Numbers of a key that are rounded alike, and stay as they are together.
+/// Numbers of a key, `first` to `end`, that are rounded alike, and stay as they are together.
 struct Member {
     std::size_t first, end;
 };
 constexpr std::array<Member, 3> members{{{0, 3}, {3, 7}, {7, 10}}};
 constexpr std::size_t rotation = 1;
 
-/// A member's number on the wire stands for so many times 2^(unit - unit_zero).
+/// Bias of units: a number of a member on the wire stands for so many times 2^(unit - unit_zero).
 constexpr int unit_zero = 160;
 constexpr int relative_bits = 20, rotation_bits = 16;
-/// In place of a unit: the member stays as it is, and its numbers follow once; or they follow as they are.
+/// Values in the place of a unit: where the member stays as it is, its numbers follow once, as floats; where it is
+/// exact, those of all keys do.
 constexpr std::uint8_t stays = 0, exact = 1;
-/// Whether what moves is rounded.
+/// Rounding of the members that change.
 enum class Rounding : bool { none, fine };
 constexpr std::int64_t farthest_key = std::int64_t{1} << 62;
 
@@ -50,7 +51,7 @@ bool is_usable(KeyNumbers const& n) {
     return std::ranges::all_of(n, [](float x) { return std::isfinite(x); }) && squared >= 0.25f && squared <= 4;
 }
 
-/// What is wrong with a track; nullptr: nothing.
+/// Names what is wrong with a track; nullptr: nothing.
 char const* problem(BodyTrack const& track) {
     if (track.body == static_body) {
         return "a track is of the body that never moves";
@@ -113,7 +114,7 @@ float take_float(ByteCursor& bytes) {
     return number;
 }
 
-/// How large a number is in units of 2^(unit - unit_zero), and back.
+/// Turns a number into units of 2^(unit - unit_zero), and back.
 std::int64_t rounded(float number, int unit) {
     return std::llround(std::ldexp(static_cast<double>(number), unit_zero - unit));
 }
@@ -125,7 +126,7 @@ float number_of(std::int64_t rounded, int unit) {
     return static_cast<float>(number);
 }
 
-/// Of the numbers `first` to `end` of all keys.
+/// The unit in which a member of all keys is rounded, by its largest magnitude.
 std::uint8_t unit_of(std::span<KeyNumbers const> keys, Member member) {
     float largest = 0;
     for (KeyNumbers const& key : keys) {
@@ -137,7 +138,7 @@ std::uint8_t unit_of(std::span<KeyNumbers const> keys, Member member) {
     return static_cast<std::uint8_t>(std::clamp(exponent - relative_bits + unit_zero, exact + 1, 255));
 }
 
-/// Second differences: of what moves steadily they are all but 0. They wrap.
+/// Puts second differences, which are nearly all 0 where something moves steadily. They wrap.
 void put_moving(Content& out, std::span<KeyNumbers const> keys, Member member, int unit) {
     for (std::size_t i = member.first; i < member.end; ++i) {
         std::int64_t before = 0, step = 0;
@@ -161,7 +162,8 @@ void take_moving(ByteCursor& bytes, std::span<KeyNumbers> keys, Member member, i
     }
 }
 
-/// A quaternion and its negative are the same rotation: the one is taken that is near the key before.
+/// Numbers of all keys. A quaternion and its negative are the same rotation: the one is taken that is near the key
+/// before.
 std::vector<KeyNumbers> numbers_of(BodyTrack const& track) {
     std::vector<KeyNumbers> keys;
     Quat before = track.keys.front().rotation;

@@ -14,11 +14,11 @@
 namespace framelet {
 namespace {
 
-/// Roughness 0, 1/6, .. 1; rougher lobes need fewer texels.
+/// Sides in texels of the specular maps for roughness 0, 1/6, .. 1; rougher lobes need fewer texels.
 constexpr int specular_sides[] = {256, 128, 64, 48, 32, 32, 32};
 constexpr int roughness_levels = std::size(specular_sides);
 
-/// What filtering starts from need not be larger than this.
+/// Largest width in texels of the map that filtering starts from: it need not be larger.
 constexpr int largest_filter_width = 1024;
 
 OctahedralMap mirror_level(std::vector<FloatImage> const& levels, int side) {
@@ -42,8 +42,8 @@ Vec3 clear_sky(Vec3 const& direction) {
     return glm::mix(ground, sky, std::clamp(up / 0.02f + 0.5f, 0.0f, 1.0f)); // a horizon about a degree wide
 }
 
-/// Finite and >= 0. A sun in one primary colour alone, exactly 0 in the others, is what a capture leaves that clipped
-/// each channel by itself; it would dye the whole scene, so it counts as white.
+/// The map with all values finite and >= 0. A sun in one primary colour alone, exactly 0 in the others, is what a
+/// capture leaves that clipped each channel by itself; it would dye the whole scene, so it counts as white.
 FloatImage cleaned(FloatImage map) {
     double sum = 0;
     for (Vec3& texel : map.rgb) {
@@ -133,7 +133,7 @@ Vec3 Environment::specular(Vec3 direction, float roughness) const {
     std::size_t const sharp = std::min(static_cast<std::size_t>(level), std::size_t(roughness_levels - 2));
     Vec2 const point = octahedral_from_direction(direction);
     float const blend = level - static_cast<float>(sharp);
-    if (blend >= 1) { // fully rough, as much is
+    if (blend >= 1) { // fully rough, as many surfaces are
         return light_share_ * specular_levels_.back().sample_at(point);
     }
     return light_share_ *

@@ -15,19 +15,20 @@ namespace framelet {
 /// pi. It lights surfaces without regard to what stands between: only occlusion maps darken it.
 class Environment {
 public:
-    /// Radiance per texel, cd/m^2 or any unit proportional to the lights' (width = 2 * height is usual, not required).
+    /// Prefilters `radiance`, which has cd/m^2 or any unit proportional to the lights' (width = 2 * height is usual,
+    /// not required).
     explicit Environment(FloatImage const& radiance);
 
     /// The default surroundings: a clear sky gradient over a neutral ground.
     /// `brightness` scales it; `light_share` is the part of it that reaches surfaces: less than 1 stands for what walls
     /// and trees would keep off, as environment light is not shadowed.
     static Environment default_sky(float brightness = 1, float light_share = 1);
-    /// The same radiance from everywhere.
+    /// An environment of the same radiance from everywhere.
     static Environment uniform(Vec3 radiance);
     /// Reads .hdr or .exr (anything OpenImageIO knows). Throws InputError.
     static Environment load(std::filesystem::path const& file);
 
-    /// What a ray that hits nothing sees; `footprint` is the ray's angular width in radians (picks the level).
+    /// Radiance seen by a ray that hits nothing; `footprint` is its angular width in radians (picks the level).
     Vec3 background(Vec3 direction, float footprint) const;
     /// Irradiance / pi about a unit normal: what a white Lambertian surface reflects.
     Vec3 diffuse(Vec3 normal) const;
@@ -37,8 +38,8 @@ public:
 private:
     Environment() = default;
 
-    std::optional<Vec3> uniform_; ///< then there are no maps
-    float light_share_ = 1; ///< of the maps, in `diffuse` and `specular`
+    std::optional<Vec3> uniform_; ///< where it is set there are no maps
+    float light_share_ = 1; ///< factor of the maps in `diffuse` and `specular`
     std::vector<FloatImage> background_levels_; ///< box-filtered, halving
     std::vector<OctahedralMap> specular_levels_; ///< GGX-filtered for equally spaced roughness
     OctahedralMap diffuse_;

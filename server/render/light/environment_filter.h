@@ -1,4 +1,4 @@
-// Filtering of equirectangular maps: halving levels, irradiance, GGX lobes. In: radiance by direction. Out: the same,
+// Filters equirectangular maps: halving levels, irradiance, GGX lobes. In: radiance by direction. Out: the same,
 // averaged. Every filter's weights sum to 1, so that uniform radiance stays what it is.
 #pragma once
 
@@ -7,7 +7,7 @@
 
 namespace framelet {
 
-/// Where a direction lies in an equirectangular map, [0,1]^2, and back (environment.h states the mapping).
+/// Point of an equirectangular map, [0,1]^2, for a direction, and back (environment.h states the mapping).
 Vec2 equirect_from_direction(Vec3 const& direction);
 Vec3 direction_from_equirect(Vec2 point);
 

@@ -8,7 +8,7 @@
 namespace framelet {
 namespace {
 
-/// Nearer than this a point light gets no brighter, metres: inverse square would have no bound.
+/// A point light gets no brighter nearer than this, metres: inverse square would have no bound.
 constexpr float nearest = 1e-3f;
 
 float usable(float value, float most) {

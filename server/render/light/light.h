@@ -1,4 +1,4 @@
-// Punctual lights (KHR_lights_punctual): where light comes from at sixteen points, and how much of it.
+// Says where the light of punctual lights (KHR_lights_punctual) comes from at sixteen points, and how much it is.
 #pragma once
 
 #include "server/render/packet.h"
@@ -26,7 +26,7 @@ RenderLight default_sun();
 struct ArrivingLight {
     LaneVec3 to_light; ///< unit
     LaneFloats distance; ///< +infinity for directional lights
-    LaneFloats irradiance; ///< times `intensity`: what falls on the surface, its cosine included
+    LaneFloats irradiance; ///< for `intensity` 1: what falls on the surface, its cosine included
 };
 
 /// Returns the lanes at which the light is above the horizon and in reach.

@@ -15,7 +15,7 @@ Vec3 direction_from_octahedral(Vec2 point);
 class OctahedralMap {
 public:
     OctahedralMap() = default;
-    /// `values`: side * side, rows from v = 0, texel centres at (i + 0.5) / side.
+    /// Makes the map of `values`: side * side, rows from v = 0, texel centres at (i + 0.5) / side.
     OctahedralMap(int side, std::vector<Vec3> const& values);
 
     int side() const { return side_; }

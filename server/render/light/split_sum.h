@@ -1,4 +1,4 @@
-// How much of uniform light the specular lobe reflects, tabulated: the second factor of the split-sum approximation
+// Tabulates how much of uniform light the specular lobe reflects: the second factor of the split-sum approximation
 // (Karis, "Real shading in Unreal Engine 4", 2013) for the same GGX lobe that direct light uses.
 #pragma once
 

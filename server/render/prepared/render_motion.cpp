@@ -1,4 +1,4 @@
-// Bodies and velocities of the instances and the lights.
+// Sets bodies and velocities of the instances and the lights.
 #include <cmath>
 
 #include <glm/geometric.hpp>
@@ -26,13 +26,14 @@ double to_other_moment(Scene const& scene, std::span<Index const> clips, SceneTi
     return interval;
 }
 
-/// Metres a second from which on shadows are worth following: slower ones stay where they are for a tenth of a second.
+/// Speed, metres a second, from which on a shadow is worth following: a slower one stays where it is for a tenth of a
+/// second.
 constexpr float fast_shadow = 0.5f;
-/// Radians a second above which something spins: a third of a second later it shows another side,
-/// and where a ray meets it says little of where its outline goes.
+/// Angular speed, radians a second, above which something spins: a third of a second later it shows another side, and
+/// where a ray meets it says little of where its outline goes.
 constexpr float fast_spin = 3;
 
-/// How fast something turns whose transform changes so, radians a second.
+/// Angular speed of an instance, radians a second, from the rate at which its transform changes.
 float spin_of(Instance const& instance) {
     Mat3 const change = instance.linear_rate * glm::transpose(instance.normal_matrix); // by the inverse of `linear`
     Vec3 const twice(change[1][2] - change[2][1], change[2][0] - change[0][2], change[0][1] - change[1][0]);

@@ -50,8 +50,8 @@ std::vector<Geometry> geometries_of(Mesh const& mesh, MaterialLibrary const& lib
     return out;
 }
 
-/// What is around a scene with lamps and no map: under a sun the sky that belongs to it, else just enough to tell the
-/// shapes in the shade apart.
+/// The surroundings of a scene with lights and no map: under a sun the sky that belongs to it, else just enough light
+/// to tell the shapes in the shade apart.
 Environment surroundings_of_lights(Scene const& scene) {
     float suns = 0;
     for (Light const& light : scene.lights) {

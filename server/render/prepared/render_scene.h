@@ -25,13 +25,13 @@ public:
     RenderScene(RenderScene const&) = delete;
     RenderScene& operator=(RenderScene const&) = delete;
 
-    /// Moves instances, refits what deforms. Costs nothing but a comparison for what does not move. Not while anything
-    /// renders. `pose` must be of this scene. Where it throws, because memory has run out, the scene is not to be
-    /// rendered before a pose has been set, which then moves everything.
+    /// Moves instances, refits what deforms. Costs nothing but a comparison for what does not move. Not to be called
+    /// while anything renders. `pose` must be of this scene. Where it throws, because memory has run out, the scene is
+    /// not to be rendered before a pose has been set, which then moves everything.
     void set_pose(ScenePose const& pose);
 
     /// From now on framelets say which bodies carry their samples and how fast those move that no body carries, while
-    /// these clips play. Not while anything renders. At first nothing plays: everything is static.
+    /// these clips play. Not to be called while anything renders. At first nothing plays: everything is static.
     void set_clips(std::span<Index const> clips);
     SceneBodies const& bodies() const { return bodies_; }
 
@@ -41,12 +41,12 @@ private:
     /// A node that draws a mesh.
     struct Placement {
         std::size_t node;
-        std::uint32_t mesh, instance; ///< of the BVH
+        std::uint32_t mesh, instance; ///< numbers in the BVH
         Skin const* skin;
         bool morphs;
-        std::size_t deformed; ///< into `deformed_`, where it deforms
+        std::size_t deformed; ///< index into `deformed_`, where it deforms
     };
-    using MeshVertices = std::vector<DeformedVertices>; ///< one a primitive
+    using MeshVertices = std::vector<DeformedVertices>; ///< one for each primitive
 
     void add_meshes(Progress const& progress);
     void place_all();

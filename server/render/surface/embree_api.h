@@ -1,5 +1,5 @@
-// Embree 3.13 and 4 as one: what is called by another name in each. In: rays in Embree's layouts. Out: the same rays
-// with what they meet.
+// Makes Embree 3.13 and 4 look alike: wraps what has another name in each. In: rays in Embree's layouts. Out: the same
+// rays with what they meet.
 #pragma once
 
 #include <type_traits>
@@ -21,7 +21,7 @@ using EmbreeContext = RTCIntersectContext;
 inline constexpr RTCSceneFlags query_filters = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
 #endif
 
-/// How a packet is to be traced.
+/// Settings by which a packet is traced.
 struct EmbreeQuery {
     EmbreeContext& context; ///< the filters find it in their arguments
     bool coherent; ///< its rays are near to each other
@@ -43,7 +43,7 @@ void fill_arguments(EmbreeQuery const& query, Arguments& out) {
     out.filter = query.filter;
 }
 
-/// Of a ray that met something before only what is nearer is found.
+/// Finds the nearest hits; for a ray that has met something already, only what is nearer.
 template <class RayHits>
 void intersect(EmbreeQuery const& query, int const* valid, RTCScene scene, RayHits& rays) {
     RTCIntersectArguments arguments;
@@ -76,7 +76,7 @@ inline void begin_query(EmbreeQuery const& query) {
     query.context.filter = query.filter;
 }
 
-/// Of a ray that met something before only what is nearer is found.
+/// Finds the nearest hits; for a ray that has met something already, only what is nearer.
 template <class RayHits>
 void intersect(EmbreeQuery const& query, int const* valid, RTCScene scene, RayHits& rays) {
     if constexpr (std::is_same_v<RayHits, RTCRayHit16>) {

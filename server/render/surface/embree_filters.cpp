@@ -21,7 +21,7 @@ struct Candidate {
     }
 };
 
-/// `i`: of the callback.
+/// Copies hit `i` of the callback into `lane` of `hits`.
 void keep_hit(RTCFilterFunctionNArguments const* args, unsigned i, int lane, HitPacket& hits) {
     hits.t[lane] = RTCRayN_tfar(args->ray, args->N, i);
     hits.u[lane] = RTCHitN_u(args->hit, args->N, i);

@@ -1,5 +1,5 @@
-// Which of the surfaces on a ray's way count as hits: what Embree calls for each that it finds. In: what is found. Out:
-// `valid` of its lane, 0 where the ray goes on.
+// Filters by which Embree decides which surfaces on a ray's way count as hits; it calls them for each that it finds.
+// In: the surfaces found. Out: `valid` of each lane, 0 where the ray goes on.
 #pragma once
 
 #include <span>
@@ -10,7 +10,7 @@
 
 namespace framelet {
 
-/// What a query finds of instances that move.
+/// A query's hits on instances that move: the first and the last of each lane of `met`.
 struct MovingHits {
     std::span<Instance const> instances; ///< by number
     HitPacket& nearest;
@@ -18,20 +18,22 @@ struct MovingHits {
     LaneMask met = 0;
 };
 
-/// Handed through Embree to the filters; its context must stand first.
+/// Context that Embree hands through to the filters; its own part must stand first.
 struct QueryContext {
     EmbreeContext embree;
     LaneVec3* transmittance = nullptr;
     MovingHits* moving = nullptr;
 };
 
-/// Passes cut-outs.
+/// Lets rays pass where a surface is cut out.
 void reject_cut_out(RTCFilterFunctionNArguments const* args);
-/// Passes single-sided surfaces that are met from behind.
+/// Lets rays pass single-sided surfaces that are met from behind.
 void reject_behind(RTCFilterFunctionNArguments const* args);
-/// Passes all that moves, of which `QueryContext::moving` gets the first and the last, and what lets light through.
+/// Lets rays pass what lets light through and all else that moves, of which `QueryContext::moving` gets the first and
+/// the last hit.
 void note_moving(RTCFilterFunctionNArguments const* args);
-/// Multiplies `QueryContext::transmittance` by what the surface lets pass, and passes it while that is anything.
+/// Multiplies `QueryContext::transmittance` by what the surface lets pass, and lets the ray pass while more than 1/1000
+/// is left.
 void attenuate_shadow(RTCFilterFunctionNArguments const* args);
 
 } // namespace framelet

@@ -12,7 +12,7 @@
 namespace framelet {
 namespace {
 
-/// Scenes this small have one top level, whatever moves in them.
+/// Scenes of at most this many instances have one top level, whatever moves in them.
 constexpr std::size_t few_instances = 256;
 
 struct Handle {
@@ -51,7 +51,8 @@ struct EmbreeScene::Handles {
     TopLevels levels() const { return {still.scene, moving.count > 0 ? moving.scene : nullptr, sixteen_wide}; }
     Level& level_of(Placed const& instance) { return instance.moves ? moving : still; }
 
-    /// After what takes memory; before it as well, so that nothing follows what has failed.
+    /// Throws std::bad_alloc where memory is missing. It is called after what takes memory; before it as well, so that
+    /// nothing follows what has failed.
     void throw_failure() {
         RTCError const error = rtcGetDeviceError(device);
         broken = broken || error == RTC_ERROR_OUT_OF_MEMORY || error == RTC_ERROR_UNKNOWN;

@@ -22,27 +22,28 @@ public:
     // All that builds or places throws std::bad_alloc where memory is missing, and from then on each time: Embree does
     // not say what it has left undone.
 
-    /// Follows `positions` that were written anew.
+    /// Refits the mesh to `positions` that were written anew.
     void refit_mesh(std::uint32_t mesh);
     /// Instances are numbered from 0 in the order in which they are added. Until it is placed an instance is not there.
     std::uint32_t add_instance(std::uint32_t mesh);
-    /// Not `present`: it vanishes. A transform that is present must be invertible with no element of its inverse above
-    /// 1 / `least_instance_scale`, and move to where rays can start.
+    /// An instance that is not `present` vanishes. A transform that is present must be invertible with no element of
+    /// its inverse above 1 / `least_instance_scale`, and move to where rays can start.
     void place_instance(std::uint32_t instance, Mat3 const& linear, Vec3 const& translation, bool present);
     /// Rebuilds the top level; needed after any of the above, before tracing.
     void commit();
 
-    /// Whether single-sided surfaces stop rays that meet them from behind.
+    /// Says whether single-sided surfaces stop rays that meet them from behind.
     enum class Behind { stops, passes };
 
-    /// Nearest hit of each active lane between near and far, cut-outs passed through. Returns the lanes that hit.
+    /// Finds the nearest hit of each active lane between near and far; rays pass cut-outs. Returns the lanes that hit.
     /// `Behind::passes` costs a call for every candidate: meant for the few rays that met a surface from behind.
     LaneMask intersect(RayPacket const& rays, LaneMask active, Behind behind, HitPacket& hits) const;
     /// Returns the lanes whose segment meets something opaque; multiplies `transmittance` of the others by what
     /// see-through surfaces let pass.
     LaneMask occluded(RayPacket const& rays, LaneMask active, LaneVec3& transmittance) const;
-    /// First and last opaque hit of each active lane among instances that move (`instances`: by number). Left out are
-    /// lanes whose segment meets something opaque that does not. Costs a call for every surface on the way.
+    /// Finds the first and last opaque hit of each active lane among instances that move (`instances`: by number).
+    /// Returns the lanes that have one, but for those whose segment meets something opaque that does not move. Costs a
+    /// call for every surface on the way.
     LaneMask intersect_moving(RayPacket const& rays, LaneMask active, std::span<Instance const> instances,
                               HitPacket& nearest, HitPacket& farthest) const;
 

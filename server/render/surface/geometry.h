@@ -1,4 +1,4 @@
-// What the BVH's numbers stand for: triangle lists with their attributes, and meshes placed in the world.
+// The things that the BVH's numbers stand for: triangle lists with their attributes, and meshes placed in the world.
 #pragma once
 
 #include <span>
@@ -26,7 +26,7 @@ float alpha_at(Geometry const& geometry, std::uint32_t triangle, float u, float 
 /// Share of light that goes straight through a see-through surface, per colour.
 Vec3 transmittance_at(Geometry const& geometry, std::uint32_t triangle, float u, float v);
 
-/// A mesh in the world. Identity for skinned meshes, whose vertices are in world space already.
+/// A mesh in the world. Its transform is the identity for skinned meshes, whose vertices are in world space already.
 struct Instance {
     std::span<Geometry const> geometries;
     Mat3 linear{1};
@@ -35,11 +35,11 @@ struct Instance {
     float handedness = 1; ///< -1 where the transform mirrors: the winding then reads clockwise in the world
     BodyNumber body = static_body;
     bool flows = false; ///< its samples have velocities, of the vertices or of the transform
-    Mat3 linear_rate{0}; ///< of `linear`, per second; of bodies as well
+    Mat3 linear_rate{0}; ///< change of `linear` per second; set for bodies as well
     Vec3 translation_rate{0};
     bool spins = false; ///< turns so fast that none of its points goes straight on for long
 
-    /// Whether it may be elsewhere soon: carried by a body, or deforming.
+    /// True where it may be elsewhere soon: carried by a body, or deforming.
     bool moves() const { return body != static_body || flows; }
 };
 

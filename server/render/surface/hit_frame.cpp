@@ -10,7 +10,7 @@ namespace {
 
 constexpr float shortest_squared = 1e-30f, longest_squared = 1e30f; // of a vector that still has a direction
 
-/// What is read per lane from the mesh, in the mesh's own space.
+/// Data of each lane that is read from the mesh, in the mesh's own space.
 struct ObjectSpace {
     LaneVec3 corner, edge1, edge2, normal;
     LaneFloats u, v;
@@ -45,7 +45,7 @@ void transform(Mat3 const& m, Vec3 const& offset, LaneVec3 const& from, LaneFloa
     }
 }
 
-/// Into the world, one instance after the other: a packet rarely meets more than two.
+/// Transforms hits into the world, one instance after the other: a packet rarely meets more than two.
 void to_world(ObjectSpace const& object, LaneMask hit, LaneFloats& handedness, HitFrame& out) {
     LaneVec3 point;
     for (int i = 0; i < lanes; ++i) {

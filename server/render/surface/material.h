@@ -24,7 +24,7 @@ struct RenderMaterial {
     bool uses_uv = false; ///< has a map of any kind
     TextureSampler base_color_map, metallic_roughness_map, normal_map, occlusion_map, emissive_map, transmission_map;
 
-    /// Light goes straight through in part: the ray continues behind it, shadows are attenuated.
+    /// True where light goes straight through in part: the ray continues behind it, shadows are attenuated.
     bool see_through() const { return alpha_mode == AlphaMode::blend || transmission > 0; }
 };
 

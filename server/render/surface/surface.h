@@ -1,5 +1,5 @@
-// From hits to surfaces: interpolated attributes, textures filtered over the sample's footprint, normal mapping.
-// In: rays and what they met. Out: what shading needs, sixteen lanes at a time, all of it finite.
+// Turns hits into surfaces: interpolated attributes, textures filtered over the sample's footprint, normal mapping. In:
+// rays and what they met. Out: what shading needs, sixteen lanes at a time, all of it finite.
 #pragma once
 
 #include "server/render/packet.h"

@@ -10,7 +10,7 @@
 
 namespace framelet {
 
-/// What a texture's bytes mean, which decides how they are averaged.
+/// Meaning of a texture's bytes, which decides how they are averaged.
 enum class TexelKind : std::uint8_t {
     color, ///< sRGB colour; alpha is ignored
     color_alpha, ///< sRGB colour of a surface that is partly there: averages weigh colour by alpha

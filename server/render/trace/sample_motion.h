@@ -1,5 +1,5 @@
-// What carries the samples of a framelet: bodies by number, and velocities where nothing rigid does.
-// In: traced packets. Out: a framelet's bodies and velocities, which stay empty where nothing moves.
+// Finds what carries the samples of a framelet: bodies by number, and velocities where nothing rigid does. In: traced
+// packets. Out: a framelet's bodies and velocities, which stay empty where nothing moves.
 #pragma once
 
 #include "common/framelet/framelet.h"
@@ -7,7 +7,7 @@
 
 namespace framelet {
 
-/// How fast the point moves that a lane has met of this instance: world metres a second.
+/// Velocity of the point of `instance` that a lane has met, world metres a second.
 Vec3 velocity_at(Instance const& instance, HitPacket const& hits, int lane);
 
 /// Adds the motion of the packet's lanes, samples `first` .. `first` + 15 of the framelet.

@@ -12,7 +12,8 @@ namespace {
 /// Reflections are traced below the first roughness and come from the prefiltered environment above the second.
 constexpr float traced_roughness = 0.15f;
 constexpr float filtered_roughness = 0.25f;
-/// Reflecting less than the first share of light no reflection is traced, above the second all of it is.
+/// A surface that reflects less than the first share of light has no reflection traced, above the second all of it is
+/// traced.
 constexpr float negligible_reflectance = 0.05f;
 constexpr float full_reflectance = 0.12f;
 
@@ -93,7 +94,7 @@ struct StrongestLight {
     }
 };
 
-/// Returns how many rays that took.
+/// Adds what the surface reflects of punctual lights. Returns how many rays that took.
 std::uint32_t add_lights(PreparedScene const& scene, SurfacePacket const& s, LobePacket const& lobes, LaneMask lit,
                          StrongestLight& strongest, LaneVec3& radiance) {
     std::uint32_t segments = 0;

@@ -1,5 +1,5 @@
-// Light that leaves surfaces towards the viewer: emission, environment, punctual lights with shadows. Which mirror
-// reflections it takes, and what they are worth; they are traced elsewhere.
+// Computes the light that leaves surfaces towards the viewer: emission, environment, punctual lights with shadows. It
+// also says which mirror reflections that takes, and what they are worth; they are traced elsewhere.
 #pragma once
 
 #include "server/render/light/brdf.h"
@@ -29,11 +29,11 @@ struct MirrorRays {
     LaneMask lanes = 0;
 };
 
-/// The lanes of `active` are shaded in two halves, between which mirror reflections are added to `out`. The first one
+/// The lanes of `active` are shaded in two halves, between which mirror reflections are added to `out`. The first half
 /// gives `lobes` for the second, emission and the environment's light. `may_reflect`: light may be followed once more.
 void shade_surroundings(PreparedScene const& scene, SurfacePacket const& surfaces, LaneMask active, bool may_reflect,
                         LobePacket& lobes, MirrorRays& mirror, ShadedPacket& out);
-/// The second one adds punctual lights with their shadows, and weighs all of it.
+/// The second half adds punctual lights with their shadows, and weighs all of it.
 void shade_lights(PreparedScene const& scene, SurfacePacket const& surfaces, LaneMask active, LobePacket const& lobes,
                   ShadedPacket& out);
 

@@ -13,12 +13,13 @@ namespace {
 
 /// Light that falls in flatter than this (sine) makes shadows that leap.
 constexpr float least_steepness = 0.02f;
-/// Metres a second: what is slower rests, what is faster is a leap.
+/// Speeds of shadows, metres a second: what is slower rests, what is faster is a leap.
 constexpr float slowest = 0.01f, fastest = 200;
-/// Samples of one shadow get the very same velocity, so that their layers can be joined: multiples of it.
+/// Velocities are multiples of this, metres a second: samples of one shadow get the very same velocity, so that their
+/// layers can be joined.
 constexpr float step = 1.0f / 32;
 
-/// Where to the light is, seen from each lane that has lost one.
+/// Rays to the light from each lane that has lost one.
 struct LostLights {
     RayPacket rays;
     LaneFloats distance; ///< +infinity for directional lights
@@ -36,7 +37,7 @@ LaneMask static_lanes_in_shadow(PreparedScene const& scene, TracedPacket const& 
     return lanes_in_shadow;
 }
 
-/// Rays to the lights, as shading traces them.
+/// Aims rays at the lights, as shading does.
 void aim(PreparedScene const& scene, TracedPacket const& traced, LostLights& out) {
     out.rays.origin = traced.leaving;
     out.rays.near.fill(0);
@@ -58,14 +59,15 @@ Vec3 rounded(Vec3 const& velocity) {
     return step * glm::round(velocity / step);
 }
 
-/// The shadow of what spins goes with the middle of it.
+/// Velocity of the point that throws the shadow. The shadow of what spins goes with its origin.
 Vec3 velocity_of_occluder(Instance const& instance, HitPacket const& hits, int lane) {
     return instance.spins ? instance.translation_rate : velocity_at(instance, hits, lane);
 }
 
-/// Of what is behind one another in the light the outline of the farther one is taken to show. Where that is of the
-/// same body the mean of both: the outline of a ball that rolls goes with its middle, and half way between where a ray
-/// enters it and where it leaves it nothing turns but along the ray.
+/// Velocity of the shadow in lane `i`. Where occluders are behind one another, the outline of the one farther from the
+/// surface is taken to show. Where both hits are on the same body it is the mean of both: the outline of a ball that
+/// rolls goes with its middle, and half way between where a ray enters it and where it leaves it nothing turns but
+/// along the ray.
 Vec3 velocity_of_shadow(PreparedScene const& scene, TracedPacket const& traced, LostLights const& lost,
                         HitPacket const& nearest, HitPacket const& farthest, int i) {
     auto const thrown_by = [&](HitPacket const& hits) {

@@ -12,10 +12,10 @@
 namespace framelet {
 namespace {
 
-/// Surfaces that a ray may pass, see-through or seen from behind, before the background ends it.
+/// Number of surfaces that a ray may pass, see-through or seen from behind, before the background ends it.
 constexpr int most_layers = 32;
 
-/// Less than this of what lies behind cannot be seen on a display of 8 bits.
+/// A smaller share of the light from behind a surface cannot be seen on a display of 8 bits.
 constexpr float least_throughput = 1.0f / 512;
 
 float mean(Vec3 const& v) {
@@ -144,8 +144,8 @@ void trace(PreparedScene const& scene, RayPacket& rays, LaneMask active, Footpri
             }
         }
         LaneMask const culled = hit & ~present;
-        // Behind a see-through surface: just off it. At one that is seen from behind: from just before it, since many
-        // files put a second triangle the other way round into the same place.
+        // A ray goes on just behind a see-through surface. At one that is seen from behind it goes on from just before
+        // it, since many files put a second triangle the other way round into the same place.
         for_each_lane(passed, [&](int i) { rays.near[i] = hits.t[i] * (1 + 0x1p-21f) + 1e-30f; });
         for_each_lane(culled, [&](int i) { rays.near[i] = std::max(rays.near[i], hits.t[i] * (1 - 0x1p-18f)); });
         active = passed | culled;

@@ -1,4 +1,4 @@
-// Rays in, radiance and depth out: nearest surfaces, shaded, composited front to back.
+// Traces rays: nearest surfaces are shaded and composited front to back. In: rays. Out: radiance and depth.
 #pragma once
 
 #include "server/render/packet.h"
@@ -12,8 +12,8 @@ struct TracedPacket {
     LaneVec3 radiance; ///< finite, >= 0
     LaneFloats depth; ///< ray parameter of the surface that contributes most; +infinity where that is the background
     HitPacket surface; ///< that surface, where something in the scene moves; instance `no_instance`: the background
-    /// Of that surface likewise: the light that it has lost to a shadow (as in `ShadedPacket`), and in lanes that have
-    /// lost one where rays leave it and the unit normal of its triangle.
+    /// The light that the same surface has lost to a shadow (as in `ShadedPacket`), likewise only where something
+    /// moves; in lanes that have lost one, where rays leave the surface and the unit normal of its triangle.
     LaneIndices lost_light;
     LaneVec3 leaving, facet;
     LaneMask reflects = 0; ///< lanes that show a traced mirror reflection

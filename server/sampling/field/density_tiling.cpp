@@ -39,7 +39,8 @@ private:
         return sums_[first + (std::size_t{1} << shift)] - sums_[first];
     }
 
-    /// Depth of the tiles of an element that is worth more than one, or that no tile is as coarse as.
+    /// Depth of the tiles that an element is cut into, because it is worth more than one tile or larger than the
+    /// coarsest ones.
     int depth_within(Tile element) const {
         std::uint64_t samples = integral(element);
         int depth = element.depth();

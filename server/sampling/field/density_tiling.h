@@ -14,18 +14,18 @@ namespace framelet {
 /// The tiles of one depth in one quadtree node.
 struct Patch {
     Tile node;
-    int depth = 0; ///< of its tiles, >= node.depth()
+    int depth = 0; ///< depth of its tiles, >= node.depth()
 
     bool operator==(Patch const&) const = default;
 };
 
-/// Tiles of a patch, those outside the viewport included.
+/// Number of tiles of a patch, including those outside the viewport.
 constexpr double tile_count(Patch const& patch) {
     return static_cast<double>(std::uint64_t{1} << (2 * (patch.depth - patch.node.depth())));
 }
 
-/// Which depth a field of density has: that of single pixels' framelets, but never more than `most_field_depth`, so
-/// that what is computed for each element does not grow with the picture.
+/// Quadtree depth of the elements (regions) of a field: the depth at which tiles have one sample a pixel, but at most
+/// `most_field_depth`, so that what is computed for each element does not grow with the picture.
 inline constexpr int most_field_depth = 6;
 inline int field_depth(ImagePlane const& plane) {
     return plane.pixel_depth() < most_field_depth ? plane.pixel_depth() : most_field_depth;
@@ -36,11 +36,12 @@ struct TilingScratch {
     std::vector<std::uint64_t> sums;
 };
 
-/// Disjoint patches that cover the viewport along the Morton curve. `samples_per_pixel`: 4^depth finite values >= 0 in
-/// Morton order; elements outside the viewport are not looked at. A node is one tile once the integral of density over
-/// it is at most two framelets (the middle, by ratio, between a framelet and its four children), within the plane's
-/// limits of depth. Elements finer than that stay one patch of equal tiles. Integrals are differences of prefix sums in
-/// whole steps of 1/256 sample, so that the cut does not depend on the order of summation.
+/// Replaces `patches` by disjoint patches that cover the viewport, along the Morton curve. `samples_per_pixel`: 4^depth
+/// finite values >= 0 in Morton order; elements outside the viewport are not looked at. A node is one tile once the
+/// integral of density over it is at most two framelets (the middle, by ratio, between a framelet and its four
+/// children), within the plane's limits of depth. Elements finer than that stay one patch of equal tiles. Integrals are
+/// differences of prefix sums in whole steps of 1/256 sample, so that the cut does not depend on the order of
+/// summation.
 void make_density_patches(ImagePlane const& plane, std::span<float const> samples_per_pixel, int depth,
                           TilingScratch& scratch, std::vector<Patch>& patches);
 

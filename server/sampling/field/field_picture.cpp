@@ -11,7 +11,7 @@ namespace {
 
 using Color = std::array<std::uint8_t, 3>;
 
-constexpr Color outline{64, 120, 200}; // no grey: apart from every value
+constexpr Color outline{64, 120, 200}; // not grey, so that it differs from every value
 
 Color grey(float value, float least, float most) {
     float const share = value > least ? std::log(value / least) / std::log(most / least) : 0;
@@ -29,13 +29,13 @@ void fill(Picture& picture, PixelRect const& rect, Color const& color) {
     }
 }
 
-/// Left and upper edge: the others are those of neighbours.
+/// Draws the left and the upper edge of a rectangle; the other two are edges of its neighbours.
 void draw_edges(Picture& picture, PixelRect const& rect) {
     fill(picture, {rect.left, rect.top, rect.right, rect.top + 1}, outline);
     fill(picture, {rect.left, rect.top, rect.left + 1, rect.bottom}, outline);
 }
 
-/// What stands still is never due again.
+/// Refreshes a second; 0 for what stands still, which is never due again.
 float refresh_rate(Region const& region, SamplingChoice const& choice) {
     return region.model.motion > 0 && choice.period > 0 ? 1 / choice.period : 0;
 }

@@ -1,4 +1,4 @@
-// What the server knows of a viewer's picture, drawn to be looked at ([Stephens 2011] fig. 3.4, 7.25). In: a field, the
+// Draws what the server knows of a viewer's picture, to be looked at ([Stephens 2011] fig. 3.4, 7.25). In: a field, the
 // choices, the cut that follows from them. Out: a picture of the viewport's size, brighter where there is more.
 #pragma once
 
@@ -16,7 +16,7 @@ enum class FieldView {
     motion, ///< drift a second, 0.01 .. 64; black: stands still
 };
 
-/// Values are grey on a logarithmic scale. `choices`: of every region of the field; `cut`: covers the viewport.
+/// Values are grey on a logarithmic scale. `choices`: one for every region of the field; `cut`: covers the viewport.
 Picture draw_field(RegionField const& field, std::span<SamplingChoice const> choices, std::span<Patch const> cut,
                    FieldView view);
 

@@ -11,11 +11,11 @@ namespace framelet {
 namespace {
 
 constexpr SceneTime short_time = 1.0 / 60;
-/// Of one framelet's part that are looked at.
+/// Most places where bodies meet that are looked at in one part of a framelet.
 constexpr int most_meetings = 4;
 constexpr double most_speed = 1e5;
 
-/// Where the body that is seen at this pixel takes it in a short time.
+/// Pixel to which the body that is seen at `pixel` carries it in `short_time`.
 glm::dvec2 moved(RenderedMoment const& moment, BodyNumber body, Vec2 pixel, float depth) {
     Motion const motion = moment.motions->between(body, moment.scene_time, moment.scene_time + short_time);
     if (motion == Motion{}) {
@@ -47,7 +47,7 @@ float meeting_speed(Framelet const& framelet, ImagePlane const& plane, RenderedM
         Vec2 const pixel = Vec2(rect.left, rect.top) + (Vec2(morton_x(sample), morton_y(sample)) + 0.5f) * spacing;
         double const apart =
             glm::distance(moved(moment, a, pixel, framelet.depth[i - 1]), moved(moment, b, pixel, framelet.depth[i]));
-        most = std::max(most, apart / short_time); // what is not a number is not greater
+        most = std::max(most, apart / short_time); // NaN is not greater
     }
     return static_cast<float>(std::min(most, most_speed));
 }

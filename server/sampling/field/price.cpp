@@ -6,14 +6,14 @@
 namespace framelet {
 namespace {
 
-/// What is shown and no longer true should be renewed within so many cycles.
+/// Regions that are no longer true should be rendered again within so many cycles.
 constexpr double stale_cycles = 3;
-/// What is true but coarse can wait longer, seconds.
+/// Seconds within which regions that are true but coarse should be refined: they can wait longer.
 constexpr double coarse_seconds = 0.12;
-/// Seconds that a region is expected to stay as it is: as long as it has, within these.
+/// Bounds of the seconds for which a region is expected to stay as it is: about as long as it has stayed so far.
 constexpr float least_life = 0.1f;
 constexpr float most_life = 4;
-constexpr float least_rest = 0.3f; ///< once all stands
+constexpr float least_rest = 0.3f; ///< the lower bound once nothing moves
 
 float expected_life(Region const& region, double now, bool all_stands) {
     float const still = static_cast<float>(std::min(now - region.changed, static_cast<double>(most_life)));
@@ -93,7 +93,7 @@ float solve_price(RegionField const& field, double now, Budget const& budget, st
         bool const near = ratio > 0.25 && ratio < 4;
         float const factor = static_cast<float>(near ? ratio : std::clamp(ratio * std::sqrt(ratio), 0.25, 64.0));
         price = std::clamp(ratio > 0.8 && ratio < 1.2 ? price : price * factor, least_price, most_price);
-        // What is left to correct is left to the next cycle, unless it is much.
+        // What remains to be corrected is left to the next cycle, unless it is much.
         if (step == most_steps || (ratio > 0.5 && ratio < 2)) {
             return price;
         }

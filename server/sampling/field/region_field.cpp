@@ -107,7 +107,7 @@ void drift_on(RegionField& field, ViewRays const& from, ViewRays const& to, bool
             pixels =
                 std::max(view_displacement(from, to, centre, region.inverse_depth, most_displacement), region.arriving);
         }
-        float const expected = region.speed * seconds; // pixels that the learnt motion is about
+        float const expected = region.speed * seconds; // pixels of camera motion that the learnt motion stands for
         float own = moving || turning ? region.model.motion * seconds : 0;
         if (pixels < expected) {
             own *= pixels / expected;
@@ -115,7 +115,7 @@ void drift_on(RegionField& field, ViewRays const& from, ViewRays const& to, bool
         float const more = own + drift_per_pixel * std::max(pixels - expected, 0.0f);
         region.drift = std::min(region.drift + more, most_drift);
         region.taken.drift = std::min(region.taken.drift + more, most_drift);
-        if (seconds > 0 && pixels != expected) { // from now on that is what the motion is about
+        if (seconds > 0 && pixels != expected) { // from now on the learnt motion stands for this
             region.speed = pixels / seconds;
             region.model.motion = more / seconds;
         }

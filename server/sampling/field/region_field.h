@@ -1,5 +1,6 @@
-// What the server knows of every region of one viewer's picture, and what the viewer holds there: a field over the
-// image plane in Morton order. In: time and camera as they go on, and what was rendered. Out: the error that is shown.
+// The region field: what the server knows of every region of one viewer's picture, and what the viewer holds there: a
+// field over the image plane in Morton order. In: time and camera as they go on, and what was rendered. Out: the error
+// that is shown.
 #pragma once
 
 #include <limits>
@@ -21,33 +22,34 @@ inline constexpr std::size_t probes_per_region = 16;
 /// Drift of one pixel of displacement: detail of a pixel is elsewhere after two.
 inline constexpr float drift_per_pixel = 0.5f;
 
-/// What has been taken to be rendered and is not learnt yet.
+/// Samples that have been taken to be rendered and are not learnt yet.
 struct TakenSamples {
     int level = -1; ///< -1: nothing
-    float drift = 0; ///< since it was taken
-    double when = never; ///< seconds
+    float drift = 0; ///< since they were taken
+    double when = never; ///< when they were taken, seconds
 };
 
 struct Region {
     RegionModel model = unknown_region();
-    int level = -1; ///< of what the viewer holds; -1: nothing
-    float drift = 0; ///< since that was rendered
+    int level = -1; ///< level of the samples that the viewer holds; -1: none
+    float drift = 0; ///< drift since those were rendered
     TakenSamples taken;
-    double rendered = never; ///< seconds
+    double rendered = never; ///< when those were rendered, seconds
     float left = 0; ///< mean squared error that the finest samples leave, by their last rendering alone
     double supersampled = never; ///< when the viewer got it with four rays a sample, seconds
-    double changed = never; ///< when it was last seen to be different
-    double suspected = never; ///< when it was last rendered with nothing to compare with, and might have changed
-    double checked = never; ///< when it was last rendered or probed
-    double asked = never; ///< the same, learnt or not
+    double changed = never; ///< when it was last seen to be different, seconds
+    /// When it was last rendered with nothing to compare with, and might have changed, seconds.
+    double suspected = never;
+    double checked = never; ///< when it was last rendered or probed, seconds
+    double asked = never; ///< when it was last taken to be rendered or probed, learnt or not, seconds
     bool settled = true; ///< false from a change that was seen until two renderings are the same
-    double refreshed = never; ///< when all its pixels were last rendered
+    double refreshed = never; ///< when all its pixels were last rendered, seconds
     float inverse_depth = 0; ///< mean, 1/metres
     float arriving = 0; ///< the farthest way, pixels, by which the camera's last step brought something here
     float speed = 0; ///< of the camera's motion here, pixels a second, when `model.motion` was learnt
     std::array<Probe, probes_per_region> probes{};
     std::size_t probe_count = 0;
-    std::array<float, probes_per_region> seen{}; ///< what the probes last were: their luma
+    std::array<float, probes_per_region> seen{}; ///< luma of the probes when they were last rendered
 };
 
 class RegionField {
@@ -67,10 +69,10 @@ public:
     Region& operator[](std::uint32_t index) { return regions_[index]; }
     Region const& operator[](std::uint32_t index) const { return regions_[index]; }
     std::size_t size() const { return regions_.size(); }
-    /// Pixels along a side, and of the part inside the viewport.
+    /// Pixels along a side of a region; `pixels_of` says how many pixels of one lie inside the viewport.
     int region_side() const { return plane_.side() >> depth_; }
     PixelRect rect_of(std::uint32_t index) const;
-    /// The region alone, of tiles of a depth that is no less than the field's.
+    /// The patch of one region alone, with tiles of a depth that is no less than the field's.
     Patch patch_of(std::uint32_t index, int tile_depth) const { return {{(1u << (2 * depth_)) + index}, tile_depth}; }
     float pixels_of(std::uint32_t index) const { return pixels_[index]; }
 
@@ -95,18 +97,18 @@ float shown_error(Region const& region, float more);
 /// Error of a region of which the viewer has nothing.
 inline constexpr float bare_error = 0.25f;
 
-/// Time goes on by `seconds` while the camera moves from one view to the other. `moving`: the scene's own things may
-/// move as well. A region drifts as it was found to, more where the camera has become faster, less where slower; as
+/// Lets time go on by `seconds` while the camera moves from one view to the other. `moving`: things of the scene may
+/// move as well. A region drifts as it was found to, more where the camera has become faster, less where slower: by as
 /// much as what it shows is carried away, or as what comes there instead.
 void drift_on(RegionField& field, ViewRays const& from, ViewRays const& to, bool moving, float seconds);
-/// What a patch shows with so many rays a sample: means of four are as good as samples of the next level.
+/// Level that a patch shows with so many rays a sample: means of four are as good as samples of the next finer level.
 int shown_level(RegionField const& field, Patch const& patch, int rays_per_sample);
 
-/// A patch has been taken to be rendered, with so many rays a sample.
+/// Notes that a patch has been taken to be rendered, with so many rays a sample.
 void take(RegionField& field, Patch const& patch, double now, int rays_per_sample);
-/// What of these was taken at `when`, and not later again, is taken no longer.
+/// Clears what was taken of these patches at `when`; what was taken again later stays taken.
 void release(RegionField& field, std::span<Patch const> patches, double when);
-/// Nothing that is held is true any more (a cut, another exposure).
+/// Declares that nothing that is held is true any more (a cut, another exposure).
 void invalidate(RegionField& field);
 
 } // namespace framelet

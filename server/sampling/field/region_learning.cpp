@@ -8,7 +8,7 @@
 namespace framelet {
 namespace {
 
-/// Where sample `i` of a tile lies, pixels.
+/// Position of sample `i` of a tile, pixels.
 Vec2 sample_position(ImagePlane const& plane, Tile tile, std::size_t i) {
     PixelRect const rect = plane.tile_rect(tile);
     float const spacing = plane.sample_spacing(tile);
@@ -16,7 +16,7 @@ Vec2 sample_position(ImagePlane const& plane, Tile tile, std::size_t i) {
     return Vec2(rect.left, rect.top) + (Vec2(morton_x(sample), morton_y(sample)) + 0.5f) * spacing;
 }
 
-/// Spreads over [0, count).
+/// Spreads seeds over [0, count).
 std::size_t scattered(std::uint32_t seed, std::size_t count) {
     return (seed * 0x9e3779b9u >> 16) % count;
 }
@@ -27,7 +27,7 @@ float luma_at(LumaHistory::Entry const& entry, std::size_t sample) {
 
 using Steps = std::array<std::uint16_t, framelet_samples>;
 
-/// How much each sample differs from the next one along the curve: where an edge is, the smallest motion shows.
+/// Difference of each sample to the next one along the curve, in steps of luma: at an edge the smallest motion shows.
 Steps steps_of(LumaHistory::Entry const& entry) {
     auto const step = [](int a, int b) { return static_cast<std::uint16_t>(std::abs(a - b)); };
     Steps steps;
@@ -38,7 +38,7 @@ Steps steps_of(LumaHistory::Entry const& entry) {
     return steps;
 }
 
-/// Of samples [first, last) the steepest.
+/// Index of the steepest of samples [first, last).
 std::size_t steepest(Steps const& steps, std::size_t first, std::size_t last) {
     std::uint16_t most = 0;
     for (std::size_t i = first; i < last; ++i) {
@@ -50,7 +50,8 @@ std::size_t steepest(Steps const& steps, std::size_t first, std::size_t last) {
     return first;
 }
 
-/// Notes some samples of a part of a framelet, one in each of equal shares of it: in turn the steepest and any one.
+/// Notes some samples of a part of a framelet as probes, one in each of equal shares of it: in turn the steepest and
+/// any one.
 void note_probes(RegionFindings& region, ImagePlane const& plane, LumaHistory::Entry const& entry, Steps const& steps,
                  std::size_t first, std::size_t count, std::size_t wanted) {
     Viewport const viewport = plane.viewport();
@@ -71,7 +72,7 @@ void note_probes(RegionFindings& region, ImagePlane const& plane, LumaHistory::E
 }
 
 float mean_inverse_depth(Framelet const& framelet, std::size_t first, std::size_t count) {
-    // Four sums side by side: they do not wait for each other. What is finer than four samples has one of each.
+    // Four sums side by side, which do not wait for each other. A part of a single sample uses one of them.
     std::array<float, 4> sums{};
     for (std::size_t i = 0; i < count; ++i) {
         sums[i % sums.size()] += 1 / std::max(framelet.depth[first + i], 1e-6f); // infinity gives 0
@@ -116,7 +117,7 @@ float drift_since(Region const& region, double now) {
     if (region.taken.level < 0) {
         return 0;
     }
-    // What has been taken again meanwhile knows that no more: what is known of before is too much.
+    // Where the region was taken again meanwhile, its drift since `now` is no longer known: `drift` is an upper bound.
     return region.taken.when == now ? region.taken.drift : region.drift;
 }
 
@@ -143,7 +144,7 @@ double examine_patch(RegionField const& field, Patch const& patch, std::span<Dis
         std::optional<std::span<float const, framelet_samples>> difference;
         float seconds = 0;
         LumaHistory::Entry const* const before = history.find(entry.tile);
-        // Of one moment the same samples are the same: that says nothing of what time changes.
+        // Two renderings of one moment are the same, which says nothing of what time changes.
         if (before != nullptr && before->moment != entry.moment) {
             for (std::size_t i = 0; i < change.size(); ++i) {
                 change[i] = static_cast<float>(entry.luma[i] - before->luma[i]) / LumaHistory::luma_steps;
@@ -199,7 +200,8 @@ bool learn_patch(RegionField& field, Patch const& patch, std::span<RegionFinding
         if (level == sampling_levels - 1) {
             region.left = unresolved_error(found.seen);
         }
-        // What is uncovered there may look like what was rendered there before. It fills a region in so long.
+        // What bodies uncover may look like what was rendered there before. At `meeting_speed` it fills the region in
+        // the inverse of this, seconds.
         region.model.motion =
             std::max(region.model.motion, found.meeting_speed / static_cast<float>(field.region_side()));
         if (found.seen.has_change) {
@@ -239,12 +241,12 @@ void learn_probes(Region& region, std::span<float const> luma, double now) {
         region.model.motion = std::max(region.model.motion, seconds > 0 ? drift / seconds : 0);
         region.changed = now;
     } else if (error > 0) {
-        // It is not what the viewer has, and stands: a step, after which it is worth rendering again.
+        // The region is not what the viewer has, and stands: a step, after which it is worth rendering again.
         constexpr float unseen_drift = 0.1f;
         region.model.motion = std::min(0.5f * region.model.motion, seconds > 0 ? unseen_drift / seconds : INFINITY);
         region.model.pace = RegionModel::unknown_pace();
     } else {
-        // Too few samples to say so of all of it, unless its last rendering did.
+        // The probes are too few to say that all of it stands, unless its last rendering said so.
         constexpr float least_motion = 0.5f;
         float const kept = region.settled || region.model.motion < least_motion ? 0 : 0.5f;
         region.drift *= kept;

@@ -1,4 +1,4 @@
-// Tilings: disjoint tiles that cover the viewport. In: an image plane and a density; out: a list of tiles.
+// Tilings: disjoint tiles that cover the viewport. In: an image plane and a depth. Out: a list of tiles.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@ struct Tiling {
 /// Every visible tile of one depth (uniform spatial density).
 Tiling make_uniform_tiling(ImagePlane const& plane, int depth);
 
-/// How many tiles that has; costs nothing.
+/// Number of tiles of that tiling, found without making it.
 std::size_t uniform_tile_count(ImagePlane const& plane, int depth);
 
 } // namespace framelet

@@ -1,5 +1,5 @@
-// Cells: squares of a few pixels of the picture, by which the server knows what a viewer shows there. In: a box of the
-// picture. Out: the cells and the pixels in them that it covers.
+// Cells: squares of 4x4 pixels of the picture, by which the server knows what a viewer shows there. In: a box of the
+// picture. Out: the cells, and the pixels in them, that it covers.
 #pragma once
 
 #include <algorithm>
@@ -17,18 +17,18 @@ inline constexpr int cell_pixels = cell_side * cell_side;
 
 /// What a cell of the picture shows.
 struct Cell {
-    float inverse_depth = -1; ///< of the nearest surface that covers most of it, in its middle, 1 / metres
-    float worn = 0; ///< least worn spacing on it, pixels; 0 where nothing shows
-    float detail = 0; ///< as of a piece, in this picture's pixels
-    float spacing = 0, decorrelation = 0; ///< of the piece
-    std::uint32_t piece = 0; ///< of its moment
+    float inverse_depth = -1; ///< of the surface that shows, in the middle of the cell, 1 / metres; -1: none
+    float worn = 0; ///< worn spacing of the piece that shows, pixels; 0 where nothing shows
+    float detail = 0; ///< of the piece that shows (`Piece::detail`), in this picture's pixels
+    float spacing = 0, decorrelation = 0; ///< of the piece that shows
+    std::uint32_t piece = 0; ///< index of that piece among those of its moment
     std::uint16_t covered = 0; ///< by anything: a bit for each pixel, row by row
-    std::uint8_t moment = 0; ///< slot
-    std::uint8_t share = 0; ///< of its pixels that what shows covers, of 16
-    bool leads = false; ///< as the viewer has it, before what is better
-    bool is_outdated = false; ///< the scene has jumped since: whatever comes shows before it
-    bool moves = false; ///< something of its framelet may, and does not rest
-    bool is_supersampled = false; ///< as of a piece
+    std::uint8_t moment = 0; ///< slot of the moment of that piece
+    std::uint8_t share = 0; ///< number of its 16 pixels that the piece that shows covers
+    bool leads = false; ///< what shows is a shadow that shows before better samples, as with the viewer
+    bool is_outdated = false; ///< the scene has jumped since that was rendered: whatever comes shows before it
+    bool moves = false; ///< something in the framelet that shows may move, and does not rest
+    bool is_supersampled = false; ///< as `Piece::is_supersampled`
     bool is_wrong = false; ///< something nearer is there, which the viewer does not hold
     float stale = 0; ///< squared luma by which the moment was found to look otherwise
 
@@ -36,7 +36,7 @@ struct Cell {
     float covered_share() const { return static_cast<float>(std::popcount(covered)) / cell_pixels; }
 };
 
-/// Cells around a position that show something else than is to be seen.
+/// A square of cells around a position that show something else than is to be seen.
 struct CellFault {
     Vec2 at{0}; ///< pixels
     int side = cell_side; ///< of the square of cells, pixels
@@ -51,13 +51,13 @@ constexpr unsigned bits_between(int first, int last) {
     return ((1u << last) - 1) & ~((1u << first) - 1);
 }
 
-/// Each bit of a cell's side to the first of its row.
+/// Moves bit r to the first bit of row r of a cell.
 constexpr unsigned spread_rows(unsigned rows) {
     return (rows & 1) | (rows & 2) << 3 | (rows & 4) << 6 | (rows & 8) << 9;
 }
 
-/// Calls `visit` with column, row and covered pixels (as of `Cell`) of each of so many cells of which a box [low, high]
-/// covers the centres of pixels.
+/// Calls `visit` with column, row and covered pixels (as of `Cell`) of each of the `columns` x `rows` cells in which
+/// the box [low, high], pixels, covers centres of pixels.
 template <class Visit>
 void for_each_covered(Vec2 low, Vec2 high, int columns, int rows, Visit visit) {
     low = glm::max(low - 0.5f, Vec2(0));

@@ -8,9 +8,9 @@
 namespace framelet {
 namespace {
 
-/// Inverse depths that differ by less than this share belong to one surface, besides by what pieces may be off.
+/// Inverse depths that differ by less than this share, beside the tolerance of the piece, belong to one surface.
 constexpr float same_surface = 0.02f;
-/// A piece that covers less of a cell than this is not what it shows, where there is another.
+/// A piece that covers fewer pixels of a cell than this shows only where it covers more of them than another.
 constexpr int least_share = cell_pixels / 2;
 /// More than a viewer can hold is not worth remembering as gone.
 constexpr std::size_t most_forgotten = std::size_t{1} << 18;
@@ -136,7 +136,7 @@ void Mirror::begin_base(ViewRays const& rays, SceneTime scene_time) {
     base_ = static_cast<std::size_t>(&begin_slot(rays, scene_time) - moments_.data());
 }
 
-/// Of the newest camera, after its base began.
+/// The slot of what moves at this scene time before the newest camera, since its base began.
 Mirror::Moment& Mirror::slot_of_moving(SceneTime scene_time) {
     auto const found = std::ranges::find_if(
         moments_, [&](Moment const& moment) { return belongs_to_base(moment) && moment.scene_time == scene_time; });
@@ -152,7 +152,7 @@ Mirror::Moment& Mirror::begin_slot(ViewRays const& rays, SceneTime scene_time) {
     return slot;
 }
 
-/// All of the newest camera into its base. What shows is not known until the next look.
+/// Moves all pieces of the newest camera into its base. What shows is not known until the next look.
 void Mirror::settle_now() {
     Moment& base = moments_[base_];
     std::uint64_t newest = base.number;
@@ -171,7 +171,7 @@ void Mirror::settle_now() {
     replace(base, base.pieces);
 }
 
-/// When all are used, the oldest moment's, but not the base.
+/// A free slot; when all are used, that of the oldest moment, but not the base.
 Mirror::Moment& Mirror::free_slot() {
     auto const rank = [this](Moment const& moment) {
         return std::pair(moment.number > 0 && &moment == &moments_[base_], moment.number);
@@ -202,7 +202,8 @@ void Mirror::give_back_room(Moment& moment) {
     }
 }
 
-/// What a viewer holds of one moment is the newest at each position: what is older than these goes.
+/// Marks those pieces of a moment as replaced that are older than these: a viewer holds the newest of one moment at
+/// each position.
 void Mirror::replace(Moment& moment, std::span<Piece const> pieces) {
     if (moment.pieces.empty() || pieces.empty()) {
         return;
@@ -227,7 +228,8 @@ void Mirror::replace(Moment& moment, std::span<Piece const> pieces) {
     }
 }
 
-/// Outliers show of the base and of the newest moments only, of which one may be still to come.
+/// True where outliers of a moment show: those of the base and of the newest moments, of which one may be still to
+/// come.
 bool Mirror::shows_outliers(Moment const& moment) const {
     return &moment == &moments_[base_] ||
            moment.number + FrameletPool::recent_moments > last_number_ + (awaits_moment_ ? 1 : 0);
@@ -237,7 +239,7 @@ PieceReprojection Mirror::to_picture(Moment const& moment, BodyMotions const& mo
     return {moment.rays, target_, Vec2(columns_, rows_) * float{cell_side}, &motions}; // the last cells are whole, too
 }
 
-/// Of a moment, from piece `first` on.
+/// Draws the pieces of a moment, from `first` on, into the cells.
 void Mirror::draw(Moment& moment, std::size_t first, BodyMotions const& motions) {
     moment.is_of_camera = same_camera(moment.rays, target_.rays);
     moment.reprojected.resize(first);
@@ -255,8 +257,8 @@ void Mirror::draw(Moment& moment, std::size_t first, BodyMotions const& motions)
     }
 }
 
-/// By the framelets of the base that are where they were rendered: pieces of a square may leave gaps between each
-/// other, its samples do not.
+/// Covers the cells of those framelets of the base that are where they were rendered: pieces of a square may leave gaps
+/// between each other, its samples do not.
 void Mirror::cover_from(Moment const& moment, std::size_t first) {
     for (std::size_t end = first; first < moment.pieces.size(); first = end) {
         bool is_still = true;
@@ -282,7 +284,7 @@ void Mirror::cover(Moment const& moment, std::size_t index) {
     }
 }
 
-/// In the pixels `mask` of a cell.
+/// Covers the pixels `mask` of a cell by a piece, which shows where it is better than what shows.
 void Mirror::show(Moment const& moment, std::size_t index, unsigned mask, int column, int row) {
     ReprojectedPiece const& reprojected = moment.reprojected[index];
     Cell& cell = cells_[index_of(column, row)];
@@ -300,7 +302,7 @@ void Mirror::show(Moment const& moment, std::size_t index, unsigned mask, int co
     }
 }
 
-/// A piece is what a cell shows.
+/// Makes a piece what a cell shows.
 void Mirror::put(Moment const& moment, std::size_t index, float inverse_depth, int share, Cell& cell) const {
     Piece const& piece = moment.pieces[index];
     ReprojectedPiece const& reprojected = moment.reprojected[index];
@@ -318,7 +320,7 @@ void Mirror::put(Moment const& moment, std::size_t index, float inverse_depth, i
     cell.share = static_cast<std::uint8_t>(share);
 }
 
-/// Than what a cell shows; of one moment, what came later.
+/// True where a piece is better than what a cell shows; of one moment, the later one is.
 bool Mirror::is_better(Moment const& moment, ReprojectedPiece const& reprojected, float inverse_depth, int share,
                        Cell const& cell) const {
     if (share < least_share || cell.share < least_share) {

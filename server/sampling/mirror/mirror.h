@@ -1,6 +1,6 @@
-// What a viewer holds (its `FrameletPool`), without its colours: pieces of the moments that it was sent, and what they
-// show in the picture of another moment. In: rendered framelets that are sent, where to look from. Out: for each cell
-// of that picture how good what the viewer shows there is.
+// Models what a viewer holds (its `FrameletPool`), without its colours: pieces of the moments that it was sent, and
+// what they show in the picture of another moment. In: rendered framelets that are sent, where to look from. Out: for
+// each cell of that picture how good what the viewer shows there is.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,7 @@ public:
     Viewport viewport() const { return viewport_; }
     int columns() const { return columns_; }
     int rows() const { return rows_; }
-    /// Of what was looked at last, row by row.
+    /// Cells of the picture that was looked at last, row by row.
     std::span<Cell const> cells() const { return cells_; }
     Cell const& cell(int column, int row) const { return cells_[index_of(column, row)]; }
     /// Pixels of a cell that lie in the viewport.
@@ -32,38 +32,39 @@ public:
                std::min(cell_side, viewport_.height - row * cell_side);
     }
     Piece const& piece_of(Cell const& cell) const { return moments_[cell.moment].pieces[cell.piece]; }
-    /// Where the middle of that piece is in the picture of the cell, pixels; how much larger it is than it was
-    /// rendered; of when it is.
+    /// Position of the middle of that piece in the picture looked at, pixels; `scale_of`: how much larger it is there
+    /// than it was rendered; `time_of`: the scene time that it was rendered for.
     Vec2 position_of(Cell const& cell) const { return moments_[cell.moment].reprojected[cell.piece].at; }
     float scale_of(Cell const& cell) const { return moments_[cell.moment].reprojected[cell.piece].scale; }
     /// The luma that a cell shows at a position in its picture, display-encoded.
     float luma_of(Cell const& cell, Vec2 at) const;
     SceneTime time_of(Cell const& cell) const { return piece_of(cell).scene_time; }
-    /// True where a new framelet takes the place of what shows, be it better or not: it is of the base of the camera
-    /// that is looked through, or out of date.
+    /// True where a new framelet takes the place of what shows, be it better or not: what shows is of the base of the
+    /// camera that is looked through, or out of date.
     bool gives_way(Cell const& cell) const {
         return cell.is_outdated || (cell.moment == base_ && moments_[base_].is_of_camera);
     }
-    /// True where what shows was rendered as another camera saw it: it is interpolated between its samples.
+    /// True where what shows was rendered for another camera: the viewer interpolates between its samples.
     bool is_moved(Cell const& cell) const { return !moments_[cell.moment].is_of_camera; }
-    /// True when the picture is from where the newest that had come by then was rendered, or nothing had: the camera
-    /// stands, for all that is known.
+    /// True when the camera looked through is that of the newest base that had come by then, or none had: as far as is
+    /// known, the camera stands.
     bool camera_stands() const { return camera_stands_; }
     /// The moment that was looked at last.
     MirrorView const& view() const { return target_; }
-    /// True when the picture is of this moment.
+    /// True when the picture looked at is of this moment.
     bool looks_at(MirrorView const& view) const;
 
     /// Finds what the viewer shows of `view` as bodies move by `motions`.
     void look(MirrorView const& view, BodyMotions const& motions);
-    /// The viewer gets these pieces, of one camera and one time, as well: they are remembered, and seen at once.
+    /// Adds pieces of one camera and one scene time that the viewer gets: they are remembered, and shown at once.
     void add(ViewRays const& rays, BodyMotions const& motions, std::span<Piece const> pieces);
-    /// The viewer settles (`FrameletPool::settle`); from the next look on.
+    /// Notes that the viewer settles (`FrameletPool::settle`), from the next look on.
     void settle() { settles_ = true; }
 
-    /// Marks what is at fault until something of the moment comes there. True where there is anything.
+    /// Marks the cells of faults, until something rendered with the camera looked through comes there. True where there
+    /// are any faults.
     bool mark(std::span<CellFault const> faults);
-    /// The viewer has evicted these; from the next look on.
+    /// Notes that the viewer has evicted these framelets, from the next look on.
     void forget(std::span<SentTile const> framelets);
 
     std::size_t moment_count() const;
@@ -72,10 +73,10 @@ private:
     struct Moment {
         ViewRays rays;
         SceneTime scene_time = 0; ///< of pieces that move
-        std::uint64_t number = 0; ///< in order of their coming; 0: free
+        std::uint64_t number = 0; ///< counts moments in the order in which they came; 0: the slot is free
         std::vector<Piece> pieces;
         std::vector<ReprojectedPiece> reprojected; ///< one each, in the picture that is looked at
-        bool is_of_camera = false; ///< that is looked through
+        bool is_of_camera = false; ///< its camera is the one that is looked through
     };
     std::size_t index_of(int column, int row) const {
         return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
@@ -104,7 +105,7 @@ private:
     Viewport viewport_;
     int columns_, rows_;
     std::vector<Cell> cells_;
-    /// Twice as many as a viewer has: it says late what it evicts.
+    /// Slots of moments, twice as many as a viewer has, since it says late what it evicts.
     std::array<Moment, 2 * FrameletPool::most_moments> moments_;
     std::unordered_set<std::uint64_t> forgotten_; ///< keys of framelets
     std::uint64_t last_number_ = 0;
@@ -114,7 +115,7 @@ private:
     bool camera_stands_ = false;
     bool awaits_moment_ = false; ///< nothing has come yet of the moment that is looked at
 
-    std::vector<std::uint64_t> newest_batch_; ///< by cell
+    std::vector<std::uint64_t> newest_batch_; ///< scratch, by cell
     std::vector<Piece> standing_, moving_; ///< scratch
     BodyTransforms transforms_; ///< scratch
 };

@@ -7,9 +7,9 @@
 namespace framelet {
 namespace {
 
-/// What is nearer by less than this share of its inverse depth is not worth looking for: crowns are full of it.
+/// What is nearer by less than this share of its inverse depth is not looked for: tree crowns are full of it.
 constexpr float nearer_share = 0.25f;
-/// Beyond so many standard deviations it is a change, or where all probes around it together are.
+/// Standard deviations beyond which the difference of a probe is a change, or the sum of all differences around it.
 constexpr float doubt = 4;
 
 Cell const& cell_at(Mirror const& mirror, Vec2 at) {
@@ -28,7 +28,7 @@ void for_each_position(RayGrid const& grid, Viewport viewport, Look look) {
     }
 }
 
-/// The cell of a position or one beside it.
+/// True where the cell of a position, or one beside it, shows something about as near.
 bool shows_as_near(Mirror const& mirror, Vec2 at, float inverse_depth) {
     int const column = static_cast<int>(at.x) / cell_side;
     int const row = static_cast<int>(at.y) / cell_side;
@@ -43,7 +43,7 @@ bool shows_as_near(Mirror const& mirror, Vec2 at, float inverse_depth) {
     return false;
 }
 
-/// Of luma: of one probe, or summed over some.
+/// Difference in luma, of one probe or summed over some.
 struct Difference {
     float luma = 0;
     float chance = 0; ///< its variance where nothing has changed; 0: not known
@@ -51,15 +51,15 @@ struct Difference {
     bool beyond(float deviations) const { return luma * luma > deviations * deviations * chance; }
 };
 
-/// The squared luma by which two looks at one surface may differ by chance: of its detail what lies between the samples
-/// of both (`blur`: the sum of their spacings), a share that grows with the side of the piece of what is no slope;
-/// display steps. `detail` as of a piece, lengths in pixels of the same picture.
+/// Variance of the luma by which two looks at one surface differ by chance: the detail between the samples of both
+/// (`blur`: the sum of their spacings); a share of the detail that grows with the side of the piece, for what is no
+/// slope; display steps. `detail` as of a piece, lengths in pixels of the same picture.
 float chance_difference(float detail, float blur, float side) {
     constexpr float bend_share = 0.3f, rounding = 4e-6f;
     return detail * (blur + bend_share * side) + rounding;
 }
 
-/// What a probe really shows with what the viewer does.
+/// Compares what a probe really shows with what the viewer does.
 Difference compare(Mirror const& mirror, Probe const& probe, float luma) {
     Cell const& shown = cell_at(mirror, probe.position);
     if (shown.share < cell_pixels) { // something else has come

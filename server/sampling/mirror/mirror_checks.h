@@ -1,4 +1,4 @@
-// What a mirror shows compared with what is really to be seen of the moment. In: a mirror, and inverse depths or luma
+// Compares what a mirror shows with what is really to be seen of the moment. In: a mirror, and inverse depths or luma
 // that were rendered of the moment. Out: positions around which the viewer shows something else; where to look for
 // such.
 #pragma once
@@ -12,16 +12,18 @@
 
 namespace framelet {
 
-/// Inverse depths of the positions of a grid, 1 / metres, row by row, < 0 where that is not known: of those where
-/// neither the cell of the position nor those beside it show anything about as near, the cells around are wrong.
+/// Finds where something nearer is to be seen than the viewer shows. `inverse_depth`: at the positions of the grid, 1 /
+/// metres, row by row, < 0 where it is not known. Where neither the cell of a position nor those beside it show
+/// anything about as near, the cells around are wrong.
 std::vector<CellFault> find_wrong(Mirror const& mirror, RayGrid const& grid, std::span<float const> inverse_depth);
 
 /// Replaces `probes` by one for each position of a grid that shows, well within a surface, what is of another time:
 /// with the luma that the viewer shows there.
 void list_probes(Mirror const& mirror, RayGrid const& grid, std::vector<Probe>& probes);
 
-/// What probes really show of the moment, luma in their order: where that differs from what they showed by more than
-/// chance the cells around are stale. `spacing`: pixels from one probe to the next.
+/// Finds where the moment looks otherwise than the viewer shows. `luma`: what the probes really show of the moment, in
+/// their order; where that differs from what the viewer shows by more than chance, the cells around are stale.
+/// `spacing`: pixels from one probe to the next.
 std::vector<CellFault> find_stale(Mirror const& mirror, std::span<Probe const> probes, std::span<float const> luma,
                                   int spacing);
 

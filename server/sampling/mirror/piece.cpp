@@ -13,23 +13,23 @@
 namespace framelet {
 namespace {
 
-/// Nearer than this nothing is told apart, 1 / metres.
+/// Greatest inverse depth that is told apart, 1 / metres.
 constexpr float most_inverse_depth = 1e6f;
-/// A quarter of a display step, squared: less detail than that is none.
+/// Least detail, a quarter of a display step, squared: less than that is none.
 constexpr float least_detail = 1e-6f;
-/// A piece has few samples to tell its detail by: so much of the whole framelet's is taken into it.
+/// Weight of the whole framelet's detail in that of a piece, which has few samples to tell it by.
 constexpr float common_share = 0.25f;
 
 constexpr float bounded(float inverse_depth) {
-    return inverse_depth >= 0 ? std::min(inverse_depth, most_inverse_depth) : 0; // of what is not a number: none
+    return inverse_depth >= 0 ? std::min(inverse_depth, most_inverse_depth) : 0; // NaN becomes 0
 }
 
-/// Of parts that a tile of this side is cut into, pixels.
+/// Side of the parts that a tile of this side is cut into, pixels.
 constexpr int part_side(int tile_side) {
     return std::clamp(tile_side / 8, 8, 16) < tile_side ? std::clamp(tile_side / 8, 8, 16) : tile_side;
 }
 
-/// What is summed over samples of one layer.
+/// Sums over samples of one layer.
 struct Sum {
     float count = 0, luma = 0, x = 0, y = 0, xx = 0, yy = 0, luma_x = 0, luma_y = 0;
     Vec2 low{INFINITY}, high{-INFINITY};
@@ -52,7 +52,7 @@ struct Sum {
     }
 };
 
-/// The same of samples that lie on no layer.
+/// The same sums over samples that lie on no layer.
 struct OutlierSum : Sum {
     float inverse_depth = 0, least = INFINITY, most = 0;
     Vec3 velocity{0};
@@ -69,13 +69,13 @@ struct OutlierSum : Sum {
     }
 };
 
-/// Of the samples; where they are and what carries them is left.
+/// Makes a piece of the sums over its samples; `put_on` sets its depth and what carries it.
 Piece piece_of(Sum const& sum, Vec2 corner, float spacing, float detail) {
     Piece piece;
     float const share = 1 / sum.count;
     Vec2 const middle = share * Vec2(sum.x, sum.y);
     Vec2 const side = sum.high - sum.low + 1.0f; // in samples
-    // What does not fill its box covers as much as it has samples.
+    // A piece that does not fill its box covers as much as it has samples.
     float const filled = std::sqrt(sum.count / (side.x * side.y));
     bool const whole = filled > 0.999f;
     Vec2 const centre = whole ? 0.5f * (sum.low + sum.high) : middle;
@@ -109,9 +109,9 @@ void put_on(OutlierSum const& sum, Piece& piece) {
     piece.is_outlier = true;
 }
 
-/// Of each block of 2x2 samples: half the mean squared difference of neighbours, those in the next blocks to the right
-/// and below among them, or what changes just between two blocks were no detail. As large as the variance of a block
-/// that something divides.
+/// Detail of each block of 2x2 samples: half the mean squared difference of neighbours, those in the next blocks to the
+/// right and below among them, or what changes just between two blocks were no detail. Where an edge divides a block it
+/// is as large as the variance of that.
 std::array<float, framelet_samples / 4> details_of(std::span<float const, framelet_samples> luma) {
     std::array<float, framelet_samples / 4> details;
     for (std::uint32_t block = 0; block < details.size(); ++block) {

@@ -15,21 +15,21 @@ struct Piece {
     Vec2 centre{0}; ///< in the picture of its moment, pixels
     Vec2 half_side{0}; ///< of the rectangle that it covers there, pixels
     float inverse_depth = 0; ///< at the centre, 1 / metres; finite, >= 0
-    Vec2 depth_slope{0}; ///< of the inverse depth, for each pixel
-    float error = 0; ///< by which inverse depths of its samples may differ, 1 / metres
+    Vec2 depth_slope{0}; ///< slope of the inverse depth, 1 / metres a pixel
+    float error = 0; ///< most by which inverse depths of its samples may differ, 1 / metres
     float spacing = 1; ///< of its samples, pixels
     float luma = 0; ///< mean, display-encoded, [0, 1]
-    Vec2 slope{0}; ///< of the luma, for each pixel
-    /// Energy of the detail between samples a pixel apart: of samples `s` pixels apart it is about s times as much, as
-    /// it is of edges, which are most of a picture. Mean squared luma.
+    Vec2 slope{0}; ///< slope of the luma, luma a pixel
+    /// Energy of the detail between samples a pixel apart, mean squared luma. Between samples `s` pixels apart it is
+    /// about s times as much, as it is of edges, which are most of a picture.
     float detail = 0;
     float decorrelation = 0; ///< pixels of spacing a second: see `common/framelet/sample_worth.h`
     SceneTime scene_time = 0; ///< when it was rendered
     Vec3 velocity{0}; ///< of what deforms, metres a second in the world at its scene time
     BodyNumber body = static_body;
     bool is_outlier = false; ///< its samples lie on no layer
-    bool moves = false; ///< something of its framelet may, being on a body or deforming
-    bool rests = false; ///< nothing of it does about its scene time: the viewer holds it with what stands
+    bool moves = false; ///< something in its framelet may move, being on a body or deforming
+    bool rests = false; ///< nothing in its framelet moves about its scene time: the viewer holds it with what stands
     bool is_replaced = false; ///< a newer framelet lies in its place: it is held no longer
     bool is_supersampled = false; ///< its samples are means of four rays each
     bool reflects = false; ///< shows a reflection somewhere, which moves otherwise than the surface
@@ -45,7 +45,7 @@ inline constexpr float surface_tolerance = 0.05f;
 void cut_pieces(Framelet const& rendered, DisplayFramelet const& shown, FrameletShape const& shape,
                 ImagePlane const& plane, SceneTime scene_time, std::uint64_t batch, std::vector<Piece>& pieces);
 
-/// The square of its framelet of which it is all there is, or with others; pixels, also beyond the viewport.
+/// The square of its framelet that a piece was cut from, alone or with others; pixels, also beyond the viewport.
 PixelRect part_of(Piece const& piece, ImagePlane const& plane);
 
 } // namespace framelet

@@ -11,11 +11,11 @@
 namespace framelet {
 namespace {
 
-/// Nearer than this (depth in the picture over depth where it was rendered) nothing is drawn.
+/// Least depth in the picture over the depth where a piece was rendered; what is nearer is not drawn.
 constexpr float nearest = 1e-3f;
 constexpr float most_pixels = 1e6f, most_scale = 1e6f;
-/// A moved piece covers somewhat more, or the gaps that turning and tilting leave between neighbours were holes,
-/// pixels.
+/// Pixels that a moved piece covers beyond each of its sides, or the gaps that turning and tilting leave between
+/// neighbours would count as holes.
 constexpr float margin = 0.5f;
 /// A plane whose area shrinks by more than this is seen edge-on.
 constexpr float thinnest = 1e-4f;
@@ -39,7 +39,7 @@ BodyTransform make_body_transform(PieceReprojection const& reprojection, Motion 
     return transform;
 }
 
-/// Of the body of a piece, at the scene time of the piece.
+/// Transform of the body of a piece, from the scene time of the piece.
 BodyTransform const& transform_of(PieceReprojection const& reprojection, Piece const& piece,
                                   BodyTransforms& transforms) {
     if (transforms.of_body.size() <= piece.body) {
@@ -55,7 +55,7 @@ BodyTransform const& transform_of(PieceReprojection const& reprojection, Piece c
     return transform;
 }
 
-/// `size`: of the picture, pixels; `age`: of the piece in it, seconds of scene time.
+/// Takes one piece to the picture. `size`: of the picture, pixels; `age`: of the piece in it, seconds of scene time.
 ReprojectedPiece reproject(Piece const& piece, BodyTransform const& body, Vec2 size, float age) {
     Vec3 parallax = body.parallax;
     if (piece.velocity != Vec3(0)) {
@@ -69,7 +69,7 @@ ReprojectedPiece reproject(Piece const& piece, BodyTransform const& body, Vec2 s
     ReprojectedPiece reprojected;
     float const share = 1 / at.z;
     reprojected.at = share * Vec2(at);
-    // How far it goes for each pixel to the right and down in the picture of its moment.
+    // How far it moves for each pixel to the right and down in the picture of its moment.
     Vec3 const dx = body.far[0] + piece.depth_slope.x * parallax;
     Vec3 const dy = body.far[1] + piece.depth_slope.y * parallax;
     Vec2 const right = share * (Vec2(dx) - dx.z * reprojected.at);

@@ -1,5 +1,6 @@
-// Where pieces lie in the picture of another moment, as the viewer moves what it holds. In: pieces of one moment, the
-// cameras and times of both, how bodies move. Out: for each piece the box that it covers, how near and how worn it is.
+// Finds where pieces lie in the picture of another moment, as the viewer moves what it holds. In: pieces of one moment,
+// the cameras and times of both, how bodies move. Out: for each piece the box that it covers, how near and how worn it
+// is.
 #pragma once
 
 #include <array>
@@ -26,14 +27,14 @@ bool same_camera(ViewRays const& a, ViewRays const& b);
 struct ReprojectedPiece {
     Vec2 at{0}; ///< its middle, pixels
     Vec2 half_side{0}; ///< of the box that it covers, pixels
-    float inverse_depth = -1; ///< < 0: it is not in the picture, and the rest says nothing
-    Vec2 depth_slope{0}; ///< of the inverse depth, for each pixel
-    float tolerance = 0; ///< by which its inverse depths may differ
+    float inverse_depth = -1; ///< at its middle, 1 / metres; < 0: it is not in the picture, and the rest says nothing
+    Vec2 depth_slope{0}; ///< slope of the inverse depth, 1 / metres a pixel
+    float tolerance = 0; ///< by which its inverse depths may differ, 1 / metres
     float scale = 1; ///< how much larger it is than it was rendered
-    float worn = 0; ///< spacing, pixels
+    float worn = 0; ///< worn spacing, pixels
     bool leads = false; ///< a shadow that shows before what it comes over
     bool is_still = false; ///< its pixels are where they were rendered
-    bool is_outdated = false; ///< the scene has jumped since
+    bool is_outdated = false; ///< the scene has jumped since it was rendered
 
     bool is_in_picture() const { return inverse_depth >= 0; }
 };
@@ -48,13 +49,14 @@ struct BodyTransform {
     bool is_still = false; ///< pixels stay where they are
 };
 
-/// Scratch: found once for all pieces of a body and a scene time, and kept so that nothing is allocated again.
+/// Scratch: transforms that are found once for all pieces of a body and a scene time, and kept so that nothing is
+/// allocated again.
 struct BodyTransforms {
     std::vector<BodyTransform> of_body;
     std::uint64_t stamp = 0;
 };
 
-/// From the picture of a moment to another.
+/// Mapping of pieces from the picture of one moment to that of another.
 struct PieceReprojection {
     ViewRays source{}; ///< the moment's camera
     MirrorView display{};
@@ -62,8 +64,8 @@ struct PieceReprojection {
     BodyMotions const* motions = nullptr; ///< not null
 };
 
-/// Appends one to `reprojected` for each piece; outliers unless `with_outliers`, what lies outside the picture and
-/// what is too coarse or too uncertain to hide anything are not in the picture.
+/// Appends one to `reprojected` for each piece. Not in the picture are outliers unless `with_outliers`, what lies
+/// outside, and what is too coarse or too uncertain to hide anything.
 void reproject(PieceReprojection const& reprojection, std::span<Piece const> pieces, bool with_outliers,
                BodyTransforms& transforms, std::vector<ReprojectedPiece>& reprojected);
 

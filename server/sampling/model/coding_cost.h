@@ -1,5 +1,5 @@
-// What samples cost where the link is what is scarce: those of flat regions take fewer bytes than others. In: what is
-// known of a region. Out: bits by level, estimated.
+// Estimates what samples cost where the link is scarce: those of flat regions take fewer bytes than others. In: what is
+// known of a region. Out: bits of a sample, by level.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace framelet {
 
-/// By level of sampling.
+/// Cost of a sample, by level of sampling.
 using LevelCosts = std::array<float, sampling_levels>;
 
 /// Bits of a sample of each level, > 0 and finite: half the binary logarithm of its Haar coefficients' energy over that

@@ -32,7 +32,7 @@ LumaHistory::Entry const* LumaHistory::find(Tile tile) const {
 }
 
 void LumaHistory::store(Entry const& entry) {
-    // Its own entry, an empty one or the oldest.
+    // Replaces the entry of the tile, else an empty one, else the oldest.
     auto const rank = [&entry](Entry const& e) { return e.tile == entry.tile ? 0 : e.tile == Tile{0} ? 1 : 2; };
     auto const first = entries_.begin() + static_cast<std::ptrdiff_t>(first_slot(entry.tile));
     *std::min_element(first, first + static_cast<std::ptrdiff_t>(ways()), [&rank](Entry const& a, Entry const& b) {

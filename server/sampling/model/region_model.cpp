@@ -10,19 +10,19 @@ namespace {
 
 /// No region is taken to be flatter than a quarter of a display step, so that each is looked at in full some time.
 constexpr float least_energy = 1e-6f;
-/// Of the display's range, with much to spare: what nothing exceeds.
+/// Energy that nothing exceeds: luma is in [0, 1], so that there is much to spare.
 constexpr float most_energy = 4;
-/// From one band to the next finer one where nothing is known.
+/// Energy of a band over that of the next coarser one, where nothing is known.
 constexpr float band_falloff = 0.5f;
-/// What is finer than the finest band, by the same falloff.
+/// Energy of all that is finer than the finest band over that of this band, by the same falloff.
 constexpr float tail = band_falloff / (1 - band_falloff);
 /// How much of the unsampled energy a tent filter lets through into the picture: (2/3)^2.
 constexpr float alias_share = 4.0f / 9.0f;
 /// A drift beyond which even the coarsest band has passed.
 constexpr float most_drift = 64;
-constexpr float most_motion = 1e6f; ///< a second
+constexpr float most_motion = 1e6f; ///< drift a second
 constexpr float most_pace = 1e3f;
-/// Of its bound, that a change is taken for at most: beyond, all that is known is that it has passed.
+/// Most share of its bound that a change is taken for: beyond, all that is known is that the band has passed.
 constexpr float most_share = 0.9f;
 
 /// Bands finer than a pixel are averaged away on the display and cannot become untrue.
@@ -48,11 +48,11 @@ RegionModel unknown_region() {
 
 LevelErrors level_errors(RegionModel const& region) {
     LevelErrors errors;
-    float unsampled = tail * region.energy.back(); // finer than the level
+    float unsampled = tail * region.energy.back(); // energy of what is finer than the level
     float missing = 0; // of that, what a pixel could show
     for (int level = sampling_levels - 1; level >= 0; --level) {
         auto const l = static_cast<std::size_t>(level);
-        // From a pixel on, the mean over its samples.
+        // From `pixel_level` on a pixel shows the mean over its samples.
         errors.unresolved[l] =
             level >= pixel_level ? unsampled / samples_per_pixel(level) : missing + alias_share * unsampled;
         unsampled += region.energy[l];
@@ -99,7 +99,7 @@ float drift_of_error(RegionModel& region, int level, float error) {
     if (!(bounds.growth > 0)) {
         region.pace = RegionModel::unknown_pace();
     }
-    // Monotone: halving the interval of the logarithm.
+    // `drift_error` is monotone: bisects the logarithm of the drift.
     float low = 1e-6f;
     float high = most_drift;
     for (int step = 0; step < 20; ++step) {
@@ -168,7 +168,7 @@ std::size_t coarsest_band(int level) {
     return static_cast<std::size_t>(std::max(level - static_cast<int>(framelet_octaves) + 1, 0));
 }
 
-/// Carries what is known of finer bands along.
+/// Takes over the energies of the observed bands, and carries what is known of finer bands along.
 void learn_energy(RegionModel& region, Observation const& seen) {
     auto const found = by_band(seen.level, seen.energy);
     auto const finest = static_cast<std::size_t>(seen.level);
@@ -185,7 +185,8 @@ void learn_energy(RegionModel& region, Observation const& seen) {
     region.finest_seen = std::max(region.finest_seen, seen.level);
 }
 
-/// Drift a second of each band, from what has changed of it; then what they have in common, and each one's own pace.
+/// Learns the drift a second of each band from what has changed of it; then the motion that they have in common, and
+/// each one's own pace.
 void learn_motion(RegionModel& region, Observation const& seen) {
     auto change = by_band(seen.level, seen.change);
     std::size_t const coarsest = coarsest_band(seen.level);

@@ -1,6 +1,6 @@
-// What the server knows of one region of the picture: how much detail it has at each spacing of samples and how fast
-// that detail passes. In: rendered framelets, beside what the same tile showed before. Out: the error that a viewer
-// would see, in mean squared difference of display-encoded luma, for any spacing and any age.
+// Models one region of the picture: how much detail it has at each spacing of samples and how fast that detail passes.
+// In: rendered framelets, beside what the same tile showed before. Out: the error that a viewer would see, in mean
+// squared difference of display-encoded luma, for any spacing and any age.
 //
 // The model (of our own, in no paper): detail is kept by bands, each of them what one more level of the quadtree
 // resolves. A band that is not sampled is missing from the picture and costs its energy E. A band that is sampled but
@@ -32,12 +32,12 @@ constexpr float samples_per_pixel(int level) {
 struct RegionModel {
     /// Energy of band b: what level b resolves beyond level b - 1. Band 0: all that level 0 resolves.
     std::array<float, sampling_levels> energy{};
-    int finest_seen = -1; ///< finer bands are extrapolated; -1: nothing is known
+    int finest_seen = -1; ///< finest band that was observed, finer ones are extrapolated; -1: nothing is known
     float motion = 0; ///< drift a second; 1 is about the time that detail of a pixel takes to be elsewhere
-    /// How soon each band passes, w: 1 for that of a pixel where all of it moves as one.
+    /// Pace of each band, w: how soon it passes; 1 for the band of a pixel where all of it moves as one.
     std::array<float, sampling_levels> pace = unknown_pace();
 
-    /// Doubling from band to band.
+    /// Pace where none has been seen: it doubles from a band to the next finer one.
     static constexpr std::array<float, sampling_levels> unknown_pace() {
         std::array<float, sampling_levels> pace{};
         for (std::size_t band = 0; band < pace.size(); ++band) {
@@ -59,7 +59,7 @@ float unresolved_error(RegionModel const& region, int level);
 /// Mean squared error by what has changed since, for samples of this level: 0 at drift 0, growing, bounded.
 float drift_error(RegionModel const& region, int level, float drift);
 
-/// drift_error for ever (its bound), and its growth at drift 0.
+/// Bounds of `drift_error`: `most`, what it tends to, and `growth`, its slope at drift 0.
 struct DriftBounds {
     float most = 0, growth = 0;
 };
@@ -76,28 +76,29 @@ LevelErrors level_errors(RegionModel const& region);
 /// given more: something has come that they knew nothing of.
 float drift_of_error(RegionModel& region, int level, float error);
 
-/// What one rendered framelet says of a part of its samples.
+/// Observation of a part of the samples of a rendered framelet.
 struct Observation {
     int level = 0;
     OctaveEnergies energy{}; ///< by octave of the framelet, 0 the finest
     bool has_change = false; ///< the tile has been rendered before
     OctaveEnergies change{}; ///< energies of the difference to then
     float mean_change = 0; ///< square of the difference of the means
-    float seconds = 0; ///< since then
+    float seconds = 0; ///< between then and now
 };
 
-/// Of samples [first, first + count) of a framelet in Morton order; `count` a power of 4. Coarser octaves than the part
-/// are those of the blocks that it lies in. `luma`: Haar coefficients of display-encoded luma; `change`: those of its
-/// difference to `seconds` before, where the same tile was rendered then.
+/// Observes samples [first, first + count) of a framelet in Morton order; `count` is a power of 4. Octaves coarser than
+/// the part are those of the blocks that it lies in. `luma`: Haar coefficients of display-encoded luma; `change`: those
+/// of its difference to `seconds` before, where the same tile was rendered then.
 Observation observe(int level, std::span<float const, framelet_samples> luma,
                     std::optional<std::span<float const, framelet_samples>> change, float seconds, std::size_t first,
                     std::size_t count);
 
-/// Mean of the observations of tiles that share a region.
+/// Sums up observations of tiles that share a region; `mean_of` makes their mean of the sum.
 void accumulate(Observation& sum, Observation const& more);
 Observation mean_of(Observation const& sum, int count);
 
-/// What the mean over a pixel's samples leaves unresolved, by the observation alone; of levels from a pixel on.
+/// Mean squared error that the mean over a pixel's samples leaves, by the observation alone; for levels from
+/// `pixel_level` on.
 float unresolved_error(Observation const& seen);
 
 /// Takes an observation into account. All results are finite and not below 0 for any finite input.

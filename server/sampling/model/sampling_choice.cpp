@@ -8,7 +8,8 @@
 namespace framelet {
 namespace {
 
-/// x with 1 - exp(-x)(1 + x) = cost, by a table over sqrt(cost), interpolated: x is nearly linear in that. In [0, 1).
+/// x with 1 - exp(-x)(1 + x) = cost, by a table over sqrt(cost), interpolated: x is nearly linear in that. `cost` is in
+/// [0, 1).
 class BestPeriod {
 public:
     BestPeriod() {
@@ -70,12 +71,12 @@ SamplingChoice choose_sampling(RegionModel const& region, float life, SamplingPr
         }
         if (paid < least) {
             least = paid;
-            // What is shown knows no bias: without it again.
+            // The error that is shown knows no bias: takes it out again.
             float const due = unresolved / space_weight + (paid - unresolved) / time_weight;
             best = {level, period, due, period < life};
         }
     };
-    // From the middle outwards: the best is mostly near, and what is far then need not be weighed.
+    // Goes from the middle outwards: the best is mostly near, and what is far then need not be weighed.
     int const middle = std::clamp(pixel_level, least_level, most_level);
     for (int level = middle; level >= least_level; --level) {
         offer(level);

@@ -1,5 +1,5 @@
-// The best way to sample a region for a given price of samples. In: what is known of the region, the price, how late
-// what is rendered shows. Out: how finely, how often, and what error that leaves.
+// Finds the best way to sample a region for a given price of samples. In: what is known of the region, the price, the
+// latency until it shows. Out: how finely, how often, and what error that leaves.
 //
 // A region that is refreshed at level l every P seconds shows on average the error
 //     F = unresolved(l) + mean over ages a in [latency, latency + P] of drift_error(l, motion a),
@@ -13,7 +13,7 @@
 
 namespace framelet {
 
-/// All samples cost the same.
+/// Costs of samples that all cost the same.
 inline constexpr LevelCosts equal_costs = [] {
     LevelCosts costs{};
     costs.fill(1);
@@ -34,9 +34,9 @@ struct SamplingChoice {
     bool recurring = false; ///< false: it goes on as it is for its life; another refresh is not worth its price
 };
 
-/// `life`: seconds for which the region is expected to go on as it does: nothing is worth more than it saves in that
-/// time. `least_level`, `most_level`: levels to choose from. `costs`: of a sample of each level, in those that the
-/// price is of.
+/// Chooses level and period. `life`: seconds for which the region is expected to go on as it does: nothing is worth
+/// more than it saves in that time. `least_level`, `most_level`: levels to choose from. `costs`: what a sample of each
+/// level costs, in the samples that `price` is of.
 SamplingChoice choose_sampling(RegionModel const& region, float life, SamplingPrice const& price, int least_level,
                                int most_level, LevelCosts const& costs = equal_costs);
 

@@ -15,7 +15,7 @@ namespace {
 constexpr double planned_seconds = 0.2, planned_seconds_in_motion = 0.06;
 /// A plan shows so many seconds late, besides what it takes to render.
 constexpr double plan_overhead = 0.05;
-/// A scene time that jumps by more than this over what has passed has been set.
+/// Seconds by which the scene time may jump beyond four times what has passed; one that jumps farther has been set.
 constexpr double most_time_step = 0.5;
 
 bool is_cut(ViewState const& a, ViewState const& b, double seconds) {
@@ -23,7 +23,7 @@ bool is_cut(ViewState const& a, ViewState const& b, double seconds) {
            a.view.camera.projection != b.view.camera.projection;
 }
 
-/// Of a sample, taken so far from 1.
+/// Mean cost of a sample, taken from 1 towards it by `share` of the way.
 float mean_cost(std::span<RatedPatch const> rated, float share) {
     double cost = 0, samples = 0;
     for (RatedPatch const& entry : rated) {
@@ -33,7 +33,7 @@ float mean_cost(std::span<RatedPatch const> rated, float share) {
     return samples > 0 ? 1 + share * (static_cast<float>(cost / samples) - 1) : 1.0f;
 }
 
-/// What means of four rays are compared with: to single rays they seem changed.
+/// History that remembers nothing, for means of four rays: beside single rays they would seem to have changed.
 LumaHistory const& no_history() {
     static LumaHistory const empty(1);
     return empty;
@@ -78,8 +78,8 @@ void AdaptiveRefresh::advance(RefreshInput const& input) {
     advanced_ = input.now;
 }
 
-/// After samples that were not moved, whose cameras make no difference to where the viewer holds them, a base begins
-/// as well.
+/// Notes when a base begins: with another camera, and after samples that were not moved, whose cameras make no
+/// difference to where the viewer holds them.
 void AdaptiveRefresh::note_base(Camera const& camera, bool moves_samples, double now) {
     if (!moves_samples) {
         base_camera_.reset();
@@ -156,8 +156,8 @@ void AdaptiveRefresh::plan_cycle(RefreshInput const& input, RefreshPlan& plan) {
     }
 }
 
-/// Before all else of the cycle, so that they are not what is cut off when it takes longer than expected. Returns what
-/// they cost.
+/// Plans periodic refreshes before all else of the cycle, so that they are not what is cut off when it takes longer
+/// than expected. Returns the samples that they cost.
 double AdaptiveRefresh::plan_periodic_refreshes(RefreshInput const& input) {
     Budget const budget{input.samples_per_second, input.cycle_seconds, input.delivery_seconds, input.bias,
                         input.limits};
@@ -169,8 +169,8 @@ double AdaptiveRefresh::plan_periodic_refreshes(RefreshInput const& input) {
     return tiles * framelet_samples;
 }
 
-/// The next patches of the cycle of as many rays a sample, as many as a batch may hold, at least one; in order of their
-/// regions, since neighbours are coded in fewer bytes beside each other.
+/// Takes the next patches of the cycle that have equally many rays a sample, as many as a batch may hold, at least one
+/// if any is left; in order of their regions, since neighbours are coded in fewer bytes beside each other.
 void AdaptiveRefresh::take_batch(std::size_t most_framelets, RefreshPlan& plan) {
     bool const single = next_ < first_supersampled_ || next_ == cycle_.size();
     plan.rays_per_sample = single ? single_ray : four_rays;
@@ -196,7 +196,7 @@ void AdaptiveRefresh::take_batch(std::size_t most_framelets, RefreshPlan& plan) 
     }
 }
 
-/// Samples cost the same unless the link is what is scarce.
+/// Finds what samples cost: all the same, unless the link is scarce.
 void AdaptiveRefresh::find_costs(RefreshInput const& input) {
     costs_.clear();
     if (!(rays_a_sample(input) > 1)) {
@@ -238,7 +238,7 @@ void AdaptiveRefresh::plan_patches(RefreshInput const& input, double samples) {
     append_rated(samples, samples * rays_a_sample(input));
 }
 
-/// What of the rated patches there is time for, to render and to send.
+/// Appends to the cycle those of the rated patches that there is time for, to render and to send.
 void AdaptiveRefresh::append_rated(double samples, double rays) {
     select_patches(samples, rays, rated_);
     if (!costs_.empty()) {
@@ -257,7 +257,7 @@ void AdaptiveRefresh::append_rated(double samples, double rays) {
     append(four_rays);
 }
 
-/// Where what the viewer holds shows the moment worst.
+/// Plans a cycle where what the viewer holds shows the moment worst.
 void AdaptiveRefresh::plan_moment(RefreshInput const& input, double samples, RefreshPlan& plan) {
     double rays = samples * rays_a_sample(input);
     if (!moments_.looks_at(input.moment->begun)) {

@@ -1,7 +1,8 @@
-// What one viewer's picture gets next, adaptively: price -> choices -> density -> tiling -> selection, and learning
-// from what was rendered. In: what is to be seen, when, how many samples a cycle has time for; then the framelets. Out:
-// tiles and probes to render, and which of the framelets are worth sending. Batches may be planned before those before
-// them are learnt: what has been taken is taken to become what the viewer holds, and is not taken again meanwhile.
+// Decides what one viewer's picture gets next, adaptively: price -> choices -> density -> tiling -> selection; and
+// learns from what was rendered. In: what is to be seen, when, how many samples a cycle has time for; then the
+// framelets. Out: tiles and probes to render, and which of the framelets are worth sending. A batch may be planned
+// before earlier ones are learnt: what has been taken counts as what the viewer will hold, and is not taken again
+// meanwhile.
 #pragma once
 
 #include <optional>
@@ -34,20 +35,20 @@ public:
     std::vector<std::uint8_t> const& learn(RefreshPlan const& plan, std::span<DisplayFramelet const> framelets,
                                            std::span<Framelet const> rendered, std::span<float const> probe_luma);
 
-    /// The viewer gets those framelets of a plan for which `sent` (of the plan's tiles) is not 0, in a batch of
-    /// this number, with these shapes, in order; sets how soon what they show fades. After `learn` of the same plan.
+    /// Notes that the viewer gets those framelets of a plan for which `sent` (of the plan's tiles) is not 0, in a batch
+    /// of this number, with these shapes, in order; sets how soon what they show fades. After `learn` of the same plan.
     void note_sent(RefreshPlan const& plan, std::uint64_t batch, std::span<DisplayFramelet const> framelets,
                    std::span<Framelet const> rendered, std::span<std::uint8_t const> sent,
                    std::span<FrameletShape> shapes);
-    /// What is really to be seen of the moment of a plan that asks for it: inverse depths at the positions of its grid,
-    /// 1 / metres, row by row; < 0: not known.
+    /// Takes in what is really to be seen of the moment of a plan that asks for it: inverse depths at the positions of
+    /// its grid, 1 / metres, row by row; < 0: not known.
     void note_visibility(RefreshPlan const& plan, std::span<float const> inverse_depth);
-    /// The viewer no longer holds these.
+    /// Notes that the viewer no longer holds these.
     void forget(std::span<SentTile const> framelets) { moments_.forget(framelets); }
-    /// The viewer is told that it holds all of the picture.
+    /// Notes that the viewer is told that it holds all of the picture.
     void settle() { moments_.settle(); }
 
-    // To look at it.
+    // These let others look at what it decides.
     Mirror const& mirror() const { return moments_.mirror(); }
     RegionField const& field() const { return field_; }
     Choices const& choices() const { return choices_; }
@@ -85,8 +86,8 @@ private:
     RegionField field_;
     LumaHistory history_;
     std::vector<LevelCosts> costs_; ///< of samples, by region; none where all cost the same
-    /// Of a sample planned lately, as estimated. It begins below what pictures have, so that a slow link is not filled
-    /// with the first of them (measured).
+    /// Mean bits of a sample planned lately, as estimated. It begins below what pictures have, so that a slow link is
+    /// not filled with the first of them (measured).
     float mean_bits_ = 1;
     Choices choices_;
     float price_ = 1e-6f;
@@ -95,8 +96,8 @@ private:
     double cycle_budget_ = 0; ///< samples
     double cycle_seconds_ = 0;
     std::vector<Patch> cycle_; ///< patches of the cycle
-    std::size_t first_supersampled_ = 0; ///< of these: from here on each sample is made of four rays
-    std::size_t next_ = 0; ///< of these
+    std::size_t first_supersampled_ = 0; ///< index in `cycle_` from which on each sample is made of four rays
+    std::size_t next_ = 0; ///< index in `cycle_` of the patch that is taken next
     std::vector<std::uint8_t> send_;
     MomentRefresh moments_;
 

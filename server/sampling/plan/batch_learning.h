@@ -1,5 +1,5 @@
-// Learning from what was rendered by a plan, all of its patches together. In: framelets. Out: what they say of the
-// field, the field brought up to date, and which framelets the viewer needs.
+// Learns from what was rendered by a plan, all of its patches together. In: framelets. Out: what they say of the field,
+// the field brought up to date, and which framelets the viewer needs.
 #pragma once
 
 #include <span>
@@ -13,13 +13,13 @@ namespace framelet {
 
 struct BatchFindings {
     std::vector<std::pair<std::size_t, std::size_t>> firsts; ///< first tile and first region of each patch
-    std::vector<LumaHistory::Entry> entries; ///< of the framelets
-    std::vector<RegionFindings> regions; ///< of the patches
-    std::vector<double> same_since; ///< of the patches, as `examine_patch` says
+    std::vector<LumaHistory::Entry> entries; ///< one of each framelet
+    std::vector<RegionFindings> regions; ///< one of each region of the patches
+    std::vector<double> same_since; ///< by patch, as `examine_patch` says
 };
 
-/// Replaces `findings` by what the framelets of a plan say, of all patches in parallel. `history`: none
-/// where samples are means of four rays, since beside single ones they would seem to have changed.
+/// Replaces `findings` by what the framelets of a plan say, of all patches in parallel. `history`: an empty one where
+/// samples are means of four rays, since beside single ones they would seem to have changed.
 void examine_batch(RegionField const& field, RefreshPlan const& plan, std::span<DisplayFramelet const> framelets,
                    std::span<Framelet const> rendered, LumaHistory const& history, BatchFindings& findings);
 
@@ -27,7 +27,8 @@ void examine_batch(RegionField const& field, RefreshPlan const& plan, std::span<
 void learn_batch(RegionField& field, RefreshPlan const& plan, BatchFindings const& findings,
                  std::vector<std::uint8_t>& needed);
 
-/// The viewer holds what a plan shows with four rays a sample. At rest that is all that is learnt of it.
+/// Notes that the viewer holds what a plan shows with four rays a sample. At rest that is all that is learnt of such a
+/// plan.
 void learn_supersampled(RegionField& field, RefreshPlan const& plan);
 
 } // namespace framelet

@@ -8,10 +8,10 @@ namespace {
 constexpr double least_refresh_period = 2;
 
 struct Gain {
-    double error = 0; ///< that refreshing takes away, beyond what is tolerated, summed over pixels
+    double error = 0; ///< error that refreshing takes away, beyond what is tolerated, summed over pixels
     double pixels = 0;
     double cost = 0; ///< of a sample, summed over pixels
-    bool spoils = false; ///< what is finer and still true
+    bool spoils = false; ///< it would put something coarser over what is finer and still true
 };
 
 Gain gain_of(RegionField const& field, Choices const& choices, std::span<float const> due, Budget const& budget,
@@ -22,14 +22,14 @@ Gain gain_of(RegionField const& field, Choices const& choices, std::span<float c
         auto const pixels = static_cast<double>(field.pixels_of(i));
         gain.pixels += pixels;
         gain.cost += pixels * static_cast<double>(costs_at(budget, i)[static_cast<std::size_t>(level)]);
-        if (pixels == 0 || region.taken.level >= 0) { // what it is worth is seen once it is learnt
+        if (pixels == 0 || region.taken.level >= 0) { // what a refresh is worth is seen once that is learnt
             continue;
         }
         gain.spoils =
             gain.spoils || (region.level > level && region.drift == 0 && (budget.still || region.model.motion == 0));
         float const unresolved = unresolved_error(region.model, level);
         float fresh = unresolved + drift_error(region.model, level, drift_on_the_way(region, budget));
-        if (region.rendered >= budget.moment_begun) { // of this moment there is only more detail to show
+        if (region.rendered >= budget.moment_begun) { // a later look at this moment can only show more detail
             float const detail = level > region.level ? unresolved_error(region.model, region.level) - unresolved : 0;
             fresh = due[i] - std::max(detail, 0.0f);
         }
@@ -56,7 +56,7 @@ void rate_patches(RegionField const& field, Choices const& choices, std::span<fl
         if (rate(patch)) {
             continue;
         }
-        // What is true among them must not keep the others waiting: each for itself.
+        // Regions that are true must not keep the others waiting: rates each region by itself.
         RegionField::Range const range = field.range_of(patch.node);
         for (std::uint32_t i = range.first; i < range.last && range.last - range.first > 1; ++i) {
             if (field.pixels_of(i) > 0) {

@@ -7,7 +7,7 @@ namespace {
 
 /// A region is probed again after so many seconds, sooner beside something that moves.
 constexpr double probe_period = 0.25;
-/// What should have been refreshed by then, and has not, is probed after so many.
+/// A region that is refreshed again and again but has not been seen for so many seconds is probed all the same.
 constexpr double most_unseen = 0.5;
 
 } // namespace
@@ -44,7 +44,7 @@ void select_probed(RegionField const& field, Choices const& choices, double now,
         if (region.level < 0 || region.taken.level >= 0 || region.probe_count == 0) {
             continue;
         }
-        // What is refreshed again and again needs no probes, as long as it is.
+        // A region that is refreshed again and again needs no probes, as long as it is.
         bool const planned = region.model.motion > 0 && choices.size() == field.size() && choices[index].recurring &&
                              static_cast<double>(choices[index].period) < probe_period;
         double const expected = planned ? most_unseen : 0;

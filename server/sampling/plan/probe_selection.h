@@ -1,5 +1,5 @@
-// Which regions are probed: those that seem to stand, and of which nothing has been seen for long. In: the field, the
-// choices, the time. Out: regions, the most suspect first.
+// Selects the regions that are probed: those that seem to stand, and of which nothing has been seen for long. In: the
+// field, the choices, the time. Out: regions, the most suspect first.
 #pragma once
 
 #include <vector>
@@ -9,12 +9,11 @@
 namespace framelet {
 
 struct ProbeScratch {
-    std::vector<std::uint8_t> active; ///< of the regions: whether it moves
-    std::vector<double>
-        suspicions; ///< of the regions: how long nothing was seen, seconds, times more beside what moves
+    std::vector<std::uint8_t> active; ///< by region: whether it moves
+    std::vector<double> suspicions; ///< by region: seconds unseen, 8 times as many beside what moves
 };
 
-/// Replaces `probed` by at most so many regions, the neighbours of what moves first.
+/// Replaces `probed` by at most `most` regions, the neighbours of what moves first.
 void select_probed(RegionField const& field, Choices const& choices, double now, std::size_t most,
                    ProbeScratch& scratch, std::vector<std::uint32_t>& probed);
 

@@ -1,5 +1,5 @@
-// What adaptive refresh is asked and what it answers. In: what is to be seen, when, how many samples a cycle has time
-// for. Out: tiles and probes to render, how long a cycle and how large a batch should be.
+// Values that adaptive refresh is asked by and answers with. In: what is to be seen, when, how many samples a cycle has
+// time for. Out: tiles and probes to render, how long a cycle and how large a batch should be.
 #pragma once
 
 #include <optional>
@@ -11,11 +11,11 @@
 
 namespace framelet {
 
-/// Bounds of a cycle's length.
+/// Bounds of a cycle's length, seconds.
 inline constexpr float least_cycle_seconds = 0.01f;
 inline constexpr float most_cycle_seconds = 0.05f;
-/// How long a cycle should be where planning one takes so long: planning may take a fortieth of it. `still`: nothing
-/// moves, so that a long one costs no freshness.
+/// Length of a cycle, seconds, where planning one takes `plan_seconds`: planning may take a fortieth of it. `still`:
+/// nothing moves, so that a long one costs no freshness.
 float cycle_length(bool still, double plan_seconds);
 
 struct RefreshInput {
@@ -23,13 +23,13 @@ struct RefreshInput {
     std::optional<HeldMoment> moment; ///< what is rendered instead, while things move; nothing: the present
     double now = 0; ///< seconds, steady
     double samples_per_second = 0; ///< what there is time for, to render and to send
-    /// What the renderer alone could do. Where that is more the link is what is scarce, and samples cost by the bytes
-    /// that they take: `samples_per_second` are of the mean then. 0: the same.
+    /// Samples a second that the renderer alone could do; 0: the same. Where that is more, the link is scarce, and
+    /// samples cost by the bytes that they take: `samples_per_second` then counts samples of mean cost.
     double rendered_per_second = 0;
-    float cycle_seconds = least_cycle_seconds; ///< how often the response is worked out anew
-    float delivery_seconds = 0; ///< from the end of its rendering until it shows
+    float cycle_seconds = least_cycle_seconds; ///< length of a cycle, after which another one is planned
+    float delivery_seconds = 0; ///< from the end of a batch's rendering until it shows
     float bias = 0;
-    /// How bodies move, as the viewer knows it that moves what it holds along with them; null for one that does not.
+    /// Motions of bodies, as a viewer knows them that moves what it holds along with them; null for one that does not.
     BodyMotions const* motions = nullptr;
     /// Most framelets of one batch; 0: what half a cycle has time for, so that it shows sooner, or all of it while
     /// nothing moves.
@@ -38,36 +38,36 @@ struct RefreshInput {
     ResponseLimits limits{};
 };
 
-/// Rays that there is time for, for each sample that there is time for to render and to send.
+/// Rays that there is time to render for each sample that there is time to render and to send.
 double rays_a_sample(RefreshInput const& input);
 
-/// Framelets that a batch may have. `still`: nothing moves, so that a large batch costs no freshness.
+/// Most framelets that a batch may have. `still`: nothing moves, so that a large batch costs no freshness.
 std::size_t batch_limit(RefreshInput const& input, bool still);
 
-/// What to render now.
+/// The work of one batch: what to render now.
 struct RefreshPlan {
-    double now = 0; ///< when
-    double still_since = 0; ///< when anything moved last
-    /// Since when a viewer that moves its samples has seen this camera and no other: what it was sent before, it has
-    /// moved away. `never`: it shows all where it was rendered.
+    double now = 0; ///< when it was made, seconds
+    double still_since = 0; ///< when anything moved last, seconds
+    /// Time, seconds, since which a viewer that moves its samples has seen this camera and no other: what it was sent
+    /// before, it has moved away. `never`: it shows all where it was rendered.
     double base_begun = never;
     Viewport viewport;
-    double moment_begun = 0; ///< when what is rendered was the present
+    double moment_begun = 0; ///< when what is rendered was the present, seconds
     RenderedMoment moment; ///< whose motions must live until it is learnt
-    bool is_new_cycle = false; ///< worked out anew, not what the last one left
-    bool is_mirrored = false; ///< of a held moment, by what the viewer will see of it
-    ResponseLimits limits{}; ///< by which it was made
+    bool is_new_cycle = false; ///< the cycle was planned anew; false: this is more of the last one
+    bool is_mirrored = false; ///< planned by the mirror: of a held moment, by what the viewer will see of it
+    ResponseLimits limits{}; ///< by which the plan was made
     std::vector<Patch> patches;
     std::vector<std::size_t> tile_counts; ///< of each patch
     std::vector<Tile> tiles; ///< of the patches, in order
     int rays_per_sample = single_ray; ///< of the tiles
-    /// Where what the moment shows is to be compared with what the viewer would.
+    /// Positions at which what the moment shows is to be compared with what the viewer would show.
     std::optional<MomentChecks> checks;
-    std::vector<Probe> probes; ///< of the probed regions, in order
-    std::vector<std::uint32_t> probed; ///< regions
+    std::vector<Probe> probes; ///< of the probed regions, in order, or those of a moment
+    std::vector<std::uint32_t> probed; ///< regions that are probed
 
     bool is_empty() const { return tiles.empty() && probes.empty() && !checks; }
-    /// Through the samples of the tiles.
+    /// Number of rays through the samples of the tiles.
     std::size_t ray_count() const {
         return tiles.size() * framelet_samples * static_cast<std::size_t>(rays_per_sample);
     }

@@ -1,9 +1,10 @@
-// How fast the renderer is, from what it did lately. In: samples and seconds of each batch; out: samples per second.
+// Estimates how fast the renderer is, from what it did lately. In: samples and seconds of each batch. Out: samples per
+// second.
 #pragma once
 
 namespace framelet {
 
-/// Of a renderer that has not been measured yet.
+/// Rate assumed of a renderer that has not been measured yet.
 inline constexpr double first_samples_per_second = 1e6;
 
 /// Running estimate; 0 until the first measurement.

@@ -1,11 +1,11 @@
-// What is to be seen, and what is rendered of it.
+// The states of what is to be seen, and of what is rendered of it.
 #pragma once
 
 #include "common/framelet/framelet.h"
 
 namespace framelet {
 
-/// What is on screen is worth refining for as long as this stays the same.
+/// State of what is to be seen. The picture on screen is worth refining for as long as this stays the same.
 struct ViewState {
     NumberedView view;
     float exposure = 1;
@@ -14,16 +14,16 @@ struct ViewState {
     bool operator==(ViewState const&) const = default;
 };
 
-/// What is rendered for a while instead of the present: a viewer that moves what it holds loses little by it, and has
-/// to join samples of few moments only.
+/// The moment that is rendered for a while instead of the present: a viewer that moves what it holds loses little by
+/// it, and has to join samples of few moments only.
 struct HeldMoment {
     ViewState state;
     double begun = 0; ///< when it was the present, seconds, steady
-    SceneTime shown_from = 0; ///< as of a Batch
-    bool outdates = false; ///< as of a Batch
+    SceneTime shown_from = 0; ///< as `Batch::shown_from`
+    bool outdates = false; ///< as `Batch::outdates`
 };
 
-/// True when both show the same picture: the number of the camera apart.
+/// True when both show the same picture; the number of the camera does not matter.
 inline bool same_picture(ViewState const& a, ViewState const& b) {
     return a.view.camera == b.view.camera && a.view.viewport == b.view.viewport && a.exposure == b.exposure &&
            a.scene_time == b.scene_time;

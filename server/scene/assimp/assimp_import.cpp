@@ -14,8 +14,8 @@
 namespace framelet {
 namespace {
 
-/// What is made of a byte of a mesh file, roughly: six bytes of an OBJ, more of a binary PLY. What cannot fit is so
-/// refused before it is read.
+/// Bytes of memory that a byte of a mesh file becomes, roughly: six for an OBJ, more for a binary PLY. A file that
+/// cannot fit is thus refused before it is read.
 constexpr std::uint64_t memory_per_file_byte = 8;
 
 /// Normals of a file without any are smooth across edges up to this angle.

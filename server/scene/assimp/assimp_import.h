@@ -1,4 +1,4 @@
-// Every format but glTF, through Assimp, to a Scene that still has to be finished (scene_finish.h).
+// Reads every format but glTF, through Assimp, into a Scene that still has to be finished (scene_finish.h).
 // In: a path. Out: a Scene, or an InputError without the file's name.
 #pragma once
 

@@ -90,7 +90,7 @@ struct Builder {
         }
     }
 
-    /// A skin for every node whose mesh has bones, and the four strongest bones of its vertices.
+    /// Adds a skin for every node whose mesh has bones, and the four strongest bones of its vertices.
     void add_skins() {
         for (auto const& [parts, mesh_index] : mesh_by_parts) {
             aiMesh const& mesh = *from.mMeshes[parts.front()];

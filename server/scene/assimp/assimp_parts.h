@@ -12,14 +12,14 @@ struct aiScene;
 
 namespace framelet {
 
-/// Images, textures and materials, decoded.
+/// Imports images, textures and materials, decoded.
 void import_assimp_materials(aiScene const& from, SceneFolder const& folder, ImportBudget& budget, Scene& scene,
                              Progress const& progress);
 
-/// A mesh's triangles; its points, lines and bones are left out.
+/// Imports a mesh's triangles; its points, lines and bones are left out.
 Primitive import_assimp_primitive(aiMesh const& from);
 
-/// Nodes with their meshes, skins, cameras, lights and animations.
+/// Imports nodes with their meshes, skins, cameras, lights and animations.
 void import_assimp_nodes(aiScene const& from, Scene& scene);
 
 } // namespace framelet

@@ -12,7 +12,7 @@
 namespace framelet {
 namespace {
 
-/// A vertex has three numbers, which take a byte each at least.
+/// Least bytes that an element takes: a vertex has three numbers, which take a byte each at least.
 constexpr std::uintmax_t least_element_bytes = 3;
 
 void check_count(std::string const& count, std::uintmax_t file_bytes) {
@@ -39,7 +39,7 @@ std::vector<std::string> next_words(std::istream& in) {
     return words;
 }
 
-/// "OFF", then the numbers of vertices, faces and edges, on the same line or the next.
+/// Checks an .off file: "OFF", then the numbers of vertices, faces and edges, on the same line or the next.
 void check_off(std::istream& in, std::uintmax_t file_bytes) {
     std::size_t counts = 0;
     for (auto words = next_words(in); !words.empty() && counts < 3; words = next_words(in)) {
@@ -53,7 +53,7 @@ void check_off(std::istream& in, std::uintmax_t file_bytes) {
     }
 }
 
-/// Lines "element NAME COUNT" up to "end_header".
+/// Checks a .ply file: lines "element NAME COUNT" up to "end_header".
 void check_ply(std::istream& in, std::uintmax_t file_bytes) {
     for (auto words = next_words(in); !words.empty() && words[0] != "end_header"; words = next_words(in)) {
         if (words[0] == "element" && words.size() > 2) {

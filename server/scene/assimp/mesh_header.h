@@ -1,5 +1,5 @@
-// What the header of a mesh file promises, against the file's size: Assimp takes memory for as many elements as the
-// header says before it reads the first.
+// Checks what the header of a mesh file promises against the file's size: Assimp takes memory for as many elements as
+// the header says before it reads the first.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// What pictures of older material formats hold, and how to turn them into what a Material wants.
+// Finds what pictures of older material formats hold, and turns them into what a Material wants.
 // In and out: pictures.
 #pragma once
 

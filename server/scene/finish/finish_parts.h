@@ -13,13 +13,15 @@ namespace framelet {
 /// Largest coordinate that a vertex, a node or a key may have, metres: products of several stay finite in a float.
 inline constexpr float max_coordinate = 1e9f;
 
-/// Transforms are finite, rotations unit length, skins usable, morph weights as many as targets.
+/// Checks and completes the nodes: afterwards transforms are finite, rotations unit length, skins usable, morph weights
+/// as many as targets.
 void finish_nodes(Scene& scene);
 
-/// Keys are finite, their times increase, values fit; clips have their duration, those that move nothing are removed.
+/// Checks and completes the clips: afterwards keys are finite, their times increase, values fit, clips have their
+/// duration; those that move nothing are removed.
 void finish_clips(Scene& scene);
 
-/// "mesh 3 'door'", for messages.
+/// The name of a thing for messages: "mesh 3 'door'".
 inline std::string named(char const* kind, std::size_t index, std::string const& name) {
     return std::string(kind) + " " + std::to_string(index) + (name.empty() ? "" : " '" + name + "'");
 }

@@ -6,7 +6,7 @@
 namespace framelet {
 namespace {
 
-/// Weights exist for every morph target: missing ones are 0, those too many are dropped.
+/// Gives every morph target a weight: missing ones are 0, those too many are dropped.
 void finish_morph_weights(Scene& scene) {
     auto const repair = [](std::vector<float>& weights, std::size_t targets) {
         weights.resize(targets);
@@ -59,7 +59,8 @@ void finish_transforms(Scene& scene) {
     }
 }
 
-/// Skins whose joints are all in the scene and whose influences name joints that exist; others are taken off.
+/// Takes skins off that have joints outside the scene, or whose mesh has no influences. Throws InputError where an
+/// influence names a joint that its skin lacks, or an inverse bind matrix is not a number.
 void finish_skins(Scene& scene) {
     std::vector<bool> usable;
     for (std::size_t i = 0; i < scene.skins.size(); ++i) {

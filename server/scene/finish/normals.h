@@ -1,4 +1,4 @@
-// Vertex normals for primitives that come without, or with broken ones.
+// Makes vertex normals for primitives that come without, or with broken ones.
 // In: a primitive whose triangles are in range. Out: unit normals, one a vertex.
 #pragma once
 
@@ -6,8 +6,8 @@
 
 namespace framelet {
 
-/// Flat shading, as glTF 2.0 section 3.7.2.1 asks for where a file has no normals: splits the vertices so that no two
-/// triangles share one. Morph targets get the offsets that keep the morphed shape flat.
+/// Makes the shading flat, as glTF 2.0 section 3.7.2.1 asks for where a file has no normals: splits the vertices so
+/// that no two triangles share one. Morph targets get the offsets that keep the morphed shape flat.
 void make_flat_normals(Primitive& primitive);
 
 /// Makes every normal unit length. Vertices whose normal is zero or not finite get the mean of their triangles',

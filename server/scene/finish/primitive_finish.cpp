@@ -58,7 +58,7 @@ std::size_t repair(std::vector<T>& values, T const& otherwise) {
     return count;
 }
 
-/// Weights sum to 1, the strongest first; a vertex without any belongs to its first joint.
+/// Makes weights sum to 1, the strongest first; a vertex without any belongs to its first joint.
 void normalise_influences(Primitive& primitive) {
     for (JointInfluence& influence : primitive.influences) {
         std::array<std::pair<float, std::uint16_t>, 4> sorted;

@@ -6,7 +6,7 @@
 
 namespace framelet {
 
-/// What had to be repaired, for a warning.
+/// Numbers of things that had to be repaired, for a warning.
 struct PrimitiveRepairs {
     std::size_t normals = 0; ///< vertices whose normal was unusable
     std::size_t other = 0; ///< texture coordinates, colours and morph offsets that were not finite

@@ -34,7 +34,7 @@ std::size_t hash_of(VertexKey const& key) {
     return hash;
 }
 
-/// For every vertex the first one that is alike.
+/// Finds for every vertex the first one that is alike.
 std::vector<std::uint32_t> find_alike(Primitive const& primitive, std::span<Vec2 const> uv) {
     std::size_t const count = primitive.positions.size();
     std::size_t table_size = 16;

@@ -61,7 +61,7 @@ void convert(std::byte const* from, std::size_t components, bool normalized, flo
     }
 }
 
-/// One element to floats (glTF 2.0 section 3.6.2.2: c / max, not below -1, where normalised).
+/// Converts one element to floats (glTF 2.0 section 3.6.2.2: c / max, not below -1, where normalised).
 void convert_element(int type, bool normalized, std::byte const* from, std::size_t components, float* out) {
     switch (type) {
     case TINYGLTF_COMPONENT_TYPE_BYTE:
@@ -193,7 +193,7 @@ int GltfAccessors::components(int accessor) const {
     return tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(find(accessor).type));
 }
 
-/// The count, once memory for that many may be allocated.
+/// Number of elements, once memory for that many may be allocated.
 std::size_t GltfAccessors::checked_count(int accessor, std::size_t components_wanted, std::size_t bytes_each) const {
     if (static_cast<std::size_t>(components(accessor)) != components_wanted) {
         fail(accessor_name(accessor), "has " + std::to_string(components(accessor)) + " components where " +

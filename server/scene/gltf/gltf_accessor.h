@@ -1,5 +1,5 @@
-// Typed reading of glTF accessors: strided, sparse, normalised integers. Every index, offset and count of the file is
-// checked here before it is used. In: a model as tinygltf read it. Out: vectors of values, or an InputError.
+// Reads glTF accessors as typed values: strided, sparse, normalised integers. Every index, offset and count of the file
+// is checked here before it is used. In: a model as tinygltf read it. Out: vectors of values, or an InputError.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +22,7 @@ class GltfAccessors {
 public:
     GltfAccessors(tinygltf::Model const& model, ImportBudget& budget) : model_(model), budget_(budget) {}
 
-    /// Bytes of a buffer view.
+    /// The bytes of a buffer view.
     std::span<std::byte const> view(int buffer_view) const;
 
     /// Number of elements; throws where there is no such accessor, or the file does not hold so many.

@@ -9,7 +9,7 @@
 namespace framelet {
 namespace {
 
-/// Where the file's channel says what the scene knows; false for other targets.
+/// Sets property and components of the channel by the file's target path; false for paths that the scene does not know.
 bool find_property(std::string const& path, AnimationChannel& channel) {
     if (path == "translation" || path == "scale") {
         channel.property = path == "scale" ? AnimatedProperty::scale : AnimatedProperty::translation;

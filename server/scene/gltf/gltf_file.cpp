@@ -27,7 +27,7 @@ bool is_known_extension(std::string_view name) {
 /// JSON nested deeper than this is refused: tinygltf goes through some of it recursively.
 constexpr int max_json_depth = 64;
 constexpr std::size_t longest_media_type = 40;
-/// tinygltf counts in 32 bits.
+/// Bytes of the largest file that is read: tinygltf counts in 32 bits.
 constexpr std::uintmax_t max_file_bytes = 0xffffffffu;
 
 std::vector<unsigned char> read_bytes(std::filesystem::path const& file) {
@@ -98,7 +98,7 @@ std::string decode_uri(std::string const& uri) {
     return result;
 }
 
-/// What tinygltf's file callbacks need to know.
+/// The data that tinygltf's file callbacks need.
 struct FileAccess {
     SceneFolder const& folder;
     ImportBudget& budget;
@@ -123,7 +123,7 @@ void check_required_extensions(Json const& names) {
     }
 }
 
-/// tinygltf does not say which accessor it is that has no buffer view where it wants one.
+/// Throws InputError where an accessor has no buffer view but needs one: tinygltf does not say which accessor it is.
 void check_buffer_views(Json const& accessors, Json const& meshes) {
     for (std::size_t i = 0; accessors.is_array() && i < accessors.size(); ++i) {
         Json const& sparse = member(accessors[i], "sparse");

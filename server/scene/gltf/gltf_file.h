@@ -1,4 +1,4 @@
-// A .gltf or .glb file, read and taken apart by tinygltf, with the checks that tinygltf leaves out. Images stay
+// Reads a .gltf or .glb file and takes it apart by tinygltf, with the checks that tinygltf leaves out. Images stay
 // encoded. In: a path. Out: tinygltf's model, or an InputError that says what is wrong (without the file's name).
 #pragma once
 

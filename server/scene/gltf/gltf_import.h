@@ -1,4 +1,4 @@
-// glTF 2.0 (.gltf, .glb) to a Scene that still has to be finished (scene_finish.h).
+// Reads glTF 2.0 (.gltf, .glb) into a Scene that still has to be finished (scene_finish.h).
 // In: a path. Out: a Scene, or an InputError without the file's name.
 #pragma once
 

@@ -16,10 +16,10 @@ namespace framelet {
 class GltfAccessors;
 class ImportBudget;
 
-/// Textures and materials; image and texture indices are the file's.
+/// Imports textures and materials; image and texture indices are the file's.
 void import_gltf_materials(tinygltf::Model const& model, Scene& scene);
 
-/// Mesh `index` of the file. Material indices are the file's, `none` where a primitive has no material.
+/// Imports mesh `index` of the file. Material indices are the file's, `none` where a primitive has no material.
 Mesh import_gltf_mesh(tinygltf::Model const& model, GltfAccessors const& accessors, std::size_t index,
                       std::vector<std::string>& warnings);
 
@@ -28,18 +28,18 @@ Mesh import_gltf_mesh(tinygltf::Model const& model, GltfAccessors const& accesso
 void reserve_gltf_mesh(tinygltf::Model const& model, GltfAccessors const& accessors, std::size_t index,
                        ImportBudget& budget);
 
-/// Where the file's nodes and meshes are in the scene; `none` for those that the scene does not use.
+/// Indices in the scene of the file's nodes and meshes; `none` for those that the scene does not use.
 struct GltfMapping {
     std::vector<Index> node;
     std::vector<Index> mesh;
     std::vector<std::size_t> used_meshes; ///< the file's indices, in the scene's order
 };
 
-/// Nodes of the default scene, parents first, with their cameras, lights and skins. A node that is reached twice
-/// (a cycle, or two parents) is an InputError.
+/// Imports the nodes of the default scene, parents first, with their cameras, lights and skins. A node that is reached
+/// twice (a cycle, or two parents) is an InputError.
 GltfMapping import_gltf_nodes(tinygltf::Model const& model, GltfAccessors const& accessors, Scene& scene);
 
-/// Animations of nodes that are in the scene.
+/// Imports the animations of nodes that are in the scene.
 void import_gltf_animations(tinygltf::Model const& model, GltfAccessors const& accessors,
                             std::vector<Index> const& node_of, Scene& scene);
 

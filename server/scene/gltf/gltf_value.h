@@ -1,4 +1,4 @@
-// Reading of tinygltf's loosely typed values (extension objects, arrays of doubles) with defaults.
+// Reads tinygltf's loosely typed values (extension objects, arrays of doubles) with defaults.
 // In: a value and a key. Out: a number or vector; the default where it is absent or of another type.
 #pragma once
 

@@ -22,7 +22,7 @@ float clip_time(AnimationClip const& clip, SceneTime time) {
     return static_cast<float>(wrapped < 0 ? wrapped + duration : wrapped);
 }
 
-/// Where keys take a node so far that a float cannot tell, it shrinks to nothing.
+/// The transform itself; where keys take a node so far that a float cannot tell, one that shrinks it to nothing.
 Mat4 usable(Mat4 const& world) {
     constexpr float farthest = 1e15f;
     for (int column = 0; column < 4; ++column) {

@@ -1,4 +1,4 @@
-// A scene at one moment: where every node is, and the shape of what deforms.
+// Poses a scene at one time: finds where every node is, and the shape of what deforms.
 #pragma once
 
 #include <span>
@@ -16,7 +16,7 @@ struct ScenePose {
     std::vector<std::vector<float>> morph_weights;
 };
 
-/// T * R * S.
+/// The matrix T * R * S.
 Mat4 matrix_of(Transform const& transform);
 
 /// Takes a matrix apart into translation, rotation and scale; shear is lost.
@@ -49,8 +49,8 @@ struct DeformedVertices {
     std::vector<Vec4> tangents; ///< empty where the primitive has none
     std::vector<Mat4> joint_matrices; ///< scratch
 };
-/// Weights beyond the primitive's targets, and missing ones, count as 0. `skin` needs a primitive with influences.
-/// Runs in parallel over blocks of vertices; reusing `out` for the same primitive allocates nothing.
+/// Morphs and skins a primitive. Weights beyond its targets, and missing ones, count as 0. `skin` needs a primitive
+/// with influences. Runs in parallel over blocks of vertices; reusing `out` for the same primitive allocates nothing.
 void deform(Primitive const& primitive, std::span<float const> morph_weights, Skin const* skin, ScenePose const& pose,
             DeformedVertices& out);
 

@@ -41,7 +41,7 @@ bool keeps_angles(AnimationChannel const& channel) {
     return true;
 }
 
-/// What the clips do to each node, by its own channels.
+/// Effects of the clips on each node, by its own channels.
 struct NodeMotion {
     std::vector<bool> moves, keeps_angles, morphs;
 };
@@ -81,7 +81,7 @@ SceneBodies find_bodies(Scene const& scene, std::span<Index const> clips, std::s
     bodies.flows.assign(count, false);
     std::vector<Index> frame(count, none); // nearest node that the clips move
     std::vector<bool> rigid_above(count, true); // nothing above it shears what turns below
-    std::vector<BodyNumber> number(count, static_body); // of the body whose frame it is
+    std::vector<BodyNumber> number(count, static_body); // number of the body whose frame the node is
     for (std::size_t i = 0; i < count; ++i) { // parents come first
         Node const& node = scene.nodes[i];
         if (node.parent != none) {
@@ -95,7 +95,7 @@ SceneBodies find_bodies(Scene const& scene, std::span<Index const> clips, std::s
         if (node.mesh == none) {
             continue;
         }
-        if (node.skin != none) { // in the world as its joints are, wherever its node is
+        if (node.skin != none) { // its joints place it in the world, wherever its node is
             auto const& joints = scene.skins[static_cast<std::size_t>(node.skin)].joints;
             bodies.flows[i] = motion.morphs[i] || std::ranges::any_of(joints, [&](Index joint) {
                                   return moving[static_cast<std::size_t>(joint)];

@@ -1,4 +1,5 @@
-// Which rigid body carries every node, and where the bodies are. In: scene, playing clips, times. Out: numbers, poses.
+// Finds which rigid body carries every node, and where the bodies are. In: scene, playing clips, times. Out: numbers,
+// poses.
 #pragma once
 
 #include <span>
@@ -9,15 +10,16 @@
 
 namespace framelet {
 
-/// Nodes that keep their places relative to each other, whatever the time, are of one body. Decided by structure: a
-/// node is of the body of the nearest node among itself and its ancestors that the clips move.
+/// Nodes that keep their places relative to each other, whatever the time, are of one body. That is decided by
+/// structure: a node is of the body of the nearest node among itself and its ancestors that the clips move.
 struct SceneBodies {
-    /// Of every node. Those that `flow` are of the static body.
+    /// Number of the body that carries each node: the static body for nodes that `flow` and those that draw nothing.
     std::vector<BodyNumber> body_of_node;
     /// Nodes whose meshes no body carries: skinned, morphing, carried by a transform that shears in the course of time,
     /// or too many. Their samples have velocities. Only nodes that draw something.
     std::vector<bool> flows;
-    /// By body number: the node whose world transform is the body's pose. `none` for the static body.
+    /// Frames of the bodies by body number: the node whose world transform is the body's pose. `none` for the static
+    /// body.
     std::vector<Index> frames{none};
 
     bool any_moves() const { return frames.size() > 1; }
@@ -31,14 +33,14 @@ inline constexpr std::size_t most_bodies = 65535;
 /// `most` of them.
 SceneBodies find_bodies(Scene const& scene, std::span<Index const> clips, std::size_t most = most_bodies);
 
-/// Where the body is in this pose of its scene. Finite; the rotation has unit length.
+/// Pose of the body in this pose of its scene. It is finite; its rotation has unit length.
 BodyPose body_pose(SceneBodies const& bodies, ScenePose const& pose, BodyNumber body);
 
 /// Tracks of all bodies but the static one, by body number: `count` keys from `first_key` on.
 std::vector<BodyTrack> body_tracks(Scene const& scene, std::span<Index const> clips, SceneBodies const& bodies,
                                    std::int64_t first_key, std::size_t count);
 
-/// The same of a camera of the scene, as `camera_body` of it: from where it looks at the world.
+/// Track of a camera of the scene under the number `camera_body`: from where it looks at the world.
 BodyTrack scene_camera_track(Scene const& scene, std::span<Index const> clips, Index camera, std::int64_t first_key,
                              std::size_t count);
 

@@ -10,7 +10,7 @@
 namespace framelet {
 namespace {
 
-/// Vertices that one task takes; small enough to spread, large enough to be worth it.
+/// Number of vertices that one task takes; small enough to spread, large enough to be worth it.
 constexpr std::size_t grain = 2048;
 
 /// Adds the weighted targets to vertices [first, last). `weights` has one entry a target.
@@ -76,7 +76,7 @@ void skin_vertices(Primitive const& primitive, std::span<Mat4 const> joints, std
     }
 }
 
-/// Morphed or skinned tangents are in the tangent plane and unit length again.
+/// Makes morphed or skinned tangents unit length and puts them into the tangent plane again.
 void square_tangents(std::size_t first, std::size_t last, DeformedVertices& out) {
     for (std::size_t i = first; i < last && !out.tangents.empty(); ++i) {
         Vec3 const n = out.normals[i];

@@ -1,4 +1,4 @@
-// One animation channel at one time (glTF 2.0 appendix C).
+// Evaluates one animation channel at one time (glTF 2.0 appendix C).
 // In: a channel, seconds. Out: its value: three, four (unit quaternion, xyzw) or as many floats as morph targets.
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace framelet {
 
-/// Before the first key and after the last the value is that key's. `out` has `channel.components` floats.
+/// Sets `out` (`channel.components` floats) to the value; before the first key and after the last it is that key's.
 void sample_channel(AnimationChannel const& channel, float seconds, std::span<float> out);
 
 } // namespace framelet

@@ -8,7 +8,7 @@
 namespace framelet {
 namespace {
 
-/// A quaternion and its negative turn alike.
+/// True where two values are equal but for rounding. A quaternion and its negative turn alike.
 bool is_same(AnimationChannel const& channel, std::span<float const> a, std::span<float const> b) {
     constexpr float rounding = 1e-4f;
     auto const is_near = [&](float sign) {
@@ -19,7 +19,7 @@ bool is_same(AnimationChannel const& channel, std::span<float const> a, std::spa
     return is_near(1) || (channel.property == AnimatedProperty::rotation && is_near(-1));
 }
 
-/// Scratch for two values of a channel.
+/// Compares two values of a channel; keeps its scratch.
 class Comparison {
 public:
     bool jumps(AnimationChannel const& channel, float before, float after) {
@@ -49,7 +49,7 @@ void add_switches(AnimationChannel const& channel, float duration, bool is_seen,
     }
 }
 
-/// Nodes of what is drawn or shines, and all that carry one.
+/// True for the nodes of meshes, of lights and of joints, and for all their ancestors.
 std::vector<bool> seen_nodes(Scene const& scene) {
     std::vector<bool> seen(scene.nodes.size());
     auto const mark = [&](Index node) {
@@ -74,7 +74,7 @@ std::vector<bool> seen_nodes(Scene const& scene) {
     return seen;
 }
 
-/// In order of time; of those of one time one.
+/// Sorts switches by time; of those of one time one is kept, a seen one if there is any.
 void sort(std::vector<SceneSwitch>& switches) {
     std::ranges::sort(switches, [](SceneSwitch const& a, SceneSwitch const& b) {
         return a.time != b.time ? a.time < b.time : a.is_seen && !b.is_seen;

@@ -1,4 +1,4 @@
-// Of which kind a file is, by its name.
+// Tells the kind of a file by its name.
 #pragma once
 
 #include <algorithm>

@@ -10,7 +10,7 @@
 namespace framelet {
 namespace {
 
-/// Where each of the kept elements goes; `none` for the others.
+/// New index of each of the kept elements; `none` for the others.
 std::vector<Index> new_indices(std::size_t count, auto const& keep) {
     std::vector<Index> result(count, none);
     Index next = 0;

@@ -1,4 +1,4 @@
-// The images of a scene, decoded in parallel.
+// Decodes the images of a scene in parallel.
 // In: encoded images in memory or in files. Out: pictures; those that cannot be read are null and get a warning.
 #pragma once
 

@@ -1,4 +1,5 @@
-// What a scene may take once it is decoded. Sizes are reserved here before memory is taken for them, by any thread.
+// Bounds the memory that a scene may take once it is decoded. Sizes are reserved here before memory is taken for them,
+// by any thread.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +11,7 @@
 
 namespace framelet {
 
-/// The scene wants more than its budget. A broken image is left out, this ends the import.
+/// Thrown where the scene wants more than its budget. A broken image is left out, this ends the import.
 struct SceneTooLarge : InputError {
     using InputError::InputError;
 };
@@ -22,7 +23,8 @@ public:
     ImportBudget(ImportBudget const& other) : bytes_(other.bytes_), taken_(other.taken_.load()) {}
     ImportBudget& operator=(ImportBudget const&) = delete;
 
-    /// Throws SceneTooLarge where this is more than what is left. Counts may be whatever a file says.
+    /// Reserves `count` times `bytes_each` bytes. Throws SceneTooLarge where that is more than what is left. Counts may
+    /// be whatever a file says.
     void reserve(std::uint64_t count, std::uint64_t bytes_each) {
         bool const fits = bytes_each == 0 || count <= bytes_ / bytes_each;
         if (!fits || taken_.fetch_add(count * bytes_each) + count * bytes_each > bytes_) {

@@ -1,4 +1,4 @@
-// How far the loading of a scene is.
+// Reports how far the loading of a scene is.
 #pragma once
 
 #include <functional>
@@ -6,7 +6,8 @@
 
 namespace framelet {
 
-/// Told what is being done and how much of it, 0..1. Calls may come from any thread, one at a time.
+/// A function that is told what is being done and what fraction of it is done, 0..1. Calls may come from any thread,
+/// one at a time.
 using Progress = std::function<void(std::string_view what, double fraction)>;
 
 } // namespace framelet

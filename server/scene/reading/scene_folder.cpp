@@ -21,7 +21,7 @@ bool SceneFolder::permits(std::filesystem::path const& file) const {
     }
     std::error_code code;
     std::filesystem::path const canonical = std::filesystem::weakly_canonical(file, code);
-    // Compared part by part: /scenes/car2 does not lie in /scenes/car.
+    // Paths are compared part by part: /scenes/car2 does not lie in /scenes/car.
     auto const [rest, _] = std::mismatch(canonical_.begin(), canonical_.end(), canonical.begin(), canonical.end());
     return !code && rest == canonical_.end() && note(file);
 }

@@ -1,4 +1,4 @@
-// Which files a scene file may make us read: those in its own folder and below, wherever links lead.
+// Decides which files a scene file may make us read: those in its own folder and below, wherever links lead.
 // In: a file that the scene names, as a path. Out: whether it may be read.
 #pragma once
 
@@ -13,18 +13,19 @@ class SceneFolder {
 public:
     SceneFolder(std::filesystem::path const& scene_file, bool allow_outside);
 
-    /// Where names in the scene file start from; absolute.
+    /// Folder that names in the scene file start from; absolute.
     std::filesystem::path const& path() const { return path_; }
 
-    /// False for what lies outside, there or not: a scene learns nothing of other folders.
+    /// True where the file may be read. False for what lies outside, there or not: a scene learns nothing of other
+    /// folders.
     bool permits(std::filesystem::path const& file) const;
 
-    /// What was asked for and permitted, in the order of names, whether it is there or not: what the scene depends on.
-    /// Importers ask on one thread. Of more than `most_files` some are left out.
+    /// The files that were asked for and permitted, in the order of names, whether they exist or not: what the scene
+    /// depends on. Importers ask on one thread. Of more than `most_files` some are left out.
     std::vector<std::filesystem::path> asked_for() const { return {asked_for_.begin(), asked_for_.end()}; }
     static constexpr std::size_t most_files = 4096;
 
-    /// Why a file that is not permitted is not read, for messages: "file 'name' lies ...".
+    /// Message that says why a file which is not permitted is not read: "file 'name' lies ...".
     static std::string refusal(char const* kind, std::string const& name) {
         return std::string(kind) + " '" + name + "' lies outside the scene's folder (--allow-outside permits that)";
     }

@@ -95,7 +95,7 @@ std::uint64_t scene_source(Scene const& scene) {
     if (scene.files.empty()) {
         return 0;
     }
-    std::error_code error; // of a file that is gone by now: its name as it was asked for
+    std::error_code error; // where it is set, the name counts as it was asked for
     std::filesystem::path const file = std::filesystem::weakly_canonical(scene.files.front(), error);
     std::array<char, 256> machine{};
     ::gethostname(machine.data(), machine.size() - 1);

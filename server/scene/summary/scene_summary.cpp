@@ -95,7 +95,7 @@ public:
             left.clear();
         }
     }
-    /// How many there are, then one to a line; of many only the first, since some scenes have ten thousand.
+    /// Adds how many there are, then one to a line; of many only the first, since some scenes have ten thousand.
     void add(std::string const& name, std::string const& count, std::vector<std::string> const& entries) {
         constexpr std::size_t most = 20;
         add(name, {count});

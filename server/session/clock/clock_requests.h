@@ -1,5 +1,5 @@
-// What viewers ask of the shared clock, however often: the newest of each field, at most some 60 times a second. In:
-// requests as they come. Out: one request that says the same as all of them, and when to apply it.
+// Collects what viewers ask of the shared clock, however often: the newest of each field, at most some 60 times a
+// second. In: requests as they come. Out: one request that says the same as all of them, and when to apply it.
 #pragma once
 
 #include <chrono>
@@ -12,7 +12,7 @@ namespace framelet {
 
 class ClockRequests {
 public:
-    /// From one application to the next. Each costs every viewer a Status and a new look at its picture.
+    /// Least time from one application to the next. Each costs every viewer a Status and a new look at its picture.
     static constexpr std::chrono::microseconds interval{16667};
 
     /// True when nothing waited before: somebody has to `take` it when it is `due`.
@@ -26,10 +26,10 @@ public:
         return is_first && waiting_.set != 0;
     }
 
-    /// What is past is due at once.
+    /// When what waits is to be applied; a time that is past: at once.
     WallTime due() const { return taken_ + interval; }
 
-    /// All that has come since the last time.
+    /// Takes all that has come since the last time, as one request.
     ClockRequest take(WallTime now) {
         taken_ = now;
         return std::exchange(waiting_, {});

@@ -9,12 +9,14 @@
 
 namespace framelet {
 
-/// Runs at `speed` scene seconds per wall second while it plays, from 0 to `max_scene_time`. From any thread.
+/// Runs at `speed` scene seconds per wall second while it plays, from 0 to `max_scene_time`. May be used from any
+/// thread.
 class SceneClock {
 public:
     SceneClock(bool playing, WallTime now);
 
-    /// What was set last begins when it was set, for those who ask of a moment before that, too.
+    /// State of the clock at a time. What was set last begins when it was set, for those who ask of a time before that,
+    /// too.
     ClockState state(WallTime now) const;
     /// Takes the fields that the request sets.
     void apply(ClockRequest const& request, WallTime now);

@@ -1,5 +1,5 @@
-// Which viewers may set the scene's clock, which is one for all. In: viewers that come and go, in their order. Out:
-// whether one may. A value.
+// Decides which viewers may set the scene's clock, which is one for all. In: viewers that come and go, in their order.
+// Out: whether one may. A value.
 #pragma once
 
 #include <algorithm>
@@ -9,14 +9,14 @@
 
 namespace framelet {
 
-/// The viewer that has been there longest; those that know a token of its own; all.
+/// Who may set the clock: the viewer that has been there longest; those that know a token of its own; all.
 enum class ControlRule : std::uint8_t { first, token, everybody };
 
 class SceneControl {
 public:
     explicit SceneControl(ControlRule rule) : rule_(rule) {}
 
-    /// `seat` counts up from viewer to viewer; one that comes back has the seat that it had.
+    /// Adds a viewer. `seat` counts up from viewer to viewer; one that comes back has the seat that it had.
     void enter(std::uint64_t id, std::uint64_t seat, bool knows_token) {
         if (rule_ == ControlRule::first || knows_token) {
             candidates_.insert({seat, id});

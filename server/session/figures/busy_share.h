@@ -1,5 +1,5 @@
-// How busy the server is. In: the seconds that it has had something to do, and the time, whenever one asks. Out: their
-// share of the last second.
+// Measures how busy the server is. In: the seconds that it has had something to do, and the time, whenever one asks.
+// Out: their share of the last second.
 #pragma once
 
 #include <algorithm>
@@ -9,8 +9,8 @@ namespace framelet {
 
 class BusyShare {
 public:
-    /// `busy_seconds`: in all. Returns [0, 1], a new figure once half a second has passed since the one before: what is
-    /// asked for more often would be of single turns.
+    /// `busy_seconds`: since the start. Returns [0, 1], a new figure once half a second has passed since the one
+    /// before: over less time it would be of single turns.
     float update(double busy_seconds, std::chrono::steady_clock::time_point now) {
         constexpr double least_seconds = 0.5;
         double const elapsed = std::chrono::duration<double>(now - since_).count();

@@ -13,16 +13,16 @@ namespace framelet {
 
 class MetricsPort {
 public:
-    /// Connections at a time; others are closed at once.
+    /// Most connections at a time; others are closed at once.
     static constexpr std::size_t most_connections = 16;
 
     /// Binds. Throws InputError where the address cannot be had.
     MetricsPort(std::string const& bind, std::uint16_t port);
     ~MetricsPort();
 
-    /// Answers from now on. `figures` is called on a thread of this object, and must do so until its end.
+    /// Answers from now on. `figures` is called on a thread of this object, and must be callable until its end.
     void start(std::function<ServerFigures()> figures);
-    /// With the real port.
+    /// Address that it listens on, with the real port.
     std::string address() const;
 
 private:

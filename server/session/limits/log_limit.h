@@ -1,5 +1,5 @@
-// A line of the log that others can make come however often: it is said at most once in a while, with how many were
-// left out. In: the time. Out: what to put behind the line.
+// Limits a line of the log that others can make come however often: it is said at most once in a while, with how many
+// were left out. In: the time. Out: what to put behind the line.
 #pragma once
 
 #include <chrono>
@@ -16,7 +16,7 @@ class LogLimit {
 public:
     static constexpr std::chrono::seconds interval{10};
 
-    /// Nothing where the line is not to be said now.
+    /// Text to put behind the line; nothing where it is not to be said now.
     std::optional<std::string> next(WallTime now) {
         if (said_ && now - *said_ < interval) {
             ++left_out_;

@@ -19,7 +19,7 @@ std::size_t session_bytes(Viewport viewport, bool predicts) {
     ImagePlane const plane(viewport);
     std::size_t bytes = most_kept_bytes;
     bytes += LumaHistory::default_entries * sizeof(LumaHistory::Entry);
-    // What is known of each place, and as much again for what is worked out from it in every cycle.
+    // What is known of each region, and as much again for what is worked out from it in every cycle.
     bytes += (std::size_t{2} << (2 * field_depth(plane))) * sizeof(Region);
     bytes += LossyTiles::bytes(plane);
     if (predicts && ReferencePicture::holds(viewport)) {

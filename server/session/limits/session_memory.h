@@ -1,5 +1,5 @@
-// How much memory the viewers' pictures may take together. In: sizes of pictures, as viewers ask for them. Out: whether
-// there is room for them.
+// Bounds how much memory the viewers' pictures may take together. In: sizes of pictures, as viewers ask for them. Out:
+// whether there is room for them.
 #pragma once
 
 #include <cstddef>
@@ -12,24 +12,24 @@
 
 namespace framelet {
 
-/// At most so much is kept of batches that a viewer has not answered, for when it comes back.
+/// Most bytes of batches that a viewer has not answered which are kept for when it comes back.
 inline constexpr std::size_t most_kept_bytes = std::size_t{16} << 20;
 
-/// What the server keeps for one viewer, about: what it knows of its picture, what the viewer holds, and batches
+/// Bytes that the server keeps for one viewer, about: what it knows of its picture, what the viewer holds, and batches
 /// without an answer. `predicts`: whether framelets are predicted. What waits for its socket is bounded by
 /// `max_unsent_bytes`, and not in here.
 std::size_t session_bytes(Viewport viewport, bool predicts);
 
 class SessionMemory {
 public:
-    /// Bytes, of all sessions.
+    /// `budget`: bytes, for all sessions.
     explicit SessionMemory(std::size_t budget) : budget_(budget) {}
 
     /// Sets aside what the session takes with a picture of this size, or says in one line why not. What it has from a
     /// larger picture stays its own until it ends: memory is used again rather than given back.
     std::optional<std::string> reserve(std::uint64_t session, Viewport viewport, bool predicts);
     void release(std::uint64_t session);
-    /// What one has is from now on the other's, which has nothing yet.
+    /// Passes what session `from` has on to session `to`, which has nothing yet.
     void pass(std::uint64_t from, std::uint64_t to);
 
 private:

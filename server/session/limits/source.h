@@ -1,5 +1,5 @@
-// Where a connection comes from, as limits count it. In: an address. Out: a text that is the same for all addresses
-// that one machine can easily choose from.
+// Names where a connection comes from, as limits count it. In: an address. Out: a text that is the same for all
+// addresses that one machine can easily choose from.
 #pragma once
 
 #include <algorithm>

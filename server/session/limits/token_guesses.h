@@ -1,5 +1,5 @@
-// Who said a wrong token lately, and how long the next connection of the same source has to wait for that. In: sources,
-// and the time. Out: a delay.
+// Remembers who said a wrong token lately, and how long the next connection of the same source has to wait for that.
+// In: sources, and the time. Out: a delay.
 #pragma once
 
 #include <chrono>
@@ -13,12 +13,12 @@ namespace framelet {
 
 class TokenGuesses {
 public:
-    /// After the first wrong token; each further one doubles it.
+    /// Delay after the first wrong token; each further one doubles it.
     static constexpr std::chrono::milliseconds first_delay{250};
     static constexpr std::chrono::milliseconds longest_delay{2000};
     /// A source that has said none for so long begins anew.
     static constexpr std::chrono::seconds memory{60};
-    /// Of more than these the one that was wrong longest ago is forgotten.
+    /// Most sources that are remembered: of more the one that was wrong longest ago is forgotten.
     static constexpr std::size_t most_sources = 4096;
 
     void note_wrong(std::string const& source, WallTime now);

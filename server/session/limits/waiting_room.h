@@ -26,7 +26,7 @@ public:
     /// Takes in `connection`. Returns the one that has to go for it, one of the source that has most of them, or of its
     /// own where that has its share; it does not wait any more. `chance` is evenly distributed in 0..1, without 1.
     std::optional<std::uint64_t> enter(std::uint64_t connection, std::string const& source, double chance);
-    /// It waits no longer, or did not.
+    /// Removes a connection, whether it waits or not.
     void leave(std::uint64_t connection) { waiting_.erase(connection); }
 
     std::size_t size() const { return waiting_.size(); }

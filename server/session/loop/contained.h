@@ -17,7 +17,7 @@ inline std::string failure_line(std::exception const& error) {
     return std::string("the server cannot go on with this viewer's picture: ") + error.what();
 }
 
-/// Where there is no memory to say why. The server finds it ended.
+/// Ends a session where there is no memory to say why. The server finds it ended.
 inline void end_in_need(Session& session) {
     try {
         session.end("no memory left"); // short enough to need none

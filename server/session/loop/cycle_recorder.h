@@ -18,16 +18,17 @@ namespace framelet {
 
 class CycleRecorder {
 public:
-    /// Makes the folder where there is none. `pictures_per_second`: at most so many sets of pictures a session. Throws
-    /// InputError where nothing can be written there.
+    /// Makes the folder where there is none. `pictures_per_second`: most sets of pictures a second, for each session.
+    /// Throws InputError where nothing can be written there.
     CycleRecorder(std::filesystem::path folder, double pictures_per_second);
     /// Writes what waits.
     ~CycleRecorder();
     CycleRecorder(CycleRecorder const&) = delete;
     CycleRecorder& operator=(CycleRecorder const&) = delete;
 
-    /// Pictures are of `refresh`; `now`: seconds, steady. From the render loop's thread. Pictures are left out while
-    /// the last ones are being written; a full disk ends the recording with a warning, not the server.
+    /// Adds a record, with pictures of `refresh`; `now`: seconds, steady. To be called from the render loop's thread.
+    /// Pictures are left out while the last ones are being written; a full disk ends the recording with a warning, not
+    /// the server.
     void add(CycleRecord record, AdaptiveRefresh const& refresh, double now);
 
 private:

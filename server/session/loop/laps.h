@@ -1,4 +1,4 @@
-// How long each of several stages takes that follow one another.
+// Measures how long each of several stages takes that follow one another.
 #pragma once
 
 #include <chrono>
@@ -6,7 +6,7 @@
 
 namespace framelet {
 
-/// Seconds from lap to lap, the first since it was made.
+/// Measures seconds from lap to lap, the first since it was made.
 class Laps {
 public:
     double lap() {

@@ -7,7 +7,8 @@
 namespace framelet {
 
 void give_way(int nice) {
-    // On Linux that is of one thread, and inherited. Where it is refused the server runs as it was started.
+    // On Linux the niceness is that of one thread, and inherited. Where it is refused the server runs as it was
+    // started.
     ::setpriority(PRIO_PROCESS, 0, std::max(nice, ::getpriority(PRIO_PROCESS, 0)));
 }
 

@@ -17,8 +17,8 @@
 namespace framelet {
 namespace {
 
-/// From so many threads on learning overlaps rendering. Its serial part would leave most of them idle; few are busy
-/// with its parallel part, which is cheaper while what was rendered is still in the caches.
+/// Threads from which on learning overlaps rendering. Its serial part would leave most of them idle; few are busy with
+/// its parallel part, which is cheaper while what was rendered is still in the caches.
 constexpr std::size_t many_threads = 5;
 /// A viewer that took nothing in its turns for so long leaves its share of the time to the others.
 constexpr std::chrono::milliseconds sharing_time{250};
@@ -36,11 +36,12 @@ double seconds_of(WallTime time) {
 
 struct SessionLoop::Viewer {
     std::shared_ptr<Session> session; ///< the newest
-    std::uint64_t number = 0; ///< of its first session
+    std::uint64_t number = 0; ///< number of its first session
     std::unique_ptr<ViewerStream> stream;
     std::vector<StreamEvent> events; ///< scratch
     std::uint64_t version = 0; ///< of what the viewer asks for
-    std::optional<WallTime> rendered; ///< when something was, last; nothing: it needs no share of the time
+    /// When something was rendered for it last; nothing: it needs no share of the time.
+    std::optional<WallTime> rendered;
 };
 
 /// The batch that was rendered last is finished while the next one renders.
@@ -51,11 +52,11 @@ struct SessionLoop::Pipeline {
         std::uint64_t version = 0; ///< that it was planned for
         bool learnt = false;
         bool sends = false; ///< once it is learnt
-        bool complete = false; ///< likewise: with it the viewer's picture is
+        bool complete = false; ///< likewise: with it the viewer's picture is complete
         CycleRecord record;
         double now = 0; ///< when it was planned
     };
-    std::optional<Rendered> rendered; ///< and not finished
+    std::optional<Rendered> rendered; ///< the batch that was rendered last, until it is finished
     tbb::task_group finishing;
 
     bool is_unlearnt() const { return rendered && !rendered->learnt; }
@@ -88,7 +89,7 @@ void SessionLoop::run() {
     pipeline_->finishing.wait(); // it tells the sessions' events, which may wake this loop
 }
 
-/// A turn for each, and where there was nothing to do in them a wait.
+/// Gives each viewer a turn, and waits where there was nothing to do in them.
 void SessionLoop::serve_once() {
     Sessions const sessions = events_.open_sessions();
     WallTime const began = std::chrono::steady_clock::now();
@@ -109,7 +110,7 @@ void SessionLoop::serve_once() {
     }
 }
 
-/// One turn for each; true when something was rendered or learnt.
+/// Gives each viewer one turn; true when something was rendered or learnt.
 bool SessionLoop::give_turns(Sessions const& sessions, WallTime now) {
     forget_ended();
     waits_for_room_ = false;
@@ -129,8 +130,8 @@ bool SessionLoop::give_turns(Sessions const& sessions, WallTime now) {
     return worked;
 }
 
-/// Among how many the time is shared when it is this one's turn: those that can take none at present, because they have
-/// all or read nothing, are not among them.
+/// Number of viewers among whom the time is shared when it is this one's turn: those that can take none at present,
+/// because they have all or read nothing, do not count.
 std::size_t SessionLoop::sharers(Viewer const& served) const {
     return static_cast<std::size_t>(std::ranges::count_if(
         viewers_, [&served](auto const& entry) { return entry.second.get() == &served || entry.second->rendered; }));
@@ -159,8 +160,8 @@ std::unique_ptr<SessionLoop::Viewer> SessionLoop::new_viewer(std::shared_ptr<Ses
     return viewer;
 }
 
-/// What is known of the viewer of the session that this one resumes, which goes on with it. There may be several that
-/// each resumed the one before without having had a turn.
+/// Takes what is known of the viewer from the session that this one resumes. There may be several sessions that each
+/// resumed the one before without having had a turn.
 std::unique_ptr<SessionLoop::Viewer> SessionLoop::take_up(Session& session) {
     std::shared_ptr<Session> const earlier = session.earlier();
     finish_rendered(); // it may be of that one
@@ -183,7 +184,8 @@ std::unique_ptr<SessionLoop::Viewer> SessionLoop::take_up(Session& session) {
 bool SessionLoop::give_turn(std::shared_ptr<Session> const& session, Viewer& viewer, WallTime round_began) {
     ViewerStream& stream = *viewer.stream;
     viewer.version = session->take_events(viewer.events);
-    // Not before: what is complete would be so at the time that was, and be reported of the one that was set meanwhile.
+    // Asks for the time after the events are taken: else a picture that is complete for the time that was could be
+    // reported as complete for one that was set meanwhile.
     ClockState const clock = clock_.state(round_began);
     double const rate = rate_.samples_per_second > 0 ? rate_.samples_per_second : first_samples_per_second;
     double const speed = clock.playing ? double{clock.speed} : 0;
@@ -250,8 +252,8 @@ bool SessionLoop::give_turn(std::shared_ptr<Session> const& session, Viewer& vie
     return true;
 }
 
-/// Planning left out: it takes as long for few samples, which would then seem to be dear. So would those of one
-/// viewer's small batch that was interrupted: what a round rendered counts together.
+/// Notes how long rendering took, with planning left out: that takes as long for few samples, which would then seem to
+/// be dear. So would those of one viewer's small batch that was interrupted: what a round rendered counts together.
 void SessionLoop::note_rate(TurnFigures const& figures, double seconds) {
     if (figures.rays > 0) {
         rays_ = rays_ + static_cast<double>(figures.rays);
@@ -304,7 +306,7 @@ void SessionLoop::start_finishing() {
             }
         });
     };
-    // With one thread it would not begin before the next batch is rendered, and be late by that.
+    // With one thread finishing would not begin before the next batch is rendered, and be late by that.
     if (thread_count() > 1) {
         pipeline_->finishing.run(finish);
     } else {
@@ -321,7 +323,7 @@ void SessionLoop::wait_for_finishing() {
     }
 }
 
-/// What failed is not tried again when it is to be finished.
+/// Drops what was rendered for a session that failed, so that finishing it is not tried.
 void SessionLoop::drop_rendered(Session const& session) {
     if (pipeline_->rendered && pipeline_->rendered->session.get() == &session) {
         pipeline_->finishing.wait();
@@ -339,7 +341,7 @@ bool SessionLoop::finish_rendered() {
     return learns;
 }
 
-/// Those that are parked are kept, and take no share of the time.
+/// Forgets viewers whose session has ended. Parked ones are kept, and take no share of the time.
 void SessionLoop::forget_ended() {
     auto const has_ended = [](auto const& entry) { return !entry.second->session->is_served(); };
     for (auto const& [id, viewer] : viewers_) {

@@ -33,10 +33,10 @@ class SessionLoop {
 public:
     using Sessions = std::vector<std::shared_ptr<Session>>;
 
-    /// What the loop asks of its server, on any of its threads.
+    /// Callbacks by which the loop asks its server, on any of its threads.
     struct Events {
         std::function<Sessions()> open_sessions;
-        /// A session's picture is complete, or no longer.
+        /// Called when a session's picture is complete, or no longer.
         std::function<void()> convergence_changed;
     };
 
@@ -45,15 +45,18 @@ public:
                 LoopOptions options, Events events);
     ~SessionLoop();
 
-    /// Until `stop`; on the calling thread, with the worker threads of its TBB arena. None of these goes on after that.
+    /// Serves until `stop`; on the calling thread, with the worker threads of its TBB arena. None of these goes on
+    /// after that.
     void run();
     void stop();
-    /// Something changed that may be worth a turn. From any thread.
+    /// Tells the loop that something changed that may be worth a turn. May be called from any thread.
     void wake();
 
-    /// Counters for the status message. From any thread.
+    /// Rays a second that it would render with all its time, as learnt, for the status message. May be called from any
+    /// thread.
     double samples_per_second() const { return samples_per_second_; }
-    /// Likewise, since the loop's beginning: what was rendered for framelets, and how long there was something to do.
+    /// Likewise, since the loop's beginning: how many rays were rendered for framelets, and the seconds in which there
+    /// was something to do.
     double rays() const { return rays_; }
     double busy_seconds() const { return busy_seconds_; }
 
@@ -86,8 +89,8 @@ private:
     struct {
         double samples = 0, seconds = 0;
     } round_; ///< what was rendered since the rate was learnt last, and how long that took
-    double plan_seconds_ = 0; ///< what planning a cycle takes
-    bool waits_for_room_ = false; ///< a viewer, in this round
+    double plan_seconds_ = 0; ///< how long planning a cycle takes, about
+    bool waits_for_room_ = false; ///< a viewer's stream waits, in this round
     std::unique_ptr<Pipeline> pipeline_;
 
     std::mutex mutex_;

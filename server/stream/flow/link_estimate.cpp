@@ -7,44 +7,45 @@ namespace framelet {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// Half of what a minimum remembers, seconds.
+/// Half of the time that a minimum remembers, seconds.
 constexpr double half_window = 5;
 
 /// The queue that the window leaves room for, seconds: enough that the link has always something to carry.
 constexpr double wanted_queue = 0.015;
-/// What stands for longer is too much.
+/// A standing queue of more seconds than this is too much.
 constexpr double most_queue = 0.03;
-/// What stands for less leaves room to try more.
+/// A queue of so many seconds stands; one of less than half of them leaves room to try more.
 constexpr double least_queue = 0.012;
-/// For how long a queue has to stand.
+/// Seconds for which a queue has to last to count as standing.
 constexpr double standing_seconds = 0.05;
-/// A fast link gets a shorter queue: what is on its way when it turns slow has to be through within a second.
+/// A fast link gets a shorter queue, bytes and seconds: what is on its way when it turns slow has to be through within
+/// a second.
 constexpr double most_queue_bytes = 64e3, fast_queue = 0.006;
-/// Of the rate, per step upwards: the first one, how much it may become, and the queue, seconds, that it makes at most
-/// until that stands.
+/// Factors on the rate for a step upwards, the first and the greatest; and the queue, seconds, that a step makes at
+/// most until it is seen to stand.
 constexpr double first_growth = 1.03, most_growth = 1.5, tried_queue = 0.02;
-/// A step upwards has been tried when so much of the rate was sent since. Nobody knows that a rate is carried which
-/// nothing was sent at, and the next burst would find out. Less than what a QP that is kept makes use of.
+/// A step upwards has been tried when this share of the rate was sent since. Nobody knows that a rate is carried which
+/// nothing was sent at, and the next burst would find out. The share is less than what a QP that is kept makes use of.
 constexpr double tried_share = 0.85;
-/// The same, as long as the rate is below this share of what it was before it fell.
+/// Factor on the rate for a step upwards as long as the rate is below `known_share` of what it was before it fell.
 constexpr double known_growth = 1.5, known_share = 0.5;
-/// After a queue for so long none, seconds.
+/// Seconds after a queue in which no step upwards is tried.
 constexpr double quiet_seconds = 0.1;
-/// Of the rate, while a queue stands.
+/// Share of the rate at which batches are sent while a queue stands.
 constexpr double draining_share = 0.8;
-/// The next batch may be begun so long before its time comes, and one that is late may make up for so much.
+/// Seconds that the next batch may be begun before its time comes, and that one which is late may make up for.
 constexpr double slack_seconds = 0.01;
-/// A batch may take so long on the link, seconds, or so much of the window.
+/// Most of a batch: seconds on the link, or share of the window, the last one while the window is being found.
 constexpr double batch_seconds = 0.01, batch_share = 0.125, first_batch_share = 0.25;
 constexpr double first_used_share = 0.2;
-/// Over what time the measured rate is a mean, and the most that one batch counts for, seconds: a stall is no rate.
+/// Seconds over which the measured rate is a mean, and the most that one batch counts for: a stall is no rate.
 constexpr double rate_memory = 0.1, most_weight = 0.1;
 constexpr double least_rate = 1e3, most_rate = 1e12;
-/// At first ten segments, as TCP's own (RFC 6928).
+/// Bytes of the first window, ten segments as TCP's own (RFC 6928), and of the smallest.
 constexpr double first_window = 14.6e3, least_window = 4e3;
-/// Before the first batch: with loss, and its shape.
+/// Bytes of a sample that are assumed before the first batch: with loss, and its shape.
 constexpr double first_bytes_per_sample = 0.4;
-/// Of a new value in a running mean.
+/// Weight of a new value in a running mean.
 constexpr double news = 0.125;
 
 double window_of(double rate, double base) {
@@ -87,7 +88,8 @@ LinkState LinkEstimate::state() const {
     return state;
 }
 
-/// While no queue has been met, a part of the window suffices to try a larger one: the renderer may have no more.
+/// True where so much is in flight that a larger window is worth trying. While no queue has been met, a part of the
+/// window suffices for that: the renderer may have no more.
 bool LinkEstimate::is_full() const {
     return in_flight_ >= (starting_ ? first_used_share : 1) * window_;
 }
@@ -183,7 +185,7 @@ double LinkEstimate::measured_rate() const {
     return busy_seconds_ > 0 ? std::clamp(busy_bytes_ / busy_seconds_, least_rate, most_rate) : most_rate;
 }
 
-/// How long a batch has waited, at the least, of those that came lately. Seconds; by both clocks, so that neither one
+/// Least time, seconds, that any of the batches that came lately has waited; by both clocks, so that neither a clock
 /// that was set nor a slow way back makes a queue.
 double LinkEstimate::measure_queue(Flight const& flight, double now, double round_trip, double arrived) {
     double const own = starting_ ? 0 : flight.bytes / std::max(rate_, measured_rate());

@@ -68,7 +68,7 @@ void choose_qps(ImagePlane const& plane, std::span<Tile const> tiles, std::span<
             qps.push_back(again || last ? lossless_qp : qp);
         }
     }
-    // Of those of one batch the finer ones show.
+    // Where framelets of one batch overlap the finer ones show.
     for (int depth = plane.min_depth(); depth <= plane.max_depth(); ++depth) {
         std::size_t next = 0;
         for (std::size_t i = 0; i < tiles.size(); ++i) {

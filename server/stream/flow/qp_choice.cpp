@@ -8,22 +8,22 @@
 namespace framelet {
 namespace {
 
-/// Of the link: the rest is for what a batch is larger than expected.
+/// Share of the link that is used; the rest is for batches that are larger than expected.
 constexpr double link_share = 0.95;
-/// How far what is wanted may be off what the link carries before the QP changes.
+/// Ratios of what is wanted to what the link carries beyond which the QP changes.
 constexpr double too_much = 1.1, too_little = 0.9;
 /// The finest QP with a loss: its step is below one of a display's, and what is finer costs like exact.
 constexpr std::uint8_t least_loss = 4;
-/// Exact samples take about so much more than those of `least_loss`.
+/// Bytes of exact samples over those of samples at `least_loss`, about.
 constexpr double exact_cost = 3.5;
-/// For so long a link may yet turn out to be narrow: what is exact would be late on it. What comes first has this
-/// QP, a tenth of the bytes; where there is hardly a link the first answer says so.
+/// Seconds for which a link may yet turn out to be narrow: what is exact would be late on it. What comes first has
+/// `first_qp`, a tenth of the bytes; where there is hardly a link the first answer says so.
 constexpr double finding_seconds = 0.5;
 constexpr std::uint8_t first_qp = 12;
-/// So many framelets are worth what a batch takes besides them (camera, tiles, envelope: some hundred bytes), but for a
-/// batch that takes longer than this on the link.
+/// Framelets that are worth what a batch takes besides them (camera, tiles, envelope: some hundred bytes), unless the
+/// batch takes longer than `most_batch_seconds` on the link.
 constexpr double worthwhile_framelets = 16, most_batch_seconds = 0.05;
-/// At most one step in so many seconds.
+/// Least time from one step of the QP to the next, seconds.
 constexpr double step_seconds = 0.03;
 
 double worthwhile_bytes(LinkState const& link) {

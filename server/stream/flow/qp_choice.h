@@ -1,5 +1,5 @@
-// How much of a picture a link has room for: how many samples a second, in which batches, and how coarsely they are
-// coded. In: what the link carries, what the renderer makes. Out: the same, bounded, and a QP.
+// Chooses how much of a picture a link has room for: how many samples a second, in which batches, and how coarsely they
+// are coded. In: what the link carries, what the renderer makes. Out: the same, bounded, and a QP.
 #pragma once
 
 #include <cstddef>
@@ -13,11 +13,11 @@ namespace framelet {
 /// The coarsest QP that is chosen: its loss, about 32 dB, is what sampling leaves of a picture that moves anyway.
 inline constexpr std::uint8_t most_loss = 24;
 
-/// How many samples are sent for each ray that is rendered, lately: fewer where rays go into probes, into several a
-/// sample, and into what the viewer has already.
+/// Running mean of how many samples are sent for each ray that is rendered: fewer where rays go into probes, into
+/// several a sample, and into what the viewer has already.
 class SentShare {
 public:
-    /// `rays_per_second`: that are rendered lately, > 0.
+    /// `rays_per_second`: how many are rendered lately, > 0.
     void add(double rays, double sent_samples, double rays_per_second);
     double value() const { return value_; }
 
@@ -25,24 +25,25 @@ private:
     double value_ = 1;
 };
 
-/// Goes step by step, so that one odd measurement does not show.
+/// Chooses the QP step by step, so that one odd measurement does not show.
 class QpChoice {
 public:
-    /// `samples_per_second`: what would be sent if the link took it. 0: exact, wherever the link takes all of that, but
-    /// within the first half second, when little is known of the link, only where there is hardly one.
+    /// Returns the QP of the next batch. `samples_per_second`: what would be sent if the link took it. 0 (exact)
+    /// wherever the link takes all of that; but within the first half second, when little is known of the link, only
+    /// where there is hardly one.
     std::uint8_t choose(LinkState const& link, double samples_per_second, double now);
 
 private:
     std::uint8_t qp_ = 0; ///< chosen last
     std::optional<double> begun_; ///< when it was asked first, seconds
-    double changed_ = 0; ///< when, seconds
+    double changed_ = 0; ///< when it changed last, seconds
 };
 
 /// Samples a second that renderer and link both have time for.
 double bounded_rate(LinkState const& link, double samples_per_second);
 
-/// How long the link takes for a batch that is worth what it takes besides its framelets, seconds; 0 where nothing is
-/// known of the link.
+/// Seconds that the link takes for a batch that is worth what it takes besides its framelets; 0 where nothing is known
+/// of the link.
 double worthwhile_seconds(LinkState const& link);
 
 /// Most framelets of a batch that the link takes at once, at least one.

@@ -12,9 +12,9 @@
 namespace framelet {
 namespace {
 
-/// Kinds of samples that are told apart in a framelet; those of more are outliers.
+/// Most groups of samples that are told apart in a framelet; samples of further groups are outliers.
 constexpr std::size_t most_groups = 8;
-/// Closer to the eye than this, metres, nothing is told apart.
+/// Metres; closer to the eye than this no depths are told apart.
 constexpr float least_depth = 1e-6f;
 
 /// Samples that may share a layer: of one body, or what deforms, or the sky.
@@ -85,11 +85,11 @@ private:
     GridFloats values_; ///< inverse depths
     std::array<Group, most_groups> groups_;
     std::size_t group_count_ = 0;
-    /// In block order as all grids here. Group: `most_groups` where a sample is in none.
+    /// Group and layer of each sample, in block order as all grids here; group `most_groups`: in none.
     std::array<std::uint8_t, framelet_samples> group_of_, layer_of_;
     GridFloats candidates_;
     FoundPlane found_;
-    Vec3 velocity_{0}; ///< of what was found
+    Vec3 velocity_{0}; ///< velocity of what was found
     std::array<GridPlane, max_layers> planes_; ///< of the layers, and which group each is of
     std::array<std::size_t, max_layers> layer_groups_{};
     FrameletShape& shape_;
@@ -141,7 +141,7 @@ void Fitter::make_groups() {
     }
 }
 
-/// Samples of the group that are on no layer yet.
+/// Makes the samples of the group that are on no layer yet candidates.
 void Fitter::set_candidates(std::size_t group) {
     for (std::size_t i = 0; i < framelet_samples; ++i) {
         bool const is_group = group_of_[i] == group, is_free = layer_of_[i] == FrameletShape::outlier;
@@ -149,13 +149,13 @@ void Fitter::set_candidates(std::size_t group) {
     }
 }
 
-/// Whether a sample (in Morton order) moves nearly so.
+/// True where a sample (in Morton order) moves at nearly this velocity.
 bool Fitter::moves_with(Vec3 velocity, int sample, float tolerances) const {
     float const off = glm::length(velocity_of(framelet_, sample) - velocity) * values_[block_order(sample)];
     return off <= tolerances * velocity_tolerance_;
 }
 
-/// Of what was found, each component by itself: those few that move quite otherwise do not bend it.
+/// Median velocity of what was found, each component by itself: those few that move quite otherwise do not bend it.
 Vec3 Fitter::median_velocity() {
     Vec3 median(0);
     for (int axis = 0; axis < 3; ++axis) {
@@ -213,7 +213,7 @@ void Fitter::fit_groups() {
     }
 }
 
-/// Those that were found, with even errors to both sides.
+/// Adds a layer of the members that were found, with even errors to both sides.
 void Fitter::add_found(std::size_t group) {
     Range const range = residual_range(values_, found_.members, found_.plane);
     found_.plane.centre += range.middle();
@@ -233,7 +233,8 @@ void Fitter::add_layer(GridPlane const& plane, float half_width, Group const& gr
     shape_.layers[shape_.layer_count++] = layer;
 }
 
-/// The same plane in other coordinates, or in another order of operations, rounds otherwise.
+/// Error of a layer whose samples are off by up to `half_width`, with a margin: the same plane in other coordinates, or
+/// in another order of operations, rounds otherwise.
 float Fitter::error_of(Layer const& layer, float half_width) const {
     constexpr float rounding = 2e-6f;
     float const side = spacing_ * framelet_side;
@@ -241,7 +242,7 @@ float Fitter::error_of(Layer const& layer, float half_width) const {
     return half_width + rounding * (magnitude + half_width);
 }
 
-/// Which layer of its group a sample is nearest to, if it moves as that does; `outlier` where none is near.
+/// The layer of its group that a sample is nearest to; `outlier` where none is near.
 std::uint8_t Fitter::nearest_layer(int at) const {
     float least = isolated_tolerances * tolerance_;
     std::uint8_t nearest = FrameletShape::outlier;
@@ -255,7 +256,7 @@ std::uint8_t Fitter::nearest_layer(int at) const {
     return nearest;
 }
 
-/// What is left on no layer, one by one.
+/// Puts samples that are left on no layer on the nearest one, one by one, if they are near and move as that does.
 void Fitter::take_isolated() {
     std::array<float, max_layers> half_widths{};
     for (int i = 0; i < framelet_samples; ++i) {

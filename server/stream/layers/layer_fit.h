@@ -1,6 +1,6 @@
-// From the depths and bodies of a framelet's samples to the few planes they lie on (docs/ALGORITHM.md).
-// In: a framelet, how far off a layer may be. Out: its shape. The inverse of the view depth of a plane is affine on the
-// image plane of a perspective camera.
+// Fits the few planes that a framelet's samples lie on to their depths and bodies (docs/ALGORITHM.md). In: a framelet,
+// how far off a layer may be. Out: its shape. The inverse of the view depth of a plane is affine on the image plane of
+// a perspective camera.
 #pragma once
 
 #include <span>
@@ -10,37 +10,39 @@
 
 namespace framelet {
 
-/// How far off a sample may be shown.
+/// Pixels by which a sample may be shown off its place.
 inline constexpr float tolerated_pixels = 0.25f;
 
-/// How far off its layer a sample may be, for samples a pixel apart or closer; coarser ones may be off in proportion.
+/// Distance by which a sample may be off its layer, for samples a pixel apart or closer; coarser ones may be off in
+/// proportion.
 struct LayerTolerance {
     /// 1 / metres. A sample that is off by e moves by e * (translation in metres) * (focal length in pixels) pixels.
     float inverse_depth = 0;
     /// Speed times inverse depth, 1 / seconds, by which what deforms may move otherwise than its layer.
     float velocity = 0;
-    /// As `inverse_depth`: what layers are fitted to where that leaves no more than `most_outliers`. 0: to that.
+    /// The tolerance that layers are fitted to first, 1 / metres; it stays where it leaves no more than
+    /// `most_outliers`. 0: there is none.
     float preferred_inverse_depth = 0;
 };
 
-/// Of a framelet. They cost more than layers, on the wire and in the viewer: where more than these are left, layers are
-/// fitted to so many tolerances instead.
+/// Most outliers of a framelet. They cost more than layers, on the wire and in the viewer: where more than these are
+/// left, layers are fitted to `wide_tolerances` tolerances instead.
 inline constexpr std::size_t most_outliers = 16;
 inline constexpr float wide_tolerances = 2;
-/// A sample that no plane was found for lies on the nearest layer of its body that it is so many tolerances off at
-/// most, in its place and in its velocity.
+/// A sample that no plane was found for lies on the nearest layer of its body that it is at most so many tolerances
+/// off, in its place and in its velocity.
 inline constexpr float isolated_tolerances = 4;
 
-/// `tolerated_pixels`, while the camera moves so far that what is at `median_depth` (metres, > 0) moves by 20 pixels,
-/// and what deforms moves on for a tenth of a second. Preferred: a tenth of a pixel, while the camera moves on as fast
-/// as it does for a fifth of a second. `speed`: metres a second.
+/// The tolerance by which samples are shown off by `tolerated_pixels` while the camera moves so far that what is at
+/// `median_depth` (metres, > 0) moves by 20 pixels, and what deforms moves on for a tenth of a second. Preferred: a
+/// tenth of a pixel, while the camera moves on as fast as it does for a fifth of a second. `speed`: metres a second.
 LayerTolerance layer_tolerance(float median_depth, ViewRays const& rays, float speed = 0);
 
-/// Median of the finite depths in the framelets, from a part of their samples; 1 where there are none.
+/// Median of the finite depths in the framelets, metres, from a part of their samples; 1 where there are none.
 float median_depth(std::span<Framelet const> framelets);
 
-/// Up to `max_layers` layers, the samples that none of them takes being outliers. The inverse depth of every sample of
-/// a layer is within its `error` of the layer, and that within the tolerance (times `wide_tolerances` and
+/// Fits up to `max_layers` layers; the samples that none of them takes are outliers. The inverse depth of every sample
+/// of a layer is within its `error` of the layer, and that within the tolerance (times `wide_tolerances` and
 /// `isolated_tolerances`, where these apply), or what single precision resolves. Finite for any depths > 0. The sky is
 /// at inverse depth 0. `shape` is overwritten; its memory is used again.
 void fit_layers(Framelet const& framelet, ImagePlane const& plane, LayerTolerance const& tolerance,

@@ -1,5 +1,5 @@
-// Planes through values on a framelet's grid, by least squares over any part of its samples.
-// In: values and which samples take part. Out: planes, and how far the samples lie off them.
+// Fits planes through values on a framelet's grid, by least squares over any part of its samples. In: values and which
+// samples take part. Out: planes, and how far the samples lie off them.
 #pragma once
 
 #include <array>
@@ -51,7 +51,7 @@ struct Moments {
     float n = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0, w = 0, wx = 0, wy = 0;
 };
 
-/// The same of every block.
+/// Sums of every block, and of the whole grid.
 struct BlockMoments {
     std::array<Moments, grid_blocks> block;
     Moments total;
@@ -76,7 +76,7 @@ Range residual_range(GridFloats const& values, GridFloats const& weights, GridPl
 /// The least-squares plane of the whole grid, moved so that it is as far off to both sides.
 struct FittedPlane {
     GridPlane plane;
-    float half_width = 0; ///< how far
+    float half_width = 0; ///< how far off the farthest samples are, to both sides
 };
 FittedPlane fit_plane_to_all(GridFloats const& values);
 

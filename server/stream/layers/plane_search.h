@@ -1,5 +1,5 @@
-// The plane on which most of some samples lie, however the others are scattered.
-// In: values on a framelet's grid, candidates, tolerance. Out: a plane and its members.
+// Finds the plane on which most of some samples lie, however the others are scattered. In: values on a framelet's grid,
+// candidates, tolerance. Out: a plane and its members.
 #pragma once
 
 #include "server/stream/layers/plane_fit.h"
@@ -15,9 +15,9 @@ struct FoundPlane {
 /// Fewer samples than this make no plane.
 inline constexpr int least_plane_samples = 8;
 
-/// The plane within `tolerance` of (nearly) the most candidates (those of non-zero weight): of all of them where that
-/// is possible; else grown from 4x4 blocks that are planar by themselves; else from what is left when those farthest
-/// off are dropped again and again. A count of 0 where none takes `least_plane_samples`.
+/// Finds the plane within `tolerance` of (nearly) the most candidates (those of non-zero weight): of all of them where
+/// that is possible; else grown from 4x4 blocks that are planar by themselves; else from what is left when those
+/// farthest off are dropped again and again. A count of 0 where none takes `least_plane_samples`.
 void find_plane(GridFloats const& values, GridFloats const& candidates, float tolerance, FoundPlane& found);
 
 } // namespace framelet

@@ -12,18 +12,18 @@
 namespace framelet {
 namespace {
 
-/// After a pause the viewer gets the keys of all of it, or it could not move what it has from before; but not after a
-/// leap of the clock.
+/// Most keys that are made up for after a pause, without which the viewer could not move what it has from before; where
+/// more are missing the clock has leapt.
 constexpr std::int64_t most_missed_keys = 5 * body_keys_per_second;
-/// So many at a time: a track costs bytes of its own.
+/// Fewest keys that are given out at a time: a track costs bytes of its own.
 constexpr std::int64_t least_keys = body_keys_per_second / 10;
-/// The first picture does not wait for keys that hardly anybody will need: seconds ahead at first, more for each
-/// second.
+/// Seconds ahead that are known at first, and how many more for each second: the first picture does not wait for keys
+/// that hardly anybody will need.
 constexpr SceneTime first_ahead_seconds = 0.3, ahead_growth = 0.5;
 
 } // namespace
 
-/// Cameras come more rarely than batches: what counts is their speed over a tenth of a second.
+/// Follows the speed of the camera, over a tenth of a second since cameras come more rarely than batches.
 void ShapeFeed::follow(Vec3 eye, double now) {
     constexpr double seconds = 0.1;
     double const elapsed = now - now_;
@@ -84,7 +84,7 @@ void ShapeFeed::track(Scene const& scene, std::span<Index const> clips, SceneBod
     }
 }
 
-/// Of all that is given out with the batch of `time`.
+/// The key behind all that is given out with the batch of `time`.
 std::int64_t ShapeFeed::key_behind(SceneTime time) const {
     SceneTime const known = time - static_cast<double>(first_key_) / body_keys_per_second;
     SceneTime const ahead = std::min(first_ahead_seconds + ahead_growth * known, tracked_ahead_seconds);

@@ -1,5 +1,5 @@
-// What a viewer that moves its framelets is told of them beside their colours: where their samples lie, and how the
-// bodies move that carry them. In: rendered framelets, the scene and its time. Out: shapes and tracks of a batch.
+// Makes what a viewer that moves its framelets is told of them beside their colours: where their samples lie, and how
+// the bodies move that carry them. In: rendered framelets, the scene and its time. Out: shapes and tracks of a batch.
 #pragma once
 
 #include <cstdint>
@@ -14,21 +14,22 @@
 
 namespace framelet {
 
-/// How far ahead of a batch, in the end, its viewer knows where bodies will be, seconds of scene time: what a slow link
-/// or a busy server needs.
+/// Seconds of scene time ahead of a batch for which, in the end, its viewer knows where bodies will be: what a slow
+/// link or a busy server needs.
 inline constexpr SceneTime tracked_ahead_seconds = 1;
 
-/// One viewer's.
+/// The feed of one viewer.
 class ShapeFeed {
 public:
-    /// Shapes of those framelets for which `send` (same length) is not 0, in order. `now`: seconds, steady. Runs in
-    /// parallel.
+    /// Fits the shapes of those framelets for which `send` (same length) is not 0, in order. `now`: seconds, steady.
+    /// Runs in parallel.
     void fit(std::span<Framelet const> rendered, std::span<std::uint8_t const> send, ViewRays const& rays,
              ImagePlane const& plane, double now, std::vector<FrameletShape>& shapes);
 
-    /// The keys of all bodies until `tracked_ahead_seconds` after `time` that have not been given out yet, however late
-    /// this batch comes; from `time` on where that has leapt by seconds or backwards. The same of the scene's camera
-    /// `camera`, the one that the viewer looks through, where it is one that moves; -1: there is none.
+    /// Replaces `tracks` by the keys of all bodies until `tracked_ahead_seconds` after `time` that have not been given
+    /// out yet, however late this batch comes; by those from `time` on where that has leapt by seconds or backwards.
+    /// `camera_track`: the same of the scene's camera `camera`, the one that the viewer looks through, where it is one
+    /// that moves; -1: there is none.
     void track(Scene const& scene, std::span<Index const> clips, SceneBodies const& bodies, int camera, SceneTime time,
                std::vector<BodyTrack>& tracks, std::optional<BodyTrack>& camera_track);
 
@@ -43,7 +44,7 @@ private:
     std::int64_t first_key_ = 0;
     std::int64_t end_key_ = 0; ///< behind the last one given out
     int camera_ = -1; ///< whose keys these were
-    std::vector<std::size_t> sent_; ///< which of the framelets
+    std::vector<std::size_t> sent_; ///< indices of the framelets that are sent
 };
 
 } // namespace framelet

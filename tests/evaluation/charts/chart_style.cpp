@@ -17,7 +17,7 @@ std::map<std::string, LineStyle> const methods{
     {"oracle", {"#999933", 2, 6}},
 };
 
-constexpr double tolerance = 1e-9; // of a mark that should stand on the end of its axis
+constexpr double tolerance = 1e-9; // relative tolerance for a mark that should stand on the end of its axis
 
 std::string mark_label(int mantissa, int exponent) {
     if (exponent >= -3 && exponent <= 4) {
@@ -80,7 +80,7 @@ double on_log_axis(double value, Range const& range) {
 
 std::string log_axis(std::string const& axis, Range const& range, double marked_low, double marked_high) {
     double const decades = std::log10(marked_high / marked_low);
-    bool const few = decades < 2; // too few powers of ten: 2 and 5 times a power are named as well
+    bool const few = decades < 2; // there are too few powers of ten, so that 2 and 5 times a power are named as well
     int const step = std::max(1, static_cast<int>(std::ceil(decades / 9)));
     std::string marks;
     int const last = static_cast<int>(std::ceil(std::log10(marked_high)));

@@ -1,4 +1,4 @@
-// What all charts have in common: the look, the colour of each method, axes.
+// The style that all charts share: the look, the colour of each method, axes.
 #pragma once
 
 #include <span>
@@ -13,27 +13,28 @@ struct LineStyle {
     double width = 2;
 };
 
-/// Of a method of the evaluation: colours that the colour-blind tell apart, after Okabe and Ito and P. Tol. Other names
-/// are grey.
+/// Line style of a method of the evaluation, in colours that the colour-blind tell apart, after Okabe and Ito and P.
+/// Tol. Other names are grey.
 LineStyle style_of(std::string const& name);
 
-/// "lc rgb ... lw ... dt ... pt ..." for a plot command.
+/// The style as options of a plot command: "lc rgb ... lw ... dt ... pt ...".
 std::string to_string(LineStyle const& style);
 
-/// Light grid, grey axes left and below, the legend to the right. `title` is drawn as it is.
+/// Commands for the look of a chart: light grid, grey axes left and below, the legend to the right. `title` is drawn as
+/// it is.
 std::string common_look(std::string const& title);
 
-/// Reach of one axis, low < high.
+/// Range of one axis, low < high.
 struct Range {
     double low = 0;
     double high = 1;
 };
 
-/// From the least to the greatest finite value above zero, at least four times as far up as down; where a value is zero
-/// or less, half as far down again, so that what is drawn there is seen to be lower. [0.1, 1] if none is above zero.
+/// Range from the least to the greatest finite value above zero, at least a factor of four; where a value is zero or
+/// less, half as far down again, so that what is drawn there is seen to be lower. [0.1, 1] if none is above zero.
 Range log_range(std::span<double const> values);
 
-/// Where a value is drawn on a logarithmic axis: inside it.
+/// Value at which `value` is drawn on a logarithmic axis: clamped to its range.
 double on_log_axis(double value, Range const& range);
 
 /// Commands that make `axis` ("x", "y") logarithmic. Its marks end at `marked_high`, which leaves the rest free for

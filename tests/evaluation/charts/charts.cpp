@@ -41,7 +41,7 @@ void check(std::string const& title, std::vector<Curve> const& curves) {
     }
 }
 
-/// Of the points that are drawn. `axis` may be a list that some curves do not have.
+/// Appends the values of the points that are drawn. `axis` may be a list that some curves do not have.
 void add_values(std::vector<Curve> const& curves, std::vector<double> Curve::*axis, std::vector<double>& values) {
     for (Curve const& curve : curves) {
         for (std::size_t i = 0; i < (curve.*axis).size(); ++i) {
@@ -64,7 +64,7 @@ Range range_of(std::vector<Curve> const& curves, std::initializer_list<std::vect
     return log_range(values);
 }
 
-/// So that marks at the ends are not cut.
+/// The range widened by a share of its decades on each side, so that marks at the ends are not cut.
 Range widened(Range range, double share) {
     double const factor = std::pow(range.high / range.low, share);
     return {range.low / factor, range.high * factor};
@@ -80,7 +80,7 @@ std::string place(double value, OptionalRange const& range) {
 
 std::string data_block(std::string const& name, Curve const& curve, OptionalRange const& x, OptionalRange const& y) {
     std::string out = name + " << EOD\n";
-    bool gap = true; // of one blank line: two would begin another data set
+    bool gap = true; // true where a gap, which is one blank line, has begun: two lines would begin another data set
     for (std::size_t i = 0; i < curve.x.size(); ++i) {
         if (drawable(curve, i)) {
             out += place(curve.x[i], x) + " " + place(curve.y[i], y) + "\n";
@@ -93,7 +93,7 @@ std::string data_block(std::string const& name, Curve const& curve, OptionalRang
     return out + "EOD\n";
 }
 
-/// The data block of the curve's band and the command that fills it, to go before the line's.
+/// Adds the data block of the curve's band and returns the command that fills it, to go before the line's.
 std::string add_band(Plot& plot, std::size_t i, Curve const& curve, LineStyle const& style, OptionalRange const& x,
                      OptionalRange const& y) {
     if (curve.low.empty()) {
@@ -122,7 +122,7 @@ std::string mark_commands(std::vector<Mark> const& marks) {
     return commands;
 }
 
-/// The data blocks $curve0... and the plot command without an end of line.
+/// Adds the data blocks $curve0... and returns the plot command without an end of line.
 std::string add_lines(Plot& plot, std::vector<Curve> const& curves, OptionalRange const& x, OptionalRange const& y,
                       char const* with) {
     std::string command = "plot ";
@@ -137,16 +137,16 @@ std::string add_lines(Plot& plot, std::vector<Curve> const& curves, OptionalRang
     return command;
 }
 
-constexpr double mark_margin = 0.03; // share of a logarithmic axis, on each side
+constexpr double mark_margin = 0.03; // margin on each side, as a share of a logarithmic axis
 
 std::string log_axis_with_margin(std::string const& axis, Range const& range) {
     Range const wide = widened(range, mark_margin);
     return log_axis(axis, wide, wide.low, wide.high);
 }
 
-constexpr double row_height = 0.03; // of one method's refreshes, as share of the chart's
+constexpr double row_height = 0.03; // height of the row of one method's refreshes, as a share of the chart's
 
-/// Data and plot commands of the rows of refreshes, on a second y axis from 0 to 1.
+/// Adds the data of the rows of refreshes and returns the plot commands for them, on a second y axis from 0 to 1.
 std::string add_refreshes(Plot& plot, std::vector<ErrorSeries> const& series) {
     std::string command;
     std::size_t row = 0;

@@ -1,4 +1,4 @@
-// Charts of lines: error over time, error against cost. Values in, gnuplot scripts or files out.
+// Draws charts of lines: error over time, error against cost. Values in, gnuplot scripts or files out.
 #pragma once
 
 #include <filesystem>
@@ -11,10 +11,11 @@ namespace framelet::bench {
 
 /// A line through points, in the order given. A point that is not finite leaves a gap.
 struct Curve {
-    std::string name; ///< in the legend; fixes the colour (chart_style.h)
+    std::string name; ///< name in the legend; fixes the colour (chart_style.h)
     std::vector<double> x;
     std::vector<double> y; ///< as many as `x`
-    std::vector<double> low{}, high{}; ///< of a band around the line, likewise; empty: there is none
+    /// Lower and upper edge of a band around the line, as many as `x`; empty: there is none.
+    std::vector<double> low{}, high{};
 };
 
 /// A vertical line with a word at its upper end.
@@ -51,8 +52,8 @@ struct ErrorOverTime {
     std::vector<ErrorSeries> series;
 };
 
-/// The drawing as text, the same for the same values. InputError where a curve has no point to draw or not as many x as
-/// y.
+/// The drawing as text, the same for the same values. Throws InputError where a curve has no point to draw or not as
+/// many x as y.
 Plot plot_of(Curves const& chart);
 Plot plot_of(ErrorOverTime const& chart);
 

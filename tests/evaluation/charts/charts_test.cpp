@@ -21,7 +21,8 @@ namespace fs = std::filesystem;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// gnuplot's own idea of right: the files are there, the drawing has ink in it, its texts are in the SVG.
+/// Checks charts by gnuplot's own idea of right: the files are there, the drawing has ink in it, its texts are in the
+/// SVG.
 class ChartFile : public testing::Test {
 protected:
     ~ChartFile() override { fs::remove_all(folder_); }
@@ -35,7 +36,7 @@ protected:
 
     template <class Chart>
     std::string drawn(Chart const& chart) {
-        fs::path const stem = folder_ / "chart v1.5"; // a dot and a blank in the name
+        fs::path const stem = folder_ / "chart v1.5"; // the name has a dot and a blank
         draw(chart, stem);
         Picture const png = read_picture(stem.string() + ".png");
         Plot const plot = plot_of(chart);
@@ -74,7 +75,7 @@ TEST_F(ChartFile, Curves) {
     Curves chart{"t", "link [Mbit/s]", "PSNR [dB]", true, false, false, {{"tsar", {1, 10, 100}, {20, 25, 30}}}};
     std::string const text = drawn(chart);
     expect_has(text, "link [Mbit/s]");
-    expect_has(text, ">100<"); // a mark of the axis
+    expect_has(text, ">100<"); // this is a mark of the axis
     chart.log_x = false;
     chart.points_only = true;
     chart.curves[0].y = {0, 0, 0};

@@ -24,8 +24,8 @@ void write_text(fs::path const& file, std::string_view text) {
     }
 }
 
-/// gnuplot echoes the offending command before it says what is wrong with it: the line that names a place in the script
-/// is the message, if there is one.
+/// The message in gnuplot's output, which echoes the offending command before it says what is wrong with it: the line
+/// that names a place in the script is the message, if there is one.
 std::string complaint_in(std::string const& text) {
     std::istringstream stream(text);
     std::string first;
@@ -45,7 +45,7 @@ std::string size_of(Plot const& plot) {
 } // namespace
 
 void run_gnuplot(std::string const& script) {
-    // A file that has no name, which the child inherits: nothing is left behind, whatever happens.
+    // The script is in a file that has no name, which the child inherits: nothing is left behind, whatever happens.
     std::unique_ptr<FILE, int (*)(FILE*)> const file(std::tmpfile(), std::fclose);
     if (!file || std::fwrite(script.data(), 1, script.size(), file.get()) != script.size() || std::fflush(file.get())) {
         throw InputError("cannot write a script for gnuplot into a temporary file");
@@ -60,7 +60,7 @@ void run_gnuplot(std::string const& script) {
         complaints += buffer.data();
     }
     int const status = pclose(pipe);
-    constexpr int not_found = 127; // by the shell
+    constexpr int not_found = 127; // exit code of the shell
     if (WIFEXITED(status) && WEXITSTATUS(status) == not_found) {
         throw InputError("gnuplot was not found: install it (Debian: gnuplot-nox) to draw charts");
     }
@@ -72,9 +72,9 @@ void run_gnuplot(std::string const& script) {
 void render(Plot const& plot, std::filesystem::path const& stem) {
     std::string const svg = stem.string() + ".svg";
     std::string const png = stem.string() + ".png";
-    std::error_code ignored; // where there is no folder, writing says so
+    std::error_code ignored; // where there is no folder, the writing below fails and says so
     fs::create_directories(stem.parent_path(), ignored);
-    write_text(svg, ""); // gnuplot's complaint would not name the file
+    write_text(svg, ""); // tried first, since gnuplot's complaint would not name the file
     write_text(png, "");
     std::string const size = size_of(plot);
     std::string script = "set encoding utf8\n" + plot.data;

@@ -1,4 +1,4 @@
-// Sheets of pictures: what stands where.
+// Tests sheets of pictures: what stands where.
 #include "tests/evaluation/charts/picture_sheet.h"
 
 #include <algorithm>

@@ -6,9 +6,9 @@
 namespace framelet::bench {
 namespace {
 
-/// Of what the link carries: the rest is room for what an encoder overshoots by.
+/// Share of what the link carries that a frame may use: the rest is room for what an encoder overshoots by.
 constexpr double link_share = 0.95;
-/// However much waits, a frame gets this share: a picture of some kind goes on.
+/// Share that a frame gets however much waits, so that some picture is always sent.
 constexpr double least_share = 0.1;
 
 } // namespace
@@ -26,7 +26,7 @@ double frame_budget(DeliveryRate rate, double period, double waiting_bytes) {
     if (!std::isfinite(carried)) {
         return INFINITY;
     }
-    double const late = std::max(0.0, waiting_bytes - carried); // what is left when this frame is ready
+    double const late = std::max(0.0, waiting_bytes - carried); // bytes that still wait when this frame is ready
     return std::max(link_share * carried - late, least_share * carried);
 }
 

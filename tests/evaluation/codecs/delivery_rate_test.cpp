@@ -31,7 +31,8 @@ TEST(DeliveryRate, WhatWaitsIsTakenOffTheNextFrame) {
     EXPECT_TRUE(std::isinf(frame_budget({INFINITY}, 0.1, 5000)));
 }
 
-/// A sender of frames that are as large as they may be, over a link whose rate falls to a fifth and comes back.
+/// Simulates a sender of frames that are as large as they may be, over a link whose rate falls to a fifth and comes
+/// back.
 TEST(DeliveryRate, FramesFollowALinkWhoseRateChanges) {
     constexpr double period = 0.1;
     constexpr double delay = 0.03;

@@ -14,11 +14,11 @@ extern "C" {
 namespace framelet::bench {
 namespace {
 
-/// Colour at full resolution: at half of it, RGB pictures cannot come nearer than some 37 dB at any rate, and are worse
-/// at every rate tried.
+/// Pixel format with colour at full resolution: at half of it, RGB pictures cannot come nearer than some 37 dB at any
+/// rate, and are worse at every rate tried.
 constexpr AVPixelFormat coded_format = AV_PIX_FMT_YUV444P;
 
-/// Between full-range BT.709 YCbCr and the picture's RGB, as exactly as the library can.
+/// Makes a converter between full-range BT.709 YCbCr and the picture's RGB, as exact as the library allows.
 AvScaler make_scaler(int width, int height, AVPixelFormat from, AVPixelFormat to) {
     AvScaler scaler(sws_getContext(width, height, from, width, height, to,
                                    SWS_BILINEAR | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INT | SWS_FULL_CHR_H_INP, nullptr,
@@ -50,8 +50,9 @@ struct H264Encoder::State {
     double frames_per_second = 0;
     std::int64_t number = 0;
 
-    /// libavcodec's x264 looks at these fields before every frame and reconfigures the encoder where they have changed.
-    /// The buffer is one frame: what is saved in one is not to be spent in a later one. At most what the picture has.
+    /// Limits the next frame to so many bytes, or to the picture's own size if that is less. libavcodec's x264 looks at
+    /// these fields before every frame and reconfigures the encoder where they have changed. The buffer is one frame:
+    /// what is saved in one is not to be spent in a later one.
     void limit_frame(double bytes) {
         AVCodecContext& c = *context;
         double const bits = 8 * std::min(bytes, 3.0 * c.width * c.height);
@@ -76,7 +77,7 @@ H264Encoder::H264Encoder(int width, int height, double frames_per_second) : stat
     c.max_b_frames = 0;
     c.gop_size = 1 << 20;
     av_opt_set(c.priv_data, "preset", "veryfast", 0);
-    // Without psychovisual choices, which look good and are further from the reference.
+    // Tune psnr leaves out psychovisual choices, which look good and are further from the reference.
     av_opt_set(c.priv_data, "tune", "psnr,zerolatency", 0);
     av_opt_set(c.priv_data, "crf", "8", 0);
     s.limit_frame(INFINITY); // a limit cannot be set later unless there is one from the start
@@ -102,7 +103,7 @@ std::vector<std::byte> H264Encoder::encode(Picture const& picture, double most_b
     sws_scale(s.scaler.get(), planes.data(), strides.data(), 0, picture.height, s.frame->data, s.frame->linesize);
     s.frame->pts = s.number++;
     FRAMELET_CHECK(avcodec_send_frame(s.context.get(), s.frame.get()) == 0);
-    FRAMELET_CHECK(avcodec_receive_packet(s.context.get(), s.packet.get()) == 0); // zero latency: at once
+    FRAMELET_CHECK(avcodec_receive_packet(s.context.get(), s.packet.get()) == 0); // zero latency: there is one at once
     auto const* const data = reinterpret_cast<std::byte const*>(s.packet->data);
     std::vector<std::byte> unit(data, data + s.packet->size);
     av_packet_unref(s.packet.get());

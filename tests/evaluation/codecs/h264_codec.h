@@ -19,9 +19,10 @@ public:
     H264Encoder(int width, int height, double frames_per_second);
     ~H264Encoder();
 
-    /// The complete access unit of exactly this picture, which must have the encoder's size. `most_bytes`: what the
-    /// frame may take, > 0, from one frame to the next as the link changes; infinite: whatever constant quality (crf 8)
-    /// takes, which is never exceeded. x264 keeps to it within some per cent, the first frame apart.
+    /// Returns the complete access unit of exactly this picture, which must have the encoder's size. `most_bytes`:
+    /// bytes that the frame may take, > 0, which may change from frame to frame as the link does; infinite: whatever
+    /// constant quality (crf 8) takes, which is never exceeded. x264 keeps to it within some per cent, the first frame
+    /// apart.
     std::vector<std::byte> encode(Picture const& picture, double most_bytes);
 
 private:
@@ -34,7 +35,8 @@ public:
     H264Decoder();
     ~H264Decoder();
 
-    /// One access unit, as the encoder gave it; `out` takes the picture's size. Throws InputError for damaged bytes.
+    /// Decodes one access unit, as the encoder gave it; `out` takes the picture's size. Throws InputError for damaged
+    /// bytes.
     void decode(std::span<std::byte const> unit, Picture& out);
 
 private:

@@ -59,7 +59,7 @@ TEST(H264Codec, TheSamePicturesGiveTheSameBytesAndNoFrameTakesMoreThanItMay) {
     H264Encoder a(256, 192, 30), b(256, 192, 30);
     for (int i = 0; i < 90; ++i) {
         Picture const picture = waves(256, 192, i / 30.0);
-        double const most_bytes = i < 30 ? 3000 : i < 60 ? 700 : 2000; // a link whose rate changes
+        double const most_bytes = i < 30 ? 3000 : i < 60 ? 700 : 2000; // as for a link whose rate changes
         auto const unit = a.encode(picture, most_bytes);
         EXPECT_EQ(unit, b.encode(picture, most_bytes));
         if (i % 30 > 2) {

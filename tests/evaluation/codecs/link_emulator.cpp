@@ -37,7 +37,7 @@ constexpr std::size_t largest_slice = 64 << 10;
 constexpr double queue_seconds = 0.1;
 constexpr double smallest_queue = 64 << 10;
 constexpr double unlimited_window = 8 << 20;
-constexpr int socket_bytes = 32 << 10; ///< small: what waits shall wait in the queue or at the sender
+constexpr int socket_bytes = 32 << 10; ///< buffers are small, so that bytes wait in the queue or at the sender
 
 /// One direction of the link, for all connections.
 class Road {
@@ -45,7 +45,7 @@ public:
     Road(LinkParameters const& parameters, Clock::time_point start)
         : link_(parameters), latency_(parameters.delay_seconds + parameters.jitter_seconds), start_(start) {}
 
-    /// When bytes that the sender hands over now are at the receiver.
+    /// Sends bytes now; returns when they are at the receiver.
     Clock::time_point send(std::size_t bytes) {
         std::chrono::duration<double> const arrived{link_.send(now(), bytes).arrived};
         return start_ + std::chrono::ceil<Clock::duration>(arrived);
@@ -57,7 +57,7 @@ public:
         return rate > 0 ? std::max(slice, smallest_slice) : largest_slice;
     }
 
-    /// How many bytes a connection may have between its sockets.
+    /// Bytes that a connection may have between its sockets.
     double window_bytes() const {
         double const rate = link_.rate_at(now()) / 8;
         return rate > 0 ? std::max(smallest_queue, rate * queue_seconds) + rate * latency_ : unlimited_window;
@@ -126,9 +126,9 @@ struct Connection {
 };
 using SharedConnection = std::shared_ptr<Connection>;
 
-/// Until the lane's other end has put a slice in or taken one out, or the connection has ended.
+/// Waits until the lane's other end has put a slice in or taken one out, or the connection has ended.
 Step wait_for_change(Lane& lane) {
-    error_code cancelled; // which is how the word arrives
+    error_code cancelled; // the timer's cancellation is the signal
     co_await lane.changed.async_wait(asio::redirect_error(asio::use_awaitable, cancelled));
 }
 
@@ -175,7 +175,7 @@ Step hand_out(SharedConnection connection, Lane& lane) {
     }
 }
 
-/// A connection that breaks at one end is broken at both.
+/// Does the work; closes the connection at both ends where it breaks at one.
 Step until_broken(SharedConnection connection, Step work) {
     try {
         co_await std::move(work);
@@ -230,7 +230,7 @@ struct LinkEmulator::Proxy {
             tcp::socket socket = co_await acceptor.async_accept(asio::redirect_error(asio::use_awaitable, error));
             if (error) {
                 error_code ignored;
-                acceptor.close(ignored); // clients are to be refused rather than kept waiting
+                acceptor.close(ignored); // so that clients are refused rather than kept waiting
                 co_return;
             }
             auto const connection = std::make_shared<Connection>(std::move(socket), down, up);

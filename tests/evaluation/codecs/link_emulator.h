@@ -1,5 +1,5 @@
-// A link between real processes: a TCP proxy on loopback that lets bytes through when the simulated link would, on the
-// wall clock. In: the port of a server, a link. Out: the port that a client connects to instead.
+// Emulates a link between real processes: a TCP proxy on loopback that lets bytes through when the simulated link
+// would, on the wall clock. In: the port of a server, a link. Out: the port that a client connects to instead.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace framelet::bench {
 
-/// From the server to the client the whole link holds; from the client to the server its delay and jitter alone. All
+/// The whole link applies from the server to the client, its delay and jitter alone from the client to the server. All
 /// connections share it. Bytes pass in slices of at most 2 ms (128 bytes at least). A connection reads ahead of its
 /// receiver by what is on its way and a queue of 100 ms (64 KiB at least), or by 8 MiB on an unlimited link, and then
 /// leaves the rest in the sender's socket, as a router does to TCP. A close passes through behind the bytes before it.
@@ -22,7 +22,7 @@ public:
     ~LinkEmulator();
 
     std::uint16_t port() const;
-    /// Ends every connection where it is, amid whatever is on its way; whoever comes next is let through. From any
+    /// Ends every connection, amid whatever is on its way; later connections are let through. May be called from any
     /// thread.
     void cut();
 

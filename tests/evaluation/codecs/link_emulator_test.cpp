@@ -42,7 +42,7 @@ public:
 private:
     asio::io_context io_;
     tcp::acceptor acceptor_{io_, {asio::ip::address_v4::loopback(), 0}};
-    std::jthread thread_; // last: ends before what it uses
+    std::jthread thread_; // declared last, so that it ends before what it uses
 };
 
 struct Client {
@@ -53,7 +53,7 @@ struct Client {
         socket.connect({asio::ip::address_v4::loopback(), port});
         socket.set_option(tcp::no_delay(true));
     }
-    /// What comes until the other side closes.
+    /// Reads all bytes that come until the other side closes.
     Bytes read_all() {
         Bytes bytes;
         error_code end;
@@ -78,7 +78,7 @@ void echo(tcp::socket& socket) {
     }
 }
 
-/// Until the other side is gone; `ended` says why.
+/// Sends until the other side is gone; `ended` says why.
 void send_without_end(tcp::socket& socket, error_code& ended) {
     Bytes const block(16384);
     while (!ended) {
@@ -120,7 +120,7 @@ TEST(LinkEmulator, DelaysEachWay) {
     }
 }
 
-/// Bits a second that a client sees of a server that sends without end.
+/// Rate, bits a second, at which a client receives from a server that sends without end.
 double measure_rate(LinkParameters const& link, std::size_t bytes) {
     error_code closed;
     Server server([&](tcp::socket& socket) { send_without_end(socket, closed); });
@@ -137,7 +137,7 @@ TEST(LinkEmulator, KeepsItsRate) {
     LinkParameters link;
     link.bits_per_second = 8e6;
     double rate = 0;
-    for (int attempt = 0; attempt < 3 && rate < 0.85 * 8e6; ++attempt) { // a busy machine may take time away
+    for (int attempt = 0; attempt < 3 && rate < 0.85 * 8e6; ++attempt) { // since a busy machine may take time away
         rate = measure_rate(link, 500'000);
         EXPECT_LT(rate, 1.15 * 8e6);
     }
@@ -222,7 +222,7 @@ TEST(LinkEmulator, ACutEndsWhoIsThereAndLetsTheNextOneThrough) {
         tcp::socket served = acceptor.accept();
         asio::write(served, asio::buffer(word));
         Bytes came(word.size());
-        asio::read(client.socket, asio::buffer(came)); // before that it might not be a connection yet
+        asio::read(client.socket, asio::buffer(came)); // before the first bytes the connection might not be made yet
         EXPECT_EQ(std::string(came.begin(), came.end()), word);
         emulator.cut();
         EXPECT_TRUE(client.read_all().empty());

@@ -1,5 +1,5 @@
-// A link on the virtual clock: rate, delay, jitter, stalls. Reliable and in order, as TCP is. A value: the same
-// messages at the same times arrive at the same times.
+// Simulates a link on the virtual clock: rate, delay, jitter, stalls. Reliable and in order, as TCP is. A value: the
+// same messages at the same times arrive at the same times.
 #pragma once
 
 #include <cstddef>
@@ -9,20 +9,20 @@
 
 namespace framelet::bench {
 
-/// From `begin` on nothing moves for so long.
+/// A time in which the link carries nothing: `seconds` long, from `begin` on.
 struct Stall {
     double begin = 0, seconds = 0;
 };
 
-/// From `begin` on the link has another rate.
+/// A change of the link's rate, from `begin` on.
 struct RateStep {
     double begin = 0, bits_per_second = 0;
 };
 
 struct LinkParameters {
     double bits_per_second = 0; ///< 0: unlimited
-    double delay_seconds = 0; ///< one way
-    double jitter_seconds = 0; ///< more delay, uniform from 0 to this
+    double delay_seconds = 0; ///< seconds, one way
+    double jitter_seconds = 0; ///< further delay, uniform from 0 to this
     std::vector<Stall> stalls{}; ///< in order of time, disjoint
     std::vector<RateStep> rate_steps{}; ///< in order of time
     std::uint64_t seed = 1;
@@ -37,33 +37,33 @@ public:
     struct Delivery {
         double begun = 0; ///< when the first byte left the sender
         double departed = 0; ///< when the last byte left the sender
-        double arrived = 0; ///< when it is there; never before an earlier message
+        double arrived = 0; ///< when the last byte is at the receiver; never before an earlier message
     };
 
-    /// Times of calls must not decrease.
+    /// Sends a message. Times of calls must not decrease.
     Delivery send(double now, std::size_t bytes);
 
-    /// What has been sent and has not left yet. `now`: not before the last call of `send`.
+    /// Bytes that were sent and have not left yet. `now`: not before the last call of `send`.
     double backlog_bytes(double now) const;
-    /// Bits a second in force, stalls apart; 0: unlimited.
+    /// Rate in force at `time`, bits a second, stalls apart; 0: unlimited.
     double rate_at(double time) const;
 
 private:
     struct Waiting {
-        double started = 0, departed = 0; ///< first and last byte
+        double started = 0, departed = 0; ///< times at which the first and the last byte leave
         double bytes = 0;
     };
 
     /// The first moment after `time` at which the rate changes or a stall begins or ends.
     double next_change(double time) const;
     bool stalled_at(double time) const;
-    /// What a link that is always busy sends between two times of limited rate.
+    /// Bits that a link that is always busy sends between two times of limited rate.
     double carried_bits(double from, double to) const;
 
     LinkParameters parameters_;
-    double free_ = -1e300; ///< when the last byte of what was sent has left
+    double free_ = -1e300; ///< time at which the last byte sent so far has left
     double last_arrival_ = -1e300;
-    std::deque<Waiting> waiting_; ///< what had not left by the last call of `send`
+    std::deque<Waiting> waiting_; ///< messages that had not left by the last call of `send`
     std::uint64_t messages_ = 0;
 };
 

@@ -47,11 +47,11 @@ TEST(SimulatedLink, AStallHoldsWhatIsOnItsWay) {
 
 TEST(SimulatedLink, AMessageLastsOverStallsAndSteps) {
     LinkParameters parameters;
-    parameters.bits_per_second = 8e6; // a byte a microsecond
+    parameters.bits_per_second = 8e6; // one byte a microsecond
     parameters.stalls = {{0.02, 0.1}, {0.15, 0.05}};
     parameters.rate_steps = {{0.14, 4e6}};
     SimulatedLink link(parameters);
-    // 20 kB before the first stall, 20 kB up to the step, 5 kB up to the second stall, 10 kB after it.
+    // The link carries 20 kB before the first stall, 20 kB up to the step, 5 kB up to the second stall, 10 kB after it.
     EXPECT_NEAR(link.send(0, 55'000).departed, 0.22, 1e-12);
     EXPECT_NEAR(link.backlog_bytes(0), 55'000, 1e-6);
     EXPECT_NEAR(link.backlog_bytes(0.01), 45'000, 1e-6);
@@ -127,7 +127,7 @@ TEST(SimulatedLink, JitterIsBoundedRepeatableAndKeepsOrder) {
     }
     EXPECT_TRUE(differs);
     EXPECT_NEAR(sum / 2000, 0.01, 0.001);
-    for (int i = 0; i < 100; ++i) { // close together: they must not overtake
+    for (int i = 0; i < 100; ++i) { // sent close together: they must not overtake each other
         double const arrived = a.send(100 + i * 0.001, 10).arrived;
         EXPECT_GE(arrived, last);
         last = arrived;

@@ -23,13 +23,13 @@ namespace {
 
 using nlohmann::json;
 
-/// Seconds that pictures are moved ahead.
+/// Times ahead to which pictures are moved, seconds.
 constexpr double times_ahead[] = {1.0 / 60, 1.0 / 15, 0.2};
 
-/// Inverse depths that differ by this share more than their neighbours do are of two surfaces.
+/// Share by which inverse depths must differ more than their neighbours do to be of two surfaces.
 constexpr float same_surface = 0.01f;
 
-/// What every pixel of a picture shows.
+/// Surfaces that the pixels of a picture show.
 struct Surfaces {
     Viewport viewport;
     std::vector<Framelet> framelets;
@@ -67,7 +67,7 @@ Surfaces render_surfaces(BenchScene& scene, Camera const& camera, Viewport viewp
     return out;
 }
 
-/// True where the picture shows that surface there: its inverse depth is among those of the pixels around.
+/// True where the picture shows that surface at that place: its inverse depth is among those of the pixels around.
 bool shows(Surfaces const& surfaces, ExactMotion::Place const& place, BodyNumber body) {
     auto const [width, height] = surfaces.viewport;
     Vec2 const pixel = place.pixel;
@@ -93,7 +93,8 @@ bool shows(Surfaces const& surfaces, ExactMotion::Place const& place, BodyNumber
     return place.inverse_depth >= least - margin && place.inverse_depth <= most + margin;
 }
 
-/// What a viewer holds of a picture whose colours are the pixels' places. `speed`: of the camera, metres a second.
+/// Fills a viewer's cache with a picture whose colours are the pixels' places, coded and decoded. `speed`: that of the
+/// camera, metres a second.
 void hold_places(Surfaces const& surfaces, BenchScene const& scene, Camera const& camera, float speed, int shift,
                  FrameletCache& cache, std::vector<BodyTrack> const& tracks, BodyMotions& motions) {
     ImagePlane const plane(surfaces.viewport);
@@ -125,7 +126,7 @@ void hold_places(Surfaces const& surfaces, BenchScene const& scene, Camera const
 }
 
 struct Found {
-    double pixels = 0, all_holes = 0; ///< also of what was not visible
+    double pixels = 0, all_holes = 0; ///< counted over all pixels, whether visible before or not
     double visible = 0, tenth = 0, half = 0, one = 0, holes = 0;
 
     void add(float error) {
@@ -179,7 +180,7 @@ void compare(Surfaces const& before, Surfaces const& after, ExactMotion const& b
     }
 }
 
-/// `found`: one for each of `times_ahead`.
+/// Measures all times ahead from one time of the scene. `found`: one for each of `times_ahead`.
 void measure_from(BenchScene& scene, Viewport viewport, SceneTime time, std::span<Found> found) {
     ImagePlane const plane(viewport);
     pose_at(scene, time);

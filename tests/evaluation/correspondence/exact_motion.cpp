@@ -8,7 +8,8 @@ namespace framelet::bench {
 
 namespace {
 
-/// View depth over inverse depth's counterpart below which a place is as good as behind the eye.
+/// Least ratio of a point's view depth in the second view to that in the first: below it the place is as good as behind
+/// the eye.
 constexpr float nearest = 0.05f;
 
 } // namespace
@@ -26,7 +27,8 @@ ExactMotion::ExactMotion(SceneBodies const& bodies, SceneView const& from, Scene
 
 ExactMotion::Place ExactMotion::shown(Vec2 place, float inverse_depth, BodyNumber body, Vec3 const& velocity) const {
     Vec3 const direction = rays_.direction + rays_.direction_dx * place.x + rays_.direction_dy * place.y;
-    Vec3 towards = direction; // times the inverse depth
+    // Vector from the second eye to the point, times the inverse depth; for the sky the direction alone.
+    Vec3 towards = direction;
     if (inverse_depth > 0) {
         Vec3 point = rays_.origin + direction / inverse_depth;
         if (body != static_body) {

@@ -1,5 +1,6 @@
-// Where what is seen from one camera at one time is seen from another camera at another time: straight from the scene's
-// animation, without layers, keys or wire. In: bodies, two poses of the scene, two cameras. Out: places in the picture.
+// Computes where a point seen from one camera at one time is seen from another camera at another time: straight from
+// the scene's animation, without layers, keys or wire. In: bodies, two poses of the scene, two cameras. Out: places in
+// the picture.
 #pragma once
 
 #include <utility>
@@ -21,19 +22,19 @@ public:
     ExactMotion(SceneBodies const& bodies, SceneView const& from, SceneView const& to, Viewport viewport);
 
     struct Place {
-        Vec2 pixel{NAN}; ///< not a number: behind the eye, or nearly
+        Vec2 pixel{NAN}; ///< pixels; not a number: behind the eye, or nearly
         float inverse_depth = 0; ///< 1 / metres
     };
 
-    /// Of what is seen at the pixel `place` at that inverse depth (0: the sky). What no body carries moves on by
-    /// `velocity`, metres a second.
+    /// Place in the second view of the point seen in the first at `place` (pixels) with that inverse depth (1/m; 0: the
+    /// sky), carried by `body`. A point that no body carries moves on by `velocity`, metres a second.
     Place shown(Vec2 place, float inverse_depth, BodyNumber body, Vec3 const& velocity) const;
 
 private:
-    float seconds_; ///< from the first to the second
+    float seconds_; ///< time from the first view to the second, seconds
     ViewRays rays_;
     Vec3 eye_;
-    Mat3 to_pixels_; ///< world to homogeneous pixel; the third is the view depth
+    Mat3 to_pixels_; ///< world offset from the second eye to homogeneous pixel; third component: view depth
     std::vector<std::pair<BodyPose, BodyPose>> poses_;
 };
 

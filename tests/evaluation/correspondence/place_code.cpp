@@ -23,7 +23,7 @@ std::array<float, place_steps + 1> const& squares() {
     return table;
 }
 
-/// Distance from the last upward turn, in [0, period).
+/// Distance in pixels from the code's last upward turn, in [0, period).
 float phase(float place, int shift) {
     float const from = place - 0.5f + static_cast<float>(shift * shift_pixels);
     return from - period * std::floor(from / period);

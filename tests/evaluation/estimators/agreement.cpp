@@ -12,11 +12,12 @@
 namespace framelet::bench {
 namespace {
 
-// What needs less than the least that is offered needs as little as that: half the lowest rate observed.
+// Lower bounds of the ideal rates, half the lowest rates observed: a place that needs less is taken to need as little
+// as that.
 constexpr double least_samples_per_pixel_side = 1.0 / 16;
 constexpr double least_refreshes_per_second = oracle_rate / (2 << (observed_intervals - 1));
 
-/// Error of the place in the last of the framelets that `level` has there.
+/// Error of the place, estimated from the last of the framelets that `level` has there.
 RateError error_at(ErrorEstimator const& estimator, RateTemplates const& templates, Place const& place, int level,
                    int interval) {
     int const coarser = std::max(coarsest_levels - level, 0);
@@ -91,7 +92,7 @@ Verdicts judge(ErrorEstimator const& estimator, RateTemplates const& templates, 
 }
 
 SignAgreement sign_agreement(std::span<Verdict const> verdicts) {
-    double right[2] = {}, all[2] = {}; // redundant, undersampled
+    double right[2] = {}, all[2] = {}; // by kind: redundant, undersampled
     for (Verdict const& verdict : verdicts) {
         if (std::abs(verdict.truth) >= close_to_ideal) {
             bool const under = verdict.truth > 0;

@@ -1,4 +1,4 @@
-// How well an error estimator agrees with the oracle, over many places and sample rates.
+// Judges how well an error estimator agrees with the oracle, over many places and sample rates.
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@ namespace framelet::bench {
 /// One axis of one place at one sample rate.
 struct Verdict {
     double estimate = 0; ///< the error, [-1, 1]
-    double truth = 0; ///< log2(ideal rate / rate), rates along the axis: > 0 undersampled
+    double truth = 0; ///< log2(ideal rate / rate), rates being those along the axis: > 0 undersampled
     int rate = 0; ///< level or interval (observations.h)
 };
 
@@ -23,10 +23,10 @@ struct Verdicts {
 /// The estimator's last word at each place, level and interval, after `observed_refreshes` framelets.
 Verdicts judge(ErrorEstimator const& estimator, RateTemplates const& templates, std::span<Place const> places);
 
-/// A rate this close to the ideal (octaves) is right: whatever sign is estimated there does not count.
+/// Octaves from the ideal rate within which a rate is right: the sign that is estimated there does not count.
 inline constexpr double close_to_ideal = 0.25;
 
-/// Shares of right signs.
+/// Shares of the verdicts whose sign is right.
 struct SignAgreement {
     double all = 0;
     double balanced = 0; ///< mean of the share among the undersampled and that among the redundant
@@ -35,12 +35,12 @@ SignAgreement sign_agreement(std::span<Verdict const> verdicts);
 
 struct Agreement {
     double rank = 0; ///< Spearman's rank correlation of estimate and truth, over everything
-    double rank_at_rate = 0; ///< mean of the same within each rate: does it tell places apart?
+    double rank_at_rate = 0; ///< mean of that correlation within each rate: does it tell places apart?
     SignAgreement signs;
 };
 Agreement agreement(std::span<Verdict const> verdicts);
 
-/// What the best answer that knows the rate but not the samples would reach: one ideal for all places.
+/// Agreement of the best answer that knows the rate but not the samples: one ideal for all places.
 enum class RateOrder { ascending, descending }; ///< levels get denser, intervals rarer
 Agreement agreement_of_rate_alone(std::span<Verdict const> verdicts, RateOrder order);
 

@@ -1,4 +1,4 @@
-// Judging estimators: known correlations, and estimators whose agreement is known.
+// Tests the judging of estimators: known correlations, and estimators whose agreement is known.
 #include "tests/evaluation/estimators/agreement.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ TEST(Agreement, RankCorrelationByHand) {
     EXPECT_DOUBLE_EQ(rank_correlation(a, down), -1);
     EXPECT_EQ(rank_correlation(a, same), 0);
     EXPECT_DOUBLE_EQ(rank_correlation(a, std::vector<double>{2, 1, 4, 3, 5}), 0.8); // 1 - 6 * 4 / (5 * 24)
-    EXPECT_NEAR(rank_correlation(a, std::vector<double>{1, 1, 2, 2, 2}), 0.866, 0.001); // ties share their rank
+    EXPECT_NEAR(rank_correlation(a, std::vector<double>{1, 1, 2, 2, 2}), 0.866, 0.001); // ties share their mean rank
 }
 
 TEST(Agreement, CountsSignsByKindAndLeavesOutTheIdeal) {
@@ -40,7 +40,7 @@ TEST(Agreement, OfTheTruthIsPerfect) {
 }
 
 TEST(Agreement, OfTheRateAloneDoesNotTellPlacesApart) {
-    std::vector<Verdict> verdicts; // ideal at rate 2 or 3
+    std::vector<Verdict> verdicts; // verdicts whose ideal is rate 2 or 3
     for (int rate = 0; rate < 6; ++rate) {
         for (double const ideal : {2.0, 3.0}) {
             verdicts.push_back({0, ideal - rate, rate});
@@ -52,8 +52,8 @@ TEST(Agreement, OfTheRateAloneDoesNotTellPlacesApart) {
     EXPECT_GT(found.rank, 0.9);
 }
 
-/// Random values at the corners of cells, bilinear between them: smooth to who samples more densely, noise to who does
-/// not.
+/// Value noise: random values at the corners of cells, bilinear between them; smooth to a sampling denser than the
+/// cells, noise to a sparser one.
 double value_noise(double x, double y) {
     auto const corner = [](double column, double row) {
         auto hash = static_cast<std::uint32_t>(column) * 0x9e3779b9u ^ static_cast<std::uint32_t>(row) * 0x85ebca6bu;
@@ -67,7 +67,7 @@ double value_noise(double x, double y) {
     return std::lerp(above, below, y - row);
 }
 
-/// Places of such noise that stands still, with cells an octave apart.
+/// Places of such noise, which stands still, with cells an octave apart.
 std::vector<Place> noises() {
     std::vector<Place> places;
     for (int i = 0; i < 12; ++i) {
@@ -104,7 +104,7 @@ TEST(Estimators, SomeHaarTemplateTellsScalesOfNoiseApart) {
         for (float const slope : {0.0f, 0.5f, 1.0f, 2.0f}) {
             Verdicts const verdicts = judge(haar, {{offset, slope}, haar.templates.time}, places);
             best = std::max(best, agreement(verdicts.space).rank);
-            // Nothing moves: every refresh is redundant, and said to be.
+            // Nothing moves, so that every refresh is redundant, and must be judged so.
             EXPECT_EQ(sign_agreement(verdicts.time).all, 1);
         }
     }

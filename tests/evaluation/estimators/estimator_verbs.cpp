@@ -28,7 +28,7 @@ std::vector<Place> observe(StudyOptions const& study, ObservationOptions options
     return places;
 }
 
-/// Nanoseconds a framelet of one block with a history, median of `rounds` over all places.
+/// Cost of an estimator: nanoseconds for a framelet of one block with a history, median of `rounds` over all places.
 double cost_of(ErrorEstimator const& estimator, std::span<Place const> places, int rounds) {
     std::vector<ErrorHistory> histories(places.size());
     RateError error;

@@ -1,4 +1,4 @@
-// framelet-bench estimators: error estimators against the oracle of the ideal density.
+// The verb `estimators`: compares error estimators with the oracle of the ideal density.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -8,8 +8,8 @@
 
 namespace framelet::bench {
 
-/// Cost of each estimator and its agreement with the oracle, with the templates that it comes with. Of `study`, scenes
-/// and seed count. `quick`: the first two scenes.
+/// Measures the cost of each estimator and its agreement with the oracle, with the templates that it comes with. Of
+/// `study` only scenes and seed count. `quick`: takes the first two scenes only.
 nlohmann::json compare_estimators(StudyOptions const& study, ObservationOptions const& observation, bool quick);
 
 } // namespace framelet::bench

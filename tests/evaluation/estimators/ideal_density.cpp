@@ -14,7 +14,7 @@
 namespace framelet::bench {
 namespace {
 
-/// FFTW executes side by side but plans one at a time.
+/// Guards FFTW's planner: transforms may be executed in parallel, but are planned one at a time.
 std::mutex& planner() {
     static std::mutex mutex;
     return mutex;
@@ -60,7 +60,7 @@ private:
     fftw_plan plan_ = nullptr;
 };
 
-/// Hann window, sampled at the middle of its cells, so that none is zero.
+/// A Hann window, sampled at the middle of its cells, so that none is zero.
 std::vector<double> hann(int size) {
     std::vector<double> window(static_cast<std::size_t>(size));
     for (std::size_t i = 0; i < window.size(); ++i) {
@@ -70,12 +70,12 @@ std::vector<double> hann(int size) {
     return window;
 }
 
-/// How often a bin of the last axis stands in the whole transform: the other half is its mirror image.
+/// How often a bin of the transform's last axis counts in the whole transform: the other half is its mirror image.
 double multiplicity(int bin, int size) {
     return bin == 0 || 2 * bin == size ? 1 : 2;
 }
 
-/// Mean square of each time's picture by max(|u|, |v|) in half cycles per side.
+/// Mean square of the pictures of all times, less their means, by max(|u|, |v|) in half cycles per side.
 std::vector<double> spatial_energies(SampleVolume const& volume) {
     int const side = volume.side, mirrored = 2 * side;
     auto const n = static_cast<std::size_t>(side), m = static_cast<std::size_t>(mirrored);
@@ -109,7 +109,7 @@ std::vector<double> spatial_energies(SampleVolume const& volume) {
     return energies;
 }
 
-/// Mean of the samples of each pixel: [time][pixel].
+/// Means of the samples of each pixel: [time][pixel].
 std::vector<double> pixel_means(SampleVolume const& volume) {
     auto const side = static_cast<std::size_t>(volume.side), pixels = static_cast<std::size_t>(volume.pixels);
     std::size_t const per_pixel = side / pixels;
@@ -121,7 +121,7 @@ std::vector<double> pixel_means(SampleVolume const& volume) {
     return means;
 }
 
-/// Mean square of all pixels' course in time, by cycles per window.
+/// Mean square of all pixels' variation in time, by cycles per window.
 std::vector<double> temporal_energies(SampleVolume const& volume) {
     std::vector<double> const means = pixel_means(volume);
     auto const times = static_cast<std::size_t>(volume.times);
@@ -154,7 +154,7 @@ std::vector<double> temporal_energies(SampleVolume const& volume) {
     return energies;
 }
 
-/// The bin, with a fraction, beyond which no more than allowed is left.
+/// The bin, with a fraction, beyond which no more energy than allowed is left.
 double edge_of(std::vector<double> const& energies, OracleParameters const& parameters) {
     double total = 0;
     for (double const energy : energies) {

@@ -16,7 +16,7 @@ struct SampleVolume {
 };
 
 struct OracleParameters {
-    double share = 0.95; ///< of the energy that varies along an axis, to be captured
+    double share = 0.95; ///< share to be captured of the energy that varies along an axis
     double floor = 1e-4; ///< mean square that need not be captured: 40 dB
 };
 

@@ -1,4 +1,4 @@
-// The oracle where the answer is known.
+// Tests the oracle where the answer is known.
 #include "tests/evaluation/estimators/ideal_density.h"
 
 #include <cmath>
@@ -12,9 +12,9 @@ namespace framelet::bench {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr double rate = 120; // per second
+constexpr double rate = 120; // pictures per second
 
-/// 16 pixels, four samples along each; `value` of x, y (pixels) and t (seconds).
+/// A volume of 16x16 pixels, four samples along each; `value` of x, y (pixels) and t (seconds).
 SampleVolume volume_of(std::function<double(double, double, double)> const& value, int times = 64) {
     SampleVolume volume{64, times, 16, times / rate, {}};
     for (int t = 0; t < times; ++t) {
@@ -43,7 +43,7 @@ TEST(IdealDensity, OfAMovingWaveIsItsFrequencyAndThatTimesItsSpeed) {
             return 0.5 + 0.3 * std::sin(2 * pi * wave.frequency * (x - wave.speed * t));
         };
         IdealDensity const ideal = ideal_density(volume_of(moving), {});
-        EXPECT_NEAR(ideal.space_frequency, wave.frequency, 1.0 / 32) << wave.frequency; // a bin
+        EXPECT_NEAR(ideal.space_frequency, wave.frequency, 1.0 / 32) << wave.frequency; // within a bin
         EXPECT_NEAR(ideal.time_frequency, wave.frequency * wave.speed, rate / 64) << wave.speed;
         EXPECT_NEAR(ideal.samples_per_pixel(), std::pow(2 * wave.frequency, 2), 0.25 * wave.frequency + 0.01);
     }
@@ -78,7 +78,7 @@ TEST(IdealDensity, OfNoiseIsTheWholeBand) {
     std::mt19937 random(1);
     std::uniform_real_distribution<double> value(0, 1);
     IdealDensity const ideal = ideal_density(volume_of([&](auto, auto, auto) { return value(random); }), {});
-    EXPECT_NEAR(ideal.space_frequency, std::sqrt(0.95) * 2, 0.04); // energy is as the band's area; Nyquist: 2
+    EXPECT_NEAR(ideal.space_frequency, std::sqrt(0.95) * 2, 0.04); // energy grows as the band's area; Nyquist: 2
     EXPECT_NEAR(ideal.time_frequency, 0.95 * rate / 2, 1);
 }
 

@@ -15,9 +15,9 @@ namespace {
 constexpr int longest_interval = 1 << (observed_intervals - 1);
 constexpr int longest_ago = longest_interval * (observed_refreshes - 1);
 constexpr int finest = observed_levels - 1;
-constexpr int oracle_side = framelet_side << finest_levels; // samples along a place
+constexpr int oracle_side = framelet_side << finest_levels; // samples along the side of a place
 
-/// Where a level's framelets stand among all of a place at one time.
+/// Index of a level's first framelet among all framelets of a place at one time.
 constexpr int first_framelet(int level) {
     int first = 0;
     for (int i = 0; i < level; ++i) {
@@ -27,7 +27,7 @@ constexpr int first_framelet(int level) {
 }
 constexpr int framelets_in_all = first_framelet(observed_levels);
 
-/// Oracle intervals ago at which estimators look, ascending.
+/// Times at which estimators look: oracle intervals ago, ascending.
 std::vector<int> const& observed_times() {
     static std::vector<int> const times = [] {
         std::set<int> all;
@@ -60,7 +60,7 @@ void write_luma(Framelet const& framelet, float exposure, float* luma) {
     }
 }
 
-/// The finest framelets of one time into the volume, row by row.
+/// Writes the finest framelets of one time into the volume, row by row.
 void write_volume(float const* framelets, int time, SampleVolume& volume) {
     constexpr auto side = static_cast<std::size_t>(oracle_side);
     float* const picture = volume.luma.data() + static_cast<std::size_t>(time) * side * side;
@@ -70,7 +70,7 @@ void write_volume(float const* framelets, int time, SampleVolume& volume) {
     }
 }
 
-/// All places at one time of the scene. `ago`: oracle intervals before the windows' middle, < 0 after it.
+/// Renders all places at one time of the scene. `ago`: oracle intervals before the windows' middle, < 0 after it.
 void observe_time(BenchScene& scene, ImagePlane const& plane, int ago, std::vector<Place>& places,
                   std::vector<SampleVolume>& volumes) {
     auto const& times = observed_times();
@@ -102,7 +102,7 @@ void observe_time(BenchScene& scene, ImagePlane const& plane, int ago, std::vect
     });
 }
 
-/// Places at the same time.
+/// Observes places at the same time, and computes their ideal densities.
 void observe_window(BenchScene& scene, ImagePlane const& plane, OracleParameters const& oracle,
                     std::vector<Place>& places) {
     SampleVolume empty{oracle_side, oracle_times, framelet_side, oracle_times / oracle_rate, {}};

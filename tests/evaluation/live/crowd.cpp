@@ -22,7 +22,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Of one viewer, from when it has built up its picture to its end.
+/// Figures of one viewer, from when it has built up its picture to its end.
 json viewer_figures(std::vector<LiveFrame> const& frames) {
     std::vector<double> gaps;
     double changed = 0;
@@ -42,7 +42,7 @@ json viewer_figures(std::vector<LiveFrame> const& frames) {
             {"kB_per_second", (frames.back().bytes - first->bytes) / span / 1e3}};
 }
 
-/// The slowest and the middle one, the longest gap, all bytes.
+/// Summary of all viewers: the slowest and the median rate of pictures, the longest gap, all bytes.
 json summary_of(json const& viewers, double server_busy) {
     std::vector<double> rates, gaps;
     double bytes = 0;
@@ -58,7 +58,7 @@ json summary_of(json const& viewers, double server_busy) {
             {"server_busy", server_busy}};
 }
 
-/// It has said what it wants to see, and reads nothing of it.
+/// A viewer that has said what it wants to see, and reads nothing of it.
 std::unique_ptr<RawViewer> stalled_viewer(std::uint16_t port, Viewport viewport) {
     auto viewer = std::make_unique<RawViewer>(port);
     viewer->send(CameraUpdate{{1, Camera{}, viewport}, 0});

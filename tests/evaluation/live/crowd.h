@@ -1,5 +1,5 @@
-// Many viewers of one server at once, as real programs: what each of them gets, and what one that has stopped reading
-// costs the others.
+// Runs many viewers of one server at once, as real programs: measures what each of them gets, and what one that has
+// stopped reading costs the others.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -9,13 +9,13 @@
 namespace framelet::bench {
 
 struct CrowdOptions {
-    int viewers = 0; ///< 0: `live` is of one viewer and of pictures
-    bool stalled = false; ///< a second run with one more that reads nothing
+    int viewers = 0; ///< 0: `live` runs one viewer and compares pictures
+    bool stalled = false; ///< adds a second run, beside one more viewer that reads nothing
     Viewport viewport{1280, 720};
     double seconds = 4;
 };
 
-/// Prints a row a viewer and one of all, and returns the figures. Throws ConnectionError where a program fails.
+/// Prints a row for each viewer and one for all, and returns the figures. Throws ConnectionError where a program fails.
 nlohmann::json measure_crowd(BenchScene const& scene, CrowdOptions const& options);
 
 } // namespace framelet::bench

@@ -1,5 +1,5 @@
-// Some viewers of one server, once by themselves and once beside one that reads nothing: that all of them are served
-// and counted. How well is what `framelet-bench live --viewers` is run for.
+// Tests some viewers of one server, once by themselves and once beside one that reads nothing: all of them are served
+// and counted. How well they are served, `framelet-bench live --viewers` measures.
 #include "tests/evaluation/live/crowd.h"
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ TEST(Crowd, EveryViewerIsServedAndCountedBesideAStalledOneToo) {
 TEST(Crowd, AViewerThatIsRefusedIsSaid) {
     auto const scene = load_bench_scene(FRAMELET_SOURCE_DIR "/scenes/vehicle_chase.glb");
     CrowdOptions options = crowd_of(1);
-    options.viewport = {1, 1'000'000}; // no picture
+    options.viewport = {1, 1'000'000}; // too large for a picture
     EXPECT_THROW(measure_crowd(*scene, options), ConnectionError);
 }
 

@@ -34,12 +34,13 @@ namespace {
 using namespace std::chrono_literals;
 using nlohmann::json;
 
-constexpr auto patience = 120s; ///< for a client that still writes its last pictures
+constexpr auto patience = 120s; ///< time for a client to write its last pictures
 
-/// The real programs for the project's own methods, this program's for the others: it serves and shows any method.
+/// Command lines: the real programs for the project's own methods, this program for the others, since it serves and
+/// shows any method.
 struct Programs {
     std::string server, client;
-    std::vector<std::string> server_words, client_words; ///< that come first
+    std::vector<std::string> server_words, client_words; ///< words that come first
     std::vector<std::string> client_more;
 };
 
@@ -48,7 +49,8 @@ std::vector<std::string> joined(std::vector<std::string> words, std::vector<std:
     return words;
 }
 
-/// Through an emulated link the client comes by another port, for which it finds no token: everybody is let in.
+/// The programs for a method. Through an emulated link the client connects to another port, for which it finds no
+/// token: the server lets everybody in.
 Programs programs_of(std::string const& method, RivalParts const& rivals, std::string const& scene) {
     if (method == "framelet") {
         return {FRAMELET_SERVER, FRAMELET_CLIENT, {scene, "--port", "0", "--insecure"}, {}, {"--json"}};
@@ -66,7 +68,7 @@ Programs programs_of(std::string const& method, RivalParts const& rivals, std::s
     return {self, self, joined({"serve", method, scene}, parts), {"look", method, scene}, parts};
 }
 
-/// What this thread starts meanwhile stays on one core, and knows of no other from its beginning on.
+/// Keeps the programs that this thread starts meanwhile on one core; from their beginning on they know of no other.
 class OnCore {
 public:
     explicit OnCore(std::optional<std::size_t> core) {
@@ -90,14 +92,14 @@ std::optional<std::size_t> core_if(bool pinned, std::size_t core) {
     return pinned ? std::optional(core) : std::nullopt;
 }
 
-/// What one run left behind, its pictures included.
+/// Results of one run, its pictures included.
 struct LiveRun {
     test::TemporaryFolder folder;
     std::vector<LiveFrame> frames;
-    double server_cores = 0; ///< that it used while both were at work
-    double server_seconds = 0; ///< that it used since the viewer came, until `watched_until`
-    double watched_until = 0; ///< Unix
-    json statistics; ///< as the client prints them; discarded where another program looks
+    double server_cores = 0; ///< cores that the server used while both were at work
+    double server_seconds = 0; ///< processor seconds that the server used since the viewer came, until `watched_until`
+    double watched_until = 0; ///< end of the watch, Unix seconds
+    json statistics; ///< statistics as the client prints them; discarded value where another program looks
 
     std::filesystem::path picture_file(std::uint64_t frame) const {
         char name[40];
@@ -105,7 +107,7 @@ struct LiveRun {
         return folder.path() / name;
     }
     Picture picture(std::size_t frame) const { return read_picture(picture_file(frames[frame].number)); }
-    /// Those that left a picture.
+    /// Indices of the frames that left a picture.
     std::vector<std::size_t> written_frames() const {
         std::vector<std::size_t> written;
         for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -164,7 +166,7 @@ void run_programs(BenchScene const& scene, std::string const& method, RivalParts
         return test::Process(programs.client,
                              joined(joined(programs.client_words, client_options), programs.client_more));
     }();
-    // Without the client's beginning and end, when the server has little to do.
+    // The watch leaves out the client's beginning and end, when the server has little to do.
     std::this_thread::sleep_for(std::chrono::duration<double>(build_up_seconds));
     double const before = cpu_of(server.process().pid());
     auto const begun = std::chrono::steady_clock::now();
@@ -191,7 +193,7 @@ Picture reference_of(BenchScene& scene, LiveFrame const& frame, LiveOptions cons
     return render_picture(*scene.render_scene, camera, options.viewport, scene.exposure, options.samples_per_side);
 }
 
-/// Rates and costs of the run; pictures are not looked at.
+/// Rates and costs of the run; does not look at pictures.
 json run_figures(LiveRun const& run) {
     std::vector<double> gaps, photons;
     double changed = 0;
@@ -209,7 +211,7 @@ json run_figures(LiveRun const& run) {
     auto steady = std::ranges::find_if(run.frames, [&run](LiveFrame const& frame) {
         return frame.seconds >= run.frames.front().seconds + build_up_seconds;
     });
-    if (steady == run.frames.end()) { // it ended early
+    if (steady == run.frames.end()) { // the run ended early
         steady = run.frames.begin();
     }
     double const steady_span = last.seconds - steady->seconds;
@@ -219,7 +221,7 @@ json run_figures(LiveRun const& run) {
     auto watched =
         std::ranges::find_if(run.frames, [&run](LiveFrame const& frame) { return frame.seconds >= run.watched_until; });
     watched = watched == run.frames.end() ? watched - 1 : watched;
-    /// The same for all processes: what the steady clock says when the system's says 0.
+    /// Offset of the steady clock from the system's, which is the same for all processes.
     double const clock_offset = std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch() -
                                                               std::chrono::system_clock::now().time_since_epoch())
                                     .count();
@@ -246,7 +248,7 @@ json run_figures(LiveRun const& run) {
             {"photon_ms", photons.empty() ? json() : json(1e3 * percentile(photons, 0.5))}};
 }
 
-/// What became of one run.
+/// Figures of one run, and the moments at which its pictures were compared.
 struct Measured {
     json figures;
     std::vector<ComparedMoment> moments;
@@ -255,21 +257,22 @@ struct Measured {
 constexpr std::size_t shown_between = FrameChoice::frames_at_once / 2;
 constexpr std::size_t trial_moments = 3;
 
-/// Of the frames in a row from `first` on the one that was shown most nearly at the moment that it is of. On the
-/// virtual clock every one that is compared is: a millisecond of the operating system's decides where a car passes by.
+/// Index, within the row of frames from `first` on, of the one that was shown closest to the moment for which it was
+/// made. On the virtual clock every compared frame is punctual; in a real session a millisecond of the operating
+/// system's decides where a car passes by.
 std::size_t most_punctual(std::vector<LiveFrame> const& frames, std::size_t first) {
     auto const row = std::span(frames).subspan(first, FrameChoice::frames_at_once);
     auto const off = [](LiveFrame const& frame) { return std::max(frame.photon_seconds, 0.0); };
     return static_cast<std::size_t>(std::ranges::min_element(row, {}, off) - row.begin());
 }
 
-/// How steady the error is takes three references a moment: it is looked at in every other one, and, where the virtual
-/// clock is compared with the run, in none.
+/// True if unsteadiness is measured at this moment. It takes three references a moment, so that it is measured at every
+/// other one and, where the virtual clock is compared with the run, at none.
 bool looks_at_steadiness(LiveOptions const& options, std::size_t moment) {
     return !options.predicts && moment % 2 == 0;
 }
 
-/// Errors at some moments, spread over the run.
+/// Measures errors at some moments, spread over the run.
 Measured error_figures(BenchScene& scene, std::string const& method, LiveRun const& run, LiveOptions const& options) {
     std::vector<std::size_t> const written = run.written_frames();
     json figures{{"mse", 0.0}, {"ssim", 0.0}, {"flip", 0.0}, {"steadiness", 0.0}};
@@ -306,7 +309,7 @@ Measured error_figures(BenchScene& scene, std::string const& method, LiveRun con
     return {std::move(figures), std::move(moments)};
 }
 
-/// Mean squared error at a few of the moments, nearly: enough to tell a rival's choices apart.
+/// Rough mean squared error at a few of the moments: enough to tell a rival's choices apart.
 double trial_error(BenchScene& scene, LiveRun const& run, LiveOptions options) {
     options.samples_per_side = std::min(options.samples_per_side, 2);
     std::vector<std::size_t> const written = run.written_frames();
@@ -314,14 +317,14 @@ double trial_error(BenchScene& scene, LiveRun const& run, LiveOptions options) {
     std::size_t const looks = std::min(count, trial_moments);
     double sum = 0;
     for (std::size_t k = 0; k < looks; ++k) {
-        std::size_t const moment = (2 * k + 1) * count / (2 * looks); // amid each part of the run
+        std::size_t const moment = (2 * k + 1) * count / (2 * looks); // the middle of each part of the run
         std::size_t const frame = written[moment * FrameChoice::frames_at_once] + shown_between;
         sum += mean_squared_error(run.picture(frame), reference_of(scene, run.frames[frame], options));
     }
     return sum / static_cast<double>(looks);
 }
 
-/// Of all choices that a rival has, each run by itself, the one that errs least.
+/// Runs all choices that a rival has, each by itself, and measures the one that errs least.
 Measured best_run(BenchScene& scene, std::string const& method, LiveOptions const& options) {
     std::vector<RivalParts> const choices = rival_choices(method, {});
     std::vector<std::unique_ptr<LiveRun>> runs;
@@ -342,14 +345,14 @@ Measured best_run(BenchScene& scene, std::string const& method, LiveOptions cons
     return measured;
 }
 
-/// A method, with the spacing that its frames had and an m for a margin.
+/// Title of a method's row: the method, with the spacing that its frames had and an m for a margin.
 std::string row_title(std::string const& method, json const& figures) {
     return figures.contains("spacing")
                ? method + " (" + std::to_string(figures["spacing"].get<int>()) + (figures["margin"] > 0 ? "+m)" : ")")
                : method;
 }
 
-/// Where nothing is built up any more, both clocks in turn.
+/// Prints the rates of both clocks, once nothing is built up any more.
 void print_prediction(json const& figures) {
     auto const line = [&figures](char const* name, json const& rates, json const& of) {
         std::printf(

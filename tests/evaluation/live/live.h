@@ -1,6 +1,6 @@
-// What a person gets: server and viewer as real programs, a real socket, the clock running. Every method runs so, the
-// rivals too. In: a scene, a camera, a size, a link. Out: for each method how many pictures it showed, how far off they
-// were from what was to be shown at that moment, and what they cost.
+// Measures what a person gets: server and viewer as real programs, a real socket, the clock running. Every method runs
+// so, the rivals too. In: a scene, a camera, a size, a link. Out: for each method how many pictures it showed, how far
+// off they were from what was to be shown at that moment, and what they cost.
 #pragma once
 
 #include <filesystem>
@@ -19,20 +19,21 @@ struct LiveOptions {
     std::vector<std::string> methods{"framelet", "framelet-unwarped", "framed", "framed+h264", "framed+warp"};
     Viewport viewport{1280, 720};
     double seconds = 4;
-    std::filesystem::path camera_file; ///< as framelet-client takes it; empty: the scene's own camera
-    LinkParameters link; ///< no limit and no delay: none is emulated
-    bool pinned = false; ///< server and viewer on a core each
-    int moments = 4; ///< at which pictures are compared
-    int samples_per_side = 4; ///< of the reference: 1, 2, 4 or 8
+    std::filesystem::path camera_file; ///< camera file as framelet-client takes it; empty: the scene's own camera
+    LinkParameters link; ///< link to emulate; without limit and delay: none is emulated
+    bool pinned = false; ///< server and viewer have a core each
+    int moments = 4; ///< number of moments at which pictures are compared
+    int samples_per_side = 4; ///< samples along a side of the reference's pixel: 1, 2, 4 or 8
     std::filesystem::path charts; ///< folder for pictures beside their reference; empty: none
-    bool predicts = false; ///< beside framelet's own methods what the virtual clock says of them, a core each
-    CostTable costs; ///< for that
+    /// True: runs framelet's own methods on the virtual clock as well; needs `pinned` and no camera file.
+    bool predicts = false;
+    CostTable costs; ///< table from which the virtual clock starts
 };
 
-/// From the first picture on: until then the methods build up what they hold, and nothing is compared.
+/// Seconds from the first picture on in which methods build up what they hold, and nothing is compared.
 inline constexpr double build_up_seconds = 1;
 
-/// Prints and returns the figures of all methods. Throws InputError or ConnectionError where a program fails.
+/// Runs all methods, prints and returns their figures. Throws InputError or ConnectionError where a program fails.
 nlohmann::json measure_live(BenchScene& scene, LiveOptions const& options);
 
 } // namespace framelet::bench

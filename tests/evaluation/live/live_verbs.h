@@ -26,13 +26,13 @@ struct LiveVerbOptions {
     CrowdOptions crowd;
     ServeOptions serve;
     LookOptions look;
-    std::string server; ///< HOST:PORT, of `look`
+    std::string server; ///< server's address for `look`, HOST:PORT
     std::filesystem::path recording;
     SoakOptions soak;
     std::string soak_size = "320x180";
 };
 
-// The options must outlive the parsing.
+// The options that these functions bind must outlive the parsing.
 
 void add_live_options(CLI::App& verb, LiveVerbOptions& options);
 void add_serve_options(CLI::App& verb, LiveVerbOptions& options);
@@ -44,9 +44,10 @@ nlohmann::json answer_live(LiveVerbOptions& options, std::vector<std::filesystem
                            std::filesystem::path const& costs_file);
 nlohmann::json answer_serve(LiveVerbOptions& options, std::filesystem::path const& costs_file);
 nlohmann::json answer_look(LiveVerbOptions& options, std::filesystem::path const& costs_file);
-/// Throws InputError where the replayed bytes are others than the recorded ones.
+/// Replays a recorded session. Throws InputError where the replayed bytes are others than the recorded ones.
 nlohmann::json answer_replay(LiveVerbOptions& options);
-/// `usual`: the scene where none is named. Several share the time. Throws ConnectionError where something has failed.
+/// Runs `soak` on each scene; several share the time. `usual`: the scene where none is named. Throws ConnectionError
+/// where something has failed.
 nlohmann::json answer_soak(LiveVerbOptions& options, std::filesystem::path const& usual);
 
 } // namespace framelet::bench

@@ -1,5 +1,5 @@
-// A method of the evaluation behind the stream interface of the real server: what the virtual clock drives, driven by
-// the server's loop. In and out as `ViewerStream` says; a batch's payload is the method's message.
+// Puts a method of the evaluation behind the stream interface of the real server: the server's loop drives what
+// otherwise the virtual clock drives. In and out as `ViewerStream` says; a batch's payload is the method's message.
 #pragma once
 
 #include <deque>
@@ -15,12 +15,12 @@ namespace framelet::bench {
 
 class MethodStream final : public ViewerStream {
 public:
-    /// The scene must outlive it. `setup`: its viewport is replaced by the viewer's.
+    /// The scene must outlive it. The viewer's viewport replaces that of `setup`.
     MethodStream(std::string name, BenchScene& scene, MethodSetup setup);
 
     void take(StreamEvent const& event) override;
     Step plan(Turn const& turn, PosedScene& scene) override;
-    /// The method poses the scene for itself.
+    /// 0: the method poses the scene for itself.
     SceneTime moment() const override { return 0; }
     void render(PosedScene const& scene) override;
     bool learn(PosedScene const& scene) override;
@@ -39,21 +39,21 @@ private:
     NumberedView view_;
     int scene_camera_ = -1;
     Turn turn_;
-    std::deque<std::pair<std::uint64_t, double>> in_flight_; ///< numbers and bytes
+    std::deque<std::pair<std::uint64_t, double>> in_flight_; ///< numbers and bytes of the batches in flight
     std::vector<DeliveredMessage> delivered_;
     std::uint64_t number_ = 0;
-    /// What was made for a moment.
+    /// A step's result and what it was made for.
     struct Made {
         ServerStep step;
         NumberedView view;
         SceneTime time = 0;
     };
-    std::mutex mutex_; // the next one may be rendered while one is learnt
-    std::deque<Made> rendered_; ///< and not learnt, in order
-    Made learnt_; ///< for `encode`, which may go on beside either
+    std::mutex mutex_; // guards `rendered_`: a step may be rendered while the one before is learnt
+    std::deque<Made> rendered_; ///< steps rendered and not learnt yet, in order
+    Made learnt_; ///< the step for `encode`, which may run beside the next turn's `render`
     TurnFigures figures_;
-    bool idle_ = false; ///< it had nothing to do
-    std::optional<ViewState> idle_of_; ///< for that
+    bool idle_ = false; ///< the method had nothing to do for `idle_of_`
+    std::optional<ViewState> idle_of_; ///< state for which the method had nothing to do; empty: an event came since
 };
 
 } // namespace framelet::bench

@@ -15,10 +15,10 @@ namespace {
 
 using nlohmann::json;
 
-/// A session goes by what it costs, and costs by how it goes.
+/// Number of times that the table is calibrated: a session depends on the costs, and the costs depend on how it goes.
 constexpr int calibrations = 3;
 
-/// The machine as fast as the calibrated one: a core of it.
+/// The run on a machine as fast as one core of the calibrated one.
 RunParameters on_one_core(BenchScene& scene, RunParameters run, CostTable const& costs) {
     run.frames_per_second = 1;
     run.frames_per_second = machine_factor(scene, run, costs);
@@ -49,8 +49,8 @@ void scale(std::initializer_list<SessionTimes::Stage*> stages, double factor) {
     std::ranges::for_each(stages, [factor](SessionTimes::Stage* stage) { stage->measured *= factor; });
 }
 
-/// The table for the machine as it was: how the stages share their time is clocked in a session like the measured one,
-/// how much they take together is what the processes took.
+/// The table of costs for the machine as it was: how the stages share their time is clocked in a session like the
+/// measured one, how much they take together is what the processes took.
 CostTable calibrated(BenchScene& scene, std::string const& method, RunParameters run, CostTable const& costs,
                      json const& measured) {
     tbb::global_control const one_thread(tbb::global_control::max_allowed_parallelism, 1);
@@ -60,10 +60,11 @@ CostTable calibrated(BenchScene& scene, std::string const& method, RunParameters
     json const figures = rates_of(run_method(scene, *session, run, 1, [](std::size_t, Picture const&, double) {}), run);
     std::initializer_list<SessionTimes::Stage*> const server{&times.plan, &times.render, &times.learn, &times.encode};
     std::initializer_list<SessionTimes::Stage*> const viewer{&times.decode, &times.insert, &times.paint};
-    // Of the whole session: where little is left to be rendered later, most of what a server takes is for looking.
+    // The server is clocked over the whole session: where little is left to be rendered later, most of what it takes is
+    // for looking.
     double const clocked = sum_of(server, &SessionTimes::Stage::measured) + times.looking;
     scale(server, measured["server_seconds_per_sample"].get<double>() * static_cast<double>(times.samples) / clocked);
-    // Later on a picture is made of more.
+    // The viewer is compared in the steady part of both sessions, since later on a picture is made of more.
     scale(viewer, ratio(measured["steady"], "viewer_cores", "pictures_per_second") /
                       ratio(figures, "viewer_cores", "pictures_per_second") *
                       sum_of(viewer, &SessionTimes::Stage::charged) / sum_of(viewer, &SessionTimes::Stage::measured));

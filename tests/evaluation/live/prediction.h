@@ -1,6 +1,6 @@
-// What the virtual clock says of a session of the real programs that had a core each. In: scene, method, what the
-// session took. Out: error, bytes and pictures as `live` measures them. That both agree is what makes the virtual
-// clock's charts worth something.
+// Predicts on the virtual clock a session of the real programs that had a core each. In: scene, method, what the
+// session took. Out: error, bytes and pictures as `live` measures them. Their agreement is what the worth of the
+// virtual clock's charts rests on.
 #pragma once
 
 #include <vector>
@@ -12,14 +12,15 @@
 
 namespace framelet::bench {
 
-/// A moment at which what was shown was compared.
+/// A moment at which the shown picture was compared.
 struct ComparedMoment {
     SceneTime time = 0;
     Picture reference;
 };
 
-/// `method`: framelet's own. `measured`: what `live` says of that session, whose processes say how fast the machine
-/// was. Both are compared at the same moments, of which there must be one at least, in order.
+/// Predicts a session. `method`: one of framelet's own. `measured`: the figures of `live` for that session, by which
+/// the speed of the machine is known. Both are compared at the same moments, of which there must be one at least, in
+/// order.
 nlohmann::json predict_live(BenchScene& scene, std::string const& method, LiveOptions const& options,
                             nlohmann::json const& measured, std::vector<ComparedMoment> const& moments);
 

@@ -32,7 +32,7 @@ double unix_seconds() {
     return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-/// What has come and was not looked at yet.
+/// Messages that have come and were not looked at yet, and the scene's clock.
 class Mailbox {
 public:
     void add(Message message) {
@@ -67,7 +67,7 @@ private:
 } // namespace
 
 void serve_method(ServeOptions const& options) {
-    give_way(default_nice); // as framelet-server does: no method has more of the processors
+    give_way(default_nice); // as framelet-server does, so that no method gets more of the processors
     std::size_t const threads = options.threads > 0
                                     ? static_cast<std::size_t>(options.threads)
                                     : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
@@ -102,7 +102,7 @@ void look_at_method(LookOptions const& options) {
     FrameLog log(options.frames_file);
     Mailbox mailbox;
     std::uint64_t batches = 0, bytes = 0;
-    std::mutex mutex; // of the two
+    std::mutex mutex; // guards `batches`, `bytes`, `lost` and `connected`
     ServerConnection* connected = nullptr;
     ServerConnection::Handlers handlers;
     handlers.on_message = [&](Message message) {

@@ -1,5 +1,5 @@
-// Server and viewer of any method of the evaluation as real programs: the project's server with the method's stream,
-// and a viewer that shows what the method makes of it.
+// Runs server and viewer of any method of the evaluation as real programs: the project's server with the method's
+// stream, and a viewer that shows what the method makes of it.
 #pragma once
 
 #include <filesystem>
@@ -16,29 +16,29 @@ struct ServeOptions {
     std::filesystem::path scene;
     float exposure_ev = 0; ///< stops
     int threads = 0; ///< 0: one a core
-    RivalParts rivals; ///< the same for both programs
+    RivalParts rivals; ///< parts of the rivals; the same for both programs
     CostTable costs;
 };
 
-/// Prints "listening on HOST:PORT"; until a signal ends it.
+/// Serves a method until a signal ends it; prints "listening on HOST:PORT" first.
 void serve_method(ServeOptions const& options);
 
 struct LookOptions {
     std::string method;
-    std::filesystem::path scene; ///< the methods are told what the server serves
+    std::filesystem::path scene; ///< the scene that the server serves; methods need it
     ConnectionOptions connection;
     Viewport viewport;
     double duration = 4;
     double rate = 60;
     std::string camera_file;
     std::string output;
-    std::vector<double> output_times; ///< as in FrameChoice
+    std::vector<double> output_times; ///< times of the frames to write, as in FrameChoice
     std::string frames_file;
     RivalParts rivals;
     CostTable costs;
 };
 
-/// Shows frames as framelet-client does, and writes what that writes.
+/// Shows frames and writes files as framelet-client does.
 void look_at_method(LookOptions const& options);
 
 } // namespace framelet::bench

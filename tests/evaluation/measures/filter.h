@@ -1,5 +1,5 @@
-// Separable filters on planes of floats, for SSIM and FLIP. In: a plane, two kernels. Out: a plane of the same size,
-// the border repeated outwards.
+// Applies separable filters to planes of floats, for SSIM and FLIP. In: a plane, two kernels. Out: a plane of the same
+// size, the border repeated outwards.
 #pragma once
 
 #include <span>

@@ -23,12 +23,12 @@ constexpr Gaussian achromatic{1, 0.0047}, red_green{1, 0.0053}, blue_yellow_narr
     blue_yellow_wide{13.5, 0.025};
 
 constexpr double hyab_exponent = 0.7;
-constexpr double knee_in = 0.4, knee_out = 0.95; ///< of the compression of colour differences (4.1.4)
-constexpr double feature_width = 0.082; ///< degrees (4.2)
+constexpr double knee_in = 0.4, knee_out = 0.95; ///< knee of the compression of colour differences (4.1.4)
+constexpr double feature_width = 0.082; ///< width of the feature filters, degrees (4.2)
 
 using Color = std::array<double, 3>;
 
-/// Linear sRGB and CIE XYZ, D65, divided by white.
+/// CIE XYZ (D65, divided by white) of linear sRGB.
 Color xyz_from_linear(Color const& c) {
     return {(10135552.0 * c[0] + 8788810.0 * c[1] + 4435075.0 * c[2]) / 24577794.0 / 0.950428545,
             (2613072.0 * c[0] + 8788810.0 * c[1] + 887015.0 * c[2]) / 12288897.0,
@@ -42,7 +42,7 @@ Color linear_from_xyz(Color const& n) {
             0.055639419851975 * x - 0.204011206123910 * y + 1.057148977187533 * z};
 }
 
-/// YCxCz, in which the eye's filters are applied.
+/// Colour in YCxCz, in which the eye's filters are applied.
 Color opponent_from_xyz(Color const& n) {
     return {116 * n[1] - 16, 500 * (n[0] - n[1]), 200 * (n[1] - n[2])};
 }
@@ -52,7 +52,7 @@ Color xyz_from_opponent(Color const& o) {
     return {y + o[1] / 500, y, y - o[2] / 200};
 }
 
-/// CIELAB with the Hunt effect: colours fade with lightness (4.1.3).
+/// Colour in CIELAB with the Hunt effect: colours fade with lightness (4.1.3).
 Color hunt_lab(Color const& linear) {
     Color n = xyz_from_linear(linear);
     for (double& v : n) {
@@ -67,7 +67,7 @@ double color_distance(Color const& a, Color const& b) {
     return std::pow(std::abs(a[0] - b[0]) + std::hypot(a[1] - b[1], a[2] - b[2]), hyab_exponent);
 }
 
-/// One side of a separable Gaussian, not normalised.
+/// Taps of one axis of a separable Gaussian, not normalised.
 std::vector<float> gaussian_taps(double b, double pixels_per_degree, int radius) {
     std::vector<float> taps;
     for (int i = -radius; i <= radius; ++i) {
@@ -85,7 +85,7 @@ double sum_of(std::vector<float> const& taps) {
     return sum;
 }
 
-/// Filters by a sum of Gaussians that is normalised as a whole.
+/// Filters a channel by a sum of Gaussians that is normalised as a whole.
 Plane filter_channel(Plane const& plane, std::initializer_list<Gaussian> gaussians, double pixels_per_degree) {
     int const radius =
         static_cast<int>(std::ceil(3 * std::sqrt(blue_yellow_narrow.b / (2 * pi * pi)) * pixels_per_degree));
@@ -110,7 +110,7 @@ struct FeaturePlanes {
     Plane edges, points;
 };
 
-/// Positive and negative taps add up to 1 and -1.
+/// Scales the taps so that the positive ones add up to 1 and the negative ones to -1.
 void balance(std::vector<float>& taps) {
     double positive = 0, negative = 0;
     for (float const tap : taps) {
@@ -149,7 +149,7 @@ FeaturePlanes features_of(Plane const& lightness, double pixels_per_degree) {
     return {magnitude(lightness, first, smooth), magnitude(lightness, second, smooth)};
 }
 
-/// What the eye makes of a picture.
+/// A picture as the eye perceives it.
 struct Perceived {
     std::vector<Color> lab;
     FeaturePlanes features;

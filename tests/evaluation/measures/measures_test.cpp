@@ -68,7 +68,7 @@ TEST(Measures, KnownValuesOfOtherPeoplesTools) {
 }
 
 TEST(Measures, PatternAsTheDefinitionsSay) {
-    // By known_values.py: the definitions, written down a second time, without separable filters.
+    // The values are from known_values.py: the definitions, written down a second time, without separable filters.
     Measures const m = measure(pattern(1), pattern(0));
     EXPECT_NEAR(m.mse, 0.031933471, 1e-9);
     EXPECT_NEAR(m.psnr, 14.95754, 1e-4);
@@ -116,7 +116,7 @@ TEST(Ratios, MedianAndSuitability) {
     }
     RatioSummary const many = summarise_ratios(ratios);
     EXPECT_NEAR(many.median, 1, 1e-12);
-    EXPECT_NEAR(many.suitable, 100 * 51 / 101.0, 1e-9); // one counts as suitable
+    EXPECT_NEAR(many.suitable, 100 * 51 / 101.0, 1e-9); // a ratio of 1 counts as suitable
     RatioSummary const two = summarise_ratios(std::vector<double>{2, 1});
     EXPECT_DOUBLE_EQ(two.median, 1.5);
     EXPECT_DOUBLE_EQ(two.suitable, 50);

@@ -1,4 +1,4 @@
-// Structural similarity.
+// Implements structural similarity.
 #include <array>
 #include <cmath>
 
@@ -14,7 +14,7 @@ constexpr double sigma = 1.5;
 constexpr double c1 = (0.01 * 255) * (0.01 * 255);
 constexpr double c2 = (0.03 * 255) * (0.03 * 255);
 
-/// Rounded to a byte, as the grey pictures are that the measure is defined on.
+/// Luma rounded to a byte, as in the grey pictures that the measure is defined on.
 Plane luma_of(Picture const& picture) {
     Plane plane(picture.width, picture.height);
     for (std::size_t i = 0; i < plane.values.size(); ++i) {

@@ -1,5 +1,5 @@
-// `afr`: adaptive frameless rendering (Dayal et al. 2005; [Stephens 2011] section 2.5): single pixels, each in a leaf
-// chosen with equal probability; leaves are small where the picture's error is great.
+// The method `afr`: adaptive frameless rendering (Dayal et al. 2005; [Stephens 2011] section 2.5): single pixels, each
+// in a leaf chosen with equal probability; leaves are small where the picture's error is great.
 #include <random>
 
 #include "tests/evaluation/methods/kd_leaves.h"
@@ -22,7 +22,7 @@ public:
         batch_.clear();
         chosen_.clear();
         for (std::size_t i = 0; i < batch_size_; ++i) {
-            if (seen_ < pixel_count()) { // every pixel once first, or the picture would have holes
+            if (seen_ < pixel_count()) { // the first pass takes every pixel once, or the picture would have holes
                 std::size_t const width = static_cast<std::size_t>(setup_.viewport.width);
                 batch_.push_back(
                     {static_cast<std::uint16_t>(seen_ % width), static_cast<std::uint16_t>(seen_ / width), {}});
@@ -56,7 +56,7 @@ private:
     KdLeaves leaves_;
     std::mt19937_64 random_;
     std::vector<std::size_t> chosen_; ///< leaf of each of the batch's last samples
-    std::size_t seen_ = 0; ///< pixels of the first pass
+    std::size_t seen_ = 0; ///< pixels that the first pass has taken so far
 };
 
 } // namespace

@@ -8,11 +8,11 @@
 namespace framelet::bench {
 namespace {
 
-/// Of what is measured, in the running mean.
+/// Weight of the newest measurement in a running mean.
 constexpr double newest_share = 0.5;
-/// A hand goes on as it did for so long: beyond that it more likely has turned back.
+/// Seconds for which a hand is taken to go on as it did: beyond that it more likely has turned back.
 constexpr double longest_extrapolation = 0.2;
-/// Differences of cameras that are those of rounding.
+/// Differences of cameras up to this are those of rounding.
 constexpr float rounding = 1e-6f;
 
 double mean_of(double before, double newest) {
@@ -101,7 +101,7 @@ void FrameForecast::begin(double now, bool typical) {
 
 void FrameForecast::sent(double now) {
     if (period_ == 0) {
-        period_ = now - last_.begun; // nothing better is known before a second frame
+        period_ = now - last_.begun; // before a second frame nothing better is known
     }
 }
 

@@ -1,5 +1,6 @@
-// When a whole frame will be shown, and what there will be to see: what those render for who show no picture that they
-// have not sent. In: what frames took lately, scene and camera as the server knows them. Out: a camera, a scene time.
+// Forecasts when a whole frame will be shown, and what there will be to see, for methods whose viewers show only
+// pictures that were sent. In: what frames took lately, scene and camera as the server knows them. Out: a camera, a
+// scene time.
 #pragma once
 
 #include <deque>
@@ -13,25 +14,25 @@ struct FrameMoment {
     SceneTime time = 0;
 };
 
-/// A frame is on display from when it has come until the next one has: it is rendered for the middle of that. The
-/// scene's animation and its own camera are known ahead, as long as its clock runs. What the viewer does with the
-/// camera goes on at constant velocity for a while at most.
+/// A frame is on display from its arrival until that of the next one: it is rendered for the middle of that time. The
+/// scene's animation and its own camera are known ahead, as long as its clock runs. The viewer's motion of the camera
+/// is extrapolated at constant velocity, for a while at most.
 class FrameForecast {
 public:
-    /// `viewer_seconds`: from a frame's arrival until it shows.
+    /// `viewer_seconds`: time from a frame's arrival until it shows.
     FrameForecast(MethodSetup const& setup, double viewer_seconds);
 
-    /// Once a step.
+    /// Camera and scene time for which this step's frame is to be rendered. To be called once a step.
     FrameMoment moment(StepInput const& input);
-    /// The step renders a frame that will be sent. `typical`: like those that follow; not one of those that take a
-    /// different time since nothing moves.
+    /// Called when a step renders a frame that will be sent. `typical`: like those that follow; not one of those that
+    /// take a different time since nothing moves.
     void begin(double now, bool typical);
-    /// A message follows that shows the same moment better.
+    /// Called when a message follows that shows the same moment better.
     void follow(double now) { unanswered_.push_back({now, false}); }
     void sent(double now);
     void answered(double arrived);
 
-    /// From the beginning of a frame's step to the middle of its time on display, seconds.
+    /// Time from the beginning of a frame's step to the middle of its time on display, seconds.
     double lead() const { return lead_ + 0.5 * period_; }
 
 private:
@@ -39,7 +40,7 @@ private:
         double begun = 0;
         bool typical = false;
     };
-    /// The camera in the space of the scene's own.
+    /// Offset of the camera in the space of the scene's own.
     struct Offset {
         Vec3 position{0};
         Quat orientation{1, 0, 0, 0};
@@ -48,9 +49,9 @@ private:
     SceneTime time_at(double when) const;
     Camera camera(StepInput const& input, SceneTime time);
 
-    double const delay_; ///< of the camera, seconds
+    double const delay_; ///< delay with which the server knows the camera, seconds
     double const viewer_seconds_;
-    double lead_ = 0; ///< until it shows
+    double lead_ = 0; ///< mean time from the beginning of a frame's step until it shows, seconds
     double period_ = 0;
     Frame last_;
     std::deque<Frame> unanswered_;
@@ -58,11 +59,11 @@ private:
         double now = 0;
         SceneTime time = 0;
     };
-    std::deque<Tick> clock_; ///< of the scene, as far back as the camera's delay
-    Offset offset_, velocity_; ///< a second
+    std::deque<Tick> clock_; ///< the scene's clock, as far back as the camera's delay
+    Offset offset_, velocity_; ///< the viewer's part of the camera, and its change a second
     double offset_now_ = 0;
     bool has_offset_ = false;
-    bool moves_ = false; ///< the viewer's part of the camera
+    bool moves_ = false; ///< the viewer's part of the camera changes
 };
 
 } // namespace framelet::bench

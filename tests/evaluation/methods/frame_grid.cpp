@@ -14,8 +14,9 @@
 namespace framelet::bench {
 namespace {
 
-/// Place in the cell, relative to its middle, of the frames after the first: Sobol's sequence, of which 2, 4, 8 and so
-/// on are each as even as can be, shifted so that it begins in the middle. The mean of all is the middle.
+/// Place in the cell of frame number `frame` (the first is 0), relative to the cell's middle, in cell sides: Sobol's
+/// sequence, of which the first 2, 4, 8 and so on are each as even as can be, shifted so that it begins in the middle.
+/// The mean of all places is the middle.
 Vec2 place_of(int frame) {
     auto const i = static_cast<std::uint32_t>(frame);
     constexpr std::uint32_t places = FrameGrid::places;
@@ -33,10 +34,10 @@ int samples_along(int pixels, int spacing) {
     return (pixels + spacing - 1) / spacing;
 }
 
-/// Where a pixel lies between two samples of a row or column.
+/// Position of a pixel between two samples of a row or column.
 struct Between {
     int first = 0, second = 0;
-    float share = 0; ///< of the second
+    float share = 0; ///< weight of the second sample
 };
 
 Between between(int pixel, int spacing, int samples) {

@@ -1,5 +1,6 @@
-// A whole frame of samples at one spacing, and the mean of several such frames at other places in the samples' cells.
-// In: a posed scene, a camera. Out: framelets as rendered and as displayed, and the picture of one pixel a sample.
+// A whole frame of samples at one spacing, and the mean of several such frames, sampled at different places in the
+// samples' cells. In: a posed scene, a camera. Out: framelets as rendered and as displayed, and the picture of one
+// pixel a sample.
 #pragma once
 
 #include <vector>
@@ -14,23 +15,25 @@ public:
     /// `spacing`: pixels from sample to sample: 1, 2 or 4.
     FrameGrid(Viewport viewport, int spacing);
 
-    /// Begins anew: every sample at the middle of its cell. Returns how many rays that took.
+    /// Begins anew: renders every sample at the middle of its cell. Returns the number of rays traced.
     std::uint64_t render(RenderScene const& scene, Camera const& camera, float exposure);
-    /// One more such frame of the same, at the next of `places` places in the cells. The mean is of light as displayed.
+    /// Renders one more such frame of the same, at the next of `places` places in the cells, and adds it to the mean,
+    /// which is taken of light as displayed. Returns the number of rays traced.
     std::uint64_t add(RenderScene const& scene, Camera const& camera, float exposure);
 
-    /// After so many frames the mean is taken for the truth: with 16 some of the project's scenes stay below 38 dB.
+    /// Number of places in a cell: after so many frames the mean is taken for the truth. With 16 some of the project's
+    /// scenes stay below 38 dB.
     static constexpr int places = 64;
 
     int spacing() const { return spacing_; }
-    int frames() const { return frames_; } ///< in the mean
-    std::size_t samples() const { return tiles_.size() * framelet_samples; } ///< of one frame
+    int frames() const { return frames_; } ///< number of frames in the mean
+    std::size_t samples() const { return tiles_.size() * framelet_samples; } ///< number of samples in one frame
     ImagePlane const& plane() const { return plane_; }
-    /// Of the first frame: before exposure, with depths and bodies.
+    /// The first frame as rendered: before exposure, with depths and bodies.
     std::vector<Framelet> const& rendered() const { return rendered_; }
-    /// The mean. Before anything was rendered only the tiles are set.
+    /// The mean as displayed. Before anything was rendered only the tiles are set.
     std::vector<DisplayFramelet> const& framelets() const { return displayed_; }
-    /// The same as a picture of one pixel a sample.
+    /// The mean as a picture of one pixel a sample.
     Picture const& picture();
 
 private:
@@ -49,11 +52,11 @@ private:
     int frames_ = 0;
 };
 
-/// A picture of one pixel a sample, samples `spacing` pixels apart, at full size: bilinear, in linear light.
+/// Enlarges a picture of one pixel a sample, samples `spacing` pixels apart, to full size: bilinear, in linear light.
 void upsample(Picture const& samples, int spacing, Picture& out);
 
-/// Writes the framelet's samples to a picture of one pixel a sample, reads them from there. Beyond its border nothing
-/// is written, and its last pixels repeat.
+/// `place_samples` writes the framelet's samples to a picture of one pixel a sample, `take_samples` reads them from
+/// there. Beyond the picture's border nothing is written, and its last pixels are read repeatedly.
 void place_samples(DisplayFramelet const& framelet, Picture& picture);
 void take_samples(Picture const& picture, DisplayFramelet& framelet);
 

@@ -1,4 +1,5 @@
-// `framed`: whole frames in turn, sent without loss by the same codec as framelets, shown when all of a frame is there.
+// The method `framed`: whole frames in turn, sent without loss by the same codec as framelets, shown once all of a
+// frame is there.
 #include "protocol/codec/batch_codec.h"
 #include "protocol/messages/message_codec.h"
 #include "tests/evaluation/methods/methods.h"

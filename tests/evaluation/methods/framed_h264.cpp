@@ -1,4 +1,4 @@
-// `framed+h264`: whole frames in turn through x264, no frame larger than the link carries in its time.
+// The method `framed+h264`: whole frames in turn through x264, no frame larger than the link carries in its time.
 #include "tests/evaluation/methods/h264_frames.h"
 #include "tests/evaluation/methods/methods.h"
 #include "tests/evaluation/methods/whole_frame.h"
@@ -35,7 +35,7 @@ public:
     void answered(double, double arrived) override { frame_.answered(arrived); }
 
 private:
-    double const encode_pixel_; ///< nanoseconds
+    double const encode_pixel_; ///< cost of encoding a pixel, nanoseconds
     WholeFrame frame_;
     ScaledH264Encoder encoder_;
     std::size_t last_bytes_ = 0;

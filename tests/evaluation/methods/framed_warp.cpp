@@ -1,7 +1,8 @@
-// `framed+warp`: whole frames in turn, colour through x264, with each frame where its samples lie and what carries
-// them, from which the viewer moves the last frame to its own camera and scene time whenever it shows a picture. What
-// remote hybrid rendering and the runtimes of headsets do with a frame's depth plane, by the project's own shapes. A
-// margin around the viewport is rendered, sent and held besides, for what a turn brings into view.
+// The method `framed+warp`: whole frames in turn, colour through x264, with the shapes of each frame (where its samples
+// lie and what carries them), by which the viewer moves the last frame to its own camera and scene time whenever it
+// shows a picture. This is what remote hybrid rendering and the runtimes of headsets do with a frame's depth plane, by
+// the project's own shapes. A margin around the viewport is rendered, sent and held besides, for what a turn brings
+// into view.
 #include <algorithm>
 #include <map>
 
@@ -16,7 +17,7 @@
 namespace framelet::bench {
 namespace {
 
-/// However much its shapes take, colour gets this share of what a frame may take.
+/// Share of a frame's bytes that colour gets, however much its shapes take.
 constexpr double least_colour_share = 0.1;
 
 /// A viewer that holds more than it shows: a margin around the viewport, which a turn of the camera brings into view
@@ -30,10 +31,10 @@ public:
           wide_(with_margin(viewport_, margin_x_, margin_y_), setup.costs),
           picture_(viewport_.width, viewport_.height) {}
 
-    /// Of the larger viewport.
+    /// Takes a batch of the larger viewport.
     ViewerStep insert(Batch const& batch) { return wide_.insert(batch); }
 
-    /// Charged is what is shown: a viewer need not paint the margin.
+    /// Draws the picture; charges only for what is shown, since a viewer need not paint the margin.
     ViewerStep present(Camera const& camera, SceneTime time) {
         ViewerStep step = wide_.present(with_margin(camera, viewport_, margin_y_), time);
         Picture const& wide = wide_.picture();
@@ -87,7 +88,8 @@ public:
                     input.now, batch.shapes);
         shapes_.track(input.scene.scene, input.scene.clips, input.scene.render_scene->bodies(), -1, batch.scene_time,
                       batch.tracks, batch.camera_track);
-        // The message is a batch's whose payload is the access unit; of its tiles the first one says all.
+        // The message is a batch whose payload is the access unit; of its tiles only the first is kept, which tells the
+        // spacing.
         EncodedBatch message = codec_.encode(batch, &sent_, false);
         message.tiles.resize(1);
         message.payload.clear();
@@ -129,7 +131,7 @@ public:
 
 private:
     MethodSetup const setup_;
-    bool moves_ = false; ///< the scene
+    bool moves_ = false; ///< the scene moves
     WholeFrame frame_;
     ShapeFeed shapes_;
     ScaledH264Encoder encoder_;
@@ -137,8 +139,8 @@ private:
     std::size_t last_bytes_ = 0;
     BatchCodec codec_;
     BatchMemory sent_, received_;
-    /// By the depth of its tiles: spacing of a frame, and its tiles with a payload that stands for colours which come
-    /// otherwise.
+    /// Spacing of a frame, and a batch of its tiles with a payload that stands in for the colours, which are sent
+    /// otherwise. In `blanks_` by the depth of the tiles.
     struct Blank {
         int spacing = 1;
         EncodedBatch batch;

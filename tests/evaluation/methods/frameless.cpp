@@ -1,5 +1,5 @@
-// `frameless`: single pixels in random order, shown as soon as they arrive (Bishop et al. 1994; [Stephens 2011]
-// section 2.5).
+// The method `frameless`: single pixels in random order, shown as soon as they arrive (Bishop et al. 1994; [Stephens
+// 2011] section 2.5).
 #include <random>
 
 #include "tests/evaluation/methods/methods.h"
@@ -17,7 +17,7 @@ public:
                 order_.push_back({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), {}});
             }
         }
-        // Every pixel once in each pass, in an order without coherence.
+        // The order has every pixel once in each pass, and no coherence.
         std::mt19937_64 random(setup.seed);
         for (std::size_t i = order_.size(); i > 1; --i) {
             std::swap(order_[i - 1], order_[random() % i]);

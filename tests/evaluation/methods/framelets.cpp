@@ -1,5 +1,5 @@
-// `framelet`: the project's own server and viewer, the very pipelines that the programs run, driven on the virtual
-// clock. `framelet-unwarped`: the same with the viewer's reprojection switched off.
+// The method `framelet`: the project's own server and viewer, the very pipelines that the programs run, driven on the
+// virtual clock. `framelet-unwarped`: the same with the viewer's reprojection switched off.
 #include <algorithm>
 #include <deque>
 #include <utility>
@@ -110,11 +110,11 @@ public:
 
     AdaptiveRefresh const* scheduler() const override { return stream_ ? stream_->scheduler() : nullptr; }
 
-    /// The stream bounds what is on its way by itself.
+    /// A window that does not bind: the stream bounds what is on its way by itself.
     Window window() const override { return {2 * FrameletStream::max_batches_in_flight, false}; }
 
 private:
-    /// What the clocks of server and viewer say, which are never below 0.
+    /// The clocks of server and viewer, seconds, which are never below 0.
     double clock(double now) const { return now + setup_.clock_offset; }
 
     void begin(StepInput const& input) {
@@ -161,7 +161,7 @@ private:
             limits.least_level = limits.most_level = pixel_level;
         }
         if (!parts.price) {
-            limits.least_price = limits.most_price = 1e-6f; // what the first cycle begins with
+            limits.least_price = limits.most_price = 1e-6f; // the price of the first cycle
         }
         limits.probe_share = parts.probes ? limits.probe_share : 0;
         limits.periodic_share = parts.periodic_refresh ? limits.periodic_share : 0;
@@ -174,7 +174,7 @@ private:
         return limits;
     }
 
-    /// What the calibrated machine takes for a turn.
+    /// Time that the calibrated machine takes for a turn.
     StageSeconds seconds_of(TurnFigures const& figures, double planning) const {
         CostTable const& costs = setup_.costs;
         auto const nanoseconds = [](std::uint64_t count, double each) {
@@ -197,13 +197,14 @@ private:
         return seconds;
     }
 
-    /// As in SessionLoop; machines that are slower are told how slow, as a run is too short to find it out.
+    /// Samples a second before any were measured, as in SessionLoop; slower machines are told their rate, as a run is
+    /// too short to find it out.
     double first_rate() const {
         return std::min(first_samples_per_second,
                         setup_.frames_per_second * setup_.viewport.width * setup_.viewport.height);
     }
 
-    /// Of the calibrated machine, for a cycle.
+    /// Seconds that planning a cycle takes on the calibrated machine.
     double plan_seconds() const {
         auto const regions = static_cast<double>(stream_->scheduler()->field().visible().size());
         return 1e-9 * regions * setup_.costs.plan_region;
@@ -222,16 +223,16 @@ private:
     MethodSetup const setup_;
     bool const reprojects_;
     ImagePlane const plane_;
-    std::optional<FrameletStream> stream_; ///< begins with the first step, which says what is served
+    std::optional<FrameletStream> stream_; ///< made in the first step, which says what is served
     int followed_camera_ = -1;
     std::uint64_t view_number_ = 0;
     RenderRate rate_;
-    std::uint64_t answered_ = 0; ///< batches
+    std::uint64_t answered_ = 0; ///< number of batches answered
     BatchCodec codec_;
     BatchMemory received_;
-    std::deque<std::vector<SentTile>> evicted_; ///< with each batch that the server has no answer to yet
+    std::deque<std::vector<SentTile>> evicted_; ///< evicted with each batch that is not answered yet
     WarpViewer viewer_;
-    int const cells_; ///< in a row
+    int const cells_; ///< number of cells in a row
     std::vector<double> times_; ///< scene time shown in each cell
 };
 

@@ -1,5 +1,5 @@
-// Whole frames through H.264, whose samples are now further apart and now closer: a stream of its own for each spacing,
-// each of which refers to its own last picture. In: pictures of one pixel a sample. Out: messages, and back.
+// Codes whole frames of changing sample spacing with H.264: a stream of its own for each spacing, each of which refers
+// to its own last picture. In: pictures of one pixel a sample. Out: messages, and back.
 #pragma once
 
 #include <map>
@@ -36,10 +36,10 @@ struct FrameHeader {
     double spacing = 1; ///< pixels
 };
 
-/// Of when the frame is and how far apart its samples are, then the access unit.
+/// A message of the frame's scene time, its sample spacing and the access unit.
 std::vector<std::byte> frame_message(FrameHeader const& header, std::span<std::byte const> access_unit);
 
-/// Shows such messages at full size.
+/// Decodes such messages and shows them at full size.
 class H264FrameViewer {
 public:
     explicit H264FrameViewer(MethodSetup const& setup);

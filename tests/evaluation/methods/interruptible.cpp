@@ -1,7 +1,7 @@
-// `interruptible`: whole frames from coarse to fine (Woolley et al. 2003, "Interruptible rendering"), shown level by
-// level. A frame is given up for a new one when what has moved since would cost more than the next level brings; the
-// new one begins with the coarsest level that is better than what is on display. While nothing moves, samples are added
-// until the picture is as good as it gets. Through x264 as `framed+h264`.
+// The method `interruptible`: whole frames from coarse to fine (Woolley et al. 2003, "Interruptible rendering"), shown
+// level by level. A frame is given up for a new one when what has moved since would cost more than the next level
+// brings; the new one begins with the coarsest level that is better than what is on display. While nothing moves,
+// samples are added until the picture is as good as it gets. Coded by x264 as `framed+h264`.
 #include "tests/evaluation/methods/interruptible.h"
 
 #include <algorithm>
@@ -47,7 +47,8 @@ bool Interruptible::is_still(StepInput const& input, FrameMoment const& moment) 
     return level_ >= 0 && moment.camera == moment_.camera && same_pose(input.scene.pose, pose_);
 }
 
-/// The coarsest that is nearer to the scene than what is on display, which has been moved away from by then.
+/// The coarsest level that, when it is rendered, will be nearer to the scene than the picture on display, which the
+/// scene will have moved away from by then.
 int Interruptible::first_level(double now) const {
     if (level_ < 0) {
         return 0;
@@ -86,7 +87,7 @@ ServerStep Interruptible::render(StepInput const& input, bool still) {
         step.seconds.response = 1e-9 * samples * costs.estimate_sample;
         gain_.add(frame_, level_, picture, still ? NAN : meant_);
     } else if (!std::has_single_bit(static_cast<unsigned>(grid.frames()))) {
-        return step; // of as many samples again: what is in between brings little
+        return step; // a mean is sent once its samples have doubled: what is in between brings little
     }
     double const encoding = 1e-9 * samples * costs.h264_encode_pixel;
     double const period = setup_.machine * (step.seconds.server() + encoding);

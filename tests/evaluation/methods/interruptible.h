@@ -1,4 +1,4 @@
-// Both halves of `interruptible`.
+// Both halves of the method `interruptible`.
 #pragma once
 
 #include <array>
@@ -22,12 +22,12 @@ public:
     double mean_sample_time() const override { return viewer_.time(); }
     void sent(double now, double) override { forecast_.sent(now); }
     void answered(double, double arrived) override { forecast_.answered(arrived); }
-    /// Levels are small, the first ones above all.
+    /// Four messages, since levels are small, the first ones above all.
     Window window() const override { return {4}; }
 
-    /// Of what was rendered last: 0 the coarsest. -1: nothing was.
+    /// Level rendered last: 0 is the coarsest; -1: none yet.
     int level() const { return level_; }
-    /// Whether that was the first one of its frame.
+    /// True if that level was the first one of its frame.
     bool begins() const { return begins_; }
 
 private:
@@ -43,13 +43,13 @@ private:
     FrameForecast forecast_;
     std::array<FrameGrid, RefinementGain::levels> grids_;
     RefinementGain gain_;
-    std::array<double, RefinementGain::levels> seconds_{}; ///< that each level took
+    std::array<double, RefinementGain::levels> seconds_{}; ///< seconds that each level took
     int level_ = -1;
     FrameMoment moment_;
     ScenePose pose_;
-    double meant_ = 0; ///< when the frame is to be seen, by the run's clock
+    double meant_ = 0; ///< time at which the frame is to be seen, by the run's clock
     int frame_ = 0;
-    bool begins_ = false; ///< the frame, with the level that comes
+    bool begins_ = false; ///< the level that comes begins a new frame
     ScaledH264Encoder encoder_;
     H264FrameViewer viewer_;
 };

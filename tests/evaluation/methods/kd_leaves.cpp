@@ -99,7 +99,7 @@ void KdLeaves::adapt(std::size_t count) {
     rank(worst);
     rank(best);
     for (std::size_t i = 0; i < count; ++i) {
-        // Where the worst and the best meet nothing is left to gain, and a leaf just split is not merged again.
+        // Nothing is left to gain where the worst and the best meet; and a leaf just split is not merged again.
         std::uint32_t const parent = best[i].second;
         std::uint32_t const leaf = worst[i].second;
         if (best[i].first >= -worst[i].first || nodes_[leaf].parent == parent ||

@@ -12,13 +12,13 @@ namespace framelet::bench {
 
 class KdLeaves {
 public:
-    /// About one leaf for `pixels_a_leaf` pixels.
+    /// Makes about one leaf for every `pixels_a_leaf` pixels.
     KdLeaves(Viewport viewport, int pixels_a_leaf);
 
     std::size_t size() const { return leaves_.size(); }
     PixelRect const& rect(std::size_t leaf) const { return nodes_[leaves_[leaf]].rect; }
 
-    /// A sample of this luma fell into the leaf. Weights halve with every `half_life` seconds.
+    /// Notes a sample of this luma in the leaf. Weights halve with every `half_life` seconds.
     void add(std::size_t leaf, double time, float luma);
 
     /// Splits the `count` leaves of greatest error and merges as many pairs of siblings of least error. Error is the
@@ -33,7 +33,7 @@ private:
         PixelRect rect;
         std::uint32_t parent = none;
         std::uint32_t child = none; ///< the first of two that follow each other; none: a leaf
-        double time = 0; ///< at which the sums were brought up to date
+        double time = 0; ///< time at which the sums were brought up to date, seconds
         double weight = 0, sum = 0, squares = 0;
     };
 

@@ -1,4 +1,4 @@
-// More than the viewport: a larger one around it, whose pixels are as large and lie at the same places.
+// A margin around the viewport: a larger viewport whose pixels are as large and lie at the same places.
 #pragma once
 
 #include "common/camera.h"
@@ -6,10 +6,11 @@
 
 namespace framelet::bench {
 
-/// Pixels of a margin on each side, of so much of the picture's side: whole blocks, at least one unless it is 0.
+/// Pixels of a margin on each side; `margin`: its share of the picture's side. Whole blocks, at least one unless
+/// `margin` is 0 or less.
 int margin_pixels(double margin, int side);
 Viewport with_margin(Viewport viewport, int margin_x, int margin_y);
-/// The camera that shows the same at the same size, and the margin around it. `viewport`: without it.
+/// The camera that shows the same at the same size, with the margin around it. `viewport`: that without the margin.
 Camera with_margin(Camera camera, Viewport viewport, int margin_y);
 
 inline double pixel_count(Viewport viewport) {

@@ -1,4 +1,4 @@
-// The methods, one a file.
+// Makes the methods, one a file.
 #pragma once
 
 #include "tests/evaluation/method.h"

@@ -1,6 +1,7 @@
-// `oracle`: what a choice of tiles can reach at all. It knows the reference for the moment at which a batch will be
-// shown, and how each tile would look there at each spacing; each batch's samples go, one framelet after the other, to
-// where the true error falls most. Shown by the same viewer as `framed+warp`. A yardstick: what it knows costs nothing.
+// The method `oracle`: shows what a choice of tiles can reach at all. It knows the reference for the moment at which a
+// batch will be shown, and how each tile would look there at each spacing; each batch's samples go, one framelet after
+// the other, to where the true error falls most. The viewer is that of `framed+warp`. A yardstick: what it knows costs
+// nothing.
 #include <algorithm>
 #include <cmath>
 
@@ -15,10 +16,10 @@
 namespace framelet::bench {
 namespace {
 
-/// How long the server works before it sends what it has.
+/// Seconds that the server works before it sends what it has.
 constexpr double step_seconds = 1.0 / 60;
-/// A tile is there for a while: it is judged by what it is so long after it comes, moved by the viewer. Judged by what
-/// it is at first, a run of `vehicle_chase` at 128x128 has 1.4 times the error.
+/// Seconds after its arrival at which a tile is judged, moved by the viewer, since it is shown for a while. With tiles
+/// judged at their arrival a run of `vehicle_chase` at 128x128 has 1.4 times the error.
 constexpr double seen_after = 0.02;
 class Oracle final : public Method {
 public:
@@ -29,7 +30,7 @@ public:
 
     ServerStep produce(StepInput const& input) override {
         FrameMoment moment = forecast_.moment(input);
-        moment.camera = camera_at(input.scene, moment.time); // it knows what the viewer will do as well
+        moment.camera = camera_at(input.scene, moment.time); // the oracle knows what the viewer will do as well
         if (input.now < next_look_ || input.waiting_bytes > 0) {
             return {};
         }
@@ -63,7 +64,8 @@ public:
     }
 
     Picture const& picture() const override { return viewer_.picture(); }
-    double mean_sample_time() const override { return time_; } ///< of the newest: the others are kept for being good
+    /// Time of the newest batch: older tiles are kept for being good.
+    double mean_sample_time() const override { return time_; }
     void sent(double now, double) override { forecast_.sent(now); }
     void answered(double, double arrived) override { forecast_.answered(arrived); }
     Window window() const override { return {16}; }
@@ -109,7 +111,7 @@ private:
     ImagePlane const plane_;
     FrameForecast forecast_;
     TrueGain gain_;
-    bool moves_ = false; ///< the scene
+    bool moves_ = false; ///< the scene moves
     double next_look_ = -INFINITY;
     std::size_t batch_size_ = 16;
     NumberedView view_;
@@ -117,7 +119,7 @@ private:
     ShapeFeed shapes_;
     BatchCodec codec_;
     BatchMemory sent_, mirrored_, received_;
-    WarpViewer mirror_, viewer_; ///< with all that was sent, with all that has come
+    WarpViewer mirror_, viewer_; ///< viewers with all that was sent, with all that has come
     double time_ = 0;
 };
 

@@ -10,12 +10,12 @@
 namespace framelet::bench {
 namespace {
 
-/// How long the server works before it sends what it has.
+/// Seconds that the server works before it sends what it has.
 constexpr double step_seconds = 1.0 / 120;
-/// Of a sample in a message: random places and their colours hardly compress.
+/// Bytes of a sample in a message: random places and their colours hardly compress.
 constexpr std::size_t sample_bytes = 7;
 
-/// Returns rays traced.
+/// Renders the samples' pixels. Returns the number of rays traced.
 std::uint64_t render_pixels(StepInput const& input, Viewport viewport, std::vector<PixelSample>& samples) {
     std::vector<Vec2> centres(samples.size());
     std::ranges::transform(samples, centres.begin(),
@@ -31,7 +31,7 @@ std::uint64_t render_pixels(StepInput const& input, Viewport viewport, std::vect
     return segments;
 }
 
-/// Scene time, then the samples.
+/// A message: scene time, then the samples.
 std::vector<std::byte> encode_samples(SceneTime time, std::vector<PixelSample> const& samples) {
     std::vector<std::byte> message(sizeof(time) + samples.size() * sample_bytes);
     std::memcpy(message.data(), &time, sizeof(time));

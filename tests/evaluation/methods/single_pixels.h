@@ -1,4 +1,4 @@
-// What the methods without frames share: the server renders single pixels, a little at a time, and the viewer shows
+// Common base of the methods without frames: the server renders single pixels, a little at a time, and the viewer shows
 // each as soon as it comes.
 #pragma once
 
@@ -26,8 +26,8 @@ public:
 protected:
     std::size_t pixel_count() const { return times_.size(); }
 
-    /// Renders the pixels of `batch_`, whose x and y are given, and sends them. `response_ns`: what choosing a sample
-    /// costs besides. From then on `batch_size_` is what such a step has time for.
+    /// Renders the pixels of `batch_`, whose x and y are given, and sends them. `response_ns`: cost of choosing a
+    /// sample, besides. Sets `batch_size_` to the number of samples for which such a step has time.
     ServerStep send_batch(StepInput const& input, double response_ns);
 
     MethodSetup const setup_;

@@ -13,8 +13,8 @@
 namespace framelet::bench {
 namespace {
 
-constexpr int finest = 2; ///< depth, from that of one sample a pixel
-constexpr int reference_side = 3; ///< samples along a pixel's side, as what is compared with has them
+constexpr int finest = 2; ///< finest depth, counted from that of one sample a pixel
+constexpr int reference_side = 3; ///< samples along a pixel's side, as the evaluation's reference has by default
 
 std::vector<float> errors_by_pixel(Picture const& shown, Picture const& reference) {
     std::vector<float> errors(reference.rgba.size() / 4);
@@ -96,7 +96,7 @@ void TrueGain::compare(BenchScene const& scene, SceneTime rendered, SceneTime se
     batch.framelets = level.displayed;
     std::vector<std::uint8_t> const all(batch.framelets.size(), 1);
     level.shapes.fit(level.rendered, all, make_view_rays(camera_, plane_.viewport()), plane_, now, batch.shapes);
-    // Each time a viewer that knows nothing yet, which is told of all bodies.
+    // The viewer is a new one each time, which knows nothing yet and is told of all bodies.
     ShapeFeed().track(scene.scene, scene.clips, scene.render_scene->bodies(), -1, rendered, batch.tracks,
                       batch.camera_track);
     WarpViewer viewer(plane_.viewport(), costs_);
@@ -105,7 +105,7 @@ void TrueGain::compare(BenchScene const& scene, SceneTime rendered, SceneTime se
     level.errors = errors_by_pixel(viewer.picture(), reference_);
 }
 
-/// Those in the picture.
+/// Calls `look` with the index of each pixel of the tile that is in the picture.
 template <class Look>
 void TrueGain::each_pixel(Tile tile, Look&& look) const {
     PixelRect const rect = plane_.tile_rect(tile);
@@ -117,7 +117,7 @@ void TrueGain::each_pixel(Tile tile, Look&& look) const {
     }
 }
 
-/// What finer tiles of the same batch cover stays as it is.
+/// Error that the tile would take away; pixels that finer tiles of the same batch cover stay as they are.
 double TrueGain::gain_of(Level const& level, Tile tile) const {
     double sum = 0;
     each_pixel(tile, [&](std::size_t i) { sum += level.depth > depths_[i] ? held_errors_[i] - level.errors[i] : 0; });

@@ -1,4 +1,4 @@
-// `tsar`: temporally and spatially adaptive rendering as [Stephens 2011] describes it: both halves.
+// The method `tsar`: temporally and spatially adaptive rendering as [Stephens 2011] describes it; both halves.
 #pragma once
 
 #include "tests/evaluation/methods/tsar_server.h"

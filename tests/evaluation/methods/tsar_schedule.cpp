@@ -7,7 +7,7 @@
 namespace framelet::bench {
 namespace {
 
-/// Sums of the elements before each, and of all.
+/// Sums of the elements before each element, and of all.
 std::vector<double> prefix_sums(std::span<double const> values) {
     std::vector<double> sums(values.size() + 1);
     std::inclusive_scan(values.begin(), values.end(), sums.begin() + 1);
@@ -22,7 +22,7 @@ Tiling make_density_tiling(ImagePlane const& plane, std::span<double const> samp
     double const element_side = static_cast<double>(plane.side()) / static_cast<double>(1u << field_depth);
     auto const samples_in = [&](Tile tile) {
         int const levels = field_depth - tile.depth();
-        if (levels < 0) { // within one element
+        if (levels < 0) { // the tile lies within one element
             std::size_t const element = tile.index() >> (-2 * levels);
             return (sums[element + 1] - sums[element]) * element_side * element_side / std::exp2(-2 * levels);
         }
@@ -60,7 +60,7 @@ std::vector<std::size_t> select_overdue(std::span<Tile const> tiles, DensityFiel
     std::vector<std::size_t> chosen(tiles.size());
     std::iota(chosen.begin(), chosen.end(), std::size_t(0));
     if (count < chosen.size()) {
-        // Among equals the first, so that a run can be repeated.
+        // Of equals the first are taken, so that a run can be repeated.
         std::ranges::nth_element(
             chosen, chosen.begin() + static_cast<std::ptrdiff_t>(count),
             [&](std::size_t a, std::size_t b) { return overdue[a] != overdue[b] ? overdue[a] > overdue[b] : a < b; });

@@ -15,10 +15,9 @@
 namespace framelet::bench {
 namespace {
 
-/// Table 7.1: framelets rendered per cycle.
+/// Framelets rendered in a cycle, by Table 7.1.
 constexpr std::size_t default_batch = 128;
-/// A place is refreshed at least so often while `framed` shows one frame. [Stephens 2011] states bounds but not their
-/// values.
+/// Least refreshes of a place while `framed` shows one frame. [Stephens 2011] states bounds but not their values.
 constexpr double slowest_refresh = 1.0 / 8;
 constexpr std::size_t most_blocks = framelet_samples;
 
@@ -31,7 +30,8 @@ std::array<float, framelet_samples> display_luma(DisplayFramelet const& framelet
     return luma;
 }
 
-/// Densities that the renderer can realise: tiles of all depths; from every eighth frame of `framed` to every cycle.
+/// Bounds of the densities that the renderer can realise: tiles of all depths; from every eighth frame of `framed` to
+/// every cycle.
 DensityBounds realisable(ImagePlane const& plane, double frames_per_second, std::size_t batch) {
     auto const samples = [&](int depth) { return std::exp2(2 * (depth - plane.pixel_depth())); };
     double const tiles = static_cast<double>(uniform_tile_count(plane, plane.pixel_depth()));
@@ -44,17 +44,17 @@ DensityBounds realisable(ImagePlane const& plane, double frames_per_second, std:
 
 TsarServer::TsarServer(MethodSetup const& setup, TsarParameters const& parameters)
     : setup_(setup), parameters_(parameters), plane_(setup.viewport),
-      // Never more than a frame: [Stephens 2011] admits no batch that costs more (section 7.1.3).
+      // A batch is never more than a frame: [Stephens 2011] admits no batch that costs more (section 7.1.3).
       batch_framelets_(std::min(setup.batch_framelets > 0 ? setup.batch_framelets : default_batch,
                                 uniform_tile_count(plane_, plane_.pixel_depth()))),
       response_{realisable(plane_, setup.frames_per_second, batch_framelets_), parameters.gain,
-                // One measure for both axes: the slowest rate counts as a sample per pixel. Were it the rate of
-                // `framed`, nothing in a picture that stands still would ask for more, and nothing would move.
+                // Both axes have one measure: the slowest rate counts as a sample per pixel. Were it the rate of
+                // `framed`, nothing in a picture that stands still would ask for more, and no density would be moved.
                 slowest_refresh * setup.frames_per_second, -setup.bias, parameters.strategy},
-      // Elements as small as the finest tile: 128x128 at 512x512 pixels, Table 7.1.
+      // Elements are as small as the finest tile: 128x128 at 512x512 pixels, Table 7.1.
       density_(make_uniform_density(plane_.max_depth(), {1, setup.frames_per_second})),
       refreshed_(density_.size(), -1.0) {
-    // The budget is what `framed` spends: one sample a pixel and frame. Outside the viewport there is nothing.
+    // The budget is what `framed` spends: one sample a pixel and frame. Outside the viewport there are no samples.
     for (std::uint32_t i = 0; i < density_.size(); ++i) {
         if (!plane_.is_visible(make_tile(density_.depth, morton_x(i), morton_y(i)))) {
             density_.space[i] = 0;

@@ -11,14 +11,14 @@
 
 namespace framelet::bench {
 
-/// [Stephens 2011] leaves these to experiment ("determined empirically", section 7.1.2.1).
+/// Parameters that [Stephens 2011] leaves to experiment ("determined empirically", section 7.1.2.1).
 struct TsarParameters {
     RateTemplates templates = haar_templates;
     double gain = 1; ///< samples per pixel, and slowest rates of refresh, that an error of 1 asks for: eq. 6.11 has 1
     Transport strategy = Transport::shrink_larger; ///< "the safest" (section 6.3.2.3)
-    double most_saved = 0; ///< of the surplus account, as a share of the budget
-    /// Of a tile by its density, before it is split: the middle, by ratio, between a framelet and its four children, so
-    /// that the tiling has neither more nor fewer samples than the density.
+    double most_saved = 0; ///< capacity of the surplus account, as a share of the budget
+    /// Samples that a tile may have by its density before it is split: the geometric mean of a framelet's samples and
+    /// those of its four children, so that the tiling has neither more nor fewer samples than the density.
     double most_samples = 2 * framelet_samples;
 };
 
@@ -33,7 +33,7 @@ public:
     DensityField const& density() const { return density_; }
 
 private:
-    /// What is known of the last framelet of a tile.
+    /// Record of a tile's last framelet.
     struct Place {
         HaarHistory history;
         double time = 0;
@@ -55,17 +55,17 @@ private:
     std::vector<double> refreshed_; ///< seconds at which each element was refreshed last
     Tiling tiling_;
     std::unordered_map<std::uint32_t, Place> places_; ///< by tile code
-    std::vector<std::uint32_t> elements_; ///< that the batch touched
-    std::vector<RateError> errors_; ///< of those
+    std::vector<std::uint32_t> elements_; ///< elements that the batch touched
+    std::vector<RateError> errors_; ///< errors of those elements
 
-    double clock_ = 0; ///< seconds of the server's own
+    double clock_ = 0; ///< the server's own clock, seconds
     double last_input_ = 0;
     BatchCodec codec_;
     Batch batch_;
 };
 
-/// What the message holds: when the batch was rendered by the server's clock, which goes on while the scene's stands
-/// still, and the batch.
+/// Content of a message: when the batch was rendered by the server's clock (seconds), which goes on while the scene's
+/// stands still, and the batch.
 struct TsarMessage {
     double time;
     EncodedBatch batch;

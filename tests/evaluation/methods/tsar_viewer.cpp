@@ -14,13 +14,13 @@ namespace {
 constexpr int channels = 5;
 constexpr int band = 16; ///< rows that one task draws
 
-/// Width of the age field's smoothing: 128 pixels of 512 (Table 7.1). [Stephens 2011] does not say how it goes with
-/// resolution, nor what shape it has: a box, the same part of the picture.
+/// Radius of the box that smooths the age field: its width is 128 pixels of 512 (Table 7.1). [Stephens 2011] does not
+/// say how it scales with resolution, nor what shape it has: here a box over the same part of the picture.
 int smoothing_radius(Viewport viewport) {
     return std::max(viewport.width, viewport.height) / 8;
 }
 
-/// Box filter of 2 * radius + 1 values, `step` apart, narrower at the ends.
+/// Applies a box filter of 2 * radius + 1 values, `step` apart, narrower at the ends.
 void box_filter(float const* in, float* out, int count, std::ptrdiff_t step, int radius) {
     double sum = 0;
     int first = 0, last = -1;
@@ -81,7 +81,7 @@ BlendWork TsarViewer::show(std::vector<DisplayFramelet> const& framelets, double
         work[index] = accumulate(i * band, std::min((i + 1) * band, picture_.height), used[index]);
     });
     normalise();
-    // What is older than the smoothed age everywhere will not be seen again (section 3.4.4.4).
+    // A framelet that is older than the smoothed age everywhere will not be seen again (section 3.4.4.4).
     std::size_t kept = 0;
     for (std::size_t i = 0; i < held_.size(); ++i) {
         if (std::ranges::any_of(used, [i](auto const& band_used) { return band_used[i] != 0; })) {
@@ -96,9 +96,9 @@ BlendWork TsarViewer::show(std::vector<DisplayFramelet> const& framelets, double
 }
 
 void TsarViewer::draw_ages() {
-    // Where nothing is yet, as old as the oldest.
+    // A pixel that nothing covers yet counts as old as the oldest framelet.
     std::fill(newest_.begin(), newest_.end(), held_.front().time);
-    for (Held const& held : held_) { // newer ones come later
+    for (Held const& held : held_) { // newer ones come later and overwrite older ones
         for (int y = held.extent.top; y < held.extent.bottom; ++y) {
             auto const row = newest_.begin() + static_cast<std::ptrdiff_t>(y) * picture_.width;
             std::fill(row + held.extent.left, row + held.extent.right, held.time);
@@ -120,10 +120,10 @@ void TsarViewer::smooth_ages() {
     }
 }
 
-/// Tent filter about each sample, of radius one sample spacing or one pixel, whichever is more.
+/// Taps of a tent filter about each sample, of radius one sample spacing or one pixel, whichever is more.
 TsarViewer::Taps TsarViewer::taps(Tile tile, int origin, int pixel) const {
     float const spacing = plane_.sample_spacing(tile);
-    float const radius = std::max(spacing, 1.0f) / spacing; // in samples
+    float const radius = std::max(spacing, 1.0f) / spacing; // radius in samples
     float const centre = (static_cast<float>(pixel - origin) + 0.5f) / spacing - 0.5f;
     Taps out;
     out.first = std::max(0, static_cast<int>(std::floor(centre - radius)) + 1);
@@ -135,7 +135,8 @@ TsarViewer::Taps TsarViewer::taps(Tile tile, int origin, int pixel) const {
     return out;
 }
 
-/// Adds to rows top to bottom what every framelet contributes, and notes which did. Returns contributions.
+/// Adds to the rows from `top` to `bottom` what every framelet contributes, and notes in `used` which did. Returns the
+/// number of contributions.
 double TsarViewer::accumulate(int top, int bottom, std::vector<std::uint8_t>& used) {
     std::uint64_t taken = 0;
     std::vector<Taps> columns;
@@ -191,7 +192,7 @@ void TsarViewer::normalise() {
     double times = 0;
     for (std::size_t pixel = 0; pixel < newest_.size(); ++pixel) {
         float const* const sum = sums_.data() + pixel * channels;
-        if (sum[4] > 0) { // nothing has come for a hole yet: it stays as it is
+        if (sum[4] > 0) { // a hole, for which nothing has come yet, stays as it is
             for (std::size_t c = 0; c < 3; ++c) {
                 picture_.rgba[pixel * 4 + c] = srgb_byte_from_linear(sum[c] / sum[4]);
             }

@@ -1,5 +1,5 @@
-// The viewer's half of `tsar`: cached framelets of many ages to one picture, as [Stephens 2011] section 4.2 does it.
-// In: framelets. Out: the picture, all of it anew each time.
+// The viewer's half of `tsar`: blends cached framelets of many ages into one picture, as [Stephens 2011] section 4.2
+// does it. In: framelets. Out: the picture, all of it anew each time.
 #pragma once
 
 #include <array>
@@ -10,10 +10,10 @@
 
 namespace framelet::bench {
 
-/// How much was done: what the virtual clock charges for.
+/// Amount of work done, for which the virtual clock charges.
 struct BlendWork {
-    double pixels = 0; ///< through age, smoothing and normalisation
-    double contributions = 0; ///< of four samples each to a pixel
+    double pixels = 0; ///< pixels that went through age, smoothing and normalisation
+    double contributions = 0; ///< contributions of four samples each to a pixel
 };
 
 class TsarViewer {
@@ -24,7 +24,7 @@ public:
     BlendWork show(std::vector<DisplayFramelet> const& framelets, double time, SceneTime scene_time);
 
     Picture const& picture() const { return picture_; }
-    /// Mean over the pixels of the scene time of what they show.
+    /// Scene time of what the pixels show, mean over them.
     double mean_scene_time() const { return mean_scene_time_; }
     std::size_t framelet_count() const { return held_.size(); }
 
@@ -34,9 +34,9 @@ private:
         float time = 0;
         float scene_time = 0;
         PixelRect extent; ///< pixels whose centres lie in the tile enlarged by half a sample spacing
-        std::array<std::array<float, framelet_samples>, 3> linear; ///< linear light, in rows
+        std::array<std::array<float, framelet_samples>, 3> linear; ///< red, green, blue: linear light, in rows
     };
-    /// Samples that a pixel's column or row takes, and how much of each.
+    /// Samples of a framelet that a pixel's column or row takes, and the weight of each.
     struct Taps {
         int first = 0;
         int count = 0;

@@ -9,7 +9,7 @@ namespace framelet::bench {
 WarpViewer::WarpViewer(Viewport viewport, CostTable const& costs, PictureSettings const& settings, SessionTimes* times)
     : costs_(costs), settings_(settings), times_(times), maker_(viewport, settings),
       picture_(viewport.width, viewport.height) {
-    reconstruct_all(maker_.pool().newest(), picture_); // bare
+    reconstruct_all(maker_.pool().newest(), picture_); // a picture without framelets
 }
 
 ViewerStep WarpViewer::insert(Batch const& batch) {

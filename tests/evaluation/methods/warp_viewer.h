@@ -1,5 +1,5 @@
-// The viewer's half of methods that send framelets: the client's own picture maker, and what it costs. In: batches.
-// Out: the picture, moved to the camera and the scene time of the moment or not.
+// The viewer's half of methods that send framelets: the client's own picture maker, and its costs. In: batches. Out:
+// the picture, moved to the camera and the scene time of the moment or not.
 #pragma once
 
 #include <vector>
@@ -15,13 +15,13 @@ public:
     WarpViewer(Viewport viewport, CostTable const& costs, PictureSettings const& settings = {},
                SessionTimes* times = nullptr);
 
-    /// Returns what putting it into the cache costs; the picture stays as it is.
+    /// Puts the batch into the cache and returns the cost of that; the picture stays as it is.
     ViewerStep insert(Batch const& batch);
-    /// Draws anew what differs from the last time. `scene_camera` >= 0: as that camera of the scene goes, and not as
-    /// `camera` says. `is_settled`: as of a PictureRequest.
+    /// Draws anew what differs from the last time. `scene_camera` >= 0: for that camera of the scene along its track,
+    /// and not for `camera`. `is_settled`: as in PictureRequest.
     ViewerStep present(Camera const& camera, SceneTime time, int scene_camera = -1, bool is_settled = false);
 
-    /// Appends what the viewer holds no longer.
+    /// Appends the framelets that the viewer has evicted since the last call.
     void take_evicted(std::vector<SentTile>& framelets);
 
     Picture const& picture() const { return picture_; }
@@ -32,8 +32,9 @@ private:
     SessionTimes* const times_;
     PictureMaker maker_;
     std::vector<PixelRect> changed_;
-    std::vector<SentTile> evicted_; ///< scratch
-    double fine_samples_ = 0; ///< that have come since the last picture, finer than pixels
+    std::vector<SentTile> evicted_; ///< scratch of `take_evicted`
+    /// Samples finer than pixels that have come since the last picture.
+    double fine_samples_ = 0;
     Picture picture_;
 };
 

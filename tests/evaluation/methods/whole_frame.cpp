@@ -6,11 +6,11 @@
 namespace framelet::bench {
 namespace {
 
-/// A mean of so many times as many samples is better by enough to be sent.
+/// Factor by which a mean must have more samples than the one sent last to be better by enough to be sent.
 constexpr double worth_sending = 4.0 / 3;
-/// What a link has had no use for until now may be spent at once, for so long a time at most.
+/// Greatest length of unused link time, seconds, that may be spent at once by a later frame.
 constexpr double longest_saved = 0.25;
-/// Bytes a pixel of a repeated picture that say that it had not come through as well as it might.
+/// Bytes a pixel of a repeated picture above which it had not come through as well as it might.
 constexpr double worth_repeating = 1.0 / 32;
 constexpr int most_repeats = 16;
 

@@ -1,6 +1,6 @@
-// Whole frames in turn, at their best: what every `framed` method renders. Each is for the moment at which it will be
-// shown, at the spacing of the setup; while nothing moves, more samples are taken of all pixels until the picture is
-// as good as it gets. In: scene and view. Out: the samples of one frame, and what they cost.
+// Renders whole frames in turn, at their best, for every `framed` method. Each is for the moment at which it will be
+// shown, at the spacing of the setup; while nothing moves, more samples are taken of all pixels until the picture is as
+// good as it gets. In: scene and view. Out: the samples of one frame, and what they cost.
 #pragma once
 
 #include <cstddef>
@@ -16,40 +16,40 @@ namespace framelet::bench {
 
 class WholeFrame {
 public:
-    /// `viewer_seconds`: from a frame's arrival until it shows.
+    /// `viewer_seconds`: time from a frame's arrival until it shows.
     WholeFrame(MethodSetup const& setup, double viewer_seconds);
 
-    /// Renders a frame of the view, or adds to the last one. Seconds: render, and under `encode` the tone curve and the
-    /// mean. Neither costs nor samples: there is nothing to gain.
+    /// Renders a frame of the view, or adds to the last one. The step's seconds are those of rendering, and under
+    /// `encode` those of the tone curve and the mean. A step without costs and samples: there is nothing to gain.
     ServerStep render(StepInput const& input);
-    /// Whether what was rendered is to be sent: it is better by enough than what was.
+    /// True if what was rendered is to be sent: it is better by enough than what was sent.
     bool is_due() const { return due_; }
-    /// Nothing moves, and more samples would not make it better.
+    /// True if nothing moves and more samples would not make the picture better.
     bool is_converged() const { return passes_ == FrameGrid::places; }
-    /// Whether a picture that has converged is to be coded once more, as long as its codec still has something to say
-    /// of it and nothing else is on its way. `last_bytes`: what it took the last time.
+    /// True if a picture that has converged is to be coded once more: its codec still has something to say of it and
+    /// nothing else is on its way. `last_bytes`: what it took the last time.
     bool repeats(StepInput const& input, std::size_t last_bytes);
-    /// What was rendered is sent once more.
+    /// Notes that what was rendered is sent once more.
     void repeat(double now) {
         ++repeated_;
         forecast_.follow(now);
     }
 
-    /// What was rendered last, and for when.
+    /// The frame rendered last, and the view and scene time that it is for.
     FrameGrid& grid() { return *shown_; }
     NumberedView const& view() const { return view_; }
     SceneTime time() const { return moment_.time; }
 
-    /// The viewport with its margin, which is what is rendered. Spacings that frames may have.
+    /// `viewport`: that with the margin, which is rendered. `spacings`: those that frames may have, pixels.
     Viewport viewport() const { return moving_.plane().viewport(); }
     std::vector<int> spacings() const;
 
     void sent(double now);
     void answered(double arrived) { forecast_.answered(arrived); }
 
-    /// Bytes that the encoder may make of the frame last rendered, for a link that it shall neither fill nor leave
-    /// idle: from what the answers say and from how long a frame takes. `encode_seconds`: what encoding costs,
-    /// calibrated.
+    /// Bytes that the encoder may make of the frame rendered last, for a link that it shall neither fill nor leave
+    /// idle: from what the answers say and from how long a frame takes. `encode_seconds`: cost of encoding, on the
+    /// calibrated machine.
     double budget(StepInput const& input, ServerStep const& rendered, double encode_seconds);
 
 private:
@@ -63,15 +63,15 @@ private:
     DeliveryRate rate_;
     FrameForecast forecast_;
     FrameGrid moving_;
-    std::optional<FrameGrid> still_; ///< where it differs
+    std::optional<FrameGrid> still_; ///< grid for what does not move, where its spacing differs
     FrameGrid* shown_ = &moving_;
-    FrameMoment moment_; ///< without a margin
+    FrameMoment moment_; ///< camera without the margin, and scene time, of the frame rendered last
     ScenePose pose_;
     float exposure_ = 0;
     NumberedView view_;
-    int passes_ = 0; ///< of the whole picture at one sample a pixel, of what does not move
+    int passes_ = 0; ///< passes over the whole of a still picture at one sample a pixel
     int sent_passes_ = 0;
-    int repeated_ = 0; ///< of the same picture
+    int repeated_ = 0; ///< times that the same picture was sent again
     bool due_ = false;
     double sent_at_ = 0;
 };

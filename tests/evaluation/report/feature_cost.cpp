@@ -23,7 +23,7 @@ using nlohmann::json;
 
 constexpr double samples_per_pixel_and_second = 5;
 
-/// What a scene is made of, in the order in which it is put in.
+/// Features of a scene, in the order in which they are put in.
 struct Features {
     bool motion = false, mirrors = false, deformation = false, cut_outs = false;
 };
@@ -36,7 +36,7 @@ void make_matt(Scene& scene) {
     }
 }
 
-/// Every mesh that a node carries along swells and shrinks once a second.
+/// Makes every mesh that an animated node carries swell and shrink once a second.
 void deform(Scene& scene) {
     if (scene.clips.empty()) {
         return;
@@ -67,7 +67,7 @@ void deform(Scene& scene) {
     }
 }
 
-/// A quarter of every texture becomes holes, each a sixteenth of its width.
+/// Turns a quarter of every texture into holes, each a sixteenth of its width.
 void cut_out(Scene& scene) {
     for (auto& image : scene.images) {
         auto holed = std::make_shared<Picture>(*image);
@@ -103,10 +103,10 @@ Scene with(Scene scene, Features const& features) {
     return scene;
 }
 
-/// Sums over all turns of a session that is never held up.
+/// Costs of a session that is never held up, summed over all turns.
 struct Cost {
     double render = 0, other = 0; ///< seconds of one thread
-    double response = 0; ///< of `other`: planning by the mirror, learning
+    double response = 0; ///< part of `other`: planning by the mirror, learning without the fitting of shapes
     double samples = 0, segments = 0, bytes = 0;
 
     json to_json(char const* what) const {
@@ -119,7 +119,8 @@ struct Cost {
     }
 };
 
-/// `shape_sample`: what fitting shapes takes, nanoseconds a sample; it is a part of learning.
+/// Serves the scene for `seconds`. `shape_sample`: cost of fitting shapes, nanoseconds a sample, which is a part of
+/// learning.
 Cost serve(Scene const& scene, Viewport viewport, double seconds, double shape_sample) {
     tbb::global_control const one_thread(tbb::global_control::max_allowed_parallelism, 1);
     std::vector<Index> const clips = default_clips(scene);

@@ -36,7 +36,7 @@ std::string with_decimals(int decimals, double value) {
     return printed("%.*f", decimals, value);
 }
 
-/// Each value is to keep the bound: how many do, and which one is farthest from it.
+/// A goal that each value keeps the bound: how many do, and which one is farthest from it.
 Goal all_of(std::string what, std::vector<Value> const& values, Bound bound, double goal, int decimals) {
     Goal result{std::move(what), (bound == Bound::at_most ? "<= " : ">= ") + printed("%g", goal) + " in each",
                 "not measured", false};
@@ -65,7 +65,8 @@ Goal median_of(std::string what, std::vector<Value> const& values, double goal) 
     return result;
 }
 
-/// The project's error over the least of the others that `belongs` says, in each scene, on each machine and link.
+/// Ratios of the project's error to the least of the other methods that `belongs` selects, in each scene, on each
+/// machine and link.
 template <class Belongs>
 std::vector<Value> ratios(std::vector<ReportRun> const& runs, Belongs&& belongs) {
     std::map<std::tuple<std::string, double, double>, std::pair<double, double>> cells;
@@ -88,7 +89,7 @@ std::vector<Value> ratios(std::vector<ReportRun> const& runs, Belongs&& belongs)
     return result;
 }
 
-/// Of `framelet` in each of the real programs' scenes that has it.
+/// Values of `get` for `framelet` in each of the real programs' scenes that has them.
 template <class Get>
 std::vector<Value> of_each(std::vector<json> const& live, Get&& get) {
     std::vector<Value> values;
@@ -105,7 +106,8 @@ double number(json const& figures, char const* name, double scale = 1) {
     return figures.contains(name) && figures[name].is_number() ? scale * figures[name].get<double>() : NAN;
 }
 
-/// By how much the project's is worse than the best rival's: a ratio of errors, where `sign` is -1 of what lacks to 1.
+/// Ratios by which the project's figure is worse than the best rival's: a ratio of errors; where `sign` is -1, a ratio
+/// of what lacks to 1.
 std::vector<Value> beside_best_rival(std::vector<json> const& live, char const* figure, double sign) {
     return of_each(live, [&](json const& scene, json const& own) {
         double const rival = sign * best_rival(scene, figure, sign).first;
@@ -115,14 +117,14 @@ std::vector<Value> beside_best_rival(std::vector<json> const& live, char const* 
     });
 }
 
-/// Not where it only jumps, as far as that is known.
+/// True if something moves in the scene, and not only jumps, as far as that is known.
 bool moves(std::string const& title) {
     if (title.find(", flown") != std::string::npos) {
         return true;
     }
     try {
         return !events_of(title.substr(0, title.find(','))).motions.empty();
-    } catch (InputError const&) { // not the generator's
+    } catch (InputError const&) { // the scene is not the generator's
         return true;
     }
 }
@@ -135,7 +137,7 @@ std::vector<Value> steadiness(std::vector<json> const& live) {
     });
 }
 
-/// Of the sessions with a core each: the viewer has its own, at the greatest size.
+/// Cost of painting in the sessions with a core each, where the viewer has its own, at the greatest size.
 std::vector<Value> painting(std::vector<json> const& clocks) {
     int greatest = 0;
     for (json const& run : clocks) {
@@ -177,7 +179,7 @@ std::vector<Value> bits(std::vector<ReportRun> const& linked) {
     return values;
 }
 
-/// Logarithms of bits and of the least error that so many bits or fewer reach; bits ascend.
+/// Rate curve: logarithms of bits and of the least error that so many bits or fewer reach; bits ascend.
 struct RateCurve {
     std::vector<double> bits, errors;
 
@@ -190,13 +192,13 @@ struct RateCurve {
             errors.push_back(errors.empty() ? error : std::min(error, errors.back()));
         }
     }
-    /// For so little error; at the ends where it is beyond them.
+    /// Logarithm of the bits for an error of this logarithm; beyond the curve's ends the value at the end.
     double bits_for(double error) const {
         auto const reached = std::ranges::find_if(errors, [&](double e) { return e <= error; });
         if (reached == errors.begin()) {
             return bits.front();
         }
-        if (reached == errors.end()) { // the fewest that reach the least
+        if (reached == errors.end()) { // the fewest bits that reach the least error
             return bits[static_cast<std::size_t>(std::ranges::find(errors, errors.back()) - errors.begin())];
         }
         auto const i = static_cast<std::size_t>(reached - errors.begin());

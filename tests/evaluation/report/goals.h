@@ -1,4 +1,4 @@
-// The goals that the project has set itself, and how far it is. In: the report's figures. Out: a table in Markdown.
+// Compares the project with the goals that it has set itself. In: the report's figures. Out: a table in Markdown.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 namespace framelet::bench {
 
 struct Goal {
-    std::string what, goal, figure; ///< as the table says them
-    bool met = false; ///< what was not measured is not
+    std::string what, goal, figure; ///< texts of the table
+    bool met = false; ///< a goal that was not measured is not met
 };
 
 /// Each goal, in the order of the table.

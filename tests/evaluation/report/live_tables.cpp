@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-/// In how many scenes the project is not worse than the best rival, by each measure.
+/// A sentence that says in how many scenes the project is not worse than the best rival, by each measure.
 std::string live_summary(std::vector<json> const& live) {
     auto const wins = [&](char const* figure, double sign) {
         return std::ranges::count_if(live, [&](json const& scene) {
@@ -30,8 +30,8 @@ std::string live_summary(std::vector<json> const& live) {
         wins("mse", 1), live.size(), median(ratios), wins("ssim", -1), wins("flip", 1), wins("steadiness", 1));
 }
 
-/// One figure of several runs, "-" where it is none; the best of them in bold: the least, or, for `sign` -1, the most.
-/// `sign` 0: none is.
+/// A table cell of one figure of several runs, "-" where it is no number; the best of them in bold: the least, or, for
+/// `sign` -1, the most. `sign` 0: none is.
 std::string side_by_side(std::vector<json> const& runs, char const* figure, char const* format, double scale,
                          int sign) {
     auto const value = [&](json const& run) {
@@ -39,7 +39,7 @@ std::string side_by_side(std::vector<json> const& runs, char const* figure, char
     };
     double best = INFINITY;
     for (json const& run : runs) {
-        best = std::min(best, sign * value(run)); // what is no number is not less
+        best = std::min(best, sign * value(run)); // a NaN is not less
     }
     std::string text;
     for (json const& run : runs) {

@@ -32,7 +32,7 @@ std::vector<Mark> core_marks() {
     return marks;
 }
 
-/// Of each method over all scenes: a point for each value of `step`.
+/// A curve for each method over all scenes, with a point for each value of `step`.
 std::vector<Curve> curves_of(std::vector<ReportRun> const& runs, Value const& step, Value const& x, Value const& y) {
     std::vector<Curve> curves;
     for (std::string const& method : distinct(runs, &ReportRun::method)) {
@@ -51,7 +51,7 @@ std::vector<Curve> curves_of(std::vector<ReportRun> const& runs, Value const& st
     return curves;
 }
 
-/// At each machine, without a link's limit.
+/// Chart of a value at each machine, without a link's limit.
 Curves machine_chart(ReportFigures const& figures, std::string const& what, Value const& value) {
     return {.title = what + ": geometric mean over scenes, quartiles shaded",
             .x_title = "machine [samples a displayed pixel and second]",
@@ -108,7 +108,7 @@ Curves live_chart(std::vector<json> const& live) {
 template <class Chart>
 void draw_png(Chart const& chart, std::filesystem::path const& stem) {
     draw(chart, stem);
-    std::filesystem::remove(stem.string() + ".svg"); // the page shows the other one
+    std::filesystem::remove(stem.string() + ".svg"); // the page shows the PNG
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-// The report's charts. In: figures. Out: pictures.
+// Draws the report's charts. In: figures. Out: pictures.
 #pragma once
 
 #include <filesystem>
@@ -9,16 +9,17 @@
 
 namespace framelet::bench {
 
-/// Of positive numbers: geometric mean and quartiles.
+/// Geometric mean and quartiles of positive numbers.
 struct Spread {
     double low = 0, mean = 0, high = 0;
 };
 Spread spread_of(std::vector<double> values);
 
-/// Error over the reference's own noise against the machine's speed: a curve a method, over all scenes.
+/// Chart of error over the reference's own noise against the machine's speed: a curve for each method, over all scenes.
 Curves speed_chart(ReportFigures const& figures);
 
-/// That one, FLIP and unsteadiness likewise, error against what links carry, and the real programs: as PNG files.
+/// Draws that chart, those of FLIP and unsteadiness likewise, of error against what links carry, and of the real
+/// programs, as PNG files.
 void draw_report_charts(ReportFigures const& figures, std::filesystem::path const& folder);
 
 } // namespace framelet::bench

@@ -21,7 +21,7 @@ using nlohmann::json;
 
 constexpr char const* phases[] = {"moving", "event", "settled"};
 
-/// The project's error over that of the best rival, of a phase; and who that is.
+/// Ratio of the project's error to that of the best rival in a phase, and that rival.
 struct Ratio {
     double value = NAN;
     std::string rival;
@@ -89,7 +89,7 @@ std::string feature_table(json const& rows) {
     return text;
 }
 
-/// A row a method, a column a machine.
+/// Table of errors: a row for each method, a column for each machine.
 std::string speed_table(ReportFigures const& figures) {
     std::string text = "| samples a pixel and second |", line = "|---|";
     for (double const machine : distinct(unlimited(figures.runs), &ReportRun::machine)) {

@@ -1,4 +1,4 @@
-// The report's page. In: figures. Out: text in Markdown.
+// Writes the report's page. In: figures. Out: text in Markdown.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace framelet::bench {
 
-/// `command`: as a reader would type it.
+/// The whole page. `command`: the command of the report, as a reader would type it.
 std::string report_page(ReportFigures const& figures, ReportOptions const& options, StudyOptions const& study,
                         std::string const& command);
 

@@ -21,10 +21,10 @@ namespace {
 using nlohmann::json;
 
 constexpr Viewport screenshot{448, 252};
-/// At which both clocks are compared: what is seen of a cut or a lamp decides in few of them.
+/// Number of moments at which both clocks are compared: with few of them what is seen of a cut or a lamp would decide.
 constexpr int clock_moments = 16;
 
-/// What a command prints, without the end of the line; empty where it fails.
+/// First line that a command prints, without its end; empty where it fails.
 std::string output_of(std::string const& command) {
     std::unique_ptr<FILE, int (*)(FILE*)> const pipe(popen(command.c_str(), "r"), pclose);
     std::array<char, 256> line{};
@@ -45,7 +45,7 @@ std::string text_of(Viewport const& size) {
     return printed("%dx%d", size.width, size.height);
 }
 
-/// A scene's runs: loaded with the first that is not there yet.
+/// Makes a scene's runs. Loads the scene for the first run that is not stored yet.
 class SceneRuns {
 public:
     SceneRuns(std::filesystem::path file, StudyOptions const& study, RunStore& store)
@@ -80,7 +80,7 @@ private:
         return *subject_;
     }
 
-    /// Of the reference: against one of a hundred times as many samples, which has next to none.
+    /// Noise of the reference: its mean squared error against one of 256 samples a pixel, which has next to none.
     double noise() {
         RunParameters const& p = study_.run;
         std::string const name = scene() + "-noise-" + text_of(p.viewport) + printed("-%gs", p.seconds);
@@ -133,11 +133,12 @@ private:
     StudyOptions const& study_;
     RunStore& store_;
     std::optional<Subject> subject_;
-    std::optional<SceneEvents> events_; ///< found with the first run
-    double start_ = 0; ///< of the window, likewise
+    std::optional<SceneEvents> events_; ///< the scene's events, found with the first run
+    double start_ = 0; ///< start of the scene's window, likewise
 };
 
-/// What `framelet` shows in the middle of its run; written where it is not there yet.
+/// Writes the picture that `framelet` shows in the middle of its run, unless it is stored already. Returns the name of
+/// the scene.
 std::string take_screenshot(std::filesystem::path const& scene, ReportOptions const& options, StudyOptions const& study,
                             RunStore& store) {
     std::string const name = scene.stem().string();
@@ -177,7 +178,7 @@ json live_run(std::filesystem::path const& file, LiveOptions const& options, Run
     });
 }
 
-/// While the camera turns, without a link's limit.
+/// Makes the runs with a turning camera, without a link's limit.
 void measure_turns(ReportOptions const& options, StudyOptions study, RunStore& store, std::vector<ReportRun>& runs) {
     for (double const turn : options.turns) {
         study.turn = turn;
@@ -203,7 +204,7 @@ ReportFigures measure_report(ReportOptions const& options, StudyOptions const& s
     figures.commit = commit_of_source();
     std::size_t const runs_a_scene =
         1 + options.machines.size() * study.methods.size() + options.links.size() * options.linked_methods.size();
-    // The noise is asked for with each run.
+    // The noise is asked for with each run, so that runs count twice.
     std::size_t const expected = study.scenes.size() * (2 * runs_a_scene - 2 + 4 + 6 * options.turns.size()) +
                                  options.pictured_scenes.size() + options.live_scenes.size() + options.flights.size() +
                                  options.narrow_scenes.size() + options.walks.size() +
@@ -260,7 +261,7 @@ ReportFigures measure_report(ReportOptions const& options, StudyOptions const& s
             live.pinned = live.predicts = true;
             live.costs = study.costs;
             json run = live_run(file, live, store);
-            live.methods = {"framelet-unwarped"}; // only how busy it keeps the server
+            live.methods = {"framelet-unwarped"}; // run only for how busy it keeps the server
             live.moments = 1;
             live.predicts = false;
             run["methods"].update(live_run(file, live, store)["methods"]);

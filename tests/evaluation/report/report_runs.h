@@ -1,4 +1,4 @@
-// All that the report measures. In: what it is told. Out: plain figures, as many as the page needs.
+// Runs all that the report measures. In: its options. Out: plain figures, as many as the page needs.
 #pragma once
 
 #include <filesystem>
@@ -14,30 +14,30 @@
 
 namespace framelet::bench {
 
-/// A scene through which the viewer's own camera flies: files.
+/// A scene and the camera file by which the viewer's own camera flies through it.
 struct Flight {
     std::filesystem::path scene, camera;
 };
 
 struct ReportOptions {
-    std::filesystem::path folder = "report"; ///< keeps each run's figures
-    std::filesystem::path documents = FRAMELET_SOURCE_DIR "/docs"; ///< where RESULTS.md and pictures/ go
-    std::vector<double> machines; ///< samples a displayed pixel and second
-    std::vector<double> links; ///< bits a displayed pixel and second
-    double link_machine = 10; ///< of the runs over links
-    double link_delay = 0.02; ///< seconds each way
-    std::vector<std::string> linked_methods; ///< of those of the study, which go over links
+    std::filesystem::path folder = "report"; ///< folder that keeps each run's figures
+    std::filesystem::path documents = FRAMELET_SOURCE_DIR "/docs"; ///< folder of RESULTS.md and pictures/
+    std::vector<double> machines; ///< speeds of machines, samples a displayed pixel and second
+    std::vector<double> links; ///< rates of links, bits a displayed pixel and second
+    double link_machine = 10; ///< machine of the runs over links, samples a displayed pixel and second
+    double link_delay = 0.02; ///< delay of links, seconds each way
+    std::vector<std::string> linked_methods; ///< methods of the study that also run over links
     std::vector<std::filesystem::path> live_scenes, clock_scenes, pictured_scenes; ///< files
-    std::vector<Flight> flights; ///< that the real programs go on as well
-    std::vector<std::filesystem::path> narrow_scenes; ///< that they run over `narrow` too
+    std::vector<Flight> flights; ///< flights on which the real programs go as well
+    std::vector<std::filesystem::path> narrow_scenes; ///< scenes that the real programs run over `narrow` too
     LinkParameters narrow{.bits_per_second = 20e6, .delay_seconds = 0.05};
     std::vector<Flight> walks; ///< through scenes that stand still, on the virtual clock
     Viewport walk_viewport{640, 360};
-    std::vector<double> turns; ///< of the camera, degrees a second
-    std::vector<Viewport> clock_sizes; ///< at which the virtual clock is held against the wall's
+    std::vector<double> turns; ///< turning of the camera, degrees a second
+    std::vector<Viewport> clock_sizes; ///< sizes at which the virtual clock is compared with the wall clock
     LiveOptions live;
     Viewport feature_viewport{1280, 720};
-    bool quick = false; ///< said on the page
+    bool quick = false; ///< quick, incomplete runs; the page says so
 };
 
 /// One method in one scene on one machine and link.
@@ -46,27 +46,27 @@ struct ReportRun {
     double machine = 0; ///< samples a displayed pixel and second
     double link = 0; ///< bits a displayed pixel and second; 0: no limit
     double noise = 0; ///< mean squared error of the reference itself
-    double mse = 0, flip = 0, unsteadiness = 0; ///< means
-    double bits = 0; ///< sent, a displayed pixel and second
+    double mse = 0, flip = 0, unsteadiness = 0; ///< means over the reference times
+    double bits = 0; ///< bits sent, a displayed pixel and second
     std::map<std::string, double> phases; ///< mean squared error while "moving", at an "event", when "settled"
 };
 
 struct ReportFigures {
     std::vector<ReportRun> runs;
-    std::vector<ReportRun> turns; ///< while the camera turns: a "scene" is one at one speed
-    std::vector<ReportRun> oracle; ///< of `oracle`, and of `framelet` beside it
+    std::vector<ReportRun> turns; ///< runs while the camera turns: a "scene" is a scene at one speed
+    std::vector<ReportRun> oracle; ///< runs of `oracle`, and of `framelet` beside it
     std::vector<nlohmann::json> live, narrow, clocks; ///< as measure_live returns them
     std::vector<nlohmann::json> walks; ///< as measure_own_camera returns them
     nlohmann::json features; ///< as measure_feature_costs returns them
-    std::vector<std::string> pictures; ///< stems in the documents' pictures/
-    std::string commit; ///< of this program
-    std::set<std::string> commits; ///< of all figures
+    std::vector<std::string> pictures; ///< stems of files in the documents' pictures/
+    std::string commit; ///< commit of this program
+    std::set<std::string> commits; ///< commits of the programs that made the figures
 };
 
-/// Of the machines that is which is most like two cores at 1920x1080.
+/// The machine of `options.machines` that is most like two cores at 1920x1080.
 double usual_machine(ReportOptions const& options);
 
-/// Runs what `options.folder` does not have. Of `study`, scenes, methods, size, seconds and rate count.
+/// Runs what `options.folder` does not have. Of `study` only scenes, methods, size, seconds and rate count.
 ReportFigures measure_report(ReportOptions const& options, StudyOptions const& study);
 
 } // namespace framelet::bench

@@ -1,4 +1,4 @@
-// What the report's tables and charts have in common: how text is set, whose runs are whose.
+// Helpers that the report's tables and charts share: setting of text, selection of runs.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace framelet::bench {
 
-/// Errors below this are those of rounding to bytes.
+/// Mean squared errors below this are due to rounding to bytes.
 inline constexpr double least_mse = 1e-9;
 
 /// Shaded samples a second of one core where every sample has a shadow ray and a quarter mirror; the bundled scenes
@@ -20,13 +20,13 @@ inline constexpr double screen_pixels = 1920.0 * 1080;
 
 [[gnu::format(printf, 1, 2)]] std::string printed(char const* format, ...);
 
-/// In bold, or as it is.
+/// The text in bold, or as it is.
 std::string bold_if(bool is_bold, std::string const& text);
 
-/// Neither the project's nor a yardstick that knows the truth.
+/// True if the method is neither the project's nor a yardstick that knows the truth.
 bool is_rival(std::string const& method);
 
-/// Values in the order in which they come first.
+/// The values of `get` over the runs, without repetition, in the order in which they come first.
 template <class Get>
 auto distinct(std::vector<ReportRun> const& runs, Get&& get) {
     std::vector<std::decay_t<std::invoke_result_t<Get, ReportRun const&>>> found;
@@ -45,7 +45,7 @@ std::vector<ReportRun> part(std::vector<ReportRun> const& runs, Belongs&& belong
     return result;
 }
 
-/// Those on machines without a link's limit.
+/// The runs without a link's limit.
 inline std::vector<ReportRun> unlimited(std::vector<ReportRun> const& runs) {
     return part(runs, [](ReportRun const& run) { return run.link == 0; });
 }

@@ -23,7 +23,7 @@ json RunStore::get(std::string const& name, std::function<json()> const& run) {
     if (!kept.is_object() || !kept.contains("figures") || !kept.contains("commit")) {
         std::fprintf(stderr, "%zu of %zu: %s\n", done_, expected_, name.c_str());
         kept = {{"commit", commit_}, {"figures", run()}};
-        // Under another name first: what is stopped half way leaves no half file.
+        // The file has another name first, so that a run that is stopped half-way leaves no half file.
         auto const unfinished = folder_ / (name + ".unfinished");
         std::ofstream stream(unfinished);
         stream << kept.dump(1) << '\n';

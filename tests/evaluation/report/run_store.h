@@ -1,4 +1,4 @@
-// The report's runs, each kept in a file of its own: what has been run is not run again. In: what a run is called and
+// Stores the report's runs, each in a file of its own: what has been run is not run again. In: a run's name and what it
 // does. Out: its figures.
 #pragma once
 
@@ -14,15 +14,15 @@ namespace framelet::bench {
 
 class RunStore {
 public:
-    /// `commit`: of the program; written beside each run's figures. Makes the folder. `expected`: runs in all, for the
-    /// progress that is told on stderr.
+    /// Makes the folder. `commit`: that of the program, written beside each run's figures. `expected`: runs in all, for
+    /// the progress that is told on stderr.
     RunStore(std::filesystem::path folder, std::string commit, std::size_t expected);
 
-    /// The figures of the run of that name (part of a file's name), from its file or else by `run`.
+    /// Figures of the run of that name (part of a file's name), from its file or else by calling `run`.
     nlohmann::json get(std::string const& name, std::function<nlohmann::json()> const& run);
 
     std::filesystem::path const& folder() const { return folder_; }
-    /// Of which programs the figures are that were asked for.
+    /// Commits of the programs that made the figures asked for so far.
     std::set<std::string> const& commits() const { return commits_; }
 
 private:

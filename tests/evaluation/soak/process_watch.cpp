@@ -46,8 +46,8 @@ Growth growth_of(std::span<double const> before, std::span<double const> after) 
 }
 
 bool grows(Growth const& growth, double share) {
-    // The quantile of Student's t, to some percent from four degrees of freedom on: 7.17, 4.14 with ten, 3.09 with
-    // many.
+    // Quantile of Student's t that chance exceeds in one of a thousand cases, approximate to some percent from four
+    // degrees of freedom on: 7.17, 4.14 with ten, 3.09 with many.
     double const freedom = static_cast<double>(growth.pairs) - 1;
     double const most_by_chance = 3.09 + 9.2 / freedom + 28 / (freedom * freedom);
     return growth.mean > most_by_chance * growth.error && growth.mean > share * growth.before;

@@ -1,4 +1,4 @@
-// What a process holds, as the system counts it, and whether that grows.
+// Tells how much memory and how many descriptors a process holds, as the system counts them, and whether that grows.
 #pragma once
 
 #include <cstddef>
@@ -10,25 +10,25 @@ namespace framelet::bench {
 
 struct ProcessHoldings {
     double resident_bytes = 0;
-    std::size_t descriptors = 0; ///< that are open
+    std::size_t descriptors = 0; ///< number of open descriptors
 };
 
-/// Zeros where there is no such process.
+/// Holdings of a process; zeros where there is no such process.
 ProcessHoldings holdings_of(pid_t pid);
 
-/// How much more values are the second time than the first, pair by pair.
+/// Growth of values from a first time to a second, pair by pair.
 struct Growth {
     double mean = 0;
-    double error = 0; ///< its standard error, from how much the pairs differ
-    double before = 0; ///< mean the first time
+    double error = 0; ///< standard error of the mean, from how much the pairs differ
+    double before = 0; ///< mean of the values of the first time
     std::size_t pairs = 0;
 };
 
-/// At least two pairs, and as many values each time.
+/// Growth from `before` to `after`, which must have the same length, at least two.
 Growth growth_of(std::span<double const> before, std::span<double const> after);
 
-/// It is more than what comes by chance in one of a thousand cases (Student's t, one side), and more than `share` of
-/// what there was: what an allocator keeps goes up and down by some of that for reasons of its own.
+/// True if the growth is more than comes by chance in one of a thousand cases (Student's t, one side), and more than
+/// `share` of the values before: the memory that an allocator keeps goes up and down by some of that for other reasons.
 bool grows(Growth const& growth, double share);
 
 } // namespace framelet::bench

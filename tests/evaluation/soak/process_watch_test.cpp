@@ -31,7 +31,7 @@ TEST(ProcessWatch, NobodyHoldsNothing) {
 }
 
 TEST(Growth, OfKnownPairs) {
-    // Differences 1, 3, 2: their mean is 2, their deviation 1.
+    // The differences are 1, 3, 2: their mean is 2, their deviation 1.
     std::vector<double> const before{10, 50, 30}, after{11, 53, 32};
     Growth const growth = growth_of(before, after);
     EXPECT_NEAR(growth.mean, 2, 1e-12);

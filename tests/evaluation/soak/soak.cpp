@@ -29,14 +29,14 @@ namespace {
 using nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto step = std::chrono::milliseconds(50); ///< between pictures of a viewer
-constexpr double patience = 120; ///< seconds, for what is to come by itself
-constexpr double still_times[] = {0.5, 1.5, 3}; ///< of the scene, at which it stands in the calms
-constexpr double least_psnr = 45; ///< of a reference, against a direct render of 64 samples a pixel
-constexpr std::size_t least_pairs = 4; ///< of calms after the same storm, to be compared
-constexpr double memory_noise = 0.02; ///< of the memory, which an allocator takes and gives back
+constexpr auto step = std::chrono::milliseconds(50); ///< time between pictures of a viewer
+constexpr double patience = 120; ///< seconds to wait for what is to come by itself
+constexpr double still_times[] = {0.5, 1.5, 3}; ///< scene times at which the scene stands in the calms, seconds
+constexpr double least_psnr = 45; ///< least PSNR of a reference against a direct render of 64 samples a pixel, dB
+constexpr std::size_t least_pairs = 5; ///< least pairs of calms after the same storm that are compared
+constexpr double memory_noise = 0.02; ///< share of the memory that an allocator takes and gives back
 
-/// From no limit to a link that is narrow, slow, and stalls.
+/// Link of a viewer: from no limit to links that are narrow, stall, or change their rate.
 LinkParameters link_of(int viewer, double seconds) {
     LinkParameters link;
     link.seed = static_cast<std::uint64_t>(viewer) + 1;
@@ -74,8 +74,8 @@ public:
           port_(static_cast<std::uint16_t>(std::stoi(server_port(server_)))), strangers_(port_),
           first_descriptors_(holdings().descriptors) {
         for (int i = 0; i < options.viewers; ++i) {
-            // Links keep their own time; what they do goes on until the last calm has had all the time that it may
-            // take.
+            // Links keep their own time; their stalls and steps go on until the last calm has had all the time that it
+            // may take.
             viewers_.push_back(
                 std::make_unique<SoakViewer>(port_, link_of(i, options.seconds + 2 * patience), options.viewport));
         }
@@ -147,7 +147,7 @@ private:
         return figures;
     }
 
-    /// What happened in it.
+    /// Makes a storm. Returns what happened in it.
     json storm(std::uint64_t seed) {
         StormParameters parameters;
         parameters.viewers = options_.viewers;
@@ -193,7 +193,7 @@ private:
         return {turned(viewers_.front()->start_camera(), turn, number), {160 + 17 * number, 90 + 9 * number}, moment};
     }
 
-    /// Until all pictures are complete; false where that never comes.
+    /// Waits until all pictures are complete; false where that never comes.
     bool come_to_rest(SceneTime moment) {
         double const began = seconds();
         bool complete = false;
@@ -220,7 +220,7 @@ private:
         return true;
     }
 
-    /// In words.
+    /// Difference of two pictures in words.
     static std::string difference(Picture const& one, Picture const& other) {
         if (one.rgba.size() != other.rgba.size()) {
             return "another size";
@@ -235,7 +235,7 @@ private:
         return std::to_string(count) + " bytes differ, by " + std::to_string(most) + " at most";
     }
 
-    /// How many viewers show exactly what they should.
+    /// Number of viewers that show exactly what they should.
     std::size_t count_exact(SceneTime moment) {
         std::size_t exact = 0;
         for (std::size_t i = 0; i < viewers_.size(); ++i) {
@@ -249,7 +249,7 @@ private:
         return exact;
     }
 
-    /// What a viewer shows who has seen nothing else.
+    /// Picture of a viewer that has seen nothing else but this view.
     Picture const& reference(std::size_t viewer, SceneTime moment) {
         Picture& reference = references_[{viewer, moment}];
         if (reference.width > 0) {
@@ -272,7 +272,7 @@ private:
         return reference;
     }
 
-    /// Connections that have ended are closed a moment later.
+    /// Waits until the server has so many descriptors: connections that have ended are closed a moment later.
     void wait_for_descriptors(std::size_t count) {
         double const began = seconds();
         while (holdings().descriptors != count && seconds() - began < patience / 4) {
@@ -283,8 +283,8 @@ private:
         }
     }
 
-    /// In the last quarter beside the one before. `key`: of a round. What viewers hold depends on the sizes that events
-    /// give them, and is judged where there are none.
+    /// Compares the memory of the last quarter of the time with that of the one before. `key`: figure of a round. The
+    /// memory of viewers depends on the sizes that events give them, and is judged only where there are no events.
     json judge_memory(json const& rounds, char const* whose, char const* key, bool is_judged) {
         std::array<std::vector<double>, 4> bytes;
         for (json const& round : rounds) {
@@ -309,7 +309,7 @@ private:
     void end() {
         viewers_.clear();
         if (!server_.process().running()) {
-            return; // which has been said
+            return; // this has been reported
         }
         wait_for_descriptors(first_descriptors_);
         server_.process().signal(SIGTERM);
@@ -327,8 +327,8 @@ private:
     Clock::time_point const begun_ = Clock::now();
     std::vector<std::unique_ptr<SoakViewer>> viewers_;
     std::map<std::pair<std::size_t, SceneTime>, Picture> references_;
-    int quarter_ = -1; ///< of the time
-    std::size_t round_ = 0; ///< in the quarter
+    int quarter_ = -1; ///< quarter of the time that this round belongs to
+    std::size_t round_ = 0; ///< number of the round in its quarter
     std::uint64_t storm_seed_ = 0;
     std::vector<std::string> failures_;
 };

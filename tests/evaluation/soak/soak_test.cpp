@@ -1,4 +1,4 @@
-// A short one: that a healthy server comes through, and that what is looked at is.
+// Tests a short soak: a healthy server comes through, and everything is looked at.
 #include "tests/evaluation/soak/soak.h"
 
 #include <gtest/gtest.h>
@@ -44,7 +44,7 @@ TEST(Soak, ViewersThatOnlyFlyComeToRestWhereTheyPassed) {
     EXPECT_EQ(figures["rounds"][0]["exact"], 2);
 }
 
-/// The server has another scene than the one that the reference is rendered of.
+/// The server serves another scene than the one that the reference is rendered of.
 TEST(Soak, SaysWhereAPictureIsNotWhatItShouldBe) {
     auto const scene = load_bench_scene(FRAMELET_SOURCE_DIR "/scenes/vehicle_chase.glb");
     scene->file = FRAMELET_SOURCE_DIR "/scenes/globe.glb";

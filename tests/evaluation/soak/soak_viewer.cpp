@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::array<Viewport, 6> sizes{Viewport{64, 48}, {160, 90}, {131, 97}, {320, 180}, {480, 270}, {640, 360}};
 constexpr CameraTurn look_around{40, 50};
-constexpr std::chrono::milliseconds clock_patience{500}; ///< until the scene's clock is asked for once more
+constexpr std::chrono::milliseconds clock_patience{500}; ///< time until the scene's clock is asked for once more
 
 ConnectionOptions options_of(std::uint16_t port) {
     ConnectionOptions options;
@@ -52,7 +52,7 @@ void SoakViewer::take(StormMoment const& moment) {
         core_.request_clock(clock_request(moment.chance));
         break;
     default:
-        break; // it is a stranger's
+        break; // the event is a stranger's
     }
 }
 

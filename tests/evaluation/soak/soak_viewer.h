@@ -1,4 +1,4 @@
-// A viewer that stays while it storms: the real client core behind a link of its own that can be cut. In: events, time.
+// A viewer that stays through storms: the real client core behind a link of its own that can be cut. In: events, time.
 // Out: its last picture, once it stands still.
 #pragma once
 
@@ -13,11 +13,11 @@
 
 namespace framelet::bench {
 
-/// What a viewer sees at rest.
+/// View of a viewer at rest.
 struct StillView {
     Camera camera;
     Viewport viewport;
-    SceneTime time = 0; ///< at which the scene stands
+    SceneTime time = 0; ///< scene time at which the scene stands
 };
 
 class SoakViewer {
@@ -25,19 +25,18 @@ public:
     /// Connects to the server at this port. Throws ConnectionError where that is refused.
     SoakViewer(std::uint16_t server_port, LinkParameters const& link, Viewport viewport);
 
-    /// One of the events that happen to viewers.
+    /// Undergoes one of the events that happen to viewers.
     void take(StormMoment const& moment);
-    /// Flies there and back, or looks around where there is no flight, and makes a picture of what is there. `now`:
-    /// seconds.
+    /// Flies there and back, or looks around where there is no flight, and makes a picture. `now`: seconds.
     void move(double now, std::optional<CameraPath> const& flight);
-    /// Asks for this view and no other from here on, for the usual settings, and, where it may, for that time; makes a
-    /// picture. True once the picture is complete.
+    /// Asks for this view, for the usual settings and, at intervals, for the scene to stand at that time; makes a
+    /// picture. True once the scene stands there and the picture is complete.
     bool come_to_rest(StillView const& view);
     Picture const& picture() const { return picture_; }
 
     Camera start_camera() const { return core_.welcome().start_camera; }
     std::uint64_t reconnections() const { return core_.statistics().reconnections; }
-    /// Why it has ended for good, which it must not; empty: it has not.
+    /// Reason why the connection has ended for good, which it must not; empty: it has not.
     std::string end_reason() const { return core_.end_reason().value_or(""); }
 
 private:
@@ -46,7 +45,7 @@ private:
     Viewport viewport_;
     ViewerSettings settings_;
     Picture picture_;
-    std::vector<PixelRect> changed_; ///< scratch
+    std::vector<PixelRect> changed_; ///< scratch of the picture's updates
     std::chrono::steady_clock::time_point clock_asked_;
 };
 

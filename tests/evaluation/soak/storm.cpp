@@ -12,17 +12,17 @@ constexpr std::array<std::string_view, storm_event_kinds> names{
     "resize",          "cut",         "settings",     "clock",   "killed program",
     "stopped program", "slow reader", "half message", "garbage", "rush"};
 
-constexpr double longest_visit = 3; ///< seconds
+constexpr double longest_visit = 3; ///< greatest length of a visit, seconds
 
-/// Numbers that are the same with every standard library, whose distributions need not be.
+/// Random numbers that are the same with every standard library, whose distributions need not be.
 class Chance {
 public:
     explicit Chance(std::uint64_t seed) : random_(seed) {}
 
     double next() { return static_cast<double>(random_() >> 11) * 0x1p-53; }
-    /// Of `count`, each as likely.
+    /// One of `count` numbers from 0 on, each as likely.
     int choice(int count) { return static_cast<int>(next() * count); }
-    /// Until the next event of so many a second.
+    /// Seconds until the next event, where so many come a second.
     double gap(double per_second) { return -std::log1p(-next()) / per_second; }
 
 private:

@@ -39,7 +39,8 @@ TEST(Storm, HasEverythingInItsOrderAndNothingBeyondItsEnd) {
         names.insert(name_of(kind));
     }
     EXPECT_EQ(names.size(), kinds.size());
-    // 1.5 and 2 a second for 200 s: a Poisson process of 700 is off by 26 in one of three.
+    // 3.5 events a second (1.5 and 2) come for 200 s: the count of a Poisson process of 700 is off by 26 in one of
+    // three.
     EXPECT_NEAR(static_cast<double>(storm.size()), 700, 130);
 }
 

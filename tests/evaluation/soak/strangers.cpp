@@ -52,7 +52,7 @@ public:
             }
             break;
         default:
-            break; // it is a viewer's
+            break; // the event is a viewer's
         }
     }
 
@@ -67,7 +67,7 @@ public:
 private:
     double const leaves_, stops_;
     bool is_to_stop_;
-    std::unique_ptr<test::Process> program_; ///< which is killed with it
+    std::unique_ptr<test::Process> program_; ///< the stranger's program, which is killed with it
     std::optional<RawViewer> viewer_;
 };
 

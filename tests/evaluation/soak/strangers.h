@@ -1,5 +1,5 @@
-// Those who come to a server for a while and behave badly. In: when, how, for how long. A resource: processes and
-// sockets.
+// Strangers: those who come to a server for a while and behave badly. In: when, how, for how long. A resource:
+// processes and sockets.
 #pragma once
 
 #include <cstdint>
@@ -15,13 +15,14 @@ class Stranger;
 
 class Strangers {
 public:
-    /// Of the server at this port of 127.0.0.1.
+    /// They come to the server at this port of 127.0.0.1.
     explicit Strangers(std::uint16_t port);
     ~Strangers();
 
-    /// One comes; it goes `moment.seconds` after `now`. Throws boost::system::system_error where nobody listens.
+    /// Lets a stranger come; it goes `moment.seconds` after `now`. Throws boost::system::system_error where nobody
+    /// listens.
     void add(StormMoment const& moment, double now);
-    /// Those whose time is over go, and whoever is to be stopped amid it is.
+    /// Ends the strangers whose time is over, and stops those that are to be stopped half-way.
     void pass_time(double now);
     void end_all();
 

@@ -1,4 +1,4 @@
-// Cells of which holes are filled, as `far_grid.h` has them: squares of bytes, and 1 / metres of the farthest.
+// Cells from which holes are filled, as `far_grid.h` has them: squares of bytes, and 1 / metres of the farthest.
 const float nothing = 1e30;
 const float hole_depth = -1.0;
 
@@ -15,7 +15,7 @@ vec4 farthest_of(vec4 weights, vec4 a, vec4 b, vec4 c, vec4 d) {
     return vec4(scale * ((take.x * a.rgb + take.y * b.rgb) + (take.z * c.rgb + take.w * d.rgb)), farthest);
 }
 
-// The weighted mean of those of four that there are.
+// The weighted mean of those of four cells that are not nothing.
 vec4 known_of(vec4 weights, vec4 a, vec4 b, vec4 c, vec4 d) {
     vec4 take = weights * vec4(lessThan(vec4(a.w, b.w, c.w, d.w), vec4(nothing)));
     float total = ((take.x + take.y) + take.z) + take.w;

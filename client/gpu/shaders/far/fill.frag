@@ -1,7 +1,7 @@
-// Pixels that are holes, from cells of 2x2 pixels with a border of one.
+// Fills pixels that are holes from cells of 2x2 pixels with a border of one.
 uniform sampler2D depths;
 uniform sampler2D twos;
-uniform float uncovered; // of a pixel of which nothing is known
+uniform float uncovered; // colour of a pixel of which nothing is known
 out vec4 color;
 vec4 at(int x, int y) {
     return texelFetch(twos, ivec2(x, y) + 1, 0);

@@ -1,4 +1,4 @@
-// Cells of twice the side.
+// Makes cells of twice the side, each the mean of what is farthest in four.
 uniform sampler2D fine;
 out vec4 cell;
 void main() {

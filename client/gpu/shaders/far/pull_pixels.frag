@@ -1,4 +1,4 @@
-// Cells of 2x2 pixels.
+// Makes cells of 2x2 pixels, each the mean of what is farthest in them.
 uniform sampler2D colors;
 uniform sampler2D depths;
 uniform ivec2 viewport;

@@ -1,8 +1,8 @@
-// Cells that are nothing from those of twice the side; also those just beyond the picture, for which there is a border
-// of one cell.
+// Fills cells that are nothing from those of twice the side; also those just beyond the picture, for which there is a
+// border of one cell.
 uniform sampler2D fine; // without a border
 uniform sampler2D coarse;
-uniform int coarse_border; // that it has; the last cell is repeated beyond that
+uniform int coarse_border; // cells of border that it has; the last cell is repeated beyond that
 out vec4 cell;
 vec4 at(int x, int y) {
     return texelFetch(coarse, clamp(ivec2(x, y) + coarse_border, ivec2(0), textureSize(coarse, 0) - 1), 0);

@@ -1,4 +1,4 @@
-// Means that are nothing from the coarser ones.
+// Fills means that are nothing from the coarser ones.
 uniform sampler2D fine;
 uniform sampler2D coarse;
 out vec4 mean;

@@ -5,7 +5,7 @@
 namespace framelet {
 namespace {
 
-/// Of all that is expected to change, mean squared luma a second: it is hardly seen to, since detail hides it.
+/// Change of all that is expected to change, mean squared luma a second: it is hardly seen to, since detail hides it.
 constexpr float expected_change = 0.005f;
 
 } // namespace

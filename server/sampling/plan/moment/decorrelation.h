@@ -1,6 +1,7 @@
-// How soon what a framelet shows is expected to fade. Motion is no change, the viewer has moved what it holds; but what
-// turns looks otherwise in the light, and so do outlines and reflections before a camera that moves. What else changes,
-// as a shadow does that passes, is found by probes. In: the pieces of a framelet. Out: how soon they fade.
+// Estimates how soon what a framelet shows is expected to fade. Motion is no change, since the viewer moves what it
+// holds; but what turns looks otherwise in the light, and so do outlines and reflections before a camera that moves.
+// Other changes, such as a shadow that passes, are found by probes. In: the pieces of a framelet. Out: how soon they
+// fade.
 #pragma once
 
 #include <span>

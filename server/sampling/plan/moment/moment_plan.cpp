@@ -11,16 +11,16 @@
 namespace framelet {
 namespace {
 
-/// Of what nothing is known: as `unknown_region` has it.
+/// Detail of what nothing is known of, as `unknown_region` has it.
 constexpr float unknown_detail = 0.0025f;
-/// What was rendered before the scene jumped looks otherwise by so much, squared luma, where no probe has told.
+/// Squared luma by which what was rendered before the scene jumped is taken to look otherwise, where no probe has told.
 constexpr float outdated_error = 2e-4f;
-/// However coarse samples are, their mean is about right.
+/// Most error of samples: however coarse they are, their mean is about right.
 constexpr float most_error = 0.1f;
-/// As if they lay so much farther apart, pixels, are samples that are interpolated, beside those that come to lie on
-/// their own pixels before a camera that stands.
+/// Pixels of spacing that interpolated samples seem to lie farther apart, beside those that come to lie on their own
+/// pixels before a camera that stands.
 constexpr float interpolated_wear = 1;
-/// Prices outside are of no use: of a sample, squared error summed over pixels.
+/// Bounds of the price of a sample, squared error summed over pixels; others are of no use.
 constexpr float least_price = 5e-6f, most_price = 1e2f;
 
 constexpr std::size_t supersampled = MomentPlan::supersampled;
@@ -31,7 +31,7 @@ constexpr float spacing_of(int level) {
                                 : 1.0f / static_cast<float>(1 << (level - pixel_level));
 }
 
-/// What samples so far apart, pixels, miss and make up, of the detail.
+/// Error of samples `s` pixels apart, as a multiple of the detail: what they miss, and what aliases.
 constexpr float missed_share(float s) {
     constexpr float alias = 4.0f / 9.0f;
     return s <= 1   ? s * s * s // the mean of 1 / s^2 samples, of what lies between them
@@ -39,11 +39,12 @@ constexpr float missed_share(float s) {
                     : error_growth * s - 1;
 }
 
-/// Means of four rays are as good as samples so many times closer to each other: by the mean's definition where they
-/// stay on their own pixels, by measurement once moved, where they blur and wear out before they have repaid four rays.
+/// Factors on the spacing that make samples as good as means of four rays: by the mean's definition where they stay on
+/// their own pixels, by measurement once moved, where they blur and wear out before they have repaid four rays.
 constexpr float standing_supersampled = 0.5f, moved_supersampled = 0.95f;
 
-/// What each choice misses. `finest`: what is finer shows no better, pixels; `means`: how much closer means seem to be.
+/// Share of the detail that each choice misses. `finest`: spacing, pixels, below which nothing shows better; `means`:
+/// spacing, pixels, that means of four rays at a sample a pixel seem to have.
 constexpr ChoiceFigures missed_shares(float finest, float means) {
     ChoiceFigures shares{};
     for (int level = 0; level < sampling_levels; ++level) {
@@ -53,16 +54,16 @@ constexpr ChoiceFigures missed_shares(float finest, float means) {
     return shares;
 }
 
-/// Of what the viewer moves, and of samples that stay on their own pixels, which show the mean of all.
+/// Shares of samples that the viewer moves, and of samples that stay on their own pixels, which show the mean of all.
 constexpr ChoiceFigures moved_shares = missed_shares(finest_shown_spacing, moved_supersampled),
                         standing_shares = missed_shares(0, standing_supersampled);
 
-/// Whether what shows are means of rays; of samples finer than pixels the viewer moves their means.
+/// True where means of rays show; of samples finer than pixels too the viewer moves the means.
 bool shows_means(Cell const& cell, bool stands) {
     return cell.is_supersampled || (!stands && cell.spacing < 1);
 }
 
-/// Whether a cell is worth the finest samples: as far as is known it will show the same for a second, in which they
+/// True where a cell is worth the finest samples: as far as is known it will show the same for a second, in which they
 /// wear by less than what they are finer.
 bool stays(Mirror const& mirror, Cell const& cell) {
     constexpr float most_decorrelation = 0.25f; // pixels a second
@@ -79,7 +80,7 @@ float spacing_error(float detail, float spacing) {
     return std::min(detail * missed_share(spacing), most_error);
 }
 
-/// Calls `visit` with each cell of a rectangle and its pixels.
+/// Calls `visit` with each cell of a rectangle and how many pixels it has.
 template <class Visit>
 void for_each_cell(Mirror const& mirror, PixelRect const& rect, Visit visit) {
     int const last_column = std::min(rect.right / cell_side, mirror.columns());
@@ -119,8 +120,8 @@ void MomentPlan::find(Mirror const& mirror, RegionField const& field, MomentBudg
     collect(field, 0, 0, rated);
 }
 
-/// What gains much for few samples is shown before what those lack is refined: of the dearer prices too the one is
-/// taken whose patches gain most a second, where each plan takes `overhead` besides.
+/// Chooses among dearer prices too the one whose patches gain most a second, where each plan takes `overhead` samples
+/// besides: what gains much for few samples shows before what those lack is refined.
 void MomentPlan::choose_horizon(RegionField const& field, MomentBudget const& budget) {
     constexpr int most_steps = 12;
     float const first = price_;
@@ -158,7 +159,7 @@ void MomentPlan::find_gains(Mirror const& mirror, RegionField const& field, Mome
     }
 }
 
-/// Of one region.
+/// Sums up the detail that shows in one region.
 void MomentPlan::add_detail(Mirror const& mirror, RegionField const& field, std::uint32_t index) {
     Leaf& leaf = leaves_[index];
     for_each_cell(mirror, field.rect_of(index), [&](Cell const& cell, float) {
@@ -167,12 +168,12 @@ void MomentPlan::add_detail(Mirror const& mirror, RegionField const& field, std:
     });
 }
 
-/// Of one region.
+/// Finds what each choice gains and costs in one region.
 void MomentPlan::add_gains(Mirror const& mirror, RegionField const& field, std::uint32_t index,
                            MomentBudget const& budget) {
     Region const& region = field[index];
     Leaf& leaf = leaves_[index];
-    // What is on its way, or has been rendered of this moment, the viewer has whatever the mirror makes of it.
+    // The viewer has what is on its way, or has been rendered of this moment, whatever the mirror makes of it.
     int had = region.taken.level;
     if (region.rendered >= budget.moment_begun) {
         had = std::max(had, region.level + (region.supersampled >= budget.moment_begun ? 1 : 0));
@@ -198,7 +199,7 @@ void MomentPlan::add_gains(Mirror const& mirror, RegionField const& field, std::
             worn = std::min(worn, spacing_of(had));
             stale = 0;
         }
-        // What comes is shown although it is worse, or only where it is better.
+        // New samples show although they are worse, or only where they are better.
         float const least = cell.is_shown() && mirror.gives_way(cell) ? -most_error : 0.0f;
         float const now = covered > 0 ? spacing_error(detail, worn) + stale : 0;
         float const bare = pixels - covered;
@@ -220,7 +221,7 @@ void MomentPlan::add_gains(Mirror const& mirror, RegionField const& field, std::
     leaf.cost[supersampled] = leaf.cost[pixel_level] * std::max(1.0f, four_rays / budget.rays);
 }
 
-/// Gains of tiles that are larger than a region.
+/// Sums up gains and costs of tiles that are larger than a region.
 void MomentPlan::sum_nodes(RegionField const& field, MomentBudget const& budget) {
     nodes_.resize(static_cast<std::size_t>(field.depth()));
     for (int depth = 0; depth < field.depth(); ++depth) {

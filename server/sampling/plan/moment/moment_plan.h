@@ -1,6 +1,6 @@
-// What of a moment is rendered next: where the viewer would show holes, or what is coarse or worn, as far as samples
-// lower that error most. In: what the viewer shows of the moment (mirror), what is taken already, samples. Out:
-// patches, those that gain most for their samples first.
+// Plans what of a moment is rendered next: where the viewer would show holes, or what is coarse or worn, as far as
+// samples lower that error most. In: what the viewer shows of the moment (mirror), what is taken already, samples. Out:
+// patches, with what they gain for their samples.
 //
 // For a price of samples the best patches are found exactly: the levels that a tile may have form a quadtree, and from
 // the leaves up a node is one tile where that gains more, less its price, than the best of its children together
@@ -19,21 +19,22 @@ namespace framelet {
 /// Mean squared error of what a viewer fills a hole with.
 inline constexpr float hole_error = 0.03f;
 
-/// By how much the error of samples grows with their spacing, of the detail, for each pixel.
+/// Growth of the error of samples for each pixel of spacing, as a multiple of the detail.
 inline constexpr float error_growth = 1 + 4.0f / 9;
 
 struct MomentBudget {
-    double samples = 0; ///< that the patches together may cost
+    double samples = 0; ///< most samples that the patches together may cost
     ResponseLimits limits{};
     std::span<LevelCosts const> costs{}; ///< as of `Budget`
     double moment_begun = 0; ///< what has been rendered since then is of this moment
     double overhead = 0; ///< samples that a plan costs besides, be it short or long
-    float rays = 1; ///< that there is time for, for each of `samples`: more than 1 where the link is what is scarce
+    float rays = 1; ///< rays that there is time for, for each of `samples`; above 1 where the link is scarce
 };
 
 class MomentPlan {
 public:
-    /// Of each level, then of samples of four rays a pixel; a last one to spare makes them a vector.
+    /// One figure for each level, then one for samples of four rays at a sample a pixel; a spare one at the end makes
+    /// them a vector.
     using ChoiceFigures = std::array<float, lane_count>;
     static constexpr std::size_t supersampled = sampling_levels, no_choice = supersampled + 1;
     static_assert(supersampled < std::tuple_size_v<ChoiceFigures>);
@@ -42,7 +43,7 @@ public:
     void find(Mirror const& mirror, RegionField const& field, MomentBudget const& budget,
               std::vector<RatedPatch>& rated);
 
-    /// Of the patches found last: squared error that the last sample takes away, summed over pixels.
+    /// Price of the patches found last: the squared error that the last sample takes away, summed over pixels.
     float price() const { return price_; }
 
 private:

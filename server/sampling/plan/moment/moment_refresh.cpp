@@ -7,8 +7,8 @@
 namespace framelet {
 namespace {
 
-/// The finest grid, a power of two times `least`, whose positions cost no more than so many samples at `cost` each; at
-/// most `most` pixels apart.
+/// Spacing, pixels, of the finest grid whose positions cost no more than so many samples at `cost` each: `least` times
+/// a power of two, at most `most`.
 int grid_spacing(Viewport viewport, int least, int most, double cost, double samples) {
     int spacing = least;
     while (spacing < most && cost * (viewport.width / spacing) * (viewport.height / spacing) > samples) {

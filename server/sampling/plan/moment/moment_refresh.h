@@ -1,5 +1,5 @@
-// What of a moment is worth rendering for a viewer that moves what it holds. In: moments, what was rendered and sent
-// of them, what the viewer evicted. Out: patches, and where to check what the viewer shows.
+// Finds what of a moment is worth rendering for a viewer that moves what it holds. In: moments, what was rendered and
+// sent of them, what the viewer evicted. Out: patches, and where to check what the viewer shows.
 #pragma once
 
 #include <cstdint>
@@ -15,15 +15,16 @@
 
 namespace framelet {
 
-/// A ray that is not shaded, and one that goes together with none of its neighbours, of a sample.
+/// Costs, in samples, of a visibility ray, which is not shaded, and of a probe, which is traced together with none of
+/// its neighbours.
 inline constexpr double visibility_cost = 0.25, probe_cost = 2;
 
-/// Where what a moment really shows is compared with what the viewer would show of it.
+/// Positions at which what a moment really shows is compared with what the viewer would show of it.
 struct MomentChecks {
     std::optional<RayGrid> visibility; ///< none: nowhere
     int probe_spacing = 0; ///< pixels from one probe to the next; 0: none
 
-    /// Samples, without the probes.
+    /// Cost of the visibility rays, in samples.
     double cost(Viewport viewport) const;
 };
 
@@ -43,20 +44,20 @@ public:
     /// Replaces `rated` by where what the viewer holds shows the moment worst: see `MomentPlan`.
     void plan(RegionField const& field, MomentBudget const& budget, std::vector<RatedPatch>& rated);
 
-    /// What checks of a moment have shown: inverse depths at the positions of their grid, 1 / metres, row by row (< 0:
-    /// not known), and luma of the probes, in order. Not taken in where another moment is looked at by now.
+    /// Takes in what checks of a moment have shown: inverse depths at the positions of their grid, 1 / metres, row by
+    /// row (< 0: not known), or luma of the probes, in order. Ignored where another moment is looked at by now.
     void note_visibility(RenderedMoment const& moment, RayGrid const& grid, std::span<float const> inverse_depth);
     void note_looks(RenderedMoment const& moment, std::span<Probe const> probes, std::span<float const> luma,
                     int probe_spacing);
 
-    /// The viewer gets those framelets for which `sent` is not 0, in a batch of this number, with these shapes, in
-    /// order; sets how soon what they show fades, unless nothing is expected to change.
+    /// Notes that the viewer gets those framelets for which `sent` is not 0, in a batch of this number, with these
+    /// shapes, in order; sets how soon what they show fades, unless nothing is expected to change.
     void note_sent(RenderedMoment const& moment, std::uint64_t batch, std::span<DisplayFramelet const> framelets,
                    std::span<Framelet const> rendered, std::span<std::uint8_t const> sent,
                    std::span<FrameletShape> shapes, bool expects_change = true);
-    /// The viewer no longer holds these.
+    /// Notes that the viewer no longer holds these.
     void forget(std::span<SentTile const> framelets) { mirror_.forget(framelets); }
-    /// The viewer is told that it holds all of the picture.
+    /// Notes that the viewer is told that it holds all of the picture.
     void settle() { mirror_.settle(); }
 
 private:

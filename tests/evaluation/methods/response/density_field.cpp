@@ -23,7 +23,7 @@ double mean(std::span<double const> values) {
     return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// The elements under a tile: more than one below it, or the one that it lies in.
+/// Interval of the elements under a tile: all that lie in it, or the one that it lies in.
 struct Interval {
     std::size_t first, count;
 };

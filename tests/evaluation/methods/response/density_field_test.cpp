@@ -42,7 +42,7 @@ TEST(DensityField, ResamplingKeepsTheIntegral) {
     EXPECT_EQ(resample_field(four, 2)[4], 2) << "Morton order";
 }
 
-/// Tiling of [Stephens 2011] fig. 4.3, in depth-first order.
+/// The tiling of [Stephens 2011] fig. 4.3, in depth-first order.
 std::vector<Tile> const tiling{{4}, {20}, {21}, {88}, {89}, {90}, {91}, {23}, {24}, {25}, {26}, {27}, {7}};
 
 double integral(std::vector<double> const& values) {
@@ -61,7 +61,7 @@ TEST(DensityField, TilingAndFieldKeepTheIntegralBothWays) {
         EXPECT_NEAR(integral(values), mean(field), 1e-12) << depth;
         auto const own = random_values(tiling.size(), 3);
         auto written = field;
-        if (depth > 0) { // where a tile and a part of another share an element, neither can be written alone
+        if (depth > 0) { // at depth 0 all tiles share one element, so that none can be written alone
             field_from_tiles(tiling, own, written);
             EXPECT_NEAR(mean(written), integral(own), 1e-12) << depth;
         }

@@ -37,7 +37,7 @@ void respond(DensityField& density, std::span<std::uint32_t const> elements, std
             to = slide(to, parameters.bias * std::hypot(errors[i].space, errors[i].time), bounds);
         }
         density.space[elements[i]] = to.space;
-        // Rounding may have taken a bound for more than it is.
+        // Rounding may have carried the value beyond a bound.
         density.time[elements[i]] =
             std::clamp(to.time * unit, parameters.bounds.least.time, parameters.bounds.most.time);
     }

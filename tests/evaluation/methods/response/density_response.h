@@ -14,22 +14,23 @@ namespace framelet {
 
 struct ResponseParameters {
     DensityBounds bounds; ///< samples per pixel; refreshes per second
-    double gain = 0.1; ///< length of the step that an error of 1 asks for
+    double gain = 0.1; ///< length of the step that an error of 1 asks for, samples per pixel
     /// Refreshes per second that are as long a step as one sample per pixel: a ray needs one measure for both axes.
     double rate_unit = 1;
-    double bias = 0; ///< octaves that an error of 1 slides from time (> 0) or from space (< 0)
+    double bias = 0; ///< octaves by which an error of 1 slides density from time (> 0) or from space (< 0)
     Transport strategy = Transport::fill_smaller;
 };
 
-/// Reused from cycle to cycle, so that nothing is allocated.
+/// Memory reused from cycle to cycle, so that nothing is allocated.
 struct ResponseScratch {
     std::vector<Density> directions;
     std::vector<double> changes, limits;
     TransportScratch transport;
 };
 
-/// `errors[i]` belongs to element `elements[i]` of the density; each element comes once at most, those without error
-/// need not come. The surplus is in units of combined density: samples per pixel and second, summed over elements.
+/// Changes the density by one cycle's errors. `errors[i]` belongs to element `elements[i]` of the density; each element
+/// comes once at most, those without error need not come. The surplus is in units of combined density: samples per
+/// pixel and second, summed over elements.
 void respond(DensityField& density, std::span<std::uint32_t const> elements, std::span<RateError const> errors,
              ResponseParameters const& parameters, Surplus& surplus, ResponseScratch& scratch);
 

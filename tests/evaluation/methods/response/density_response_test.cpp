@@ -1,4 +1,4 @@
-// The three stages together, cycle after cycle.
+// Tests the three stages together, cycle after cycle.
 #include "tests/evaluation/methods/response/density_response.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ constexpr DensityBounds bounds{{1.0 / 64, 0.625}, {16, 80}};
 constexpr double rate_unit = 10;
 constexpr std::array strategies{Transport::shrink_larger, Transport::grow_smaller, Transport::fill_smaller};
 
-/// A field and all that its response needs.
+/// A field and all that the response needs for it.
 struct Loop {
     explicit Loop(Transport strategy, double most_saved = 0)
         : parameters{bounds, 0.1, rate_unit, 0, strategy}, surplus{0, most_saved} {

@@ -22,7 +22,7 @@ TEST(DepthFirstOrder, KnownPlaces) {
 }
 
 TEST(DepthFirstOrder, TheTilingOfThePaper) {
-    // Eq. 4.9 in the order of eq. 4.14.
+    // The tiles of eq. 4.9 in the order of eq. 4.14.
     std::vector<std::uint32_t> const tiles{4, 20, 21, 88, 89, 90, 91, 23, 24, 25, 26, 27, 7};
     std::vector<std::uint64_t> const places{3, 36, 43, 53, 54, 56, 57, 58, 68, 75, 83, 90, 97};
     for (std::size_t i = 0; i < tiles.size(); ++i) {

@@ -1,4 +1,4 @@
-// What the error estimators have in common: sums of energies, and energies against their template.
+// Functions that the error estimators share: sums of energies, and energies against their template.
 #pragma once
 
 #include <algorithm>
@@ -33,8 +33,8 @@ float sum_of(std::size_t count, Value&& value) {
     return sum;
 }
 
-/// Octave of refreshes so far apart (seconds), against `template_interval`. Ends where no refresh of ours is, 16
-/// octaves away, so that templates stay finite and above 0.
+/// Octave of refreshes `seconds` apart, relative to `template_interval`. Clamped to 16 octaves, beyond any refresh
+/// interval in use, so that templates stay finite and above 0.
 inline float octave_of_interval(float seconds) {
     return std::clamp(std::log2(seconds / template_interval), -16.0f, 16.0f);
 }
@@ -43,7 +43,8 @@ inline float energy_allowed(EnergyTemplate const& line, float octave) {
     return std::exp2(line.offset + line.slope * octave);
 }
 
-/// tanh of half the natural logarithm of energy / allowed: in [-1, 1], 0 where they agree. `allowed` > 0.
+/// Signed difference of energies: tanh of half the natural logarithm of energy / allowed: in [-1, 1], 0 where they
+/// agree. `allowed` > 0.
 inline float compare_energies(float energy, float allowed) {
     return (energy - allowed) / (energy + allowed);
 }

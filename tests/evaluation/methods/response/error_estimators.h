@@ -10,10 +10,11 @@ namespace framelet {
 
 struct ErrorEstimator {
     char const* name;
-    /// As `estimate_haar` says, with a history of this estimator's own.
+    /// Estimates the errors of a framelet's blocks, called as `estimate_haar` is, with a history of this estimator's
+    /// own.
     void (*estimate)(std::span<float const> samples, ErrorHistory& history, float seconds_since,
                      RateTemplates const& templates, std::span<RateError> elements);
-    RateTemplates templates; ///< fitted
+    RateTemplates templates; ///< templates fitted to this estimator
 };
 
 inline constexpr std::array error_estimators{

@@ -11,7 +11,7 @@
 namespace framelet {
 namespace {
 
-constexpr std::size_t most_blocks = 256; // of 2x2 samples, in a framelet of 32x32
+constexpr std::size_t most_blocks = 256; // blocks of 2x2 samples in a framelet of 32x32
 
 using Blocks = std::array<float, most_blocks>;
 
@@ -19,12 +19,12 @@ bool is_square(std::size_t count) {
     return std::has_single_bit(count) && std::countr_zero(count) % 2 == 0;
 }
 
-/// One octave: the transform of each 2x2 block, the step in time against `cached`, which is replaced. `cached`: the
-/// four quadrants hh, gh, hg, gg, each in Morton order ([Stephens 2011] fig. 5.15: packed apart, so that hh is the next
+/// Transforms one octave: each 2x2 block, and the step in time against `cached`, which is replaced. `cached`: the four
+/// quadrants hh, gh, hg, gg, each in Morton order ([Stephens 2011] fig. 5.15: packed apart, so that hh is the next
 /// octave's input).
 template <bool has_history>
 void transform(float const* input, std::size_t blocks, float* cached, Blocks& low, Blocks& space, Blocks& time) {
-    Blocks hh, gh, hg, gg; // apart from all that is read: the loops below become vectors
+    Blocks hh, gh, hg, gg; // no alias of what is read, so that the loops below are vectorised
     for (std::size_t i = 0; i < blocks; ++i) {
         float const a = input[4 * i], b = input[4 * i + 1], c = input[4 * i + 2], d = input[4 * i + 3];
         hh[i] = 0.25f * ((a + b) + (c + d));
@@ -84,7 +84,7 @@ void estimate_haar(std::span<float const> samples, HaarHistory& history, float s
                    RateTemplates const& templates, std::span<RateError> elements) {
     FRAMELET_CHECK(is_square(samples.size()) && samples.size() >= 4 && samples.size() <= 4 * most_blocks);
     FRAMELET_CHECK(is_square(elements.size()) && elements.size() <= samples.size());
-    std::size_t const coefficients = 4 * (samples.size() - 1) / 3; // of all octaves
+    std::size_t const coefficients = 4 * (samples.size() - 1) / 3; // number of coefficients of all octaves
     bool const has_history = !history.values.empty();
     FRAMELET_CHECK(!has_history || (history.values.size() == coefficients && seconds_since > 0));
     history.values.resize(coefficients);
@@ -92,7 +92,8 @@ void estimate_haar(std::span<float const> samples, HaarHistory& history, float s
 
     int const octaves = std::countr_zero(samples.size()) / 2;
     float const weights = static_cast<float>((1 << octaves) - 1);
-    float weight = static_cast<float>(1 << (octaves - 1)); // powers of two: their sums are exact, the bounds too
+    // Weights are powers of two, so that their sums are exact and the bounds hold.
+    float weight = static_cast<float>(1 << (octaves - 1));
     float space_allowed = energy_allowed(templates.space, 0);
     float const space_step = std::exp2(templates.space.slope);
     float const time_step = std::exp2(templates.time.slope);

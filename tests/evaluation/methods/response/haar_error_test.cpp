@@ -91,7 +91,8 @@ TEST(HaarError, ComparesTheEnergiesOfTheOctavesWithTheTemplate) {
     EXPECT_NEAR(estimate(samples, history).space, expected, 1e-5);
 }
 
-// Each octave hands on the mean of the new and of the cached: the new framelet's part halves from one to the next.
+// Each octave passes on the mean of the new and of the cached: the new framelet's part halves from one octave to the
+// next.
 TEST(HaarError, IsTheTransformInThreeDimensions) {
     Samples before = noise(4), after = noise(5);
     HaarHistory history;
@@ -128,7 +129,7 @@ TEST(HaarError, IsTheTransformInThreeDimensions) {
         auto const blocks = static_cast<float>(low_after.size());
         auto const line = static_cast<float>(octave);
         expected.space += difference(space / blocks, templates.space, line) * weight(octave);
-        expected.time += difference(time / blocks, templates.time, line + 2) * weight(octave); // 2^2 intervals
+        expected.time += difference(time / blocks, templates.time, line + 2) * weight(octave); // 2^2 intervals apart
     }
     EXPECT_NEAR(found.space, expected.space, 1e-4);
     EXPECT_NEAR(found.time, expected.time, 1e-4);
@@ -148,7 +149,7 @@ TEST(HaarError, BlocksAreJudgedEachForItself) {
             (detailed ? inside : outside) =
                 detailed ? std::min(inside, elements[i].space) : std::max(outside, elements[i].space);
         }
-        // Outside there is the share in the coarsest octave only.
+        // Outside there is only the share in the coarsest octave.
         EXPECT_LE(outside, -0.5f) << count;
         EXPECT_GT(inside, outside + 0.3f) << count;
     }

@@ -18,7 +18,7 @@ public:
     std::size_t below(std::size_t count) { return std::uniform_int_distribution<std::size_t>(0, count - 1)(random_); }
     double uniform(double least, double most) { return std::uniform_real_distribution<double>(least, most)(random_); }
 
-    /// Ranges of all sizes, some empty, some of tiny or huge numbers.
+    /// Random bounds: ranges of all sizes, some empty, some of tiny or huge numbers.
     DensityBounds bounds() {
         auto const range = [&](double& least, double& most) {
             least = std::exp2(below(8) == 0 ? uniform(-200, 200) : uniform(-8, 4));
@@ -30,7 +30,7 @@ public:
         return out;
     }
 
-    /// Within bounds, often exactly on one or next to it.
+    /// Random density within the bounds, often exactly on one or next to it.
     Density density(DensityBounds const& bounds) {
         auto const value = [&](double least, double most) {
             switch (below(8)) {

@@ -31,7 +31,7 @@ LocalResponse respond_locally(Density at, RateError error, DensityBounds const& 
     double const change = change_at(std::min(farthest, gain * length));
     double most = farthest;
     if (square < 0 && change > 0) {
-        // A parabola that opens downwards: it is highest at -L / 2Q (eq. 6.20).
+        // The area along the ray is a parabola that opens downwards: it is highest at -L / 2Q (eq. 6.20).
         most = std::min(farthest, -linear / (2 * square));
     }
     double const limit = change_at(most);

@@ -14,11 +14,11 @@ TEST(LocalConstraints, NoErrorAsksForNothing) {
 }
 
 TEST(LocalConstraints, StepIsProportionalToTheError) {
-    // 3-4-5: from (1, 1) by 0.5 along (0.6, 0.8) to (1.3, 1.4).
+    // A 3-4-5 triangle: from (1, 1) by 0.5 along (0.6, 0.8) to (1.3, 1.4).
     LocalResponse const response = respond_locally({1, 1}, {0.3f, 0.4f}, bounds, 1);
     EXPECT_NEAR(response.direction.space, 0.6, 1e-7);
     EXPECT_NEAR(response.change, 1.3 * 1.4 - 1, 1e-7);
-    // To the bound in space at k = 5, where time is 5.
+    // The ray meets the bound in space at k = 5, where time is 5.
     EXPECT_NEAR(response.limit, 4 * 5 - 1, 1e-5);
 }
 
@@ -31,7 +31,7 @@ TEST(LocalConstraints, StopsAtTheBoundTheRayPointsAt) {
 }
 
 TEST(LocalConstraints, OppositeSignsRiseAndFallAgain) {
-    // (1, 4) along (1, -1) / sqrt 2: the area is greatest where both are 2.5, and 4 again at (4, 1).
+    // Along (1, -1) / sqrt 2 from (1, 4) the area is greatest where both are 2.5, and 4 again at (4, 1).
     LocalResponse const rising = respond_locally({1, 4}, {1, -1}, bounds, 0.5);
     EXPECT_GT(rising.change, 0);
     EXPECT_NEAR(rising.limit, 6.25 - 4, 1e-12);

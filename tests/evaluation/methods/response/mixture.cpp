@@ -10,7 +10,7 @@ namespace {
 constexpr double nowhere = std::numeric_limits<double>::infinity();
 
 double at_least_zero(double root) {
-    return root >= 0 ? root : nowhere; // not a number too
+    return root >= 0 ? root : nowhere; // NaN becomes `nowhere` too
 }
 
 double smallest_root(double square, double linear, double constant) {

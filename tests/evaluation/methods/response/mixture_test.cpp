@@ -19,7 +19,7 @@ TEST(Mixture, MeetsTheCurveOnTheRay) {
 }
 
 TEST(Mixture, TakesTheFirstOfTwoMeetings) {
-    // (1, 4) along (1, -1): area 5.25 at (1.5, 3.5) and again at (3.5, 1.5).
+    // The ray from (1, 4) along (1, -1) has area 5.25 at (1.5, 3.5) and again at (3.5, 1.5).
     Density const to = mix({1, 4}, {std::sqrt(0.5), -std::sqrt(0.5)}, 1.25, bounds);
     EXPECT_NEAR(to.space, 1.5, 1e-12);
     EXPECT_NEAR(to.time, 3.5, 1e-12);

@@ -1,4 +1,4 @@
-// What an error estimator says: whether a place is sampled too rarely or too often, in space and in time apart.
+// The answer of an error estimator: whether a place is sampled too rarely or too often, in space and in time apart.
 #pragma once
 
 #include <span>
@@ -34,7 +34,7 @@ struct RateTemplates {
 /// twice as far apart are an octave coarser. So the template is a line over frequency, whatever the rate.
 inline constexpr float template_interval = 1.0f / 60;
 
-/// What an estimator keeps of a place between its framelets. Empty: there was none yet.
+/// Values that an estimator keeps of a place between its framelets. Empty: there was none yet.
 struct ErrorHistory {
     std::vector<float> values;
 

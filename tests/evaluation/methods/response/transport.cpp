@@ -13,8 +13,9 @@ namespace {
 /// The elements whose changes have one sign.
 struct Side {
     double asked = 0; ///< sum of their changes' magnitudes
-    double limit = 0; ///< the same of their limits
-    double weight = std::numeric_limits<double>::infinity(); ///< that the tightest limit allows (eq. 6.40, 6.41)
+    double limit = 0; ///< sum of their limits' magnitudes
+    /// Greatest common weight that the tightest limit allows (eq. 6.40, 6.41).
+    double weight = std::numeric_limits<double>::infinity();
 
     double uniform_limit() const { return asked > 0 ? std::min(weight * asked, limit) : 0; }
 };
@@ -31,12 +32,13 @@ Side measure(std::span<double const> changes, std::span<double const> limits, bo
     return side;
 }
 
-/// How much each side gives or takes.
+/// Sums that each side gives or takes, as magnitudes.
 struct Totals {
     double positive, negative;
 };
 
-/// `saved` may be spent beside what the negative side gives up; `room` may be saved.
+/// Sums of both sides by the strategy. `saved` may be spent beside what the negative side gives up; `room` may be
+/// saved.
 Totals balance(Side const& a, Side const& b, Transport strategy, double saved, double room) {
     if (strategy == Transport::grow_smaller) {
         double const positive = std::min(a.uniform_limit(), b.uniform_limit() + saved);
@@ -63,8 +65,9 @@ void scale(std::span<double> changes, bool positive, double weight, std::span<do
     }
 }
 
-/// Water-filling: the one weight at which the changes, each cut at its limit, add up to `total`. Ordered by the weight
-/// at which they are cut; all sums are of magnitudes and none is a difference, as sizes may be far apart.
+/// Scales one side by water-filling: by the one weight at which the changes, each cut at its limit, add up to `total`.
+/// The changes are ordered by the weight at which they are cut; all sums are of magnitudes and none is a difference, as
+/// sizes may be far apart.
 void fill(std::span<double> changes, bool positive, double total, std::span<double const> limits,
           TransportScratch& scratch) {
     auto& [order, free] = scratch;
@@ -81,7 +84,7 @@ void fill(std::span<double> changes, bool positive, double total, std::span<doub
         sum += std::abs(changes[order[rank]]);
         free[rank] = sum;
     }
-    double weight = 0; // at which all before this rank are cut
+    double weight = 0; // weight at which all changes before this rank are cut
     double cut = 0;
     for (std::size_t rank = 0; rank < order.size(); ++rank) {
         std::uint32_t const i = order[rank];

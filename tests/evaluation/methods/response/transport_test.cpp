@@ -45,18 +45,19 @@ TEST(Transport, ShrinksTheLargerSide) {
 }
 
 TEST(Transport, GrowsTheSmallerSideToItsTightestLimit) {
-    // Weight 2 for the positive side, because of the first element: 6 of the 12 that are asked back.
+    // The positive side has weight 2, because of the first element: 6 of the 12 that are asked back.
     expect_near(solve({{1, 2, -4, -8}, {2, 9, -9, -9}}, Transport::grow_smaller), {2, 4, -2, -4});
     // One element at its limit holds all others back: point e is point b.
     expect_near(solve({{1, 2, -4, -8}, {1, 9, -9, -9}}, Transport::grow_smaller), {1, 2, -1, -2});
 }
 
 TEST(Transport, FillsEachElementUpToItsOwnLimit) {
-    // The first stays at its limit, the other takes the rest.
+    // The first element stays at its limit, the other one takes the rest.
     expect_near(solve({{1, 2, -4, -3}, {1, 9, -9, -9}}, Transport::fill_smaller), {1, 6, -4, -3});
-    // Even together the limits do not reach what is asked: the larger side shrinks.
+    // Even all limits together do not reach what is asked: the larger side shrinks.
     expect_near(solve({{1, 2, -4, -8}, {1, 5, -9, -9}}, Transport::fill_smaller), {1, 5, -2, -4});
-    // In order of their own weights: limits at 1.5, 3 and 10 times the change; the common weight is 4.
+    // Elements are cut in the order of their own weights: limits at 1.5, 3 and 10 times the change; the common weight
+    // is 4.
     expect_near(solve({{2, 1, 1, -10}, {3, 3, 10, -10}}, Transport::fill_smaller), {3, 3, 4, -10});
 }
 

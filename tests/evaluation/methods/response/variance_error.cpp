@@ -9,7 +9,7 @@
 namespace framelet {
 namespace {
 
-constexpr std::size_t smallest_block = 4; // that has a variance
+constexpr std::size_t smallest_block = 4; // samples of the smallest block that has a variance
 
 float variance(std::span<float const> samples) {
     float const share = 1 / static_cast<float>(samples.size());

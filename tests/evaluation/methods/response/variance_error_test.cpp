@@ -21,7 +21,7 @@ RateError estimate(Samples const& samples, VarianceHistory& history, float secon
     return error;
 }
 
-/// 0.5 + `swing` and 0.5 - `swing` in turn: variance is the swing's square.
+/// Samples of 0.5 + `swing` and 0.5 - `swing` in turn: their variance is the swing's square.
 Samples alternating(float swing) {
     Samples samples(framelet_samples);
     for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -39,8 +39,9 @@ TEST(VarianceError, NothingThereIsRedundant) {
 TEST(VarianceError, IsZeroAtTheTemplate) {
     VarianceHistory history;
     EXPECT_NEAR(estimate(alternating(0.125f), history).space, 0, 1e-5); // 2^-6
-    EXPECT_NEAR(estimate(alternating(0.1875f), history).time, 0, 1e-5); // 2^-4 more: 2^-8
-    EXPECT_NEAR(estimate(alternating(0.3125f), history, 4 * template_interval).time, 0, 1e-5); // 2^-6, two octaves on
+    EXPECT_NEAR(estimate(alternating(0.1875f), history).time, 0, 1e-5); // the change by 2^-4 has energy 2^-8
+    // The change of 2^-3 has energy 2^-6, two octaves on.
+    EXPECT_NEAR(estimate(alternating(0.3125f), history, 4 * template_interval).time, 0, 1e-5);
 }
 
 TEST(VarianceError, SignedByWhichIsMore) {
