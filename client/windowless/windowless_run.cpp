@@ -1,0 +1,302 @@
+#include "client/windowless/windowless_run.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <unistd.h>
+
+#include "client/core/camera/camera_path.h"
+#include "client/core/client_core.h"
+#include "client/core/picture/display_pace.h"
+#include "client/frames/frame_choice.h"
+#include "client/frames/frame_log.h"
+#include "client/frames/output_folder.h"
+#include "client/sheet/sheet_moments.h"
+#include "client/statistics_text.h"
+#include "client/tev/tev_sender.h"
+#include "client/video/film_sink.h"
+#include "client/video/video_writer.h"
+#include "common/color.h"
+#include "common/cpu_clock.h"
+#include "common/error.h"
+#include "common/files/picture_writer.h"
+
+namespace framelet {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using FrameSinks = std::vector<std::unique_ptr<FrameSink>>;
+
+volatile std::sig_atomic_t told_to_end = 0;
+
+void end_on_signals() {
+    for (int const number : {SIGINT, SIGTERM}) {
+        std::signal(number, [](int received) {
+            told_to_end = 1;
+            std::signal(received, SIG_DFL); // the video's reader may have stopped reading: the second signal ends that
+        });
+    }
+}
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+double unix_seconds() {
+    return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+std::optional<CameraPath> read_camera(WindowlessOptions const& options) {
+    return options.camera_file.empty() ? std::nullopt : std::optional(read_camera_path(options.camera_file));
+}
+
+void ask_clock(ClientCore& core, WindowlessOptions const& options) {
+    ClockRequest request;
+    if (options.play || options.pause) {
+        request.set |= ClockRequest::playing;
+        request.state.playing = options.play;
+    }
+    if (options.seek) {
+        request.set |= ClockRequest::time;
+        request.state.time = *options.seek;
+    }
+    if (request.set != 0 && !core.controls()) {
+        std::cerr << "framelet-client: another viewer controls the scene's clock: --play, --pause and --seek do nothing"
+                  << std::endl;
+    }
+    if (request.set != 0) {
+        core.request_clock(request);
+    }
+}
+
+/// Waits until that time; returns early where the session has ended.
+void wait_until(ClientCore& core, Clock::time_point time) {
+    while (Clock::now() < time && !core.end_reason()) {
+        core.wait_for_news(time - Clock::now());
+    }
+}
+
+/// Says on stderr that the session is interrupted or goes on, where that is news; returns which of them it is.
+bool tell_interruption(ClientCore const& core, bool interrupted) {
+    std::optional<std::string> const reason = core.interruption();
+    if (reason && !interrupted) {
+        std::cerr << "framelet-client: " << *reason << "; trying to connect again" << std::endl;
+    } else if (!reason && interrupted && !core.end_reason()) {
+        std::cerr << "framelet-client: connected again" << std::endl;
+    }
+    return reason.has_value();
+}
+
+/// The median; -1 where there are no values.
+double median(std::vector<double> values) {
+    if (values.empty()) {
+        return -1;
+    }
+    auto const middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+FrameSinks make_sinks(WindowlessOptions const& options, std::optional<FramePattern> const& pattern, Viewport viewport) {
+    FrameSinks sinks;
+    if (options.output == standard_output) {
+        sinks.push_back(std::make_unique<VideoWriter>(STDOUT_FILENO, viewport, PictureRate::of(display_rate(options))));
+    } else if (is_film_name(options.output)) {
+        sinks.push_back(std::make_unique<FilmSink>(options.output, viewport));
+    } else if (pattern) {
+        sinks.push_back(std::make_unique<FrameWriter>(
+            *pattern, options.output_times.empty() ? WhenWritten::at_once : WhenWritten::at_the_end));
+    }
+    if (!options.tev.empty()) {
+        // tev keeps images of runs before: each has a name of its own.
+        std::string const name = "framelet " + options.connection.server + " (" + std::to_string(::getpid()) + ")";
+        sinks.push_back(std::make_unique<TevSender>(parse_address(options.tev, default_tev_port), name, viewport));
+    }
+    return sinks;
+}
+
+double cpu_seconds_of_sinks(FrameSinks const& sinks) {
+    double sum = 0;
+    for (std::unique_ptr<FrameSink> const& sink : sinks) {
+        sum += sink->cpu_seconds();
+    }
+    return sum;
+}
+
+/// Says on stderr why somebody who was shown the frames has gone; false where nobody has.
+bool tell_end_of_sinks(FrameSinks const& sinks) {
+    for (std::unique_ptr<FrameSink> const& sink : sinks) {
+        if (std::string const reason = sink->end_reason(); !reason.empty()) {
+            std::cerr << "framelet-client: " << reason << std::endl;
+            return true;
+        }
+    }
+    return false;
+}
+
+/// Shows frames until the time is over, the session has ended, somebody whom they are for has gone or, if wanted, all
+/// is there. Returns what it counted.
+RunFigures show(ClientCore& core, WindowlessOptions const& options, std::optional<CameraPath> const& path,
+                Viewport viewport, FrameSinks const& sinks, FrameLog* log, SheetMoments* sheet) {
+    double const rate = display_rate(options);
+    double const duration = run_seconds(options);
+    double const path_duration = path ? path->duration() : 0;
+    RunFigures run;
+    Welcome welcome;
+    std::uint64_t scene_number = 0;
+    bool interrupted = false;
+    run.viewport = viewport;
+    Picture picture = bare_picture(viewport);
+    Picture overlaid; //< the picture and what is drawn over it
+    std::vector<PixelRect> changed;
+    std::vector<double> photon_seconds;
+    FrameChoice choice(options.output_times);
+    Clock::time_point const start = Clock::now();
+    Clock::time_point const end = start + DisplayPace::duration(duration);
+    DisplayPace pace(start, rate);
+    while (true) {
+        wait_until(core, std::min(pace.begin(core.making_seconds()), end));
+        if (core.scene_number() != scene_number) {
+            scene_number = core.scene_number();
+            welcome = core.welcome();
+            run.scene = welcome.scene_name;
+        }
+        interrupted = tell_interruption(core, interrupted);
+        double const now = seconds_since(start);
+        bool const done = options.until_converged && now >= path_duration && core.is_complete();
+        Camera camera = welcome.start_camera;
+        if (path && path->scene_camera < 0) {
+            camera = path->at(now);
+        }
+        if (!done) {
+            core.set_view(camera, viewport, path ? path->scene_camera : start_scene_camera(welcome));
+        }
+        Clock::time_point const shown_at = pace.show(Clock::now(), core.making_seconds());
+        bool const news = core.update_picture(picture, changed, shown_at);
+        wait_until(core, shown_at);
+        ClientStatistics const statistics = core.statistics();
+        if (news && statistics.photon_seconds >= 0) {
+            photon_seconds.push_back(statistics.photon_seconds);
+        }
+        int const scene_camera = path ? path->scene_camera : start_scene_camera(welcome);
+        if (log != nullptr) {
+            log->add({run.frames, unix_seconds(), core.clock().time, news, core.is_complete(), statistics.bytes,
+                      cpu_seconds_of(CLOCK_PROCESS_CPUTIME_ID) - cpu_seconds_of_sinks(sinks), statistics.samples,
+                      statistics.photon_seconds, scene_camera, camera});
+        }
+        if (sheet != nullptr) {
+            sheet->note(seconds_since(start), picture,
+                        {camera, scene_camera, std::max(core.clock().time - statistics.lag_seconds, 0.0)});
+        }
+        ++run.frames;
+        if (!sinks.empty()) {
+            bool const draws = options.overlay != DrawnOver::nothing;
+            if (draws) {
+                overlaid = picture;
+                core.draw_overlay(options.overlay, overlaid);
+            }
+            ShownFrame const frame{draws ? overlaid : picture, news, choice.takes(core.clock().time),
+                                   seconds_since(start)};
+            for (std::unique_ptr<FrameSink> const& sink : sinks) {
+                sink->show(frame);
+            }
+        }
+        if (run.converged_seconds < 0 && (done || core.is_complete())) {
+            run.converged_seconds = now;
+        }
+        if (done || Clock::now() >= end || core.end_reason() || told_to_end != 0 || tell_end_of_sinks(sinks)) {
+            run.photon_seconds = median(std::move(photon_seconds));
+            return run;
+        }
+        run.late_frames += pace.note_shown(Clock::now()) ? 1 : 0;
+    }
+}
+
+/// Writes the contact sheet once its stills have come. Throws as `SheetMoments::take_stills`, and InputError where it
+/// cannot be written.
+void write_sheet(SheetMoments& sheet, ClientCore& core, std::string const& file) {
+    std::cerr << "framelet-client: waiting for the stills of the contact sheet" << std::endl;
+    sheet.take_stills(core);
+    if (sheet.pairs().empty()) {
+        std::cerr << "framelet-client: the run was too short for a contact sheet" << std::endl;
+        return;
+    }
+    write_png(file, contact_sheet(sheet.pairs()));
+}
+
+struct Session {
+    ClientStatistics statistics;
+    RunFigures figures;
+    std::optional<std::string> end_reason; ///< where the server ended it, or was gone at the end
+};
+
+/// Runs the whole session: its figures are of what was shown, whatever is still to be written then. Throws InputError
+/// and ConnectionError.
+Session look(WindowlessOptions const& options, ConnectionOptions const& connection,
+             std::optional<CameraPath> const& path, Viewport viewport, FrameSinks const& sinks) {
+    std::optional<SheetMoments> sheet;
+    if (!options.sheet.empty()) {
+        make_folder_of(options.sheet);
+        sheet.emplace(run_seconds(options));
+    }
+    std::optional<FrameLog> log;
+    if (!options.frames_file.empty()) {
+        log.emplace(options.frames_file);
+    }
+    ClientCore core(connection);
+    if (!core.notice().empty()) {
+        std::cerr << "framelet-client: " << core.notice() << std::endl;
+    }
+    std::size_t const cameras = core.welcome().cameras.size();
+    if (path && path->scene_camera >= static_cast<int>(cameras)) {
+        throw InputError("the camera file asks for camera " + std::to_string(path->scene_camera) +
+                         " of the scene, which has " + std::to_string(cameras) + " (numbered from 0)");
+    }
+    core.set_settings(options.display.settings());
+    core.set_smoothing(options.display.lag_seconds());
+    ask_clock(core, options);
+    Session session;
+    session.figures = show(core, options, path, viewport, sinks, log ? &*log : nullptr, sheet ? &*sheet : nullptr);
+    session.statistics = core.statistics();
+    session.end_reason = core.end_reason() ? core.end_reason() : core.interruption();
+    if (sheet && !session.end_reason) {
+        write_sheet(*sheet, core, options.sheet);
+        session.figures.still_difference = sheet->difference();
+    }
+    return session;
+}
+
+} // namespace
+
+void run_windowless(WindowlessOptions const& options, ConnectionOptions const& connection, Viewport viewport,
+                    std::optional<FramePattern> const& pattern) {
+    std::optional<CameraPath> const path = read_camera(options);
+    FrameSinks const sinks = make_sinks(options, pattern, viewport);
+    end_on_signals();
+    Session const session = look(options, connection, path, viewport, sinks);
+    for (std::unique_ptr<FrameSink> const& sink : sinks) {
+        sink->finish();
+        if (std::string const result = sink->result(); !result.empty()) {
+            std::cerr << "framelet-client: " << result << std::endl;
+        }
+    }
+    std::ostream& told = options.output == standard_output ? std::cerr : std::cout;
+    told << (options.json ? statistics_json(session.statistics, session.figures) + "\n"
+                          : statistics_summary(session.statistics, session.figures))
+         << std::flush;
+    if (session.end_reason) {
+        throw ConnectionError(*session.end_reason);
+    }
+    if (options.until_converged && session.figures.converged_seconds < 0) {
+        throw ConnectionError("the picture was not complete when the time was over: give a longer --duration, or "
+                              "--pause where the scene moves");
+    }
+}
+
+} // namespace framelet
