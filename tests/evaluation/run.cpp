@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "client/core/picture/making_time.h"
-#include "server/sampling/field/tiling.h"
+#include "tests/uniform_tiling.h"
 
 namespace framelet::bench {
 namespace {

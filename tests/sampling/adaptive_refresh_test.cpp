@@ -9,8 +9,8 @@
 
 #include <gtest/gtest.h>
 
-#include "server/sampling/field/tiling.h"
 #include "tests/sampling/synthetic_refresh.h"
+#include "tests/uniform_tiling.h"
 
 namespace framelet {
 namespace {

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "common/morton.h"
-#include "server/sampling/field/tiling.h"
+#include "tests/uniform_tiling.h"
 
 namespace framelet {
 namespace {

@@ -11,12 +11,12 @@
 #include "common/held/framelet_cache.h"
 #include "common/warp/warp_block.h"
 #include "protocol/codec/batch_codec.h"
-#include "server/sampling/field/tiling.h"
 #include "server/stream/layers/layer_fit.h"
 #include "tests/evaluation/bench_scene.h"
 #include "tests/evaluation/correspondence/exact_motion.h"
 #include "tests/evaluation/correspondence/place_code.h"
 #include "tests/evaluation/figure_table.h"
+#include "tests/uniform_tiling.h"
 
 namespace framelet::bench {
 namespace {

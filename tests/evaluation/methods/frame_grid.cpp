@@ -9,7 +9,7 @@
 
 #include "common/color.h"
 #include "common/error.h"
-#include "server/sampling/field/tiling.h"
+#include "tests/uniform_tiling.h"
 
 namespace framelet::bench {
 namespace {

@@ -6,9 +6,9 @@
 #include <tbb/parallel_for.h>
 
 #include "server/render/display_framelet.h"
-#include "server/sampling/field/tiling.h"
 #include "tests/evaluation/methods/warp_viewer.h"
 #include "tests/evaluation/reference.h"
+#include "tests/uniform_tiling.h"
 
 namespace framelet::bench {
 namespace {

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "server/sampling/field/tiling.h"
 #include "tests/evaluation/methods/response/density_field.h"
+#include "tests/uniform_tiling.h"
 
 namespace framelet::bench {
 

@@ -1,4 +1,4 @@
-#include "server/sampling/field/tiling.h"
+#include "tests/uniform_tiling.h"
 
 #include <random>
 
