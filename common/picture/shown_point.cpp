@@ -80,7 +80,7 @@ std::vector<float> find_shown_depths(FrameletPool const& pool, Camera const& cam
             for (int y = 0; y < std::min(side, viewport.height - row * side); ++y) {
                 for (int x = 0; x < std::min(side, viewport.width - column * side); ++x) {
                     float const inverse_depth = inverse_depth_near(block, x, y);
-                    is_known = is_known || inverse_depth != hole_depth;
+                    is_known = is_known || inverse_depth > 0; // framelets without shapes are held as if infinitely far
                     out[static_cast<std::size_t>(row * side + y) * static_cast<std::size_t>(viewport.width) +
                         static_cast<std::size_t>(column * side + x)] = inverse_depth == hole_depth ? 0
                                                                        : is_infinitely_far(inverse_depth)

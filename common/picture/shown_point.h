@@ -18,8 +18,9 @@ std::optional<Vec3> find_shown_point(FrameletPool const& pool, Camera const& cam
                                      BodyMotions const& motions, Vec2 place);
 
 /// The depths of all pixels of such a picture, metres along the camera's forward axis; infinite where what shows is
-/// infinitely far, 0 where it is not known. Empty where it is known nowhere, as where nothing is held. What came
-/// without a shape, as for a viewer that moves nothing or looks through an orthographic camera, is infinitely far.
+/// infinitely far, 0 where it is not known. Empty where nothing is known to be at a finite depth: nothing is held, all
+/// is infinitely far, or the framelets came without shapes, as for a viewer that moves nothing or looks through an
+/// orthographic camera.
 std::vector<float> find_shown_depths(FrameletPool const& pool, Camera const& camera, SceneTime scene_time,
                                      BodyMotions const& motions);
 

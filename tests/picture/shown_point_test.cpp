@@ -92,5 +92,14 @@ TEST(ShownDepths, OfNothingAreNone) {
     EXPECT_TRUE(find_shown_depths(FrameletPool{ImagePlane(viewport)}, front(), 0, {}).empty());
 }
 
+TEST(ShownDepths, OfFrameletsWithoutShapesAreNone) {
+    ImagePlane const plane(viewport);
+    Batch batch = room().batch(plane, 1, front(), 0, visible_tiles(plane, plane.pixel_depth()), false);
+    batch.shapes.clear();
+    FrameletPool pool(plane);
+    pool.insert(batch, {});
+    EXPECT_TRUE(find_shown_depths(pool, front(), 0, {}).empty());
+}
+
 } // namespace
 } // namespace framelet
