@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "client/connection_arguments.h"
+#include "client/core/picture/picture_maker.h"
 #include "client/display_arguments.h"
 
 namespace framelet {
