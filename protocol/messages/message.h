@@ -129,7 +129,7 @@ enum class SampleEncoding : std::uint8_t {
     predicted = 8, ///< the same, but framelets may be predicted from the reference picture
 };
 
-/// The moment of a batch: its camera, its scene time and when it is shown; the fields are as those of a Batch.
+/// The moment of a batch: its camera, its scene time and when it is shown; the fields are those of a Moment.
 struct BatchMoment {
     NumberedView view;
     SceneTime scene_time = 0;

@@ -98,8 +98,8 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
         ->check(number_in(1, 1024))
         ->capture_default_str();
     app.add_option("--session-memory", options.server.session_megabytes,
-                   "Most memory for the pictures of all viewers together: 20 bytes a pixel each; a viewer whose "
-                   "picture does not fit is refused")
+                   "Most memory for the pictures of all viewers together: 20 bytes a pixel and 17 MB each; a viewer "
+                   "whose picture does not fit is refused")
         ->type_name("MB")
         ->check(number_in(1, 1 << 20))
         ->capture_default_str();

@@ -20,7 +20,7 @@ constexpr double exact_cost = 3.5;
 /// `first_qp`, a tenth of the bytes; where there is hardly a link the first answer says so.
 constexpr double finding_seconds = 0.5;
 constexpr std::uint8_t first_qp = 12;
-/// Framelets that are worth what a batch takes besides them (camera, tiles, envelope: some hundred bytes), unless the
+/// Framelets that are worth what a batch takes besides them (camera, tiles, envelope: about 90 bytes), unless the
 /// batch takes longer than `most_batch_seconds` on the link.
 constexpr double worthwhile_framelets = 16, most_batch_seconds = 0.05;
 /// Least time from one step of the QP to the next, seconds.
