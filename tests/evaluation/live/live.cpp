@@ -50,17 +50,22 @@ std::vector<std::string> joined(std::vector<std::string> words, std::vector<std:
 }
 
 /// The programs for a method. Through an emulated link the client connects to another port, for which it finds no
-/// token: the server lets everybody in.
+/// token: the server lets everybody in. The scene's clock stands until the viewer has come and lets it run, however
+/// long a viewer takes to start: all have built up equally long when pictures are compared.
 Programs programs_of(std::string const& method, RivalParts const& rivals, std::string const& scene) {
     if (method == "framelet") {
-        return {FRAMELET_SERVER, FRAMELET_CLIENT, {scene, "--port", "0", "--insecure"}, {}, {"--json"}};
+        return {FRAMELET_SERVER,
+                FRAMELET_CLIENT,
+                {scene, "--port", "0", "--insecure", "--paused"},
+                {},
+                {"--json", "--play"}};
     }
     if (method == "framelet-unwarped") {
         return {FRAMELET_SERVER,
                 FRAMELET_CLIENT,
-                {scene, "--port", "0", "--insecure"},
+                {scene, "--port", "0", "--insecure", "--paused"},
                 {},
-                {"--json", "--no-reprojection"}};
+                {"--json", "--play", "--no-reprojection"}};
     }
     std::string const self = std::filesystem::read_symlink("/proc/self/exe").string();
     std::vector<std::string> const parts{"--spacing", std::to_string(rivals.spacing), "--margin",

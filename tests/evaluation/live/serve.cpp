@@ -76,6 +76,7 @@ void serve_method(ServeOptions const& options) {
     scene->exposure = std::exp2(options.exposure_ev);
     ServerOptions server_options;
     server_options.port = 0;
+    server_options.paused = true; // until the viewer lets it run
     server_options.loop.make_stream = [&](StreamOptions const&, std::uint32_t) {
         MethodSetup setup;
         setup.costs = options.costs;
@@ -130,6 +131,7 @@ void look_at_method(LookOptions const& options) {
         connected = &connection;
         mailbox.set_clock(connection.welcome().clock);
     }
+    connection.send(ClockRequest{ClockRequest::playing, {0, true, 1}});
     FrameChoice choice(options.output_times);
     Clock::time_point const start = Clock::now();
     NumberedView view{0, {}, options.viewport};
