@@ -157,25 +157,25 @@ struct FlatPicture {
 
     std::uint8_t& at(int x, int y) { return points[static_cast<std::size_t>(y * width + x)]; }
 
-    void take(ReferencePicture::Square place, std::array<std::uint8_t, framelet_samples> const& samples) {
+    void take(ReferencePicture::Square square, std::array<std::uint8_t, framelet_samples> const& samples) {
         auto const sample = [&](int x, int y) {
             return unsigned{samples[morton_index(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y))]};
         };
-        for (int y = 0; y < place.side; ++y) {
-            for (int x = 0; x < place.side; ++x) {
-                int const i = x * framelet_side / place.side, j = y * framelet_side / place.side;
-                at(place.left + x, place.top + y) = static_cast<std::uint8_t>(
-                    place.side < framelet_side
+        for (int y = 0; y < square.side; ++y) {
+            for (int x = 0; x < square.side; ++x) {
+                int const i = x * framelet_side / square.side, j = y * framelet_side / square.side;
+                at(square.left + x, square.top + y) = static_cast<std::uint8_t>(
+                    square.side < framelet_side
                         ? (sample(i, j) + sample(i + 1, j) + sample(i, j + 1) + sample(i + 1, j + 1) + 2) / 4
                         : sample(i, j));
             }
         }
     }
 
-    int predicted(ReferencePicture::Square place, MotionVector vector, int i, int j) {
-        int const left = std::clamp(place.left + vector.x, 0, width - place.side);
-        int const top = std::clamp(place.top + vector.y, 0, height - place.side);
-        int const t = place.side / framelet_side;
+    int predicted(ReferencePicture::Square square, MotionVector vector, int i, int j) {
+        int const left = std::clamp(square.left + vector.x, 0, width - square.side);
+        int const top = std::clamp(square.top + vector.y, 0, height - square.side);
+        int const t = square.side / framelet_side;
         if (t < 2) {
             return t == 1 ? at(left + i, top + j) : at(left + i / 2, top + j / 2);
         }
@@ -204,8 +204,8 @@ TEST(ReferencePicture, PredictsAsIfAllOfItWerePoints) {
     for (int i = 0; i < 1500; ++i) {
         DisplayFramelet const framelet = framelet_of(any_tile(), [&](int, int) { return random(); });
         take(held, framelet);
-        flat.take(held.place(framelet.tile), framelet.red);
-        flat_green.take(held.place(framelet.tile), framelet.green);
+        flat.take(held.square(framelet.tile), framelet.red);
+        flat_green.take(held.square(framelet.tile), framelet.green);
         Tile const tile = any_tile();
         if (i >= 500) {
             DisplayFramelet looked_for;
@@ -217,15 +217,15 @@ TEST(ReferencePicture, PredictsAsIfAllOfItWerePoints) {
         ReferencePicture::Square const square = held.square(tile);
         for (std::uint32_t k = 0; k < framelet_samples; ++k) {
             int const x = static_cast<int>(morton_x(k)), y = static_cast<int>(morton_y(k));
-            ASSERT_EQ(out.red[k], flat.predicted(place, vector, x, y)) << i << " tile " << tile.code;
+            ASSERT_EQ(out.red[k], flat.predicted(square, vector, x, y)) << i << " tile " << tile.code;
         }
         if (held.is_searched()) {
             // Coarse framelets are compared at every fourth point, wherever they may have been; fine ones only where
             // they are.
-            int const step = SearchPicture::is_coarse(place.side) ? SearchPicture::coarse : 1;
+            int const step = SearchPicture::is_coarse(square.side) ? SearchPicture::coarse : 1;
             MotionVector const to = step > 1 ? vector : MotionVector{};
-            SearchPicture::Source const source = held.searched(place, to);
-            ReferencePicture::Square const from = held.moved(place, to);
+            SearchPicture::Source const source = held.searched(square, to);
+            ReferencePicture::Square const from = held.moved(square, to);
             int const y = static_cast<int>(random() % unsigned(from.side / step));
             for (int x = 0; x < from.side / step; ++x) {
                 auto const green = source.first[static_cast<std::size_t>(y) * source.stride + std::size_t(x)];
