@@ -73,7 +73,8 @@ TEST(ClockJump, ASessionGoesOn) {
 /// Looks at the sources of all that is delivered: a certificate's dates are OpenSSL's, names of files and lines of logs
 /// decide nothing.
 TEST(ClockJump, NobodyReadsTheSystemsClockButForNamesAndLogs) {
-    std::set<std::string> const names_and_logs{"client/window/kept/user_files.cpp", "client/windowless/windowless_run.cpp"};
+    std::set<std::string> const names_and_logs{"client/window/kept/user_files.cpp",
+                                               "client/windowless/windowless_run.cpp"};
     char const* const words[] = {"system_clock",   "std::time(", "::time(",    "gettimeofday",
                                  "CLOCK_REALTIME", "utc_clock",  "file_clock", "localtime"};
     std::filesystem::path const source = FRAMELET_SOURCE_DIR;
