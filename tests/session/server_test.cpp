@@ -96,7 +96,7 @@ TEST_P(ServerOfThreads, WaitsForAcknowledgements) {
     RunningServer const server(options);
     Conversation viewer(server.port());
     viewer.stream->send(Hello{});
-    std::uint64_t batches = 0;
+    std::uint64_t batches = 0, before = 0;
     int beats = 0;
     viewer.run([&](Message const& message) {
         if (std::holds_alternative<Welcome>(message)) {
@@ -104,11 +104,15 @@ TEST_P(ServerOfThreads, WaitsForAcknowledgements) {
         } else if (std::holds_alternative<EncodedBatch>(message)) {
             ++batches;
         } else if (std::holds_alternative<Status>(message)) {
-            beats += batches >= FrameletStream::max_batches_in_flight ? 1 : 0; // time for one too many
+            beats =
+                batches > 0 && batches == before ? beats + 1 : 0; // three with nothing between: time for one too many
+            before = batches;
         }
         return beats < 3;
     });
-    EXPECT_EQ(batches, FrameletStream::max_batches_in_flight) << "and not one more while nothing is acknowledged";
+    // The bytes in flight are limited as well: a busy machine may meet that limit first.
+    EXPECT_LE(batches, FrameletStream::max_batches_in_flight) << "while nothing is acknowledged";
+    EXPECT_GT(batches, FrameletStream::max_batches_in_flight / 4);
 }
 
 TEST(Server, NothingOlderComesFirstWhenThereIsRoomAgain) {
