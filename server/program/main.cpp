@@ -24,13 +24,13 @@
 #include "protocol/stream/token.h"
 #include "server/program/options.h"
 #include "server/program/progress_bar.h"
-#include "server/program/scene_reloader.h"
 #include "server/scene/summary/scene_summary.h"
 #include "server/scene/summary/visibility.h"
 #include "server/session/figures/metrics_port.h"
 #include "server/session/listener.h"
 #include "server/session/loaded_scene.h"
 #include "server/session/loop/priority.h"
+#include "server/session/scene_reloader.h"
 #include "server/stream/event_log.h"
 
 namespace framelet {
@@ -154,7 +154,8 @@ void serve(Options& options) {
     // What asks the server, or tells it something, ends before it.
     std::unique_ptr<MetricsPort> const answering = std::move(metrics);
     SceneReloader reloader(
-        std::move(watch), options.scene, environment_file, files, [&options] { return load_scene(options, {}); },
+        std::move(watch), options.scene, environment_file, files,
+        [&options](Progress const& progress) { return load_scene(options, progress); },
         [&server](std::shared_ptr<LoadedScene> scene) { server.replace_scene(std::move(scene)); });
     server.take_signals([&] { // before anybody is told that there is a server to signal to
         if (had_terminal && !has_terminal()) { // that is why the signal came: nobody is there to end the server later

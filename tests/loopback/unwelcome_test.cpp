@@ -97,7 +97,7 @@ TEST(Unwelcome, WithoutFileDescriptorsItWaitsForThem) {
         std::this_thread::sleep_for(1s);
         EXPECT_LT(lines_in(server.process().errors()), 100u);
     }
-    EXPECT_EQ(connect_client(server), "");
+    EXPECT_EQ(connect_client(server), "") << server.process().errors();
 }
 
 TEST(Unwelcome, RefusedConnectionsDoNotPileUp) {

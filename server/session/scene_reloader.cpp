@@ -1,4 +1,4 @@
-#include "server/program/scene_reloader.h"
+#include "server/session/scene_reloader.h"
 
 #include <exception>
 #include <utility>
@@ -8,6 +8,12 @@
 #include "common/command_line/program_failure.h"
 
 namespace framelet {
+namespace {
+
+/// Ends a load that nobody waits for any more.
+struct LoadEnded {};
+
+} // namespace
 
 SceneReloader::SceneReloader(std::optional<FileWatch> watch, std::filesystem::path const& scene_file,
                              std::filesystem::path environment_file, std::vector<std::filesystem::path> files,
@@ -44,7 +50,7 @@ void SceneReloader::watch() {
 
 void SceneReloader::run(std::stop_token const& stop) {
     while (wait(stop)) {
-        reload();
+        reload(stop);
         watch();
     }
 }
@@ -67,13 +73,18 @@ bool SceneReloader::wait(std::stop_token const& stop) {
     }
 }
 
-void SceneReloader::reload() {
+void SceneReloader::reload(std::stop_token const& stop) {
     spdlog::info("loading the scene again");
     try {
-        auto scene = load_();
+        auto scene = load_([&stop](std::string_view, double) {
+            if (stop.stop_requested()) {
+                throw LoadEnded();
+            }
+        });
         files_ = scene->scene.files;
         failed_ = false;
         take_(std::move(scene));
+    } catch (LoadEnded const&) { // nor is there anything to say
     } catch (std::exception const& error) {
         failed_ = true;
         spdlog::warn("{}; the scene as it was is served on", failure_text(error));

@@ -12,17 +12,19 @@
 #include <vector>
 
 #include "server/scene/file_watch.h"
+#include "server/scene/reading/progress.h"
 #include "server/session/loaded_scene.h"
 
 namespace framelet {
 
 class SceneReloader {
 public:
-    using Load = std::function<std::shared_ptr<LoadedScene>()>;
+    using Load = std::function<std::shared_ptr<LoadedScene>(Progress const&)>;
     using Take = std::function<void(std::shared_ptr<LoadedScene>)>;
 
-    /// Scenes are loaded until the end of its life. Without `watch` only where it is asked. `files` are what the scene
-    /// was made of that is served; `load` throws where it fails.
+    /// Scenes are loaded until the end of its life: a load that is on its way then ends when it next reports how far it
+    /// is. Without `watch` only where it is asked. `files` are what the scene was made of that is served; `load` throws
+    /// where it fails.
     SceneReloader(std::optional<FileWatch> watch, std::filesystem::path const& scene_file,
                   std::filesystem::path environment_file, std::vector<std::filesystem::path> files, Load load,
                   Take take);
@@ -35,7 +37,7 @@ private:
     void watch();
     void run(std::stop_token const& stop);
     bool wait(std::stop_token const& stop);
-    void reload();
+    void reload(std::stop_token const& stop);
 
     std::optional<FileWatch> file_watch_;
     std::filesystem::path const scene_file_, environment_file_;
