@@ -1,10 +1,14 @@
 #!/usr/bin/env bash
-# Installs the Debian packages that are missing of cmake/packages_viewer.txt, cmake/packages.txt and the lists named as
-# arguments; with --viewer those of the first list alone. Quiet and quick where none is.
+# Installs the Debian packages that are missing of packages_viewer.txt, packages.txt, packages_tests.txt and the lists
+# named as arguments, all in this folder; with --viewer of the first alone, with --programs of the first two. Quiet and
+# quick where none is missing.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-lists=(packages_viewer.txt)
-[ "${1:-}" = --viewer ] || lists+=(packages.txt "$@")
+case "${1:-}" in
+--viewer) lists=(packages_viewer.txt) ;;
+--programs) lists=(packages_viewer.txt packages.txt) ;;
+*) lists=(packages_viewer.txt packages.txt packages_tests.txt "$@") ;;
+esac
 missing=()
 while read -r package; do
     if ! dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed'; then
@@ -13,7 +17,7 @@ while read -r package; do
 done < <(cat "${lists[@]/#/$here/}" | grep -v '^#' | grep -v '^$')
 [ ${#missing[@]} -eq 0 ] && exit 0
 
-echo "installing ${#missing[@]} Debian packages: ${missing[*]}"
+echo "installing ${#missing[@]} Debian packages, which may take a minute or two: ${missing[*]}"
 as_root=()
 if [ "$(id -u)" -ne 0 ]; then
     command -v sudo >/dev/null || {
