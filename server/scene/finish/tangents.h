@@ -1,6 +1,5 @@
-// Makes tangents for normal maps, in the manner of MikkTSpace (M. Mikkelsen, "Simulation of Wrinkled Surfaces
-// Revisited", 2008), which glTF 2.0 asks for where a file has none. In: positions, normals, texture coordinates. Out:
-// tangents.
+// Makes tangents for normal maps, in the manner of MikkTSpace ([Mikkelsen 2008]), which [glTF 2.0] asks for where a
+// file has none. In: positions, normals, texture coordinates. Out: tangents.
 #pragma once
 
 #include <span>
