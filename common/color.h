@@ -8,8 +8,8 @@
 
 namespace framelet {
 
-/// Khronos PBR Neutral tone curve: leaves base colours below 0.8 as they are and rolls highlights off towards white.
-/// In: linear Rec.709 colour, >= 0. Out: [0, 1]. (Khronos Group, "PBR Neutral Tone Mapper", 2024.)
+/// The PBR Neutral tone curve ([Khronos 2024]): leaves base colours below 0.8 as they are and rolls highlights off
+/// towards white. In: linear Rec.709 colour, >= 0. Out: [0, 1].
 Vec3 tone_map(Vec3 linear);
 /// Applies the same curve in place, without branches, so that a loop over samples becomes vector code.
 inline void tone_map(float& red, float& green, float& blue) {
@@ -35,7 +35,7 @@ inline void tone_map(float& red, float& green, float& blue) {
     blue = to_unit(blue * scale * (1 - white) + new_peak * white);
 }
 
-/// sRGB transfer function (IEC 61966-2-1) on [0, 1], and its inverse.
+/// sRGB transfer function ([IEC 61966-2-1]) on [0, 1], and its inverse.
 float srgb_from_linear(float linear);
 float linear_from_srgb(float encoded);
 

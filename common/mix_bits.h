@@ -13,7 +13,7 @@ constexpr std::uint64_t mix_in(std::uint64_t state, std::uint64_t word) {
     return state ^ state >> 32;
 }
 
-/// Maps each number to another one, no two to the same (Wellons, "lowbias32", 2018): each bit of it depends on all of
+/// Maps each number to another one, no two to the same ([Wellons 2018], lowbias32): each bit of it depends on all of
 /// `x`.
 constexpr std::uint32_t mix_bits(std::uint32_t x) {
     x = (x ^ (x >> 16)) * 0x21f0aaadu;

@@ -1,4 +1,4 @@
-// Morton order: the index of (x, y) interleaves their bits, x being the low bit of each pair.
+// Morton order ([Morton 1966]): the index of (x, y) interleaves their bits, x being the low bit of each pair.
 #pragma once
 
 #include <cstdint>

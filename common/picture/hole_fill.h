@@ -1,6 +1,7 @@
-// Fills holes, the pixels that no sample shows, from what lies around them, from the farther side (pull-push, [Scherzer
-// 2012] section 3.3). In: picture, inverse depth with holes, means of blocks. Out: the holes' pixels. Blocks are
-// independent of each other once their means and cells are there, and equal what the whole picture would give.
+// Fills holes, the pixels that no sample shows, from what lies around them, from the farther side (pull-push,
+// [Gortler 1996]; [Scherzer 2012] section 3.3). In: picture, inverse depth with holes, means of blocks. Out: the holes'
+// pixels. Blocks are independent of each other once their means and cells are there, and equal what the whole picture
+// would give.
 #pragma once
 
 #include <span>

@@ -13,7 +13,7 @@ constexpr int compression_level = 1;
 /// they are chance.
 constexpr int least_match = 7;
 constexpr std::size_t length_bytes = 4;
-/// First bytes of a zstd frame (RFC 8878); other kinds of frames that the library knows are not part of the format.
+/// First bytes of a zstd frame ([RFC 8878]); other kinds of frames that the library knows are not part of the format.
 constexpr std::array<std::uint8_t, 4> zstd_magic{0x28, 0xb5, 0x2f, 0xfd};
 
 /// Number of lengths that are stated: the last frame takes what is left.

@@ -12,7 +12,7 @@ inline constexpr std::size_t max_name_bytes = 1024;
 inline constexpr std::size_t max_token_bytes = 4096;
 inline constexpr std::size_t max_failure_bytes = 4096;
 
-/// True for well-formed UTF-8 (RFC 3629) without control characters (U+0000..001F, U+007F..009F).
+/// True for well-formed UTF-8 ([RFC 3629]) without control characters (U+0000..001F, U+007F..009F).
 bool is_one_line(std::string_view text);
 
 /// `text` with every byte that is not part of such text replaced by '?', cut to at most `max_bytes` between characters.

@@ -267,7 +267,7 @@ private:
         lose(stream_reason(error, within_message) + (within_message ? hint() : ""));
     }
 
-    /// Says what a first message that makes no sense may be: bytes of a TLS record (RFC 8446 section 5.1).
+    /// Says what a first message that makes no sense may be: bytes of a TLS record ([RFC 8446] section 5.1).
     std::string hint() const {
         bool const tls = !secure && first_ && prefix_[0] >= 20 && prefix_[0] <= 23 && prefix_[1] == 3;
         return tls ? "; the other side uses TLS and this side does not" : "";

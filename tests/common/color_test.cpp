@@ -9,7 +9,7 @@ namespace framelet {
 namespace {
 
 TEST(Color, SrgbKnownValues) {
-    // IEC 61966-2-1: linear 0.214041 encodes to 0.5; 0.0031308 is the joint.
+    // [IEC 61966-2-1]: linear 0.214041 encodes to 0.5; 0.0031308 is the joint.
     EXPECT_NEAR(srgb_from_linear(0.21404114f), 0.5f, 1e-5);
     EXPECT_NEAR(srgb_from_linear(1), 1, 1e-6);
     EXPECT_NEAR(srgb_from_linear(0.0031308f), 0.04045f, 1e-5);

@@ -15,8 +15,8 @@
 
 namespace framelet::bench {
 
-/// Who pays for the viewer's work: a machine of its own (`server`), or the server's pool (`total`, as in [Stephens
-/// 2011]).
+/// Who pays for the viewer's work: a machine of its own (`server`), or the server's pool (`total`, as in
+/// [Stephens 2011]).
 enum class Counting { server, total };
 
 struct RunParameters {

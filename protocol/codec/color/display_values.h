@@ -1,5 +1,5 @@
 // Display samples as luma and chroma, and back. In: red, green, blue bytes. Out: three planes of integers in
-// sixteenths, Y about the middle grey (YCoCg: Malvar and Sullivan, JVT-I014).
+// sixteenths, Y about the middle grey (YCoCg, [Malvar 2003]).
 #pragma once
 
 #include <array>

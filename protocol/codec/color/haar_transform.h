@@ -1,5 +1,6 @@
-// One octave of the Haar transform of a plane of samples in Morton order, where the four children of a block are
-// neighbours, and its quantisation. In: fours of values. Out: their means, details and levels of these, and back.
+// One octave of the Haar transform ([Haar 1910]) of a plane of samples in Morton order, where the four children of a
+// block are neighbours, and its quantisation. In: four values of each block. Out: their mean, details and levels of
+// these, and back.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// The glTF 2.0 metallic-roughness BRDF (specification, appendix B): GGX distribution, height-correlated Smith
-// visibility, Schlick's Fresnel, Lambertian diffuse. Written over sixteen lanes.
+// The metallic-roughness BRDF of [glTF 2.0] appendix B: GGX distribution ([Walter 2007]), height-correlated Smith
+// visibility, Fresnel term of [Schlick 1994], Lambertian diffuse. Written over sixteen lanes.
 #pragma once
 
 #include <algorithm>

@@ -42,7 +42,7 @@ FloatImage halved(FloatImage const& from) {
     return out;
 }
 
-/// Any two unit vectors that complete `n` (Duff et al., "Building an orthonormal basis, revisited", JCGT 2017).
+/// An orthonormal basis whose third vector is the unit vector `n` ([Duff 2017]).
 Mat3 frame_about(Vec3 const& n) {
     float const s = std::copysign(1.0f, n.z);
     float const a = -1 / (s + n.z);

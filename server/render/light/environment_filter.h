@@ -24,9 +24,8 @@ FloatImage const& level_of_width(std::vector<FloatImage> const& levels, int widt
 OctahedralMap filter_diffuse(std::vector<FloatImage> const& levels, int side);
 
 /// Radiance averaged over the GGX lobe of a perceptual roughness > 0 whose mirror direction, normal and view coincide
-/// (Karis, "Real shading in Unreal Engine 4", 2013). Importance samples read the level whose texels are as wide as the
-/// gap between samples (Krivanek and Colbert, "Real-time shading with filtered importance sampling", 2008): smooth
-/// without random numbers.
+/// ([Karis 2013]). Importance samples read the level whose texels are as wide as the gap between samples
+/// ([Krivanek 2008]): smooth without random numbers.
 OctahedralMap filter_specular(std::vector<FloatImage> const& levels, float roughness, int side);
 
 } // namespace framelet

@@ -1,5 +1,5 @@
-// A function of direction in a square picture (octahedral mapping, Cigolle et al., "A survey of efficient
-// representations for independent unit vectors", JCGT 2014). Look-ups need no trigonometry and no case for the poles.
+// A function of direction in a square picture (octahedral mapping, [Cigolle 2014]). Look-ups need no trigonometry and
+// no case for the poles.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
 // Tabulates how much of uniform light the specular lobe reflects: the second factor of the split-sum approximation
-// (Karis, "Real shading in Unreal Engine 4", 2013) for the same GGX lobe that direct light uses.
+// ([Karis 2013]) for the same GGX lobe that direct light uses.
 #pragma once
 
 #include <array>
@@ -23,8 +23,8 @@ private:
 };
 
 /// Shares of environment light that a surface returns, from prefiltered radiance and from irradiance / pi. Light that
-/// bounces more than once between facets is not lost but goes to the second share (Fdez-Aguera, "A multiple-scattering
-/// microfacet model for real-time image based lighting", JCGT 2019), so a white surface in a white furnace is white.
+/// bounces more than once between facets is not lost but goes to the second share ([Fdez-Aguera 2019]), so a white
+/// surface in a white furnace is white.
 struct AmbientShares {
     Vec3 specular, diffuse;
 };

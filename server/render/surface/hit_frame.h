@@ -49,10 +49,9 @@ struct HitFrame {
 LaneMask make_hit_frames(std::span<Instance const> instances, RayPacket const& rays, HitPacket const& hits,
                          LaneMask hit, HitFrame& out);
 
-/// Offset from a lane's point to where a smooth mesh would be: onto the mean of its corners' tangent planes (Hanika,
-/// "Hacking the shadow terminator", Ray Tracing Gems II, 2021). Facets then do not shadow themselves along the
-/// terminator. Corner normals far off the facet's own (foliage, flat signs) say nothing about its shape and move
-/// nothing.
+/// Offset from a lane's point to where a smooth mesh would be: onto the mean of its corners' tangent planes
+/// ([Hanika 2021]). Facets then do not shadow themselves along the terminator. Corner normals far off the facet's own
+/// (foliage, flat signs) say nothing about its shape and move nothing.
 Vec3 smooth_offset(HitFrame const& frame, int lane);
 
 } // namespace framelet

@@ -28,8 +28,7 @@ LaneMask make_surfaces(std::span<Instance const> instances, RayPacket const& ray
                        Footprint const& footprint, SurfacePacket& out);
 
 /// A start for rays that leave `position` to the side of `normal`, far enough off to miss the surface itself and no
-/// farther than single precision asks for (Wächter and Binder, "A fast and robust method for avoiding
-/// self-intersection", Ray Tracing Gems, 2019).
+/// farther than single precision asks for ([Wächter 2019]).
 Vec3 offset_from_surface(Vec3 const& position, Vec3 const& normal);
 
 } // namespace framelet

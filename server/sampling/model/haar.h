@@ -1,5 +1,5 @@
-// Haar transform of a square of samples in Morton order, in place. In: samples; out: the mean at index 0 and, octave by
-// octave, how each block of 2x2 differs from its mean.
+// Haar transform ([Haar 1910]) of a square of samples in Morton order, in place. In: samples; out: the mean at index 0
+// and, octave by octave, how each block of 2x2 differs from its mean.
 #pragma once
 
 #include <array>

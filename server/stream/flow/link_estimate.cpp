@@ -41,7 +41,7 @@ constexpr double first_used_share = 0.2;
 /// Seconds over which the measured rate is a mean, and the most that one batch counts for: a stall is no rate.
 constexpr double rate_memory = 0.1, most_weight = 0.1;
 constexpr double least_rate = 1e3, most_rate = 1e12;
-/// Bytes of the first window, ten segments as TCP's own (RFC 6928), and of the smallest.
+/// Bytes of the first window, ten segments as TCP's own ([RFC 6928]), and of the smallest.
 constexpr double first_window = 14.6e3, least_window = 4e3;
 /// Bytes of a sample that are assumed before the first batch: with loss, and its shape.
 constexpr double first_bytes_per_sample = 0.4;

@@ -1,9 +1,9 @@
 // Learns what the link to a viewer carries from what was sent and acknowledged. In: bytes and times. Out: the rate of
 // the link, how long a batch takes, and whether another one may be sent now.
 //
-// The window is delay-based, as that of Vegas (Brakmo, Peterson 1995) and BBR (Cardwell et al. 2016): what is in flight
-// is bounded to the rate of delivery times the shortest round trip seen lately and a small queue, whatever TCP would
-// let through. A queue counts when it stands for a while (CoDel, RFC 8289), so that jitter is none.
+// The window is delay-based, as that of TCP Vegas [Brakmo 1995] and BBR [Cardwell 2016]: what is in flight is bounded
+// to the rate of delivery times the shortest round trip seen lately and a small queue, whatever TCP would let through.
+// A queue counts when it stands for a while (CoDel, [RFC 8289]), so that jitter is none.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// H.264 by x264 through libavcodec, set up as a low-latency streamer would: every picture comes out at once, no picture
-// refers to a later one, no frame takes more than it may.
+// H.264 ([ITU-T H.264]) by x264 through libavcodec, set up as a low-latency streamer would: every picture comes out at
+// once, no picture refers to a later one, no frame takes more than it may.
 #pragma once
 
 #include <cstddef>

@@ -9,7 +9,7 @@
 namespace framelet::bench {
 namespace {
 
-/// Pseudo-random number `index`, uniform in [0, 1) (SplitMix64, Steele et al. 2014).
+/// Pseudo-random number `index`, uniform in [0, 1) (SplitMix64, [Steele 2014]).
 double uniform(std::uint64_t seed, std::uint64_t index) {
     std::uint64_t z = seed + (index + 1) * 0x9e3779b97f4a7c15u;
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;

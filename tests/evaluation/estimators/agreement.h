@@ -44,7 +44,7 @@ Agreement agreement(std::span<Verdict const> verdicts);
 enum class RateOrder { ascending, descending }; ///< levels get denser, intervals rarer
 Agreement agreement_of_rate_alone(std::span<Verdict const> verdicts, RateOrder order);
 
-/// Spearman's rank correlation; equal values share their mean rank. 0 where one of them is constant.
+/// Rank correlation of [Spearman 1904]; equal values share their mean rank. 0 where one of them is constant.
 double rank_correlation(std::span<double const> a, std::span<double const> b);
 
 } // namespace framelet::bench

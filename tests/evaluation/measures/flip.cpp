@@ -1,5 +1,5 @@
 // LDR-FLIP: colours filtered by what the eye resolves, compared by HyAB distance, weighed by differences of edges and
-// points. Andersson et al. 2020; section numbers are the paper's.
+// points. Section numbers are those of [Andersson 2020].
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -20,15 +20,15 @@ double mean_squared_error(Picture const& shown, Picture const& reference);
 /// PSNR in dB of a mean squared error in [0, 1]; 100 for errors of 1e-10 and less.
 double psnr_from_mse(double mse);
 
-/// Structural similarity (Wang et al. 2004) of luma: Gaussian window of 11x11 and sigma 1.5, K1 = 0.01, K2 = 0.03, mean
-/// over the places where the window lies within the picture. Pictures smaller than the window: the whole picture is one
-/// window of equal weights.
+/// Structural similarity (SSIM, [Wang 2004]) of luma: Gaussian window of 11x11 and sigma 1.5, K1 = 0.01, K2 = 0.03,
+/// mean over the positions at which the window lies within the picture. A picture smaller than the window is one window
+/// of equal weights.
 double structural_similarity(Picture const& shown, Picture const& reference);
 
 /// Pixels a degree of a display seen from 0.7 m, 0.7 m wide with 3840 pixels.
 inline constexpr double usual_pixels_per_degree = 67.02;
 
-/// Mean of LDR-FLIP (Andersson et al., "FLIP: A Difference Evaluator for Alternating Images", 2020), [0, 1].
+/// Mean of LDR-FLIP ([Andersson 2020]), [0, 1].
 double mean_flip(Picture const& shown, Picture const& reference, double pixels_per_degree = usual_pixels_per_degree);
 
 /// Mean over pixels and RGB in [0, 1] of the squared second difference of the error over three pictures in a row, all

@@ -1,4 +1,4 @@
-// The method `afr`: adaptive frameless rendering (Dayal et al. 2005; [Stephens 2011] section 2.5): single pixels, each
+// The method `afr`: adaptive frameless rendering ([Dayal 2005]; [Stephens 2011] section 2.5): single pixels, each
 // in a leaf chosen with equal probability; leaves are small where the picture's error is great.
 #include <random>
 

@@ -14,9 +14,9 @@
 namespace framelet::bench {
 namespace {
 
-/// Place in the cell of frame number `frame` (the first is 0), relative to the cell's middle, in cell sides: Sobol's
-/// sequence, of which the first 2, 4, 8 and so on are each as even as can be, shifted so that it begins in the middle.
-/// The mean of all places is the middle.
+/// Sampling offset of frame number `frame` (the first is 0) from the middle of a cell, in cell sides: the sequence of
+/// [Sobol 1967], of which the first 2, 4, 8 and so on are each as even as can be, shifted so that it begins in the
+/// middle. The mean of all offsets is 0.
 Vec2 place_of(int frame) {
     auto const i = static_cast<std::uint32_t>(frame);
     constexpr std::uint32_t places = FrameGrid::places;

@@ -1,5 +1,5 @@
-// The method `frameless`: single pixels in random order, shown as soon as they arrive (Bishop et al. 1994; [Stephens
-// 2011] section 2.5).
+// The method `frameless`: single pixels in random order, shown as soon as they arrive ([Bishop 1994];
+// [Stephens 2011] section 2.5).
 #include <random>
 
 #include "tests/evaluation/methods/methods.h"

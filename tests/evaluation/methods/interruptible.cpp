@@ -1,7 +1,7 @@
-// The method `interruptible`: whole frames from coarse to fine (Woolley et al. 2003, "Interruptible rendering"), shown
-// level by level. A frame is given up for a new one when what has moved since would cost more than the next level
-// brings; the new one begins with the coarsest level that is better than what is on display. While nothing moves,
-// samples are added until the picture is as good as it gets. Coded by x264 as `framed+h264`.
+// The method `interruptible`: whole frames from coarse to fine ([Woolley 2003]), shown level by level. A frame is given
+// up for a new one when what has moved since would cost more than the next level brings; the new one begins with the
+// coarsest level that is better than what is on display. While nothing moves, samples are added until the picture is as
+// good as it gets. Coded by x264 as `framed+h264`.
 #include "tests/evaluation/methods/interruptible.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The adaptive tiling of adaptive frameless rendering (Dayal et al. 2005; [Stephens 2011] section 2.5): a kd-tree over
+// The adaptive tiling of adaptive frameless rendering ([Dayal 2005]; [Stephens 2011] section 2.5): a kd-tree over
 // the image whose leaves are all sampled equally often. The leaf of greatest error is split, the two siblings of least
 // error are merged, so that the number of leaves stays. In: samples with their time. Out: where to sample.
 #pragma once

@@ -4,7 +4,7 @@
 //
 // For a price of samples the best patches are found exactly: the levels that a tile may have form a quadtree, and from
 // the leaves up a node is one tile where that gains more, less its price, than the best of its children together
-// (pruning as of Chou, Lookabaugh and Gray). The price is the one at which they use the samples.
+// (pruning, [Chou 1989]). The price is the one at which they use the samples.
 #pragma once
 
 #include <array>
