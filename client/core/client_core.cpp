@@ -511,9 +511,9 @@ void ClientCore::draw_overlay(DrawnOver overlay, Picture& picture) const {
     }
 }
 
-std::optional<Vec3> ClientCore::point_at(Vec2 place) const {
+std::optional<Vec3> ClientCore::point_at(Vec2 position) const {
     std::lock_guard const lock(impl_->picture_mutex);
-    return impl_->pictures.current() == nullptr ? std::nullopt : impl_->pictures.shown().point_at(place);
+    return impl_->pictures.current() == nullptr ? std::nullopt : impl_->pictures.shown().point_at(position);
 }
 
 std::vector<float> ClientCore::picture_depths() const {

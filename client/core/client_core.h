@@ -77,9 +77,9 @@ public:
     /// is moved; while the scene is smoothed, of what came last). A picture of another size stays as it is.
     void draw_overlay(DrawnOver overlay, Picture& picture) const;
 
-    /// The point of the world that this place of the last picture shows, pixel coordinates; nothing where that is not
-    /// known, or infinitely far. Takes about as long as a picture.
-    std::optional<Vec3> point_at(Vec2 place) const;
+    /// The point of the world that the last picture shows at this position, pixel coordinates; nothing where that is
+    /// not known, or infinitely far. Takes about as long as a picture.
+    std::optional<Vec3> point_at(Vec2 position) const;
     /// The depths of the last picture's pixels, as `find_shown_depths` gives them. Takes longer than a picture.
     std::vector<float> picture_depths() const;
 

@@ -23,11 +23,11 @@ FarPasses::FarPasses(GlCount& count)
       pull_pixels_({shaders::screen_vert}, {shaders::far_glsl, shaders::pull_pixels_frag}, {"colors", "depths"}, count),
       pull_({shaders::screen_vert}, {shaders::far_glsl, shaders::pull_frag}, {"fine"}, count),
       block_mean_({shaders::screen_vert}, {shaders::far_glsl, shaders::block_mean_frag},
-                  {"colors", "depths", "eights", "figures"}, count),
+                  {"colors", "depths", "level3", "figures"}, count),
       pull_means_({shaders::screen_vert}, {shaders::far_glsl, shaders::pull_means_frag}, {"fine"}, count),
       push_means_({shaders::screen_vert}, {shaders::far_glsl, shaders::push_means_frag}, {"fine", "coarse"}, count),
       push_({shaders::screen_vert}, {shaders::far_glsl, shaders::push_frag}, {"fine", "coarse"}, count),
-      fill_({shaders::screen_vert}, {shaders::far_glsl, shaders::fill_frag}, {"depths", "twos"}, count) {}
+      fill_({shaders::screen_vert}, {shaders::far_glsl, shaders::fill_frag}, {"depths", "level1"}, count) {}
 
 void FarPasses::set_size(Viewport viewport) {
     viewport_ = viewport;

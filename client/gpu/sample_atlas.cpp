@@ -18,7 +18,7 @@ constexpr int first_layers = 4;
 PixelRect rect_of(MergedSquare const& grid, std::uint64_t children) {
     PixelRect out{grid.side(), grid.side(), 0, 0};
     for (std::uint64_t left = children; left != 0; left &= left - 1) {
-        auto const [column, row] = grid.place_of_child(static_cast<std::size_t>(std::countr_zero(left)));
+        auto const [column, row] = grid.position_of_child(static_cast<std::size_t>(std::countr_zero(left)));
         out.left = std::min(out.left, column);
         out.top = std::min(out.top, row);
         out.right = std::max(out.right, std::min(column + grid.child_side(), grid.side()));

@@ -44,15 +44,15 @@ BodyPose pose_at(BodyTrack const& track, SceneTime time) {
         return {};
     }
     auto const last = static_cast<double>(track.keys.size() - 1);
-    double const place = key_at(track, time);
-    double const before = std::floor(std::min(place, std::max(last - 1, 0.0)));
+    double const key = key_at(track, time);
+    double const before = std::floor(std::min(key, std::max(last - 1, 0.0)));
     auto const index = static_cast<std::size_t>(before);
     BodyPose const& a = track.keys[index];
     BodyPose const& b = track.keys[std::min(index + 1, track.keys.size() - 1)];
-    if (a == b || place == before) {
+    if (a == b || key == before) {
         return a;
     }
-    auto const weight = static_cast<float>(place - before);
+    auto const weight = static_cast<float>(key - before);
     BodyPose out;
     out.translation = a.translation + weight * (b.translation - a.translation);
     out.rotation = glm::normalize(glm::slerp(a.rotation, b.rotation, weight));

@@ -119,7 +119,7 @@ std::uint32_t FrameletCache::view_of(std::uint64_t number, Camera const& camera,
 bool FrameletCache::insert_one(DisplayFramelet const& framelet, FrameletShape const* shape, Moment const& moment,
                                std::uint32_t view) {
     FRAMELET_CHECK(plane_.accepts(framelet.tile));
-    CachedFramelet* const cached = make_place(framelet.tile, moment, view);
+    CachedFramelet* const cached = make_slot(framelet.tile, moment, view);
     if (cached == nullptr) {
         return false;
     }
@@ -135,7 +135,7 @@ bool FrameletCache::insert_one(DisplayFramelet const& framelet, FrameletShape co
 
 /// Takes a framelet of another cache; false where nothing of it would show.
 bool FrameletCache::take_one(CachedFramelet const& framelet, std::uint32_t view) {
-    CachedFramelet* const cached = make_place(framelet.tile, framelet.moment, view);
+    CachedFramelet* const cached = make_slot(framelet.tile, framelet.moment, view);
     if (cached == nullptr) {
         return false;
     }
@@ -147,8 +147,8 @@ bool FrameletCache::take_one(CachedFramelet const& framelet, std::uint32_t view)
     return true;
 }
 
-/// Makes a place for a framelet whose samples and shape are still to come; null where nothing of it would show.
-CachedFramelet* FrameletCache::make_place(Tile tile, Moment const& moment, std::uint32_t view) {
+/// Gives a slot to a framelet whose samples and shape are still to come; null where nothing of it would show.
+CachedFramelet* FrameletCache::make_slot(Tile tile, Moment const& moment, std::uint32_t view) {
     int const depth = tile.depth();
     int const column = static_cast<int>(tile.column());
     int const row = static_cast<int>(tile.row());

@@ -1,6 +1,6 @@
-// Holds for every place of the image plane the newest framelet that arrived, as a quadtree of pooled framelets. In:
+// Holds for every part of the image plane the newest framelet that arrived, as a quadtree of pooled framelets. In:
 // batches in any order. Out: what is shown where, which parts of the picture changed, and how much of it is covered.
-// The set that shows in its places depends on the batches inserted, not on the order in which they came.
+// The set that is held depends on the batches inserted, not on the order in which they came.
 #pragma once
 
 #include <array>
@@ -79,11 +79,11 @@ private:
     std::vector<std::unique_ptr<Chunk>> spare_;
 };
 
-/// The newest framelets of one viewport. A place shows the framelet of the highest batch number that covers it; of two
-/// of the same batch, the finer one. A framelet of which nothing shows leaves its place, so that at most one framelet
-/// for each 4x4 pixels of the viewport is in place. Cameras make no difference to that: places are those of each
-/// framelet's own image plane, since the newest camera is never far from the one that is displayed, and the only
-/// framelet of a place never leaves it.
+/// The newest framelets of one viewport. A pixel shows the framelet of the highest batch number that covers it; of two
+/// of the same batch, the finer one. A framelet of which nothing shows is dropped, so that at most one framelet is held
+/// for each 4x4 pixels of the viewport. Cameras make no difference to that: pixels are those of each framelet's own
+/// image plane, since the newest camera is never far from the one that is displayed, and the only framelet that covers
+/// a pixel is never dropped.
 ///
 /// At most 2.1 KB are held for each 4x4 pixels (121 MB at 1280x720), whatever the batches bring.
 /// What has changed is reported in blocks of 16x16 pixels, aligned to the picture's corner, and counted by tile.
@@ -197,7 +197,7 @@ private:
     bool insert_one(DisplayFramelet const& framelet, FrameletShape const* shape, Moment const& moment,
                     std::uint32_t view);
     bool take_one(CachedFramelet const& framelet, std::uint32_t view);
-    CachedFramelet* make_place(Tile tile, Moment const& moment, std::uint32_t view);
+    CachedFramelet* make_slot(Tile tile, Moment const& moment, std::uint32_t view);
     void note_placed(CachedFramelet const& cached);
     std::uint32_t view_of(std::uint64_t number, Camera const& camera, SceneTime scene_time);
     bool is_hidden(int depth, int column, int row, std::uint64_t batch) const;

@@ -35,7 +35,7 @@ public:
     /// Takes a batch as `FrameletCache::insert` does. `motions`: of bodies about the batch's scene time; what is at
     /// rest by them is held with what stands, where it replaces what shows the same. `begins_moments`: a moment begins
     /// where the camera is another than the last batch's, and where something moves in front of the same one. Where it
-    /// is false, as for samples that are not to be moved, the newest of each place are held, whatever their cameras and
+    /// is false, as for samples that are not to be moved, the newest of each tile are held, whatever their cameras and
     /// times.
     std::size_t insert(Batch const& batch, BodyMotions const& motions, bool begins_moments = true);
 
@@ -43,7 +43,7 @@ public:
     bool begins_moment(Batch const& batch, BodyMotions const& motions) const;
 
     /// Moves all that the newest camera saw to its base, since it is of one moment by now: the newest framelets of each
-    /// place are held there, as if all its batches had been inserted there.
+    /// tile are held there, as if all its batches had been inserted there.
     void settle();
 
     /// The caches by slot.

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t side = framelet_side;
 
-/// Number of outliers for which room is kept for the next framelet of a place.
+/// Number of outliers for which room is kept for the next framelet of a tile.
 constexpr std::size_t most_spare_outliers = 16;
 
 /// Inverse depths that differ by more than this share are of different surfaces.
@@ -23,7 +23,7 @@ constexpr float clearly = 0.02f;
 using Samples = std::array<PackedSample, framelet_samples>;
 
 /// The index in rows of each sample in Morton order.
-constexpr auto row_places = [] {
+constexpr auto row_indices = [] {
     std::array<std::uint8_t, framelet_samples> out{};
     for (std::uint32_t i = 0; i < framelet_samples; ++i) {
         out[i] = static_cast<std::uint8_t>(framelet_side * morton_y(i) + morton_x(i));
@@ -47,7 +47,7 @@ void pack_rows(DisplayFramelet const& framelet, FrameletShape const* shape, Samp
     }
     // Samples 2i and 2i + 1 are neighbours.
     for (std::size_t i = 0; i < framelet_samples; i += 2) {
-        std::memcpy(&rows[row_places[i]], &morton[i], 2 * sizeof(PackedSample));
+        std::memcpy(&rows[row_indices[i]], &morton[i], 2 * sizeof(PackedSample));
     }
 }
 
@@ -56,12 +56,12 @@ void hold_outliers(FrameletShape const& shape, std::vector<HeldOutlier>& outlier
         FRAMELET_CHECK(shape.layer_of[i] < shape.layer_count || shape.layer_of[i] == FrameletShape::outlier);
         if (shape.layer_of[i] == FrameletShape::outlier) {
             FRAMELET_CHECK(outliers.size() < shape.outliers.size());
-            outliers.push_back({shape.outliers[outliers.size()], row_places[i]});
+            outliers.push_back({shape.outliers[outliers.size()], row_indices[i]});
         }
     }
     FRAMELET_CHECK(outliers.size() == shape.outliers.size());
     std::sort(outliers.begin(), outliers.end(),
-              [](HeldOutlier const& a, HeldOutlier const& b) { return a.place < b.place; });
+              [](HeldOutlier const& a, HeldOutlier const& b) { return a.index < b.index; });
 }
 
 using ReducedSamples = std::array<PackedSample, framelet_samples / 4>;
@@ -125,7 +125,7 @@ void reduce_outliers(std::size_t n, ReducedSamples const& reduced, std::vector<H
     std::size_t const pixels = side / n;
     std::array<HeldOutlier const*, framelet_samples> nearest{};
     for (HeldOutlier const& one : outliers) {
-        HeldOutlier const*& best = nearest[one.place / side / n * pixels + one.place % side / n];
+        HeldOutlier const*& best = nearest[one.index / side / n * pixels + one.index % side / n];
         if (best == nullptr || one.sample.inverse_depth > best->sample.inverse_depth) {
             best = &one;
         }

@@ -29,7 +29,7 @@ constexpr std::uint32_t layer_of(PackedSample sample) {
     return sample >> 24;
 }
 
-/// A bit for each number that samples of a grid may have in place of a layer's.
+/// A bit for each number that samples of a grid may have instead of a layer's.
 using LayerSet = std::array<std::uint32_t, 8>;
 
 /// A layer and the columns and rows of the moving grid between which its samples lie, last ones included; empty
@@ -45,7 +45,7 @@ struct HeldLayer {
 /// An outlier of the moving grid.
 struct HeldOutlier {
     Outlier sample;
-    std::uint8_t place = 0; ///< index in the grid, in rows
+    std::uint8_t index = 0; ///< in the grid, in rows
 };
 
 struct HeldShape {

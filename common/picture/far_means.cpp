@@ -30,7 +30,7 @@ FarMean known_mean(std::array<float, 4> const& weights, std::array<FarMean const
 } // namespace
 
 FarMean far_mean(WarpedBlock const& block) {
-    FarGrid<4> fours;
+    FarGrid<4> level2;
     if (block.holes == 0) {
         // Columns 1, 5, 9, 13 of rows 1, 5, 9, 13, two rows at a time.
         auto const pick = [](std::array<float, WarpedBlock::pixels> const& plane, std::size_t row) {
@@ -44,10 +44,10 @@ FarMean far_mean(WarpedBlock const& block) {
         for (std::size_t half = 0; half < 2; ++half) {
             FloatLanes const depth = pick(block.inverse_depth, 8 * half + 1);
             IntLanes const shows = depth > hole_depth; // it may be outside of the viewport
-            store_lanes(shows ? pick(block.squares[0], 8 * half + 1) : zero, &fours.red[8 * half]);
-            store_lanes(shows ? pick(block.squares[1], 8 * half + 1) : zero, &fours.green[8 * half]);
-            store_lanes(shows ? pick(block.squares[2], 8 * half + 1) : zero, &fours.blue[8 * half]);
-            store_lanes(shows ? depth : zero + FarMean::nothing, &fours.inverse_depth[8 * half]);
+            store_lanes(shows ? pick(block.squares[0], 8 * half + 1) : zero, &level2.red[8 * half]);
+            store_lanes(shows ? pick(block.squares[1], 8 * half + 1) : zero, &level2.green[8 * half]);
+            store_lanes(shows ? pick(block.squares[2], 8 * half + 1) : zero, &level2.blue[8 * half]);
+            store_lanes(shows ? depth : zero + FarMean::nothing, &level2.inverse_depth[8 * half]);
         }
     } else {
         FarGrid<16> whole;
@@ -57,15 +57,15 @@ FarMean far_mean(WarpedBlock const& block) {
         for (std::size_t i = 0; i < WarpedBlock::pixels; ++i) {
             whole.inverse_depth[i] = block.inverse_depth[i] > hole_depth ? block.inverse_depth[i] : FarMean::nothing;
         }
-        FarGrid<8> eights;
-        pull(whole, eights);
-        pull(eights, fours);
+        FarGrid<8> level1;
+        pull(whole, level1);
+        pull(level1, level2);
     }
-    FarGrid<2> twos;
-    FarGrid<1> one;
-    pull(fours, twos);
-    pull(twos, one);
-    return mean_at(one, 0);
+    FarGrid<2> level3;
+    FarGrid<1> level4;
+    pull(level2, level3);
+    pull(level3, level4);
+    return mean_at(level4, 0);
 }
 
 FarMean const& FarMeans::Level::at(int column, int row) const {

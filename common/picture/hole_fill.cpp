@@ -124,9 +124,9 @@ void read_block(std::span<float const> inverse_depth, Picture const& picture, in
 /// Cells of a block outside of the picture.
 FarCells const no_cells = [] {
     FarCells out{};
-    out.twos.inverse_depth.fill(FarMean::nothing);
-    out.fours.inverse_depth.fill(FarMean::nothing);
-    out.eights.inverse_depth.fill(FarMean::nothing);
+    out.level1.inverse_depth.fill(FarMean::nothing);
+    out.level2.inverse_depth.fill(FarMean::nothing);
+    out.level3.inverse_depth.fill(FarMean::nothing);
     return out;
 }();
 
@@ -196,10 +196,10 @@ std::uint32_t byte_of(float square) {
 }
 
 /// Writes the holes of a block from the means of 2x2 pixels around it.
-void write_holes(FarGrid<16> const& twos, std::span<float const> inverse_depth, int left, int top, Picture& picture) {
+void write_holes(FarGrid<16> const& level1, std::span<float const> inverse_depth, int left, int top, Picture& picture) {
     auto const parent = [](int i) { return i / 2 + 4; };
     auto const other = [](int i) { return i / 2 + 4 + (i % 2 == 0 ? -1 : 1); };
-    Pushed<16, 16> const pushed(twos, 0, block_side - 1, parent, other);
+    Pushed<16, 16> const pushed(level1, 0, block_side - 1, parent, other);
     std::uint32_t const gray = srgb_byte_from_linear(uncovered_light);
     std::uint32_t const uncovered = picture_pixel(gray, gray, gray);
     int const width = std::min(block_side, picture.width - left);
@@ -235,9 +235,9 @@ FarCells far_cells(std::span<float const> inverse_depth, Picture const& picture,
     FarGrid<16> pixels;
     FarCells out;
     read_block(inverse_depth, picture, column * block_side, row * block_side, pixels);
-    pull(pixels, out.twos);
-    pull(out.twos, out.fours);
-    pull(out.fours, out.eights);
+    pull(pixels, out.level1);
+    pull(out.level1, out.level2);
+    pull(out.level2, out.level3);
     return out;
 }
 
@@ -245,26 +245,26 @@ void fill_holes(FarMeans const& means, std::span<FarCells const> cells, std::spa
                 int column, int row, Picture& picture) {
     CellsAround const around{cells, (picture.width + block_side - 1) / block_side,
                              (picture.height + block_side - 1) / block_side, column, row};
-    FarGrid<16> twos;
-    read_window<3>(around, &FarCells::twos, twos);
-    if (has_nothing<3>(twos)) {
-        FarGrid<8> fours;
-        FarGrid<4> eights;
+    FarGrid<16> level1;
+    read_window<3>(around, &FarCells::level1, level1);
+    if (has_nothing<3>(level1)) {
+        FarGrid<8> level2;
+        FarGrid<4> level3;
         FarGrid<3> blocks;
-        read_window<1>(around, &FarCells::fours, fours);
-        read_window<0>(around, &FarCells::eights, eights);
+        read_window<1>(around, &FarCells::level2, level2);
+        read_window<0>(around, &FarCells::level3, level3);
         for (int y = 0; y < 3; ++y) {
             for (int x = 0; x < 3; ++x) {
                 put(means.at(column + x - 1, row + y - 1), static_cast<std::size_t>(y * 3 + x), blocks);
             }
         }
         push<0>(
-            blocks, eights, [](int i) { return (i + 1) / 2; },
+            blocks, level3, [](int i) { return (i + 1) / 2; },
             [](int i) { return (i + 1) / 2 + (i % 2 == 0 ? 1 : -1); });
-        push<1>(eights, fours);
-        push<3>(fours, twos);
+        push<1>(level3, level2);
+        push<3>(level2, level1);
     }
-    write_holes(twos, inverse_depth, column * block_side, row * block_side, picture);
+    write_holes(level1, inverse_depth, column * block_side, row * block_side, picture);
 }
 
 } // namespace framelet

@@ -12,11 +12,12 @@
 
 namespace framelet {
 
-/// The mean of the farthest in each 2x2, 4x4 and 8x8 pixels of a block, from which the holes beside it are filled.
+/// The mean of the farthest in each 2x2 (`level1`), 4x4 and 8x8 pixels of a block, from which the holes beside it are
+/// filled.
 struct FarCells {
-    FarGrid<8> twos;
-    FarGrid<4> fours;
-    FarGrid<2> eights;
+    FarGrid<8> level1;
+    FarGrid<4> level2;
+    FarGrid<2> level3;
 };
 
 /// The cells of one block of a picture, of which holes are those pixels whose `inverse_depth` (a plane of its size) is

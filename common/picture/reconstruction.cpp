@@ -125,36 +125,37 @@ Neighbourhood<spacing> gather(TransferTables const& tables, FrameletCache const&
 
 /// The samples of a neighbourhood between which the pixels of a block's row (or column) lie.
 template <int spacing>
-struct Places {
+struct Taps {
     std::array<int, side> index{};
     std::array<float, side> weight{}; ///< of the sample after
 
-    constexpr Places() {
+    constexpr Taps() {
         for (int i = 0; i < side; ++i) {
-            float const place = (static_cast<float>(i) + 0.5f) / spacing + 0.5f; // sample 0 is half a spacing outside
-            index[static_cast<std::size_t>(i)] = static_cast<int>(place);
-            weight[static_cast<std::size_t>(i)] = place - static_cast<float>(static_cast<int>(place));
+            float const position =
+                (static_cast<float>(i) + 0.5f) / spacing + 0.5f; // sample 0 is half a spacing outside
+            index[static_cast<std::size_t>(i)] = static_cast<int>(position);
+            weight[static_cast<std::size_t>(i)] = position - static_cast<float>(static_cast<int>(position));
         }
     }
 };
 
 template <int spacing>
 void interpolate(TransferTables const& tables, Neighbourhood<spacing> const& samples, Block& block) {
-    static constexpr Places<spacing> places;
+    static constexpr Taps<spacing> taps;
     constexpr std::size_t across = Neighbourhood<spacing>::across;
     std::array<std::array<std::array<float, side>, across>, 3> wide; // as wide as the block, as high as the samples
     for (std::size_t color = 0; color < 3; ++color) {
         for (std::size_t row = 0; row < across; ++row) {
             auto const& from = samples.planes[color][row];
             for (std::size_t i = 0; i < side; ++i) {
-                auto const at = static_cast<std::size_t>(places.index[i]);
-                wide[color][row][i] = from[at] + places.weight[i] * (from[at + 1] - from[at]);
+                auto const at = static_cast<std::size_t>(taps.index[i]);
+                wide[color][row][i] = from[at] + taps.weight[i] * (from[at + 1] - from[at]);
             }
         }
     }
     for (std::size_t y = 0; y < side; ++y) {
-        auto const row = static_cast<std::size_t>(places.index[y]);
-        float const weight = places.weight[y];
+        auto const row = static_cast<std::size_t>(taps.index[y]);
+        float const weight = taps.weight[y];
         std::array<std::array<std::int32_t, side>, 3> steps;
         for (std::size_t color = 0; color < 3; ++color) {
             auto const& above = wide[color][row];

@@ -44,14 +44,14 @@ bool is_infinitely_far(float inverse_depth) {
 } // namespace
 
 std::optional<Vec3> find_shown_point(FrameletPool const& pool, Camera const& camera, SceneTime scene_time,
-                                     BodyMotions const& motions, Vec2 place) {
+                                     BodyMotions const& motions, Vec2 position) {
     Viewport const viewport = pool.plane().viewport();
-    if (!(place.x >= 0 && place.x < static_cast<float>(viewport.width) && place.y >= 0 &&
-          place.y < static_cast<float>(viewport.height))) {
+    if (!(position.x >= 0 && position.x < static_cast<float>(viewport.width) && position.y >= 0 &&
+          position.y < static_cast<float>(viewport.height))) {
         return std::nullopt;
     }
-    auto const x = static_cast<int>(place.x);
-    auto const y = static_cast<int>(place.y);
+    auto const x = static_cast<int>(position.x);
+    auto const y = static_cast<int>(position.y);
     PoolPlan plan(pool, camera, scene_time, motions);
     std::vector<PatchView> patches;
     WarpedBlock block;
@@ -61,8 +61,8 @@ std::optional<Vec3> find_shown_point(FrameletPool const& pool, Camera const& cam
         return std::nullopt;
     }
     ViewRays const rays = make_view_rays(camera, viewport);
-    Vec3 const origin = rays.origin + place.x * rays.origin_dx + place.y * rays.origin_dy;
-    Vec3 const direction = rays.direction + place.x * rays.direction_dx + place.y * rays.direction_dy;
+    Vec3 const origin = rays.origin + position.x * rays.origin_dx + position.y * rays.origin_dy;
+    Vec3 const direction = rays.direction + position.x * rays.direction_dx + position.y * rays.direction_dy;
     return origin + direction / inverse_depth;
 }
 

@@ -1,5 +1,5 @@
 // Finds what point of the world a pixel of the picture shows, and how deep all pixels are. In: pool, display camera and
-// time, motions of bodies, a place in the picture. Out: the point, where one is known; depths.
+// time, motions of bodies, a position in the picture. Out: the point, where one is known; depths.
 #pragma once
 
 #include <optional>
@@ -10,12 +10,12 @@
 
 namespace framelet {
 
-/// The point that shows at `place` (pixel coordinates) of the picture that `Reprojector::show` would show if the camera
-/// has not cut. In a hole it is what its nearest neighbour shows, a few pixels away at most. Nothing outside of the
-/// picture, where nothing is held, and where what shows is infinitely far. Plans the whole picture: for a click, not
-/// for every picture.
+/// The point that shows at `position` (pixel coordinates) of the picture that `Reprojector::show` would show if the
+/// camera has not cut. In a hole it is what its nearest neighbour shows, a few pixels away at most. Nothing outside of
+/// the picture, where nothing is held, and where what shows is infinitely far. Plans the whole picture: for a click,
+/// not for every picture.
 std::optional<Vec3> find_shown_point(FrameletPool const& pool, Camera const& camera, SceneTime scene_time,
-                                     BodyMotions const& motions, Vec2 place);
+                                     BodyMotions const& motions, Vec2 position);
 
 /// The depths of all pixels of such a picture, metres along the camera's forward axis; infinite where what shows is
 /// infinitely far, 0 where it is not known. Empty where nothing is known to be at a finite depth: nothing is held, all

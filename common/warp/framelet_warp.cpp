@@ -45,7 +45,7 @@ private:
 std::uint64_t signature_of(WarpPatch const& patch, std::uint64_t content, std::span<Splat const> splats) {
     Signature out;
     out.add(content);
-    out.add(std::uint64_t{patch.place} << 32 | static_cast<std::uint32_t>(patch.side));
+    out.add(std::uint64_t{patch.tile_layer} << 32 | static_cast<std::uint32_t>(patch.side));
     out.add(patch.at[0], patch.at[1]);
     out.add(patch.dx[0], patch.dx[1]);
     out.add(patch.dy[0], patch.dy[1]);
@@ -102,14 +102,14 @@ void FrameletWarp::add(CachedFramelet const& framelet, unsigned parts, std::vect
         patch.layer = i;
         patch.ends_before[0] = shape.layers[i].ends_before;
         patch.has_ends = patch.ends_before[0] != 0;
-        patch.place = framelet.tile.code * 4 + i;
+        patch.tile_layer = framelet.tile.code * 4 + i;
         add_layer(framelet.view, shape.layers[i], shape.decorrelation, framelet.moment.batch, patch, patches);
     }
     if ((parts >> FrameletShape::outlier & 1) != 0 && !shape.outliers.empty()) {
         common.is_outlier = true;
         common.layer = FrameletShape::outlier;
         common.worn = worn(framelet.view, shape.decorrelation, static_cast<float>(spacing_), 0);
-        common.place = framelet.tile.code * 4 + FrameletShape::outlier;
+        common.tile_layer = framelet.tile.code * 4 + FrameletShape::outlier;
         common.first_splat = static_cast<std::uint32_t>(splats.size());
         add_splats(framelet, common, splats);
         common.splats = static_cast<std::uint32_t>(splats.size()) - common.first_splat;
@@ -132,7 +132,7 @@ void FrameletWarp::add(MergedLayer const& merged, std::vector<WarpPatch>& patche
     patch.ends_before = merged.ends_before;
     patch.has_ends = std::ranges::any_of(merged.ends_before, [](std::uint32_t bits) { return bits != 0; });
     patch.occupied = merged.occupied;
-    patch.place = merged.first.code * 4 + merged.first_layer;
+    patch.tile_layer = merged.first.code * 4 + merged.first_layer;
     rect_ = cache_.plane().tile_rect(merged.tile);
     spacing_ = static_cast<double>(rect_.width()) / merged.side;
     add_layer(merged.view, merged.layer, merged.decorrelation, merged.signature, patch, patches);
@@ -144,7 +144,7 @@ void FrameletWarp::add_layer(std::uint32_t view, HeldLayer const& layer, Decorre
         return;
     }
     turn_to(view, layer.layer.body, layer.layer.velocity);
-    if ((is_still_ ? place_still(layer, patch) : place(layer, patch)) && is_usable(patch)) {
+    if ((is_still_ ? project_still(layer, patch) : project(layer, patch)) && is_usable(patch)) {
         rate(view, decorrelation, layer.layer, patch);
         patch.signature = signature_of(patch, content, {});
         patches.push_back(patch);
@@ -184,7 +184,7 @@ void FrameletWarp::rate(std::uint32_t view, DecorrelationCode decorrelation, Lay
     float const area = ux * vy - uy * vx;
     float const least = 0.5f * (squares - std::sqrt(std::max(squares * squares - 4 * area * area, 0.0f)));
     float const spacing = 1 / std::sqrt(std::max(least, 1e-6f));
-    // Pixels by which its samples may be shown off their places: their inverse depths are not quite the plane's.
+    // Pixels by which its samples may be shown off their positions: their inverse depths are not quite the plane's.
     glm::dvec2 const middle = 0.5 * glm::dvec2(patch.box.left + patch.box.right, patch.box.top + patch.box.bottom);
     float const misplaced = is_still_ ? 0 : layer.error * z * parallax_at(middle);
     patch.worn = worn(view, decorrelation, spacing, misplaced);
@@ -263,7 +263,7 @@ glm::dvec2 FrameletWarp::high(HeldLayer const& layer) const {
     return spacing_ * (glm::dvec2(layer.last_column, layer.last_row) + 1.5);
 }
 
-bool FrameletWarp::place_still(HeldLayer const& held, WarpPatch& patch) const {
+bool FrameletWarp::project_still(HeldLayer const& held, WarpPatch& patch) const {
     glm::dvec2 const corner(rect_.left, rect_.top);
     glm::dmat3 to_display(1);
     to_display[2] = glm::dvec3(corner, 1);
@@ -283,7 +283,7 @@ bool FrameletWarp::place_still(HeldLayer const& held, WarpPatch& patch) const {
     return true;
 }
 
-bool FrameletWarp::place(HeldLayer const& held, WarpPatch& patch) const {
+bool FrameletWarp::project(HeldLayer const& held, WarpPatch& patch) const {
     auto const plane = make_plane_transform(transform_, held.layer, {rect_.left, rect_.top});
     if (!plane) {
         return false;
@@ -325,8 +325,8 @@ void FrameletWarp::add_splats(CachedFramelet const& framelet, WarpPatch& patch, 
         turn_to(framelet.view, outlier.sample.body, outlier.sample.velocity);
         still = still && is_still_;
         double const w = std::max(static_cast<double>(outlier.sample.inverse_depth), 0.0);
-        glm::dvec3 const at = transform_.map(rect_.left + (outlier.place % patch.side + 0.5) * spacing_,
-                                             rect_.top + (outlier.place / patch.side + 0.5) * spacing_, w);
+        glm::dvec3 const at = transform_.map(rect_.left + (outlier.index % patch.side + 0.5) * spacing_,
+                                             rect_.top + (outlier.index / patch.side + 0.5) * spacing_, w);
         if (!(at.z > nearest)) {
             continue;
         }
@@ -341,7 +341,7 @@ void FrameletWarp::add_splats(CachedFramelet const& framelet, WarpPatch& patch, 
             continue;
         }
         splats.push_back({static_cast<float>(x), static_cast<float>(y), static_cast<float>(inverse_depth),
-                          static_cast<float>(spacing), patch.grid[outlier.place]});
+                          static_cast<float>(spacing), patch.grid[outlier.index]});
         left = std::min(left, x - spacing);
         top = std::min(top, y - spacing);
         right = std::max(right, x + spacing);

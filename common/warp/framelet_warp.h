@@ -53,8 +53,8 @@ private:
     void rate(std::uint32_t view, DecorrelationCode decorrelation, Layer const& layer, WarpPatch& patch);
     /// Pixels by which what is shown at a pixel at depth 1 moves for each 1 / metre.
     float parallax_at(glm::dvec2 pixel) const;
-    bool place_still(HeldLayer const& held, WarpPatch& patch) const;
-    bool place(HeldLayer const& held, WarpPatch& patch) const;
+    bool project_still(HeldLayer const& held, WarpPatch& patch) const;
+    bool project(HeldLayer const& held, WarpPatch& patch) const;
     void set_maps(PlaneTransform const& plane, WarpPatch& patch) const;
     void add_splats(CachedFramelet const& framelet, WarpPatch& patch, std::vector<Splat>& splats);
 

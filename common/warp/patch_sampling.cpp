@@ -153,7 +153,7 @@ bool is_inside(WarpPatch const& patch, float x, float y, int rows) {
           y + static_cast<float>(rows) <= static_cast<float>(patch.box.height()))) {
         return false;
     }
-    // Places in the grid of the four outermost pixels.
+    // Positions in the grid of the four outermost pixels.
     using Four = float __attribute__((vector_size(16)));
     auto const right = static_cast<float>(wide_columns - 1);
     auto const below = static_cast<float>(rows - 1);

@@ -1,5 +1,5 @@
 // Interpolates the samples of a layer at a few pixels of some rows, bilinearly between those that lie on the layer. In:
-// a patch, a place in the picture. Out: weighted sums that compete for the pixels.
+// a patch, pixels of the picture. Out: weighted sums that compete for the pixels.
 #pragma once
 
 #include <array>

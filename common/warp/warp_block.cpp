@@ -31,7 +31,7 @@ struct Layers {
 };
 
 /// Index of a pixel in `Layers`.
-constexpr std::size_t place_of(int x, int y) {
+constexpr std::size_t index_of(int x, int y) {
     return static_cast<std::size_t>(x / wide_columns * (wide_columns * side) + y * wide_columns + x % wide_columns);
 }
 
@@ -82,7 +82,7 @@ bool is_hidden(WarpPatch const& patch, float x, float y, int column, int first_r
     WideFloats depth = (patch.inverse_depth + from_top * patch.inverse_depth_dy) + from_left * patch.inverse_depth_dx;
     WideInts shows{};
     for (int i = 0; i < count; ++i) {
-        std::size_t const at = place_of(column, first_row + i * wide_rows);
+        std::size_t const at = index_of(column, first_row + i * wide_rows);
         WideFloats const hiding = (1 + rounding - same_surface) * depth - patch.tolerance;
         shows |= ~load_lanes<WideInts>(&layers.is_firm[at]) |
                  (load_lanes<WideFloats>(&layers.inverse_depth[at]) < hiding) |
@@ -124,7 +124,7 @@ bool paint_layer(WarpPatch const& patch, int left, int top, Layers& layers) {
         }
         for (int i = 0; i < count; ++i) {
             shows |= merge(column[static_cast<std::size_t>(i)], patch.group, patch.tolerance,
-                           place_of(x, first_row + i * wide_rows), patch.has_ends, layers);
+                           index_of(x, first_row + i * wide_rows), patch.has_ends, layers);
         }
     }
     return shows;
@@ -159,7 +159,7 @@ WideFloats tent(WideFloats distance, float scale) {
 /// splat adds up with: most of the splat is hidden then.
 bool is_hidden(Splat const& splat, std::int32_t group, float x, float y, Layers const& layers) {
     auto const pixel = [](float at) { return static_cast<int>(std::clamp(at + 0.5f, 0.0f, side - 1.0f)); };
-    std::size_t const at = place_of(pixel(x), pixel(y));
+    std::size_t const at = index_of(pixel(x), pixel(y));
     return layers.is_firm[at] != 0 && layers.group[at] != group &&
            layers.inverse_depth[at] >= (1 - same_surface) * splat.inverse_depth;
 }
@@ -190,7 +190,7 @@ bool paint_splat(Splat const& splat, std::int32_t group, int left, int top, Laye
             some.blue = some.weight * square(blue_of(splat.sample));
             some.inverse_depth = zero + splat.inverse_depth;
             some.is_firm = some.weight >= firm_tent;
-            shows |= merge(some, group, 0, place_of(from, j), false, layers);
+            shows |= merge(some, group, 0, index_of(from, j), false, layers);
         }
     }
     return shows;
@@ -227,7 +227,7 @@ void finish(Layers const& layers, int width, int height, WarpedBlock& block) {
     WideInts holes{};
     for (int x = 0; x < side; x += wide_columns) {
         for (int y = 0; y < side; y += wide_rows) {
-            std::size_t const i = place_of(x, y);
+            std::size_t const i = index_of(x, y);
             WideFloats const weight = load_lanes<WideFloats>(&layers.weight[i]);
             WideInts const shows = weight > 0;
             WideFloats const scale = shows ? 1 / weight : zero;

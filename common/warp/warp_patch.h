@@ -52,7 +52,7 @@ struct WarpPatch {
     std::uint64_t occupied = ~std::uint64_t{0};
     std::int32_t group = 0; ///< its samples are interpolated with others of the same group
     std::uint32_t first_splat = 0, splats = 0; ///< of outliers, among those of its square
-    std::uint32_t place = 0; ///< by tile and layer: orders patches of one batch
+    std::uint32_t tile_layer = 0; ///< by tile code, then layer: orders patches of one batch
     std::uint32_t square = 0; ///< number of its square in the plan, as `WarpPlan::square_grid` counts them
     std::uint64_t batch = 0;
     std::uint64_t signature = 0; ///< differs where what is painted may differ

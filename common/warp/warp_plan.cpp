@@ -13,11 +13,11 @@ namespace framelet {
 
 namespace {
 
-/// Largest number of patches of a square: what is merged takes the place of two layers or more.
+/// Largest number of patches of a square: what is merged replaces two layers or more.
 constexpr std::uint32_t patches_per_square = MergedSquare::most_children * (max_layers + 1);
 constexpr int block_side = FrameletCache::block_side;
 
-/// Largest distance, pixels, by which merging may show a sample off its place.
+/// Largest distance, pixels, by which merging may show a sample off its position.
 constexpr double merging_pixels = 1.0 / 16;
 
 /// The blocks that a box which is not empty touches.
@@ -54,7 +54,7 @@ std::uint64_t rank_of(WarpPatch const& patch) {
 
 bool is_before(WarpPatch const& a, WarpPatch const& b) {
     std::uint64_t const rank = rank_of(a), other = rank_of(b);
-    return rank != other ? rank < other : a.place < b.place;
+    return rank != other ? rank < other : a.tile_layer < b.tile_layer;
 }
 
 } // namespace
@@ -73,7 +73,7 @@ void WarpPlan::Square::clear() {
     }
     patches.clear();
     splats.clear();
-    places.clear();
+    framelets.clear();
 }
 
 void WarpPlan::Square::note_number(std::uint32_t number) {
@@ -86,7 +86,7 @@ void WarpPlan::Square::give_back_room() {
     merged = {};
     patches = std::vector<WarpPatch>();
     splats = std::vector<Splat>();
-    places = std::vector<std::uint64_t>();
+    framelets = std::vector<std::uint64_t>();
     shows = std::vector<std::uint8_t>();
 }
 
@@ -192,7 +192,7 @@ bool WarpPlan::add_merged(MergedLayer const& merged, FrameletWarp& warp, Square&
         return false;
     }
     warp.add(merged, square.patches);
-    square.note_places(merged.parts[0] | merged.parts[1] | merged.parts[2]);
+    square.note_framelets(merged.parts[0] | merged.parts[1] | merged.parts[2]);
     return true;
 }
 
@@ -224,13 +224,13 @@ void WarpPlan::plan(Square& square, bool outliers, FrameletWarp& warp) {
     std::span<MergedSquare::Child const> const children = square.merged.children();
     for (std::uint64_t left = alone[0] | alone[1] | alone[2] | (outliers ? square.merged.children_with_outliers() : 0);
          left != 0; left &= left - 1) {
-        auto const place = static_cast<std::size_t>(std::countr_zero(left));
-        unsigned parts = outliers && children[place].has_outliers ? 1u << FrameletShape::outlier : 0u;
+        auto const index = static_cast<std::size_t>(std::countr_zero(left));
+        unsigned parts = outliers && children[index].has_outliers ? 1u << FrameletShape::outlier : 0u;
         for (std::size_t k = 0; k < max_layers; ++k) {
-            parts |= static_cast<unsigned>(alone[k] >> place & 1) << k;
+            parts |= static_cast<unsigned>(alone[k] >> index & 1) << k;
         }
-        warp.add(*children[place].framelet, parts, square.patches, square.splats);
-        square.note_places(std::uint64_t{1} << place);
+        warp.add(*children[index].framelet, parts, square.patches, square.splats);
+        square.note_framelets(std::uint64_t{1} << index);
     }
 }
 
@@ -316,7 +316,7 @@ void WarpPlan::add_shown(std::vector<Tile>& tiles) const {
         Square const& square = squares_[index];
         for (std::size_t i = 0; i < square.shows.size(); ++i) {
             if (square.shows[i] != 0) {
-                for (std::uint64_t left = square.places[i]; left != 0; left &= left - 1) {
+                for (std::uint64_t left = square.framelets[i]; left != 0; left &= left - 1) {
                     tiles.push_back(square.merged.child_tile(static_cast<std::size_t>(std::countr_zero(left))));
                 }
             }
@@ -327,12 +327,12 @@ void WarpPlan::add_shown(std::vector<Tile>& tiles) const {
 /// A framelet that is not merged has samples of its own, which are in the square's grid too, with other numbers.
 std::optional<GridPart> WarpPlan::grid_part(WarpPatch const& patch) const {
     Square const& square = squares_[patch.square];
-    if (auto const place = square.merged.place_in_grid(patch.grid)) {
-        return GridPart{place->column, place->row, patch.layer, patch.ends_before};
+    if (auto const position = square.merged.position_in_grid(patch.grid)) {
+        return GridPart{position->column, position->row, patch.layer, patch.ends_before};
     }
-    auto const place = static_cast<std::size_t>(std::countr_zero(square.places[number_of(patch)]));
-    MergedSquare::Child const& child = square.merged.children()[place];
-    auto const [column, row] = square.merged.place_of_child(place);
+    auto const index = static_cast<std::size_t>(std::countr_zero(square.framelets[number_of(patch)]));
+    MergedSquare::Child const& child = square.merged.children()[index];
+    auto const [column, row] = square.merged.position_of_child(index);
     GridPart out{column, row, child.numbers[patch.layer], {}};
     for (std::size_t k = 0; k < child.framelet->shape.layer_count; ++k) {
         std::uint32_t const number = child.numbers[k];
@@ -346,7 +346,7 @@ std::optional<GridPart> WarpPlan::grid_part(WarpPatch const& patch) const {
 
 void order(std::vector<PatchView>& patches) {
     std::ranges::sort(patches, [](PatchView const& a, PatchView const& b) {
-        return a.rank != b.rank ? a.rank < b.rank : a.patch->place < b.patch->place;
+        return a.rank != b.rank ? a.rank < b.rank : a.patch->tile_layer < b.patch->tile_layer;
     });
 }
 

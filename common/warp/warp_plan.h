@@ -18,8 +18,8 @@
 
 namespace framelet {
 
-/// The place of a patch's samples in the grid of its square: from this column and row on, with this number in place of
-/// a layer's.
+/// Where a patch's samples are in the grid of its square: from this column and row on, with this number instead of a
+/// layer's.
 struct GridPart {
     int column = 0, row = 0;
     std::uint32_t number = 0;
@@ -61,7 +61,7 @@ public:
     }
     /// The samples of a square, among which those of all its patches are.
     MergedSquare& square_grid(std::uint32_t square) { return squares_[square].merged; }
-    /// The place of a patch's samples in the grid of its square; the patch must not be of outliers. Nothing where they
+    /// Where a patch's samples are in the grid of its square; the patch must not be of outliers. Nothing where they
     /// are in the patch's own grid alone: there they are told from those of another layer, with which they are merged
     /// in the square's.
     std::optional<GridPart> grid_part(WarpPatch const& patch) const;
@@ -78,15 +78,15 @@ private:
 
         std::vector<WarpPatch> patches;
         std::vector<Splat> splats;
-        /// By patch: bits of the places of its framelets, as in `MergedLayer::parts`.
-        std::vector<std::uint64_t> places;
+        /// By patch: a bit for each of its framelets, as in `MergedLayer::parts`.
+        std::vector<std::uint64_t> framelets;
         std::vector<std::uint8_t> shows; ///< by patch: whether something of it showed when blocks were painted
 
         void clear();
         /// Frees the memory of a square of which nothing is held.
         void give_back_room();
-        /// Notes that the patches that have been added since the last call are of the framelets at these places.
-        void note_places(std::uint64_t some) { places.resize(patches.size(), some); }
+        /// Notes that the patches that have been added since the last call are of these framelets.
+        void note_framelets(std::uint64_t some) { framelets.resize(patches.size(), some); }
         /// Notes the square's number in all its patches, once all are there.
         void note_number(std::uint32_t number);
     };
@@ -99,7 +99,7 @@ private:
         bool is_empty = true; ///< has no patches
     };
 
-    /// A set of layers: bit p of word k is layer k of the framelet at place p.
+    /// A set of layers: bit p of word k is layer k of the framelet of index p.
     using LayerBits = std::array<std::uint64_t, max_layers>;
 
     WarpPatch const& patch_at(std::uint32_t entry) const;

@@ -74,7 +74,7 @@ std::span<std::uint8_t const> numbers(ByteView bytes) {
     return {reinterpret_cast<std::uint8_t const*>(bytes.data()), bytes.size()};
 }
 
-TilePosition place_of(ImagePlane const& plane, Tile tile) {
+TilePosition position_of(ImagePlane const& plane, Tile tile) {
     PixelRect const rect = plane.tile_rect(tile);
     auto const side = static_cast<unsigned>(plane.tile_side(tile));
     return {rect.left, rect.top, static_cast<std::int32_t>(std::bit_width(side | 1u)) - 1};
@@ -211,7 +211,7 @@ Bytes BatchCodec::encode_shapes(Batch const& batch, BatchModels& models) {
         RangeWriter& writer = scratch_->workers.local().shapes;
         writer.begin();
         for (std::size_t i = first; i < first + size; ++i) {
-            shapes[group].write(writer, place_of(plane, batch.framelets[i].tile), batch.shapes[i]);
+            shapes[group].write(writer, position_of(plane, batch.framelets[i].tile), batch.shapes[i]);
         }
         copy(writer.finish(), frames[group]);
     });
@@ -297,7 +297,7 @@ void BatchCodec::decode_shapes(EncodedBatch const& encoded, ImagePlane const& pl
     for_each_group(count, [&](std::size_t group, std::size_t first, std::size_t size) {
         RangeReader reader(numbers(frames[group]));
         for (std::size_t i = first; i < first + size; ++i) {
-            group_models[group].read(reader, place_of(plane, encoded.tiles[i]), shapes[i]);
+            group_models[group].read(reader, position_of(plane, encoded.tiles[i]), shapes[i]);
         }
         if (!reader.is_at_end()) {
             throw ProtocolError("the shapes of a group are longer than its framelets");

@@ -19,8 +19,8 @@ namespace {
 /// Mirror reflections of mirror reflections end in the environment.
 constexpr int mirror_bounces = 1;
 
-/// Place of a sample in its cell, [0, 1)^2.
-Vec2 place_in_cell(Seed seed, Tile tile, std::uint32_t sample) {
+/// Position of a sample in its cell, [0, 1)^2.
+Vec2 position_in_cell(Seed seed, Tile tile, std::uint32_t sample) {
     if (seed == 0) {
         return Vec2(0.5f);
     }
@@ -52,12 +52,12 @@ std::uint32_t render_framelet(RenderScene const& scene, ViewRays const& view, Im
     out.velocity.clear();
     out.reflects.reset();
     for (int first = 0; first < framelet_samples; first += lanes) {
-        auto const place = [&](int i) {
+        auto const position = [&](int i) {
             std::uint32_t const sample = static_cast<std::uint32_t>(first + i);
             Vec2 const cell(morton_x(sample), morton_y(sample));
-            return corner + (cell + place_in_cell(seed, tile, sample)) * spacing;
+            return corner + (cell + position_in_cell(seed, tile, sample)) * spacing;
         };
-        RayPacket rays = rays_through(view, place);
+        RayPacket rays = rays_through(view, position);
         trace(scene.prepared(), rays, all_lanes, footprint, mirror_bounces, traced);
         segments += traced.segments;
         for (int i = 0; i < lanes; ++i) {
@@ -93,20 +93,20 @@ std::uint64_t render_framelets(RenderScene const& scene, Camera const& camera, I
 
 namespace {
 
-/// Renders the radiance at `places`. `spacing(i)`: footprint of place i, pixels. Returns how many rays that took.
+/// Renders the radiance at `positions`. `spacing(i)`: footprint of position i, pixels. Returns how many rays that took.
 template <class Spacing>
-std::uint64_t render_places(RenderScene const& scene, ViewRays const& view, std::span<Vec2 const> places,
-                            Spacing const& spacing, std::span<Vec3> radiance) {
-    FRAMELET_CHECK(places.size() == radiance.size());
+std::uint64_t render_at(RenderScene const& scene, ViewRays const& view, std::span<Vec2 const> positions,
+                        Spacing const& spacing, std::span<Vec3> radiance) {
+    FRAMELET_CHECK(positions.size() == radiance.size());
     float const width = glm::length(view.origin_dx);
     float const slope = glm::length(view.direction_dx);
     std::atomic<std::uint64_t> segments{0};
-    std::size_t const packets = (places.size() + lanes - 1) / lanes;
+    std::size_t const packets = (positions.size() + lanes - 1) / lanes;
     tbb::parallel_for(std::size_t(0), packets, [&](std::size_t packet) {
         FlushDenormals const flush;
         std::size_t const first = packet * lanes;
-        std::size_t const count = std::min<std::size_t>(lanes, places.size() - first);
-        // Unused lanes of the last packet repeat its last place.
+        std::size_t const count = std::min<std::size_t>(lanes, positions.size() - first);
+        // Unused lanes of the last packet repeat its last position.
         auto const of_lane = [&](int i) { return first + std::min(static_cast<std::size_t>(i), count - 1); };
         Footprint footprint;
         for (int i = 0; i < lanes; ++i) {
@@ -114,7 +114,7 @@ std::uint64_t render_places(RenderScene const& scene, ViewRays const& view, std:
             footprint.slope[i] = slope * spacing(of_lane(i));
         }
         TracedPacket traced{};
-        RayPacket rays = rays_through(view, [&](int i) { return places[of_lane(i)]; });
+        RayPacket rays = rays_through(view, [&](int i) { return positions[of_lane(i)]; });
         trace(scene.prepared(), rays, all_lanes, footprint, mirror_bounces, traced);
         for (std::size_t i = 0; i < count; ++i) {
             radiance[first + i] = traced.radiance.get(static_cast<int>(i));
@@ -126,17 +126,17 @@ std::uint64_t render_places(RenderScene const& scene, ViewRays const& view, std:
 
 } // namespace
 
-std::uint64_t render_samples(RenderScene const& scene, ViewRays const& view, std::span<Vec2 const> places,
+std::uint64_t render_samples(RenderScene const& scene, ViewRays const& view, std::span<Vec2 const> positions,
                              float spacing, std::span<Vec3> radiance) {
-    return render_places(
-        scene, view, places, [spacing](std::size_t) { return spacing; }, radiance);
+    return render_at(
+        scene, view, positions, [spacing](std::size_t) { return spacing; }, radiance);
 }
 
-std::uint64_t render_samples(RenderScene const& scene, ViewRays const& view, std::span<Vec2 const> places,
+std::uint64_t render_samples(RenderScene const& scene, ViewRays const& view, std::span<Vec2 const> positions,
                              std::span<float const> spacings, std::span<Vec3> radiance) {
-    FRAMELET_CHECK(places.size() == spacings.size());
-    return render_places(
-        scene, view, places, [spacings](std::size_t i) { return spacings[i]; }, radiance);
+    FRAMELET_CHECK(positions.size() == spacings.size());
+    return render_at(
+        scene, view, positions, [spacings](std::size_t i) { return spacings[i]; }, radiance);
 }
 
 } // namespace framelet

@@ -1,4 +1,5 @@
-// Renders framelets, single samples and whole pictures. In: a prepared scene, a camera, tiles or places. Out: samples.
+// Renders framelets, single samples and whole pictures. In: a prepared scene, a camera, tiles or positions. Out:
+// samples.
 #pragma once
 
 #include <cstdint>
@@ -23,13 +24,13 @@ std::uint64_t render_framelets(RenderScene const& scene, Camera const& camera, I
 std::uint32_t render_framelet(RenderScene const& scene, ViewRays const& rays, ImagePlane const& plane, Tile tile,
                               Seed seed, Framelet& out);
 
-/// Renders scene-linear radiance at any places of the image plane (pixels), each of a footprint of `spacing` pixels,
-/// into `radiance` (same length). Places that follow each other are traced together: neighbours are cheaper. Parallel;
-/// returns how many rays that took.
-std::uint64_t render_samples(RenderScene const& scene, ViewRays const& rays, std::span<Vec2 const> places,
+/// Renders scene-linear radiance at any positions of the image plane (pixels), each of a footprint of `spacing` pixels,
+/// into `radiance` (same length). Positions that follow each other are traced together: neighbours are cheaper.
+/// Parallel; returns how many rays that took.
+std::uint64_t render_samples(RenderScene const& scene, ViewRays const& rays, std::span<Vec2 const> positions,
                              float spacing, std::span<Vec3> radiance);
-/// The same with a footprint for each place.
-std::uint64_t render_samples(RenderScene const& scene, ViewRays const& rays, std::span<Vec2 const> places,
+/// The same with a footprint for each position.
+std::uint64_t render_samples(RenderScene const& scene, ViewRays const& rays, std::span<Vec2 const> positions,
                              std::span<float const> spacings, std::span<Vec3> radiance);
 
 /// Renders the whole picture by the same renderer without tiling, wire or cache: `samples_per_side`^2 samples a pixel

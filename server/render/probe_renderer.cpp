@@ -6,14 +6,15 @@ namespace framelet {
 
 std::uint64_t ProbeRenderer::render(RenderScene const& scene, Camera const& camera, Viewport viewport, float exposure,
                                     std::span<Probe const> probes) {
-    places_.clear();
+    positions_.clear();
     spacings_.clear();
     for (Probe const& probe : probes) {
-        places_.push_back(probe.position);
+        positions_.push_back(probe.position);
         spacings_.push_back(probe.spacing);
     }
     radiance_.resize(probes.size());
-    std::uint64_t const rays = render_samples(scene, make_view_rays(camera, viewport), places_, spacings_, radiance_);
+    std::uint64_t const rays =
+        render_samples(scene, make_view_rays(camera, viewport), positions_, spacings_, radiance_);
     luma_.clear();
     for (Vec3 const& light : radiance_) {
         luma_.push_back(display_luma(light, exposure));

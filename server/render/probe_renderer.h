@@ -19,7 +19,7 @@ public:
     std::vector<float> const& luma() const { return luma_; }
 
 private:
-    std::vector<Vec2> places_;
+    std::vector<Vec2> positions_;
     std::vector<float> spacings_;
     std::vector<Vec3> radiance_;
     std::vector<float> luma_;

@@ -12,14 +12,14 @@
 namespace framelet {
 namespace {
 
-/// Number of places along a side of a packet.
+/// Number of rays along a side of a packet.
 constexpr int packet_side = 4;
 static_assert(packet_side * packet_side == lanes);
 
-/// Traces 4x4 neighbouring places; gives their inverse depths.
-template <class Place>
-void look(PreparedScene const& scene, ViewRays const& view, Place&& place, LaneFloats& inverse_depth) {
-    RayPacket const rays = rays_through(view, place);
+/// Traces 4x4 neighbouring rays; gives their inverse depths.
+template <class Position>
+void look(PreparedScene const& scene, ViewRays const& view, Position&& position, LaneFloats& inverse_depth) {
+    RayPacket const rays = rays_through(view, position);
     HitPacket hits{};
     LaneMask const hit = scene.bvh.intersect(rays, all_lanes, EmbreeScene::Behind::stops, hits);
     inverse_depth.fill(0);
@@ -49,7 +49,7 @@ std::uint64_t render_visibility(RenderScene const& scene, ViewRays const& view, 
         FlushDenormals const flush;
         int const top = band * packet_side;
         for (int left = 0; left < columns; left += packet_side) {
-            // Unused lanes of the last packets repeat their last places.
+            // Unused lanes of the last packets repeat their last positions.
             auto const column_of = [&](int i) { return std::min(left + i % packet_side, columns - 1); };
             auto const row_of = [&](int i) { return std::min(top + i / packet_side, rows - 1); };
             LaneFloats found;

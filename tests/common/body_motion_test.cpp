@@ -62,11 +62,11 @@ TEST(BodyMotion, MovesPointsOfTheBody) {
     BodyTrack const track = wheel(3, 0, 120);
     double const from = 0.4, to = 0.55;
     for (double const angle : {0.0, 1.0, 2.5}) {
-        auto const place = [&](double time) {
+        auto const position_at = [&](double time) {
             double const a = 3 * time + angle;
             return glm::dvec3(2 * time + std::cos(a), 1, -std::sin(a));
         };
-        EXPECT_LT(glm::distance(move(motion_between(track, from, to), place(from)), place(to)), 1e-5);
+        EXPECT_LT(glm::distance(move(motion_between(track, from, to), position_at(from)), position_at(to)), 1e-5);
     }
 }
 

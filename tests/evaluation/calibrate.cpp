@@ -39,16 +39,16 @@ void calibrate_rendering(BenchScene& scene, ImagePlane const& plane, int rounds,
                          CostTable& costs) {
     auto const tiles = make_uniform_tiling(plane, plane.pixel_depth()).tiles;
     rendered.resize(tiles.size());
-    std::vector<Vec2> places;
+    std::vector<Vec2> positions;
     for (Tile const tile : tiles) {
         PixelRect const rect = plane.tile_rect(tile);
         for (std::uint32_t i = 0; i < framelet_samples; ++i) {
-            places.push_back(Vec2(rect.left, rect.top) + Vec2(morton_x(i), morton_y(i)) + 0.5f);
+            positions.push_back(Vec2(rect.left, rect.top) + Vec2(morton_x(i), morton_y(i)) + 0.5f);
         }
     }
     std::mt19937 random(1);
-    std::shuffle(places.begin(), places.end(), random);
-    std::vector<Vec3> radiance(places.size());
+    std::shuffle(positions.begin(), positions.end(), random);
+    std::vector<Vec3> radiance(positions.size());
     ViewRays const rays = make_view_rays(scene.camera, plane.viewport());
     std::vector<double> coherent, incoherent;
     for (int round = 0; round < rounds; ++round) {
@@ -56,7 +56,7 @@ void calibrate_rendering(BenchScene& scene, ImagePlane const& plane, int rounds,
         double seconds = seconds_of(
             [&] { segments = render_framelets(*scene.render_scene, scene.camera, plane, tiles, 0, rendered); });
         coherent.push_back(1e9 * seconds / static_cast<double>(segments));
-        seconds = seconds_of([&] { segments = render_samples(*scene.render_scene, rays, places, 1, radiance); });
+        seconds = seconds_of([&] { segments = render_samples(*scene.render_scene, rays, positions, 1, radiance); });
         incoherent.push_back(1e9 * seconds / static_cast<double>(segments));
     }
     costs.coherent_segment = median(coherent);
@@ -152,7 +152,7 @@ void calibrate_framelets(BenchScene& scene, ImagePlane const& plane, int rounds,
     costs.reconstruct_fine_sample = 1e9 * std::max(median(fine) - median(coarse), 0.1 * median(coarse)) / fine_samples;
     costs.place_pixel = cost(rounds, pixels, [&] {
         for (DisplayFramelet const& framelet : batch.framelets) {
-            place_samples(framelet, picture);
+            write_samples(framelet, picture);
         }
     });
 }

@@ -3,21 +3,21 @@
 #include <gtest/gtest.h>
 
 #include "tests/evaluation/correspondence/exact_motion.h"
-#include "tests/evaluation/correspondence/place_code.h"
+#include "tests/evaluation/correspondence/position_code.h"
 
 namespace framelet::bench {
 namespace {
 
-TEST(PlaceCode, ComesBackFromInterpolatedSquares) {
-    for (float place = 0.5f; place < 200; place += 0.13f) {
-        int const before = static_cast<int>(std::floor(place - 0.5f));
-        float const weight = place - 0.5f - static_cast<float>(before);
+TEST(PositionCode, ComesBackFromInterpolatedSquares) {
+    for (float position = 0.5f; position < 200; position += 0.13f) {
+        int const before = static_cast<int>(std::floor(position - 0.5f));
+        float const weight = position - 0.5f - static_cast<float>(before);
         for (float const off : {-6.0f, -0.3f, 0.0f, 0.2f, 5.0f}) {
-            float const near = place + off;
+            float const near = position + off;
             int const shift = steady_shift(near);
-            float const a = place_byte(before, shift);
-            float const b = place_byte(before + 1, shift);
-            EXPECT_NEAR(place_of(a * a + weight * (b * b - a * a), shift, near), place, 2e-3f) << near;
+            float const a = position_byte(before, shift);
+            float const b = position_byte(before + 1, shift);
+            EXPECT_NEAR(position_of(a * a + weight * (b * b - a * a), shift, near), position, 2e-3f) << near;
         }
     }
 }

@@ -12,7 +12,7 @@ namespace framelet::bench {
 
 struct CostTable {
     double coherent_segment = 0; ///< one ray of a framelet, its share of shading included
-    double incoherent_segment = 0; ///< one ray of samples at random places
+    double incoherent_segment = 0; ///< one ray of samples at random positions
     double display_sample = 0; ///< tone curve and sRGB
     double plan_region = 0; ///< planning of a cycle by the response, one region
     double learn_sample = 0; ///< the response's learning from one sample

@@ -51,8 +51,8 @@ std::vector<double> errors_of(BenchScene& scene, RunParameters const& run, CostT
 }
 
 json walk(BenchScene& scene, CameraPath const& path, OwnCameraOptions const& options) {
-    double const pace = walking_speed * path.duration() / length_of(path);
-    scene.flown = [&path, pace](SceneTime time) { return path.at(pace * time); };
+    double const rate = walking_speed * path.duration() / length_of(path);
+    scene.flown = [&path, rate](SceneTime time) { return path.at(rate * time); };
     RunParameters run;
     run.viewport = options.viewport;
     run.frames_per_second = options.walk_machine;

@@ -19,7 +19,7 @@ struct OwnCameraOptions {
     CostTable costs;
 };
 
-/// The camera goes along the path at the pace of someone who walks, then stands for a second: `walking_psnr` of the
+/// The camera goes along the path at the speed of someone who walks, then stands for a second: `walking_psnr` of the
 /// mean error once the walk has lasted for a while, `standing_psnr` at the end of the run. Then it jumps from place to
 /// place of the path, turned at random, and stays at each for half a second: the figures are `jumps` and, of those,
 /// `steady_jumps`, in which the error never rises by more than 2% above what it had been since the jump, the old

@@ -56,8 +56,8 @@ Picture render_reference(BenchScene const& scene, Viewport viewport, int samples
     int const columns = (viewport.width + block - 1) / block;
     int const rows = (viewport.height + block - 1) / block;
     tbb::parallel_for(0, rows, [&](int row) {
-        std::vector<Vec2> places(static_cast<std::size_t>(columns * block * block * strata));
-        std::vector<Vec3> radiance(places.size());
+        std::vector<Vec2> positions(static_cast<std::size_t>(columns * block * block * strata));
+        std::vector<Vec3> radiance(positions.size());
         std::size_t next = 0;
         for (int column = 0; column < columns; ++column) {
             for (int s = 0; s < strata; ++s) {
@@ -68,11 +68,11 @@ Picture render_reference(BenchScene const& scene, Viewport viewport, int samples
                                                      static_cast<std::uint32_t>(s));
                     Vec2 const in_stratum(fraction(h), fraction(mix_bits(h ^ 0x9e3779b9u)));
                     Vec2 const corner(s % samples_per_side, s / samples_per_side);
-                    places[next++] = Vec2(x, y) + (corner + in_stratum) * stratum;
+                    positions[next++] = Vec2(x, y) + (corner + in_stratum) * stratum;
                 }
             }
         }
-        render_samples(*scene.render_scene, rays, places, stratum, radiance);
+        render_samples(*scene.render_scene, rays, positions, stratum, radiance);
         for (int column = 0; column < columns; ++column) {
             for (int i = 0; i < block * block; ++i) {
                 int const x = column * block + i % block;

@@ -79,7 +79,7 @@ TEST(Upsampling, IsLinearInLight) {
     EXPECT_EQ(same, coarse);
 }
 
-TEST(FrameGrid, TheMeanOfAllPlacesIsTheStratifiedPicture) {
+TEST(FrameGrid, TheMeanOfAllOffsetsIsTheStratifiedPicture) {
     auto const scene = load_bench_scene(bundled("vehicle_fixed"));
     Viewport const viewport{80, 48};
     FrameGrid grid(viewport, 1);
@@ -87,7 +87,7 @@ TEST(FrameGrid, TheMeanOfAllPlacesIsTheStratifiedPicture) {
     std::vector<double> errors;
     grid.render(*scene->render_scene, scene->camera, scene->exposure);
     EXPECT_EQ(grid.picture(), render_picture(*scene->render_scene, scene->camera, viewport, scene->exposure, 1));
-    for (int frames = 1; frames <= FrameGrid::places; ++frames) {
+    for (int frames = 1; frames <= FrameGrid::offsets; ++frames) {
         errors.push_back(mean_squared_error(grid.picture(), truth));
         grid.add(*scene->render_scene, scene->camera, scene->exposure);
     }

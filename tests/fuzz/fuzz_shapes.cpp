@@ -9,8 +9,8 @@ namespace {
 
 using namespace framelet;
 
-/// Place of a tile: tiles of all sizes, here and there.
-TilePosition place_of(std::size_t number) {
+/// Position of a tile: tiles of all sizes, here and there.
+TilePosition position_of(std::size_t number) {
     constexpr std::int32_t least_bits = 2, sizes = 6;
     auto const i = static_cast<std::int32_t>(number);
     std::int32_t const bits = least_bits + i % sizes;
@@ -20,7 +20,7 @@ TilePosition place_of(std::size_t number) {
 void read(ShapeModel& model, std::span<std::uint8_t const> bytes, std::span<FrameletShape> shapes) {
     RangeReader reader(bytes);
     for (std::size_t i = 0; i < shapes.size(); ++i) {
-        model.read(reader, place_of(i), shapes[i]);
+        model.read(reader, position_of(i), shapes[i]);
     }
     if (!reader.is_at_end()) {
         throw ProtocolError("the frame is longer than its shapes");
@@ -91,12 +91,12 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
     for (int round = 0; round < 2; ++round) {
         writer.begin();
         for (std::size_t i = 0; i < shapes.size(); ++i) {
-            writing.write(writer, place_of(i), shapes[i]);
+            writing.write(writer, position_of(i), shapes[i]);
         }
         std::vector<FrameletShape> arrived(shapes.size());
         read(reading, writer.finish(), arrived);
         for (std::size_t i = 0; i < shapes.size(); ++i) {
-            FRAMELET_CHECK(is_quantised(arrived[i], shapes[i], place_of(i).side_bits));
+            FRAMELET_CHECK(is_quantised(arrived[i], shapes[i], position_of(i).side_bits));
         }
     }
     return 0;

@@ -16,7 +16,7 @@
 
 namespace framelet {
 
-/// Colour of a place: sRGB-encoded values in [0, 255] before rounding.
+/// Colour of a point: sRGB-encoded values in [0, 255] before rounding.
 using Color = std::array<float, 3>;
 
 struct Quad {
@@ -152,7 +152,7 @@ struct AnalyticScene {
         return out;
     }
 
-    /// The hit of a ray through a display pixel at the display time, and whether the source saw the same place then.
+    /// The hit of a ray through a display pixel at the display time, and whether the source saw the same point then.
     struct Expected {
         Hit hit;
         bool was_seen = false; ///< the source saw it, and all around it by `margin` pixels the same quad
@@ -166,13 +166,13 @@ struct AnalyticScene {
         std::vector<Quad> const before = at_time(source_time);
         Expected out;
         out.hit = cast(after, to, x, y);
-        glm::dvec3 towards = direction(to, x, y); // direction of the place, then from the source's origin
+        glm::dvec3 towards = direction(to, x, y); // direction of the point, then from the source's origin
         if (out.hit.quad >= 0) {
             auto const i = static_cast<std::size_t>(out.hit.quad);
             glm::dmat3 const axes(after[i].u, after[i].v, glm::cross(after[i].u, after[i].v));
             glm::dmat3 const old_axes(before[i].u, before[i].v, glm::cross(before[i].u, before[i].v));
-            glm::dvec3 const place = glm::dvec3(to.origin) + towards / out.hit.inverse_depth;
-            towards = before[i].corner + old_axes * (glm::inverse(axes) * (place - after[i].corner)) -
+            glm::dvec3 const point = glm::dvec3(to.origin) + towards / out.hit.inverse_depth;
+            towards = before[i].corner + old_axes * (glm::inverse(axes) * (point - after[i].corner)) -
                       glm::dvec3(from.origin);
         }
         glm::dmat3 const basis(glm::dvec3(from.direction_dx), glm::dvec3(from.direction_dy),

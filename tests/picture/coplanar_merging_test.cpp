@@ -42,7 +42,7 @@ PlanePiece piece_of(TestLayer const& of) {
 }
 
 std::uint64_t bit_of(std::uint32_t part) {
-    return std::uint64_t{1} << SquareLayers::place_of(part);
+    return std::uint64_t{1} << SquareLayers::index_of(part);
 }
 
 bool is_part(CoplanarLayers const& coplanar, TestLayer const& layer) {
@@ -62,7 +62,7 @@ CoplanarMerging merging_of(std::vector<TestLayer>& layers) {
         shape.layer_count = static_cast<std::uint8_t>(is_first ? 1 : shape.layer_count + 1);
         layers[i].layer = shape.layer_count - 1u;
         shape.layers[layers[i].layer] = layers[i].held;
-        EXPECT_TRUE(square.set(SquareLayers::place_of(layers[i].part), layers[i].view, 1, shape));
+        EXPECT_TRUE(square.set(SquareLayers::index_of(layers[i].part), layers[i].view, 1, shape));
     }
     CoplanarMerging out;
     out.merge(square, {});
@@ -311,8 +311,8 @@ TEST(SquareLayers, MotionsAreNumbered) {
     EXPECT_GT(sets, 192u); // all layers that can be held at once
     EXPECT_LT(sets, 1000u);
     square.forget_motions();
-    for (std::size_t place = 0; place < SquareLayers::places; ++place) {
-        ASSERT_TRUE(square.set(place, 7 + static_cast<std::uint32_t>(place % 2), 1, shape));
+    for (std::size_t index = 0; index < SquareLayers::most_framelets; ++index) {
+        ASSERT_TRUE(square.set(index, 7 + static_cast<std::uint32_t>(index % 2), 1, shape));
     }
     EXPECT_EQ(square.motion(square.rows(0).motion[5]).view, 8u);
     EXPECT_EQ(square.rows(0).motion[5], square.rows(0).motion[7]);

@@ -39,8 +39,8 @@ std::map<std::pair<int, int>, Tile> shown_cells(ImagePlane const& plane, std::ve
         }
     }
     std::map<std::pair<int, int>, Tile> out;
-    for (auto const& [place, cell] : cells) {
-        out[place] = cell.second;
+    for (auto const& [pixel, cell] : cells) {
+        out[pixel] = cell.second;
     }
     return out;
 }
@@ -82,7 +82,7 @@ TEST(FrameletCache, HoldsExactlyWhatShowsWhateverTheOrder) {
         std::vector<Batch> batches = random_batches(plane, random, 60, 20);
         auto const cells = shown_cells(plane, batches);
         std::set<Tile> shown;
-        for (auto const& [place, tile] : cells) {
+        for (auto const& [pixel, tile] : cells) {
             shown.insert(tile);
         }
         auto const finest_cells = static_cast<double>(((viewport.width + 3) / 4) * ((viewport.height + 3) / 4));
@@ -251,17 +251,17 @@ TEST(FrameletCache, MemoryIsBounded) {
 TEST(FrameletCache, KeepsOnlyWhatItIsTold) {
     ImagePlane const plane({64, 64});
     FrameletCache cache(plane);
-    Tile const place = make_tile(plane.pixel_depth(), 1, 2);
+    Tile const small = make_tile(plane.pixel_depth(), 1, 2);
     Tile const other = make_tile(plane.pixel_depth(), 3, 0);
-    cache.insert(make_batch(plane, 1, {constant_framelet(plane, place.parent(), 9)}));
-    cache.insert(make_batch(plane, 2, {constant_framelet(plane, place, 9), constant_framelet(plane, other, 9)}));
+    cache.insert(make_batch(plane, 1, {constant_framelet(plane, small.parent(), 9)}));
+    cache.insert(make_batch(plane, 2, {constant_framelet(plane, small, 9), constant_framelet(plane, other, 9)}));
     std::vector<PixelRect> changed;
     cache.take_changed(changed);
-    std::array const kept{place, place, make_tile(plane.pixel_depth(), 0, 0)};
+    std::array const kept{small, small, make_tile(plane.pixel_depth(), 0, 0)};
     std::vector<SentTile> gone;
     cache.keep(kept, gone);
     std::ranges::sort(gone);
-    EXPECT_EQ(gone, (std::vector<SentTile>{{1, place.parent()}, {2, other}}));
+    EXPECT_EQ(gone, (std::vector<SentTile>{{1, small.parent()}, {2, other}}));
     EXPECT_EQ(cache.framelet_count(), 1U);
     EXPECT_NE(cache.find(plane.pixel_depth(), 1, 2), nullptr);
     EXPECT_EQ(cache.find(plane.pixel_depth(), 3, 0), nullptr);

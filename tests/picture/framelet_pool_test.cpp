@@ -20,7 +20,7 @@ Batch seen_from(std::uint64_t camera, std::uint64_t number, Tile tile) {
     return batch;
 }
 
-Tile const place = make_tile(plane.pixel_depth(), 1, 2);
+Tile const small_tile = make_tile(plane.pixel_depth(), 1, 2);
 
 std::set<std::uint64_t> cameras(FrameletPool const& pool) {
     std::set<std::uint64_t> out;
@@ -34,9 +34,9 @@ std::set<std::uint64_t> cameras(FrameletPool const& pool) {
 
 TEST(FrameletPool, AnotherCameraBeginsAMomentAndTakesNothingAway) {
     FrameletPool pool(plane);
-    pool.insert(seen_from(1, 1, place), {});
-    pool.insert(seen_from(1, 2, place), {}); // takes the place of the first
-    pool.insert(seen_from(2, 3, place), {});
+    pool.insert(seen_from(1, 1, small_tile), {});
+    pool.insert(seen_from(1, 2, small_tile), {}); // replaces the first
+    pool.insert(seen_from(2, 3, small_tile), {});
     EXPECT_EQ(pool.framelet_count(), 2U);
     EXPECT_EQ(cameras(pool), (std::set<std::uint64_t>{1, 2}));
     EXPECT_EQ(pool.newest().framelet_count(), 1U);
@@ -46,7 +46,7 @@ TEST(FrameletPool, AnotherCameraBeginsAMomentAndTakesNothingAway) {
 TEST(FrameletPool, WithoutMomentsTheNewestOfAPlaceIsHeld) {
     FrameletPool pool(plane);
     for (std::uint64_t camera = 1; camera < 30; ++camera) {
-        pool.insert(seen_from(camera, camera, place), {}, false);
+        pool.insert(seen_from(camera, camera, small_tile), {}, false);
         EXPECT_EQ(pool.framelet_count(), 1U);
         EXPECT_EQ(cameras(pool), (std::set<std::uint64_t>{camera}));
     }
@@ -55,7 +55,7 @@ TEST(FrameletPool, WithoutMomentsTheNewestOfAPlaceIsHeld) {
 TEST(FrameletPool, WhatIsNotToBeMovedSharesACache) {
     FrameletPool pool(plane);
     for (std::uint64_t camera = 1; camera < 5; ++camera) {
-        Batch batch = seen_from(camera, camera, place);
+        Batch batch = seen_from(camera, camera, small_tile);
         batch.view.camera.projection = Projection::orthographic;
         pool.insert(batch, {});
         EXPECT_EQ(pool.framelet_count(), 1U);
@@ -65,22 +65,22 @@ TEST(FrameletPool, WhatIsNotToBeMovedSharesACache) {
 TEST(FrameletPool, TheMomentGoesOfWhichLeastShows) {
     FrameletPool pool(plane);
     for (std::uint64_t camera = 1; camera <= FrameletPool::most_moments; ++camera) {
-        pool.insert(seen_from(camera, camera, place), {});
+        pool.insert(seen_from(camera, camera, small_tile), {});
     }
     EXPECT_EQ(pool.framelet_count(), FrameletPool::most_moments);
     std::vector<std::uint32_t> shown(pool.slot_count(), 7);
     shown[2] = 1;
     pool.note_shown(shown);
-    pool.insert(seen_from(100, 100, place), {});
+    pool.insert(seen_from(100, 100, small_tile), {});
     EXPECT_EQ(pool.slot_count(), FrameletPool::most_moments);
     EXPECT_FALSE(cameras(pool).contains(3));
     EXPECT_TRUE(cameras(pool).contains(1));
     std::vector<SentTile> gone;
     pool.take_evicted(gone);
-    EXPECT_EQ(gone, (std::vector<SentTile>{{3, place}}));
+    EXPECT_EQ(gone, (std::vector<SentTile>{{3, small_tile}}));
     pool.take_evicted(gone);
     EXPECT_TRUE(gone.empty()) << "said once";
-    pool.insert(seen_from(101, 101, place), {}); // evicts the oldest of those that show as little
+    pool.insert(seen_from(101, 101, small_tile), {}); // evicts the oldest of those that show as little
     EXPECT_FALSE(cameras(pool).contains(1));
     EXPECT_TRUE(cameras(pool).contains(100)) << "what has hardly been shown stays";
 }
@@ -88,7 +88,7 @@ TEST(FrameletPool, TheMomentGoesOfWhichLeastShows) {
 TEST(FrameletPool, HoldsAsManyMomentsAsItIsTold) {
     FrameletPool pool(plane, 4);
     for (std::uint64_t camera = 1; camera <= 9; ++camera) {
-        pool.insert(seen_from(camera, camera, place), {});
+        pool.insert(seen_from(camera, camera, small_tile), {});
     }
     EXPECT_EQ(pool.slot_count(), 4U);
     EXPECT_TRUE(cameras(pool).contains(9));
@@ -98,9 +98,9 @@ TEST(FrameletPool, MemoryIsBoundedHoweverManyCamerasThereAre) {
     FrameletPool pool(plane);
     std::size_t most = 0;
     for (std::uint64_t camera = 1; camera < 500; ++camera) {
-        Batch batch = seen_from(camera, camera, place);
+        Batch batch = seen_from(camera, camera, small_tile);
         for (Tile const tile : visible_tiles(plane, plane.max_depth())) {
-            batch.framelets.push_back(constant_framelet(plane, tile, 1));
+            batch.framelets.push_back(constant_framelet(plane, small_tile, 1));
         }
         pool.insert(batch, {});
         if (camera == 2 * FrameletPool::most_moments) {
@@ -117,7 +117,7 @@ TEST(FrameletPool, RoomForAPictureAtRestIsNotKeptByEachMoment) {
     auto const look = [&](int depth) {
         std::vector<DisplayFramelet> framelets;
         for (Tile const tile : visible_tiles(large, depth)) {
-            framelets.push_back(constant_framelet(large, tile, 1));
+            framelets.push_back(constant_framelet(large, small_tile, 1));
         }
         Batch batch = make_batch(large, ++camera, std::move(framelets));
         batch.view.number = camera;

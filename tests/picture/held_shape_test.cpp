@@ -43,7 +43,7 @@ TEST(HeldShape, SamplesAndLayersAreInRows) {
     EXPECT_TRUE(held.moves);
     ASSERT_EQ(held.outliers.size(), 16u);
     for (std::size_t x = 0; x < 16; ++x) {
-        EXPECT_EQ(held.outliers[x].place, 80 + x);
+        EXPECT_EQ(held.outliers[x].index, 80 + x);
         EXPECT_EQ(held.outliers[x].sample.inverse_depth, static_cast<float>(x + 1));
     }
     EXPECT_EQ(held.layers[1].first_column, 8);
@@ -64,19 +64,19 @@ TEST(HeldShape, FineSamplesAreReducedToTheLayerThatMostOfAPixelLieOn) {
         EXPECT_EQ(layer_of(held.reduced[i]), i % 4 / 2);
         EXPECT_EQ(green_of(held.reduced[i]), 40u);
     }
-    std::uint32_t place = 0;
+    std::uint32_t count = 0;
     for (std::uint32_t i = 0; i < framelet_samples; ++i) {
         if (mixed.shape.layer_of[i] != FrameletShape::outlier && morton_y(i) / 2 == 2) {
             mixed.shape.layer_of[i] = FrameletShape::outlier;
         }
-        place += mixed.shape.layer_of[i] == FrameletShape::outlier ? 1 : 0;
+        count += mixed.shape.layer_of[i] == FrameletShape::outlier ? 1 : 0;
     }
-    mixed.shape.outliers.assign(place, {2, static_body, Vec3(0)});
+    mixed.shape.outliers.assign(count, {2, static_body, Vec3(0)});
     mixed.shape.outliers.back().inverse_depth = 5;
     hold(mixed.framelet, &mixed.shape, 2, samples, held);
     EXPECT_EQ(held.side, 8);
     ASSERT_EQ(held.outliers.size(), 8u);
-    EXPECT_EQ(held.outliers[0].place, 16);
+    EXPECT_EQ(held.outliers[0].index, 16);
     EXPECT_EQ(held.outliers[7].sample.inverse_depth, 5);
     EXPECT_FALSE(held.moves);
 }

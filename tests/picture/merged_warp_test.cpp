@@ -25,7 +25,7 @@ void alone(FrameletCache const& cache, Camera const& display, SceneTime time, Bo
         }
     }
     std::ranges::sort(patches, [](WarpPatch const& a, WarpPatch const& b) {
-        return a.batch != b.batch ? a.batch > b.batch : a.place < b.place;
+        return a.batch != b.batch ? a.batch > b.batch : a.tile_layer < b.tile_layer;
     });
 }
 
@@ -139,7 +139,7 @@ TEST(MergedWarp, PatchesHaveTheirSamplesInTheGridOfTheirSquare) {
             }
             ASSERT_EQ(patch.square, square);
             auto const part = plan.grid_part(patch);
-            bool const is_in_grid = samples.place_in_grid(patch.grid).has_value();
+            bool const is_in_grid = samples.position_in_grid(patch.grid).has_value();
             ASSERT_TRUE(part || !is_in_grid);
             (is_in_grid ? in_grid : alone) += 1;
             for (int i = 0; part && i < patch.side * patch.side; ++i) {

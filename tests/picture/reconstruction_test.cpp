@@ -18,8 +18,8 @@ int pixel(Picture const& picture, int x, int y, int channel = 0) {
 }
 
 /// A byte ramp that is linear in light: 0 at `low`, full at `high`.
-std::uint8_t ramp(float place, float low, float high) {
-    return srgb_byte_from_linear((place - low) / (high - low));
+std::uint8_t ramp(float position, float low, float high) {
+    return srgb_byte_from_linear((position - low) / (high - low));
 }
 
 TEST(Reconstruction, ConstantStaysConstantAtEveryDepth) {

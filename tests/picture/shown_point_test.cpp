@@ -10,8 +10,8 @@
 namespace framelet {
 namespace {
 
-/// The place in the picture at which a point of the world is seen, pixels.
-Vec2 place_of(Camera const& camera, Vec3 point) {
+/// The position in the picture at which a point of the world is seen, pixels.
+Vec2 position_of(Camera const& camera, Vec3 point) {
     Vec3 const seen = glm::conjugate(camera.orientation) * (point - camera.position);
     float const pixels = 0.5f * static_cast<float>(viewport.height) / std::tan(0.5f * camera.vertical_extent);
     return Vec2(0.5f * viewport.width, 0.5f * viewport.height) + Vec2(seen.x, -seen.y) * (pixels / -seen.z);
@@ -30,7 +30,7 @@ TEST(ShownPoint, IsWhereTheSurfaceIsFromWhereverItIsSeen) {
     Vec3 const on_board(-0.1f, 1, 1.15f); // the middle of its quad
     for (Camera const& camera : {front(), aside()}) {
         for (Vec3 const point : {on_wall, on_floor, on_board}) {
-            std::optional<Vec3> const found = find_shown_point(pool, camera, 0, {}, place_of(camera, point));
+            std::optional<Vec3> const found = find_shown_point(pool, camera, 0, {}, position_of(camera, point));
             ASSERT_TRUE(found);
             EXPECT_LT(glm::distance(*found, point), 0.03f) << found->x << ' ' << found->y << ' ' << found->z;
         }
@@ -44,9 +44,9 @@ TEST(ShownPoint, IsKnownWhereSomethingIsShownOrNearThat) {
     int known_holes = 0;
     for (int y = 3; y < viewport.height; y += 8) {
         for (int x = 0; x < viewport.width; ++x) {
-            Vec2 const place = Vec2(x, y) + 0.5f;
+            Vec2 const position = Vec2(x, y) + 0.5f;
             bool const is_hole = shown.inverse_depth[at(x, y)] == hole_depth;
-            bool const is_known = find_shown_point(pool, aside(), 0, {}, place).has_value();
+            bool const is_known = find_shown_point(pool, aside(), 0, {}, position).has_value();
             bool const is_far = shown.inverse_depth[at(x, y)] == 0;
             if (is_hole) {
                 ++holes;
@@ -64,8 +64,9 @@ TEST(ShownPoint, OfNothingAndOutsideIsNone) {
     FrameletPool const nothing{ImagePlane(viewport)};
     EXPECT_FALSE(find_shown_point(nothing, front(), 0, {}, {100, 100}));
     FrameletPool const pool = filled(room(), front(), 0);
-    for (Vec2 const place : {Vec2(-1, 5), Vec2(5, -1), Vec2(viewport.width, 5), Vec2(5, viewport.height), Vec2(NAN)}) {
-        EXPECT_FALSE(find_shown_point(pool, front(), 0, {}, place));
+    for (Vec2 const position :
+         {Vec2(-1, 5), Vec2(5, -1), Vec2(viewport.width, 5), Vec2(5, viewport.height), Vec2(NAN)}) {
+        EXPECT_FALSE(find_shown_point(pool, front(), 0, {}, position));
     }
 }
 

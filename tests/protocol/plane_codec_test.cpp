@@ -93,21 +93,21 @@ TEST(HaarTransform, KnownValues) {
     EXPECT_EQ(levels, (std::array<std::int16_t, 4>{20 + 6 + 9 + 3, 20 - 6 + 9 - 3, 20 + 6 - 9 - 3, 20 - 6 - 9 + 3}));
 }
 
-TEST(HaarTransform, AllNumbersOfPlacesAreAlike) {
+TEST(HaarTransform, AllNumbersOfBlocksAreAlike) {
     std::mt19937 random(1);
-    constexpr std::size_t places = 7;
-    std::array<std::int16_t, 4 * places> values, details, levels, again;
-    std::array<std::int16_t, places> means;
+    constexpr std::size_t blocks = 7;
+    std::array<std::int16_t, 4 * blocks> values, details, levels, again;
+    std::array<std::int16_t, blocks> means;
     for (auto& value : values) {
         value = static_cast<std::int16_t>(random());
     }
     for (std::uint16_t const size : std::array<std::uint16_t, 4>{1, 2, 9, 1016}) {
         DetailStep const step(size);
-        int const bits = haar_forward(values.data(), places, step, means.data(), details.data(), levels.data());
-        EXPECT_EQ(quantise(details.data(), places, step, again.data()), bits);
+        int const bits = haar_forward(values.data(), blocks, step, means.data(), details.data(), levels.data());
+        EXPECT_EQ(quantise(details.data(), blocks, step, again.data()), bits);
         EXPECT_EQ(again, levels);
         int sum = 0;
-        for (std::size_t i = 0; i < places; ++i) {
+        for (std::size_t i = 0; i < blocks; ++i) {
             std::array<std::int16_t, 4> of_details, of_levels;
             std::int16_t mean = 0;
             sum += haar_forward(&values[4 * i], 1, step, &mean, of_details.data(), of_levels.data());
@@ -116,8 +116,8 @@ TEST(HaarTransform, AllNumbersOfPlacesAreAlike) {
             EXPECT_TRUE(std::equal(of_levels.begin(), of_levels.end(), &levels[4 * i]));
         }
         EXPECT_EQ(sum, bits);
-        haar_inverse(means.data(), levels.data(), size, places, again.data());
-        for (std::size_t i = 0; i < places; ++i) {
+        haar_inverse(means.data(), levels.data(), size, blocks, again.data());
+        for (std::size_t i = 0; i < blocks; ++i) {
             std::array<std::int16_t, 4> single;
             haar_inverse(&means[i], &levels[4 * i], size, 1, single.data());
             EXPECT_TRUE(std::equal(single.begin(), single.end(), &again[4 * i]));

@@ -12,36 +12,36 @@ namespace {
 
 using Plain = std::vector<std::uint8_t>;
 
-/// Places of tiles of 2^side_bits pixels a side, side by side.
-std::vector<TilePosition> places_of(std::span<std::uint8_t const> side_bits) {
-    std::vector<TilePosition> places;
+/// Positions of tiles of 2^side_bits pixels a side, side by side.
+std::vector<TilePosition> positions_of(std::span<std::uint8_t const> side_bits) {
+    std::vector<TilePosition> positions;
     std::int32_t left = 0;
     for (std::uint8_t const bits : side_bits) {
-        places.push_back({left, 3 * left, bits});
+        positions.push_back({left, 3 * left, bits});
         left += 1 << bits;
     }
-    return places;
+    return positions;
 }
 
 /// Encodes shapes as the first group of a session.
 Plain bytes_of(std::span<FrameletShape const> shapes, std::span<std::uint8_t const> side_bits) {
-    auto const places = places_of(side_bits);
+    auto const positions = positions_of(side_bits);
     ShapeModel model;
     RangeWriter writer;
     for (std::size_t i = 0; i < shapes.size(); ++i) {
-        model.write(writer, places[i], shapes[i]);
+        model.write(writer, positions[i], shapes[i]);
     }
     auto const bytes = writer.finish();
     return {bytes.begin(), bytes.end()};
 }
 
 std::vector<FrameletShape> shapes_of(Plain const& bytes, std::span<std::uint8_t const> side_bits) {
-    auto const places = places_of(side_bits);
+    auto const positions = positions_of(side_bits);
     std::vector<FrameletShape> shapes(side_bits.size());
     ShapeModel model;
     RangeReader reader(bytes);
     for (std::size_t i = 0; i < shapes.size(); ++i) {
-        model.read(reader, places[i], shapes[i]);
+        model.read(reader, positions[i], shapes[i]);
     }
     return shapes;
 }

@@ -90,17 +90,17 @@ TEST(FrameletRenderer, SamplesAtItsPlacesAreThoseOfTheFramelet) {
     Framelet framelet;
     std::uint32_t const segments = render_framelet(ready, rays, plane, tile, 0, framelet);
     EXPECT_GE(segments, 256u);
-    std::vector<Vec2> places;
+    std::vector<Vec2> positions;
     for (std::uint32_t i = 0; i < framelet_samples; ++i) {
-        places.emplace_back(16.5f + static_cast<float>(morton_x(i)), 16.5f + static_cast<float>(morton_y(i)));
+        positions.emplace_back(16.5f + static_cast<float>(morton_x(i)), 16.5f + static_cast<float>(morton_y(i)));
     }
-    std::vector<Vec3> radiance(places.size());
-    EXPECT_EQ(render_samples(ready, rays, places, 1, radiance), segments);
-    for (std::size_t i = 0; i < places.size(); ++i) {
+    std::vector<Vec3> radiance(positions.size());
+    EXPECT_EQ(render_samples(ready, rays, positions, 1, radiance), segments);
+    for (std::size_t i = 0; i < positions.size(); ++i) {
         EXPECT_EQ(radiance[i], Vec3(framelet.red[i], framelet.green[i], framelet.blue[i])) << i;
     }
     std::vector<Vec3> few(5);
-    render_samples(ready, rays, std::span(places).first(5), 1, few);
+    render_samples(ready, rays, std::span(positions).first(5), 1, few);
     EXPECT_TRUE(std::equal(few.begin(), few.end(), radiance.begin()));
 }
 
@@ -170,7 +170,7 @@ TEST(FrameletRenderer, FineAndCoarseTilesAgreeOnPlaces) {
 }
 
 TEST(FrameletRenderer, SeedMovesSamplesWithinTheirCells) {
-    // A ramp: radiance tells the place along x.
+    // A ramp: radiance tells the position along x.
     Scene scene;
     Material ramp = matte(Vec3(1));
     ramp.unlit = true;

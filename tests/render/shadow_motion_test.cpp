@@ -27,7 +27,7 @@ Light lamp(LightType type, float intensity) {
 }
 
 /// Point of the floor, z = 0, that the sample shows.
-Vec3 place_of(std::uint32_t sample) {
+Vec3 position_of(std::uint32_t sample) {
     float const pixel = 2 * std::tan(0.25f) / 32 * 10;
     return {(static_cast<float>(morton_x(sample)) + 0.5f - 16) * pixel,
             (16 - 0.5f - static_cast<float>(morton_y(sample))) * pixel, 0};
@@ -85,7 +85,7 @@ TEST(ShadowMotion, UnderASunAShadowGoesWithWhatThrowsItAlongTheFloor) {
     EXPECT_TRUE(framelet.body.empty());
     std::uint32_t dark = 0;
     for (std::uint32_t i = 0; i < framelet_samples; ++i) {
-        bool const in_shadow = place_of(i).x < edge;
+        bool const in_shadow = position_of(i).x < edge;
         EXPECT_EQ(framelet.red[i] == 0, in_shadow) << i;
         EXPECT_EQ(framelet.velocity[i], in_shadow ? Vec3(2.75f, 1, 0) : Vec3(0)) << i;
         dark += in_shadow ? 1 : 0;
@@ -111,9 +111,9 @@ TEST(ShadowMotion, ALampNearWhatMovesThrowsItsShadowFaster) {
         Framelet const framelet = render(scene).framelet;
         ASSERT_EQ(framelet.velocity.size(), std::size_t{framelet_samples});
         for (std::uint32_t i = 0; i < framelet_samples; ++i) {
-            Vec3 const along = place_of(i) - at;
+            Vec3 const along = position_of(i) - at;
             Vec3 const expected = 5.0f * (velocity - along * (velocity.z / along.z));
-            EXPECT_LT(glm::length(framelet.velocity[i] - (place_of(i).x < edge ? expected : Vec3(0))), 0.04f) << i;
+            EXPECT_LT(glm::length(framelet.velocity[i] - (position_of(i).x < edge ? expected : Vec3(0))), 0.04f) << i;
         }
     }
 }
@@ -134,7 +134,7 @@ TEST(ShadowMotion, WithALampThatMovesAlongTheShadowDoesAsWell) {
     Framelet const framelet = render(scene).framelet;
     ASSERT_EQ(framelet.velocity.size(), std::size_t{framelet_samples});
     for (std::uint32_t i = 0; i < framelet_samples; ++i) {
-        EXPECT_EQ(framelet.velocity[i], place_of(i).x < edge ? velocity : Vec3(0)) << i;
+        EXPECT_EQ(framelet.velocity[i], position_of(i).x < edge ? velocity : Vec3(0)) << i;
     }
 }
 
@@ -152,7 +152,7 @@ TEST(ShadowMotion, WhatDeformsThrowsShadowsThatMoveAsWell) {
     Framelet const framelet = render(scene).framelet;
     ASSERT_EQ(framelet.velocity.size(), std::size_t{framelet_samples});
     for (std::uint32_t i = 0; i < framelet_samples; ++i) {
-        EXPECT_EQ(framelet.velocity[i], place_of(i).x < edge ? Vec3(2.75f, 1, 0) : Vec3(0)) << i;
+        EXPECT_EQ(framelet.velocity[i], position_of(i).x < edge ? Vec3(2.75f, 1, 0) : Vec3(0)) << i;
     }
 }
 

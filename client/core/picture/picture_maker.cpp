@@ -183,8 +183,8 @@ void PictureMaker::draw_over(DrawnOver what, Picture& picture) const {
     draw_confidence(confidence, picture);
 }
 
-std::optional<Vec3> PictureMaker::point_at(Vec2 place) const {
-    return find_shown_point(pool_, shown_camera_, shown_time_, motions_, place);
+std::optional<Vec3> PictureMaker::point_at(Vec2 position) const {
+    return find_shown_point(pool_, shown_camera_, shown_time_, motions_, position);
 }
 
 std::vector<float> PictureMaker::depths() const {

@@ -70,8 +70,8 @@ public:
     bool is_on_canvas() const { return settings_.reproject && !smoother_ && reprojector_.is_on_canvas(); }
     /// Draws over a copy of the picture that was shown last.
     void draw_over(DrawnOver what, Picture& picture) const;
-    /// The point of the world that this place of the last picture shows, as `find_shown_point`.
-    std::optional<Vec3> point_at(Vec2 place) const;
+    /// The point of the world that the last picture shows at this position, as `find_shown_point`.
+    std::optional<Vec3> point_at(Vec2 position) const;
     /// The depths of the last picture's pixels, as `find_shown_depths`.
     std::vector<float> depths() const;
 

@@ -20,7 +20,7 @@ constexpr double hopeless = 2;
 /// Number of times that near pieces prove not to be of the plane after which no more are looked for.
 constexpr int most_failures = 2;
 
-/// A bit for each framelet of the first quad, by place.
+/// A bit for each framelet of the first quad, by index (as in `SquareLayers`).
 constexpr std::uint64_t quarters = 0x0001000100010001u;
 
 /// Cost of showing what lies in a rectangle, in pixels: blocks and lanes reach beyond it.
@@ -49,11 +49,11 @@ ExtentOf<Lanes> all_of(PlaneExtent const& extent) {
     return {all_of(extent.left), all_of(extent.top), all_of(extent.right), all_of(extent.bottom)};
 }
 
-/// Columns or rows of framelets in the square, by place.
+/// Columns or rows of framelets in the square, by index.
 constexpr auto coordinates(std::uint32_t (*coordinate)(std::uint32_t)) {
-    std::array<float, SquareLayers::places> out{};
-    for (std::size_t place = 0; place < out.size(); ++place) {
-        out[place] = static_cast<float>(coordinate(static_cast<std::uint32_t>(SquareLayers::part_at(place))));
+    std::array<float, SquareLayers::most_framelets> out{};
+    for (std::size_t index = 0; index < out.size(); ++index) {
+        out[index] = static_cast<float>(coordinate(static_cast<std::uint32_t>(SquareLayers::part_at(index))));
     }
     return out;
 }
@@ -94,7 +94,7 @@ void CoplanarMerging::merge(SquareLayers const& layers, SampleGrid const& grid) 
     quad_count_ = open_count_;
     for (std::size_t i = 0; i < quad_count_; ++i) {
         PlanePiece const own = open_.piece(i);
-        quads_.push_back({own.plane(), own.extent(), difference_[i], {quarters << place_[i]}});
+        quads_.push_back({own.plane(), own.extent(), difference_[i], {quarters << index_[i]}});
     }
     for (std::size_t k = 0; k < max_layers; ++k) {
         if (k > 0) {
@@ -102,9 +102,9 @@ void CoplanarMerging::merge(SquareLayers const& layers, SampleGrid const& grid) 
             load(layers, k, grid);
         }
         for (; left != 0; left &= left - 1) {
-            auto const place = static_cast<std::size_t>(std::countr_zero(left));
-            open_.copy(loaded_, place, open_count_);
-            open(0, 0, place, k);
+            auto const index = static_cast<std::size_t>(std::countr_zero(left));
+            open_.copy(loaded_, index, open_count_);
+            open(0, 0, index, k);
         }
     }
     for (Bits open = Bits::first(open_count_); open.any();) {
@@ -118,7 +118,7 @@ void CoplanarMerging::merge(SquareLayers const& layers, SampleGrid const& grid) 
 void CoplanarMerging::load(SquareLayers const& layers, std::size_t layer, SampleGrid const& grid) {
     SquareLayers::Rows const& from = layers.rows(layer);
     double const tile = grid.side * grid.spacing; // pixels
-    for (std::size_t i = 0; i < SquareLayers::places; i += wide_doubles) {
+    for (std::size_t i = 0; i < SquareLayers::most_framelets; i += wide_doubles) {
         if ((from.held >> i & ((1u << wide_doubles) - 1)) == 0) {
             continue;
         }
@@ -192,10 +192,10 @@ std::uint64_t CoplanarMerging::merge_quads(std::uint64_t complete) {
 }
 
 /// Opens the piece that was last copied to the rows.
-void CoplanarMerging::open(double share, double difference, std::size_t place, std::size_t layer) {
+void CoplanarMerging::open(double share, double difference, std::size_t index, std::size_t layer) {
     share_[open_count_] = share;
     difference_[open_count_] = difference;
-    place_[open_count_] = static_cast<std::uint8_t>(place);
+    index_[open_count_] = static_cast<std::uint8_t>(index);
     layer_[open_count_] = static_cast<std::uint8_t>(layer);
     ++open_count_;
 }
@@ -343,7 +343,7 @@ CoplanarMerging::Bits CoplanarMerging::fit(Group& group) const {
 CoplanarLayers CoplanarMerging::layer_of(Group const& group) const {
     CoplanarLayers out{group.plane, group.extent, group.difference, {}};
     group.members.for_each(
-        [&](std::size_t i) { out.parts[layer_[i]] |= (i < quad_count_ ? quarters : std::uint64_t{1}) << place_[i]; });
+        [&](std::size_t i) { out.parts[layer_[i]] |= (i < quad_count_ ? quarters : std::uint64_t{1}) << index_[i]; });
     return out;
 }
 

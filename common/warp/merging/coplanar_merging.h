@@ -26,7 +26,7 @@ struct CoplanarLayers {
     AffinePlane plane; ///< inverse depth, pixels from the square's corner
     PlaneExtent extent; ///< of its samples, pixels from the square's corner
     double difference = 0; ///< largest difference of the plane from the merged layers, 1 / metres
-    /// Bit p of word k is set for layer k of the framelet at place p.
+    /// Bit p of word k is set for layer k of the framelet of index p, as in `SquareLayers`.
     std::array<std::uint64_t, max_layers> parts{};
 };
 
@@ -42,8 +42,8 @@ public:
     std::span<CoplanarLayers const> quads() const { return quads_; }
 
 private:
-    /// Largest number of pieces (quads and layers) that can be open: a quad takes the place of four layers.
-    static constexpr std::size_t most_open = max_layers * SquareLayers::places;
+    /// Largest number of pieces (quads and layers) that can be open: a quad replaces four layers.
+    static constexpr std::size_t most_open = max_layers * SquareLayers::most_framelets;
 
     using Bits = LaneBits<most_open>; ///< of open pieces
 
@@ -60,7 +60,7 @@ private:
 
     void load(SquareLayers const& layers, std::size_t layer, SampleGrid const& grid);
     std::uint64_t merge_quads(std::uint64_t complete);
-    void open(double share, double difference, std::size_t place, std::size_t layer);
+    void open(double share, double difference, std::size_t index, std::size_t layer);
     Group alone(std::size_t seed) const;
     Group grow(std::size_t seed, Bits const& open) const;
     bool extend(Bits some, bool near, Group& group, Bits& rest) const;
@@ -69,14 +69,14 @@ private:
     Bits fit(Group& group) const;
     CoplanarLayers layer_of(Group const& group) const;
 
-    PieceRows<SquareLayers::places> loaded_; ///< one layer of each framelet
+    PieceRows<SquareLayers::most_framelets> loaded_; ///< one layer of each framelet
     // Open pieces, which are still to be merged: quads first, then layers.
     std::size_t quad_count_ = 0, open_count_ = 0;
     PieceRows<most_open> open_;
     /// Largest difference of each quad from its layers, 1 / metres, and as a share of its inverse depth there; 0 for
     /// layers.
     alignas(64) std::array<double, most_open> difference_{}, share_{};
-    std::array<std::uint8_t, most_open> place_{}; ///< of the layer's framelet, or the quad's number
+    std::array<std::uint8_t, most_open> index_{}; ///< of the layer's framelet, or the quad's number
     std::array<std::uint8_t, most_open> layer_{};
     std::vector<CoplanarLayers> coplanar_, quads_;
 };

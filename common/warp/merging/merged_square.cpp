@@ -27,8 +27,8 @@ Tile tile_below(Tile tile, int levels, std::size_t part) {
 }
 
 /// Number of a layer among all layers of a square.
-std::uint32_t number_of(std::size_t place, std::size_t layer) {
-    return static_cast<std::uint32_t>(place * max_layers + layer);
+std::uint32_t number_of(std::size_t index, std::size_t layer) {
+    return static_cast<std::uint32_t>(index * max_layers + layer);
 }
 
 } // namespace
@@ -46,15 +46,15 @@ void MergedSquare::update(FrameletCache const& cache, Tile square, int depth, Co
     }
 }
 
-Tile MergedSquare::child_tile(std::size_t place) const {
-    return tile_below(square_, levels(), SquareLayers::part_at(place));
+Tile MergedSquare::child_tile(std::size_t index) const {
+    return tile_below(square_, levels(), SquareLayers::part_at(index));
 }
 
-/// A bit for each place where something else is held than before.
+/// A bit for each child of which something else is held than before.
 std::uint64_t MergedSquare::changes(SquareVersions const& versions) const {
     std::uint64_t out = 0;
     for (std::size_t i = 0; i < most_children; ++i) {
-        out |= std::uint64_t{versions.tiles[i] != versions_.tiles[i]} << SquareLayers::place_of(i);
+        out |= std::uint64_t{versions.tiles[i] != versions_.tiles[i]} << SquareLayers::index_of(i);
     }
     return out;
 }
@@ -65,18 +65,18 @@ void MergedSquare::load(FrameletCache const& cache, std::uint64_t changed) {
         make_room(cache.plane());
     }
     for (std::uint64_t left = changed; left != 0; left &= left - 1) {
-        auto const place = static_cast<std::size_t>(std::countr_zero(left));
-        Tile const tile = child_tile(place);
+        auto const index = static_cast<std::size_t>(std::countr_zero(left));
+        Tile const tile = child_tile(index);
         CachedFramelet const* const framelet =
             cache.find(depth_, static_cast<int>(tile.column()), static_cast<int>(tile.row()));
-        children_[place] = {};
-        children_[place].framelet = framelet;
+        children_[index] = {};
+        children_[index].framelet = framelet;
         if (framelet != nullptr) {
             __builtin_prefetch(framelet);
             __builtin_prefetch(&framelet->shape.layers);
             __builtin_prefetch(samples_of(*framelet, child_side_));
             for (int row = 0; row < child_side_; ++row) {
-                __builtin_prefetch(grid_.data() + offset_of(place) + row * side_, 1);
+                __builtin_prefetch(grid_.data() + offset_of(index) + row * side_, 1);
             }
         }
     }
@@ -97,16 +97,16 @@ void MergedSquare::make_room(ImagePlane const& plane) {
     written_ = ~std::uint64_t{0};
 }
 
-bool MergedSquare::set_layers(std::uint64_t places) {
-    for (std::uint64_t left = places; left != 0; left &= left - 1) {
-        auto const place = static_cast<std::size_t>(std::countr_zero(left));
-        Child& child = children_[place];
+bool MergedSquare::set_layers(std::uint64_t children) {
+    for (std::uint64_t left = children; left != 0; left &= left - 1) {
+        auto const index = static_cast<std::size_t>(std::countr_zero(left));
+        Child& child = children_[index];
         if (child.framelet == nullptr) {
-            layers_->clear(place);
+            layers_->clear(index);
             continue;
         }
         child.has_outliers = !child.framelet->shape.outliers.empty();
-        if (!layers_->set(place, child.framelet->view, child.framelet->moment.batch, child.framelet->shape)) {
+        if (!layers_->set(index, child.framelet->view, child.framelet->moment.batch, child.framelet->shape)) {
             return false;
         }
     }
@@ -128,15 +128,15 @@ void MergedSquare::keep(CoplanarMerging const& merging) {
         }
     }
     with_outliers_ = 0;
-    for (std::size_t place = 0; place < most_children; ++place) {
-        Child& child = children_[place];
-        with_outliers_ |= std::uint64_t{child.has_outliers} << place;
-        if (!child.is_written || child.numbers != numbers[place]) {
-            child.numbers = numbers[place];
+    for (std::size_t index = 0; index < most_children; ++index) {
+        Child& child = children_[index];
+        with_outliers_ |= std::uint64_t{child.has_outliers} << index;
+        if (!child.is_written || child.numbers != numbers[index]) {
+            child.numbers = numbers[index];
             child.is_written = true;
-            if (SquareLayers::part_at(place) >> 2 * levels() == 0) {
-                write(child, grid_.data() + offset_of(place));
-                written_ |= std::uint64_t{1} << place;
+            if (SquareLayers::part_at(index) >> 2 * levels() == 0) {
+                write(child, grid_.data() + offset_of(index));
+                written_ |= std::uint64_t{1} << index;
             }
         }
     }
@@ -177,11 +177,11 @@ void MergedSquare::find_ends() {
 
 /// The smallest tile (a framelet's, a quad's or the square) that has all of these parts.
 Tile MergedSquare::tile_around(std::array<std::uint64_t, max_layers> const& parts) const {
-    std::uint64_t const places = parts[0] | parts[1] | parts[2];
-    if (std::has_single_bit(places)) {
-        return child_tile(static_cast<std::size_t>(std::countr_zero(places)));
+    std::uint64_t const framelets = parts[0] | parts[1] | parts[2];
+    if (std::has_single_bit(framelets)) {
+        return child_tile(static_cast<std::size_t>(std::countr_zero(framelets)));
     }
-    std::uint64_t const quads = (places | places >> 16 | places >> 32 | places >> 48) & 0xffffu;
+    std::uint64_t const quads = (framelets | framelets >> 16 | framelets >> 32 | framelets >> 48) & 0xffffu;
     if (std::has_single_bit(quads)) {
         return tile_below(square_, levels() - 1, static_cast<std::size_t>(std::countr_zero(quads)));
     }
@@ -195,23 +195,23 @@ MergedLayer MergedSquare::merge(CoplanarLayers const& coplanar) const {
     for (std::size_t k = 0; k < max_layers; ++k) {
         SquareLayers::Rows const& rows = layers_->rows(k);
         for (std::uint64_t left = coplanar.parts[k]; left != 0; left &= left - 1) {
-            auto const place = static_cast<std::size_t>(std::countr_zero(left));
-            std::uint32_t const number = number_of(place, k);
+            auto const index = static_cast<std::size_t>(std::countr_zero(left));
+            std::uint32_t const number = number_of(index, k);
             if (is_first) {
                 is_first = false;
-                out.first = child_tile(place);
+                out.first = child_tile(index);
                 out.first_layer = static_cast<std::uint32_t>(k);
                 out.number = number;
-                SquareLayers::Motion const& motion = layers_->motion(rows.motion[place]);
+                SquareLayers::Motion const& motion = layers_->motion(rows.motion[index]);
                 out.view = motion.view;
                 layer.body = motion.body;
                 layer.velocity = motion.velocity;
-                layer.error = rows.error[place]; // also where it is not a number
+                layer.error = rows.error[index]; // also where it is not a number
             }
-            layer.error = std::max(layer.error, rows.error[place]);
-            out.newest_batch = std::max(out.newest_batch, layers_->batch(place));
-            out.decorrelation = std::max(out.decorrelation, children_[place].framelet->shape.decorrelation);
-            out.signature = mix_in(out.signature, layers_->batch(place) * 256 + number);
+            layer.error = std::max(layer.error, rows.error[index]);
+            out.newest_batch = std::max(out.newest_batch, layers_->batch(index));
+            out.decorrelation = std::max(out.decorrelation, children_[index].framelet->shape.decorrelation);
+            out.signature = mix_in(out.signature, layers_->batch(index) * 256 + number);
         }
     }
     layer.error += static_cast<float>(coplanar.difference);
@@ -260,23 +260,23 @@ void MergedSquare::set_tile(CoplanarLayers const& coplanar, Tile tile, MergedLay
     held.last_row = static_cast<std::int8_t>(static_cast<int>(samples * coplanar.extent.bottom) - 1 - row);
 }
 
-std::optional<MergedSquare::GridPlace> MergedSquare::place_in_grid(PackedSample const* sample) const {
+std::optional<MergedSquare::GridPosition> MergedSquare::position_in_grid(PackedSample const* sample) const {
     std::less<> const is_before;
     if (grid_.empty() || is_before(sample, grid_.data()) || !is_before(sample, grid_.data() + grid_.size())) {
         return std::nullopt;
     }
-    auto const index = static_cast<int>(sample - grid_.data());
-    return GridPlace{index % side_, index / side_};
+    auto const offset = static_cast<int>(sample - grid_.data());
+    return GridPosition{offset % side_, offset / side_};
 }
 
-MergedSquare::GridPlace MergedSquare::place_of_child(std::size_t place) const {
-    auto const index = static_cast<int>(offset_of(place));
-    return {index % side_, index / side_};
+MergedSquare::GridPosition MergedSquare::position_of_child(std::size_t index) const {
+    auto const offset = static_cast<int>(offset_of(index));
+    return {offset % side_, offset / side_};
 }
 
 /// Index in the grid of a child's first sample.
-std::size_t MergedSquare::offset_of(std::size_t place) const {
-    auto const part = static_cast<std::uint32_t>(SquareLayers::part_at(place));
+std::size_t MergedSquare::offset_of(std::size_t index) const {
+    auto const part = static_cast<std::uint32_t>(SquareLayers::part_at(index));
     return static_cast<std::uint32_t>(child_side_) *
            (morton_y(part) * static_cast<std::uint32_t>(side_) + morton_x(part));
 }

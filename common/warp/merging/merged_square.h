@@ -31,12 +31,12 @@ struct MergedLayer {
     std::int32_t side = 0; ///< samples along a side of `tile`
     std::int32_t stride = 0; ///< samples from one of their rows to the next
     PackedSample const* grid = nullptr;
-    std::uint32_t number = 0; ///< the number of its samples in the grid, in place of a layer's
+    std::uint32_t number = 0; ///< the number of its samples in the grid, instead of a layer's
     LayerSet ends_before{}; ///< as in `WarpPatch`
     std::uint64_t newest_batch = 0;
     DecorrelationCode decorrelation = 0; ///< the soonest of theirs
     std::uint64_t signature = 0; ///< differs where what is held differs
-    /// Bit p of word k is set for layer k of the framelet at place p.
+    /// Bit p of word k is set for layer k of the framelet of index p, as in `SquareLayers`.
     std::array<std::uint64_t, max_layers> parts{};
     std::uint64_t occupied = 0; ///< as in `WarpPatch`
 };
@@ -47,7 +47,7 @@ public:
     /// Levels from the framelets up to the square; fewer where the quadtree has fewer.
     static constexpr int most_levels = SquareLayers::most_levels;
     static_assert(most_levels == SquareVersions::levels);
-    static constexpr std::size_t most_children = SquareLayers::places;
+    static constexpr std::size_t most_children = SquareLayers::most_framelets;
 
     /// The framelet that is held for a tile.
     struct Child {
@@ -61,7 +61,7 @@ public:
     /// the last call only; allocates where more is held or merged than ever before. `merging` is scratch.
     void update(FrameletCache const& cache, Tile square, int depth, CoplanarMerging& merging);
 
-    /// The framelets of that depth below the square, by place (as in `SquareLayers`); empty where nothing ever was
+    /// The framelets of that depth below the square, by index (as in `SquareLayers`); empty where nothing ever was
     /// held. This and what follows is valid until the next update.
     std::span<Child const> children() const { return children_; }
     /// True when nothing is held of the square now.
@@ -74,18 +74,18 @@ public:
     std::span<CoplanarLayers const> quads() const { return quads_; }
     /// Makes one layer of layers that were merged, or of a quad.
     MergedLayer merge(CoplanarLayers const& coplanar) const;
-    Tile child_tile(std::size_t place) const;
+    Tile child_tile(std::size_t index) const;
     /// All samples of the square in rows, `side()` by `side()`; empty where nothing ever was held.
     std::span<PackedSample const> grid() const { return grid_; }
     int side() const { return side_; } ///< samples along a side of the grid
     int child_side() const { return child_side_; } ///< samples along a side of a child's part of the grid
-    struct GridPlace {
+    struct GridPosition {
         int column = 0, row = 0;
     };
-    /// The place of a sample of this grid; nothing where it is another grid's.
-    std::optional<GridPlace> place_in_grid(PackedSample const* sample) const;
-    /// The place of a child's first sample.
-    GridPlace place_of_child(std::size_t place) const;
+    /// The position of a sample of this grid; nothing where it is another grid's.
+    std::optional<GridPosition> position_in_grid(PackedSample const* sample) const;
+    /// The position of a child's first sample.
+    GridPosition position_of_child(std::size_t index) const;
     /// A bit for each child whose samples have been written since this was called last; all of them where the grid is
     /// new.
     std::uint64_t take_written() { return std::exchange(written_, 0); }
@@ -97,13 +97,13 @@ private:
     std::uint64_t changes(SquareVersions const& versions) const;
     void load(FrameletCache const& cache, std::uint64_t changed);
     void make_room(ImagePlane const& plane);
-    bool set_layers(std::uint64_t places);
+    bool set_layers(std::uint64_t children);
     void keep(CoplanarMerging const& merging);
     Tile tile_around(std::array<std::uint64_t, max_layers> const& parts) const;
     void set_tile(CoplanarLayers const& coplanar, Tile tile, MergedLayer& out) const;
     std::uint64_t occupied_parts(std::array<std::uint64_t, max_layers> const& parts, Tile tile) const;
     void find_ends();
-    std::size_t offset_of(std::size_t place) const;
+    std::size_t offset_of(std::size_t index) const;
     void write(Child const& child, PackedSample* to) const;
     template <int side>
     void write_samples(Child const& child, PackedSample* to) const;

@@ -5,15 +5,15 @@
 
 namespace framelet {
 
-void SquareLayers::clear(std::size_t place) {
+void SquareLayers::clear(std::size_t index) {
     for (Rows& rows : rows_) {
-        rows.held &= ~(std::uint64_t{1} << place);
+        rows.held &= ~(std::uint64_t{1} << index);
     }
 }
 
-bool SquareLayers::set(std::size_t place, std::uint32_t view, std::uint64_t batch, HeldShape const& shape) {
-    clear(place);
-    batches_[place] = batch;
+bool SquareLayers::set(std::size_t index, std::uint32_t view, std::uint64_t batch, HeldShape const& shape) {
+    clear(index);
+    batches_[index] = batch;
     for (std::size_t k = 0; k < shape.layer_count; ++k) {
         HeldLayer const& held = shape.layers[k];
         if (held.last_column < held.first_column) {
@@ -24,15 +24,15 @@ bool SquareLayers::set(std::size_t place, std::uint32_t view, std::uint64_t batc
             return false;
         }
         Rows& rows = rows_[k];
-        rows.at[place] = held.layer.at;
-        rows.dx[place] = held.layer.dx;
-        rows.dy[place] = held.layer.dy;
-        rows.error[place] = held.layer.error;
+        rows.at[index] = held.layer.at;
+        rows.dx[index] = held.layer.dx;
+        rows.dy[index] = held.layer.dy;
+        rows.error[index] = held.layer.error;
         // The box is four bytes one after the other.
         static_assert(offsetof(HeldLayer, last_row) == offsetof(HeldLayer, first_column) + 3);
-        std::memcpy(&rows.box[place], &held.first_column, sizeof(std::int32_t));
-        rows.motion[place] = motion;
-        rows.held |= std::uint64_t{1} << place;
+        std::memcpy(&rows.box[index], &held.first_column, sizeof(std::int32_t));
+        rows.motion[index] = motion;
+        rows.held |= std::uint64_t{1} << index;
     }
     return true;
 }

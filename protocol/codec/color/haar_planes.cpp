@@ -31,11 +31,11 @@ std::int16_t times(std::int16_t level, std::uint16_t step) {
 }
 
 /// Details of all octaves of a plane, from its levels.
-Fours details_of(Fours const& levels, std::uint16_t base) {
-    Fours details;
+PlaneDetails details_of(PlaneDetails const& levels, std::uint16_t base) {
+    PlaneDetails details;
     for (std::size_t octave = 0; octave < haar_octaves; ++octave) {
         std::uint16_t const step = octave_step(base, octave);
-        std::size_t const first = first_four[octave];
+        std::size_t const first = octave_first[octave];
         std::transform(&levels[first], &levels[first] + 4 * haar_blocks(octave), &details[first],
                        [step](std::int16_t level) { return times(level, step); });
     }
@@ -43,10 +43,10 @@ Fours details_of(Fours const& levels, std::uint16_t base) {
 }
 
 /// Quantises the details of a plane; returns the bits that its levels take, roughly.
-int quantise(Fours const& details, std::uint16_t base, Fours& levels) {
+int quantise(PlaneDetails const& details, std::uint16_t base, PlaneDetails& levels) {
     int bits = 0;
     for (std::size_t octave = 0; octave < haar_octaves; ++octave) {
-        std::size_t const first = first_four[octave];
+        std::size_t const first = octave_first[octave];
         bits += quantise(&details[first], haar_blocks(octave), DetailStep(octave_step(base, octave)), &levels[first]);
     }
     return bits;
@@ -57,20 +57,20 @@ int bits_of_level(std::int16_t level) {
     return size == 0 ? 0 : std::min(size, int{most_bits_of_size}) + int{bits_of_any};
 }
 
-/// Part of a detail of chroma that comes from the detail of luma in its place; `share` is in eighths.
+/// Part of a detail of chroma that comes from the detail of luma beside it; `share` is in eighths.
 std::int16_t shared(std::int16_t luma, std::int8_t share) {
     return static_cast<std::int16_t>(times(luma, static_cast<std::uint16_t>(share)) >> 3);
 }
 
 /// Computes the values of a plane from its mean and its levels, which are overwritten. `base`: quantisation step of the
 /// coarsest octave; 0 where the levels are details already.
-void synthesise(Fours& levels, std::uint16_t base, std::int16_t mean, std::int16_t* values) {
+void synthesise(PlaneDetails& levels, std::uint16_t base, std::int16_t mean, std::int16_t* values) {
     constexpr std::uint16_t one = 1;
     std::int16_t const* means = &mean;
     for (std::size_t octave = haar_octaves; octave-- > 0;) {
-        std::int16_t* const fours = &levels[first_four[octave]];
-        std::int16_t* const out = octave == 0 ? values : fours;
-        haar_inverse(means, fours, base == 0 ? one : octave_step(base, octave), haar_blocks(octave), out);
+        std::int16_t* const octave_levels = &levels[octave_first[octave]];
+        std::int16_t* const out = octave == 0 ? values : octave_levels;
+        haar_inverse(means, octave_levels, base == 0 ? one : octave_step(base, octave), haar_blocks(octave), out);
         means = out;
     }
 }
@@ -85,10 +85,10 @@ DisplayValues synthesise(HaarLevels& levels, std::uint8_t qp) {
         means[plane] = times(levels.means[plane], bases[plane]);
     }
     if (levels.shares[0] != 0 || levels.shares[1] != 0) {
-        Fours const luma = details_of(levels.details[0], bases[0]);
+        PlaneDetails const luma = details_of(levels.details[0], bases[0]);
         for (std::size_t chroma = 0; chroma < levels.shares.size(); ++chroma) {
             if (std::int8_t const share = levels.shares[chroma]; share != 0) {
-                Fours& details = levels.details[1 + chroma];
+                PlaneDetails& details = levels.details[1 + chroma];
                 details = details_of(details, bases[1 + chroma]);
                 std::transform(details.begin(), details.end(), luma.begin(), details.begin(),
                                [share](std::int16_t own, std::int16_t of_luma) {
@@ -110,20 +110,20 @@ int code(DisplayValues const& values, std::uint8_t qp, int most, HaarCode& out) 
     int bits = 0;
     for (std::size_t plane = 0; plane < values.planes.size(); ++plane) {
         std::uint16_t const base = base_step(plane, qp);
-        Fours& details = out.values[plane];
-        Fours& levels = out.levels.details[plane];
-        std::int16_t const* fours = values.planes[plane].data();
+        PlaneDetails& details = out.values[plane];
+        PlaneDetails& levels = out.levels.details[plane];
+        std::int16_t const* children = values.planes[plane].data();
         std::int16_t mean = 0;
         int const bits_before = bits;
         for (std::size_t octave = 0; octave < haar_octaves; ++octave) {
-            std::size_t const first = first_four[octave];
-            std::int16_t* const means = octave + 1 < haar_octaves ? &details[first_four[octave + 1]] : &mean;
-            bits += haar_forward(fours, haar_blocks(octave), DetailStep(octave_step(base, octave)), means,
+            std::size_t const first = octave_first[octave];
+            std::int16_t* const means = octave + 1 < haar_octaves ? &details[octave_first[octave + 1]] : &mean;
+            bits += haar_forward(children, haar_blocks(octave), DetailStep(octave_step(base, octave)), means,
                                  &details[first], &levels[first]);
             if (bits > most) {
                 return bits;
             }
-            fours = means;
+            children = means;
         }
         out.bits[plane] = bits - bits_before;
         out.levels.means[plane] = quantised_mean(mean, base);
@@ -137,13 +137,13 @@ namespace {
 
 /// Fits by least squares how many eighths of luma, as it will be read, the details of chroma have. Each detail counts
 /// as much as it does in the picture.
-int fitted_share(Fours const& luma, Fours const& chroma) {
+int fitted_share(PlaneDetails const& luma, PlaneDetails const& chroma) {
     float products = 0, squares = 0;
     for (std::size_t octave = 0; octave < haar_octaves; ++octave) {
         // The sums stay below 1.5e9: details of a block have at most the squares of its samples, 64 times 4080^2
         // together; rounding adds at most 349 to each of 192 of luma.
         std::int32_t product = 0, square = 0;
-        for (std::size_t i = first_four[octave]; i < first_four[octave] + 4 * haar_blocks(octave); ++i) {
+        for (std::size_t i = octave_first[octave]; i < octave_first[octave] + 4 * haar_blocks(octave); ++i) {
             product += luma[i] * chroma[i];
             square += luma[i] * luma[i];
         }
@@ -162,7 +162,7 @@ void share_luma(std::uint8_t qp, HaarCode& code) {
     if (code.bits[0] == 0 || code.bits[1] + code.bits[2] == 0) {
         return; // nothing to share, or nobody to share it
     }
-    Fours const luma = details_of(levels.details[0], base_step(0, qp));
+    PlaneDetails const luma = details_of(levels.details[0], base_step(0, qp));
     for (std::size_t chroma = 0; chroma < levels.shares.size(); ++chroma) {
         std::size_t const plane = 1 + chroma;
         if (code.bits[plane] == 0) {
@@ -172,7 +172,7 @@ void share_luma(std::uint8_t qp, HaarCode& code) {
         if (share == 0) {
             continue;
         }
-        Fours tried, tried_levels;
+        PlaneDetails tried, tried_levels;
         std::transform(code.values[plane].begin(), code.values[plane].end(), luma.begin(), tried.begin(),
                        [share](std::int16_t own, std::int16_t of_luma) {
                            return static_cast<std::int16_t>(own - shared(of_luma, share));

@@ -15,15 +15,15 @@ inline constexpr std::size_t haar_octaves = 4;
 constexpr std::size_t haar_blocks(std::size_t octave) {
     return std::size_t{framelet_samples} >> (2 * (octave + 1));
 }
-/// Index in `Fours` at which each octave, counted from the finest, begins.
-inline constexpr std::array<std::size_t, haar_octaves> first_four{84, 20, 4, 0};
+/// Index in `PlaneDetails` at which each octave, counted from the finest, begins.
+inline constexpr std::array<std::size_t, haar_octaves> octave_first{84, 20, 4, 0};
 
 /// Details of one plane: its octaves from the coarsest, each block of them as [mean, h, v, d].
-using Fours = std::array<std::int16_t, 4 * (64 + 16 + 4 + 1)>;
+using PlaneDetails = std::array<std::int16_t, 4 * (64 + 16 + 4 + 1)>;
 
 /// Details of a framelet's three planes and the planes' means, quantised; 0 instead of the means of blocks.
 struct HaarLevels {
-    std::array<Fours, 3> details;
+    std::array<PlaneDetails, 3> details;
     std::array<std::int16_t, 3> means;
     /// Share of luma that the details of Co and of Cg have besides their own levels, in eighths of the details of luma,
     /// -8..7.
@@ -32,7 +32,7 @@ struct HaarLevels {
 
 /// A way of coding a framelet, and the details that it was made of, sixteenths.
 struct HaarCode {
-    std::array<Fours, 3> values;
+    std::array<PlaneDetails, 3> values;
     HaarLevels levels;
     std::array<int, 3> bits; ///< what each plane's details will take, roughly, before luma is shared
 };

@@ -23,15 +23,15 @@ constexpr std::uint16_t all = 0xffff;
 constexpr Blocks not_mean{0, all, all, all, 0, all, all, all, 0, all, all, all, 0, all, all, all};
 
 template <std::size_t count>
-Blocks load(std::int16_t const* fours) {
+Blocks load(std::int16_t const* values) {
     Blocks blocks{};
-    std::memcpy(&blocks, fours, 4 * count * sizeof *fours);
+    std::memcpy(&blocks, values, 4 * count * sizeof *values);
     return blocks;
 }
 
 template <std::size_t count>
-void store(Blocks const& blocks, std::int16_t* fours) {
-    std::memcpy(fours, &blocks, 4 * count * sizeof *fours);
+void store(Blocks const& blocks, std::int16_t* values) {
+    std::memcpy(values, &blocks, 4 * count * sizeof *values);
 }
 
 /// -x where the mask is set, x elsewhere.
@@ -98,12 +98,12 @@ public:
     }
 
     int bits() const {
-        std::uint64_t fours = 0; // sums of all lanes stay far below 2^16
+        std::uint64_t sums = 0; // those of all lanes stay far below 2^16
         auto const words = reinterpret_cast<Words>(bits_);
         for (std::size_t i = 0; i < at_a_time; ++i) {
-            fours += words[i];
+            sums += words[i];
         }
-        return static_cast<int>(fours * 0x0001000100010001u >> 48);
+        return static_cast<int>(sums * 0x0001000100010001u >> 48);
     }
 
 private:
@@ -136,11 +136,11 @@ DetailStep::DetailStep(std::uint16_t step_of_levels) : step(step_of_levels) {
     rounding = static_cast<std::uint16_t>(step * share / 64);
 }
 
-int haar_forward(std::int16_t const* fours, std::size_t blocks, DetailStep const& step, std::int16_t* means,
+int haar_forward(std::int16_t const* children, std::size_t blocks, DetailStep const& step, std::int16_t* means,
                  std::int16_t* details, std::int16_t* levels) {
     Quantiser quantiser(step);
     for_each_blocks(blocks, [&]<std::size_t count>(std::size_t i) {
-        Blocks const out = forward(load<count>(fours + 4 * i));
+        Blocks const out = forward(load<count>(children + 4 * i));
         store<count>(out, details + 4 * i);
         store<count>(quantiser(out), levels + 4 * i);
         Means const of_blocks = means_of(out);

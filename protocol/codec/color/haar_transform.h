@@ -22,14 +22,14 @@ struct DetailStep {
 /// most `most_bits_of_size`.
 inline constexpr std::uint16_t bits_of_any = 5, most_bits_of_size = 8;
 
-/// Transforms one octave, modulo 2^16. `fours` has four values for each block: children a b / c d. Their mean
-/// (a+b+c+d)/4 and the details (a-b+c-d)/4, (a+b-c-d)/4, (a-b-c+d)/4, each rounded, become four `details`; `means` gets
-/// the means alone, and `levels` the same as `quantise` gives. `details` may be `fours`. `blocks` is at most 1000.
-/// Returns the bits that the levels take, roughly.
-int haar_forward(std::int16_t const* fours, std::size_t blocks, DetailStep const& step, std::int16_t* means,
+/// Transforms one octave, modulo 2^16. `children` has four values for each block: a b / c d. Their mean (a+b+c+d)/4 and
+/// the details (a-b+c-d)/4, (a+b-c-d)/4, (a-b-c+d)/4, each rounded, become four `details`; `means` gets the means
+/// alone, and `levels` the same as `quantise` gives. `details` may be `children`. `blocks` is at most 1000. Returns the
+/// bits that the levels take, roughly.
+int haar_forward(std::int16_t const* children, std::size_t blocks, DetailStep const& step, std::int16_t* means,
                  std::int16_t* details, std::int16_t* levels);
 
-/// Quantises details to levels, with 0 in the places of the means. Returns the bits that they take, roughly.
+/// Quantises details to levels, with 0 where the means are. Returns the bits that they take, roughly.
 int quantise(std::int16_t const* details, std::size_t blocks, DetailStep const& step, std::int16_t* levels);
 
 /// Transforms back: details h, v, d, which are levels times `step`, and the means m give m+h+v+d, m-h+v-d, m+h-v-d,

@@ -56,19 +56,20 @@ private:
     }
 
     template <class Coder>
-    void code_plane(Coder& coder, std::size_t plane, std::array<Sizes, 3>& sizes, Fours& details) {
+    void code_plane(Coder& coder, std::size_t plane, std::array<Sizes, 3>& sizes, PlaneDetails& details) {
         std::size_t const kind = plane == 0 ? 0 : 1;
         bool before = false;
         for (std::size_t octave = haar_octaves; octave-- > 0;) {
-            std::int16_t* const fours = &details[first_four[octave]];
+            std::int16_t* const levels = &details[octave_first[octave]];
             std::size_t const blocks = haar_blocks(octave);
             bool const luma = plane > 0 && sizes[0].is_coded[octave];
-            bool const has_any = !Coder::reads && std::any_of(fours, fours + 4 * blocks, [](auto v) { return v != 0; });
+            bool const has_any =
+                !Coder::reads && std::any_of(levels, levels + 4 * blocks, [](auto v) { return v != 0; });
             bool const any = coder.bit(coded_[kind][octave][(before ? 1u : 0u) + (luma ? 2u : 0u)], has_any);
             sizes[plane].is_coded[octave] = any;
             before = any;
             if (any) {
-                code_octave(coder, plane, octave, sizes, fours);
+                code_octave(coder, plane, octave, sizes, levels);
             }
         }
     }
@@ -98,17 +99,17 @@ private:
 
     template <class Coder>
     void code_octave(Coder& coder, std::size_t plane, std::size_t octave, std::array<Sizes, 3>& sizes,
-                     std::int16_t* fours) {
+                     std::int16_t* levels) {
         std::size_t const kind = plane == 0 ? 0 : 1;
         std::size_t const side = std::size_t{8} >> octave;
         for (std::size_t y = 0; y < side; ++y) {
             for (std::size_t x = 0; x < side; ++x) {
-                std::int16_t* const four =
-                    fours + 4 * morton_index(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
+                std::int16_t* const block =
+                    levels + 4 * morton_index(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
                 unsigned here = 0;
                 for (std::size_t band = 0; band < bands; ++band) {
                     Around const around = look_around(sizes, plane, octave, band, x, y, here);
-                    std::int16_t& level = four[band + 1];
+                    std::int16_t& level = block[band + 1];
                     if (!coder.bit(is_any_[kind][octave][band][around.context], level != 0)) {
                         continue;
                     }

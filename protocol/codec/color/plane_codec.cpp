@@ -45,7 +45,7 @@ template void PlaneModel::code_head(RangeReader&, bool, std::uint8_t&, Predictio
 
 namespace {
 
-/// Prepares the prediction of the next framelet from its own place, since most are predicted from there.
+/// Prepares the prediction of the next framelet from its own tile, since most are predicted from there.
 void expect_next(ReferencePicture const& reference, std::span<DisplayFramelet const> framelets, std::size_t i) {
     if (i + 1 < framelets.size()) {
         reference.expect(framelets[i + 1].tile);
@@ -60,7 +60,7 @@ void add_prediction(DisplayValues const& left, Prediction const& prediction, Dis
     }
 }
 
-/// True where an exact framelet is close to what the reference picture has in its place, as it is where the same was
+/// True where an exact framelet is close to what the reference picture has in its tile, as it is where the same was
 /// sent with loss before. Green alone is compared.
 bool resembles(DisplayFramelet const& framelet, DisplayFramelet const& reference) {
     constexpr int alike = 12; // levels a sample, on the average

@@ -1,6 +1,6 @@
-// A plane of points that has been written coarsely in one place and finely in another, without spreading what is
-// coarse: each level is a grid of its own, and each cell of 8x8 points says which of them counts there. In: squares of
-// 16x16 values of one level. Out: rows of points, wherever they lie.
+// A plane of points that has been written coarsely here and finely there, without spreading what is coarse: each level
+// is a grid of its own, and each cell of 8x8 points says which of them counts there. In: squares of 16x16 values of one
+// level. Out: rows of points, wherever they lie.
 #pragma once
 
 #include <algorithm>
@@ -104,7 +104,7 @@ template <std::size_t count>
 
 } // namespace point_rows
 
-/// Three planes of points, in each place of which the same level counts.
+/// Three planes of points, in each cell of which the same level counts.
 class PointGrids {
 public:
     /// Number of levels: level l has a value for every 2^l x 2^l points.

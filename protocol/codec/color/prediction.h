@@ -1,4 +1,4 @@
-// Chooses how a framelet with loss is predicted: not at all, from its own place in the reference picture, or from
+// Chooses how a framelet with loss is predicted: not at all, from its own tile in the reference picture, or from
 // elsewhere because it has moved. In: framelet, picture. Out: the cheapest way, and the residual to be coded.
 #pragma once
 

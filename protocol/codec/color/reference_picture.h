@@ -49,7 +49,7 @@ public:
     /// Says that a prediction from near the tile will be asked for soon.
     void expect(Tile tile) const;
 
-    /// Place of a tile in the picture, or a place that is moved from there; half pixels.
+    /// The square of a tile in the picture, or one that is moved from there; half pixels.
     struct Square {
         int left, top, side;
         /// Logarithm to base 2 of the half pixels from sample to sample; -1: two samples a half pixel.

@@ -102,18 +102,18 @@ void check(FrameletShape const& shape) {
 
 } // namespace
 
-LayerCode continued(CodedLayer const& layer, UnitCode unit, TilePosition const& place) {
+LayerCode continued(CodedLayer const& layer, UnitCode unit, TilePosition const& position) {
     LayerCode const& code = layer.code;
-    int const bits = layer.place.side_bits;
+    int const bits = layer.position.side_bits;
     int const finer = int{code.unit} - int{unit}; // logarithm to base 2 of how much larger the old unit is
-    std::int64_t const right = std::int64_t{place.left} - layer.place.left;
-    std::int64_t const down = std::int64_t{place.top} - layer.place.top;
+    std::int64_t const right = std::int64_t{position.left} - layer.position.left;
+    std::int64_t const down = std::int64_t{position.top} - layer.position.top;
     std::int64_t const at = (std::int64_t{code.at} << bits) + code.dx * right + code.dy * down;
     LayerCode out;
     out.unit = unit;
     out.at = scaled(at, finer - bits);
-    out.dx = scaled(code.dx, finer + place.side_bits - bits);
-    out.dy = scaled(code.dy, finer + place.side_bits - bits);
+    out.dx = scaled(code.dx, finer + position.side_bits - bits);
+    out.dy = scaled(code.dy, finer + position.side_bits - bits);
     return out;
 }
 
@@ -127,12 +127,12 @@ BodyNumber ShapeModel::BodyModel::code(Coder& coder, BodyNumber last, BodyNumber
 }
 
 /// Number of the remembered layer beside which a layer takes the fewest bits.
-std::size_t ShapeModel::nearest(LayerCode const& code, BodyNumber body, TilePosition const& place) const {
+std::size_t ShapeModel::nearest(LayerCode const& code, BodyNumber body, TilePosition const& position) const {
     std::size_t best = 0;
     int least = std::numeric_limits<int>::max();
     for (std::size_t i = 0; i < layers_.size(); ++i) {
         constexpr int another_body = 12; // bits
-        int const bits = cost(code, continued(layers_[i], code.unit, place)) +
+        int const bits = cost(code, continued(layers_[i], code.unit, position)) +
                          (layers_[i].body == body ? 0 : another_body) + std::abs(layers_[i].code.unit - code.unit);
         if (bits < least) {
             least = bits;
@@ -148,17 +148,17 @@ void ShapeModel::remember(CodedLayer const& layer) {
 }
 
 template <class Coder, class AnyLayer>
-void ShapeModel::code_layer(Coder& coder, TilePosition const& place, std::size_t number, AnyLayer& layer) {
+void ShapeModel::code_layer(Coder& coder, TilePosition const& position, std::size_t number, AnyLayer& layer) {
     LayerCode code;
     if (!Coder::reads) {
-        code = quantise(layer, place.side_bits);
+        code = quantise(layer, position.side_bits);
     }
     std::size_t const source =
-        sources_[number].code(coder, static_cast<unsigned>(Coder::reads ? 0 : nearest(code, layer.body, place)));
+        sources_[number].code(coder, static_cast<unsigned>(Coder::reads ? 0 : nearest(code, layer.body, position)));
     CodedLayer const& from = layers_[source];
     code.unit = checked_unit(static_cast<unsigned>(static_cast<std::uint16_t>(
         from.code.unit + units_.code(coder, static_cast<std::int16_t>(code.unit - from.code.unit)))));
-    LayerCode const expected = continued(from, code.unit, place);
+    LayerCode const expected = continued(from, code.unit, position);
     auto const coded = [&](std::size_t i, std::int16_t value, std::int16_t likely) {
         return sum(likely, planes_[i].code(coder, difference(value, likely)));
     };
@@ -172,10 +172,10 @@ void ShapeModel::code_layer(Coder& coder, TilePosition const& place, std::size_t
     code.error = static_cast<std::uint8_t>(error);
     BodyNumber const body = layer_bodies_.code(coder, from.body, layer.body);
     if constexpr (Coder::reads) {
-        layer = dequantise(code, place.side_bits);
+        layer = dequantise(code, position.side_bits);
         layer.body = body;
     }
-    remember({code, body, place});
+    remember({code, body, position});
 }
 
 /// Codes which sample is of which kind, row by row: layers by their number, then the outliers.
@@ -277,7 +277,7 @@ void ShapeModel::code_velocities(Coder& coder, Shape& shape) {
 }
 
 template <class Coder, class Shape>
-void ShapeModel::code(Coder& coder, TilePosition const& place, Shape& shape) {
+void ShapeModel::code(Coder& coder, TilePosition const& position, Shape& shape) {
     constexpr unsigned outlier_bit = 4;
     unsigned const own = shape.layer_count + (shape.outliers.empty() ? 0u : outlier_bit);
     unsigned const head = heads_[head_].code(coder, own);
@@ -294,7 +294,7 @@ void ShapeModel::code(Coder& coder, TilePosition const& place, Shape& shape) {
         shape.decorrelation = decorrelation_;
     }
     for (std::size_t l = 0; l < shape.layer_count; ++l) {
-        code_layer(coder, place, l, shape.layers[l]);
+        code_layer(coder, position, l, shape.layers[l]);
     }
     unsigned const kinds = shape.layer_count + (has_outliers ? 1u : 0u);
     if (kinds > 1) {
@@ -311,17 +311,17 @@ void ShapeModel::code(Coder& coder, TilePosition const& place, Shape& shape) {
     code_velocities(coder, shape);
 }
 
-void ShapeModel::write(RangeWriter& writer, TilePosition const& place, FrameletShape const& shape) {
+void ShapeModel::write(RangeWriter& writer, TilePosition const& position, FrameletShape const& shape) {
     check(shape);
-    code(writer, place, shape);
+    code(writer, position, shape);
 }
 
-void ShapeModel::read(RangeReader& reader, TilePosition const& place, FrameletShape& shape) {
+void ShapeModel::read(RangeReader& reader, TilePosition const& position, FrameletShape& shape) {
     shape.layers = {};
     shape.decorrelation = 0;
     shape.layer_count = 0;
     shape.outliers.clear();
-    code(reader, place, shape);
+    code(reader, position, shape);
 }
 
 } // namespace framelet

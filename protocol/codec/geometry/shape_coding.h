@@ -11,7 +11,7 @@
 
 namespace framelet {
 
-/// Place of a tile: its upper left corner, pixels, and its side, 2^side_bits pixels.
+/// Position of a tile: its upper left corner, pixels, and its side, 2^side_bits pixels.
 struct TilePosition {
     std::int32_t left = 0, top = 0;
     std::int32_t side_bits = 0; ///< 0..31
@@ -21,19 +21,19 @@ struct TilePosition {
 struct CodedLayer {
     LayerCode code;
     BodyNumber body = static_body;
-    TilePosition place;
+    TilePosition position;
 };
 
 /// The plane of a layer as numbers of another tile, in `unit`, clamped to 16 bits; without an error.
-LayerCode continued(CodedLayer const& layer, UnitCode unit, TilePosition const& place);
+LayerCode continued(CodedLayer const& layer, UnitCode unit, TilePosition const& position);
 
 /// Model of shapes: how likely each decision is, as the shapes that were coded before have taught; the same on both
 /// sides.
 class ShapeModel {
 public:
-    void write(RangeWriter& writer, TilePosition const& place, FrameletShape const& shape);
+    void write(RangeWriter& writer, TilePosition const& position, FrameletShape const& shape);
     /// Reads a shape. ProtocolError where what is read is none.
-    void read(RangeReader& reader, TilePosition const& place, FrameletShape& shape);
+    void read(RangeReader& reader, TilePosition const& position, FrameletShape& shape);
 
 private:
     static constexpr int unary = 3; // unary part of numbers that may be large
@@ -57,16 +57,16 @@ private:
 
     // The shape and its parts are const where the coder writes, and not where it reads.
     template <class Coder, class Shape>
-    void code(Coder& coder, TilePosition const& place, Shape& shape);
+    void code(Coder& coder, TilePosition const& position, Shape& shape);
     template <class Coder, class AnyLayer>
-    void code_layer(Coder& coder, TilePosition const& place, std::size_t number, AnyLayer& layer);
+    void code_layer(Coder& coder, TilePosition const& position, std::size_t number, AnyLayer& layer);
     template <class Coder, class Shape>
     void code_kinds(Coder& coder, unsigned kinds, Shape& shape);
     template <class Coder, class Shape>
     void code_outliers(Coder& coder, Shape& shape);
     template <class Coder, class Shape>
     void code_velocities(Coder& coder, Shape& shape);
-    std::size_t nearest(LayerCode const& code, BodyNumber body, TilePosition const& place) const;
+    std::size_t nearest(LayerCode const& code, BodyNumber body, TilePosition const& position) const;
     void remember(CodedLayer const& layer);
 
     std::array<CodedLayer, remembered> layers_{}; ///< the last ones that were coded, the newest first

@@ -86,7 +86,7 @@ RenderScene::RenderScene(Scene const& scene, std::optional<Environment> environm
             prepared_->lights.push_back(default_sun());
         }
     }
-    place_all();
+    apply_pose();
     report("preparing light", 1);
 }
 
@@ -124,19 +124,19 @@ void RenderScene::add_meshes(Progress const& progress) {
     prepared_->instances.resize(placements_.size());
 }
 
-void RenderScene::place_all() {
+void RenderScene::apply_pose() {
     for (Placement const& placement : placements_) {
         if (placement.skin || placement.morphs) {
             deform_mesh(placement);
         }
-        place(placement);
+        set_transform(placement);
     }
     prepared_->bvh.commit();
     update_lights();
     is_placed_ = true;
 }
 
-void RenderScene::place(Placement const& placement) {
+void RenderScene::set_transform(Placement const& placement) {
     Mat4 const world = placement.skin ? Mat4(1) : pose_.world_from_node[placement.node];
     Instance& instance = prepared_->instances[placement.instance];
     instance.geometries = prepared_->meshes[placement.mesh];
@@ -147,7 +147,7 @@ void RenderScene::place(Placement const& placement) {
         instance.normal_matrix = glm::inverseTranspose(instance.linear);
         instance.handedness = glm::determinant(instance.linear) < 0 ? -1.0f : 1.0f;
     }
-    prepared_->bvh.place_instance(placement.instance, instance.linear, instance.translation, present);
+    prepared_->bvh.set_instance(placement.instance, instance.linear, instance.translation, present);
 }
 
 void RenderScene::deform_mesh(Placement const& placement) {
@@ -197,10 +197,10 @@ void RenderScene::set_pose(ScenePose const& pose) {
     update_lights();
     for (Placement const* placement : reshape) {
         deform_mesh(*placement);
-        place(*placement); // its box has changed
+        set_transform(*placement); // its box has changed
     }
     for (Placement const* placement : move) {
-        place(*placement);
+        set_transform(*placement);
     }
     if (!move.empty() || !reshape.empty()) {
         prepared_->bvh.commit();

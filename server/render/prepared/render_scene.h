@@ -49,8 +49,8 @@ private:
     using MeshVertices = std::vector<DeformedVertices>; ///< one for each primitive
 
     void add_meshes(Progress const& progress);
-    void place_all();
-    void place(Placement const& placement);
+    void apply_pose();
+    void set_transform(Placement const& placement);
     void deform_mesh(Placement const& placement);
     bool moved(Placement const& placement, ScenePose const& pose) const;
     bool reshaped(Placement const& placement, ScenePose const& pose) const;

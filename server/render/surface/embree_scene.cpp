@@ -33,7 +33,7 @@ struct EmbreeScene::Handles {
         std::size_t count = 0;
         bool changed = true;
     };
-    struct Placed {
+    struct InstanceHandle {
         RTCGeometry geometry;
         bool moves;
     };
@@ -41,7 +41,7 @@ struct EmbreeScene::Handles {
     RTCDevice device = nullptr;
     bool sixteen_wide = false;
     std::vector<Handle> meshes;
-    std::vector<Placed> instances;
+    std::vector<InstanceHandle> instances;
     /// Where many instances stand still and few move, the two kinds have a level each: rebuilding one of thousands of
     /// instances takes milliseconds, tracing a second small one nanoseconds.
     Level still, moving;
@@ -49,7 +49,7 @@ struct EmbreeScene::Handles {
     bool broken = false; ///< memory was missing: Embree may have left half of something, and is not asked again
 
     TopLevels levels() const { return {still.scene, moving.count > 0 ? moving.scene : nullptr, sixteen_wide}; }
-    Level& level_of(Placed const& instance) { return instance.moves ? moving : still; }
+    Level& level_of(InstanceHandle const& instance) { return instance.moves ? moving : still; }
 
     /// Throws std::bad_alloc where memory is missing. It is called after what takes memory; before it as well, so that
     /// nothing follows what has failed.
@@ -75,7 +75,7 @@ EmbreeScene::EmbreeScene() : handles_(std::make_unique<Handles>()) {
 }
 
 EmbreeScene::~EmbreeScene() {
-    for (Handles::Placed const& instance : handles_->instances) {
+    for (Handles::InstanceHandle const& instance : handles_->instances) {
         rtcReleaseGeometry(instance.geometry);
     }
     rtcReleaseScene(handles_->still.scene);
@@ -152,9 +152,9 @@ std::uint32_t EmbreeScene::add_instance(std::uint32_t mesh) {
     return number;
 }
 
-void EmbreeScene::place_instance(std::uint32_t instance, Mat3 const& linear, Vec3 const& translation, bool present) {
+void EmbreeScene::set_instance(std::uint32_t instance, Mat3 const& linear, Vec3 const& translation, bool present) {
     handles_->throw_failure();
-    Handles::Placed& placed = handles_->instances[instance];
+    Handles::InstanceHandle& placed = handles_->instances[instance];
     RTCGeometry const handle = placed.geometry;
     if (handles_->settled && !placed.moves && handles_->instances.size() > few_instances) {
         rtcDetachGeometry(handles_->still.scene, instance);

@@ -19,7 +19,7 @@ public:
     /// Builds a BVH over the geometries, which must stay where they are. Fills their `positions` from their source and
     /// thereby moves them into the BVH's memory. `deforming`: built so that it can be refitted.
     std::uint32_t add_mesh(std::span<Geometry> geometries, bool deforming);
-    // All that builds or places throws std::bad_alloc where memory is missing, and from then on each time: Embree does
+    // All that builds or moves throws std::bad_alloc where memory is missing, and from then on each time: Embree does
     // not say what it has left undone.
 
     /// Refits the mesh to `positions` that were written anew.
@@ -28,7 +28,7 @@ public:
     std::uint32_t add_instance(std::uint32_t mesh);
     /// An instance that is not `present` vanishes. A transform that is present must be invertible with no element of
     /// its inverse above 1 / `least_instance_scale`, and move to where rays can start.
-    void place_instance(std::uint32_t instance, Mat3 const& linear, Vec3 const& translation, bool present);
+    void set_instance(std::uint32_t instance, Mat3 const& linear, Vec3 const& translation, bool present);
     /// Rebuilds the top level; needed after any of the above, before tracing.
     void commit();
 

@@ -109,23 +109,23 @@ struct TexturePoint {
 
 TexturePoint texture_point(HitFrame const& frame, int lane, float width) {
     std::size_t const i = static_cast<std::size_t>(lane);
-    TexturePoint place;
+    TexturePoint uv_point;
     for (std::size_t set = 0; set < 2; ++set) {
         std::vector<Vec2> const& uv = frame.geometry[i]->source->uv[set];
         if (!uv.empty()) {
-            place.uv[set] = frame.point[i].interpolate(uv);
-            place.footprint[set] = uv_footprint(frame, lane, width, uv);
+            uv_point.uv[set] = frame.point[i].interpolate(uv);
+            uv_point.footprint[set] = uv_footprint(frame, lane, width, uv);
         }
     }
-    return place;
+    return uv_point;
 }
 
-void set_material(Geometry const& geometry, TrianglePoint const& point, int lane, TexturePoint const& place,
+void set_material(Geometry const& geometry, TrianglePoint const& point, int lane, TexturePoint const& uv_point,
                   SurfacePacket& out) {
     RenderMaterial const& m = *geometry.material;
     auto look_up = [&](TextureSampler const& map) {
         std::size_t const set = static_cast<std::size_t>(map.uv_set());
-        return map.sample(place.uv[set], place.footprint[set]);
+        return map.sample(uv_point.uv[set], uv_point.footprint[set]);
     };
     Vec4 base = m.base_color;
     if (!geometry.source->colors.empty()) {
@@ -236,12 +236,12 @@ LaneMask make_surfaces(std::span<Instance const> instances, RayPacket const& ray
         std::size_t const i = static_cast<std::size_t>(lane);
         Geometry const& geometry = *frame.geometry[i];
         RenderMaterial const& material = *geometry.material;
-        TexturePoint const place = material.uses_uv ? texture_point(frame, lane, out.width[lane]) : TexturePoint{};
+        TexturePoint const uv_point = material.uses_uv ? texture_point(frame, lane, out.width[lane]) : TexturePoint{};
         if (material.normal_map) {
             std::size_t const set = static_cast<std::size_t>(material.normal_map.uv_set());
-            out.normal.set(lane, mapped_normal(frame, lane, place.uv[set], place.footprint[set]));
+            out.normal.set(lane, mapped_normal(frame, lane, uv_point.uv[set], uv_point.footprint[set]));
         }
-        set_material(geometry, frame.point[i], lane, place, out);
+        set_material(geometry, frame.point[i], lane, uv_point, out);
         Vec3 const position = frame.position.get(lane);
         Vec3 const smooth = position + smooth_offset(frame, lane);
         out.leaving.set(lane, offset_from_surface(traceable(smooth) ? smooth : position, frame.facet.get(lane)));

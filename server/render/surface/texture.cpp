@@ -149,7 +149,7 @@ Vec4 TextureSampler::bilinear(MipChain::Level const& level, Vec2 uv) const {
 Vec4 TextureSampler::sample(Vec2 uv, UvFootprint const& footprint) const {
     MipChain::Level const& base = chain_->level(0);
     Vec2 const size(base.width, base.height);
-    Vec2 const place = transformed(uv);
+    Vec2 const position = transformed(uv);
     Vec2 const major = column_u_ * footprint.major.x + column_v_ * footprint.major.y;
     Vec2 const minor = column_u_ * footprint.minor.x + column_v_ * footprint.minor.y;
     float const squared_a = glm::dot(major * size, major * size);
@@ -157,13 +157,13 @@ Vec4 TextureSampler::sample(Vec2 uv, UvFootprint const& footprint) const {
     float const squared_long = std::max(squared_a, squared_b);
     if (!(squared_long > 1)) { // magnified
         if (nearest_) {
-            Vec2 const whole(std::floor(place.x * size.x), std::floor(place.y * size.y));
+            Vec2 const whole(std::floor(position.x * size.x), std::floor(position.y * size.y));
             return bilinear(base, (whole + 0.5f) / size);
         }
-        return bilinear(base, place);
+        return bilinear(base, position);
     }
     if (!(squared_long < 1e12f)) { // covers all of the picture, and more than can be reckoned with
-        return bilinear(chain_->level(chain_->levels() - 1), place);
+        return bilinear(chain_->level(chain_->levels() - 1), position);
     }
     float const length = std::sqrt(squared_long);
     float const width = std::max(std::sqrt(std::min(squared_a, squared_b)), 1.0f);
@@ -176,7 +176,7 @@ Vec4 TextureSampler::sample(Vec2 uv, UvFootprint const& footprint) const {
     Vec2 const axis = squared_a >= squared_b ? major : minor;
     Vec4 sum(0);
     for (int i = 0; i < taps; ++i) {
-        Vec2 const at = place + axis * ((static_cast<float>(i) + 0.5f) / static_cast<float>(taps) - 0.5f);
+        Vec2 const at = position + axis * ((static_cast<float>(i) + 0.5f) / static_cast<float>(taps) - 0.5f);
         Vec4 value(0);
         if (blend < 1) {
             value += bilinear(chain_->level(fine), at) * (1 - blend);
@@ -191,9 +191,9 @@ Vec4 TextureSampler::sample(Vec2 uv, UvFootprint const& footprint) const {
 
 float TextureSampler::alpha(Vec2 uv) const {
     MipChain::Level const& level = chain_->level(0);
-    Vec2 const place = transformed(uv);
-    Pair const x = texel_pair(place.x, level.width, wrap_u_);
-    Pair const y = texel_pair(place.y, level.height, wrap_v_);
+    Vec2 const position = transformed(uv);
+    Pair const x = texel_pair(position.x, level.width, wrap_u_);
+    Pair const y = texel_pair(position.y, level.height, wrap_v_);
     auto at = [&](int column, int row) {
         return tables.linear[level.rgba[(static_cast<std::size_t>(row) * static_cast<std::size_t>(level.width) +
                                          static_cast<std::size_t>(column)) *

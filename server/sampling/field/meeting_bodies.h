@@ -17,7 +17,7 @@ struct RenderedMoment {
 };
 
 /// Greatest speed at which two bodies that meet among samples [first, first + count) pass each other, pixels a second
-/// of scene time; 0 where none meet. Looks at some of the places where they meet only. Finite.
+/// of scene time; 0 where none meet. Looks only at some of the points at which they meet. Finite.
 float meeting_speed(Framelet const& framelet, ImagePlane const& plane, RenderedMoment const& moment, std::size_t first,
                     std::size_t count);
 

@@ -244,7 +244,7 @@ void learn_probes(Region& region, std::span<float const> luma, double now) {
         // The region is not what the viewer has, and stands: a step, after which it is worth rendering again.
         constexpr float unseen_drift = 0.1f;
         region.model.motion = std::min(0.5f * region.model.motion, seconds > 0 ? unseen_drift / seconds : INFINITY);
-        region.model.pace = RegionModel::unknown_pace();
+        region.model.decay = RegionModel::unknown_decay();
     } else {
         // The probes are too few to say that all of it stands, unless its last rendering said so.
         constexpr float least_motion = 0.5f;

@@ -21,7 +21,7 @@ constexpr float alias_share = 4.0f / 9.0f;
 /// A drift beyond which even the coarsest band has passed.
 constexpr float most_drift = 64;
 constexpr float most_motion = 1e6f; ///< drift a second
-constexpr float most_pace = 1e3f;
+constexpr float most_decay = 1e3f;
 /// Most share of its bound that a change is taken for: beyond, all that is known is that the band has passed.
 constexpr float most_share = 0.9f;
 
@@ -62,7 +62,7 @@ LevelErrors level_errors(RegionModel const& region) {
     for (std::size_t level = 0; level < errors.drift.size(); ++level) {
         if (level == shown_band(static_cast<int>(level))) {
             sum.most += 2 * region.energy[level];
-            sum.growth += 2 * region.energy[level] * region.pace[level];
+            sum.growth += 2 * region.energy[level] * region.decay[level];
         }
         errors.drift[level] = sum;
     }
@@ -79,7 +79,7 @@ float drift_error(RegionModel const& region, int level, float drift) {
         return sum;
     }
     for (std::size_t band = 0; band <= shown_band(level); ++band) {
-        sum += 2 * region.energy[band] * (1 - std::exp(-drift * region.pace[band]));
+        sum += 2 * region.energy[band] * (1 - std::exp(-drift * region.decay[band]));
     }
     return sum;
 }
@@ -97,7 +97,7 @@ float drift_of_error(RegionModel& region, int level, float error) {
         region.energy[0] = to_energy(region.energy[0] + 0.5f * (error / most_share - bounds.most));
     }
     if (!(bounds.growth > 0)) {
-        region.pace = RegionModel::unknown_pace();
+        region.decay = RegionModel::unknown_decay();
     }
     // `drift_error` is monotone: bisects the logarithm of the drift.
     float low = 1e-6f;
@@ -186,7 +186,7 @@ void learn_energy(RegionModel& region, Observation const& seen) {
 }
 
 /// Learns the drift a second of each band from what has changed of it; then the motion that they have in common, and
-/// each one's own pace.
+/// each one's own decay.
 void learn_motion(RegionModel& region, Observation const& seen) {
     auto change = by_band(seen.level, seen.change);
     std::size_t const coarsest = coarsest_band(seen.level);
@@ -200,7 +200,7 @@ void learn_motion(RegionModel& region, Observation const& seen) {
     constexpr float forgetting = 0.25f;
     std::array<float, sampling_levels> rates{};
     for (std::size_t band = 0; band < rates.size(); ++band) {
-        float const before = region.motion * region.pace[band];
+        float const before = region.motion * region.decay[band];
         float const coarser = band > 0 ? 2 * rates[band - 1] : before;
         if (band <= finest && (band >= coarsest || change[band] > 0)) {
             float const gone = std::min(change[band], most_energy);
@@ -212,7 +212,7 @@ void learn_motion(RegionModel& region, Observation const& seen) {
                                  : before + (rate > 0 ? trust : 1.0f) * (rate - before);
         } else if (band > finest) {
             float const doubled = static_cast<float>(1 << (band - finest));
-            float const known = region.pace[finest] > 0 ? region.pace[band] / region.pace[finest] : doubled;
+            float const known = region.decay[finest] > 0 ? region.decay[band] / region.decay[finest] : doubled;
             rates[band] = rates[finest] * (known + forgetting * (doubled - known));
         } else {
             rates[band] = before;
@@ -220,7 +220,7 @@ void learn_motion(RegionModel& region, Observation const& seen) {
     }
     float growth = 0;
     float as_one = 0;
-    auto const unknown = RegionModel::unknown_pace();
+    auto const unknown = RegionModel::unknown_decay();
     for (std::size_t band = 0; band <= shown_band(seen.level); ++band) {
         growth += region.energy[band] * rates[band];
         as_one += region.energy[band] * unknown[band];
@@ -228,11 +228,11 @@ void learn_motion(RegionModel& region, Observation const& seen) {
     region.motion = std::min(growth / as_one, most_motion);
     if (region.motion > 0) {
         for (std::size_t band = 0; band < rates.size(); ++band) {
-            region.pace[band] = std::min(rates[band] / region.motion, most_pace);
+            region.decay[band] = std::min(rates[band] / region.motion, most_decay);
         }
     } else {
         region.motion = 0;
-        region.pace = unknown;
+        region.decay = unknown;
     }
 }
 

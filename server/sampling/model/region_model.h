@@ -5,8 +5,8 @@
 // The model (of our own, in no paper): detail is kept by bands, each of them what one more level of the quadtree
 // resolves. A band that is not sampled is missing from the picture and costs its energy E. A band that is sampled but
 // no longer true costs up to twice its energy, 2 E (1 - exp(-drift w)), where drift is how far the content has moved
-// since, in units common to all bands, and w is how much sooner than others the band passes. Where that has not been
-// seen, w doubles from a band to the next finer one.
+// since, in units common to all bands, and w is the band's decay: how much sooner than others it passes. Where that has
+// not been seen, w doubles from a band to the next finer one.
 #pragma once
 
 #include <array>
@@ -34,16 +34,17 @@ struct RegionModel {
     std::array<float, sampling_levels> energy{};
     int finest_seen = -1; ///< finest band that was observed, finer ones are extrapolated; -1: nothing is known
     float motion = 0; ///< drift a second; 1 is about the time that detail of a pixel takes to be elsewhere
-    /// Pace of each band, w: how soon it passes; 1 for the band of a pixel where all of it moves as one.
-    std::array<float, sampling_levels> pace = unknown_pace();
+    /// Decay of each band, w, with the drift: how soon it passes; 1 for the band of a pixel where all of it moves as
+    /// one.
+    std::array<float, sampling_levels> decay = unknown_decay();
 
-    /// Pace where none has been seen: it doubles from a band to the next finer one.
-    static constexpr std::array<float, sampling_levels> unknown_pace() {
-        std::array<float, sampling_levels> pace{};
-        for (std::size_t band = 0; band < pace.size(); ++band) {
-            pace[band] = static_cast<float>(1 << band) / static_cast<float>(1 << pixel_level);
+    /// The decay where none has been seen: it doubles from a band to the next finer one.
+    static constexpr std::array<float, sampling_levels> unknown_decay() {
+        std::array<float, sampling_levels> decay{};
+        for (std::size_t band = 0; band < decay.size(); ++band) {
+            decay[band] = static_cast<float>(1 << band) / static_cast<float>(1 << pixel_level);
         }
-        return pace;
+        return decay;
     }
 
     bool operator==(RegionModel const&) const = default;

@@ -10,7 +10,7 @@
 
 namespace framelet {
 
-/// Pixels by which a sample may be shown off its place.
+/// Pixels by which a sample may be shown off its position.
 inline constexpr float tolerated_pixels = 0.25f;
 
 /// Distance by which a sample may be off its layer, for samples a pixel apart or closer; coarser ones may be off in
@@ -30,7 +30,7 @@ struct LayerTolerance {
 inline constexpr std::size_t most_outliers = 16;
 inline constexpr float wide_tolerances = 2;
 /// A sample that no plane was found for lies on the nearest layer of its body that it is at most so many tolerances
-/// off, in its place and in its velocity.
+/// off, in its position and in its velocity.
 inline constexpr float isolated_tolerances = 4;
 
 /// The tolerance by which samples are shown off by `tolerated_pixels` while the camera moves so far that what is at

@@ -74,7 +74,7 @@ std::string block_name(char const* what, std::size_t i) {
     return std::string("$") + what + std::to_string(i);
 }
 
-std::string place(double value, OptionalRange const& range) {
+std::string axis_position(double value, OptionalRange const& range) {
     return number(range ? on_log_axis(value, *range) : value);
 }
 
@@ -83,7 +83,7 @@ std::string data_block(std::string const& name, Curve const& curve, OptionalRang
     bool gap = true; // true where a gap, which is one blank line, has begun: two lines would begin another data set
     for (std::size_t i = 0; i < curve.x.size(); ++i) {
         if (drawable(curve, i)) {
-            out += place(curve.x[i], x) + " " + place(curve.y[i], y) + "\n";
+            out += axis_position(curve.x[i], x) + " " + axis_position(curve.y[i], y) + "\n";
             gap = false;
         } else if (!gap) {
             out += "\n";
@@ -103,7 +103,8 @@ std::string add_band(Plot& plot, std::size_t i, Curve const& curve, LineStyle co
     plot.data += block + " << EOD\n";
     for (std::size_t k = 0; k < curve.x.size(); ++k) {
         if (drawable(curve, k)) {
-            plot.data += place(curve.x[k], x) + " " + place(curve.low[k], y) + " " + place(curve.high[k], y) + "\n";
+            plot.data += axis_position(curve.x[k], x) + " " + axis_position(curve.low[k], y) + " " +
+                         axis_position(curve.high[k], y) + "\n";
         }
     }
     plot.data += "EOD\n";

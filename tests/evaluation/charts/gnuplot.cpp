@@ -30,8 +30,8 @@ std::string complaint_in(std::string const& text) {
     std::istringstream stream(text);
     std::string first;
     for (std::string line; std::getline(stream, line);) {
-        if (std::size_t const place = line.find("\" line "); place != std::string::npos) {
-            return line.substr(place + 2);
+        if (std::size_t const found = line.find("\" line "); found != std::string::npos) {
+            return line.substr(found + 2);
         }
         first = first.empty() ? line : first;
     }

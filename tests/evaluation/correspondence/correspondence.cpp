@@ -14,7 +14,7 @@
 #include "server/stream/layers/layer_fit.h"
 #include "tests/evaluation/bench_scene.h"
 #include "tests/evaluation/correspondence/exact_motion.h"
-#include "tests/evaluation/correspondence/place_code.h"
+#include "tests/evaluation/correspondence/position_code.h"
 #include "tests/evaluation/figure_table.h"
 #include "tests/uniform_tiling.h"
 
@@ -67,10 +67,10 @@ Surfaces render_surfaces(BenchScene& scene, Camera const& camera, Viewport viewp
     return out;
 }
 
-/// True where the picture shows that surface at that place: its inverse depth is among those of the pixels around.
-bool shows(Surfaces const& surfaces, ExactMotion::Place const& place, BodyNumber body) {
+/// True where the picture shows that surface there: its inverse depth is among those of the pixels around.
+bool shows(Surfaces const& surfaces, ExactMotion::Projection const& there, BodyNumber body) {
     auto const [width, height] = surfaces.viewport;
-    Vec2 const pixel = place.pixel;
+    Vec2 const pixel = there.pixel;
     if (!(pixel.x >= 0.5f && pixel.y >= 0.5f && pixel.x <= static_cast<float>(width) - 0.5f &&
           pixel.y <= static_cast<float>(height) - 0.5f)) {
         return false;
@@ -89,14 +89,14 @@ bool shows(Surfaces const& surfaces, ExactMotion::Place const& place, BodyNumber
             }
         }
     }
-    float const margin = same_surface * place.inverse_depth;
-    return place.inverse_depth >= least - margin && place.inverse_depth <= most + margin;
+    float const margin = same_surface * there.inverse_depth;
+    return there.inverse_depth >= least - margin && there.inverse_depth <= most + margin;
 }
 
-/// Fills a viewer's cache with a picture whose colours are the pixels' places, coded and decoded. `speed`: that of the
-/// camera, metres a second.
-void hold_places(Surfaces const& surfaces, BenchScene const& scene, Camera const& camera, float speed, int shift,
-                 FrameletCache& cache, std::vector<BodyTrack> const& tracks, BodyMotions& motions) {
+/// Fills a viewer's cache with a picture whose colours are the pixels' positions, coded and decoded. `speed`: that of
+/// the camera, metres a second.
+void hold_positions(Surfaces const& surfaces, BenchScene const& scene, Camera const& camera, float speed, int shift,
+                    FrameletCache& cache, std::vector<BodyTrack> const& tracks, BodyMotions& motions) {
     ImagePlane const plane(surfaces.viewport);
     LayerTolerance const tolerance =
         layer_tolerance(median_depth(surfaces.framelets), make_view_rays(camera, surfaces.viewport), speed);
@@ -112,8 +112,8 @@ void hold_places(Surfaces const& surfaces, BenchScene const& scene, Camera const
         PixelRect const rect = plane.tile_rect(out.tile);
         out.blue.fill(0);
         for (std::uint32_t i = 0; i < framelet_samples; ++i) {
-            out.red[i] = place_byte(rect.left + static_cast<int>(morton_x(i)), shift);
-            out.green[i] = place_byte(rect.top + static_cast<int>(morton_y(i)), shift);
+            out.red[i] = position_byte(rect.left + static_cast<int>(morton_x(i)), shift);
+            out.green[i] = position_byte(rect.top + static_cast<int>(morton_y(i)), shift);
         }
         fit_layers(surfaces.framelets[k], plane, tolerance, batch.shapes[k]);
     }
@@ -166,15 +166,15 @@ void compare(Surfaces const& before, Surfaces const& after, ExactMotion const& b
             bool const is_hole = blocks[0].inverse_depth[k] == hole_depth;
             ++found.pixels;
             found.all_holes += is_hole ? 1 : 0;
-            ExactMotion::Place const exact =
+            ExactMotion::Projection const exact =
                 back.shown(pixel, after.inverse_depth[at], after.body[at], after.velocity[at]);
             if (!shows(before, exact, after.body[at])) {
                 continue;
             }
             int const shift_x = steady_shift(exact.pixel.x);
             int const shift_y = steady_shift(exact.pixel.y);
-            Vec2 const taken(place_of(blocks[shift_x].squares[0][k], shift_x, exact.pixel.x),
-                             place_of(blocks[shift_y].squares[1][k], shift_y, exact.pixel.y));
+            Vec2 const taken(position_of(blocks[shift_x].squares[0][k], shift_x, exact.pixel.x),
+                             position_of(blocks[shift_y].squares[1][k], shift_y, exact.pixel.y));
             found.add(is_hole ? INFINITY : glm::distance(taken, exact.pixel));
         }
     }
@@ -198,7 +198,7 @@ void measure_from(BenchScene& scene, Viewport viewport, SceneTime time, std::spa
     FrameletCache caches[2]{FrameletCache(plane), FrameletCache(plane)};
     BodyMotions motions;
     for (int shift = 0; shift < 2; ++shift) {
-        hold_places(before, scene, camera, speed, shift, caches[shift], tracks, motions);
+        hold_positions(before, scene, camera, speed, shift, caches[shift], tracks, motions);
     }
     for (std::size_t i = 0; i < found.size(); ++i) {
         SceneTime const later = time + times_ahead[i];

@@ -8,7 +8,7 @@ namespace framelet::bench {
 
 namespace {
 
-/// Least ratio of a point's view depth in the second view to that in the first: below it the place is as good as behind
+/// Least ratio of a point's view depth in the second view to that in the first: below it the point is as good as behind
 /// the eye.
 constexpr float nearest = 0.05f;
 
@@ -25,8 +25,9 @@ ExactMotion::ExactMotion(SceneBodies const& bodies, SceneView const& from, Scene
     }
 }
 
-ExactMotion::Place ExactMotion::shown(Vec2 place, float inverse_depth, BodyNumber body, Vec3 const& velocity) const {
-    Vec3 const direction = rays_.direction + rays_.direction_dx * place.x + rays_.direction_dy * place.y;
+ExactMotion::Projection ExactMotion::shown(Vec2 position, float inverse_depth, BodyNumber body,
+                                           Vec3 const& velocity) const {
+    Vec3 const direction = rays_.direction + rays_.direction_dx * position.x + rays_.direction_dy * position.y;
     // Vector from the second eye to the point, times the inverse depth; for the sky the direction alone.
     Vec3 towards = direction;
     if (inverse_depth > 0) {
@@ -39,7 +40,7 @@ ExactMotion::Place ExactMotion::shown(Vec2 place, float inverse_depth, BodyNumbe
         towards = (point + velocity * seconds_ - eye_) * inverse_depth;
     }
     Vec3 const p = to_pixels_ * towards;
-    return p.z > nearest ? Place{Vec2(p) / p.z, inverse_depth / p.z} : Place{};
+    return p.z > nearest ? Projection{Vec2(p) / p.z, inverse_depth / p.z} : Projection{};
 }
 
 } // namespace framelet::bench

@@ -1,6 +1,6 @@
 // Computes where a point seen from one camera at one time is seen from another camera at another time: straight from
-// the scene's animation, without layers, keys or wire. In: bodies, two poses of the scene, two cameras. Out: places in
-// the picture.
+// the scene's animation, without layers, keys or wire. In: bodies, two poses of the scene, two cameras. Out: positions
+// in the picture.
 #pragma once
 
 #include <utility>
@@ -21,14 +21,14 @@ class ExactMotion {
 public:
     ExactMotion(SceneBodies const& bodies, SceneView const& from, SceneView const& to, Viewport viewport);
 
-    struct Place {
+    struct Projection {
         Vec2 pixel{NAN}; ///< pixels; not a number: behind the eye, or nearly
         float inverse_depth = 0; ///< 1 / metres
     };
 
-    /// Place in the second view of the point seen in the first at `place` (pixels) with that inverse depth (1/m; 0: the
-    /// sky), carried by `body`. A point that no body carries moves on by `velocity`, metres a second.
-    Place shown(Vec2 place, float inverse_depth, BodyNumber body, Vec3 const& velocity) const;
+    /// The projection to the second view of the point seen in the first at `position` (pixels) with that inverse depth
+    /// (1/m; 0: the sky), carried by `body`. A point that no body carries moves on by `velocity`, metres a second.
+    Projection shown(Vec2 position, float inverse_depth, BodyNumber body, Vec3 const& velocity) const;
 
 private:
     float seconds_; ///< time from the first view to the second, seconds

@@ -17,17 +17,17 @@ namespace {
 /// Sampling offset of frame number `frame` (the first is 0) from the middle of a cell, in cell sides: the sequence of
 /// [Sobol 1967], of which the first 2, 4, 8 and so on are each as even as can be, shifted so that it begins in the
 /// middle. The mean of all offsets is 0.
-Vec2 place_of(int frame) {
+Vec2 offset_of(int frame) {
     auto const i = static_cast<std::uint32_t>(frame);
-    constexpr std::uint32_t places = FrameGrid::places;
+    constexpr std::uint32_t count = FrameGrid::offsets;
     std::uint32_t x = 0, y = 0;
-    for (std::uint32_t bit = 0, row = places / 2; places >> bit > 1; ++bit, row ^= row >> 1) {
-        x |= (i >> bit & 1) * (places / 2 >> bit);
+    for (std::uint32_t bit = 0, row = count / 2; count >> bit > 1; ++bit, row ^= row >> 1) {
+        x |= (i >> bit & 1) * (count / 2 >> bit);
         y ^= (i >> bit & 1) * row;
     }
-    constexpr float step = 1.0f / places;
-    Vec2 const place((x + places / 2) % places, (y + places / 2) % places);
-    return place * step + Vec2(0.5f * step - 0.5f);
+    constexpr float step = 1.0f / count;
+    Vec2 const column_row((x + count / 2) % count, (y + count / 2) % count);
+    return column_row * step + Vec2(0.5f * step - 0.5f);
 }
 
 int samples_along(int pixels, int spacing) {
@@ -70,7 +70,7 @@ std::uint64_t FrameGrid::render(RenderScene const& scene, Camera const& camera, 
 std::uint64_t FrameGrid::add(RenderScene const& scene, Camera const& camera, float exposure) {
     FRAMELET_CHECK(frames_ > 0);
     fresh_.resize(tiles_.size());
-    std::uint64_t const segments = render_at(scene, camera, place_of(frames_) * static_cast<float>(spacing_), fresh_);
+    std::uint64_t const segments = render_at(scene, camera, offset_of(frames_) * static_cast<float>(spacing_), fresh_);
     show(fresh_, exposure);
     return segments;
 }
@@ -107,7 +107,7 @@ void FrameGrid::show(std::vector<Framelet> const& newest, float exposure) {
 
 Picture const& FrameGrid::picture() {
     for (DisplayFramelet const& framelet : displayed_) {
-        place_samples(framelet, picture_);
+        write_samples(framelet, picture_);
     }
     return picture_;
 }
@@ -139,7 +139,7 @@ void upsample(Picture const& samples, int spacing, Picture& out) {
     });
 }
 
-void place_samples(DisplayFramelet const& framelet, Picture& picture) {
+void write_samples(DisplayFramelet const& framelet, Picture& picture) {
     int const left = static_cast<int>(framelet.tile.column()) * framelet_side;
     int const top = static_cast<int>(framelet.tile.row()) * framelet_side;
     for (std::uint32_t i = 0; i < framelet_samples; ++i) {

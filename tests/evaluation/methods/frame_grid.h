@@ -1,4 +1,4 @@
-// A whole frame of samples at one spacing, and the mean of several such frames, sampled at different places in the
+// A whole frame of samples at one spacing, and the mean of several such frames, sampled at different positions in the
 // samples' cells. In: a posed scene, a camera. Out: framelets as rendered and as displayed, and the picture of one
 // pixel a sample.
 #pragma once
@@ -17,13 +17,13 @@ public:
 
     /// Begins anew: renders every sample at the middle of its cell. Returns the number of rays traced.
     std::uint64_t render(RenderScene const& scene, Camera const& camera, float exposure);
-    /// Renders one more such frame of the same, at the next of `places` places in the cells, and adds it to the mean,
-    /// which is taken of light as displayed. Returns the number of rays traced.
+    /// Renders one more such frame of the same, at the next of `offsets` positions in the cells, and adds it to the
+    /// mean, which is taken of light as displayed. Returns the number of rays traced.
     std::uint64_t add(RenderScene const& scene, Camera const& camera, float exposure);
 
-    /// Number of places in a cell: after so many frames the mean is taken for the truth. With 16 some of the project's
-    /// scenes stay below 38 dB.
-    static constexpr int places = 64;
+    /// Number of positions in a cell: after so many frames the mean is taken for the truth. With 16 some of the
+    /// project's scenes stay below 38 dB.
+    static constexpr int offsets = 64;
 
     int spacing() const { return spacing_; }
     int frames() const { return frames_; } ///< number of frames in the mean
@@ -55,9 +55,9 @@ private:
 /// Enlarges a picture of one pixel a sample, samples `spacing` pixels apart, to full size: bilinear, in linear light.
 void upsample(Picture const& samples, int spacing, Picture& out);
 
-/// `place_samples` writes the framelet's samples to a picture of one pixel a sample, `take_samples` reads them from
+/// `write_samples` writes the framelet's samples to a picture of one pixel a sample, `take_samples` reads them from
 /// there. Beyond the picture's border nothing is written, and its last pixels are read repeatedly.
-void place_samples(DisplayFramelet const& framelet, Picture& picture);
+void write_samples(DisplayFramelet const& framelet, Picture& picture);
 void take_samples(Picture const& picture, DisplayFramelet& framelet);
 
 } // namespace framelet::bench

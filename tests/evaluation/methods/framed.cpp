@@ -35,7 +35,7 @@ public:
         auto const along = [spacing](int side) { return (side + spacing - 1) / spacing; };
         samples_ = Picture(along(picture_.width), along(picture_.height));
         for (DisplayFramelet const& framelet : batch.framelets) {
-            place_samples(framelet, samples_);
+            write_samples(framelet, samples_);
         }
         upsample(samples_, spacing, picture_);
         time_ = batch.scene_time;

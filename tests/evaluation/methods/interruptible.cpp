@@ -29,7 +29,7 @@ ServerStep Interruptible::produce(StepInput const& input) {
     if (still) {
         gain_.forget_motion();
     }
-    if (still && level_ == last_level && grids_[last_level].frames() == FrameGrid::places) {
+    if (still && level_ == last_level && grids_[last_level].frames() == FrameGrid::offsets) {
         return {};
     }
     begins_ = !still && (level_ < 0 || level_ == last_level || is_outdated(input.now));

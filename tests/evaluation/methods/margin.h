@@ -1,4 +1,4 @@
-// A margin around the viewport: a larger viewport whose pixels are as large and lie at the same places.
+// A margin around the viewport: a larger viewport whose pixels are as large and lie at the same positions.
 #pragma once
 
 #include "common/camera.h"

@@ -97,7 +97,7 @@ ServerStep TsarServer::produce(StepInput const& input) {
     estimate(batch_);
     respond(density_, elements_, errors_, response_, surplus_, scratch_);
     build_tiling();
-    forget_old_places();
+    forget_old_records();
 
     CostTable const& costs = setup_.costs;
     step.samples = tiles.size() * framelet_samples;
@@ -118,14 +118,14 @@ void TsarServer::estimate(Batch const& batch) {
     errors_.clear();
     std::array<RateError, most_blocks> blocks;
     for (DisplayFramelet const& framelet : batch.framelets) {
-        Place& place = places_[framelet.tile.code];
+        TileRecord& record = records_[framelet.tile.code];
         int const levels = 2 * (density_.depth - framelet.tile.depth());
         std::size_t const count = std::size_t(1) << levels;
         std::size_t const block_count = std::min(count, most_blocks);
         auto const luma = display_luma(framelet);
-        estimate_haar(luma, place.history, static_cast<float>(clock_ - place.time), parameters_.templates,
+        estimate_haar(luma, record.history, static_cast<float>(clock_ - record.time), parameters_.templates,
                       std::span(blocks).first(block_count));
-        place.time = clock_;
+        record.time = clock_;
         std::size_t const first = std::size_t(framelet.tile.index()) << levels;
         for (std::size_t i = 0; i < count; ++i) {
             if (density_.space[first + i] > 0) {
@@ -136,11 +136,11 @@ void TsarServer::estimate(Batch const& batch) {
     }
 }
 
-void TsarServer::forget_old_places() {
-    // Coefficients are worth keeping for as long as a framelet may be the newest of its place.
-    if (places_.size() > 4 * tiling_.tiles.size()) {
+void TsarServer::forget_old_records() {
+    // Coefficients are worth keeping for as long as a framelet may be the newest of its tile.
+    if (records_.size() > 4 * tiling_.tiles.size()) {
         double const oldest = clock_ - 1 / response_.bounds.least.time;
-        std::erase_if(places_, [oldest](auto const& place) { return place.second.time < oldest; });
+        std::erase_if(records_, [oldest](auto const& record) { return record.second.time < oldest; });
     }
 }
 

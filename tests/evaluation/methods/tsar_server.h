@@ -34,14 +34,14 @@ public:
 
 private:
     /// Record of a tile's last framelet.
-    struct Place {
+    struct TileRecord {
         HaarHistory history;
         double time = 0;
     };
 
     void build_tiling();
     void estimate(Batch const& batch);
-    void forget_old_places();
+    void forget_old_records();
 
     MethodSetup const setup_;
     TsarParameters const parameters_;
@@ -54,7 +54,7 @@ private:
     DensityField density_;
     std::vector<double> refreshed_; ///< seconds at which each element was refreshed last
     Tiling tiling_;
-    std::unordered_map<std::uint32_t, Place> places_; ///< by tile code
+    std::unordered_map<std::uint32_t, TileRecord> records_; ///< by tile code
     std::vector<std::uint32_t> elements_; ///< elements that the batch touched
     std::vector<RateError> errors_; ///< errors of those elements
 

@@ -25,7 +25,7 @@ public:
     /// True if what was rendered is to be sent: it is better by enough than what was sent.
     bool is_due() const { return due_; }
     /// True if nothing moves and more samples would not make the picture better.
-    bool is_converged() const { return passes_ == FrameGrid::places; }
+    bool is_converged() const { return passes_ == FrameGrid::offsets; }
     /// True if a picture that has converged is to be coded once more: its codec still has something to say of it and
     /// nothing else is on its way. `last_bytes`: what it took the last time.
     bool repeats(StepInput const& input, std::size_t last_bytes);

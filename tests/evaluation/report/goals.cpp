@@ -82,8 +82,8 @@ std::vector<Value> ratios(std::vector<ReportRun> const& runs, Belongs&& belongs)
     for (auto const& [cell, errors] : cells) {
         if (std::isfinite(errors.first) && std::isfinite(errors.second)) {
             auto const& [scene, machine, link] = cell;
-            std::string const place = link > 0 ? printed(", %g bits", link) : printed(", %g samples", machine);
-            result.push_back({scene + place, errors.first / errors.second});
+            std::string const conditions = link > 0 ? printed(", %g bits", link) : printed(", %g samples", machine);
+            result.push_back({scene + conditions, errors.first / errors.second});
         }
     }
     return result;

@@ -122,10 +122,10 @@ Spread spread_of(std::vector<double> values) {
         sum += value;
     }
     auto const at = [&](double share) {
-        double const place = share * static_cast<double>(values.size() - 1);
-        auto const below = static_cast<std::size_t>(place);
+        double const rank = share * static_cast<double>(values.size() - 1);
+        auto const below = static_cast<std::size_t>(rank);
         double const above = values[std::min(below + 1, values.size() - 1)];
-        return std::exp(values[below] + (place - static_cast<double>(below)) * (above - values[below]));
+        return std::exp(values[below] + (rank - static_cast<double>(below)) * (above - values[below]));
     };
     return {at(0.25), std::exp(sum / static_cast<double>(values.size())), at(0.75)};
 }

@@ -1,7 +1,7 @@
 // The mean of what is farthest in a block, as `far_mean`: of sixteen pixels where it has no holes.
 uniform sampler2D colors;
 uniform sampler2D depths;
-uniform sampler2D eights;
+uniform sampler2D level3;
 uniform usampler2D figures;
 uniform ivec2 viewport;
 out vec4 mean;
@@ -22,7 +22,7 @@ void main() {
                            four_at(first + ivec2(8, 8)));
     } else {
         ivec2 first = 2 * block;
-        mean = farthest_of(vec4(1.0), texelFetch(eights, first, 0), texelFetch(eights, first + ivec2(1, 0), 0),
-                           texelFetch(eights, first + ivec2(0, 1), 0), texelFetch(eights, first + ivec2(1, 1), 0));
+        mean = farthest_of(vec4(1.0), texelFetch(level3, first, 0), texelFetch(level3, first + ivec2(1, 0), 0),
+                           texelFetch(level3, first + ivec2(0, 1), 0), texelFetch(level3, first + ivec2(1, 1), 0));
     }
 }

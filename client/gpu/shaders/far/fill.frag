@@ -1,10 +1,10 @@
 // Fills pixels that are holes from cells of 2x2 pixels with a border of one.
 uniform sampler2D depths;
-uniform sampler2D twos;
+uniform sampler2D level1;
 uniform float uncovered; // colour of a pixel of which nothing is known
 out vec4 color;
 vec4 at(int x, int y) {
-    return texelFetch(twos, ivec2(x, y) + 1, 0);
+    return texelFetch(level1, ivec2(x, y) + 1, 0);
 }
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);

@@ -13,11 +13,11 @@ std::uint64_t subtree_size(std::uint32_t index, int max_depth) {
 }
 
 std::uint64_t depth_first_index(std::uint32_t index, int max_depth) {
-    std::uint64_t place = 1;
+    std::uint64_t number = 1;
     for (; index > 1; index /= 2) {
-        place += 1 + (index % 2 == 1 ? subtree_size(index - 1, max_depth) : 0);
+        number += 1 + (index % 2 == 1 ? subtree_size(index - 1, max_depth) : 0);
     }
-    return place;
+    return number;
 }
 
 } // namespace framelet

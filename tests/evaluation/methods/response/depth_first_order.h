@@ -1,5 +1,5 @@
 // Depth-first order of tiles of mixed depth ([Stephens 2011] section 4.1.4): every subtree is one interval, so that
-// tiles which overlap a coarse one lie side by side. In: a tile; out: its place in a complete binary tree walked depth
+// tiles which overlap a coarse one lie side by side. In: a tile; out: its number in a complete binary tree walked depth
 // first.
 #pragma once
 
@@ -14,7 +14,7 @@ namespace framelet {
 /// 2^(max_depth - floor(log2 index) + 1) - 1.
 std::uint64_t subtree_size(std::uint32_t index, int max_depth);
 
-/// 1-based place of the node ([Stephens 2011] eq. 4.13): D(1) = 1, D(k) = 1 + D(k / 2), and for odd k the size of the
+/// 1-based number of the node ([Stephens 2011] eq. 4.13): D(1) = 1, D(k) = 1 + D(k / 2), and for odd k the size of the
 /// sibling's subtree more.
 std::uint64_t depth_first_index(std::uint32_t index, int max_depth);
 
