@@ -20,8 +20,8 @@ inline constexpr float finest_shown_spacing = 1.0f;
 /// may not even be one.
 inline constexpr float most_hiding = 8.5f;
 
-/// True when samples of this spacing once moved, and off their positions by this much at most, both in pixels, hide what
-/// lies behind them; others show only where nothing does that hides.
+/// True when samples of this spacing once moved, and off their positions by this much at most, both in pixels, hide
+/// what lies behind them; others show only where nothing does that hides.
 inline bool hides(float spacing, float misplaced) {
     return spacing < most_hiding && misplaced < most_hiding;
 }

@@ -65,8 +65,6 @@ public:
     /// are in the patch's own grid alone: there they are told from those of another layer, with which they are merged
     /// in the square's.
     std::optional<GridPart> grid_part(WarpPatch const& patch) const;
-    /// Number of patches of all blocks together.
-    std::size_t entry_count() const { return entries_.size(); }
 
 private:
     /// All framelets of one depth below a tile.
