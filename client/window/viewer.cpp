@@ -4,7 +4,7 @@
 #include <iostream>
 #include <utility>
 
-#include "client/core/picture/display_pace.h"
+#include "client/core/picture/display_timing.h"
 #include "client/window/overlay/help_text.h"
 #include "client/window/overlay/key_table.h"
 
@@ -188,7 +188,7 @@ std::string Viewer::painter_text() const {
 /// Uploads what has changed; true when something has.
 bool Viewer::update_shown_picture() {
     double const until_seen = core_->making_seconds() + showing_.expected();
-    bool const changed = make_picture(Clock::now() + DisplayPace::duration(until_seen));
+    bool const changed = make_picture(Clock::now() + DisplayTiming::duration(until_seen));
     made_ = seconds_now();
     if (changed) {
         is_on_canvas_ = core_->is_on_canvas();

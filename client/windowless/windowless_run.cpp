@@ -13,7 +13,7 @@
 
 #include "client/core/camera/camera_path.h"
 #include "client/core/client_core.h"
-#include "client/core/picture/display_pace.h"
+#include "client/core/picture/display_timing.h"
 #include "client/frames/frame_choice.h"
 #include "client/frames/frame_log.h"
 #include "client/frames/output_folder.h"
@@ -158,10 +158,10 @@ RunFigures show(ClientCore& core, WindowlessOptions const& options, std::optiona
     std::vector<double> photon_seconds;
     FrameChoice choice(options.output_times);
     Clock::time_point const start = Clock::now();
-    Clock::time_point const end = start + DisplayPace::duration(duration);
-    DisplayPace pace(start, rate);
+    Clock::time_point const end = start + DisplayTiming::duration(duration);
+    DisplayTiming timing(start, rate);
     while (true) {
-        wait_until(core, std::min(pace.begin(core.making_seconds()), end));
+        wait_until(core, std::min(timing.begin(core.making_seconds()), end));
         if (core.scene_number() != scene_number) {
             scene_number = core.scene_number();
             welcome = core.welcome();
@@ -177,7 +177,7 @@ RunFigures show(ClientCore& core, WindowlessOptions const& options, std::optiona
         if (!done) {
             core.set_view(camera, viewport, path ? path->scene_camera : start_scene_camera(welcome));
         }
-        Clock::time_point const shown_at = pace.show(Clock::now(), core.making_seconds());
+        Clock::time_point const shown_at = timing.show(Clock::now(), core.making_seconds());
         bool const news = core.update_picture(picture, changed, shown_at);
         wait_until(core, shown_at);
         ClientStatistics const statistics = core.statistics();
@@ -214,7 +214,7 @@ RunFigures show(ClientCore& core, WindowlessOptions const& options, std::optiona
             run.photon_seconds = median(std::move(photon_seconds));
             return run;
         }
-        run.late_frames += pace.note_shown(Clock::now()) ? 1 : 0;
+        run.late_frames += timing.note_shown(Clock::now()) ? 1 : 0;
     }
 }
 

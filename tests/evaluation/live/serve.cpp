@@ -8,7 +8,7 @@
 #include <tbb/global_control.h>
 
 #include "client/core/connection/server_connection.h"
-#include "client/core/picture/display_pace.h"
+#include "client/core/picture/display_timing.h"
 #include "client/core/picture/making_time.h"
 #include "client/frames/frame_choice.h"
 #include "client/frames/frame_log.h"
@@ -136,12 +136,12 @@ void look_at_method(LookOptions const& options) {
     Clock::time_point const start = Clock::now();
     NumberedView view{0, {}, options.viewport};
     Picture const* shown = &method->picture();
-    DisplayPace pace(start, options.rate);
+    DisplayTiming timing(start, options.rate);
     MakingTime making;
     for (std::uint64_t frame = 0; seconds_between(start, Clock::now()) < options.duration; ++frame) {
-        std::this_thread::sleep_until(pace.begin(making.expected()));
+        std::this_thread::sleep_until(timing.begin(making.expected()));
         Clock::time_point const begun = Clock::now();
-        Clock::time_point const shown_at = pace.show(begun, making.expected());
+        Clock::time_point const shown_at = timing.show(begun, making.expected());
         SceneTime const time = mailbox.scene_time(shown_at);
         Camera const camera = scene_camera >= 0 ? camera_at(*scene, time)
                               : path            ? path->at(seconds_between(start, begun))
@@ -172,7 +172,7 @@ void look_at_method(LookOptions const& options) {
         log.add({frame, unix_seconds(), mailbox.scene_time(Clock::now()), changed, false, received,
                  cpu_seconds_of(CLOCK_PROCESS_CPUTIME_ID) - writer.cpu_seconds(), 0, photon, scene_camera, camera});
         writer.add(*shown, true, choice.takes(mailbox.scene_time(Clock::now())));
-        pace.note_shown(Clock::now());
+        timing.note_shown(Clock::now());
     }
     writer.finish();
     std::scoped_lock const lock(mutex);

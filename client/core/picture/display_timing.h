@@ -7,12 +7,12 @@
 
 namespace framelet {
 
-class DisplayPace {
+class DisplayTiming {
 public:
     using Clock = std::chrono::steady_clock;
 
     /// The first picture is due at `start`. `rate` > 0: pictures a second.
-    DisplayPace(Clock::time_point start, double rate) : period_(duration(1 / rate)), due_(start) {}
+    DisplayTiming(Clock::time_point start, double rate) : period_(duration(1 / rate)), due_(start) {}
 
     static Clock::duration duration(double seconds) {
         return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
