@@ -10,6 +10,7 @@
 #include "tests/evaluation/report/goals.h"
 #include "tests/evaluation/report/report_charts.h"
 #include "tests/evaluation/report/report_page.h"
+#include "tests/evaluation/report/report_text.h"
 #include "tests/evaluation/report/run_store.h"
 
 namespace framelet::bench {
@@ -62,6 +63,17 @@ TEST(Report, CurvesAreErrorsOverTheReferencesNoise) {
     EXPECT_NEAR(chart.curves[0].x[1], 5, 1e-9);
     EXPECT_NEAR(chart.curves[0].y[0], 200, 1e-9) << "between a hundred and four hundred times the noise";
     EXPECT_EQ(chart.marks.size(), 3u);
+}
+
+TEST(Report, ParagraphsAreWrapped) {
+    std::string const long_word(70, 'a');
+    EXPECT_EQ(wrapped("# Title\n\n" + long_word + " b\nc " + long_word + "\n\n    " + long_word + " " + long_word +
+                      "\n| " + long_word + " | " + long_word + " |\n" + long_word),
+              "# Title\n\n" + long_word + " b c\n" + long_word + "\n\n    " + long_word + " " + long_word + "\n| " +
+                  long_word + " | " + long_word + " |\n" + long_word + "\n");
+    std::string const exact = std::string(50, 'a') + " " + std::string(69, 'b');
+    EXPECT_EQ(wrapped(exact + "\n"), exact + "\n") << "120 columns";
+    EXPECT_EQ(wrapped(exact + "b\n"), exact.substr(0, 50) + "\n" + exact.substr(51) + "b\n");
 }
 
 TEST(Report, ALossIsMarkedAndTheOracleIsNoRival) {

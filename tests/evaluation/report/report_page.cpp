@@ -142,18 +142,17 @@ std::string report_page(ReportFigures const& figures, ReportOptions const& optio
                 study.scenes.size(), run.viewport.width, run.viewport.height, run.seconds, run.reference_rate);
     page +=
         "Methods, machine, link and measures are explained in [tests/evaluation](../tests/evaluation/README.md); each "
-        "rival has the spacing and margin\nwith which it errs least. ";
+        "rival has the spacing and margin with which it errs least. ";
     page += options.quick ? "This is the quick run: it shows that the report works, and nothing else.\n" : "\n";
 
     page += "\n## Goals\n\n" + goals_table(goals_of(figures)) +
             "\nWhat stands in the way of those that are not met: [SHORTFALLS.md](SHORTFALLS.md).\n";
 
     page += "\n## Speed against accuracy\n\n![error against speed](pictures/speed.png)\n\n" + speed_table(figures);
-    page +=
-        printed("\nMean squared error over that of the reference itself (%d samples a pixel), geometric mean over "
-                "scenes. A core is taken to shade %.1f million samples a\nsecond, as it does with a shadow ray each "
-                "and mirrors here and there; the link has no limit.\n",
-                study.samples_per_side * study.samples_per_side, core_rate / 1e6);
+    page += printed("\nMean squared error over that of the reference itself (%d samples a pixel), geometric mean over "
+                    "scenes. A core is taken to shade %.1f million samples a second, as it does with a shadow ray each "
+                    "and mirrors here and there; the link has no limit.\n",
+                    study.samples_per_side * study.samples_per_side, core_rate / 1e6);
     page += "\n![FLIP](pictures/flip.png)\n![unsteadiness](pictures/steadiness.png)\n";
     if (!options.links.empty()) {
         page += printed("\nOver links of several rates, %g ms each way, a machine of %g samples a pixel and second:\n",
@@ -199,7 +198,7 @@ std::string report_page(ReportFigures const& figures, ReportOptions const& optio
                 "with one thing more in each row. While nothing moves the picture is refined, at last with four rays a "
                 "sample, and what it has is not sent again.\n\n",
                 options.feature_viewport.width, options.feature_viewport.height);
-    return page + feature_table(figures.features);
+    return wrapped(page + feature_table(figures.features));
 }
 
 void write_report(ReportFigures const& figures, ReportOptions const& options, StudyOptions const& study,

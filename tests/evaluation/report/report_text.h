@@ -23,6 +23,10 @@ inline constexpr double screen_pixels = 1920.0 * 1080;
 /// The text in bold, or as it is.
 std::string bold_if(bool is_bold, std::string const& text);
 
+/// The Markdown page with the lines of each paragraph filled up to 120 characters; tables, headings, pictures and code
+/// stay as they are.
+std::string wrapped(std::string const& page);
+
 /// True if the method is neither the project's nor a yardstick that knows the truth.
 bool is_rival(std::string const& method);
 
