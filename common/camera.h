@@ -10,8 +10,8 @@ namespace framelet {
 
 enum class Projection : std::uint8_t { perspective = 0, orthographic = 1 };
 
-/// Bounds of a camera's numbers: far from where single precision overflows, and far above denormals, so that every
-/// thread sees the same camera however it treats those.
+/// The bounds of a camera's numbers are far from where single precision overflows, and far above denormals, so that
+/// every thread sees the same camera however it treats those.
 inline constexpr float max_camera_coordinate = 1e10f; ///< metres, on each axis and side
 inline constexpr float least_field_of_view = 1e-4f, most_field_of_view = 3.13f; ///< radians
 inline constexpr float least_view_height = 1e-4f, most_view_height = 1e10f; ///< metres, orthographic

@@ -41,8 +41,8 @@ float linear_from_srgb(float encoded);
 
 /// Table form for bytes: exact inverse of rounding `srgb_from_linear`.
 float linear_from_srgb_byte(std::uint8_t encoded);
-/// Nearest byte by table: at most half a step of the byte off near the middle of a step, clamps outside [0, 1], NaN is
-/// 0.
+/// Finds the nearest byte by table: at most half a step of the byte off near the middle of a step. Values outside
+/// [0, 1] are clamped, and NaN gives 0.
 std::uint8_t srgb_byte_from_linear(float linear);
 
 /// The tables behind the two functions above, for inner loops that index them directly.

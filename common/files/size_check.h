@@ -5,7 +5,8 @@
 
 namespace framelet {
 
-/// Is told the size that the header gives before memory is taken for so many pixels. May throw; that ends the reading.
+/// A function that is told the size that the header gives before memory is taken for so many pixels. May throw; that
+/// ends the reading.
 using SizeCheck = std::function<void(int width, int height)>;
 
 } // namespace framelet

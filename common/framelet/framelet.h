@@ -55,7 +55,7 @@ struct NumberedView {
     bool operator==(NumberedView const&) const = default;
 };
 
-/// Most framelets that one batch may carry: 8 Mi samples.
+/// The largest number of framelets that one batch may carry: 8 Mi samples.
 inline constexpr std::size_t max_batch_framelets = 32768;
 
 /// The quantisation parameter (QP) of a framelet: 0 is without loss; above that quantisation steps grow with the

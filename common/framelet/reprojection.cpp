@@ -11,7 +11,7 @@ namespace framelet {
 
 namespace {
 
-/// Least display depth as a share of the source depth at which something is drawn: what is nearer would fill the
+/// The least display depth as a share of the source depth at which something is drawn: what is nearer would fill the
 /// picture.
 constexpr double nearest = 1e-3;
 

@@ -15,7 +15,8 @@ namespace framelet {
 inline constexpr int framelet_side = 16;
 inline constexpr int framelet_samples = framelet_side * framelet_side;
 
-/// How many quadtree levels coarser and finer than one sample per pixel a tile may be (a level is a factor of 4).
+/// The number of quadtree levels by which a tile may be coarser or finer than one sample a pixel (a level is a factor
+/// of 4).
 inline constexpr int coarsest_levels = 3;
 inline constexpr int finest_levels = 2;
 

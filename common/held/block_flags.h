@@ -1,4 +1,4 @@
-// Which 16x16 blocks of a picture changed, as rectangles.
+// Says as rectangles which 16x16 blocks of a picture changed.
 #pragma once
 
 #include <algorithm>

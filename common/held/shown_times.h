@@ -10,8 +10,8 @@
 
 namespace framelet {
 
-/// For each block of 16x16 pixels, in rows: the mean scene time of the framelets that show there when nothing is moved;
-/// nothing where none does.
+/// The mean scene time of the framelets that each block of 16x16 pixels shows when nothing is moved, in rows; nothing
+/// where none shows.
 using ShownTimes = std::vector<std::optional<SceneTime>>;
 
 /// Brings `times` up to date with `changed` (as `FrameletCache::take_changed` gives it). Where it is of another size

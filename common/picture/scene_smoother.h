@@ -69,7 +69,7 @@ private:
     Side older_, newer_;
     std::vector<PixelRect> changed_; ///< scratch: of the older cache
     std::vector<SentTile> evicted_; ///< scratch: nobody is told
-    // By block of 16x16 pixels, in rows.
+    // These have an entry for each block of 16x16 pixels, in rows.
     std::vector<MixShare> shares_, shown_shares_;
     std::vector<std::uint8_t> dirty_; ///< one of the two pictures has changed there
     std::vector<std::uint8_t> equal_; ///< the two pictures are known to be equal there

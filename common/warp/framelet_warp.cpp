@@ -17,7 +17,7 @@ namespace {
 /// A sample nearer to the display camera than this share of its depth in the source is not drawn.
 constexpr double nearest = 1e-3;
 
-/// Bounds of a splat's radius, pixels: a smaller one would vanish between pixels' centres.
+/// The bounds of a splat's radius, pixels: a smaller one would vanish between pixels' centres.
 constexpr double smallest_splat = 0.75;
 constexpr double largest_splat = 32;
 

@@ -76,7 +76,7 @@ private:
 
         std::vector<WarpPatch> patches;
         std::vector<Splat> splats;
-        /// By patch: a bit for each of its framelets, as in `MergedLayer::parts`.
+        /// For each patch a bit for each of its framelets, as in `MergedLayer::parts`.
         std::vector<std::uint64_t> framelets;
         std::vector<std::uint8_t> shows; ///< by patch: whether something of it showed when blocks were painted
 

@@ -9,8 +9,8 @@ namespace framelet {
 namespace {
 
 constexpr int compression_level = 1;
-/// Least length of a repetition, bytes: shorter ones are left to the entropy stage, since in differences of neighbours
-/// they are chance.
+/// The least length of a repetition, bytes: shorter ones are left to the entropy stage, since in differences of
+/// neighbours they are chance.
 constexpr int least_match = 7;
 constexpr std::size_t length_bytes = 4;
 /// First bytes of a zstd frame ([RFC 8878]); other kinds of frames that the library knows are not part of the format.

@@ -92,7 +92,7 @@ struct Evicted {
     std::vector<SentTile> framelets; ///< those of a batch together; at most `max_evicted`
     bool operator==(Evicted const&) const = default;
 };
-/// Most framelets of one message; more are several messages.
+/// The largest number of framelets of one message; more are several messages.
 inline constexpr std::size_t max_evicted = 4096;
 
 // --- downstream

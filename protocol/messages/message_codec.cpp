@@ -8,8 +8,8 @@
 namespace framelet {
 namespace {
 
-/// Most nested tables, for the deepest message (Message, Welcome, SceneCamera, Camera), and most tables, for the
-/// largest; with room for tables that later versions add.
+/// The largest number of nested tables, for the deepest message (Message, Welcome, SceneCamera, Camera), and of tables,
+/// for the largest; with room for tables that later versions add.
 constexpr flatbuffers::uoffset_t max_table_depth = 8;
 constexpr flatbuffers::uoffset_t max_tables = 4 * max_scene_cameras;
 

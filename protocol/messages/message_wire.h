@@ -16,7 +16,7 @@ using Builder = flatbuffers::FlatBufferBuilder;
 template <typename Table>
 using Offset = flatbuffers::Offset<Table>;
 
-/// Most cameras of a scene that a Welcome lists.
+/// The largest number of cameras of a scene that a Welcome lists.
 inline constexpr std::size_t max_scene_cameras = 4096;
 
 inline bool in_range(double value, double lowest, double highest) {

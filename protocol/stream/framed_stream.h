@@ -10,8 +10,8 @@
 
 namespace framelet {
 
-/// Most bytes that may wait for the other side to take them: two of the largest messages. A live peer that reads is
-/// never so far behind.
+/// The largest number of bytes that may wait for the other side to take them: two of the largest messages. A live peer
+/// that reads is never so far behind.
 inline constexpr std::size_t max_unsent_bytes = 2 * max_message_bytes;
 
 /// One connection. All members are called from the io_context's thread (there is one), except where said otherwise, and

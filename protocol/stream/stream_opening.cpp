@@ -15,7 +15,8 @@ namespace {
 
 using SecureStream = asio::ssl::stream<StreamSocket>;
 
-/// Most bytes that the system may hold before there is a place for them on the way: more would only grow old there.
+/// The largest number of bytes that the system may hold before there is room for them on the way: more would only grow
+/// old there.
 [[maybe_unused]] constexpr int most_unsent_bytes = 128 << 10;
 
 /// Sets the options of a socket. Errors are ignored: the peer may be gone already, which reading will find out.

@@ -10,7 +10,7 @@
 
 namespace framelet {
 
-/// Least length of a token, bytes: a shorter one can be guessed.
+/// The least length of a token, bytes: a shorter one can be guessed.
 inline constexpr std::size_t min_token_bytes = 16;
 
 /// Makes a token: 128 bits of the system's randomness, in 32 hexadecimal digits.

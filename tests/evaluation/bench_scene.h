@@ -35,7 +35,7 @@ struct BenchScene {
     int followed_camera() const { return turn.turns() || flown ? -1 : static_cast<int>(scene_camera); }
 };
 
-/// Which animations play: the usual ones, or none, so that the scene stands still.
+/// The animations that play: the usual ones, or none, so that the scene stands still.
 enum class Clips { usual, none };
 
 /// Loads the scene and poses it at time 0. The viewer looks through its first camera, or through the default one where

@@ -131,7 +131,7 @@ struct ViewerStep {
     StageSeconds seconds;
 };
 
-/// Bound on the messages that may be on their way.
+/// The bound on the messages that may be on their way.
 struct Window {
     std::size_t messages = 2;
     /// True: counted beyond what a round trip holds, as for a sender that has measured it; false: counted in all.
@@ -159,7 +159,7 @@ public:
     virtual void answered(double /*now*/, double /*arrived*/) {}
     /// False while the method waits for the link to carry what was sent.
     virtual bool has_room(double /*now*/) const { return true; }
-    /// Bound on how far the server may be ahead of the viewer; one more message is rendered meanwhile.
+    /// The bound on how far the server may be ahead of the viewer; one more message is rendered meanwhile.
     virtual Window window() const { return {}; }
 };
 

@@ -13,7 +13,7 @@ namespace framelet {
 class CameraTimes {
 public:
     using Time = std::chrono::steady_clock::time_point;
-    /// Most cameras that are remembered; of more the oldest are forgotten.
+    /// The largest number of cameras that are remembered; of more the oldest are forgotten.
     static constexpr std::size_t most_cameras = 256;
 
     void note_set(std::uint64_t number, Time time) { note(number, time, set_); }

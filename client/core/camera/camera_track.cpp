@@ -13,8 +13,8 @@ namespace {
 /// A step is a cut where it is more than so many times as large as the steps beside it: a camera that starts or stops
 /// within one key goes no faster.
 constexpr float cut_factor = 4;
-/// Least step, metres, and least turn, as the sine of half its angle (about one degree), that can be a cut, whatever is
-/// beside it.
+/// The least step, metres, and the least turn, as the sine of half its angle (about one degree), that can be a cut,
+/// whatever is beside it.
 constexpr float least_step = 1e-3f, least_turn = 0.01f;
 
 /// A camera's way, metres, and turn, as the sine of half its angle, from a key to the next one; 0 beyond the ends.

@@ -11,9 +11,9 @@ namespace framelet {
 
 class ArrivedBatches {
 public:
-    /// Most bytes that may wait for a painter that is busy, or for a window that is hidden.
+    /// The largest number of bytes that may wait for a painter that is busy, or for a window that is hidden.
     static constexpr std::size_t most_bytes = 256u << 20;
-    /// Most batches whose memory is kept.
+    /// The largest number of batches whose memory is kept.
     static constexpr std::size_t most_spares = 4;
 
     void add(Batch batch);

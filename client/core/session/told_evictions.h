@@ -27,7 +27,8 @@ inline std::vector<Evicted> evicted_messages(std::vector<SentTile>& gone) {
 
 class ToldEvictions {
 public:
-    /// Most framelets of messages that are kept; of more it is no longer known which the server has heard of.
+    /// The largest number of framelets of messages that are kept; of more it is no longer known which the server has
+    /// heard of.
     static constexpr std::size_t most_framelets = std::size_t{1} << 18;
 
     void keep(Evicted told) {

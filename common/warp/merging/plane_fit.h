@@ -52,7 +52,7 @@ Number largest_difference(PieceOf<Number> const& piece, AffineOf<Number> const& 
            absolute(plane.dy - piece.dy) * piece.half_height;
 }
 
-/// Least value of a plane within the piece's rectangle.
+/// The least value of a plane within the piece's rectangle.
 template <class Number>
 Number least_value(AffineOf<Number> const& plane, PieceOf<Number> const& piece) {
     return plane(piece.x, piece.y) - absolute(plane.dx) * piece.half_width - absolute(plane.dy) * piece.half_height;

@@ -7,7 +7,7 @@ namespace {
 
 /// Bits that the kind of a prediction and its vector take, roughly.
 constexpr int bits_of_kind = 2, bits_of_vector = 12;
-/// So few bits that, where a way of coding takes no more, looking for a better one gains nothing.
+/// A number of bits so small that, where a way of coding takes no more, looking for a better one gains nothing.
 constexpr int few_bits = 70;
 
 /// A way of coding a framelet.

@@ -20,13 +20,14 @@ struct MotionVector {
     bool operator==(MotionVector const&) const = default;
 };
 
-/// Has four values a pixel and plane: points half a pixel apart, at which coarse and fine framelets alike find what
-/// they were. Nothing coarse is spread over the values that it stands for (`point_grids.h`). Takes 16 bytes a pixel of
-/// the viewport rounded up to tiles of the coarsest level, 15.8 MB at 1280x720, and 4.2 more where it is kept for
-/// searches.
+/// The picture has four values a pixel and plane: points half a pixel apart, at which coarse and fine framelets alike
+/// find what they were. Nothing coarse is spread over the values that it stands for (`point_grids.h`). It takes 16
+/// bytes a pixel of the viewport rounded up to tiles of the coarsest level, 15.8 MB at 1280x720, and 4.2 more where it
+/// is kept for searches.
 class ReferencePicture {
 public:
-    /// Most pixels of a viewport that has a reference picture: framelets of larger ones are coded without.
+    /// The largest number of pixels of a viewport that has a reference picture: framelets of larger ones are coded
+    /// without.
     static constexpr std::int64_t most_pixels = std::int64_t{1} << 23;
     static constexpr bool holds(Viewport viewport) {
         return std::int64_t{viewport.width} * viewport.height <= most_pixels;

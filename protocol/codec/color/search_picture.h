@@ -13,8 +13,8 @@
 
 namespace framelet {
 
-/// Has four values a pixel, and a quarter of one for the coarse points. What is coarse is written to the coarse points
-/// alone, until something finer is looked for or written in its place.
+/// The picture has four values a pixel, and a quarter of one for the coarse points. What is coarse is written to the
+/// coarse points alone, until something finer is looked for or written in its place.
 class SearchPicture {
 public:
     using Samples = std::array<std::uint8_t, framelet_samples>;

@@ -35,7 +35,7 @@ private:
 namespace range_coding {
 inline constexpr std::uint32_t even_chance = 1u << 15;
 inline constexpr int chance_bits = 16;
-/// Least range with which a decision is coded: while it is smaller, a byte is moved and the range grows by 8 bits.
+/// The least range with which a decision is coded: while it is smaller, a byte is moved and the range grows by 8 bits.
 inline constexpr std::uint32_t least_range = 1u << 24;
 } // namespace range_coding
 

@@ -11,10 +11,10 @@
 
 namespace framelet {
 
-/// Most bodies of which one batch tells how they move, and most keys of one of them.
+/// The largest number of bodies of which one batch tells how they move, and of keys of one of them.
 inline constexpr std::size_t max_batch_tracks = 4096, max_track_keys = 1024;
 
-/// Most bytes of the tracks of one batch: each key with ten numbers of five bytes.
+/// The largest number of bytes of the tracks of one batch: each key with ten numbers of five bytes.
 inline constexpr std::size_t most_track_bytes = 64 * (max_batch_tracks + 2) + 50 * (max_batch_keys + max_track_keys);
 
 /// Encodes tracks. Members of bodies' poses that change are rounded: translations and scales to 2^-20 of the largest

@@ -11,7 +11,7 @@ namespace framelet {
 namespace {
 
 constexpr SceneTime short_time = 1.0 / 60;
-/// Most points at which bodies meet that are looked at in one part of a framelet.
+/// The largest number of points at which bodies meet that are looked at in one part of a framelet.
 constexpr int most_meetings = 4;
 constexpr double most_speed = 1e5;
 

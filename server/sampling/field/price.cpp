@@ -10,7 +10,7 @@ namespace {
 constexpr double stale_cycles = 3;
 /// Seconds within which regions that are true but coarse should be refined: they can wait longer.
 constexpr double coarse_seconds = 0.12;
-/// Bounds of the seconds for which a region is expected to stay as it is: about as long as it has stayed so far.
+/// The bounds of the seconds for which a region is expected to stay as it is: about as long as it has stayed so far.
 constexpr float least_life = 0.1f;
 constexpr float most_life = 4;
 constexpr float least_rest = 0.3f; ///< the lower bound once nothing moves

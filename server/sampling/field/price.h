@@ -13,7 +13,7 @@
 
 namespace framelet {
 
-/// Bounds of what may be chosen and used. The evaluation narrows them, to see what each part is worth.
+/// The bounds of what may be chosen and used. The evaluation narrows them, to see what each part is worth.
 struct ResponseLimits {
     int least_level = 0, most_level = sampling_levels - 1; ///< levels that may be chosen for a region
     float least_price = 1e-12f, most_price = 1e3f;

@@ -38,7 +38,7 @@ struct Region {
     float left = 0; ///< mean squared error that the finest samples leave, by their last rendering alone
     double supersampled = never; ///< when the viewer got it with four rays a sample, seconds
     double changed = never; ///< when it was last seen to be different, seconds
-    /// When it was last rendered with nothing to compare with, and might have changed, seconds.
+    /// The time at which it was last rendered with nothing to compare with, and might have changed, seconds.
     double suspected = never;
     double checked = never; ///< when it was last rendered or probed, seconds
     double asked = never; ///< when it was last taken to be rendered or probed, learnt or not, seconds

@@ -15,7 +15,7 @@ namespace {
 
 /// Greatest inverse depth that is told apart, 1 / metres.
 constexpr float most_inverse_depth = 1e6f;
-/// Least detail, a quarter of a display step, squared: less than that is none.
+/// The least detail, a quarter of a display step, squared: less than that is none.
 constexpr float least_detail = 1e-6f;
 /// Weight of the whole framelet's detail in that of a piece, which has few samples to tell it by.
 constexpr float common_share = 0.25f;

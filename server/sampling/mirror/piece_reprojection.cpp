@@ -11,7 +11,7 @@
 namespace framelet {
 namespace {
 
-/// Least depth in the picture over the depth where a piece was rendered; what is nearer is not drawn.
+/// The least depth in the picture over the depth where a piece was rendered; what is nearer is not drawn.
 constexpr float nearest = 1e-3f;
 constexpr float most_pixels = 1e6f, most_scale = 1e6f;
 /// Pixels that a moved piece covers beyond each of its sides, or the gaps that turning and tilting leave between
@@ -69,7 +69,7 @@ ReprojectedPiece reproject(Piece const& piece, BodyTransform const& body, Vec2 s
     ReprojectedPiece reprojected;
     float const share = 1 / at.z;
     reprojected.at = share * Vec2(at);
-    // How far it moves for each pixel to the right and down in the picture of its moment.
+    // `right` and `down` say how far it moves for each pixel to the right and down in the picture of its moment.
     Vec3 const dx = body.far[0] + piece.depth_slope.x * parallax;
     Vec3 const dy = body.far[1] + piece.depth_slope.y * parallax;
     Vec2 const right = share * (Vec2(dx) - dx.z * reprojected.at);

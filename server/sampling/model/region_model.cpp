@@ -16,13 +16,13 @@ constexpr float most_energy = 4;
 constexpr float band_falloff = 0.5f;
 /// Energy of all that is finer than the finest band over that of this band, by the same falloff.
 constexpr float tail = band_falloff / (1 - band_falloff);
-/// How much of the unsampled energy a tent filter lets through into the picture: (2/3)^2.
+/// The share of the unsampled energy that a tent filter lets through into the picture: (2/3)^2.
 constexpr float alias_share = 4.0f / 9.0f;
 /// A drift beyond which even the coarsest band has passed.
 constexpr float most_drift = 64;
 constexpr float most_motion = 1e6f; ///< drift a second
 constexpr float most_decay = 1e3f;
-/// Most share of its bound that a change is taken for: beyond, all that is known is that the band has passed.
+/// The largest share of its bound that a change is taken for: beyond, all that is known is that the band has passed.
 constexpr float most_share = 0.9f;
 
 /// Bands finer than a pixel are averaged away on the display and cannot become untrue.

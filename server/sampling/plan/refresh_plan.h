@@ -11,7 +11,7 @@
 
 namespace framelet {
 
-/// Bounds of a cycle's length, seconds.
+/// The bounds of a cycle's length, seconds.
 inline constexpr float least_cycle_seconds = 0.01f;
 inline constexpr float most_cycle_seconds = 0.05f;
 /// Length of a cycle, seconds, where planning one takes `plan_seconds`: planning may take a fortieth of it. `still`:
@@ -31,8 +31,8 @@ struct RefreshInput {
     float bias = 0;
     /// Motions of bodies, as a viewer knows them that moves what it holds along with them; null for one that does not.
     BodyMotions const* motions = nullptr;
-    /// Most framelets of one batch; 0: what half a cycle has time for, so that it shows sooner, or all of it while
-    /// nothing moves.
+    /// The largest number of framelets of one batch; 0: what half a cycle has time for, so that it shows sooner, or all
+    /// of it while nothing moves.
     std::size_t batch_framelets = 0;
     std::size_t link_framelets = max_batch_framelets; ///< most that the link takes at once
     ResponseLimits limits{};
@@ -41,7 +41,8 @@ struct RefreshInput {
 /// Rays that there is time to render for each sample that there is time to render and to send.
 double rays_a_sample(RefreshInput const& input);
 
-/// Most framelets that a batch may have. `still`: nothing moves, so that a large batch costs no freshness.
+/// Returns the largest number of framelets that a batch may have. `still`: nothing moves, so that a large batch costs
+/// no freshness.
 std::size_t batch_limit(RefreshInput const& input, bool still);
 
 /// The work of one batch: what to render now.

@@ -35,7 +35,8 @@ constexpr double quiet_seconds = 0.1;
 constexpr double draining_share = 0.8;
 /// Seconds that the next batch may be begun before its time comes, and that one which is late may make up for.
 constexpr double slack_seconds = 0.01;
-/// Most of a batch: seconds on the link, or share of the window, the last one while the window is being found.
+/// The largest size of a batch, as seconds on the link or as a share of the window, the last one while the window is
+/// being found.
 constexpr double batch_seconds = 0.01, batch_share = 0.125, first_batch_share = 0.25;
 constexpr double first_used_share = 0.2;
 /// Seconds over which the measured rate is a mean, and the most that one batch counts for: a stall is no rate.
@@ -185,8 +186,8 @@ double LinkEstimate::measured_rate() const {
     return busy_seconds_ > 0 ? std::clamp(busy_bytes_ / busy_seconds_, least_rate, most_rate) : most_rate;
 }
 
-/// Least time, seconds, that any of the batches that came lately has waited; by both clocks, so that neither a clock
-/// that was set nor a slow way back makes a queue.
+/// Returns the least time, seconds, that any of the batches that came lately has waited; by both clocks, so that
+/// neither a clock that was set nor a slow way back makes a queue.
 double LinkEstimate::measure_queue(Flight const& flight, double now, double round_trip, double arrived) {
     double const own = starting_ ? 0 : flight.bytes / std::max(rate_, measured_rate());
     double const late = std::min(round_trip - base_.least(), arrived - *flight.sent - base_way_.least());

@@ -23,7 +23,7 @@ constexpr std::uint8_t first_qp = 12;
 /// Framelets that are worth what a batch takes besides them (camera, tiles, envelope: about 90 bytes), unless the
 /// batch takes longer than `most_batch_seconds` on the link.
 constexpr double worthwhile_framelets = 16, most_batch_seconds = 0.05;
-/// Least time from one step of the QP to the next, seconds.
+/// The least time from one step of the QP to the next, seconds.
 constexpr double step_seconds = 0.03;
 
 double worthwhile_bytes(LinkState const& link) {

@@ -46,7 +46,7 @@ double bounded_rate(LinkState const& link, double samples_per_second);
 /// of the link.
 double worthwhile_seconds(LinkState const& link);
 
-/// Most framelets of a batch that the link takes at once, at least one.
+/// Returns the largest number of framelets of a batch that the link takes at once, at least one.
 std::size_t bounded_batch(LinkState const& link);
 
 } // namespace framelet

@@ -12,7 +12,7 @@
 namespace framelet {
 namespace {
 
-/// Most groups of samples that are told apart in a framelet; samples of further groups are outliers.
+/// The largest number of groups of samples that are told apart in a framelet; samples of further groups are outliers.
 constexpr std::size_t most_groups = 8;
 /// Metres; closer to the eye than this no depths are told apart.
 constexpr float least_depth = 1e-6f;

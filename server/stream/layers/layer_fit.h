@@ -25,8 +25,8 @@ struct LayerTolerance {
     float preferred_inverse_depth = 0;
 };
 
-/// Most outliers of a framelet. They cost more than layers, on the wire and in the viewer: where more than these are
-/// left, layers are fitted to `wide_tolerances` tolerances instead.
+/// The largest number of outliers of a framelet. They cost more than layers, on the wire and in the viewer: where more
+/// than these are left, layers are fitted to `wide_tolerances` tolerances instead.
 inline constexpr std::size_t most_outliers = 16;
 inline constexpr float wide_tolerances = 2;
 /// A sample that no plane was found for lies on the nearest layer of its body that it is at most so many tolerances

@@ -12,8 +12,8 @@
 namespace framelet {
 namespace {
 
-/// Most keys that are made up for after a pause, without which the viewer could not move what it has from before; where
-/// more are missing the clock has leapt.
+/// The largest number of keys that are made up for after a pause, without which the viewer could not move what it has
+/// from before; where more are missing the clock has leapt.
 constexpr std::int64_t most_missed_keys = 5 * body_keys_per_second;
 /// Fewest keys that are given out at a time: a track costs bytes of its own.
 constexpr std::int64_t least_keys = body_keys_per_second / 10;

@@ -68,7 +68,7 @@ Surfaces render_surfaces(BenchScene& scene, Camera const& camera, Viewport viewp
 }
 
 /// True where the picture shows that surface there: its inverse depth is among those of the pixels around.
-bool shows(Surfaces const& surfaces, ExactMotion::Projection const& there, BodyNumber body) {
+bool shows(Surfaces const& surfaces, ExactMotion::Projected const& there, BodyNumber body) {
     auto const [width, height] = surfaces.viewport;
     Vec2 const pixel = there.pixel;
     if (!(pixel.x >= 0.5f && pixel.y >= 0.5f && pixel.x <= static_cast<float>(width) - 0.5f &&
@@ -166,7 +166,7 @@ void compare(Surfaces const& before, Surfaces const& after, ExactMotion const& b
             bool const is_hole = blocks[0].inverse_depth[k] == hole_depth;
             ++found.pixels;
             found.all_holes += is_hole ? 1 : 0;
-            ExactMotion::Projection const exact =
+            ExactMotion::Projected const exact =
                 back.shown(pixel, after.inverse_depth[at], after.body[at], after.velocity[at]);
             if (!shows(before, exact, after.body[at])) {
                 continue;

@@ -8,8 +8,8 @@ namespace framelet::bench {
 
 namespace {
 
-/// Least ratio of a point's view depth in the second view to that in the first: below it the point is as good as behind
-/// the eye.
+/// The least ratio of a point's view depth in the second view to that in the first: below it the point is as good as
+/// behind the eye.
 constexpr float nearest = 0.05f;
 
 } // namespace
@@ -25,7 +25,7 @@ ExactMotion::ExactMotion(SceneBodies const& bodies, SceneView const& from, Scene
     }
 }
 
-ExactMotion::Projection ExactMotion::shown(Vec2 position, float inverse_depth, BodyNumber body,
+ExactMotion::Projected ExactMotion::shown(Vec2 position, float inverse_depth, BodyNumber body,
                                            Vec3 const& velocity) const {
     Vec3 const direction = rays_.direction + rays_.direction_dx * position.x + rays_.direction_dy * position.y;
     // Vector from the second eye to the point, times the inverse depth; for the sky the direction alone.
@@ -40,7 +40,7 @@ ExactMotion::Projection ExactMotion::shown(Vec2 position, float inverse_depth, B
         towards = (point + velocity * seconds_ - eye_) * inverse_depth;
     }
     Vec3 const p = to_pixels_ * towards;
-    return p.z > nearest ? Projection{Vec2(p) / p.z, inverse_depth / p.z} : Projection{};
+    return p.z > nearest ? Projected{Vec2(p) / p.z, inverse_depth / p.z} : Projected{};
 }
 
 } // namespace framelet::bench

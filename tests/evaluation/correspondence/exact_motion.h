@@ -21,14 +21,14 @@ class ExactMotion {
 public:
     ExactMotion(SceneBodies const& bodies, SceneView const& from, SceneView const& to, Viewport viewport);
 
-    struct Projection {
+    struct Projected {
         Vec2 pixel{NAN}; ///< pixels; not a number: behind the eye, or nearly
         float inverse_depth = 0; ///< 1 / metres
     };
 
     /// The projection to the second view of the point seen in the first at `position` (pixels) with that inverse depth
     /// (1/m; 0: the sky), carried by `body`. A point that no body carries moves on by `velocity`, metres a second.
-    Projection shown(Vec2 position, float inverse_depth, BodyNumber body, Vec3 const& velocity) const;
+    Projected shown(Vec2 position, float inverse_depth, BodyNumber body, Vec3 const& velocity) const;
 
 private:
     float seconds_; ///< time from the first view to the second, seconds

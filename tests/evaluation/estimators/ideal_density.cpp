@@ -70,7 +70,8 @@ std::vector<double> hann(int size) {
     return window;
 }
 
-/// How often a bin of the transform's last axis counts in the whole transform: the other half is its mirror image.
+/// Returns how often a bin of the transform's last axis counts in the whole transform: the other half is its mirror
+/// image.
 double multiplicity(int bin, int size) {
     return bin == 0 || 2 * bin == size ? 1 : 2;
 }

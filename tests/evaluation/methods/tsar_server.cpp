@@ -17,7 +17,8 @@ namespace {
 
 /// Framelets rendered in a cycle, by Table 7.1.
 constexpr std::size_t default_batch = 128;
-/// Least refreshes of a place while `framed` shows one frame. [Stephens 2011] states bounds but not their values.
+/// The least number of refreshes of a tile while `framed` shows one frame. [Stephens 2011] states bounds but not their
+/// values.
 constexpr double slowest_refresh = 1.0 / 8;
 constexpr std::size_t most_blocks = framelet_samples;
 
@@ -30,8 +31,8 @@ std::array<float, framelet_samples> display_luma(DisplayFramelet const& framelet
     return luma;
 }
 
-/// Bounds of the densities that the renderer can realise: tiles of all depths; from every eighth frame of `framed` to
-/// every cycle.
+/// The bounds of the densities that the renderer can realise: tiles of all depths; from every eighth frame of `framed`
+/// to every cycle.
 DensityBounds realisable(ImagePlane const& plane, double frames_per_second, std::size_t batch) {
     auto const samples = [&](int depth) { return std::exp2(2 * (depth - plane.pixel_depth())); };
     double const tiles = static_cast<double>(uniform_tile_count(plane, plane.pixel_depth()));

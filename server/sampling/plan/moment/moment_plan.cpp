@@ -15,12 +15,12 @@ namespace {
 constexpr float unknown_detail = 0.0025f;
 /// Squared luma by which what was rendered before the scene jumped is taken to look otherwise, where no probe has told.
 constexpr float outdated_error = 2e-4f;
-/// Most error of samples: however coarse they are, their mean is about right.
+/// The largest error of samples: however coarse they are, their mean is about right.
 constexpr float most_error = 0.1f;
 /// Pixels of spacing that interpolated samples seem to lie farther apart, beside those that come to lie on their own
 /// pixels before a camera that stands.
 constexpr float interpolated_wear = 1;
-/// Bounds of the price of a sample, squared error summed over pixels; others are of no use.
+/// The bounds of the price of a sample, squared error summed over pixels; others are of no use.
 constexpr float least_price = 5e-6f, most_price = 1e2f;
 
 constexpr std::size_t supersampled = MomentPlan::supersampled;
