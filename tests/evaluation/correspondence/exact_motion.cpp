@@ -26,7 +26,7 @@ ExactMotion::ExactMotion(SceneBodies const& bodies, SceneView const& from, Scene
 }
 
 ExactMotion::Projected ExactMotion::shown(Vec2 position, float inverse_depth, BodyNumber body,
-                                           Vec3 const& velocity) const {
+                                          Vec3 const& velocity) const {
     Vec3 const direction = rays_.direction + rays_.direction_dx * position.x + rays_.direction_dy * position.y;
     // Vector from the second eye to the point, times the inverse depth; for the sky the direction alone.
     Vec3 towards = direction;
