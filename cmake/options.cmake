@@ -1,7 +1,7 @@
 # Compiler settings that every target of the project shares.
 add_library(framelet_options INTERFACE)
-target_include_directories(framelet_options INTERFACE ${PROJECT_SOURCE_DIR})
-target_compile_definitions(framelet_options INTERFACE FRAMELET_VERSION="${PROJECT_VERSION}")
+configure_file(${CMAKE_CURRENT_LIST_DIR}/version.h.in ${PROJECT_BINARY_DIR}/generated/framelet_version.h @ONLY)
+target_include_directories(framelet_options INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/generated)
 target_compile_options(framelet_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wold-style-cast -Wnon-virtual-dtor
   -Woverloaded-virtual -Werror

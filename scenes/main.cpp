@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/error.h"
+#include "framelet_version.h"
 #include "scenes/gltf/gltf_writer.h"
 #include "scenes/scene_table.h"
 

@@ -10,6 +10,7 @@
 #include "common/command_line/bash_completion.h"
 #include "common/command_line/man_page.h"
 #include "common/command_line/option_text.h"
+#include "framelet_version.h"
 
 namespace framelet {
 

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "common/command_line/option_text.h"
+#include "framelet_version.h"
 
 namespace framelet {
 namespace {

@@ -1,5 +1,6 @@
 #include "server/session/welcome.h"
 
+#include "framelet_version.h"
 #include "server/scene/motion/animation.h"
 #include "server/scene/summary/scene_identity.h"
 

@@ -10,6 +10,7 @@
 #include <spdlog/spdlog.h>
 
 #include "common/error.h"
+#include "framelet_version.h"
 #include "tests/evaluation/live/live_verbs.h"
 #include "tests/evaluation/verbs.h"
 
