@@ -1,5 +1,6 @@
 // framelet-server: loads a scene and serves it to viewers.
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -79,6 +80,7 @@ void print_info(Options const& options) {
 
 /// Loads scene and environment. Throws InputError where the files are of no use.
 std::unique_ptr<LoadedScene> load_scene(Options const& options, Progress const& progress) {
+    auto const began = std::chrono::steady_clock::now();
     std::optional<Environment> environment; // first: it takes less time to find out what is wrong with it
     if (options.environment) {
         environment = Environment::load(*options.environment);
@@ -95,9 +97,11 @@ std::unique_ptr<LoadedScene> load_scene(Options const& options, Progress const& 
     auto loaded = std::make_unique<LoadedScene>(std::move(scene), std::move(clips), std::move(environment),
                                                 options.exposure_ev, progress);
     Scene const& s = loaded->scene;
-    spdlog::info("{}: {}, {}, {}, {}, {}; exposure {:+.1f} stops", s.name, counted(s.nodes.size(), "node"),
-                 counted(count_triangles(s), "triangle"), counted(s.clips.size(), "clip"),
-                 counted(s.lights.size(), "light"), counted(s.cameras.size(), "camera"), std::log2(loaded->exposure));
+    double const seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    spdlog::info("{}: {}, {}, {}, {}, {}; exposure {:+.1f} stops; loaded in {:.1f} s", s.name,
+                 counted(s.nodes.size(), "node"), counted(count_triangles(s), "triangle"),
+                 counted(s.clips.size(), "clip"), counted(s.lights.size(), "light"),
+                 counted(s.cameras.size(), "camera"), std::log2(loaded->exposure), seconds);
     return loaded;
 }
 

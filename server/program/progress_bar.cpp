@@ -1,12 +1,15 @@
 #include "server/program/progress_bar.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <memory>
 #include <mutex>
 #include <string>
 
 #include <unistd.h>
+
+#include "server/program/progress_line.h"
 
 namespace framelet {
 namespace {
@@ -15,28 +18,41 @@ int percent_of(double fraction) {
     return static_cast<int>(100 * std::clamp(fraction, 0.0, 1.0));
 }
 
-struct Bar {
-    std::mutex mutex; // loading reports from several threads
-    std::string stage;
-    int percent = -1;
-
+class Bar {
+public:
     void show(std::string_view what, double fraction) {
-        std::scoped_lock const lock(mutex);
-        bool const new_stage = stage != what;
-        int const now = percent_of(fraction);
-        if (!new_stage && now <= percent) {
+        std::scoped_lock const lock(mutex_);
+        Clock::time_point const now = Clock::now();
+        bool const is_new = stage_ != what;
+        int const percent = percent_of(fraction);
+        if (is_new) {
+            if (!stage_.empty() && percent_ < 100) {
+                std::fputc('\n', stderr);
+            }
+            stage_ = what;
+            began_ = now;
+            fraction_ = 0;
+        } else if (percent_ == 100 || (percent <= percent_ && now - drawn_ < least_pause)) {
             return;
         }
-        if (new_stage && !stage.empty() && percent < 100) {
-            std::fputc('\n', stderr);
-        }
-        stage = what;
-        percent = now;
-        constexpr int width = 40;
-        std::string const done(static_cast<std::size_t>(width * now / 100), '#');
-        std::fprintf(stderr, "\r%-24s [%-*s] %3d%%%s", stage.c_str(), width, done.c_str(), now, now == 100 ? "\n" : "");
+        fraction_ = std::max(fraction_, fraction); // of threads that report at once the later ones may be heard first
+        percent_ = percent_of(fraction_);
+        drawn_ = now;
+        constexpr char const* to_the_end = "\x1b[K"; // erases what is left of a longer line
+        std::string const line = progress_line(stage_, fraction_, std::chrono::duration<double>(now - began_).count());
+        std::fprintf(stderr, "\r%s%s%s", line.c_str(), to_the_end, percent_ == 100 ? "\n" : "");
         std::fflush(stderr);
     }
+
+private:
+    using Clock = std::chrono::steady_clock;
+    static constexpr std::chrono::milliseconds least_pause{100}; ///< between lines that differ by their times alone
+
+    std::mutex mutex_; // loading reports from several threads
+    std::string stage_;
+    double fraction_ = 0;
+    int percent_ = 0;
+    Clock::time_point began_, drawn_;
 };
 
 } // namespace

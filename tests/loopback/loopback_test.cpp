@@ -400,6 +400,7 @@ TEST(Loopback, LoadingIsOneLineOfALog) {
     EXPECT_EQ(log.find('\r'), std::string::npos) << log;
     EXPECT_EQ(std::count(log.begin(), log.end(), '\n'), 1) << log;
     EXPECT_NE(log.find(" triangles, "), std::string::npos) << log;
+    EXPECT_NE(log.find(" stops; loaded in "), std::string::npos) << log;
 }
 
 TEST(Loopback, BadInputGetsOneLineAndTheRightExitCode) {

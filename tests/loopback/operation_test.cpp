@@ -4,6 +4,7 @@
 #include <csignal>
 #include <deque>
 #include <fstream>
+#include <regex>
 #include <thread>
 
 #include <boost/asio/connect.hpp>
@@ -13,7 +14,10 @@
 #include <boost/beast/http.hpp>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <pty.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "tests/loopback/process.h"
 
@@ -43,6 +47,29 @@ TEST(Operation, InfoSaysWhatIsInASceneAndServesNothing) {
     Process alone(FRAMELET_SERVER, {"--json", scene_file});
     EXPECT_EQ(alone.wait(patience), 2);
     EXPECT_TRUE(has(alone.errors(), "--info")) << alone.errors();
+}
+
+TEST(Operation, ATerminalIsToldHowFarLoadingIs) {
+    int terminal = -1;
+    pid_t const server = ::forkpty(&terminal, nullptr, nullptr, nullptr);
+    if (server == 0) {
+        ::execl(FRAMELET_SERVER, FRAMELET_SERVER, "--info", scene_file.c_str(), nullptr);
+        ::_exit(127);
+    }
+    ASSERT_GT(server, 0);
+    std::string told;
+    char some[4096];
+    for (ssize_t bytes = 0; (bytes = ::read(terminal, some, sizeof some)) > 0;) {
+        told.append(some, static_cast<std::size_t>(bytes));
+    }
+    ::close(terminal);
+    int status = -1;
+    ::waitpid(server, &status, 0);
+    EXPECT_EQ(status, 0);
+    for (std::string const step : {"reading", "meshes"}) {
+        std::regex const whole(step + R"( +\[#{16}\] 100%  \d+\.\d s\x1b\[K\r\n)");
+        EXPECT_TRUE(std::regex_search(told, whole)) << told;
+    }
 }
 
 TEST(Operation, OptionsComeFromAFileToo) {

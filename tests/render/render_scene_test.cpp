@@ -1,6 +1,9 @@
 // Tests poses: what moves, what deforms, what vanishes.
 #include "server/render/prepared/render_scene.h"
 
+#include <algorithm>
+#include <utility>
+
 #include <gtest/gtest.h>
 
 #include "scene_builder.h"
@@ -135,6 +138,52 @@ TEST(RenderScene, SurroundingsFollowWhatTheSceneBrings) {
     float const dim = look_along(lit, Vec3(0), {0, 1, 0}).radiance.g;
     EXPECT_GT(dim, 0);
     EXPECT_LT(dim, 0.2f);
+}
+
+/// Thrown by whoever does not want the scene any more.
+struct Unwanted {};
+
+Scene large_and_small() {
+    Scene scene = one_sheet();
+    for (int i = 0; i < 50; ++i) {
+        scene.nodes.push_back(scene.nodes[0]); // the same mesh, which is built once
+    }
+    constexpr int rings = 300;
+    add(scene, sphere({0, 0, -9}, 1, 0, rings));
+    return scene;
+}
+
+TEST(RenderScene, ProgressOfBvhsIsCountedByTriangles) {
+    Scene const scene = large_and_small();
+    std::vector<double> told;
+    RenderScene const ready(scene, black(), [&](std::string_view what, double fraction) {
+        if (what == "building the BVH") {
+            told.push_back(fraction);
+        }
+    });
+    ASSERT_GE(told.size(), 3u);
+    EXPECT_EQ(told.front(), 0);
+    EXPECT_EQ(told.back(), 1);
+    EXPECT_GE(std::ranges::count_if(told, [](double f) { return f > 0.1 && f < 0.9; }), 3)
+        << "the one large mesh is told of while it is built";
+}
+
+TEST(RenderScene, WhoeverIsToldCanEndTheBuilding) {
+    Scene const scene = large_and_small();
+    for (std::pair<char const*, double> const& last :
+         {std::pair("preparing textures", 0.0), std::pair("building the BVH", 0.0), std::pair("building the BVH", 0.3),
+          std::pair("building the BVH", 1.0), std::pair("preparing light", 1.0)}) {
+        auto const build = [&] {
+            RenderScene const ready(scene, black(), [&](std::string_view what, double fraction) {
+                if (what == last.first && fraction >= last.second) {
+                    throw Unwanted();
+                }
+            });
+        };
+        EXPECT_THROW(build(), Unwanted) << last.first << ", " << last.second;
+    }
+    RenderScene const ready(scene, black());
+    EXPECT_NEAR(depth_at(ready, {0, 0, 5}), 5, 1e-5f) << "nothing of those is left in the way";
 }
 
 } // namespace

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
+#include <set>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_inverse.hpp>
@@ -50,6 +52,30 @@ std::vector<Geometry> geometries_of(Mesh const& mesh, MaterialLibrary const& lib
     return out;
 }
 
+std::size_t count_triangles(Mesh const& mesh) {
+    std::size_t count = 0;
+    for (Primitive const& primitive : mesh.primitives) {
+        count += primitive.triangles.size();
+    }
+    return count;
+}
+
+bool is_deforming(Scene const& scene, Node const& node) {
+    return node.skin != none || morphs(scene.meshes[static_cast<std::size_t>(node.mesh)]);
+}
+
+/// Number of triangles that BVHs are built over: those of a mesh once, and once more for each node that deforms it.
+std::size_t triangles_to_build(Scene const& scene) {
+    std::set<Index> shared;
+    std::size_t count = 0;
+    for (Node const& node : scene.nodes) {
+        if (node.mesh != none && (is_deforming(scene, node) || shared.insert(node.mesh).second)) {
+            count += count_triangles(scene.meshes[static_cast<std::size_t>(node.mesh)]);
+        }
+    }
+    return count;
+}
+
 /// The surroundings of a scene with lights and no map: under a sun the sky that belongs to it, else just enough light
 /// to tell the shapes in the shade apart.
 Environment surroundings_of_lights(Scene const& scene) {
@@ -73,7 +99,7 @@ RenderScene::RenderScene(Scene const& scene, std::optional<Environment> environm
         }
     };
     report("preparing textures", 0);
-    prepared_->library = make_materials(scene);
+    prepared_->library = make_materials(scene, progress);
     prepared_->see_through =
         std::ranges::any_of(prepared_->library.materials, [](RenderMaterial const& m) { return m.see_through(); });
     add_meshes(progress);
@@ -94,6 +120,14 @@ RenderScene::~RenderScene() = default;
 
 void RenderScene::add_meshes(Progress const& progress) {
     std::map<Index, std::uint32_t> shared;
+    double const all = static_cast<double>(std::max<std::size_t>(triangles_to_build(scene_), 1));
+    double built = 0; // triangles
+    auto const report = [&](double triangles) {
+        if (progress) {
+            progress("building the BVH", triangles / all);
+        }
+    };
+    report(0);
     for (std::size_t node = 0; node < scene_.nodes.size(); ++node) {
         Node const& n = scene_.nodes[node];
         if (n.mesh == none) {
@@ -101,14 +135,21 @@ void RenderScene::add_meshes(Progress const& progress) {
         }
         Mesh const& mesh = scene_.meshes[static_cast<std::size_t>(n.mesh)];
         Skin const* skin = n.skin == none ? nullptr : &scene_.skins[static_cast<std::size_t>(n.skin)];
-        bool const deforming = skin || morphs(mesh);
+        bool const deforming = is_deforming(scene_, n);
         auto const known = shared.find(n.mesh);
         std::uint32_t id = 0;
         if (!deforming && known != shared.end()) {
             id = known->second;
         } else {
             prepared_->meshes.push_back(geometries_of(mesh, prepared_->library));
-            id = prepared_->bvh.add_mesh(prepared_->meshes.back(), deforming);
+            auto const count = static_cast<double>(count_triangles(mesh));
+            std::function<void(double)> part;
+            if (progress) {
+                part = [&](double fraction) { report(built + count * std::min(fraction, 1.0)); };
+            }
+            id = prepared_->bvh.add_mesh(prepared_->meshes.back(), deforming, part);
+            built += count;
+            report(built);
             if (!deforming) {
                 shared[n.mesh] = id;
             }
@@ -116,9 +157,6 @@ void RenderScene::add_meshes(Progress const& progress) {
         placements_.push_back({node, id, prepared_->bvh.add_instance(id), skin, morphs(mesh), deformed_.size()});
         if (deforming) {
             deformed_.emplace_back(mesh.primitives.size());
-        }
-        if (progress) {
-            progress("building the BVH", static_cast<double>(node + 1) / static_cast<double>(scene_.nodes.size()));
         }
     }
     prepared_->instances.resize(placements_.size());

@@ -18,6 +18,7 @@ struct PreparedScene;
 class RenderScene {
 public:
     /// Builds every BVH and mip chain, in the pose that the scene has without its clips. `scene` must outlive this.
+    /// What `progress` throws is thrown.
     /// Light: an `environment` adds to the scene's lights. Without one, a scene without lights gets the default sky and
     /// a sun; one with a sun of its own the sky of that brightness; one with other lights only, dim uniform light.
     RenderScene(Scene const& scene, std::optional<Environment> environment, Progress const& progress = {});

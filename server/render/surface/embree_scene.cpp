@@ -3,11 +3,11 @@
 #include <cstdio>
 #include <cstring>
 #include <new>
-#include <utility>
 #include <vector>
 
 #include "common/error.h"
 #include "server/render/surface/embree_queries.h"
+#include "server/scene/reading/held_exception.h"
 
 namespace framelet {
 namespace {
@@ -16,12 +16,34 @@ namespace {
 constexpr std::size_t few_instances = 256;
 
 struct Handle {
-    RTCScene scene;
+    RTCScene scene = nullptr;
     std::vector<RTCGeometry> geometries;
 };
 
 void report(void*, RTCError code, char const* message) {
+    if (code == RTC_ERROR_CANCELLED) { // as we wanted
+        return;
+    }
     std::fprintf(stderr, "Embree error %d: %s\n", static_cast<int>(code), message ? message : "");
+}
+
+/// What Embree is handed to say how far a BVH is built.
+struct BuildMonitor {
+    std::function<void(double)> const& progress;
+    HeldException held = {};
+};
+
+bool report_progress(void* monitor, double fraction) {
+    auto& m = *static_cast<BuildMonitor*>(monitor);
+    return m.held.call([&] { m.progress(fraction); });
+}
+
+void commit_with_progress(RTCScene scene, std::function<void(double)> const& progress) {
+    BuildMonitor monitor{progress};
+    rtcSetSceneProgressMonitorFunction(scene, report_progress, &monitor);
+    rtcCommitScene(scene);
+    rtcSetSceneProgressMonitorFunction(scene, nullptr, nullptr);
+    monitor.held.rethrow();
 }
 
 } // namespace
@@ -89,8 +111,10 @@ EmbreeScene::~EmbreeScene() {
     rtcReleaseDevice(handles_->device);
 }
 
-std::uint32_t EmbreeScene::add_mesh(std::span<Geometry> geometries, bool deforming) {
-    Handle mesh{rtcNewScene(handles_->device), {}};
+std::uint32_t EmbreeScene::add_mesh(std::span<Geometry> geometries, bool deforming,
+                                    std::function<void(double)> const& progress) {
+    Handle& mesh = handles_->meshes.emplace_back(); // released with the others, whatever happens here
+    mesh.scene = rtcNewScene(handles_->device);
     rtcSetSceneFlags(mesh.scene, deforming ? query_filters | RTC_SCENE_FLAG_DYNAMIC : query_filters);
     for (std::size_t i = 0; i < geometries.size(); ++i) {
         Geometry& geometry = geometries[i];
@@ -122,9 +146,12 @@ std::uint32_t EmbreeScene::add_mesh(std::span<Geometry> geometries, bool deformi
         rtcCommitGeometry(handle);
         rtcAttachGeometryByID(mesh.scene, handle, static_cast<unsigned>(i));
     }
-    rtcCommitScene(mesh.scene);
+    if (progress) {
+        commit_with_progress(mesh.scene, progress);
+    } else {
+        rtcCommitScene(mesh.scene);
+    }
     handles_->throw_failure();
-    handles_->meshes.push_back(std::move(mesh));
     return static_cast<std::uint32_t>(handles_->meshes.size() - 1);
 }
 

@@ -1,6 +1,7 @@
 // The two-level BVH. Everything that is drawn is an instance of a mesh. The only part that knows Embree (3.13 or 4).
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 
@@ -17,8 +18,10 @@ public:
     EmbreeScene& operator=(EmbreeScene const&) = delete;
 
     /// Builds a BVH over the geometries, which must stay where they are. Fills their `positions` from their source and
-    /// thereby moves them into the BVH's memory. `deforming`: built so that it can be refitted.
-    std::uint32_t add_mesh(std::span<Geometry> geometries, bool deforming);
+    /// thereby moves them into the BVH's memory. `deforming`: built so that it can be refitted. `progress` is told what
+    /// fraction is built, 0..1, from any thread, one at a time; where it throws, so does this, without a BVH.
+    std::uint32_t add_mesh(std::span<Geometry> geometries, bool deforming,
+                           std::function<void(double)> const& progress = {});
     // All that builds or moves throws std::bad_alloc where memory is missing, and from then on each time: Embree does
     // not say what it has left undone.
 

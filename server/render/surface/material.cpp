@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <mutex>
 #include <utility>
 
 #include <tbb/parallel_for.h>
@@ -56,7 +57,7 @@ RenderMaterial with_factors(Material const& m) {
 
 } // namespace
 
-MaterialLibrary make_materials(Scene const& scene) {
+MaterialLibrary make_materials(Scene const& scene, Progress const& progress) {
     std::map<ChainKey, MipChain const*> chains;
     RenderMaterial unused;
     for (Material const& material : scene.materials) {
@@ -73,8 +74,14 @@ MaterialLibrary make_materials(Scene const& scene) {
         keys.push_back(entry.first);
     }
     std::vector<std::optional<MipChain>> built(keys.size());
+    std::mutex report;
+    std::size_t done = 0;
     tbb::parallel_for(std::size_t(0), keys.size(), [&](std::size_t i) {
         built[i].emplace(scene.images[static_cast<std::size_t>(keys[i].first)], keys[i].second);
+        if (progress) {
+            std::scoped_lock const lock(report);
+            progress("preparing textures", static_cast<double>(++done) / static_cast<double>(keys.size()));
+        }
     });
 
     MaterialLibrary library;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "server/render/surface/texture.h"
+#include "server/scene/reading/progress.h"
 
 namespace framelet {
 
@@ -36,6 +37,6 @@ struct MaterialLibrary {
 
 /// Builds a mip chain for each use of an image that a material needs. `scene` must outlive nothing: pictures are
 /// shared.
-MaterialLibrary make_materials(Scene const& scene);
+MaterialLibrary make_materials(Scene const& scene, Progress const& progress = {});
 
 } // namespace framelet

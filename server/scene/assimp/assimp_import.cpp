@@ -2,6 +2,7 @@
 
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>
+#include <assimp/ProgressHandler.hpp>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
@@ -10,6 +11,7 @@
 #include "server/scene/assimp/memory_limit.h"
 #include "server/scene/assimp/mesh_header.h"
 #include "server/scene/assimp/polygon.h"
+#include "server/scene/reading/held_exception.h"
 
 namespace framelet {
 namespace {
@@ -44,6 +46,28 @@ private:
     std::string scene_file_;
     SceneFolder const& folder_;
     std::vector<std::string>& missing_;
+};
+
+/// Hands on how far Assimp is. Where that throws, Assimp is told to stop; not all of its readers look at that.
+class ReadingProgress : public Assimp::ProgressHandler {
+public:
+    ReadingProgress(Progress const& progress, HeldException& held) : progress_(progress), held_(held) {}
+
+    bool Update(float) override {
+        return held_.call([] {});
+    }
+    void UpdateFileRead(int byte, int bytes) override { report("reading", byte, bytes); }
+    void UpdatePostProcess(int step, int steps) override { report("completing meshes", step, steps); }
+
+private:
+    void report(char const* what, int done, int all) {
+        if (all > 0) { // it counts bytes in 32 bits: of a file of 2 GiB nothing is said
+            held_.call([&] { progress_(what, static_cast<double>(done) / all); });
+        }
+    }
+
+    Progress const& progress_;
+    HeldException& held_;
 };
 
 Vec3 to_vec3(aiVector3D const& v) {
@@ -133,14 +157,16 @@ Scene import_assimp(std::filesystem::path const& file, SceneFolder const& folder
     }
     check_mesh_header(file);
     ImportBudget(budget).reserve(std::filesystem::file_size(file), memory_per_file_byte);
+    HeldException held;
     importer.SetIOHandler(new PermittedFiles(file.string(), folder, missing)); // owned by the importer
+    importer.SetProgressHandler(new ReadingProgress(progress, held)); // as well
     importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, crease_degrees);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
     aiScene const* from = nullptr;
     try {
         MemoryLimit const limit(budget.left()); // Assimp takes memory without asking
         from = importer.ReadFile(file.string(), aiProcess_ValidateDataStructure);
-        if (from) {
+        if (from && held.call([] {})) {
             for (unsigned m = 0; m < from->mNumMeshes; ++m) {
                 triangulate_faces(*from->mMeshes[m]);
             }
@@ -152,6 +178,7 @@ Scene import_assimp(std::filesystem::path const& file, SceneFolder const& folder
     } catch (std::exception const& error) {
         throw InputError(error.what());
     }
+    held.rethrow();
     if (!from || !from->mRootNode) {
         std::string const why = importer.GetErrorString();
         if (why.find("bad_alloc") != std::string::npos || why.find("bad_array_new_length") != std::string::npos) {
@@ -169,7 +196,6 @@ Scene import_assimp(std::filesystem::path const& file, SceneFolder const& folder
             folder.permits(name) ? "file '" + name + "' is missing" : SceneFolder::refusal("file", name);
         scene.warnings.push_back(problem + "; shown without it");
     }
-    progress("reading", 1);
     import_assimp_materials(*from, folder, budget, scene, progress);
     import_assimp_nodes(*from, scene);
     return scene;

@@ -63,21 +63,27 @@ void finish_meshes(Scene& scene, ImportBudget& budget, Progress const& progress)
         PrimitiveRepairs repairs;
     };
     std::vector<Job> jobs;
+    std::size_t triangles = 0;
     for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
         std::erase_if(scene.meshes[m].primitives, [](Primitive const& p) { return p.triangles.empty(); });
         for (std::size_t p = 0; p < scene.meshes[m].primitives.size(); ++p) {
             jobs.push_back({m, p, {}});
             Primitive const& primitive = scene.meshes[m].primitives[p];
+            triangles += primitive.triangles.size();
             if (primitive.normals.empty()) { // flat shading gives every triangle its own vertices
                 budget.reserve(primitive.triangles.size() * 3, bytes_per_vertex(primitive) + sizeof(Vec3));
             }
         }
     }
+    if (triangles > 0) {
+        progress("meshes", 0);
+    }
     std::mutex report;
-    std::size_t done = 0;
+    std::size_t done = 0; // triangles
     tbb::parallel_for(std::size_t(0), jobs.size(), [&](std::size_t i) {
         Mesh& mesh = scene.meshes[jobs[i].mesh];
         Primitive& primitive = mesh.primitives[jobs[i].primitive];
+        std::size_t const count = primitive.triangles.size();
         try {
             jobs[i].repairs =
                 finish_primitive(primitive, scene.materials[static_cast<std::size_t>(primitive.material)]);
@@ -85,7 +91,8 @@ void finish_meshes(Scene& scene, ImportBudget& budget, Progress const& progress)
             throw InputError(named("mesh", jobs[i].mesh, mesh.name) + ": " + error.what());
         }
         std::lock_guard const lock(report);
-        progress("meshes", static_cast<double>(++done) / static_cast<double>(jobs.size()));
+        done += count;
+        progress("meshes", static_cast<double>(done) / static_cast<double>(triangles));
     });
     std::size_t normals = 0;
     std::size_t other = 0;

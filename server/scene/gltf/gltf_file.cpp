@@ -2,15 +2,20 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <functional>
 #include <map>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 #include <tiny_gltf.h>
 
 #include "common/error.h"
 #include "server/scene/gltf/gltf_accessor.h"
+#include "server/scene/reading/file_ending.h"
+#include "server/scene/reading/held_exception.h"
 
 namespace framelet {
 namespace {
@@ -30,7 +35,9 @@ constexpr std::size_t longest_media_type = 40;
 /// Bytes of the largest file that is read: tinygltf counts in 32 bits.
 constexpr std::uintmax_t max_file_bytes = 0xffffffffu;
 
-std::vector<unsigned char> read_bytes(std::filesystem::path const& file) {
+/// `on_bytes` is called with the number of bytes that have been read since the last call.
+std::vector<unsigned char> read_bytes(std::filesystem::path const& file,
+                                      std::function<void(std::size_t)> const& on_bytes) {
     std::error_code code;
     std::uintmax_t const size = std::filesystem::file_size(file, code);
     if (code || !std::filesystem::is_regular_file(file)) {
@@ -41,8 +48,13 @@ std::vector<unsigned char> read_bytes(std::filesystem::path const& file) {
     }
     std::vector<unsigned char> bytes(static_cast<std::size_t>(size));
     std::ifstream stream(file, std::ios::binary);
-    if (!stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size))) {
-        throw InputError("file '" + file.string() + "' cannot be read");
+    constexpr std::size_t part = 8 << 20;
+    for (std::size_t at = 0; at < bytes.size(); at += part) {
+        std::size_t const count = std::min(part, bytes.size() - at);
+        if (!stream.read(reinterpret_cast<char*>(bytes.data() + at), static_cast<std::streamsize>(count))) {
+            throw InputError("file '" + file.string() + "' cannot be read");
+        }
+        on_bytes(count);
     }
     return bytes;
 }
@@ -102,9 +114,29 @@ std::string decode_uri(std::string const& uri) {
 struct FileAccess {
     SceneFolder const& folder;
     ImportBudget& budget;
+    Progress const& progress;
+    std::uint64_t bytes; ///< to be read: of the scene file, then of its buffers
+    std::uint64_t bytes_read = 0;
+    double first_fraction = 0; ///< of reading as a whole, at the first of these bytes
+    double last_fraction; ///< at the last
+    HeldException held = {}; ///< from what tinygltf has called
     std::map<std::string, std::size_t> buffer_sizes = {}; ///< of buffer files, by path
 
     std::string path_of(std::string const& uri) const { return folder.path().string() + "/" + decode_uri(uri); }
+
+    /// From now on it is buffers that are read, up to this fraction of reading as a whole.
+    void expect_buffers(double fraction) {
+        bytes = bytes_read = 0;
+        for (auto const& [file, wanted] : buffer_sizes) {
+            bytes += wanted;
+        }
+        first_fraction = std::exchange(last_fraction, fraction);
+    }
+    void report_read(std::size_t more) {
+        bytes_read += more;
+        double const share = std::min(1.0, static_cast<double>(bytes_read) / std::max(1.0, static_cast<double>(bytes)));
+        progress("reading", first_fraction + (last_fraction - first_fraction) * share);
+    }
 };
 
 using Json = nlohmann::json;
@@ -205,11 +237,16 @@ std::string same_path(std::string const& path, void*) {
 }
 
 bool read_whole_file(std::vector<unsigned char>* out, std::string* error, std::string const& path, void* user) {
-    auto const& access = *static_cast<FileAccess const*>(user);
+    auto& access = *static_cast<FileAccess*>(user);
     std::error_code code;
     access.budget.reserve(std::filesystem::file_size(path, code), 1); // one file may be named a thousand times
     try {
-        *out = read_bytes(path);
+        bool going_on = true;
+        *out = read_bytes(path,
+                          [&](std::size_t count) { going_on = access.held.call([&] { access.report_read(count); }); });
+        if (!going_on) {
+            return false;
+        }
     } catch (InputError const& problem) {
         *error += problem.what();
         return false;
@@ -241,12 +278,18 @@ void note_unknown_extensions(tinygltf::Model const& model, std::vector<std::stri
 } // namespace
 
 std::unique_ptr<tinygltf::Model> read_gltf(std::filesystem::path const& file, SceneFolder const& folder,
-                                           ImportBudget& budget, std::vector<std::string>& warnings) {
-    std::vector<unsigned char> const bytes = read_bytes(file);
-    FileAccess access{folder, budget};
+                                           ImportBudget& budget, std::vector<std::string>& warnings,
+                                           Progress const& progress) {
+    constexpr double all_read = 0.9; // then tinygltf takes a while
+    double const file_read = lower_extension(file) == ".glb" ? all_read : 0.3; // what else is large lies beside a .gltf
+    std::error_code code; // where it is set, reading says so
+    FileAccess access{folder, budget, progress, std::filesystem::file_size(file, code), 0, 0, file_read};
+    std::vector<unsigned char> const bytes =
+        read_bytes(file, [&access](std::size_t count) { access.report_read(count); });
     std::string const base = folder.path().string();
     std::string_view const json = find_json(bytes);
     inspect_json(json, access);
+    access.expect_buffers(all_read);
 
     tinygltf::TinyGLTF loader;
     loader.SetImageLoader(keep_encoded, nullptr);
@@ -262,6 +305,7 @@ std::unique_ptr<tinygltf::Model> read_gltf(std::filesystem::path const& file, Sc
     } catch (std::exception const& problem) {
         error = problem.what();
     }
+    access.held.rethrow();
     if (!loaded) {
         throw InputError(error.empty() ? "it is not valid glTF" : error);
     }

@@ -9,6 +9,7 @@
 
 #include "server/scene/reading/image_loading.h"
 #include "server/scene/reading/import_budget.h"
+#include "server/scene/reading/progress.h"
 #include "server/scene/reading/scene_folder.h"
 
 namespace tinygltf {
@@ -22,7 +23,8 @@ class GltfAccessors;
 /// Reads the file and the buffers and image files that it names. Missing images get a warning, all else throws.
 /// External images are in `Image::image`, still encoded. Refuses required extensions that the importer does not know.
 std::unique_ptr<tinygltf::Model> read_gltf(std::filesystem::path const& file, SceneFolder const& folder,
-                                           ImportBudget& budget, std::vector<std::string>& warnings);
+                                           ImportBudget& budget, std::vector<std::string>& warnings,
+                                           Progress const& progress);
 
 /// The model's images, still encoded; those that are missing have no bytes. The bytes live in `model`.
 std::vector<EncodedImage> gltf_images(tinygltf::Model const& model, GltfAccessors const& accessors,

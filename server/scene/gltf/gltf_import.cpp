@@ -1,5 +1,7 @@
 #include "server/scene/gltf/gltf_import.h"
 
+#include <mutex>
+
 #include <tbb/parallel_for.h>
 #include <tiny_gltf.h>
 
@@ -14,7 +16,7 @@ Scene import_gltf(std::filesystem::path const& file, SceneFolder const& folder, 
                   std::span<std::string const> needed_clips, Progress const& progress) {
     Scene scene;
     progress("reading", 0);
-    auto const model = read_gltf(file, folder, budget, scene.warnings);
+    auto const model = read_gltf(file, folder, budget, scene.warnings, progress);
     GltfAccessors const accessors(*model, budget);
     progress("reading", 1);
 
@@ -30,8 +32,12 @@ Scene import_gltf(std::filesystem::path const& file, SceneFolder const& folder, 
     for (std::size_t const mesh : mapping.used_meshes) {
         reserve_gltf_mesh(*model, accessors, mesh, forecast);
     }
+    std::mutex report;
+    std::size_t done = 0;
     tbb::parallel_for(std::size_t(0), mesh_count, [&](std::size_t i) {
         scene.meshes[i] = import_gltf_mesh(*model, accessors, mapping.used_meshes[i], warnings[i]);
+        std::lock_guard const lock(report);
+        progress("unpacking meshes", static_cast<double>(++done) / static_cast<double>(mesh_count));
     });
     for (auto const& lines : warnings) {
         scene.warnings.insert(scene.warnings.end(), lines.begin(), lines.end());

@@ -31,9 +31,10 @@ std::vector<std::shared_ptr<Picture const>> load_images(std::span<EncodedImage c
     SizeCheck const reserve = [&](int width, int height) {
         budget.reserve(static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height), 4);
     };
-    std::mutex report;
-    std::size_t done = 0;
-    tbb::parallel_for(std::size_t(0), images.size(), [&](std::size_t i) {
+    if (progress && !images.empty()) {
+        progress("images", 0);
+    }
+    auto const read = [&](std::size_t i) {
         EncodedImage const& image = images[i];
         if (image.decoded) {
             pictures[i] = image.decoded;
@@ -51,6 +52,11 @@ std::vector<std::shared_ptr<Picture const>> load_images(std::span<EncodedImage c
         } catch (InputError const& error) {
             problems[i] = std::string(error.what()) + "; shown without it";
         }
+    };
+    std::mutex report;
+    std::size_t done = 0;
+    tbb::parallel_for(std::size_t(0), images.size(), [&](std::size_t i) {
+        read(i);
         std::lock_guard const lock(report);
         ++done;
         if (progress) {
