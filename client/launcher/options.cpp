@@ -72,7 +72,8 @@ std::variant<ViewOptions, int> parse_options(int argc, char const* const* argv) 
     auto const option = [&](char const* name, std::string const& text) { return view->add_option(name, text); };
     auto const flag = [&](char const* name, std::string const& text) { view->add_flag(name, text); };
     view->option_defaults()->group(scene_group);
-    view->add_option("SCENE", out.scene, "Scene file: .gltf, .glb, .obj and what else framelet-server reads")
+    view->add_option("SCENE", out.scenes,
+                     "Scene file: .gltf, .glb, .obj and what else framelet-server reads; several are shown together")
         ->required();
     option("--environment", "Environment map (.hdr, .exr) that lights the scene")->type_name("FILE");
     option("--clip", "Animation clip to play, by name; may be given several times")

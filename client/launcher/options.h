@@ -9,8 +9,8 @@ namespace framelet {
 
 /// Arguments with which the two programs are to be started.
 struct ViewOptions {
-    std::string scene;
-    std::vector<std::string> server; ///< all but the port and the scene
+    std::vector<std::string> scenes;
+    std::vector<std::string> server; ///< all but the port and the scenes
     std::vector<std::string> other_scenes; ///< those of `server` that count for scenes that are dropped, too
     std::vector<std::string> viewer; ///< all but the server's address
 };

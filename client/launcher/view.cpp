@@ -41,7 +41,7 @@ public:
             signals_.add(number);
         }
         wait_for_signal();
-        server_.emplace(options_.scene, options_.server, ServerErrors::shown, [this] {
+        server_.emplace(options_.scenes, options_.server, ServerErrors::shown, [this] {
             asio::post(io_, [this] {
                 if (auto const address = server_->address(); address && !viewer_ && !ending_) {
                     start_viewer(*address);

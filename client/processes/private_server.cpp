@@ -35,16 +35,17 @@ std::optional<LoadProgress> load_progress_of(std::string const& line) {
 
 } // namespace
 
-PrivateServer::PrivateServer(std::filesystem::path scene, std::vector<std::string> const& options, ServerErrors errors,
-                             std::function<void()> on_news)
-    : scene_(std::move(scene)), errors_(errors), on_news_(std::move(on_news)) {
+PrivateServer::PrivateServer(std::vector<std::string> scenes, std::vector<std::string> const& options,
+                             ServerErrors errors, std::function<void()> on_news)
+    : scenes_(std::move(scenes)), errors_(errors), on_news_(std::move(on_news)) {
     std::filesystem::path const file = find_program(program);
     std::vector<std::string> arguments{"--port", "0"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     if (errors_ == ServerErrors::kept) {
         arguments.emplace_back("--progress-lines");
     }
-    arguments.insert(arguments.end(), {"--", scene_.string()}); // behind it, what looks like an option is none
+    arguments.emplace_back("--"); // behind it, what looks like an option is none
+    arguments.insert(arguments.end(), scenes_.begin(), scenes_.end());
     std::array<int, 2> pipe{};
     if (::pipe2(pipe.data(), O_CLOEXEC) != 0) {
         throw std::system_error(errno, std::generic_category(), "cannot make a pipe");

@@ -1,4 +1,4 @@
-// A server for one scene and one user: framelet-server on a free port of this machine. In: the scene's file. Out: where
+// A server for one user: framelet-server on a free port of this machine. In: the files of a scene. Out: where
 // it listens, or the line that says why it does not.
 #pragma once
 
@@ -32,14 +32,14 @@ public:
     /// Starts loading. `options` are for framelet-server. `on_news` is called from another thread when it listens,
     /// when loading has got on, and when it prints no more. Throws InputError where the program is missing,
     /// std::system_error.
-    PrivateServer(std::filesystem::path scene, std::vector<std::string> const& options, ServerErrors errors,
+    PrivateServer(std::vector<std::string> scenes, std::vector<std::string> const& options, ServerErrors errors,
                   std::function<void()> on_news);
     /// Ends the server, and waits until it has ended.
     ~PrivateServer();
     PrivateServer(PrivateServer const&) = delete;
     PrivateServer& operator=(PrivateServer const&) = delete;
 
-    std::filesystem::path const& scene() const { return scene_; }
+    std::vector<std::string> const& scenes() const { return scenes_; }
     Child& process() { return *process_; }
     /// The progress of loading; nothing before the server tells it, and of one whose errors are shown.
     std::optional<LoadProgress> progress() const;
@@ -53,7 +53,7 @@ private:
     void read(int descriptor);
     void take(std::string const& line);
 
-    std::filesystem::path const scene_;
+    std::vector<std::string> const scenes_;
     ServerErrors const errors_;
     std::function<void()> const on_news_;
 

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <exception>
+#include <filesystem>
 #include <utility>
 
 #include <unistd.h>
@@ -20,14 +21,10 @@ void SceneOpener::open(std::vector<std::string> const& files) {
     if (files.empty()) {
         return;
     }
-    if (files.size() > 1) {
-        complaint_ = "one scene at a time is shown: drop a single file";
-        return;
-    }
     opening_.reset();
     connecting_ = {};
     try {
-        opening_ = std::make_unique<PrivateServer>(files.front(), server_options_, ServerErrors::kept, wake_);
+        opening_ = std::make_unique<PrivateServer>(files, server_options_, ServerErrors::kept, wake_);
     } catch (std::exception const& error) {
         complaint_ = error.what();
     }
@@ -75,7 +72,12 @@ std::optional<Connection> SceneOpener::session() {
 }
 
 std::string SceneOpener::opening() const {
-    return opening_ ? opening_->scene().filename().string() : "";
+    if (!opening_) {
+        return "";
+    }
+    std::size_t const others = opening_->scenes().size() - 1;
+    return std::filesystem::path(opening_->scenes().front()).filename().string() +
+           (others > 0 ? " and " + std::to_string(others) + " more" : "");
 }
 
 void SceneOpener::show(OverlayContent& content) const {
@@ -91,7 +93,7 @@ std::string SceneOpener::end_reason() {
 }
 
 void SceneOpener::reopen() {
-    open({open_->scene().string()});
+    open(std::vector<std::string>(open_->scenes()));
 }
 
 } // namespace framelet

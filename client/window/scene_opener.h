@@ -30,13 +30,14 @@ public:
     SceneOpener(SceneOpener const&) = delete;
     SceneOpener& operator=(SceneOpener const&) = delete;
 
-    /// Begins to open what was dropped on the window: one file. One that is still being opened is given up.
+    /// Begins to open the files that were dropped on the window, as one scene. One that is still being opened is given
+    /// up.
     void open(std::vector<std::string> const& files);
     /// The session with the new scene, once there is one; the server of the one that was open before has ended then.
     std::optional<Connection> poll();
     /// The reason why nothing was opened, told once; empty where there is none.
     std::string take_complaint() { return std::exchange(complaint_, {}); }
-    /// The file that is being opened, without its folder; empty while none is.
+    /// The file that is being opened, without its folder, and how many more; empty while none is.
     std::string opening() const;
     /// Shows that file, and how far it has been loaded, as sign and bar; nothing while none is opened.
     void show(OverlayContent& content) const;

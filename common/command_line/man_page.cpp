@@ -70,7 +70,7 @@ std::string italic(std::string const& text) {
 std::string synopsis(CLI::App const& app, std::string const& name) {
     std::string out = bold(name) + " [" + italic("OPTIONS") + "]";
     for (CLI::Option const* const option : positionals(app)) {
-        std::string const word = italic(option->get_name(true));
+        std::string const word = italic(option->get_name(true)) + (option->get_items_expected_max() > 1 ? "..." : "");
         out += option->get_required() ? " " + word : " [" + word + "]";
     }
     return out + "\n";

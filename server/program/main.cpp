@@ -25,6 +25,8 @@
 #include "protocol/stream/token.h"
 #include "server/program/options.h"
 #include "server/program/progress_bar.h"
+#include "server/program/shell_word.h"
+#include "server/scene/scene_list.h"
 #include "server/scene/summary/scene_summary.h"
 #include "server/scene/summary/visibility.h"
 #include "server/session/figures/metrics_port.h"
@@ -73,25 +75,46 @@ std::vector<Index> chosen_clips(Scene const& scene, ImportOptions const& import)
 /// Prints what is in the scene, also where a server would refuse it because there is nothing to see: that is what one
 /// asks about.
 void print_info(Options const& options) {
-    Scene const scene = import_scene(options.scene, make_progress_bar(options.quiet), options.import);
+    Scene const scene = import_scenes(options.scenes, make_progress_bar(options.quiet), options.import);
     std::vector<Index> const clips = chosen_clips(scene, options.import);
     std::cout << (options.json ? scene_summary_json(scene, clips) : scene_summary_text(scene, clips)) << std::flush;
 }
 
-/// Loads scene and environment. Throws InputError where the files are of no use.
+/// Prints how to serve each scene of the folder, a line each. Throws InputError where there is none.
+void list_scenes(std::filesystem::path const& folder) {
+    std::vector<std::filesystem::path> const files = scene_files_in(folder);
+    if (files.empty()) {
+        throw InputError("there is no scene file in folder '" + folder.string() +
+                         "': name a scene file, or a folder that has some");
+    }
+    for (std::filesystem::path const& file : files) {
+        std::cout << "framelet-server " << shell_word(file.string()) << '\n';
+    }
+}
+
+/// True where scenes are asked for that a folder has, by a person: whoever else starts this program wants a scene.
+bool asks_for_list(Options const& options) {
+    std::error_code code;
+    return options.scenes.size() == 1 && !options.info && !options.progress_lines &&
+           std::filesystem::is_directory(options.scenes.front(), code);
+}
+
+/// Loads scenes and environment. Throws InputError where the files are of no use.
 std::unique_ptr<LoadedScene> load_scene(Options const& options, Progress const& progress) {
     auto const began = std::chrono::steady_clock::now();
     std::optional<Environment> environment; // first: it takes less time to find out what is wrong with it
     if (options.environment) {
         environment = Environment::load(*options.environment);
     }
-    Scene scene = import_scene(options.scene, progress, options.import);
+    Scene scene = import_scenes(options.scenes, progress, options.import);
     for (std::string const& warning : scene.warnings) {
         spdlog::warn("{}", warning);
     }
     if (!has_anything_to_see(scene)) {
-        throw InputError("there is nothing to see in scene '" + options.scene.string() +
-                         "': it has no triangles, or none with an area");
+        std::string const one = "scene '" + options.scenes.front().string() + "': it has";
+        throw InputError("there is nothing to see in " +
+                         (options.scenes.size() == 1 ? one : "these scenes: they have") +
+                         " no triangles, or none with an area");
     }
     std::vector<Index> clips = chosen_clips(scene, options.import);
     auto loaded = std::make_unique<LoadedScene>(std::move(scene), std::move(clips), std::move(environment),
@@ -134,10 +157,16 @@ void serve(Options& options) {
         recorder.emplace(options.record, options.record_rate);
     }
     bool const had_terminal = has_terminal();
+    std::vector<std::filesystem::path> scene_files;
+    for (std::filesystem::path const& file : options.scenes) {
+        scene_files.push_back(std::filesystem::absolute(file));
+    }
     std::filesystem::path const environment_file = options.environment.value_or("");
     std::optional<FileWatch> watch;
     if (options.watch) { // from before the scene is loaded: what changes meanwhile counts
-        watch.emplace().watch(std::vector{std::filesystem::absolute(options.scene), environment_file});
+        std::vector<std::filesystem::path> named = scene_files;
+        named.push_back(environment_file);
+        watch.emplace().watch(named);
     }
     std::unique_ptr<LoadedScene> loaded =
         load_scene(options, options.progress_lines ? make_progress_lines() : make_progress_bar(options.quiet));
@@ -149,16 +178,19 @@ void serve(Options& options) {
         StreamOptions const& stream = options.server.loop.stream;
         event_log.emplace(
             options.record_events,
-            ServedScene{std::filesystem::absolute(options.scene).string(),
+            ServedScene{{scene_files.begin(), scene_files.end()},
                         options.environment ? std::filesystem::absolute(*options.environment).string() : "",
-                        loaded->clips, loaded->exposure, stream.bias, stream.batch_framelets});
+                        loaded->clips,
+                        loaded->exposure,
+                        stream.bias,
+                        stream.batch_framelets});
         options.server.loop.event_log = &*event_log;
     }
     Server server(std::move(loaded), options.server, std::move(listener));
     // What asks the server, or tells it something, ends before it.
     std::unique_ptr<MetricsPort> const answering = std::move(metrics);
     SceneReloader reloader(
-        std::move(watch), options.scene, environment_file, files,
+        std::move(watch), scene_files, environment_file, files,
         [&options](Progress const& progress) { return load_scene(options, progress); },
         [&server](std::shared_ptr<LoadedScene> scene) { server.replace_scene(std::move(scene)); });
     server.take_signals([&] { // before anybody is told that there is a server to signal to
@@ -201,7 +233,11 @@ int main(int argc, char** argv) {
     spdlog::set_level(options.quiet ? spdlog::level::warn : spdlog::level::info);
     framelet::give_way(options.nice); // before there are threads
     try {
-        options.info ? framelet::print_info(options) : framelet::serve(options);
+        if (framelet::asks_for_list(options)) {
+            framelet::list_scenes(options.scenes.front());
+        } else {
+            options.info ? framelet::print_info(options) : framelet::serve(options);
+        }
         return 0;
     } catch (std::exception const& error) {
         std::cerr << "framelet-server: " << framelet::failure_text(error) << '\n';

@@ -16,7 +16,7 @@ ProgramNotes notes() {
         "end the server, and its viewers are told. SIGHUP loads the scene again; where its terminal is gone it ends "
         "the server too.",
         {{0, "fine"},
-         {1, "the scene or another file cannot be used, or the address cannot be listened on"},
+         {1, "a scene or another file cannot be used, or the address cannot be listened on"},
          {2, "bad usage"}},
         {"framelet", "framelet-viewer", "framelet-client"}};
 }
@@ -44,11 +44,13 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
     CLI::App app("Renders a scene for remote viewers: every ray where their pictures gain most.", "framelet-server");
     prepare_command_line(app, notes());
     app.option_defaults()->group("Scene");
-    app.add_option("SCENE", options.scene, "Scene file: .gltf, .glb, .obj and what else the import library reads")
+    app.add_option("SCENE", options.scenes,
+                   "Scene file: .gltf, .glb, .obj and what else the import library reads. Several are shown together, "
+                   "each where it has its things. Of a folder alone the scenes in it are listed")
         ->required();
     app.add_flag("--allow-outside", options.import.allow_outside,
                  "Read files that the scene names outside its own folder as well");
-    app.add_option("--scene-memory", scene_megabytes, "Most memory for what is made of the scene file")
+    app.add_option("--scene-memory", scene_megabytes, "Most memory for what is made of the scene files")
         ->type_name("MB")
         ->check(number_in(1, 1 << 20))
         ->capture_default_str();
@@ -60,6 +62,7 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
         ->check(number_in(-32.0, 32.0));
     app.add_option("--clip", options.import.clips, "Animation clip to play, by name; may be given several times")
         ->type_name("NAME")
+        ->allow_extra_args(false) // what follows its name is a scene
         ->default_str("all that fit together");
     CLI::Option* const watch =
         app.add_flag("--watch", options.watch, "Load the scene again when its files have changed; viewers stay");

@@ -13,7 +13,7 @@
 namespace framelet {
 
 struct Options {
-    std::filesystem::path scene;
+    std::vector<std::filesystem::path> scenes; ///< files, shown together
     ImportOptions import;
     std::optional<std::filesystem::path> environment;
     std::optional<float> exposure_ev; ///< stops; empty: from the scene

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -182,7 +183,8 @@ struct Scene {
     std::vector<SceneCamera> cameras;
     std::vector<std::string> warnings; ///< one line each: what of the file was passed over
     std::vector<std::filesystem::path>
-        files; ///< that the scene is made of, whether they exist or not; the scene file first
+        files; ///< that the scene is made of, whether they exist or not; the scene files first
+    std::size_t scene_files = 1; ///< how many those are; the others are what these name
 };
 
 } // namespace framelet

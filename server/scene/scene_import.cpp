@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "common/error.h"
 #include "server/scene/assimp/assimp_import.h"
@@ -10,6 +11,7 @@
 #include "server/scene/reading/file_ending.h"
 #include "server/scene/reading/import_budget.h"
 #include "server/scene/reading/scene_folder.h"
+#include "server/scene/scene_merge.h"
 
 namespace framelet {
 namespace {
@@ -32,6 +34,9 @@ void check_file(std::filesystem::path const& file) {
     if (!std::filesystem::exists(file, code)) {
         throw InputError("there is no such file");
     }
+    if (std::filesystem::is_directory(file, code)) {
+        throw InputError("it is a folder; framelet-server with a folder alone lists the scenes in it");
+    }
     if (!std::filesystem::is_regular_file(file, code)) {
         throw InputError("it is not a file");
     }
@@ -53,14 +58,11 @@ std::vector<std::string> condensed(std::vector<std::string> const& warnings) {
     return lines;
 }
 
-} // namespace
-
-Scene import_scene(std::filesystem::path const& file, Progress const& progress, ImportOptions const& options) {
-    Progress const report = progress ? progress : [](std::string_view, double) {};
+Scene import_file(std::filesystem::path const& file, Progress const& report, ImportOptions const& options,
+                  ImportBudget& budget) {
     try {
         check_file(file);
         std::string const extension = lower_extension(file);
-        ImportBudget budget(options.memory_bytes);
         SceneFolder const folder(file, options.allow_outside);
         bool const is_gltf = extension == ".gltf" || extension == ".glb";
         Scene scene = is_gltf ? import_gltf(file, folder, budget, options.clips, report)
@@ -78,6 +80,34 @@ Scene import_scene(std::filesystem::path const& file, Progress const& progress, 
     } catch (std::bad_alloc const&) {
         throw InputError("cannot load scene '" + file.string() + "': it does not fit in memory");
     }
+}
+
+} // namespace
+
+Scene import_scene(std::filesystem::path const& file, Progress const& progress, ImportOptions const& options) {
+    return import_scenes(std::span(&file, 1), progress, options);
+}
+
+Scene import_scenes(std::span<std::filesystem::path const> files, Progress const& progress,
+                    ImportOptions const& options) {
+    FRAMELET_CHECK(!files.empty());
+    Progress const report = progress ? progress : [](std::string_view, double) {};
+    ImportBudget budget(options.memory_bytes);
+    if (files.size() == 1) {
+        return import_file(files.front(), report, options, budget);
+    }
+    ImportOptions of_each = options;
+    of_each.clips.clear(); // each may be in any of them
+    std::vector<Scene> scenes;
+    for (std::filesystem::path const& file : files) {
+        std::string const name = " (" + file.filename().string() + ")";
+        scenes.push_back(import_file(
+            file, [&](std::string_view what, double fraction) { report(std::string(what) + name, fraction); }, of_each,
+            budget));
+    }
+    Scene out = merged_scene(std::move(scenes), words_for(files));
+    out.warnings = condensed(out.warnings);
+    return out;
 }
 
 } // namespace framelet

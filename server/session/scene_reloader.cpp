@@ -1,6 +1,8 @@
 #include "server/session/scene_reloader.h"
 
+#include <algorithm>
 #include <exception>
+#include <iterator>
 #include <utility>
 
 #include <spdlog/spdlog.h>
@@ -15,10 +17,10 @@ struct LoadEnded {};
 
 } // namespace
 
-SceneReloader::SceneReloader(std::optional<FileWatch> watch, std::filesystem::path const& scene_file,
+SceneReloader::SceneReloader(std::optional<FileWatch> watch, std::vector<std::filesystem::path> scene_files,
                              std::filesystem::path environment_file, std::vector<std::filesystem::path> files,
                              Load load, Take take)
-    : file_watch_(std::move(watch)), scene_file_(std::filesystem::absolute(scene_file)),
+    : file_watch_(std::move(watch)), scene_files_(std::move(scene_files)),
       environment_file_(std::move(environment_file)), files_(std::move(files)), load_(std::move(load)),
       take_(std::move(take)) {
     this->watch();
@@ -38,12 +40,13 @@ void SceneReloader::watch() {
         return;
     }
     std::vector<std::filesystem::path> all = files_;
-    all.push_back(scene_file_);
+    all.insert(all.end(), scene_files_.begin(), scene_files_.end());
     if (!environment_file_.empty()) {
         all.push_back(environment_file_);
     }
     if (failed_) {
-        all.push_back(scene_file_.parent_path());
+        std::ranges::transform(scene_files_, std::back_inserter(all),
+                               [](auto const& file) { return file.parent_path(); });
     }
     file_watch_->watch(all);
 }

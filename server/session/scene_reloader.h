@@ -23,9 +23,9 @@ public:
     using Take = std::function<void(std::shared_ptr<LoadedScene>)>;
 
     /// Scenes are loaded until the end of its life: a load that is on its way then ends when it next reports how far it
-    /// is. Without `watch` only where it is asked. `files` are what the scene was made of that is served; `load` throws
-    /// where it fails.
-    SceneReloader(std::optional<FileWatch> watch, std::filesystem::path const& scene_file,
+    /// is. Without `watch` only where it is asked. `scene_files` are absolute, `files` are what the scene was made of
+    /// that is served; `load` throws where it fails.
+    SceneReloader(std::optional<FileWatch> watch, std::vector<std::filesystem::path> scene_files,
                   std::filesystem::path environment_file, std::vector<std::filesystem::path> files, Load load,
                   Take take);
     /// Asks for the scene to be loaded again, whether anything has changed or not. May be called from any thread.
@@ -40,7 +40,8 @@ private:
     void reload(std::stop_token const& stop);
 
     std::optional<FileWatch> file_watch_;
-    std::filesystem::path const scene_file_, environment_file_;
+    std::vector<std::filesystem::path> const scene_files_;
+    std::filesystem::path const environment_file_;
     std::vector<std::filesystem::path> files_; ///< files that the scene was made of
     bool failed_ = false; ///< loading failed the last time: what was missing may be any file of the folder
     Load load_;

@@ -13,7 +13,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "numbers are copied as they are");
 
-constexpr char const* first_line = "framelet events 2";
+constexpr char const* first_line = "framelet events 3";
 
 enum Kind : std::uint8_t {
     viewer = 1,
@@ -78,9 +78,9 @@ Bytes event_content(double seconds, M const& message) {
 EventLog::EventLog(std::filesystem::path const& file, ServedScene const& served)
     : out_(file, std::ios::binary | std::ios::trunc) {
     nlohmann::ordered_json const line{
-        {"scene", served.scene}, {"environment", served.environment},
-        {"clips", served.clips}, {"exposure_bits", std::bit_cast<std::uint32_t>(served.exposure)},
-        {"bias", served.bias},   {"batch_framelets", served.batch_framelets}};
+        {"scenes", served.scenes}, {"environment", served.environment},
+        {"clips", served.clips},   {"exposure_bits", std::bit_cast<std::uint32_t>(served.exposure)},
+        {"bias", served.bias},     {"batch_framelets", served.batch_framelets}};
     out_ << first_line << '\n' << line.dump() << '\n' << std::flush;
     if (!out_) {
         throw InputError("cannot write '" + file.string() + "': give --record-events a file in a folder that exists");
@@ -157,9 +157,9 @@ EventLogReader::EventLogReader(std::filesystem::path const& file) : file_(file),
     }
     try {
         nlohmann::json const told = nlohmann::json::parse(line);
-        served_ = {told.at("scene"), told.at("environment"),
-                   told.at("clips"), std::bit_cast<float>(told.at("exposure_bits").get<std::uint32_t>()),
-                   told.at("bias"),  told.at("batch_framelets")};
+        served_ = {told.at("scenes"), told.at("environment"),
+                   told.at("clips"),  std::bit_cast<float>(told.at("exposure_bits").get<std::uint32_t>()),
+                   told.at("bias"),   told.at("batch_framelets")};
     } catch (nlohmann::json::exception const& error) {
         throw InputError("'" + file.string() + "' does not say what was served: " + error.what());
     }

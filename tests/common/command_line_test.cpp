@@ -166,13 +166,14 @@ TEST(CommandLine, WhatIsWrongInAFileIsNamedWithFileAndKey) {
 struct Commands {
     CLI::App app{"Does 'this'. And that.", "framelet-program"};
     ProgramNotes notes{"One.\n\n.Two \\three --four ~.", {{0, "fine"}, {2, "bad usage"}}, {"other"}};
+    std::vector<std::string> scenes;
     std::string file;
 
     Commands() {
         prepare_command_line(app, notes);
         CLI::App* const command = app.add_subcommand("show", "Show it");
         command->option_defaults()->group("Places");
-        command->add_option("SCENE", file, "What to show")->required();
+        command->add_option("SCENE", scenes, "What to show")->required();
         command->add_option("--from", file, "Where from")->type_name("FILE")->default_str("here");
     }
 };
@@ -182,13 +183,16 @@ TEST(ManPage, HasTheSectionsAndEscapesWhatIsNotRoff) {
     std::string const page = man_page(program.app, program.notes);
     for (char const* const part :
          {".TH \"FRAMELET-PROGRAM\" 1 ", ".SH NAME\nframelet\\-program \\-\ndoes \\&'this'\n",
-          "\\fBframelet\\-program show\\fR [\\fIOPTIONS\\fR] \\fISCENE\\fR\n",
+          "\\fBframelet\\-program show\\fR [\\fIOPTIONS\\fR] \\fISCENE\\fR...\n",
           "One.\n.PP\n\\&.Two \\ethree \\-\\-four \\(ti.\n",
           ".SS Of show: Places\n.TP\n\\fB\\-\\-from\\fR \\fIFILE\\fR\nWhere from (default: here)\n",
           ".SH \"EXIT STATUS\"\n.TP\n.B 0\nfine\n", ".SH \"SEE ALSO\"\n.BR other (1)\n"}) {
         EXPECT_NE(page.find(part), std::string::npos) << part << " in\n" << page;
     }
     EXPECT_EQ(page.find("help-as"), std::string::npos);
+    EXPECT_NE(man_page(Line().app, {}).find("\\fBprogram\\fR [\\fIOPTIONS\\fR] \\fIHOST[:PORT]\\fR\n"),
+              std::string::npos)
+        << "one of it";
     std::istringstream lines(page);
     for (std::string line; std::getline(lines, line);) {
         EXPECT_LE(line.size(), 80u) << line;

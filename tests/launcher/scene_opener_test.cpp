@@ -68,11 +68,26 @@ TEST(SceneOpener, WhatIsNoSceneIsOneLineAndChangesNothing) {
         EXPECT_EQ(std::ranges::count(complaint, '\n'), 0) << complaint;
         EXPECT_EQ(opener.take_complaint(), "");
     }
-    opener.open({windmill, chase});
-    EXPECT_NE(opener.take_complaint().find("a single file"), std::string::npos);
-    EXPECT_EQ(opener.opening(), "");
+    EXPECT_FALSE(opened(opener, folder.path().string()));
+    EXPECT_NE(opener.take_complaint().find("it is a folder"), std::string::npos);
     EXPECT_FALSE(open->core->end_reason() || open->core->interruption());
     EXPECT_EQ(opener.end_reason(), "");
+}
+
+TEST(SceneOpener, ShowsSeveralFilesTogether) {
+    SceneOpener opener(connect, [] {});
+    opener.open({windmill, chase});
+    EXPECT_EQ(opener.opening(), "windmill.glb and 1 more");
+    std::optional<Connection> open;
+    EXPECT_TRUE(eventually([&] { return (open = opener.poll()) || opener.opening().empty(); }));
+    ASSERT_TRUE(open) << opener.take_complaint();
+    EXPECT_EQ(open->core->welcome().scene_name, "windmill + vehicle_chase");
+    ::kill(server_process(), SIGKILL);
+    EXPECT_TRUE(eventually([&] { return !opener.end_reason().empty(); }));
+    opener.reopen();
+    EXPECT_TRUE(eventually([&] { return (open = opener.poll()) || opener.opening().empty(); }));
+    ASSERT_TRUE(open) << opener.take_complaint();
+    EXPECT_EQ(open->core->welcome().scene_name, "windmill + vehicle_chase");
 }
 
 TEST(SceneOpener, TheNewestCounts) {

@@ -81,6 +81,21 @@ TEST(View, EndsWithItsWindowAndHandsOnWhatIsAsked) {
     EXPECT_FALSE(lives(programs.pids().second));
 }
 
+TEST(View, ShowsSeveralScenesTogether) {
+    Programs const programs("exit 0");
+    Process view(programs.framelet(), {"view", scene_file, FRAMELET_SOURCE_DIR "/scenes/globe.glb", "--paused"});
+    EXPECT_EQ(view.wait(patience), 0) << view.errors();
+    EXPECT_TRUE(has(view.errors(), "windmill + globe: ")) << view.errors();
+}
+
+TEST(View, AFolderIsListedAndThereIsNoWindow) {
+    Programs const programs("exit 0");
+    Process view(programs.framelet(), {"view", FRAMELET_SOURCE_DIR "/scenes"});
+    EXPECT_EQ(view.wait(patience), 0) << view.errors();
+    EXPECT_TRUE(has(view.output(), "/scenes/windmill.glb\n")) << view.output();
+    EXPECT_FALSE(std::filesystem::exists(programs.folder() / "arguments"));
+}
+
 TEST(View, TellsTheViewerWhatCountsForOtherScenesToo) {
     Programs const programs("exit 0");
     Process view(programs.framelet(), {"view", scene_file, "--allow-outside", "--threads", "1", "--", "--quiet",

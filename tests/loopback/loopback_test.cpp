@@ -404,7 +404,7 @@ TEST(Loopback, LoadingIsOneLineOfALog) {
 }
 
 TEST(Loopback, BadInputGetsOneLineAndTheRightExitCode) {
-    TemporaryFolder folder;
+    TemporaryFolder folder, bare;
     std::string const broken = folder.write("broken.gltf", "{ \"asset\": ");
     std::string const text = folder.write("notes.txt", "not a scene");
     std::string const empty =
@@ -417,7 +417,11 @@ TEST(Loopback, BadInputGetsOneLineAndTheRightExitCode) {
         {FRAMELET_SERVER, {"/nonexistent/scene.glb"}, 1, "/nonexistent/scene.glb"},
         {FRAMELET_SERVER, {broken}, 1, "broken.gltf"},
         {FRAMELET_SERVER, {text}, 1, "notes.txt"},
-        {FRAMELET_SERVER, {folder.path().string()}, 1, folder.path().filename().string()},
+        {FRAMELET_SERVER, {bare.path().string()}, 1, "no scene file in folder '" + bare.path().string()},
+        {FRAMELET_SERVER, {scene_file, bare.path().string()}, 1, "it is a folder"},
+        {FRAMELET_SERVER, {scene_file, broken}, 1, "broken.gltf"},
+        {FRAMELET_SERVER, {empty, empty}, 1, "nothing to see in these scenes"},
+        {FRAMELET_SERVER, {"--clip", "no such", scene_file, scene_file}, 1, "no such"},
         {FRAMELET_SERVER, {scene_file, "--environment", text}, 1, "notes.txt"},
         {FRAMELET_SERVER, {scene_file, "--clip", "no such"}, 1, "no such"},
         {FRAMELET_SERVER, {empty}, 1, "empty.gltf': it has no triangles"},

@@ -49,6 +49,36 @@ TEST(Operation, InfoSaysWhatIsInASceneAndServesNothing) {
     EXPECT_TRUE(has(alone.errors(), "--info")) << alone.errors();
 }
 
+nlohmann::json info_of(std::vector<std::string> const& scenes) {
+    std::vector<std::string> arguments{"--info", "--json"};
+    arguments.insert(arguments.end(), scenes.begin(), scenes.end());
+    Process info(FRAMELET_SERVER, arguments);
+    EXPECT_EQ(info.wait(patience), 0) << info.errors();
+    return nlohmann::json::parse(info.output());
+}
+
+TEST(Operation, InfoOfSeveralScenesIsOfAllThatIsInThem) {
+    std::string const other = FRAMELET_SOURCE_DIR "/scenes/globe.glb";
+    nlohmann::json const first = info_of({scene_file}), second = info_of({other}), both = info_of({scene_file, other});
+    EXPECT_EQ(both["scene"], "windmill + globe");
+    for (char const* const what : {"triangles", "nodes", "materials", "images", "image_bytes"}) {
+        EXPECT_EQ(both[what], first[what].get<std::size_t>() + second[what].get<std::size_t>()) << what;
+    }
+    for (char const* const what : {"cameras", "lights", "clips", "moving_bodies"}) {
+        EXPECT_EQ(both[what].size(), first[what].size() + second[what].size()) << what;
+    }
+}
+
+TEST(Operation, AFolderIsListedWithHowToServeEachScene) {
+    TemporaryFolder const folder;
+    std::string const plain = folder.write("b.glb", ""), spaced = folder.write("a house.obj", "");
+    folder.write("notes.txt", "");
+    Process list(FRAMELET_SERVER, {folder.path().string()});
+    EXPECT_EQ(list.wait(patience), 0) << list.errors();
+    EXPECT_EQ(list.output(), "framelet-server '" + spaced + "'\nframelet-server " + plain + "\n");
+    EXPECT_EQ(list.errors(), "");
+}
+
 TEST(Operation, ATerminalIsToldHowFarLoadingIs) {
     int terminal = -1;
     pid_t const server = ::forkpty(&terminal, nullptr, nullptr, nullptr);

@@ -129,6 +129,25 @@ TEST_F(Reloading, FilesBesideTheSceneCount) {
     EXPECT_EQ(times(server.process().errors(), "loading the scene again"), 1u);
 }
 
+TEST_F(Reloading, EachOfSeveralFilesCounts) {
+    fs::path const other = folder.path() / "other.glb";
+    fs::copy_file(scenes / "globe.glb", other);
+    ServerProcess server(file, {other, "--watch", "--paused", "--exposure", "0", "--insecure"});
+    Viewer viewer(server.address());
+    ASSERT_TRUE(viewer.comes_to_rest());
+    EXPECT_EQ(viewer.core->welcome().scene_name, "scene + other");
+    Picture const before = viewer.picture;
+    std::uint64_t const scene = viewer.core->scene_number();
+    fs::copy_file(scenes / "dim.glb", folder.path() / "new");
+    fs::rename(folder.path() / "new", other);
+    ASSERT_TRUE(viewer.comes_back(1)) << server.process().errors();
+    ASSERT_TRUE(viewer.comes_to_rest());
+    EXPECT_GT(viewer.core->scene_number(), scene);
+    EXPECT_NE(viewer.picture, before);
+    put("foliage.glb");
+    EXPECT_TRUE(viewer.comes_back(2)) << server.process().errors();
+}
+
 TEST_F(Reloading, ASignalDoesItToo) {
     ServerProcess server(file, {"--paused", "--insecure"});
     Viewer viewer(server.address());

@@ -52,7 +52,8 @@ struct RecordedSession {
 
     ReplayFigures replayed() const {
         EventLogReader log(file);
-        Scene const scene = import_scene(log.served().scene);
+        std::vector<std::string> const& files = log.served().scenes;
+        Scene const scene = import_scenes(std::vector<std::filesystem::path>(files.begin(), files.end()));
         RenderScene render_scene(scene, std::nullopt);
         PosedScene posed(scene, log.served().clips, render_scene);
         return replay(log, posed);
@@ -83,6 +84,12 @@ TEST(Replay, SoIsOneWhoseViewerFliesThroughAStillScene) {
 /// The server has so many threads that it plans a batch before the last one is learnt.
 TEST(Replay, SoIsOneThatLearnsWhileItRenders) {
     RecordedSession const session(FRAMELET_SOURCE_DIR "/scenes/globe.glb", {"--threads", "8"}, {});
+    expect_identical(session.replayed());
+}
+
+TEST(Replay, SoIsOneOfSeveralSceneFiles) {
+    RecordedSession const session(FRAMELET_SOURCE_DIR "/scenes/windmill.glb", {FRAMELET_SOURCE_DIR "/scenes/globe.glb"},
+                                  {});
     expect_identical(session.replayed());
 }
 

@@ -43,7 +43,7 @@ TEST(BadScene, MissingEmptyDirectoryUnknown) {
     expect_error(folder.path() / "nothing.gltf", "no such file");
     expect_error(folder.write("empty.glb", ""), "empty");
     std::filesystem::create_directory(folder.path() / "folder.gltf");
-    expect_error(folder.path() / "folder.gltf", "not a file");
+    expect_error(folder.path() / "folder.gltf", "it is a folder");
     expect_error(folder.write("a.unknown", "text"), "format '.unknown' is not known");
     expect_error(folder.write("noextension", "text"), "format '' is not known");
 }

@@ -35,6 +35,8 @@ TEST(SceneIdentity, APlaceIsTheSameForTheSameFileOnly) {
     Scene changed = triangle_scene();
     changed.files = {"/somewhere/else/../model.glb", "/somewhere/texture.png"};
     EXPECT_EQ(scene_source(changed), place);
+    changed.scene_files = 2;
+    EXPECT_NE(scene_source(changed), place) << "of two files";
     scene.files = {"/elsewhere/model.glb"};
     EXPECT_NE(scene_source(scene), place);
 }

@@ -26,7 +26,7 @@ TEST(SceneReloader, ALoadOnItsWayEndsWithTheServer) {
         return nullptr;
     };
     {
-        SceneReloader reloader({}, "scene.glb", {}, {}, load, [&](auto const&) { taken = true; });
+        SceneReloader reloader({}, {"/scene.glb"}, {}, {}, load, [&](auto const&) { taken = true; });
         reloader.ask();
         begun.get_future().wait();
     }

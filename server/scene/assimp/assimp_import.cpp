@@ -1,5 +1,7 @@
 #include "server/scene/assimp/assimp_import.h"
 
+#include <sstream>
+
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>
 #include <assimp/ProgressHandler.hpp>
@@ -199,6 +201,17 @@ Scene import_assimp(std::filesystem::path const& file, SceneFolder const& folder
     import_assimp_materials(*from, folder, budget, scene, progress);
     import_assimp_nodes(*from, scene);
     return scene;
+}
+
+std::set<std::string> assimp_endings() {
+    aiString list; // "*.3ds;*.obj"
+    Assimp::Importer().GetExtensionList(list);
+    std::istringstream words(list.C_Str());
+    std::set<std::string> endings;
+    for (std::string word; std::getline(words, word, ';');) {
+        endings.insert(word.substr(word.find('*') + 1));
+    }
+    return endings;
 }
 
 } // namespace framelet

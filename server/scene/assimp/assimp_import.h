@@ -2,6 +2,9 @@
 // In: a path. Out: a Scene, or an InputError without the file's name.
 #pragma once
 
+#include <set>
+#include <string>
+
 #include "server/scene/reading/import_budget.h"
 #include "server/scene/reading/progress.h"
 #include "server/scene/reading/scene_folder.h"
@@ -11,5 +14,8 @@ namespace framelet {
 
 Scene import_assimp(std::filesystem::path const& file, SceneFolder const& folder, ImportBudget& budget,
                     Progress const& progress);
+
+/// The endings of files that Assimp reads, in lower case and with their dots.
+std::set<std::string> assimp_endings();
 
 } // namespace framelet

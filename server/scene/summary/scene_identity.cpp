@@ -95,17 +95,20 @@ std::uint64_t scene_source(Scene const& scene) {
     if (scene.files.empty()) {
         return 0;
     }
-    std::error_code error; // where it is set, the name counts as it was asked for
-    std::filesystem::path const file = std::filesystem::weakly_canonical(scene.files.front(), error);
-    std::array<char, 256> machine{};
-    ::gethostname(machine.data(), machine.size() - 1);
     std::uint64_t out = 1; // no std::hash, which is another one in another build
-    for (std::string_view const text :
-         {std::string_view(machine.data()), std::string_view(error ? scene.files.front().native() : file.native())}) {
+    auto const add = [&out](std::string_view text) {
         for (char const c : text) {
             out = mix_in(out, static_cast<unsigned char>(c));
         }
         out = mix_in(out, text.size());
+    };
+    std::array<char, 256> machine{};
+    ::gethostname(machine.data(), machine.size() - 1);
+    add(machine.data());
+    for (std::size_t i = 0; i < std::min(scene.scene_files, scene.files.size()); ++i) {
+        std::error_code error; // where it is set, the name counts as it was asked for
+        std::filesystem::path const file = std::filesystem::weakly_canonical(scene.files[i], error);
+        add(error ? scene.files[i].native() : file.native());
     }
     return std::max<std::uint64_t>(out, 1);
 }

@@ -11,9 +11,9 @@ namespace framelet {
 /// one where names, triangles, pictures, colours, poses or clips differ.
 std::uint64_t scene_identity(Scene const& scene);
 
-/// Digest of a scene's file: the same for the same file of the same machine, whatever is in it and whichever build of
-/// this program asks, and never 0 then. What people keep for a scene thus outlives a change of it, and is not another
-/// folder's. 0 where the scene is of no file.
+/// Digest of a scene's file, or of its files in their order: the same for the same file of the same machine, whatever
+/// is in it and whichever build of this program asks, and never 0 then. What people keep for a scene thus outlives a
+/// change of it, and is not another folder's. 0 where the scene is of no file.
 std::uint64_t scene_source(Scene const& scene);
 
 } // namespace framelet

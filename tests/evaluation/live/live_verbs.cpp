@@ -146,7 +146,7 @@ json answer_look(LiveVerbOptions& options, std::filesystem::path const& costs_fi
 json answer_replay(LiveVerbOptions& options) {
     EventLogReader log(options.recording);
     ServedScene const& served = log.served();
-    Scene const scene = import_scene(served.scene);
+    Scene const scene = import_scenes(std::vector<std::filesystem::path>(served.scenes.begin(), served.scenes.end()));
     std::optional<Environment> environment;
     if (!served.environment.empty()) {
         environment = Environment::load(served.environment);
@@ -154,7 +154,7 @@ json answer_replay(LiveVerbOptions& options) {
     RenderScene render_scene(scene, std::move(environment));
     PosedScene posed(scene, served.clips, render_scene);
     ReplayFigures const figures = replay(log, posed);
-    std::printf("%s: %.1f s, %llu turns, %llu batches, %llu bytes: ", served.scene.c_str(), figures.seconds,
+    std::printf("%s: %.1f s, %llu turns, %llu batches, %llu bytes: ", scene.name.c_str(), figures.seconds,
                 static_cast<unsigned long long>(figures.turns), static_cast<unsigned long long>(figures.batches),
                 static_cast<unsigned long long>(figures.bytes));
     if (!figures.is_identical()) {
@@ -165,8 +165,8 @@ json answer_replay(LiveVerbOptions& options) {
                                                        std::to_string(figures.first_other));
     }
     std::printf("byte-identical\n");
-    return {{"scene", served.scene},  {"turns", figures.turns},     {"batches", figures.batches},
-            {"bytes", figures.bytes}, {"seconds", figures.seconds}, {"identical", true}};
+    return {{"scenes", served.scenes}, {"turns", figures.turns},     {"batches", figures.batches},
+            {"bytes", figures.bytes},  {"seconds", figures.seconds}, {"identical", true}};
 }
 
 json answer_soak(LiveVerbOptions& options, std::filesystem::path const& usual) {
