@@ -38,14 +38,14 @@ void pass_on(CLI::App const& app, std::string const& group, std::vector<std::str
     }
 }
 
-/// The options of a server without those for its scene alone, as a name of one of its clips, and those that cannot be
-/// had twice, as a port or a file that is written.
+/// The options of a server without those for its scene alone, as a name of one of its clips, those that cannot be had
+/// twice, as a port or a file that is written, and what its log looks like, which the window reads.
 std::vector<std::string> kept_for_other_scenes(std::vector<std::string> const& options) {
     std::vector<std::string> out;
     for (std::size_t i = 0; i < options.size(); ++i) {
         std::string const name = options[i].substr(0, options[i].find('='));
-        bool const has_value =
-            name == "--clip" || name == "--port" || name.starts_with("--metrics") || name.starts_with("--record");
+        bool const has_value = name == "--clip" || name == "--port" || name == "--log" ||
+                               name.starts_with("--metrics") || name.starts_with("--record");
         if (!has_value && name != "--allow-outside") {
             out.push_back(options[i]);
         } else if (has_value && options[i] == name) {

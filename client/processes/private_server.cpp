@@ -42,7 +42,7 @@ PrivateServer::PrivateServer(std::vector<std::string> scenes, std::vector<std::s
     std::vector<std::string> arguments{"--port", "0"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     if (errors_ == ServerErrors::kept) {
-        arguments.emplace_back("--progress-lines");
+        arguments.insert(arguments.end(), {"--progress-lines", "--log=text"}); // what is read here
     }
     arguments.emplace_back("--"); // behind it, what looks like an option is none
     arguments.insert(arguments.end(), scenes_.begin(), scenes_.end());

@@ -197,6 +197,11 @@ std::string unknown_text(CLI::App const& app) {
     return out;
 }
 
+int print(CLI::App const& app, UsageProblem const& problem) {
+    std::cerr << app.get_name() << ": " << problem.text << '\n';
+    return problem.exit_code;
+}
+
 } // namespace
 
 std::string HelpFormatter::make_group(std::string name, bool positional,
@@ -275,20 +280,25 @@ void parse_command_line(CLI::App& app, int argc, char const* const* argv) {
     }
 }
 
-int exit_usage(CLI::App const& app, CLI::ParseError const& error) {
+UsageProblem usage_problem(CLI::App const& app, CLI::ParseError const& error) {
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::FileError)) {
-        std::cerr << app.get_name() << ": configuration file '" << app.get_config_ptr()->as<std::string>()
-                  << "' cannot be read\n";
-        return 1;
+        return {"configuration file '" + app.get_config_ptr()->as<std::string>() + "' cannot be read", 1};
     }
-    return error.get_exit_code() == 0 ? app.exit(error) : exit_usage(app, error.what());
+    return usage_problem(error.what());
+}
+
+UsageProblem usage_problem(std::string const& text) {
+    std::string line = text;
+    std::replace(line.begin(), line.end(), '\n', ' ');
+    return {line + " (--help lists the options)"};
+}
+
+int exit_usage(CLI::App const& app, CLI::ParseError const& error) {
+    return error.get_exit_code() == 0 ? app.exit(error) : print(app, usage_problem(app, error));
 }
 
 int exit_usage(CLI::App const& app, std::string const& text) {
-    std::string line = text;
-    std::replace(line.begin(), line.end(), '\n', ' ');
-    std::cerr << app.get_name() << ": " << line << " (--help lists the options)\n";
-    return 2;
+    return print(app, usage_problem(text));
 }
 
 } // namespace framelet

@@ -49,8 +49,18 @@ CLI::Validator readable_by(Read read) {
 /// the program takes. Throws CLI::ParseError.
 void parse_command_line(CLI::App& app, int argc, char const* const* argv);
 
-/// Ends a command line that is not to be run: returns 0 after printing --help or --version; else prints one line on
-/// stderr and returns 1 where the file that --config names cannot be read, 2 otherwise.
+/// What is said, in one line, of a command line that cannot be used.
+struct UsageProblem {
+    std::string text; ///< without the program's name
+    int exit_code = 2; ///< 1 where the file that --config names cannot be read
+};
+/// `error` is none of --help and --version.
+UsageProblem usage_problem(CLI::App const& app, CLI::ParseError const& error);
+/// The same for a value that cannot be used.
+UsageProblem usage_problem(std::string const& text);
+
+/// Ends a command line that is not to be run: returns 0 after printing --help or --version; else prints the problem on
+/// stderr and returns its exit code.
 int exit_usage(CLI::App const& app, CLI::ParseError const& error);
 /// The same for a value that cannot be used.
 int exit_usage(CLI::App const& app, std::string const& text);

@@ -12,7 +12,6 @@
 
 #include <fcntl.h>
 #include <malloc.h>
-#include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 #include <tbb/global_control.h>
 #include <unistd.h>
@@ -72,10 +71,14 @@ std::vector<Index> chosen_clips(Scene const& scene, ImportOptions const& import)
     return import.clips.empty() ? default_clips(scene) : clips_named(scene, import.clips);
 }
 
+Progress loading_bar(Options const& options) {
+    return make_progress_bar(options.quiet || options.log == LogFormat::json); // whose lines it would stand among
+}
+
 /// Prints what is in the scene, also where a server would refuse it because there is nothing to see: that is what one
 /// asks about.
 void print_info(Options const& options) {
-    Scene const scene = import_scenes(options.scenes, make_progress_bar(options.quiet), options.import);
+    Scene const scene = import_scenes(options.scenes, loading_bar(options), options.import);
     std::vector<Index> const clips = chosen_clips(scene, options.import);
     std::cout << (options.json ? scene_summary_json(scene, clips) : scene_summary_text(scene, clips)) << std::flush;
 }
@@ -169,7 +172,7 @@ void serve(Options& options) {
         watch.emplace().watch(named);
     }
     std::unique_ptr<LoadedScene> loaded =
-        load_scene(options, options.progress_lines ? make_progress_lines() : make_progress_bar(options.quiet));
+        load_scene(options, options.progress_lines ? make_progress_lines() : loading_bar(options));
     std::vector<std::filesystem::path> const files = loaded->scene.files;
 
     options.server.loop.recorder = recorder ? &*recorder : nullptr;
@@ -228,9 +231,7 @@ int main(int argc, char** argv) {
         return *exit_code;
     }
     auto& options = std::get<framelet::Options>(parsed);
-    spdlog::set_default_logger(spdlog::stderr_color_mt("framelet"));
-    spdlog::set_pattern("%H:%M:%S.%e %^%l%$ %v");
-    spdlog::set_level(options.quiet ? spdlog::level::warn : spdlog::level::info);
+    framelet::open_log(options.log, options.quiet);
     framelet::give_way(options.nice); // before there are threads
     try {
         if (framelet::asks_for_list(options)) {
@@ -240,7 +241,7 @@ int main(int argc, char** argv) {
         }
         return 0;
     } catch (std::exception const& error) {
-        std::cerr << "framelet-server: " << framelet::failure_text(error) << '\n';
+        framelet::log_end(options.log, framelet::failure_text(error));
         return 1;
     }
 }

@@ -144,6 +144,12 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
         ->needs(metrics)
         ->capture_default_str();
     app.add_flag("--quiet", options.quiet, "Print warnings and errors only");
+    std::string log = "text";
+    CLI::Option const* const log_option =
+        app.add_option("--log", log, "Print the log as text, or each line as a JSON object: time, level, message")
+            ->type_name("text|json")
+            ->check(readable_by(parse_log_format))
+            ->capture_default_str();
     // The viewer's PrivateServer starts the server with this.
     app.add_flag("--progress-lines", options.progress_lines)->group("")->configurable(false);
     app.add_option(
@@ -160,13 +166,20 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
         ->type_name("FILE")
         ->excludes(watch);
     add_config_option(app);
+    auto const end = [log_option](UsageProblem const& problem) {
+        // Of a line that is of no use this may be known all the same, and whoever collects the log wants to read why.
+        bool const is_json = log_option->count() > 0 && log_option->results().back() == "json";
+        log_end(is_json ? LogFormat::json : LogFormat::text, problem.text);
+        return problem.exit_code;
+    };
     try {
         parse_command_line(app, argc, argv);
+        options.log = parse_log_format(log);
         require_protection(options, insecure);
     } catch (CLI::ParseError const& error) {
-        return exit_usage(app, error);
+        return error.get_exit_code() == 0 ? exit_usage(app, error) : end(usage_problem(app, error));
     } catch (InputError const& error) {
-        return exit_usage(app, error.what());
+        return end(usage_problem(error.what()));
     }
     options.import.memory_bytes = scene_megabytes << 20;
     options.local_token = options.token_file.empty() && !insecure;

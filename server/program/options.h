@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "server/program/log.h"
 #include "server/scene/scene_import.h"
 #include "server/session/loop/priority.h"
 #include "server/session/server.h"
@@ -20,6 +21,7 @@ struct Options {
     int threads = 0; ///< 0: all cores
     int nice = default_nice; ///< of all threads
     bool quiet = false;
+    LogFormat log = LogFormat::text;
     bool progress_lines = false; ///< of loading, for who started this program
     bool watch = false; ///< load the scene again when its files change
     bool info = false; ///< print what is in the scene, and serve nothing

@@ -99,7 +99,7 @@ TEST(View, AFolderIsListedAndThereIsNoWindow) {
 TEST(View, TellsTheViewerWhatCountsForOtherScenesToo) {
     Programs const programs("exit 0");
     Process view(programs.framelet(), {"view", scene_file, "--allow-outside", "--threads", "1", "--", "--quiet",
-                                       "--metrics", "0", "--exposure=1"});
+                                       "--metrics", "0", "--log", "text", "--exposure=1"});
     EXPECT_EQ(view.wait(patience), 0) << view.errors();
     std::string const arguments = programs.read("arguments");
     std::size_t const begin = arguments.find("--server-option");

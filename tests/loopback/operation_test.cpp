@@ -5,6 +5,7 @@
 #include <deque>
 #include <fstream>
 #include <regex>
+#include <sstream>
 #include <thread>
 
 #include <boost/asio/connect.hpp>
@@ -77,6 +78,59 @@ TEST(Operation, AFolderIsListedWithHowToServeEachScene) {
     EXPECT_EQ(list.wait(patience), 0) << list.errors();
     EXPECT_EQ(list.output(), "framelet-server '" + spaced + "'\nframelet-server " + plain + "\n");
     EXPECT_EQ(list.errors(), "");
+}
+
+/// The messages of a log of JSON, "LEVEL: MESSAGE" each. Every line has to be an object of time, level and message.
+std::vector<std::string> messages_of(std::string const& log) {
+    std::vector<std::string> messages;
+    std::istringstream lines(log);
+    for (std::string line; std::getline(lines, line);) {
+        nlohmann::json const said = nlohmann::json::parse(line, nullptr, false);
+        if (!said.is_object() || said.size() != 3) {
+            ADD_FAILURE() << line;
+            continue;
+        }
+        std::regex const time(R"(\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{3}Z)");
+        EXPECT_TRUE(std::regex_match(said.value("time", ""), time)) << line;
+        messages.push_back(said.value("level", "") + ": " + said.value("message", ""));
+    }
+    return messages;
+}
+
+TEST(Operation, ALogOfJsonIsOneObjectALine) {
+    TemporaryFolder const folder;
+    std::filesystem::path const file = folder.path() / "a \"red\"\\\n house.glb";
+    std::filesystem::copy_file(scene_file, file);
+    ServerProcess server(file, {scene_file, "--log", "json", "--paused"});
+    Process client(FRAMELET_CLIENT, {server.address(), "--size", "64x64", "--until-converged"});
+    EXPECT_EQ(client.wait(patience), 0) << client.errors();
+    server.process().signal(SIGTERM);
+    EXPECT_EQ(server.process().wait(patience), 0);
+    std::vector<std::string> const messages = messages_of(server.process().errors());
+    for (std::string const part : {"info: a \"red\"\\\n house + windmill: ", "info: viewer 1 connects",
+                                   "info: viewer 1 left", "info: ending on signal 15"}) {
+        EXPECT_TRUE(std::ranges::any_of(messages, [&](auto const& m) { return m.starts_with(part); }))
+            << part << server.process().errors();
+    }
+}
+
+TEST(Operation, TheLastLineOfALogOfJsonSaysWhatWasWrong) {
+    struct Wrong {
+        std::vector<std::string> arguments;
+        int exit_code;
+        std::string message;
+    };
+    for (Wrong const& wrong :
+         {Wrong{
+              {"absent \"x\".glb", "--log", "json"}, 1, "cannot load scene 'absent \"x\".glb': there is no such file"},
+          Wrong{{scene_file, "--log=json", "--bind", "0.0.0.0"}, 2, "--bind 0.0.0.0 can be reached"},
+          Wrong{{scene_file, "--prot", "1", "--log=json"}, 2, "unknown: --prot; did you mean --port?"}}) {
+        Process process(FRAMELET_SERVER, wrong.arguments);
+        EXPECT_EQ(process.wait(patience), wrong.exit_code) << process.errors();
+        std::vector<std::string> const messages = messages_of(process.errors());
+        ASSERT_EQ(messages.size(), 1u) << process.errors();
+        EXPECT_TRUE(messages[0].starts_with("error: " + wrong.message)) << messages[0];
+    }
 }
 
 TEST(Operation, ATerminalIsToldHowFarLoadingIs) {

@@ -1,9 +1,10 @@
 #include "server/render/surface/embree_scene.h"
 
-#include <cstdio>
 #include <cstring>
 #include <new>
 #include <vector>
+
+#include <spdlog/spdlog.h>
 
 #include "common/error.h"
 #include "server/render/surface/embree_queries.h"
@@ -24,7 +25,7 @@ void report(void*, RTCError code, char const* message) {
     if (code == RTC_ERROR_CANCELLED) { // as we wanted
         return;
     }
-    std::fprintf(stderr, "Embree error %d: %s\n", static_cast<int>(code), message ? message : "");
+    spdlog::error("Embree error {}: {}", static_cast<int>(code), message ? message : "");
 }
 
 /// What Embree is handed to say how far a BVH is built.
