@@ -22,7 +22,7 @@ cp -r /etc/apt/sources.list* /etc/apt/apt.conf.d "$system/etc/apt/"
 echo 'Dpkg::Use-Pty "0";' >"$system/etc/apt/apt.conf.d/99no-terminal"
 cp -L /etc/resolv.conf "$system/etc/"
 mkdir "$system/packages"
-cp "$packages"/*.deb "$root/tests/package/inside.sh" "$system/packages/"
+cp "$packages"/*.deb "$root/tests/package/inside.sh" "$root/cmake/packaging/Containerfile" "$system/packages/"
 
 # All that is started in there ends with it.
 unshare --mount --pid --fork --mount-proc="$system/proc" chroot "$system" bash /packages/inside.sh

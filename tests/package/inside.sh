@@ -21,6 +21,20 @@ framelet-server --info "$scene" >/dev/null
 ! said=$(framelet view "$scene" 2>&1) || fail "framelet view needs no display"
 [[ "$said" == *"there is no display"* ]] || fail "without a display framelet view says '$said'"
 
+# What the image of cmake/packaging/Containerfile would run, as the user that it says.
+user=$(sed -n 's/^USER //p' /packages/Containerfile)
+read -ra entry <<<"$(sed -n 's/^ENTRYPOINT \[\(.*\)\]$/\1/p' /packages/Containerfile | tr -d '",')"
+setpriv --reuid "${user%:*}" --regid "${user#*:}" --clear-groups env -i PATH="$PATH" \
+    "${entry[@]}" "$scene" --insecure --paused >/tmp/served.log 2>&1 &
+server=$!
+until grep -q "listening on 0.0.0.0:7070" /tmp/served.log; do
+    kill -0 "$server" || fail "the image's server has ended: $(cat /tmp/served.log)"
+    sleep 0.1
+done
+framelet-client 127.0.0.1 --size 320x180 --until-converged >/dev/null || fail "the image's server shows nothing"
+kill "$server"
+wait "$server" || fail "the image's server ended with $?: $(cat /tmp/served.log)"
+
 apt-get install -y -qq --no-install-recommends xvfb man-db mandoc bash-completion >/dev/null
 for program in "${programs[@]}"; do
     page=/usr/share/man/man1/$program.1.gz
