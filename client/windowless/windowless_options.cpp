@@ -30,8 +30,8 @@ however slow its reader is, and the statistics go to standard error; once nobody
 
     framelet-client HOST --output - | mpv -
 
-SIGINT (Ctrl-C) and SIGTERM end it as the end of --duration does, once what was shown is written; a second one ends it
-at once.)",
+SIGINT (Ctrl-C), SIGTERM and SIGHUP end it as the end of --duration does, once what was shown is written; a second
+SIGINT or SIGTERM ends it at once.)",
         {{0, "fine; also where nobody reads the video any more, or tev has gone"},
          {1, "a file cannot be used, tev or the server cannot be reached, the server refused the client or was gone at "
              "the end, or the picture did not converge in time"},

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -17,6 +16,7 @@
 #include "client/frames/frame_choice.h"
 #include "client/frames/frame_log.h"
 #include "client/frames/output_folder.h"
+#include "client/processes/end_signals.h"
 #include "client/sheet/sheet_moments.h"
 #include "client/statistics_text.h"
 #include "client/tev/tev_sender.h"
@@ -32,17 +32,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 using FrameSinks = std::vector<std::unique_ptr<FrameSink>>;
-
-volatile std::sig_atomic_t told_to_end = 0;
-
-void end_on_signals() {
-    for (int const number : {SIGINT, SIGTERM}) {
-        std::signal(number, [](int received) {
-            told_to_end = 1;
-            std::signal(received, SIG_DFL); // the video's reader may have stopped reading: the second signal ends that
-        });
-    }
-}
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
@@ -210,7 +199,7 @@ RunFigures show(ClientCore& core, WindowlessOptions const& options, std::optiona
         if (run.converged_seconds < 0 && (done || core.is_complete())) {
             run.converged_seconds = now;
         }
-        if (done || Clock::now() >= end || core.end_reason() || told_to_end != 0 || tell_end_of_sinks(sinks)) {
+        if (done || Clock::now() >= end || core.end_reason() || is_told_to_end() || tell_end_of_sinks(sinks)) {
             run.photon_seconds = median(std::move(photon_seconds));
             return run;
         }
@@ -278,7 +267,7 @@ void run_windowless(WindowlessOptions const& options, ConnectionOptions const& c
                     std::optional<FramePattern> const& pattern) {
     std::optional<CameraPath> const path = read_camera(options);
     FrameSinks const sinks = make_sinks(options, pattern, viewport);
-    end_on_signals();
+    note_end_signals();
     Session const session = look(options, connection, path, viewport, sinks);
     for (std::unique_ptr<FrameSink> const& sink : sinks) {
         sink->finish();
