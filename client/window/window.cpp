@@ -12,6 +12,7 @@
 #include "client/window/gamepad.h"
 #include "client/window/overlay/key_table.h"
 #include "client/window/picture_texture.h"
+#include "client/window/screen_choice.h"
 #include "common/error.h"
 
 namespace framelet {
@@ -211,6 +212,27 @@ struct Window::Impl {
         input.redraw = true;
     }
 
+    /// The screen that has most of the window; null where there is none.
+    GLFWmonitor* monitor() const {
+        int count = 0;
+        GLFWmonitor** const monitors = glfwGetMonitors(&count);
+        std::vector<PixelRect> screens;
+        for (int i = 0; i < count; ++i) {
+            int x = 0;
+            int y = 0;
+            glfwGetMonitorPos(monitors[i], &x, &y);
+            GLFWvidmode const* const mode = glfwGetVideoMode(monitors[i]);
+            screens.push_back(mode == nullptr ? PixelRect{} : PixelRect{x, y, x + mode->width, y + mode->height});
+        }
+        int x = 0;
+        int y = 0;
+        int width = 0;
+        int height = 0;
+        glfwGetWindowPos(window, &x, &y);
+        glfwGetWindowSize(window, &width, &height);
+        return count == 0 ? nullptr : monitors[screen_of({x, y, x + width, y + height}, screens)];
+    }
+
     Vec3 held_direction() const {
         if (is_typing) {
             return {0, 0, 0};
@@ -250,6 +272,7 @@ struct Window::Impl {
             of(w).input.dropped.assign(files, files + count);
         });
         glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { of(w).read_size(); });
+        glfwSetWindowContentScaleCallback(window, [](GLFWwindow* w, float, float) { of(w).input.redraw = true; });
         glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { of(w).input.redraw = true; });
         glfwSetWindowCloseCallback(window, [](GLFWwindow* w) { of(w).input.commands.push_back(Command::quit); });
     }
@@ -288,7 +311,7 @@ float Window::content_scale() const {
 }
 
 double Window::refresh_rate() const {
-    GLFWmonitor* const monitor = glfwGetPrimaryMonitor();
+    GLFWmonitor* const monitor = glfwGetPrimaryMonitor(); // asked each frame: where the window is takes longer
     GLFWvidmode const* const mode = monitor == nullptr ? nullptr : glfwGetVideoMode(monitor);
     return mode == nullptr || mode->refreshRate <= 0 ? 60 : mode->refreshRate;
 }
@@ -313,7 +336,7 @@ void Window::toggle_fullscreen() {
         glfwSetWindowMonitor(window, nullptr, windowed.x, windowed.y, windowed.width, windowed.height, 0);
         return;
     }
-    GLFWmonitor* const monitor = glfwGetPrimaryMonitor();
+    GLFWmonitor* const monitor = impl_->monitor();
     GLFWvidmode const* const mode = monitor == nullptr ? nullptr : glfwGetVideoMode(monitor);
     if (mode != nullptr) {
         glfwGetWindowPos(window, &windowed.x, &windowed.y);

@@ -47,7 +47,7 @@ public:
 
     /// Size of the framebuffer, pixels; each side at least 1. An iconified window keeps its size.
     Viewport framebuffer_size() const;
-    /// Pixels of the framebuffer for one unit of text size.
+    /// Pixels of the framebuffer for one unit of text size; another one on another screen, which is a `redraw`.
     float content_scale() const;
     double refresh_rate() const;
     /// True where the window is iconified, or on no screen at all: nobody sees what is drawn. A window that others
@@ -58,6 +58,7 @@ public:
     Viewport windowed_size() const;
     void set_title(std::string const& title);
     void show();
+    /// Fills the screen that the window is on, or goes back.
     void toggle_fullscreen();
 
     /// Sleeps until something happens, somebody calls `wake` or the time is over; then returns what happened.
