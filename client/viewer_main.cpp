@@ -9,9 +9,11 @@
 #include "client/gpu/canvas_choice.h"
 #include "client/painter.h"
 #include "client/picture_size.h"
-#include "client/window/first_connection.h"
+#include "client/processes/end_signals.h"
+#include "client/window/attempts.h"
 #include "client/window/kept/viewer_memory.h"
 #include "client/window/scene_opener.h"
+#include "client/window/start_panel.h"
 #include "client/window/viewer.h"
 #include "common/command_line/program_failure.h"
 #include "common/error.h"
@@ -20,32 +22,50 @@ namespace {
 
 framelet::ProgramNotes notes() {
     return {
-        "Where the server is not there yet the window waits for it. Where it is gone for a while, what is held goes on "
-        "being shown, and the session goes on when it is back; see --no-reconnect. A scene file that is dropped on the "
-        "window opens there, served by this machine.",
-        {{0, "fine"},
-         {1, "no display, a file cannot be used, or the server cannot be reached, refused the viewer or has vanished"},
+        "Without HOST the window asks for a server, and lists those of before. Where the server is not there yet the "
+        "window waits for it. Where it is gone for a while, what is held goes on being shown, and the session goes on "
+        "when it is back; see --no-reconnect. A scene file that is dropped on the window opens there, served by this "
+        "machine, as does that of --open. SIGINT (Ctrl-C), SIGTERM and SIGHUP end the viewer as closing its window "
+        "does, with a film that is being recorded complete.",
+        {{0, "fine: the window was closed, or a signal ended it"},
+         {1, "no display, a file cannot be used, or the server of the command line refused the viewer, cannot be "
+             "reached with --no-reconnect, or was gone when the window was closed"},
          {2, "bad usage"}},
         {"framelet", "framelet-server", "framelet-client"}};
+}
+
+void remember(framelet::Window const& window, framelet::ViewerMemory& memory) {
+    memory.size = window.windowed_size();
+    memory.fullscreen = window.is_fullscreen();
+    framelet::write_viewer_memory(memory);
 }
 
 } // namespace
 
 int main(int argc, char** argv) {
     using namespace framelet;
+    note_end_signals();
     ConnectionArguments arguments;
-    arguments.server = ServerAddress{}.text();
+    arguments.server = usual_server;
     std::string size = "1280x720";
     bool fullscreen = false;
     std::string painter = "auto";
     DisplayArguments display;
-    std::optional<int> server_needed;
+    std::vector<std::string> scenes;
+    bool needs_scene = false;
     std::vector<std::string> server_options;
 
     CLI::App app("Shows a scene that framelet-server renders. F1 in the window lists the keys.", "framelet-viewer");
     prepare_command_line(app, notes());
-    add_connection_options(app, arguments)->capture_default_str();
+    CLI::Option const* const server = add_connection_options(app, arguments)->default_str("the window asks");
     app.option_defaults()->group("Window");
+    app.add_option(
+           "--open", scenes,
+           "Open this scene file, served by this machine alone, instead of connecting to HOST; may be given several "
+           "times: they are shown together")
+        ->type_name("SCENE")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     CLI::Option const* const sized =
         app.add_option("--size", size, "Size of the window in pixels; without it as it was last time")
             ->type_name("WIDTHxHEIGHT")
@@ -58,9 +78,10 @@ int main(int argc, char** argv) {
         ->check(readable_by(parse_painter))
         ->capture_default_str();
     add_display_options(app, display);
-    // framelet gives this to the viewer that it starts: a descriptor for SceneOpener.
-    app.add_option("--server-needed", server_needed)->group("")->configurable(false);
-    app.add_option("--server-option", server_options) // for the servers of scenes that are dropped
+    // framelet becomes the viewer with these: without the scene there is nothing to look at, and the options of its
+    // server.
+    app.add_flag("--needs-scene", needs_scene)->group("")->configurable(false);
+    app.add_option("--server-option", server_options)
         ->group("")
         ->configurable(false)
         ->expected(1)
@@ -92,29 +113,36 @@ int main(int argc, char** argv) {
             viewport = memory.size.value_or(viewport);
         }
         Window window("framelet-viewer", viewport);
-        SceneOpener opener(Viewer::connect, Window::wake, server_needed, server_options);
+        SceneOpener opener(connect_for_window, Window::wake, server_options);
+        Start start{{}, needs_scene, memory.servers};
         Connection first;
-        if (!options.reconnect) {
-            first = {Viewer::connect(options), options};
+        if (!scenes.empty()) {
+            opener.open_first(scenes, options);
+        } else if (!server->empty()) {
+            start.address = arguments.server;
+            if (!options.reconnect) {
+                first = {connect_for_window(options), options};
+            }
         }
         window.show();
         if (fullscreen || (memory.fullscreen && sized->empty())) {
             window.toggle_fullscreen();
         }
         if (!first.core) {
-            first = wait_for_server(window, arguments.server, options_for, memory.servers, opener);
+            first = run_start_panel(window, start, options_for, opener);
         }
         if (!first.core) {
-            return 1;
+            remember(window, memory);
+            return needs_scene && !is_told_to_end() ? opener.exit_code() : 0;
         }
         CanvasChoice choice = choose_canvas(parse_painter(painter));
         if (!choice.complaint.empty()) {
             std::cerr << "framelet-viewer: " << choice.complaint << std::endl;
         }
-        int const result = Viewer(window, std::move(first), opener, display.settings(), display.lag_seconds(), memory,
-                                  std::move(choice))
+        int const result = Viewer(window, std::move(first), options_for, opener, display.settings(),
+                                  display.lag_seconds(), memory, std::move(choice))
                                .run();
-        write_viewer_memory(memory);
+        remember(window, memory);
         return result;
     } catch (std::exception const& error) {
         std::cerr << "framelet-viewer: " << failure_text(error) << "\n";

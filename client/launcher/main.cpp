@@ -3,7 +3,7 @@
 #include <iostream>
 
 #include "client/launcher/options.h"
-#include "client/launcher/view.h"
+#include "client/processes/child.h"
 #include "common/command_line/program_failure.h"
 
 int main(int argc, char** argv) {
@@ -11,8 +11,8 @@ int main(int argc, char** argv) {
     if (int const* const exit_code = std::get_if<int>(&parsed)) {
         return *exit_code;
     }
-    try {
-        return framelet::view(std::get<framelet::ViewOptions>(parsed));
+    try { // the viewer starts the server, and shows how far that has loaded the scene
+        framelet::become(framelet::find_program("framelet-viewer"), std::get<framelet::ViewerArguments>(parsed));
     } catch (std::exception const& error) {
         std::cerr << "framelet: " << framelet::failure_text(error) << '\n';
         return 1;

@@ -18,47 +18,33 @@ ProgramNotes notes() {
     return {
         "What follows a -- is for framelet-server, as in framelet view scene.glb -- --exposure 1. All other options "
         "of both programs can be set in files: see --server-config and --viewer-config.\n\n"
-        "The server listens on a free port of this machine and lets in viewers of the same user alone. The programs "
-        "are looked for where framelet is, then in PATH. They end with the window, with SIGINT (Ctrl-C), SIGTERM or "
-        "SIGHUP, and with framelet, however that ends.",
+        "The window shows how far the scene is loaded. The server listens on a free port of this machine and lets in "
+        "viewers of the same user alone. framelet becomes framelet-viewer; the programs are looked for where framelet "
+        "is, then in PATH. They end with the window, and with SIGINT (Ctrl-C), SIGTERM or SIGHUP.",
         {{0, "fine: the window was closed, or a signal ended it"},
-         {1, "no display, a program is missing, the scene or another file cannot be used, or server or viewer failed"},
+         {1, "no display, a program is missing, the scene or another file cannot be used, or the server was gone when "
+             "the window was closed"},
          {2, "bad usage"}},
         {"framelet-server", "framelet-viewer", "framelet-client"}};
 }
 
-/// Passes the options of a group on to another program as they were written. `--server-config` and the like stand for
-/// that program's `--config`.
-void pass_on(CLI::App const& app, std::string const& group, std::vector<std::string>& to) {
+constexpr char const* for_server = "--server-option=";
+
+/// Passes the options of a group on to another program as they were written, each behind `prefix`. `--server-config`
+/// and the like stand for that program's `--config`.
+void pass_on(CLI::App const& app, std::string const& group, std::string const& prefix, ViewerArguments& to) {
     for (CLI::Option const* const option : options_of_group(app, group)) {
         std::string const name = option->get_name().ends_with("-config") ? "--config" : option->get_name();
         for (std::string const& value : option->results()) {
-            to.push_back(option->get_items_expected_min() == 0 ? name : name + "=" + value);
+            to.push_back(prefix + (option->get_items_expected_min() == 0 ? name : name + "=" + value));
         }
     }
-}
-
-/// The options of a server without those for its scene alone, as a name of one of its clips, those that cannot be had
-/// twice, as a port or a file that is written, and what its log looks like, which the window reads.
-std::vector<std::string> kept_for_other_scenes(std::vector<std::string> const& options) {
-    std::vector<std::string> out;
-    for (std::size_t i = 0; i < options.size(); ++i) {
-        std::string const name = options[i].substr(0, options[i].find('='));
-        bool const has_value = name == "--clip" || name == "--port" || name == "--log" ||
-                               name.starts_with("--metrics") || name.starts_with("--record");
-        if (!has_value && name != "--allow-outside") {
-            out.push_back(options[i]);
-        } else if (has_value && options[i] == name) {
-            ++i; // its value
-        }
-    }
-    return out;
 }
 
 } // namespace
 
-std::variant<ViewOptions, int> parse_options(int argc, char const* const* argv) {
-    ViewOptions out;
+std::variant<ViewerArguments, int> parse_options(int argc, char const* const* argv) {
+    std::vector<std::string> scenes;
     char const* const* const end = argv + argc;
     char const* const* const separator = std::find(argv, end, std::string("--"));
 
@@ -72,7 +58,7 @@ std::variant<ViewOptions, int> parse_options(int argc, char const* const* argv) 
     auto const option = [&](char const* name, std::string const& text) { return view->add_option(name, text); };
     auto const flag = [&](char const* name, std::string const& text) { view->add_flag(name, text); };
     view->option_defaults()->group(scene_group);
-    view->add_option("SCENE", out.scenes,
+    view->add_option("SCENE", scenes,
                      "Scene file: .gltf, .glb, .obj and what else framelet-server reads; several are shown together")
         ->required();
     option("--environment", "Environment map (.hdr, .exr) that lights the scene")->type_name("FILE");
@@ -97,10 +83,13 @@ std::variant<ViewOptions, int> parse_options(int argc, char const* const* argv) 
     } catch (CLI::ParseError const& error) {
         return exit_usage(app, error);
     }
-    pass_on(*view, scene_group, out.server);
-    std::copy(separator == end ? end : separator + 1, end, std::back_inserter(out.server));
-    out.other_scenes = kept_for_other_scenes(out.server);
-    pass_on(*view, window_group, out.viewer);
+    ViewerArguments out;
+    pass_on(*view, window_group, "", out);
+    std::ranges::transform(scenes, std::back_inserter(out), [](std::string const& scene) { return "--open=" + scene; });
+    out.emplace_back("--needs-scene");
+    pass_on(*view, scene_group, for_server, out);
+    std::transform(separator == end ? end : separator + 1, end, std::back_inserter(out),
+                   [](char const* word) { return for_server + std::string(word); });
     return out;
 }
 

@@ -1,5 +1,6 @@
 #include "client/processes/child.h"
 
+#include <cerrno>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
@@ -21,6 +22,16 @@ bool is_program(std::filesystem::path const& file) {
     return std::filesystem::is_regular_file(file, ignored) && ::access(file.c_str(), X_OK) == 0;
 }
 
+/// What `execv` takes: pointers into the strings, which have to stay.
+std::vector<char*> argv_of(std::filesystem::path const& program, std::vector<std::string> const& arguments) {
+    std::vector<char*> out{const_cast<char*>(program.c_str())};
+    for (std::string const& argument : arguments) {
+        out.push_back(const_cast<char*>(argument.c_str()));
+    }
+    out.push_back(nullptr);
+    return out;
+}
+
 } // namespace
 
 std::filesystem::path find_program(std::string const& name) {
@@ -40,12 +51,13 @@ std::filesystem::path find_program(std::string const& name) {
     throw InputError("cannot find " + name + ", neither beside this program nor in PATH: install it");
 }
 
+void become(std::filesystem::path const& program, std::vector<std::string> const& arguments) {
+    ::execv(program.c_str(), argv_of(program, arguments).data());
+    throw std::system_error(errno, std::generic_category(), "cannot start " + program.string());
+}
+
 Child::Child(std::filesystem::path const& program, std::vector<std::string> const& arguments, ChildFiles const& files) {
-    std::vector<char*> argv{const_cast<char*>(program.c_str())};
-    for (std::string const& argument : arguments) {
-        argv.push_back(const_cast<char*>(argument.c_str()));
-    }
-    argv.push_back(nullptr);
+    std::vector<char*> const argv = argv_of(program, arguments);
     pid_t const parent = ::getpid();
     pid_ = ::fork(); // posix_spawn cannot ask for the signal of the parent's death
     if (pid_ < 0) {

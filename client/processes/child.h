@@ -14,6 +14,9 @@ namespace framelet {
 /// The path of a program: beside this one, else in PATH. Throws InputError where it is in neither.
 std::filesystem::path find_program(std::string const& name);
 
+/// Makes this process that of another program. Throws std::system_error where that fails.
+[[noreturn]] void become(std::filesystem::path const& program, std::vector<std::string> const& arguments);
+
 /// Descriptors that a child gets for its own; nothing: where this program's goes.
 struct ChildFiles {
     std::optional<int> output, errors;

@@ -35,24 +35,21 @@ std::optional<LoadProgress> load_progress_of(std::string const& line) {
 
 } // namespace
 
-PrivateServer::PrivateServer(std::vector<std::string> scenes, std::vector<std::string> const& options,
-                             ServerErrors errors, std::function<void()> on_news)
-    : scenes_(std::move(scenes)), errors_(errors), on_news_(std::move(on_news)) {
+PrivateServer::PrivateServer(std::vector<std::string> const& scenes, std::vector<std::string> const& options,
+                             std::function<void()> on_news)
+    : on_news_(std::move(on_news)) {
     std::filesystem::path const file = find_program(program);
     std::vector<std::string> arguments{"--port", "0"};
     arguments.insert(arguments.end(), options.begin(), options.end());
-    if (errors_ == ServerErrors::kept) {
-        arguments.insert(arguments.end(), {"--progress-lines", "--log=text"}); // what is read here
-    }
+    arguments.insert(arguments.end(), {"--progress-lines", "--log=text"}); // what is read here
     arguments.emplace_back("--"); // behind it, what looks like an option is none
-    arguments.insert(arguments.end(), scenes_.begin(), scenes_.end());
+    arguments.insert(arguments.end(), scenes.begin(), scenes.end());
     std::array<int, 2> pipe{};
     if (::pipe2(pipe.data(), O_CLOEXEC) != 0) {
         throw std::system_error(errno, std::generic_category(), "cannot make a pipe");
     }
-    bool const keeps = errors_ == ServerErrors::kept;
     try {
-        process_.emplace(file, arguments, ChildFiles{pipe[1], keeps ? std::optional(pipe[1]) : std::nullopt, keeps});
+        process_.emplace(file, arguments, ChildFiles{.output = pipe[1], .errors = pipe[1], .is_alone = true});
     } catch (...) {
         ::close(pipe[0]);
         ::close(pipe[1]);
@@ -116,29 +113,26 @@ void PrivateServer::read(int descriptor) {
 }
 
 void PrivateServer::take(std::string const& line) {
-    if (errors_ == ServerErrors::kept) {
-        if (std::optional<LoadProgress> now = load_progress_of(line)) {
-            {
-                std::lock_guard const lock(mutex_);
-                progress_ = std::move(now);
-            }
-            on_news_();
-            return;
-        }
-    }
-    (errors_ == ServerErrors::kept ? std::cerr : std::cout) << line + '\n' << std::flush;
     constexpr std::string_view listening = "listening on ", complaining = "framelet-server: ";
-    bool is_first = false;
+    std::optional<LoadProgress> progress = load_progress_of(line);
+    bool const is_progress = progress.has_value();
+    bool is_news = is_progress;
     {
         std::lock_guard const lock(mutex_);
-        if (line.starts_with(listening) && !address_) {
-            address_ = line.substr(listening.size());
-            is_first = true;
+        if (is_progress) {
+            progress_ = std::move(progress);
         } else if (line.starts_with(complaining)) {
-            complaint_ = line.substr(complaining.size());
+            complaint_ = line.substr(complaining.size()); // for whoever asks why it has ended
+            return;
+        } else if (line.starts_with(listening) && !address_) {
+            address_ = line.substr(listening.size());
+            is_news = true;
         }
     }
-    if (is_first) {
+    if (!is_progress) {
+        std::cerr << line + '\n' << std::flush;
+    }
+    if (is_news) {
         on_news_();
     }
 }

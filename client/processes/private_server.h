@@ -1,5 +1,5 @@
-// A server for one user: framelet-server on a free port of this machine. In: the files of a scene. Out: where
-// it listens, or the line that says why it does not.
+// A server for one user: framelet-server on a free port of this machine. In: the files of a scene. Out: where it
+// listens, or the line that says why it does not. What else it prints goes to this program's standard error.
 #pragma once
 
 #include <filesystem>
@@ -14,12 +14,6 @@
 
 namespace framelet {
 
-/// The place where the server's complaints go.
-enum class ServerErrors {
-    shown, ///< to this program's standard error; its progress too, where that is a terminal
-    kept, ///< there as well, line by line, and the last of them is kept; so is the progress of loading
-};
-
 /// Progress of loading, as framelet-server tells it.
 struct LoadProgress {
     std::string stage;
@@ -32,20 +26,19 @@ public:
     /// Starts loading. `options` are for framelet-server. `on_news` is called from another thread when it listens,
     /// when loading has got on, and when it prints no more. Throws InputError where the program is missing,
     /// std::system_error.
-    PrivateServer(std::vector<std::string> scenes, std::vector<std::string> const& options, ServerErrors errors,
+    PrivateServer(std::vector<std::string> const& scenes, std::vector<std::string> const& options,
                   std::function<void()> on_news);
     /// Ends the server, and waits until it has ended.
     ~PrivateServer();
     PrivateServer(PrivateServer const&) = delete;
     PrivateServer& operator=(PrivateServer const&) = delete;
 
-    std::vector<std::string> const& scenes() const { return scenes_; }
     Child& process() { return *process_; }
-    /// The progress of loading; nothing before the server tells it, and of one whose errors are shown.
+    /// The progress of loading; nothing before the server tells it.
     std::optional<LoadProgress> progress() const;
     /// The server's address, HOST:PORT, once it listens.
     std::optional<std::string> address() const;
-    /// The reason why a server that has ended did so, one line; of one whose errors are shown, how it ended.
+    /// The reason why a server that has ended did so, one line, which nobody has printed.
     std::string end_reason();
 
 private:
@@ -53,8 +46,6 @@ private:
     void read(int descriptor);
     void take(std::string const& line);
 
-    std::vector<std::string> const scenes_;
-    ServerErrors const errors_;
     std::function<void()> const on_news_;
 
     mutable std::mutex mutex_; // guards what follows

@@ -1,11 +1,19 @@
 // A session, and what it took to open it.
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <string>
 
 #include "client/core/client_core.h"
 
 namespace framelet {
+
+/// The server that is proposed where none is known; its port is `default_port`.
+inline constexpr char const* usual_server = "localhost:7070";
+
+/// Makes what it takes to connect to HOST[:PORT]. Throws InputError.
+using OptionsFor = std::function<ConnectionOptions(std::string const& address)>;
 
 struct Connection {
     std::unique_ptr<ClientCore> core; ///< null: the user has quit before there was one

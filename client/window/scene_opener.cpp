@@ -5,28 +5,60 @@
 #include <filesystem>
 #include <utility>
 
-#include <unistd.h>
-
 #include "client/window/overlay/overlay_text.h"
 #include "common/error.h"
 
 namespace framelet {
+namespace {
 
-SceneOpener::SceneOpener(Connect connect, std::function<void()> wake, std::optional<int> server_needed,
-                         std::vector<std::string> server_options)
-    : connect_(std::move(connect)), wake_(std::move(wake)), server_needed_(server_needed),
-      server_options_(std::move(server_options)) {}
+/// The options of a server without those for its scene alone, as a name of one of its clips, and those that cannot be
+/// had twice, as a port or a file that is written, and what its log looks like, which the window reads.
+std::vector<std::string> kept_for_other_scenes(std::vector<std::string> const& options) {
+    std::vector<std::string> out;
+    for (std::size_t i = 0; i < options.size(); ++i) {
+        std::string const name = options[i].substr(0, options[i].find('='));
+        bool const has_value = name == "--clip" || name == "--port" || name == "--log" ||
+                               name.starts_with("--metrics") || name.starts_with("--record");
+        if (!has_value && name != "--allow-outside") {
+            out.push_back(options[i]);
+        } else if (has_value && options[i] == name) {
+            ++i; // its value
+        }
+    }
+    return out;
+}
+
+} // namespace
+
+SceneOpener::SceneOpener(Connect connect, std::function<void()> wake, std::vector<std::string> server_options)
+    : connect_(std::move(connect)), wake_(std::move(wake)), server_options_(std::move(server_options)) {}
+
+void SceneOpener::open_first(std::vector<std::string> const& files, ConnectionOptions connection) {
+    begin({files, server_options_, std::move(connection)});
+}
 
 void SceneOpener::open(std::vector<std::string> const& files) {
-    if (files.empty()) {
-        return;
+    if (!files.empty()) {
+        begin({files, kept_for_other_scenes(server_options_), {}});
     }
+}
+
+void SceneOpener::reopen() {
+    if (!opening_) { // else it goes on
+        begin(open_ ? open_scene_ : asked_);
+    }
+}
+
+void SceneOpener::begin(Scene scene) {
+    asked_ = std::move(scene);
+    exit_code_ = 0;
     opening_.reset();
     connecting_ = {};
     try {
-        opening_ = std::make_unique<PrivateServer>(files, server_options_, ServerErrors::kept, wake_);
+        opening_ = std::make_unique<PrivateServer>(asked_.files, asked_.server_options, wake_);
     } catch (std::exception const& error) {
         complaint_ = error.what();
+        exit_code_ = 1;
     }
 }
 
@@ -38,13 +70,12 @@ std::optional<Connection> SceneOpener::poll() {
         std::optional<Connection> out = session();
         if (out) {
             open_ = std::exchange(opening_, nullptr);
-            if (std::optional<int> const needed = std::exchange(server_needed_, std::nullopt)) {
-                ::close(*needed);
-            }
+            open_scene_ = asked_;
         }
         return out;
     } catch (std::exception const& error) {
         complaint_ = error.what();
+        exit_code_ = opening_->process().running() ? 1 : opening_->process().exit_code();
         opening_.reset();
         return {};
     }
@@ -57,7 +88,7 @@ std::optional<Connection> SceneOpener::session() {
         return is_ready ? std::optional(connecting_.get()) : std::nullopt;
     }
     if (std::optional<std::string> const address = opening_->address()) {
-        ConnectionOptions options;
+        ConnectionOptions options = asked_.connection;
         options.server = parse_server_address(*address);
         options.reconnect = true; // this machine may sleep for a while
         connecting_ = std::async(std::launch::async, [options, connect = connect_, wake = wake_] {
@@ -75,8 +106,8 @@ std::string SceneOpener::opening() const {
     if (!opening_) {
         return "";
     }
-    std::size_t const others = opening_->scenes().size() - 1;
-    return std::filesystem::path(opening_->scenes().front()).filename().string() +
+    std::size_t const others = asked_.files.size() - 1;
+    return std::filesystem::path(asked_.files.front()).filename().string() +
            (others > 0 ? " and " + std::to_string(others) + " more" : "");
 }
 
@@ -90,10 +121,6 @@ void SceneOpener::show(OverlayContent& content) const {
 
 std::string SceneOpener::end_reason() {
     return open_ && !open_->process().running() ? open_->end_reason() : "";
-}
-
-void SceneOpener::reopen() {
-    open(std::vector<std::string>(open_->scenes()));
 }
 
 } // namespace framelet

@@ -1,6 +1,6 @@
-// Opens scene files that the user drops on the window: with a private server for the newest, as `framelet view` starts
-// one. In: names of files. Out: a session where that came to be, else a line that says why not, and what was served
-// before goes on being served.
+// Opens scene files, the one of the command line and those that the user drops on the window: with a private server for
+// the newest. In: names of files. Out: a session where that came to be, else a line that says why not, and what was
+// served before goes on being served.
 #pragma once
 
 #include <functional>
@@ -22,14 +22,14 @@ public:
     using Connect = std::function<std::unique_ptr<ClientCore>(ConnectionOptions const&)>;
 
     /// `connect` (blocks) and `wake` are called from other threads; `wake` whenever `poll` may have something to say.
-    /// `server_needed`: a descriptor that is closed once another scene is open, which tells who started this program
-    /// that the server it was started for is not needed any more. `server_options`: options of framelet-server for
-    /// every one that is started.
-    SceneOpener(Connect connect, std::function<void()> wake, std::optional<int> server_needed = {},
-                std::vector<std::string> server_options = {});
+    /// `server_options`: options of framelet-server for the scene of the command line; other scenes are served with
+    /// those that count for any.
+    SceneOpener(Connect connect, std::function<void()> wake, std::vector<std::string> server_options = {});
     SceneOpener(SceneOpener const&) = delete;
     SceneOpener& operator=(SceneOpener const&) = delete;
 
+    /// Begins to open the scene of the command line. `connection`: what that says beside the server's address.
+    void open_first(std::vector<std::string> const& files, ConnectionOptions connection);
     /// Begins to open the files that were dropped on the window, as one scene. One that is still being opened is given
     /// up.
     void open(std::vector<std::string> const& files);
@@ -37,6 +37,9 @@ public:
     std::optional<Connection> poll();
     /// The reason why nothing was opened, told once; empty where there is none.
     std::string take_complaint() { return std::exchange(complaint_, {}); }
+    /// The exit code of a program whose only purpose was to open what was asked for last: that of the server which
+    /// could not, else 0.
+    int exit_code() const { return exit_code_; }
     /// The file that is being opened, without its folder, and how many more; empty while none is.
     std::string opening() const;
     /// Shows that file, and how far it has been loaded, as sign and bar; nothing while none is opened.
@@ -45,18 +48,29 @@ public:
     bool has_open() const { return open_ != nullptr; }
     /// The reason why the server of the open scene has ended by itself; empty: it runs, or is not ours.
     std::string end_reason();
-    /// Opens the scene again whose server has ended.
+    bool can_reopen() const { return open_ || !asked_.files.empty(); }
+    /// Opens the scene again whose server has ended, or that could not be opened; goes on where one is being opened.
     void reopen();
+    /// Ends the server of the open scene, which is not looked at any more.
+    void close() { open_.reset(); }
 
 private:
+    struct Scene {
+        std::vector<std::string> files; ///< shown together
+        std::vector<std::string> server_options;
+        ConnectionOptions connection;
+    };
+    void begin(Scene scene);
     std::optional<Connection> session();
 
     Connect const connect_;
     std::function<void()> const wake_;
-    std::optional<int> server_needed_;
     std::vector<std::string> const server_options_;
     std::string complaint_;
+    int exit_code_ = 0;
+    Scene open_scene_;
     std::unique_ptr<PrivateServer> open_;
+    Scene asked_; ///< the one that is being opened, or was tried last
     std::future<Connection> connecting_; ///< session with the server that follows, whose end ends the attempt
     std::unique_ptr<PrivateServer> opening_;
 };

@@ -5,8 +5,10 @@
 #include <utility>
 
 #include "client/core/picture/display_timing.h"
+#include "client/processes/end_signals.h"
 #include "client/window/overlay/help_text.h"
 #include "client/window/overlay/key_table.h"
+#include "common/error.h"
 
 namespace framelet {
 
@@ -17,23 +19,23 @@ constexpr double idle_seconds = 0.25;
 
 } // namespace
 
-Viewer::Viewer(Window& window, Connection connection, SceneOpener& opener, ViewerSettings const& settings,
-               double lag_seconds, ViewerMemory& memory, CanvasChoice painter)
-    : window_(window), connection_(std::move(connection.options)), opener_(opener), memory_(memory),
-      overlay_(window.handle(), window.content_scale()), settings_(settings), lag_seconds_(lag_seconds),
+Viewer::Viewer(Window& window, Connection connection, OptionsFor options_for, SceneOpener& opener,
+               ViewerSettings const& settings, double lag_seconds, ViewerMemory& memory, CanvasChoice painter)
+    : window_(window), connection_(std::move(connection.options)), options_for_(std::move(options_for)),
+      opener_(opener), memory_(memory), overlay_(window.handle()), settings_(settings), lag_seconds_(lag_seconds),
       chosen_lag_seconds_(lag_seconds > 0 ? lag_seconds : usual_lag_seconds), painter_(std::move(painter)),
       steady_size_(window.framebuffer_size()) {
     adopt(std::move(connection.core));
     if (note_.empty()) {
         say(core_->notice().empty() ? "F1: help" : core_->notice());
     }
+    note_server();
+}
+
+void Viewer::note_server() {
     if (!opener_.has_open()) { // a private server will not be there next time
         memory_.note_server(connection_.server.text());
     }
-}
-
-std::unique_ptr<ClientCore> Viewer::connect(ConnectionOptions const& connection) {
-    return std::make_unique<ClientCore>(connection, [] { Window::wake(); });
 }
 
 double Viewer::seconds_now() const {
@@ -94,7 +96,7 @@ int Viewer::run() {
     bool redraw = true;
     int overlay_frames = 0; ///< frames to be drawn for the overlay's sake
     OverlayContent shown;
-    while (!quit_) {
+    while (!quit_ && !is_told_to_end()) {
         bool const hidden = window_.is_hidden();
         if (hidden != settings_.paused) {
             settings_.paused = hidden;
@@ -127,7 +129,7 @@ int Viewer::run() {
         pending = redraw;
         if (redraw) {
             window_.draw_picture();
-            OverlayActions const asked = overlay_.draw(content);
+            OverlayActions const asked = overlay_.draw(content, window_.content_scale());
             window_.set_overlay_areas(overlay_.mouse_areas());
             window_.set_typing(overlay_.is_typed_into());
             apply(asked);
@@ -146,13 +148,7 @@ int Viewer::run() {
         recorder_->wait();
         watch_recording();
     }
-    remember();
-    return lost_.empty() ? 0 : 1;
-}
-
-void Viewer::remember() {
-    memory_.size = window_.windowed_size();
-    memory_.fullscreen = window_.is_fullscreen();
+    return lost_.empty() || is_told_to_end() ? 0 : 1;
 }
 
 /// Makes the picture on the graphics card, unless something is to be drawn over it in memory. Once that has failed the
@@ -228,14 +224,24 @@ void Viewer::say(std::string note, double seconds) {
     note_until_ = seconds_now() + seconds;
 }
 
+/// Begins to connect to a server that the user has named.
+void Viewer::try_server(std::string const& address) {
+    try {
+        attempts_.emplace(options_for_(address));
+    } catch (InputError const& error) {
+        say(error.what(), long_note_seconds);
+    }
+}
+
 void Viewer::watch_connection() {
-    if (reconnecting_.valid() && reconnecting_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
-        try {
-            adopt(reconnecting_.get());
-        } catch (std::exception const& error) {
-            lost_ = error.what();
-            std::cerr << "framelet-viewer: " << lost_ << std::endl;
+    if (std::unique_ptr<ClientCore> core = attempts_ ? attempts_->poll() : nullptr) {
+        if (attempts_->options().server != connection_.server) {
+            opener_.close();
         }
+        connection_ = attempts_->options();
+        attempts_.reset();
+        adopt(std::move(core));
+        note_server();
     }
     if (lost_.empty()) {
         lost_ = opener_.end_reason();
@@ -263,14 +269,13 @@ void Viewer::watch_connection() {
 
 /// Shows a scene that has been opened; where it cannot be opened, what is shown stays.
 void Viewer::watch_opener() {
-    if (reconnecting_.valid()) { // whose session would take the place of the new one
-        return;
-    }
     if (std::optional<Connection> opened = opener_.poll()) {
+        attempts_.reset();
         connection_ = opened->options;
         adopt(std::move(opened->core));
     }
     if (std::string const complaint = opener_.take_complaint(); !complaint.empty()) {
+        std::cerr << "framelet-viewer: " << complaint << std::endl;
         say(complaint, long_note_seconds);
     }
 }
@@ -338,10 +343,9 @@ OverlayContent Viewer::overlay_content() {
         out.sign +=
             (out.sign.empty() ? "" : "\n") + with_keys(progress_text(recorder_->progress()), Command::toggle_recording);
     }
-    if (reconnecting_.valid()) {
-        out.message = "connecting to " + connection_.server.text() + " ...";
-    } else if (!lost_.empty()) {
-        out.message = lost_ + "\n\nR or Enter: connect again     Esc: quit";
+    if (!lost_.empty()) {
+        out.message = attempts_ ? attempts_->message() : lost_ + "\n\nR or Enter: connect again     Esc: quit";
+        out.address = {opener_.has_open() ? usual_server : connection_.server.text(), memory_.servers};
     } else if (picture_.rgba.empty()) {
         out.message = "waiting for the first picture ...";
     }

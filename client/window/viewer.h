@@ -3,7 +3,6 @@
 
 #include <chrono>
 #include <functional>
-#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +12,7 @@
 #include "client/core/picture/making_time.h"
 #include "client/gpu/canvas_choice.h"
 #include "client/video/recorder.h"
+#include "client/window/attempts.h"
 #include "client/window/connection.h"
 #include "client/window/kept/bookmarks.h"
 #include "client/window/kept/viewer_memory.h"
@@ -26,17 +26,15 @@ namespace framelet {
 
 class Viewer {
 public:
-    /// `connection` wakes the window on news. `lag_seconds` as in `ClientCore::set_smoothing`. Scenes that are dropped
-    /// are opened by `opener`, what is to be remembered goes into `memory`; both must outlive this. `painter` is of the
-    /// window's context.
-    Viewer(Window& window, Connection connection, SceneOpener& opener, ViewerSettings const& settings,
-           double lag_seconds, ViewerMemory& memory, CanvasChoice painter);
+    /// `connection` wakes the window on news; `options_for` is for servers that the user names. `lag_seconds` as in
+    /// `ClientCore::set_smoothing`. Scenes that are dropped are opened by `opener`, what is to be remembered goes into
+    /// `memory`; both must outlive this. `painter` is of the window's context.
+    Viewer(Window& window, Connection connection, OptionsFor options_for, SceneOpener& opener,
+           ViewerSettings const& settings, double lag_seconds, ViewerMemory& memory, CanvasChoice painter);
 
-    /// Runs until the user quits. Returns the program's exit code: 1 where the server was gone.
+    /// Runs until the user quits, or a signal tells the program to end. Returns the exit code: 1 where the user quit
+    /// and the server was gone.
     int run();
-
-    /// Connects so that news wake the window.
-    static std::unique_ptr<ClientCore> connect(ConnectionOptions const& connection);
 
 private:
     using Clock = std::chrono::steady_clock;
@@ -44,6 +42,8 @@ private:
     static constexpr double long_note_seconds = 6; ///< for notes that are to be read
 
     void adopt(std::unique_ptr<ClientCore> core);
+    void note_server();
+    void try_server(std::string const& address);
     void look_at_scene();
     bool apply(WindowInput const& input, double seconds);
     void apply(OverlayActions const& asked);
@@ -77,11 +77,11 @@ private:
     void take_figures();
     CameraMenu camera_menu(Welcome const& welcome) const;
     OverlayContent overlay_content();
-    void remember();
     double seconds_now() const;
 
     Window& window_;
     ConnectionOptions connection_;
+    OptionsFor const options_for_;
     SceneOpener& opener_;
     ViewerMemory& memory_;
     Overlay overlay_;
@@ -101,7 +101,7 @@ private:
     double lag_seconds_; ///< 0: the scene is not smoothed
     double const chosen_lag_seconds_; ///< the lag when it is smoothed
     std::string lost_; ///< why there is no session; empty while there is one
-    std::future<std::unique_ptr<ClientCore>> reconnecting_;
+    std::optional<Attempts> attempts_; ///< at another, which the user has asked for
 
     CanvasChoice painter_;
     Picture picture_; ///< where it is not on the canvas; else it has its size alone

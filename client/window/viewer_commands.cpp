@@ -103,6 +103,9 @@ void Viewer::apply(OverlayActions const& asked) {
     if (asked.removed_bookmark) {
         remove_bookmark(*asked.removed_bookmark);
     }
+    if (asked.address) {
+        try_server(*asked.address);
+    }
 }
 
 void Viewer::apply(Command command) {
@@ -124,16 +127,12 @@ void Viewer::apply(Command command) {
         break;
     case Command::reset:
     case Command::reconnect:
-        if (!opener_.end_reason().empty()) {
+        if (attempts_) {
+            attempts_->hurry();
+        } else if (!opener_.end_reason().empty()) {
             opener_.reopen();
         } else if (!lost_.empty()) {
-            if (!reconnecting_.valid()) {
-                reconnecting_ = std::async(std::launch::async, [options = connection_] {
-                    auto core = connect(options);
-                    Window::wake();
-                    return core;
-                });
-            }
+            attempts_.emplace(connection_);
         } else if (command == Command::reset) {
             scene_camera_ = start_scene_camera(core_->welcome());
             is_at_bookmark_ = false;

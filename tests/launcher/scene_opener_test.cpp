@@ -1,13 +1,11 @@
-// Tests of what the window does with files that are dropped on it, with the real server.
+// Tests of what the window does with scene files, with the real server.
 #include "client/window/scene_opener.h"
 
 #include <algorithm>
-#include <array>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
 
-#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -114,18 +112,33 @@ TEST(SceneOpener, SaysThatItsServerHasGoneAndStartsAnother) {
     EXPECT_EQ(opener.end_reason(), "");
 }
 
-TEST(SceneOpener, TellsWhenTheServerOfBeforeIsNotNeeded) {
-    std::array<int, 2> needed{};
-    ASSERT_EQ(::pipe2(needed.data(), O_NONBLOCK), 0);
-    SceneOpener opener(
-        connect, [] {}, needed[1]);
-    char byte = 0;
-    EXPECT_FALSE(opened(opener, "absent.glb"));
-    EXPECT_EQ(::read(needed[0], &byte, 1), -1); // it is still needed
-    std::optional<Connection> const open = opened(opener, windmill); // whose server has not been handed the pipe
+TEST(SceneOpener, WhatCouldNotBeOpenedIsTriedAgainAndHasTheExitCodeOfItsServer) {
+    TemporaryFolder const folder;
+    SceneOpener opener(connect, [] {});
+    EXPECT_FALSE(opener.can_reopen());
+    std::string const file = folder.write("scene.glb", "nonsense");
+    EXPECT_FALSE(opened(opener, file));
+    EXPECT_EQ(opener.exit_code(), 1);
+    ASSERT_TRUE(opener.can_reopen());
+    std::filesystem::copy_file(windmill, file, std::filesystem::copy_options::overwrite_existing);
+    opener.reopen();
+    std::optional<Connection> open;
+    EXPECT_TRUE(eventually([&] { return (open = opener.poll()) || opener.opening().empty(); }));
+    EXPECT_TRUE(open) << opener.take_complaint();
+    EXPECT_EQ(opener.exit_code(), 0);
+    SceneOpener misused(connect, [] {}, {"--threads=x"});
+    EXPECT_FALSE(opened(misused, windmill));
+    EXPECT_EQ(misused.exit_code(), 2);
+}
+
+TEST(SceneOpener, EndsTheServerThatIsNotLookedAtAnyMore) {
+    SceneOpener opener(connect, [] {});
+    std::optional<Connection> const open = opened(opener, windmill);
     ASSERT_TRUE(open) << opener.take_complaint();
-    EXPECT_EQ(::read(needed[0], &byte, 1), 0);
-    ::close(needed[0]);
+    opener.close();
+    EXPECT_FALSE(opener.has_open());
+    EXPECT_THROW(connect(open->options), ConnectionError);
+    EXPECT_EQ(opener.end_reason(), "");
 }
 
 TEST(SceneOpener, ShowsHowFarTheFileIsLoaded) {
@@ -144,14 +157,27 @@ TEST(SceneOpener, ShowsHowFarTheFileIsLoaded) {
     EXPECT_TRUE(has_stage);
 }
 
-TEST(SceneOpener, EveryServerHasTheOptions) {
-    SceneOpener opener(connect, [] {}, {}, {"--paused"});
-    std::optional<Connection> const first = opened(opener, windmill);
-    ASSERT_TRUE(first) << opener.take_complaint();
-    EXPECT_FALSE(first->core->clock().playing);
-    std::optional<Connection> const second = opened(opener, chase);
-    ASSERT_TRUE(second) << opener.take_complaint();
-    EXPECT_FALSE(second->core->clock().playing);
+TEST(SceneOpener, OtherScenesHaveTheOptionsThatCountForAny) {
+    SceneOpener opener(connect, [] {},
+                       {"--paused", "--clip=none", "--record-events", "/nonexistent/events", "--metrics-bind=wrong"});
+    opener.open_first({windmill}, {});
+    EXPECT_TRUE(eventually([&] { return opener.poll() || opener.opening().empty(); }));
+    EXPECT_NE(opener.take_complaint(), "");
+    EXPECT_NE(opener.exit_code(), 0);
+    std::optional<Connection> const other = opened(opener, chase);
+    ASSERT_TRUE(other) << opener.take_complaint();
+    EXPECT_FALSE(other->core->clock().playing);
+}
+
+TEST(SceneOpener, ServesTheFirstSceneWithAllOptionsAlsoOnceMore) {
+    SceneOpener opener(connect, [] {}, {"--clip=absent"});
+    opener.open_first({windmill}, {});
+    for (int i = 0; i < 2; ++i) {
+        EXPECT_TRUE(eventually([&] { return opener.poll() || opener.opening().empty(); }));
+        std::string const complaint = opener.take_complaint();
+        EXPECT_NE(complaint.find("'absent'"), std::string::npos) << complaint;
+        opener.reopen();
+    }
 }
 
 TEST(SceneOpener, SaysThatThereIsNoServerToStart) {

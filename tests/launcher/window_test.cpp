@@ -1,70 +1,50 @@
-// Tests of the real window on a screen that nobody sees, with keys that come from the X server as a keyboard's do. What
-// they did is read from the files that the window saves into its folder.
+// Tests of the real window with a session. What the hands did is read from the files that it saves into its folder.
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
+#include <csignal>
 #include <cstring>
-#include <fstream>
-#include <iterator>
-#include <optional>
-#include <vector>
 
-#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "tests/loopback/process.h"
+#include "client/video/film_writer.h"
+#include "tests/launcher/window_fixture.h"
 
 namespace framelet::test {
 namespace {
 
 namespace fs = std::filesystem;
-using namespace std::chrono_literals;
-
 std::string const scene_file = FRAMELET_SOURCE_DIR "/scenes/windmill.glb";
-constexpr auto patience = 120s;
 constexpr int width = 320, height = 200;
 
-std::string content_of(fs::path const& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
+/// The sections of an MP4 file, in order; the table of its pictures ("moov") is written last, when the film is
+/// complete.
+std::vector<std::string> sections_of(std::string const& film) {
+    std::vector<std::string> out;
+    for (std::size_t at = 0; at + 8 <= film.size();) {
+        std::size_t length = 0;
+        for (std::size_t i = 0; i < 4; ++i) {
+            length = length << 8 | static_cast<unsigned char>(film[at + i]);
+        }
+        out.push_back(film.substr(at + 4, 4));
+        if (length < 8) { // it has no length yet
+            break;
+        }
+        at += length;
+    }
+    return out;
 }
 
-class WindowTest : public testing::Test {
+class WindowTest : public WindowFixture {
 protected:
     void SetUp() override {
-        if (!fs::exists("/usr/bin/Xvfb") || !fs::exists("/usr/bin/xdotool")) {
-            GTEST_SKIP() << "there is no Xvfb, or no xdotool";
+        WindowFixture::SetUp();
+        if (IsSkipped()) {
+            return;
         }
-        screen_.emplace("/usr/bin/Xvfb", std::vector<std::string>{"-displayfd", "1", "-screen", "0", "640x480x24"});
-        ASSERT_TRUE(
-            eventually([&] { return screen_->output().find('\n') != std::string::npos || !screen_->running(); }));
-        ::setenv("DISPLAY", (":" + screen_->output().substr(0, screen_->output().find('\n'))).c_str(), 1);
-        ::unsetenv("WAYLAND_DISPLAY");
-        ::setenv("XDG_STATE_HOME", folder_.path().c_str(), 1);
-        ::setenv("XDG_CONFIG_HOME", folder_.path().c_str(), 1);
         server_.emplace(scene_file, server_options_);
-        viewer_.emplace("/bin/sh", std::vector<std::string>{"-c", "cd \"$0\" && exec \"$@\"", folder_.path().string(),
-                                                            FRAMELET_VIEWER, server_->address(), "--size",
-                                                            std::to_string(width) + "x" + std::to_string(height),
-                                                            "--painter", painter_});
-    }
-
-    /// Presses a key. One that the window may not see yet, or that comes too early, is to be pressed again.
-    void press(std::string const& key) {
-        Process tool("/usr/bin/xdotool", {"key", key});
-        EXPECT_EQ(tool.wait(patience), 0) << tool.errors();
-        EXPECT_TRUE(viewer_->running()) << viewer_->errors();
-    }
-
-    std::vector<fs::path> saved(std::string const& ending) const {
-        std::vector<fs::path> out;
-        for (auto const& entry : fs::directory_iterator(folder_.path())) {
-            if (entry.path().filename().string().ends_with(ending)) {
-                out.push_back(entry.path());
-            }
-        }
-        return out;
+        start(FRAMELET_VIEWER, {server_->address(), "--size", std::to_string(width) + "x" + std::to_string(height),
+                                "--painter", painter_});
     }
 
     /// True where some camera that was saved looks along this axis.
@@ -106,17 +86,13 @@ protected:
         return camera;
     }
 
-    void move_mouse(int right, int down) {
-        Process tool("/usr/bin/xdotool", {"mousemove_relative", "--", std::to_string(right), std::to_string(down)});
-        EXPECT_EQ(tool.wait(patience), 0) << tool.errors();
+    static void move_mouse(int right, int down) {
+        input({"mousemove_relative", "--", std::to_string(right), std::to_string(down)});
     }
 
     std::vector<std::string> server_options_{"--paused", "--insecure"};
     std::string painter_ = "auto";
-    TemporaryFolder folder_;
-    std::optional<Process> screen_;
     std::optional<ServerProcess> server_;
-    std::optional<Process> viewer_;
 };
 
 TEST_F(WindowTest, TheKeypadLooksAlongAxes) {
@@ -199,6 +175,30 @@ TEST_F(WindowTest, KeepsBookmarksForTheSceneFile) {
     EXPECT_EQ(name.size(), std::string("windmill-0123456789abcdef.json").size()) << name;
 }
 
+TEST_F(WindowTest, ASignalFinishesTheFilmAndKeepsTheSettings) {
+    if (!can_write_film("film.mp4")) {
+        GTEST_SKIP() << "this build writes no films";
+    }
+    for (int const number : {SIGTERM, SIGINT, SIGHUP}) {
+        std::size_t const before = saved(".mp4").size();
+        EXPECT_TRUE(eventually([&] { // a key that comes before the first picture does nothing
+            press("F9");
+            std::this_thread::sleep_for(std::chrono::seconds(2));
+            return saved(".mp4").size() > before;
+        }));
+        EXPECT_FALSE(has(program_->errors(), "saved")) << "it is still being recorded: " << program_->errors();
+        program_->signal(number);
+        EXPECT_EQ(program_->wait(patience), 0) << program_->errors();
+        EXPECT_TRUE(has(program_->errors(), "framelet-viewer: saved ")) << program_->errors();
+        for (fs::path const& film : saved(".mp4")) {
+            EXPECT_EQ(sections_of(content_of(film)).back(), "moov") << film;
+        }
+        EXPECT_TRUE(has(memory(), server_->address())) << memory();
+        start(FRAMELET_VIEWER, {server_->address(), "--size", "320x200"});
+        fs::remove(folder_.path() / "framelet" / "viewer.json");
+    }
+}
+
 /// OpenGL paints what moves here, also where it is a program on the processor.
 class PaintedWindowTest : public WindowTest {
 protected:
@@ -227,7 +227,7 @@ TEST_F(PaintedWindowTest, SavesWhatTheGraphicsCardHasPainted) {
         }
         return false;
     }));
-    EXPECT_EQ(viewer_->errors().find("processor paints"), std::string::npos) << viewer_->errors();
+    EXPECT_EQ(program_->errors().find("processor paints"), std::string::npos) << program_->errors();
 }
 
 } // namespace

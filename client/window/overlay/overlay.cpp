@@ -47,10 +47,6 @@ void Overlay::lay_out(OverlayContent const& content, OverlayActions& actions) {
         draw_text("note", {0.5f, 1}, content.note, frame);
     }
     if (!content.message.empty()) {
-        if (content.address && !has_address_) {
-            address_ = content.address->proposed;
-            has_address_ = true;
-        }
         draw_message(content.message, content.address ? &*content.address : nullptr, address_, frame);
     }
     has_menu_ = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup);
@@ -63,19 +59,12 @@ void Overlay::lay_out(OverlayContent const& content, OverlayActions& actions) {
     }
 }
 
-Overlay::Overlay(GLFWwindow* window, float scale) {
+Overlay::Overlay(GLFWwindow* window) {
     IMGUI_CHECKVERSION();
     ImGui::CreateContext();
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr;
     io.ConfigFlags |= ImGuiConfigFlags_NoMouseCursorChange;
-    ImFontConfig font;
-    font.SizePixels = 13 * scale;
-    io.Fonts->AddFontDefault(&font);
-    ImGui::StyleColorsDark();
-    ImGui::GetStyle().ScaleAllSizes(scale);
-    ImGui::GetStyle().WindowRounding = 4 * scale;
-    ImGui::GetStyle().WindowBorderSize = 0;
     ImGui_ImplGlfw_InitForOpenGL(window, true); // the window goes on hearing of everything
     ImGui_ImplOpenGL3_Init("#version 330 core");
 }
@@ -86,7 +75,30 @@ Overlay::~Overlay() {
     ImGui::DestroyContext();
 }
 
-OverlayActions Overlay::draw(OverlayContent const& content) {
+void Overlay::set_scale(float scale) {
+    scale_ = scale;
+    ImFontConfig font;
+    font.SizePixels = 13 * scale;
+    ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
+    fonts.Clear();
+    fonts.AddFontDefault(&font);
+    ImGui_ImplOpenGL3_DestroyDeviceObjects(); // the next frame makes them anew, with these letters
+    ImGuiStyle& style = ImGui::GetStyle();
+    style = ImGuiStyle();
+    ImGui::StyleColorsDark();
+    style.ScaleAllSizes(scale);
+    style.WindowRounding = 4 * scale;
+    style.WindowBorderSize = 0;
+}
+
+OverlayActions Overlay::draw(OverlayContent const& content, float scale) {
+    if (scale != scale_) {
+        set_scale(scale);
+    }
+    if (content.address && !has_address_) {
+        address_ = content.address->proposed;
+    }
+    has_address_ = content.address.has_value();
     OverlayActions actions;
     mouse_areas_.clear();
     if (content != drawn_ && !content.empty()) {

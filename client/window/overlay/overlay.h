@@ -15,33 +15,37 @@ namespace framelet {
 
 class Overlay {
 public:
-    /// The window's context must be current, at destruction too. `scale`: size of the text, 1 for common displays.
-    Overlay(GLFWwindow* window, float scale);
+    /// The window's context must be current, at destruction too.
+    explicit Overlay(GLFWwindow* window);
     ~Overlay();
     Overlay(Overlay const&) = delete;
     Overlay& operator=(Overlay const&) = delete;
 
     /// Draws into the current framebuffer. The hands are looked at meanwhile: what they press and release shows, and
-    /// counts, within the next two calls.
-    OverlayActions draw(OverlayContent const& content);
+    /// counts, within the next two calls. `scale`: size of the text, 1 for common displays.
+    OverlayActions draw(OverlayContent const& content, float scale);
     /// Areas of what was drawn last in which the mouse does something, pixels of the framebuffer.
     std::span<PixelRect const> mouse_areas() const { return mouse_areas_; }
     /// True while letters go into a text, and are no commands.
     bool is_typed_into() const;
+    /// The text in the field for a server.
+    std::string const& address() const { return address_; }
     bool has_menu() const { return has_menu_; }
     /// Closes a menu that is open with the next `draw`.
     void close_menu() { closes_menu_ = true; }
 
 private:
+    void set_scale(float scale);
     void lay_out(OverlayContent const& content, OverlayActions& actions);
 
+    float scale_ = 0; ///< of the text; 0: none has been drawn
     OverlayContent drawn_;
     std::vector<PixelRect> mouse_areas_;
     bool has_menu_ = false;
     bool closes_menu_ = false;
     NameEdit edit_;
     std::string address_; ///< as typed
-    bool has_address_ = false; ///< its field has been filled in
+    bool has_address_ = false; ///< its field is shown, and has been filled in
 };
 
 } // namespace framelet

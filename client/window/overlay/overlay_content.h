@@ -50,10 +50,11 @@ struct NameEdit {
     std::string text{};
 };
 
-/// A field in which another server may be named.
+/// A field in which a server may be named.
 struct AddressField {
     std::string proposed;
     std::vector<std::string> recent;
+    bool takes_keys = false; ///< from the first, without a click into it
     bool operator==(AddressField const&) const = default;
 };
 

@@ -207,11 +207,20 @@ void draw_message(std::string const& text, AddressField const* field, std::strin
             ImGui::Separator();
             std::array<char, 300> buffer{};
             std::copy_n(typed.begin(), std::min(typed.size(), buffer.size() - 1), buffer.begin());
-            ImGui::TextUnformatted("another server:");
+            ImGui::TextUnformatted("server:");
             ImGui::SameLine();
             ImGui::SetNextItemWidth(20 * ImGui::GetFontSize());
+            if (field->takes_keys && ImGui::IsWindowAppearing()) {
+                ImGui::SetKeyboardFocusHere();
+            }
             bool const entered =
-                ImGui::InputText("##address", buffer.data(), buffer.size(), ImGuiInputTextFlags_EnterReturnsTrue);
+                ImGui::InputText("##address", buffer.data(), buffer.size(),
+                                 ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+            // Esc gives back what was there, and quits where nothing was typed.
+            if (ImGui::IsItemDeactivated() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)) &&
+                typed == buffer.data()) {
+                frame.actions.commands.push_back(Command::escape);
+            }
             typed = buffer.data();
             tooltip("HOST or HOST:PORT, where framelet-server listens");
             ImGui::SameLine();

@@ -1,0 +1,68 @@
+#include "client/window/attempts.h"
+
+#include <iostream>
+#include <thread>
+
+#include "client/window/window.h"
+#include "common/error.h"
+
+namespace framelet {
+
+std::unique_ptr<ClientCore> connect_for_window(ConnectionOptions const& options) {
+    return std::make_unique<ClientCore>(options, [] { Window::wake(); });
+}
+
+std::string Attempts::message() const {
+    std::string const server = options_.server.text();
+    if (!has_failed()) {
+        return "connecting to " + server + " ...";
+    }
+    return (is_refused_ ? "cannot connect to " + server : "waiting for " + server + " ...") + "\n\n" + failure_ +
+           "\n\nR or Enter: try now     Esc: quit";
+}
+
+void Attempts::hurry() {
+    back_off_.reset();
+    next_ = Clock::now();
+    is_refused_ = false;
+}
+
+std::unique_ptr<ClientCore> Attempts::poll(bool is_refusal_fatal) {
+    if (!attempt_.valid() && !is_refused_ && Clock::now() >= next_) {
+        std::packaged_task<std::unique_ptr<ClientCore>()> task([options = options_] {
+            struct Wake {
+                ~Wake() { Window::wake(); } // whatever has come of it
+            } const wake;
+            return connect_for_window(options);
+        });
+        attempt_ = task.get_future();
+        std::thread(std::move(task)).detach();
+    }
+    if (!attempt_.valid() || attempt_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
+        return nullptr;
+    }
+    try {
+        return attempt_.get();
+    } catch (std::exception const& error) {
+        is_refused_ = dynamic_cast<ConnectionError const*>(&error) == nullptr ||
+                      dynamic_cast<ConnectionRefusal const*>(&error) != nullptr; // else it may help to try again
+        if (is_refused_ && is_refusal_fatal) {
+            throw;
+        }
+        note(error.what());
+    }
+    if (!is_refused_) {
+        auto const pause = std::chrono::duration<double>(back_off_.next(std::generate_canonical<double, 32>(random_)));
+        next_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(pause);
+    }
+    return nullptr;
+}
+
+void Attempts::note(std::string const& failure) {
+    if (failure_ != failure) {
+        failure_ = failure;
+        std::cerr << "framelet-viewer: " << failure_ << (is_refused_ ? "" : "; waiting for it") << std::endl;
+    }
+}
+
+} // namespace framelet

@@ -1,0 +1,49 @@
+// Attempts to connect to one server, again and again, while the window goes on. In: where it is. Out: a session; until
+// then, what is said of it.
+#pragma once
+
+#include <chrono>
+#include <future>
+#include <memory>
+#include <random>
+#include <string>
+
+#include "client/core/client_core.h"
+#include "client/core/connection/back_off.h"
+
+namespace framelet {
+
+/// Connects so that news wake the window. Throws as ServerConnection does.
+std::unique_ptr<ClientCore> connect_for_window(ConnectionOptions const& options);
+
+/// Tries for as long as it takes, less often the longer. A server that refuses the viewer, for which trying again would
+/// not help, is tried once. An attempt that is given up is not waited for: its thread ends by itself.
+class Attempts {
+public:
+    explicit Attempts(ConnectionOptions options) : options_(std::move(options)) {}
+
+    ConnectionOptions const& options() const { return options_; }
+    bool has_failed() const { return !failure_.empty(); } ///< at least once
+    /// Text for the user, with the keys that `hurry` is for.
+    std::string message() const;
+
+    /// Tries at once, also a server that has refused.
+    void hurry();
+    /// The session once there is one, else null; begins attempts when they are due. `is_refusal_fatal`: a refusal is
+    /// thrown.
+    std::unique_ptr<ClientCore> poll(bool is_refusal_fatal = false);
+
+private:
+    using Clock = std::chrono::steady_clock;
+    void note(std::string const& failure);
+
+    ConnectionOptions options_;
+    std::future<std::unique_ptr<ClientCore>> attempt_;
+    std::string failure_; ///< of the last attempt; empty: none has ended
+    bool is_refused_ = false; ///< no other attempt follows by itself
+    BackOff back_off_;
+    std::minstd_rand random_{std::random_device{}()};
+    Clock::time_point next_ = Clock::now();
+};
+
+} // namespace framelet

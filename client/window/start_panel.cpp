@@ -1,0 +1,119 @@
+#include "client/window/start_panel.h"
+
+#include <algorithm>
+#include <iostream>
+
+#include "client/processes/end_signals.h"
+#include "client/window/attempts.h"
+#include "client/window/overlay/overlay.h"
+#include "common/error.h"
+
+namespace framelet {
+
+namespace {
+
+/// The message, and the field for a server where one may be wanted. `complaint`: about an address that was typed, or a
+/// scene.
+void show_choice(Attempts const* attempts, SceneOpener const& opener, std::string const& complaint,
+                 OverlayContent& content) {
+    if (attempts != nullptr) {
+        content.message = attempts->message() + (complaint.empty() ? "" : "\n\n" + complaint);
+    } else if (opener.opening().empty()) {
+        content.message = (complaint.empty() ? "Connect to framelet-server, or drop a scene file here." : complaint) +
+                          "\n\n" + (opener.can_reopen() ? "R: try again     " : "") + "Enter: connect     Esc: quit";
+    }
+}
+
+} // namespace
+
+Connection run_start_panel(Window& window, Start const& start, OptionsFor const& options_for, SceneOpener& opener) {
+    Overlay overlay(window.handle());
+    std::optional<Attempts> attempts;
+    if (start.address) {
+        attempts.emplace(options_for(*start.address));
+    }
+    bool is_from_command_line = start.address.has_value();
+    std::string complaint;
+    OverlayContent shown;
+    int frames = 1; // still to be drawn; what the mouse presses is seen in one, what it releases in the next
+    auto const try_server = [&](std::string const& address) {
+        try {
+            attempts.emplace(options_for(address));
+            is_from_command_line = false;
+            complaint.clear();
+        } catch (InputError const& error) {
+            complaint = error.what();
+        }
+    };
+    while (!is_told_to_end()) {
+        if (attempts) {
+            if (auto core = attempts->poll(is_from_command_line)) {
+                return {std::move(core), attempts->options()};
+            }
+        }
+        if (std::optional<Connection> opened = opener.poll()) {
+            return std::move(*opened);
+        }
+        if (std::string why = opener.take_complaint(); !why.empty()) {
+            std::cerr << "framelet-viewer: " << why << std::endl;
+            if (start.needs_scene) {
+                return {};
+            }
+            complaint = std::move(why);
+        }
+        OverlayContent content;
+        opener.show(content);
+        show_choice(attempts ? &*attempts : nullptr, opener, complaint, content);
+        if (!content.message.empty() && (!attempts || attempts->has_failed() || !is_from_command_line)) {
+            content.address = {start.address.value_or(usual_server), start.recent, !attempts && !opener.can_reopen()};
+        }
+        // A field that is new takes the keys after its first frame.
+        frames = content != shown ? std::max(frames, 3) : frames;
+        if (frames > 0 && !window.is_hidden()) {
+            window.draw_picture();
+            OverlayActions const asked = overlay.draw(content, window.content_scale());
+            window.set_overlay_areas(overlay.mouse_areas());
+            window.set_typing(overlay.is_typed_into());
+            window.present();
+            shown = content;
+            --frames;
+            if (asked.address) {
+                try_server(*asked.address);
+                continue;
+            }
+            if (!asked.commands.empty()) { // Esc in the field
+                return {};
+            }
+        }
+        // The time between two looks at whether an attempt is due or has ended.
+        constexpr double look_seconds = 0.1;
+        WindowInput const input = window.wait(frames > 0 && !window.is_hidden() ? 0 : look_seconds);
+        if (!input.dropped.empty()) {
+            complaint.clear();
+            opener.open(input.dropped);
+        }
+        frames = input.touched_overlay ? 3 : input.redraw ? std::max(frames, 1) : frames;
+        for (Command const command : input.commands) {
+            if (command == Command::quit || command == Command::escape) {
+                return {};
+            }
+            if (command == Command::toggle_fullscreen) {
+                window.toggle_fullscreen();
+            } else if (command != Command::reset && command != Command::reconnect) {
+                continue;
+            } else if (attempts) {
+                attempts->hurry();
+            } else if (!opener.opening().empty()) {
+                continue;
+            } else if (command == Command::reconnect) {
+                try_server(overlay.address());
+            } else if (opener.can_reopen()) {
+                complaint.clear();
+                opener.reopen();
+            }
+        }
+    }
+    return {};
+}
+
+} // namespace framelet

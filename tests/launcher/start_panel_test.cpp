@@ -1,0 +1,131 @@
+// Tests of the window without a session: what it waits for, the field for a server, scenes of the command line.
+#include <csignal>
+
+#include "tests/launcher/window_fixture.h"
+
+namespace framelet::test {
+namespace {
+
+std::string const scene_file = FRAMELET_SOURCE_DIR "/scenes/windmill.glb";
+constexpr char const* nobody = "127.0.0.1:1"; ///< where no server is
+
+class StartPanelTest : public WindowFixture {
+protected:
+    void start_viewer(std::vector<std::string> arguments) {
+        arguments.insert(arguments.end(), {"--size", "640x480"});
+        start(FRAMELET_VIEWER, arguments);
+        ASSERT_TRUE(has_window()) << program_->errors();
+    }
+    static bool has_viewer(ServerProcess& server) { return has(server.process().errors(), "viewer 1 connects"); }
+    static bool gets_viewer(ServerProcess& server) {
+        return eventually([&] { return has_viewer(server); });
+    }
+    /// Closes the window by Esc; the exit code.
+    int close() {
+        input({"key", "--delay", "200", "Escape"});
+        return program_->wait(patience);
+    }
+};
+
+TEST_F(StartPanelTest, AServerIsTypedIn) {
+    ServerProcess server(scene_file, {"--insecure"});
+    start_viewer({});
+    EXPECT_EQ(program_->errors(), "") << "nothing is tried before the user says what";
+    enter(server.address());
+    EXPECT_TRUE(gets_viewer(server)) << program_->errors();
+    program_->signal(SIGTERM);
+    EXPECT_EQ(program_->wait(patience), 0) << program_->errors();
+    EXPECT_TRUE(has(memory(), server.address())) << memory();
+}
+
+TEST_F(StartPanelTest, EnterAloneTriesThisMachine) {
+    start_viewer({});
+    input({"key", "--delay", "200", "Return"});
+    EXPECT_TRUE(eventually([&] { return has(program_->errors(), "localhost:7070"); })) << program_->errors();
+    EXPECT_TRUE(program_->running());
+}
+
+TEST_F(StartPanelTest, AServerOfBeforeIsClickedOn) {
+    ServerProcess server(scene_file, {"--insecure"});
+    std::filesystem::create_directory(folder_.path() / "framelet");
+    std::filesystem::permissions(folder_.path() / "framelet", std::filesystem::perms::owner_all);
+    folder_.write("framelet/viewer.json", "{\"servers\": [\"" + server.address() + "\"]}");
+    start_viewer({});
+    // The list is below the field, at the left edge of the panel, which is in the middle.
+    for (int y = screen_height / 2; y < screen_height && !has_viewer(server); y += 6) {
+        click(screen_width / 4, y);
+    }
+    EXPECT_TRUE(gets_viewer(server)) << program_->errors();
+}
+
+TEST_F(StartPanelTest, ARefusalIsToldAndAnotherServerTyped) {
+    std::string const token = folder_.write("token", "0123456789abcdef0123456789abcdef\n");
+    ServerProcess strict(scene_file, {"--token-file", token});
+    ServerProcess open(scene_file, {"--insecure"});
+    start_viewer({});
+    enter(strict.address());
+    EXPECT_TRUE(eventually([&] { return has(program_->errors(), "token"); })) << program_->errors();
+    EXPECT_FALSE(has(program_->errors(), "waiting for it")) << program_->errors();
+    EXPECT_TRUE(program_->running());
+    for (int y = screen_height / 3; y < screen_height && !has_viewer(open); y += 12) {
+        click(screen_width / 2, y); // into the field at last
+        enter(open.address());
+    }
+    EXPECT_TRUE(gets_viewer(open)) << program_->errors();
+    start(FRAMELET_VIEWER, {strict.address()}); // of the command line it is the end
+    EXPECT_EQ(program_->wait(patience), 1);
+    EXPECT_TRUE(has(program_->errors(), "token")) << program_->errors();
+}
+
+TEST_F(StartPanelTest, ClosingItIsFine) {
+    start_viewer({});
+    EXPECT_EQ(close(), 0) << program_->errors();
+    EXPECT_TRUE(has(memory(), "640")) << memory();
+    start_viewer({nobody});
+    EXPECT_EQ(close(), 0) << program_->errors();
+}
+
+TEST_F(StartPanelTest, ASignalEndsItAndTheSettingsAreKept) {
+    for (int const number : {SIGINT, SIGTERM, SIGHUP}) {
+        start_viewer({nobody});
+        program_->signal(number);
+        EXPECT_EQ(program_->wait(patience), 0) << program_->errors();
+        EXPECT_TRUE(has(memory(), "640")) << memory();
+        std::filesystem::remove(folder_.path() / "framelet" / "viewer.json");
+    }
+}
+
+TEST_F(StartPanelTest, ALostSessionIsFollowedByOneThatIsTypedIn) {
+    ServerProcess server(scene_file, {"--insecure", "--paused"});
+    ServerProcess other(scene_file, {"--insecure", "--paused"});
+    start_viewer({server.address(), "--no-reconnect"});
+    ASSERT_TRUE(gets_viewer(server)) << program_->errors();
+    server.process().signal(SIGTERM);
+    EXPECT_EQ(server.process().wait(patience), 0);
+    ASSERT_TRUE(eventually([&] { return !program_->errors().empty(); }));
+    // Beside the field a click is the camera's, and what is typed are keys that do no harm.
+    for (int y = screen_height / 3; y < screen_height && !has_viewer(other); y += 12) {
+        click(screen_width / 2, y);
+        enter(other.address());
+    }
+    EXPECT_TRUE(gets_viewer(other)) << program_->errors();
+    program_->signal(SIGTERM);
+    EXPECT_EQ(program_->wait(patience), 0) << program_->errors();
+    EXPECT_TRUE(has(memory(), other.address())) << memory();
+}
+
+TEST_F(StartPanelTest, ASceneOfTheCommandLineThatIsBrokenIsToldAndTriedAgain) {
+    std::string const file = folder_.write("scene.glb", "nonsense");
+    start_viewer({"--open", file});
+    EXPECT_TRUE(eventually([&] { return has(program_->errors(), "framelet-viewer: "); })) << program_->errors();
+    EXPECT_TRUE(has(program_->errors(), file)) << program_->errors();
+    std::filesystem::copy_file(scene_file, file, std::filesystem::copy_options::overwrite_existing);
+    EXPECT_TRUE(eventually([&] {
+        press("r");
+        std::this_thread::sleep_for(std::chrono::seconds(2));
+        return has(program_->errors(), "viewer 1 connects");
+    })) << program_->errors();
+}
+
+} // namespace
+} // namespace framelet::test
