@@ -54,11 +54,11 @@ framelet_package(viewer framelet-viewer
 framelet-viewer in a window that keeps up with the display however slow the
 link is, framelet-client as pictures and figures."
   DEPENDS libgl1 # looked for when a window is opened
-  SUGGESTS framelet-server # started for a scene that is dropped on the window
+  SUGGESTS framelet-server # started for a scene file that is opened
   BUILT_IN ${headers} ${connection} libimgui-dev)
 framelet_package(launcher framelet
   SUMMARY "remote adaptive renderer: view a scene with one command"
-  DESCRIPTION "framelet view SCENE starts a private server and a window on it. Opens glTF,
+  DESCRIPTION "framelet view SCENE opens a window and starts a private server for it. Opens glTF,
 OBJ and other model files from the desktop, too."
   DEPENDS "framelet-server (= ${PROJECT_VERSION}), framelet-viewer (= ${PROJECT_VERSION})"
   RECOMMENDS framelet-scenes

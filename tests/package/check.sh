@@ -27,7 +27,7 @@ cp "$packages"/*.deb "$root/tests/package/inside.sh" "$root/cmake/packaging/Cont
 # All that is started in there ends with it.
 unshare --mount --pid --fork --mount-proc="$system/proc" chroot "$system" bash /packages/inside.sh
 cp "$system/packages/view.xwd" "$packages/"
-desktop-file-validate "$system/usr/share/applications/framelet.desktop"
+desktop-file-validate "$system"/usr/share/applications/framelet{,-viewer}.desktop
 
 for program in framelet framelet-server framelet-viewer framelet-client; do
     exit_code=0
