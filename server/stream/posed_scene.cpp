@@ -30,12 +30,17 @@ ScenePose const& PosedScene::pose_of(SceneTime time) {
 }
 
 void PosedScene::pose(SceneTime time) {
-    if (rendered_ != time) {
+    if (rendered_ == time) {
+        return;
+    }
+    try {
         ScenePose const& wanted = pose_of(time);
         rendered_.reset(); // for when it fails half way
         render_scene_.set_pose(wanted);
-        rendered_ = time;
+    } catch (std::bad_alloc const&) {
+        throw SceneUnposed();
     }
+    rendered_ = time;
 }
 
 Camera PosedScene::camera(Index index, SceneTime time) {

@@ -2,6 +2,7 @@
 // rendered. A resource: posing moves the renderer's scene.
 #pragma once
 
+#include <new>
 #include <optional>
 #include <span>
 #include <vector>
@@ -11,6 +12,11 @@
 #include "server/scene/motion/switches.h"
 
 namespace framelet {
+
+/// Memory was missing for what all viewers look at, whoever's turn it was. Another time there may be enough.
+struct SceneUnposed : std::bad_alloc {
+    char const* what() const noexcept override { return "there is not enough memory left to move the scene"; }
+};
 
 class PosedScene {
 public:
@@ -24,7 +30,8 @@ public:
     /// Times at which its clips jump.
     std::span<ClipSwitches const> switches() const { return switches_; }
 
-    /// Moves everything that is rendered to where it is at `time`; nothing where it is there already.
+    /// Moves everything that is rendered to where it is at `time`; nothing where it is there already. Throws
+    /// SceneUnposed where it cannot; until it can, nothing is to be rendered.
     void pose(SceneTime time);
     /// The pose of everything at `time`; valid until the next call. The renderer's scene stays as it is.
     ScenePose const& pose_of(SceneTime time);

@@ -17,6 +17,7 @@ public:
     ~RunningServer() { server_.stop(); }
 
     std::uint16_t port() const { return server_.port(); }
+    ServerFigures figures() const { return server_.figures(); }
 
 private:
     static ServerOptions on_free_port(ServerOptions options) {

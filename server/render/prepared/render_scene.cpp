@@ -162,6 +162,21 @@ void RenderScene::add_meshes(Progress const& progress) {
     prepared_->instances.resize(placements_.size());
 }
 
+/// Builds every BVH anew, with the numbers that it had.
+void RenderScene::build_anew() {
+    is_built_ = false;
+    is_placed_ = false;
+    prepared_->bvh.clear();
+    std::size_t built = 0;
+    for (Placement const& placement : placements_) {
+        if (placement.mesh == built) { // meshes were numbered as they were first placed
+            prepared_->bvh.add_mesh(prepared_->meshes[built++], placement.skin || placement.morphs);
+        }
+        prepared_->bvh.add_instance(placement.mesh);
+    }
+    is_built_ = true;
+}
+
 void RenderScene::apply_pose() {
     for (Placement const& placement : placements_) {
         if (placement.skin || placement.morphs) {
@@ -221,6 +236,9 @@ void RenderScene::set_pose(ScenePose const& pose) {
     FRAMELET_CHECK(pose.world_from_node.size() == scene_.nodes.size());
     FRAMELET_CHECK(pose.morph_weights.size() == scene_.nodes.size());
     FlushDenormals const flush;
+    if (prepared_->bvh.is_broken() || !is_built_) {
+        build_anew();
+    }
     std::vector<Placement const*> move, reshape;
     for (Placement const& placement : placements_) {
         bool const deforms = placement.skin || placement.morphs;

@@ -28,7 +28,8 @@ public:
 
     /// Moves instances, refits what deforms. Costs nothing but a comparison for what does not move. Not to be called
     /// while anything renders. `pose` must be of this scene. Where it throws, because memory has run out, the scene is
-    /// not to be rendered before a pose has been set, which then moves everything.
+    /// not to be rendered before a pose has been set, which then moves everything, and where Embree was without memory
+    /// builds every BVH anew.
     void set_pose(ScenePose const& pose);
 
     /// From now on framelets say which bodies carry their samples and how fast those move that no body carries, while
@@ -52,6 +53,7 @@ private:
     void add_meshes(Progress const& progress);
     void apply_pose();
     void set_transform(Placement const& placement);
+    void build_anew();
     void deform_mesh(Placement const& placement);
     bool moved(Placement const& placement, ScenePose const& pose) const;
     bool reshaped(Placement const& placement, ScenePose const& pose) const;
@@ -64,6 +66,7 @@ private:
     std::vector<Placement> placements_;
     std::vector<MeshVertices> deformed_; ///< normals and tangents of deforming meshes live here
     ScenePose pose_;
+    bool is_built_ = true; ///< every BVH is there
     bool is_placed_ = false; ///< everything stands as `pose_` says
     std::vector<Index> clips_;
     SceneBodies bodies_;

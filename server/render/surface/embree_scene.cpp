@@ -57,9 +57,14 @@ struct EmbreeScene::Handles {
         bool changed = true;
     };
     struct InstanceHandle {
-        RTCGeometry geometry;
-        bool moves;
+        RTCGeometry geometry = nullptr;
+        bool moves = false;
     };
+
+    Handles();
+    ~Handles();
+    Handles(Handles const&) = delete;
+    Handles& operator=(Handles const&) = delete;
 
     RTCDevice device = nullptr;
     bool sixteen_wide = false;
@@ -85,36 +90,62 @@ struct EmbreeScene::Handles {
     }
 };
 
-EmbreeScene::EmbreeScene() : handles_(std::make_unique<Handles>()) {
-    handles_->device = rtcNewDevice(nullptr);
-    FRAMELET_CHECK(handles_->device != nullptr);
-    rtcSetDeviceErrorFunction(handles_->device, report, nullptr);
-    handles_->sixteen_wide = rtcGetDeviceProperty(handles_->device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0;
-    for (Handles::Level* level : {&handles_->still, &handles_->moving}) {
-        level->scene = rtcNewScene(handles_->device);
+EmbreeScene::Handles::Handles() : device(rtcNewDevice(nullptr)) {
+    if (device == nullptr) {
+        RTCError const error = rtcGetDeviceError(nullptr);
+        FRAMELET_CHECK(error == RTC_ERROR_OUT_OF_MEMORY || error == RTC_ERROR_UNKNOWN);
+        throw std::bad_alloc();
+    }
+    rtcSetDeviceErrorFunction(device, report, nullptr);
+    sixteen_wide = rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0;
+    for (Level* level : {&still, &moving}) {
+        level->scene = rtcNewScene(device);
         rtcSetSceneFlags(level->scene, query_filters);
         rtcCommitScene(level->scene);
     }
 }
 
-EmbreeScene::~EmbreeScene() {
-    for (Handles::InstanceHandle const& instance : handles_->instances) {
-        rtcReleaseGeometry(instance.geometry);
-    }
-    rtcReleaseScene(handles_->still.scene);
-    rtcReleaseScene(handles_->moving.scene);
-    for (Handle const& mesh : handles_->meshes) {
-        for (RTCGeometry const geometry : mesh.geometries) {
-            rtcReleaseGeometry(geometry);
+EmbreeScene::Handles::~Handles() {
+    // What could not be made is null.
+    auto const release = [](auto handle, auto const& how) {
+        if (handle != nullptr) {
+            how(handle);
         }
-        rtcReleaseScene(mesh.scene);
+    };
+    for (InstanceHandle const& instance : instances) {
+        release(instance.geometry, rtcReleaseGeometry);
     }
-    rtcReleaseDevice(handles_->device);
+    release(still.scene, rtcReleaseScene);
+    release(moving.scene, rtcReleaseScene);
+    for (Handle const& mesh : meshes) {
+        for (RTCGeometry const geometry : mesh.geometries) {
+            release(geometry, rtcReleaseGeometry);
+        }
+        release(mesh.scene, rtcReleaseScene);
+    }
+    rtcReleaseDevice(device);
+}
+
+EmbreeScene::EmbreeScene() {
+    clear();
+}
+
+EmbreeScene::~EmbreeScene() = default;
+
+void EmbreeScene::clear() {
+    handles_.reset(); // its memory may be what is missing
+    handles_ = std::make_unique<Handles>();
+    handles_->throw_failure();
+}
+
+bool EmbreeScene::is_broken() const {
+    return handles_ == nullptr || handles_->broken;
 }
 
 std::uint32_t EmbreeScene::add_mesh(std::span<Geometry> geometries, bool deforming,
                                     std::function<void(double)> const& progress) {
     Handle& mesh = handles_->meshes.emplace_back(); // released with the others, whatever happens here
+    mesh.geometries.reserve(geometries.size());
     mesh.scene = rtcNewScene(handles_->device);
     rtcSetSceneFlags(mesh.scene, deforming ? query_filters | RTC_SCENE_FLAG_DYNAMIC : query_filters);
     for (std::size_t i = 0; i < geometries.size(); ++i) {
@@ -169,14 +200,15 @@ void EmbreeScene::refit_mesh(std::uint32_t mesh) {
 }
 
 std::uint32_t EmbreeScene::add_instance(std::uint32_t mesh) {
-    RTCGeometry const instance = rtcNewGeometry(handles_->device, RTC_GEOMETRY_TYPE_INSTANCE);
+    unsigned const number = static_cast<unsigned>(handles_->instances.size());
+    RTCGeometry& instance = handles_->instances.emplace_back().geometry;
+    instance = rtcNewGeometry(handles_->device, RTC_GEOMETRY_TYPE_INSTANCE);
     rtcSetGeometryInstancedScene(instance, handles_->meshes[mesh].scene);
     rtcDisableGeometry(instance);
     rtcCommitGeometry(instance);
-    unsigned const number = static_cast<unsigned>(handles_->instances.size());
     rtcAttachGeometryByID(handles_->still.scene, instance, number);
-    handles_->instances.push_back({instance, false});
     ++handles_->still.count;
+    handles_->throw_failure();
     return number;
 }
 

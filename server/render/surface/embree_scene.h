@@ -23,7 +23,12 @@ public:
     std::uint32_t add_mesh(std::span<Geometry> geometries, bool deforming,
                            std::function<void(double)> const& progress = {});
     // All that builds or moves throws std::bad_alloc where memory is missing, and from then on each time: Embree does
-    // not say what it has left undone.
+    // not say what it has left undone. Before anything is traced all has then to be cleared and added anew.
+
+    /// True where memory was missing.
+    bool is_broken() const;
+    /// Removes all meshes and instances; those that are added next are numbered from 0.
+    void clear();
 
     /// Refits the mesh to `positions` that were written anew.
     void refit_mesh(std::uint32_t mesh);

@@ -7,10 +7,19 @@
 #include <string>
 
 #include "server/session/session.h"
+#include "server/stream/posed_scene.h"
 
 namespace framelet {
 
+/// True where the viewer is to come back as it was: what has failed was not its own.
+inline bool may_come_again(std::exception const& error) {
+    return dynamic_cast<SceneUnposed const*>(&error) != nullptr;
+}
+
 inline std::string failure_line(std::exception const& error) {
+    if (may_come_again(error)) {
+        return "the server has not enough memory left for its scene at the moment: try again";
+    }
     if (dynamic_cast<std::bad_alloc const*>(&error) != nullptr) {
         return "the server has not enough memory left for this viewer's picture: ask for a smaller one";
     }
@@ -18,9 +27,9 @@ inline std::string failure_line(std::exception const& error) {
 }
 
 /// Ends a session where there is no memory to say why. The server finds it ended.
-inline void end_in_need(Session& session) {
+inline void end_in_need(Session& session, bool again) {
     try {
-        session.end("no memory left"); // short enough to need none
+        session.end("no memory left", again); // short enough to need none
     } catch (std::bad_alloc const&) {
     }
 }
@@ -32,9 +41,9 @@ bool contain(Session& session, Work const& work) {
         return true;
     } catch (std::exception const& error) {
         try {
-            session.end(failure_line(error));
+            session.end(failure_line(error), may_come_again(error));
         } catch (std::bad_alloc const&) {
-            end_in_need(session);
+            end_in_need(session, may_come_again(error));
         }
         return false;
     }

@@ -24,6 +24,7 @@ void LoopThread::replace(std::unique_ptr<SessionLoop> next) {
 
 void LoopThread::add_figures(ServerFigures& figures) const {
     std::scoped_lock const lock(mutex_);
+    figures.healthy = figures.healthy && loop_->has_scene();
     figures.rays = earlier_rays_ + loop_->rays();
     figures.busy_seconds = busy_seconds();
     figures.rays_per_second = loop_->samples_per_second();

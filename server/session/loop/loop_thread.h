@@ -26,7 +26,7 @@ public:
     double samples_per_second() const { return loop_->samples_per_second(); }
     /// Seconds in which any of the loops had something to do.
     double busy_seconds() const { return earlier_busy_seconds_ + loop_->busy_seconds(); }
-    /// Fills in what the loops have done, all together.
+    /// Fills in what the loops have done, all together; not healthy where there is no memory for the scene.
     void add_figures(ServerFigures& figures) const;
 
 private:

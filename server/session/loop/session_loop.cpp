@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <chrono>
-#include <new>
+#include <exception>
 #include <stdexcept>
 #include <thread>
 #include <utility>
 
+#include <spdlog/spdlog.h>
 #include <tbb/global_control.h>
 #include <tbb/task_group.h>
 
@@ -23,6 +24,8 @@ constexpr std::size_t many_threads = 5;
 /// A viewer that took nothing in its turns for so long leaves its share of the time to the others.
 constexpr std::chrono::milliseconds sharing_time{250};
 constexpr std::chrono::milliseconds short_pause{5};
+/// Between two attempts to build a scene for which memory was missing while nobody has a turn.
+constexpr std::chrono::seconds scene_pause{1};
 
 std::size_t thread_count() {
     return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
@@ -82,7 +85,7 @@ void SessionLoop::run() {
         }
         try {
             serve_once();
-        } catch (std::bad_alloc const&) { // it was for none of the sessions, which are all served later
+        } catch (std::exception const&) { // it was for none of the sessions, which are all served later
             std::this_thread::sleep_for(short_pause);
         }
     }
@@ -98,6 +101,9 @@ void SessionLoop::serve_once() {
     if (worked) {
         return;
     }
+    if (!has_scene_) {
+        try_for_scene(began);
+    }
     // Nothing to do until a viewer or the clock says so. While the clock runs every display frame is worth a look.
     bool const playing =
         scene_.is_animated() && clock_.state(std::chrono::steady_clock::now()).playing && !sessions.empty();
@@ -105,8 +111,37 @@ void SessionLoop::serve_once() {
     auto const woken = [this] { return wake_ || stop_; };
     if (playing || waits_for_room_) { // the link's time passes without a word from it
         woken_.wait_for(lock, short_pause, woken);
+    } else if (!has_scene_) {
+        woken_.wait_for(lock, scene_pause, woken);
     } else {
         woken_.wait(lock, woken);
+    }
+}
+
+/// Poses the scene, and notes whether there was memory for that.
+void SessionLoop::pose_scene(SceneTime time) {
+    try {
+        scene_.pose(time);
+    } catch (SceneUnposed const& failure) {
+        if (has_scene_.exchange(false)) {
+            spdlog::warn("{}; it is built again as soon as there is enough", failure.what());
+        }
+        throw;
+    }
+    if (!has_scene_.exchange(true)) {
+        spdlog::info("the scene has been built again");
+    }
+}
+
+/// Tries to build the scene again though nobody has a turn: nobody may come to a server that says it is not well.
+void SessionLoop::try_for_scene(WallTime now) {
+    if (now - tried_for_scene_ < scene_pause) {
+        return;
+    }
+    tried_for_scene_ = now;
+    try {
+        pose_scene(scene_.is_animated() ? clock_.state(now).time : 0);
+    } catch (SceneUnposed const&) { // later
     }
 }
 
@@ -234,7 +269,7 @@ bool SessionLoop::give_turn(std::shared_ptr<Session> const& session, Viewer& vie
         describe(*stream.scheduler(), record);
         laps.lap();
     }
-    scene_.pose(stream.moment());
+    pose_scene(stream.moment());
     if (pipeline_->is_unlearnt()) {
         start_finishing();
     }

@@ -59,12 +59,16 @@ public:
     /// was something to do.
     double rays() const { return rays_; }
     double busy_seconds() const { return busy_seconds_; }
+    /// False while there is no memory for the scene. It is built again as soon as there is some.
+    bool has_scene() const { return has_scene_; }
 
 private:
     struct Viewer;
     struct Pipeline;
 
     void serve_once();
+    void pose_scene(SceneTime time);
+    void try_for_scene(WallTime now);
     bool give_turns(Sessions const& sessions, WallTime now);
     bool give_turn(std::shared_ptr<Session> const& session, Viewer& viewer, WallTime round_began);
     std::size_t sharers(Viewer const& served) const;
@@ -97,6 +101,8 @@ private:
     std::condition_variable woken_;
     bool wake_ = false;
     bool stop_ = false;
+    std::atomic<bool> has_scene_ = true;
+    WallTime tried_for_scene_; ///< when it was last tried to get it back, though nobody had a turn
     std::atomic<double> samples_per_second_ = 0;
     std::atomic<double> rays_ = 0, busy_seconds_ = 0; ///< written by the loop's thread alone
 };
