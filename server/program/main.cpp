@@ -192,6 +192,7 @@ void serve(Options& options) {
     Server server(std::move(loaded), options.server, std::move(listener));
     // What asks the server, or tells it something, ends before it.
     std::unique_ptr<MetricsPort> const answering = std::move(metrics);
+    options.import.checker = "/proc/self/exe"; // from now on there are viewers
     SceneReloader reloader(
         std::move(watch), scene_files, environment_file, files,
         [&options](Progress const& progress) { return load_scene(options, progress); },

@@ -6,6 +6,7 @@
 
 #include "common/error.h"
 #include "server/scene/assimp/assimp_import.h"
+#include "server/scene/assimp/import_check.h"
 #include "server/scene/finish/scene_finish.h"
 #include "server/scene/gltf/gltf_import.h"
 #include "server/scene/reading/file_ending.h"
@@ -65,8 +66,14 @@ Scene import_file(std::filesystem::path const& file, Progress const& report, Imp
         std::string const extension = lower_extension(file);
         SceneFolder const folder(file, options.allow_outside);
         bool const is_gltf = extension == ".gltf" || extension == ".glb";
+        bool const is_checked = !is_gltf && !options.checker.empty();
+        if (is_checked) {
+            ImportOptions of_file = options;
+            of_file.memory_bytes = budget.left();
+            check_import(file, of_file, report);
+        }
         Scene scene = is_gltf ? import_gltf(file, folder, budget, options.clips, report)
-                              : import_assimp(file, folder, budget, report);
+                              : import_assimp(file, folder, budget, report, is_checked);
         finish_scene(scene, budget, report);
         if (scene.name.empty()) {
             scene.name = file.stem().string();

@@ -25,6 +25,9 @@ struct ImportOptions {
     /// Animation clips, by name, that the scene must have. A glTF file that is read alone is refused without them
     /// before its meshes and pictures are read; for all else `clips_named` does that.
     std::vector<std::string> clips;
+    /// Program, framelet-server itself, that tries a file of Assimp's formats before this process reads it. Empty:
+    /// none, and while Assimp reads all of this process has no more memory than that.
+    std::filesystem::path checker;
 };
 
 /// Reads and finishes a scene. Throws InputError with one line that names the file where it cannot be loaded. The scene

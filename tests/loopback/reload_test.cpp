@@ -1,12 +1,15 @@
 // Runs the real server while its scene changes: by itself with --watch, on SIGHUP without; viewers stay, and what does
 // not load costs nobody anything.
+#include <atomic>
 #include <csignal>
 #include <fstream>
 #include <memory>
+#include <sstream>
 #include <thread>
 
 #include <gtest/gtest.h>
 #include <pty.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -173,6 +176,72 @@ TEST_F(Reloading, WhileEverythingMovesItDoesNoHarm) {
         ASSERT_TRUE(other.comes_back(i)) << server.process().errors();
     }
     EXPECT_GT(viewer.core->status().clock.time, 0) << "the clock goes on";
+}
+
+/// Address space that a process may have, bytes; RLIM_INFINITY: as much as it likes.
+rlim_t limit_of(pid_t process) {
+    rlimit limit{};
+    EXPECT_EQ(::prlimit(process, RLIMIT_AS, nullptr, &limit), 0);
+    return limit.rlim_cur;
+}
+
+/// A square of so many squares, as an .obj file.
+std::string squares(int side) {
+    std::ostringstream text;
+    for (int y = 0; y <= side; ++y) {
+        for (int x = 0; x <= side; ++x) {
+            text << "v " << x << ' ' << y << " 0\n";
+        }
+    }
+    for (int y = 0; y < side; ++y) {
+        for (int x = 1; x <= side; ++x) {
+            int const corner = y * (side + 1) + x;
+            text << "f " << corner << ' ' << corner + 1 << ' ' << corner + side + 2 << ' ' << corner + side + 1 << '\n';
+        }
+    }
+    return text.str();
+}
+
+TEST_F(Reloading, WhoIsServedHasMemoryWhileAnotherSceneIsRead) {
+    std::string const text = folder.write("scene.obj", squares(2));
+    ServerProcess server(text, {"--paused", "--insecure"});
+    rlim_t const before = limit_of(server.process().pid());
+    Viewer viewer(server.address());
+    ASSERT_TRUE(viewer.comes_to_rest());
+    folder.write("scene.obj", squares(300));
+    server.process().signal(SIGHUP);
+    std::atomic<bool> is_there = false;
+    rlim_t least = before;
+    std::thread watcher([&] {
+        while (!is_there) {
+            least = std::min(least, limit_of(server.process().pid()));
+            std::this_thread::sleep_for(1ms);
+        }
+    });
+    EXPECT_TRUE(viewer.comes_back(1)) << server.process().errors();
+    is_there = true;
+    watcher.join();
+    EXPECT_EQ(least, before);
+    EXPECT_EQ(viewer.core->welcome().scene_bounds.upper.x, 300);
+}
+
+TEST_F(Reloading, AFileThatTakesTooMuchLeavesTheSceneAsItWas) {
+    std::string const head =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
+        "z\nelement face 1\nproperty list uint int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n";
+    std::string const text = folder.write("scene.ply", head + "3 0 1 2\n");
+    ServerProcess server(text, {"--paused", "--insecure", "--scene-memory", "64"});
+    Viewer viewer(server.address());
+    ASSERT_TRUE(viewer.comes_to_rest());
+    folder.write("scene.ply", head + "60000000 0 1 2\n");
+    server.process().signal(SIGHUP);
+    ASSERT_TRUE(eventually([&] { return times(server.process().errors(), "as it was is served on") > 0; }));
+    EXPECT_EQ(times(server.process().errors(), "'" + text + "': it takes more than 64 MB"), 1u)
+        << server.process().errors();
+    EXPECT_EQ(viewer.core->statistics().reconnections, 0u);
+    folder.write("scene.ply", head + "3 0 1 2\n");
+    server.process().signal(SIGHUP);
+    EXPECT_TRUE(viewer.comes_back(1)) << server.process().errors();
 }
 
 TEST_F(Reloading, WhereTheTerminalIsGoneTheServerEnds) {

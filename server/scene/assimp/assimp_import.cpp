@@ -1,5 +1,6 @@
 #include "server/scene/assimp/assimp_import.h"
 
+#include <optional>
 #include <sstream>
 
 #include <assimp/DefaultIOSystem.h>
@@ -148,7 +149,7 @@ Primitive import_assimp_primitive(aiMesh const& from) {
 }
 
 Scene import_assimp(std::filesystem::path const& file, SceneFolder const& folder, ImportBudget& budget,
-                    Progress const& progress) {
+                    Progress const& progress, bool is_checked) {
     Scene scene;
     std::vector<std::string> missing;
     progress("reading", 0);
@@ -166,7 +167,10 @@ Scene import_assimp(std::filesystem::path const& file, SceneFolder const& folder
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
     aiScene const* from = nullptr;
     try {
-        MemoryLimit const limit(budget.left()); // Assimp takes memory without asking
+        std::optional<MemoryLimit> limit;
+        if (!is_checked) {
+            limit.emplace(budget.left()); // Assimp takes memory without asking
+        }
         from = importer.ReadFile(file.string(), aiProcess_ValidateDataStructure);
         if (from && held.call([] {})) {
             for (unsigned m = 0; m < from->mNumMeshes; ++m) {

@@ -1,0 +1,18 @@
+// Has a scene file read by a process of its own, before a server reads it that has viewers: what a library takes
+// without asking cannot be bounded for one thread, and a process that crashes takes all its threads along. In: a file.
+// Out: nothing, or an InputError.
+#pragma once
+
+#include <filesystem>
+
+#include "server/scene/reading/progress.h"
+#include "server/scene/scene_import.h"
+
+namespace framelet {
+
+/// Throws InputError, without the file's name, where `options.checker` cannot read the file within `options`, or does
+/// not come to an end of it. Where `progress` throws the process is ended. What the file has become meanwhile is not
+/// known.
+void check_import(std::filesystem::path const& file, ImportOptions const& options, Progress const& progress);
+
+} // namespace framelet
