@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <new>
 #include <string>
 
 #include <png.h>
@@ -32,7 +33,10 @@ struct Writer {
     explicit Writer(Complaint& complaint)
         : png(png_create_write_struct(PNG_LIBPNG_VER_STRING, &complaint, complain, ignore)),
           info(png != nullptr ? png_create_info_struct(png) : nullptr) {
-        FRAMELET_CHECK(info != nullptr);
+        if (info == nullptr) {
+            png_destroy_write_struct(&png, nullptr);
+            throw std::bad_alloc();
+        }
     }
     ~Writer() { png_destroy_write_struct(&png, &info); }
     Writer(Writer const&) = delete;

@@ -3,11 +3,10 @@
 #include <csetjmp>
 #include <cstdio>
 #include <cstring>
+#include <new>
 #include <vector>
 
 #include <png.h>
-
-#include "common/error.h"
 
 namespace framelet {
 namespace {
@@ -41,7 +40,10 @@ struct Reader {
     explicit Reader(Source& source)
         : png(png_create_read_struct(PNG_LIBPNG_VER_STRING, &source, complain, ignore)),
           info(png != nullptr ? png_create_info_struct(png) : nullptr) {
-        FRAMELET_CHECK(info != nullptr);
+        if (info == nullptr) {
+            png_destroy_read_struct(&png, nullptr, nullptr);
+            throw std::bad_alloc();
+        }
         png_set_read_fn(png, &source, take);
     }
     ~Reader() { png_destroy_read_struct(&png, &info, nullptr); }

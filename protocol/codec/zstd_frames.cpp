@@ -2,6 +2,9 @@
 
 #include <array>
 #include <cstring>
+#include <new>
+
+#include <zstd_errors.h>
 
 #include "common/error.h"
 
@@ -33,6 +36,15 @@ std::size_t get_length(std::byte const* in) {
         length |= std::to_integer<std::size_t>(in[i]) << (8 * i);
     }
     return length;
+}
+
+/// What the library has made. Throws std::bad_alloc where it is null: memory is all that is needed for it.
+template <typename Context>
+Context* made(Context* context) {
+    if (context == nullptr) {
+        throw std::bad_alloc();
+    }
+    return context;
 }
 
 } // namespace
@@ -94,22 +106,23 @@ void check_frame(ByteView frame, std::size_t least, std::size_t most) {
 
 void FrameCodec::compress(std::span<std::uint8_t const> content, Bytes& frame) {
     if (!compressor_) {
-        compressor_.reset(ZSTD_createCCtx());
-        FRAMELET_CHECK(compressor_ != nullptr);
+        compressor_.reset(made(ZSTD_createCCtx()));
         ZSTD_CCtx_setParameter(compressor_.get(), ZSTD_c_compressionLevel, compression_level);
         ZSTD_CCtx_setParameter(compressor_.get(), ZSTD_c_minMatch, least_match);
     }
     frame.resize(ZSTD_compressBound(content.size()));
     std::size_t const written =
         ZSTD_compress2(compressor_.get(), frame.data(), frame.size(), content.data(), content.size());
+    if (ZSTD_getErrorCode(written) == ZSTD_error_memory_allocation) {
+        throw std::bad_alloc();
+    }
     FRAMELET_CHECK(!ZSTD_isError(written));
     frame.resize(written);
 }
 
 std::span<std::uint8_t const> FrameCodec::decompress(ByteView frame) {
     if (!decompressor_) {
-        decompressor_.reset(ZSTD_createDCtx());
-        FRAMELET_CHECK(decompressor_ != nullptr);
+        decompressor_.reset(made(ZSTD_createDCtx()));
     }
     std::size_t const size = ZSTD_getFrameContentSize(frame.data(), frame.size());
     content_.resize(size);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <fstream>
+#include <stdexcept>
 
 #include <openssl/crypto.h>
 #include <openssl/rand.h>
@@ -10,6 +11,16 @@
 #include "protocol/messages/text.h"
 
 namespace framelet {
+namespace {
+
+/// Fills them with what nobody can guess. Throws std::runtime_error where there is none to be had, as without memory.
+void fill_randomly(unsigned char* bytes, std::size_t count) {
+    if (RAND_bytes(bytes, static_cast<int>(count)) != 1) {
+        throw std::runtime_error("the system has no random numbers or no memory left");
+    }
+}
+
+} // namespace
 
 bool same_token(std::string_view left, std::string_view right) {
     return left.size() == right.size() && CRYPTO_memcmp(left.data(), right.data(), left.size()) == 0;
@@ -17,7 +28,7 @@ bool same_token(std::string_view left, std::string_view right) {
 
 std::string make_token() {
     std::array<unsigned char, 16> random{};
-    FRAMELET_CHECK(RAND_bytes(random.data(), static_cast<int>(random.size())) == 1);
+    fill_randomly(random.data(), random.size());
     std::string token;
     for (unsigned char const byte : random) {
         token += "0123456789abcdef"[byte >> 4];
@@ -28,7 +39,7 @@ std::string make_token() {
 
 Ticket make_ticket() {
     Ticket ticket;
-    FRAMELET_CHECK(RAND_bytes(reinterpret_cast<unsigned char*>(&ticket), sizeof ticket) == 1);
+    fill_randomly(reinterpret_cast<unsigned char*>(&ticket), sizeof ticket);
     return ticket;
 }
 

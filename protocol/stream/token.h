@@ -13,7 +13,8 @@ namespace framelet {
 /// The least length of a token, bytes: a shorter one can be guessed.
 inline constexpr std::size_t min_token_bytes = 16;
 
-/// Makes a token: 128 bits of the system's randomness, in 32 hexadecimal digits.
+/// Makes a token: 128 bits of the system's randomness, in 32 hexadecimal digits. Throws std::runtime_error where there
+/// is none, or no memory for it, as the next does.
 std::string make_token();
 
 /// Makes a ticket of as many bits, for one viewer that comes back.

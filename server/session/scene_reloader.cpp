@@ -52,9 +52,16 @@ void SceneReloader::watch() {
 }
 
 void SceneReloader::run(std::stop_token const& stop) {
-    while (wait(stop)) {
-        reload(stop);
-        watch();
+    for (;;) {
+        try {
+            while (wait(stop)) {
+                reload(stop);
+                watch();
+            }
+            return;
+        } catch (std::exception const& error) { // most likely for want of memory: the files as they were are watched on
+            spdlog::warn("cannot look at the scene's files: {}", failure_text(error));
+        }
     }
 }
 

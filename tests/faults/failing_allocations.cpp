@@ -3,15 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cerrno>
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
 #include <cstring>
 #include <new>
+#include <string_view>
 #include <utility>
 
 #include <dlfcn.h>
 #include <execinfo.h>
+#include <link.h>
 
 namespace {
 
@@ -22,6 +25,36 @@ std::atomic<std::uint64_t> first_to_fail = never, last_to_fail = never;
 std::atomic<std::int64_t> live = 0;
 std::atomic<bool> is_suspended = false;
 thread_local bool spared = false;
+
+/// Where the code lies of libraries that take memory by malloc and say where it was missing. Others, as glibc's own
+/// streams, do not all survive that.
+struct Code {
+    std::uintptr_t first, last;
+};
+std::array<Code, 32> by_malloc{};
+std::atomic<std::size_t> by_malloc_count = 0;
+
+int note_code(dl_phdr_info* library, std::size_t, void*) {
+    std::string_view const name = library->dlpi_name;
+    constexpr std::string_view names[] = {"/libzstd.", "/libcrypto.", "/libssl.", "/libpng"};
+    bool const counts =
+        std::ranges::any_of(names, [&](auto const& part) { return name.find(part) != std::string_view::npos; });
+    for (int i = 0; counts && i < library->dlpi_phnum; ++i) {
+        auto const& part = library->dlpi_phdr[i];
+        if (part.p_type == PT_LOAD && (part.p_flags & PF_X) != 0 && by_malloc_count < by_malloc.size()) {
+            std::uintptr_t const first = library->dlpi_addr + part.p_vaddr;
+            by_malloc[by_malloc_count++] = {first, first + part.p_memsz};
+        }
+    }
+    return 0;
+}
+
+/// True where the call came from such a library.
+bool takes_by_malloc(void const* caller) {
+    auto const at = reinterpret_cast<std::uintptr_t>(caller);
+    return std::any_of(by_malloc.begin(), by_malloc.begin() + by_malloc_count,
+                       [&](Code const& code) { return at >= code.first && at < code.last; });
+}
 
 /// True where Embree allocates, which does not survive a failure where several threads build.
 bool is_for_embree() {
@@ -74,7 +107,30 @@ void release(void* memory) noexcept {
     std::free(memory);
 }
 
+bool is_to_fail_by_malloc(void const* caller) {
+    bool const fails = takes_by_malloc(caller) && is_to_fail();
+    if (fails) {
+        errno = ENOMEM;
+    }
+    return fails;
+}
+
 } // namespace
+
+// glibc's own, to which what stands in for them goes on.
+extern "C" void* __libc_malloc(std::size_t bytes);
+extern "C" void* __libc_calloc(std::size_t count, std::size_t bytes);
+extern "C" void* __libc_realloc(void* memory, std::size_t bytes);
+
+extern "C" void* malloc(std::size_t bytes) noexcept {
+    return is_to_fail_by_malloc(__builtin_return_address(0)) ? nullptr : __libc_malloc(bytes);
+}
+extern "C" void* calloc(std::size_t count, std::size_t bytes) noexcept {
+    return is_to_fail_by_malloc(__builtin_return_address(0)) ? nullptr : __libc_calloc(count, bytes);
+}
+extern "C" void* realloc(void* memory, std::size_t bytes) noexcept {
+    return is_to_fail_by_malloc(__builtin_return_address(0)) ? nullptr : __libc_realloc(memory, bytes);
+}
 
 void* operator new(std::size_t bytes) {
     return allocate_or_throw(bytes, alignof(std::max_align_t));
@@ -104,6 +160,9 @@ void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
 namespace framelet::test {
 
 FailingAllocation::FailingAllocation(std::uint64_t number, std::uint64_t more) {
+    if (by_malloc_count == 0) {
+        ::dl_iterate_phdr(note_code, nullptr);
+    }
     counted = 0;
     is_suspended = false;
     last_to_fail = number > never - more ? never - 1 : number + more;

@@ -1,5 +1,5 @@
 // Memory that runs out at a chosen allocation. Whatever program links this has an operator new that counts, and fails
-// where it is told to. For tests only.
+// where it is told to; likewise malloc where zstd, OpenSSL and libpng call it. For tests only.
 #pragma once
 
 #include <cstdint>
@@ -7,9 +7,9 @@
 
 namespace framelet::test {
 
-/// Makes the `number`th allocation of all threads together from here on throw std::bad_alloc, and the `more` after it;
-/// 1 is the next one. Threads within `SparedFromFailure` are not counted, and Embree's do not fail. Ends with its
-/// scope.
+/// Makes the `number`th allocation of all threads together from here on fail (throw std::bad_alloc, or return null
+/// where it is malloc's), and the `more` after it; 1 is the next one. Threads within `SparedFromFailure` are not
+/// counted, and Embree's do not fail. Ends with its scope.
 class FailingAllocation {
 public:
     explicit FailingAllocation(std::uint64_t number, std::uint64_t more = 0);

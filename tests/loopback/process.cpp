@@ -84,6 +84,10 @@ std::string TemporaryFolder::write(std::string const& name, std::string const& t
     return file;
 }
 
+std::string TemporaryFolder::read(std::string const& name) const {
+    return read_file(path_ / name);
+}
+
 ServerProcess::ServerProcess(std::string const& scene, std::vector<std::string> options)
     : ServerProcess(of_program(FRAMELET_SERVER, server_arguments(scene, std::move(options)))) {}
 

@@ -25,6 +25,7 @@ public:
     std::filesystem::path const& path() const { return path_; }
     /// Writes a text file there and gives its name.
     std::string write(std::string const& name, std::string const& text) const;
+    std::string read(std::string const& name) const;
 
 private:
     std::filesystem::path path_;

@@ -6,6 +6,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "common/command_line/program_failure.h"
 #include "common/error.h"
 #include "common/files/picture_writer.h"
 #include "server/sampling/field/field_picture.h"
@@ -82,8 +83,8 @@ void CycleRecorder::run() {
         bool failed = false;
         try {
             write(entry);
-        } catch (InputError const& error) {
-            spdlog::warn("recording ended: {}", error.what());
+        } catch (std::exception const& error) { // memory may be missing too
+            spdlog::warn("recording ended: {}", failure_text(error));
             failed = true;
         }
         lock.lock();
