@@ -21,8 +21,8 @@ inline constexpr std::size_t max_unsent_bytes = 2 * max_message_bytes;
 class FramedStream : public std::enable_shared_from_this<FramedStream> {
 public:
     struct Handlers {
-        /// Called with each message that arrives. May throw ProtocolError, which ends the connection like a message
-        /// that cannot be decoded.
+        /// Called with each message that arrives. Whatever exception it throws ends the connection like a message that
+        /// cannot be decoded: the peer is sent what it says.
         std::function<void(Message)> on_message;
         /// Called once, when the connection ends for whatever reason but our own `close`; `reason` is one line.
         std::function<void(std::string reason)> on_close;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <exception>
 #include <memory>
 #include <new>
 #include <string>
@@ -101,7 +102,8 @@ public:
     }
 
     bool is_stuck() const override {
-        return open_ && !finished_ && ((awaited_reads_ == 0 && !peer_done_) || (awaited_writes_ == 0 && writing_));
+        return (open_ || shakes_hands_) && !finished_ &&
+               ((awaited_reads_ == 0 && !peer_done_) || (awaited_writes_ == 0 && writing_));
     }
 
     bool was_cut() const override { return cut_; }
@@ -132,16 +134,17 @@ private:
     Awaited reading() { return {self(), &SocketStream::awaited_reads_}; }
     Awaited writing() { return {self(), &SocketStream::awaited_writes_}; }
 
-    /// Does the next step; where memory is missing for it, this connection ends, and no other.
+    /// Does the next step; where it fails, mostly because memory is missing for it, this connection ends, and no other.
     template <typename Work>
     void contain(Work const& work) {
         try {
             work();
-        } catch (std::bad_alloc const&) {
+        } catch (std::exception const& error) {
             finish();
             try {
-                tell("no memory left"); // short enough to need none
-            } catch (std::bad_alloc const&) { // whoever was to be told finds it ended
+                bool const memory = dynamic_cast<std::bad_alloc const*>(&error) != nullptr;
+                tell(memory ? "no memory left" : error.what()); // the former is short enough to need none
+            } catch (std::exception const&) { // whoever was to be told finds it ended
             }
         }
     }
@@ -151,6 +154,7 @@ private:
     // --- beginning
 
     void handshake() {
+        shakes_hands_ = true;
         handshake_timer_.expires_after(handshake_time);
         handshake_timer_.async_wait([self = self()](Error error) {
             self->contain([&] {
@@ -159,7 +163,7 @@ private:
                 }
             });
         });
-        stream_.async_handshake(role_, [self = self()](Error error) {
+        stream_.async_handshake(role_, [self = reading()](Error error) {
             self->handshake_timer_.cancel();
             self->contain([&] {
                 if (error) {
@@ -228,11 +232,11 @@ private:
             if (auto const called = handlers_.get(); called && called->on_message) {
                 called->on_message(decode_message(body));
             }
-        } catch (ProtocolError const& error) {
-            refuse(error.what());
-            return;
         } catch (std::bad_alloc const&) {
             refuse("this side has no memory left for a message");
+            return;
+        } catch (std::exception const& error) {
+            refuse(error.what());
             return;
         }
         first_ = false;
@@ -456,6 +460,7 @@ private:
     FramePrefix prefix_{};
     Bytes body_; ///< room for the largest message so far
     bool started_ = false;
+    bool shakes_hands_ = false; ///< the handshake has begun
     bool open_ = false; ///< the handshake is over
     bool first_ = true; ///< no message has arrived
     bool writing_ = false;

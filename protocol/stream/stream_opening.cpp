@@ -1,7 +1,10 @@
 #include "protocol/stream/stream_opening.h"
 
+#include <new>
 #include <sstream>
 #include <utility>
+
+#include <openssl/err.h>
 
 #if __has_include(<netinet/tcp.h>)
 #include <netinet/tcp.h>
@@ -37,6 +40,15 @@ std::string address_of(StreamSocket const& socket) {
     return error ? "unknown" : text.str();
 }
 
+/// Throws std::bad_alloc where OpenSSL cannot say on this thread what is wrong: Asio would take nothing for a
+/// connection. Once it can it always can.
+void require_error_queue() {
+    ERR_raise(ERR_LIB_USER, ERR_R_MALLOC_FAILURE);
+    if (ERR_get_error() == 0) {
+        throw std::bad_alloc();
+    }
+}
+
 std::shared_ptr<FramedStream> secure_stream(SecureStream stream, asio::ssl::stream_base::handshake_type role) {
     set_options(stream.next_layer());
     std::string peer = address_of(stream.next_layer());
@@ -54,11 +66,13 @@ std::shared_ptr<FramedStream> plain_stream(StreamSocket socket) {
 
 std::shared_ptr<FramedStream> tls_server_stream(StreamSocket socket,
                                                 std::shared_ptr<asio::ssl::context> const& context) {
+    require_error_queue();
     return secure_stream(SecureStream(std::move(socket), *context), asio::ssl::stream_base::server);
 }
 
 std::shared_ptr<FramedStream> tls_client_stream(StreamSocket socket, std::shared_ptr<asio::ssl::context> const& context,
                                                 std::string const& host) {
+    require_error_queue();
     SecureStream stream(std::move(socket), *context);
     require_host(stream.native_handle(), host);
     return secure_stream(std::move(stream), asio::ssl::stream_base::client);

@@ -18,7 +18,8 @@ using StreamSocket = boost::asio::ip::tcp::socket;
 /// short.
 std::shared_ptr<FramedStream> plain_stream(StreamSocket socket);
 /// Make a stream over TLS, as the server or as the client; `host` is the name or the address that the certificate is
-/// checked against (InputError where it is neither).
+/// checked against (InputError where it is neither). Throw std::bad_alloc or std::system_error where there is no
+/// memory.
 std::shared_ptr<FramedStream> tls_server_stream(StreamSocket socket,
                                                 std::shared_ptr<boost::asio::ssl::context> const& context);
 std::shared_ptr<FramedStream> tls_client_stream(StreamSocket socket,

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <new>
 #include <utility>
 
 #include <openssl/pem.h>
@@ -50,10 +51,13 @@ void require(boost::system::error_code const& error, std::string const& what, st
     throw InputError(what + " '" + file + "' cannot be used: " + (swapped ? mistaken : error.message()));
 }
 
+/// Throws std::bad_alloc where there is no memory for it.
 std::string fingerprint_of(X509 const* certificate) {
     std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
     unsigned size = 0;
-    FRAMELET_CHECK(X509_digest(certificate, EVP_sha256(), digest.data(), &size) == 1);
+    if (X509_digest(certificate, EVP_sha256(), digest.data(), &size) != 1) {
+        throw std::bad_alloc();
+    }
     std::string text;
     for (unsigned i = 0; i < size; ++i) {
         text += i > 0 ? ":" : "";
@@ -75,19 +79,27 @@ struct JudgedContext {
     CertificateJudge judge;
 };
 
-/// Verifies in place of the library's own function, which it calls first.
-int verify(X509_STORE_CTX* store, void* judged) {
-    CertificateJudge const& judge = static_cast<JudgedContext const*>(judged)->judge;
+bool is_trusted(X509_STORE_CTX* store, CertificateJudge const& judge) {
     if (X509_verify_cert(store) == 1) {
         judge("");
-        return 1;
+        return true;
     }
     bool const trusted =
         is_of_unknown_origin(X509_STORE_CTX_get_error(store)) && judge(fingerprint_of(X509_STORE_CTX_get0_cert(store)));
     if (trusted) {
         X509_STORE_CTX_set_error(store, X509_V_OK);
     }
-    return trusted ? 1 : 0;
+    return trusted;
+}
+
+/// Verifies in place of the library's own function, which it calls first. Nothing may be thrown through the library.
+int verify(X509_STORE_CTX* store, void* judged) {
+    try {
+        return is_trusted(store, static_cast<JudgedContext const*>(judged)->judge) ? 1 : 0;
+    } catch (std::exception const&) {
+        X509_STORE_CTX_set_error(store, X509_V_ERR_OUT_OF_MEM);
+        return 0;
+    }
 }
 
 } // namespace

@@ -1,6 +1,8 @@
 #include "server/session/listener.h"
 
 #include <algorithm>
+#include <exception>
+#include <new>
 #include <utility>
 
 #include <boost/asio/ip/v6_only.hpp>
@@ -131,19 +133,22 @@ void Listener::accept_at(Door& door) {
         if (!door.acceptor.is_open()) {
             return;
         }
+        std::string failure = error ? error.message() : "";
         if (!error) {
             try {
                 take_(std::move(socket));
             } catch (std::bad_alloc const&) { // that connection is closed
-                error = boost::system::errc::make_error_code(boost::system::errc::not_enough_memory);
+                failure = "no memory left";
+            } catch (std::exception const& thrown) {
+                failure = thrown.what();
             }
         }
-        if (!error) {
+        if (failure.empty()) {
             accept_at(door);
             return;
         }
         if (auto const more = failures_.next(std::chrono::steady_clock::now())) {
-            spdlog::warn("cannot accept a connection: {}{}", error.message(), *more);
+            spdlog::warn("cannot accept a connection: {}{}", failure, *more);
         }
         door.again.expires_after(pause);
         door.again.async_wait([this, &door](Error) {

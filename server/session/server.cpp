@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <csignal>
+#include <exception>
 #include <new>
 #include <random>
 #include <thread>
@@ -64,7 +65,7 @@ struct Server::Impl {
     ClockRequests clock_requests; ///< for the io thread only, as all that follows unless it says otherwise
     Admission admission;
     WaitingRoom waiting;
-    LogLimit turned_away, without_memory; ///< of what the log says of such connections, and of missing memory
+    LogLimit turned_away, failures; ///< of what the log says of such connections, and of what fails for a moment
     std::minstd_rand random{std::random_device{}()};
     Farewells farewells;
 
@@ -126,11 +127,11 @@ struct Server::Impl {
     void post_status() {
         try {
             asio::post(io, [this] { send_status(); });
-        } catch (std::bad_alloc const&) { // the next heartbeat says the same
+        } catch (std::exception const&) { // the next heartbeat says the same
         }
     }
 
-    /// Adds a connection. Throws std::bad_alloc, and then nothing is left of the connection.
+    /// Adds a connection. Where it throws, mostly for want of memory, nothing is left of the connection.
     void add_connection(tcp::socket socket) {
         boost::system::error_code error;
         auto const endpoint = socket.remote_endpoint(error);
@@ -140,7 +141,7 @@ struct Server::Impl {
         std::uint64_t const id = next_id++;
         try {
             add_connection(id, std::move(socket), endpoint);
-        } catch (std::bad_alloc const&) {
+        } catch (...) {
             if (Connection* const found = connections.find(id)) {
                 found->stream->close(); // it may have begun to read
             }
@@ -335,8 +336,8 @@ struct Server::Impl {
         beats = true;
     }
 
-    /// Runs until everything is closed. Memory that is missing for something that is no session's own is missing for a
-    /// moment, and what has not been done for that is done then.
+    /// Runs until everything is closed. What fails here is no session's own. Memory is missing for a moment, and what
+    /// has not been done for that is done then.
     void run_io() {
         for (bool is_to_recover = false;;) {
             try {
@@ -349,10 +350,11 @@ struct Server::Impl {
                 }
                 io.run();
                 return;
-            } catch (std::bad_alloc const&) {
+            } catch (std::exception const& error) {
                 is_to_recover = true;
-                if (auto const more = without_memory.next(steady_clock::now())) {
-                    spdlog::warn("no memory left for a moment{}", *more);
+                if (auto const more = failures.next(steady_clock::now())) {
+                    bool const memory = dynamic_cast<std::bad_alloc const*>(&error) != nullptr;
+                    spdlog::warn("{}{}", memory ? "no memory left for a moment" : error.what(), *more);
                 }
                 std::this_thread::sleep_for(std::chrono::milliseconds(5));
             }

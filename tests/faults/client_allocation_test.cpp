@@ -7,6 +7,7 @@
 #include "common/error.h"
 #include "tests/faults/failing_allocations.h"
 #include "tests/loopback/process.h"
+#include "tests/protocol/tls_identity.h"
 
 namespace framelet::test {
 namespace {
@@ -49,17 +50,26 @@ Outcome look(ConnectionOptions const& options, Picture& picture) {
         }
         core.set_view(core.welcome().start_camera, viewport);
         return come_to_rest(core, picture) ? Outcome::complete : Outcome::not_complete;
-    } catch (std::bad_alloc const&) {
-        return Outcome::thrown;
-    } catch (ConnectionError const&) {
+    } catch (std::exception const&) {
         return Outcome::thrown;
     }
 }
 
-TEST(ClientAllocation, FailsAndIsSaidOrMadeUpFor) {
-    ServerProcess const server(FRAMELET_SOURCE_DIR "/scenes/vehicle_chase.glb",
-                               {"--paused", "--exposure", "0", "--insecure"});
-    ConnectionOptions const options = options_of(server.address());
+/// The parameter says whether the connection is of TLS.
+class ClientAllocation : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(Tls, ClientAllocation, testing::Values(false, true));
+
+TEST_P(ClientAllocation, FailsAndIsSaidOrMadeUpFor) {
+    std::vector<std::string> server_options{"--paused", "--exposure", "0", "--insecure"};
+    Identity const identity("server");
+    if (GetParam()) {
+        server_options.insert(server_options.end(),
+                              {"--tls-cert", identity.certificate_file(), "--tls-key", identity.key_file()});
+    }
+    ServerProcess const server(FRAMELET_SOURCE_DIR "/scenes/vehicle_chase.glb", server_options);
+    ConnectionOptions options = options_of(server.address());
+    options.tls = GetParam();
+    options.authority_file = GetParam() ? identity.certificate_file() : "";
     Picture exact;
     ASSERT_EQ(look(options, exact), Outcome::complete);
     std::uint64_t allocations = 0;

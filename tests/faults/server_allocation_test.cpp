@@ -1,10 +1,14 @@
 // Lets memory run out anywhere in a running server: at most the session for which it was wanted ends, the others and
 // whoever comes next are served, and nothing is kept of who has left.
+#include <csignal>
+#include <optional>
+
 #include <gtest/gtest.h>
 
 #include "tests/evaluation/soak/process_watch.h"
 #include "tests/faults/failing_allocations.h"
-#include "tests/session/raw_viewer.h"
+#include "tests/faults/tls_viewer.h"
+#include "tests/protocol/tls_identity.h"
 #include "tests/session/running_server.h"
 
 namespace framelet::test {
@@ -12,10 +16,15 @@ namespace {
 
 constexpr std::size_t places = 2;
 
+struct Door {
+    std::uint16_t port;
+    bool tls;
+};
+
 /// A viewer of the test's own, whose thread is spared.
 class Looker {
 public:
-    explicit Looker(std::uint16_t port) : port_(port), viewer_(std::make_unique<RawViewer>(port, hello_)) {}
+    explicit Looker(Door const& door) : door_(door) { connect(); }
 
     /// True once a batch of a new camera has come; false where the session has ended.
     bool look() {
@@ -32,12 +41,20 @@ public:
     /// Cuts its connection and resumes its session by another.
     void come_back() {
         viewer_.reset();
-        viewer_ = std::make_unique<RawViewer>(port_, hello_);
+        connect();
     }
     void set_clock() { viewer_->send(ClockRequest{ClockRequest::time, {0.5, true, 1}}); }
 
 private:
-    std::uint16_t const port_;
+    void connect() {
+        if (door_.tls) {
+            viewer_ = std::make_unique<TlsViewer>(door_.port, hello_);
+        } else {
+            viewer_ = std::make_unique<RawViewer>(door_.port, hello_);
+        }
+    }
+
+    Door const door_;
     Hello hello_{protocol_version, {}, coding::all, {}, 0};
     std::unique_ptr<RawViewer> viewer_;
     std::uint64_t number_ = 0;
@@ -45,10 +62,10 @@ private:
 
 /// True where two viewers are served at once before a minute is over; they may be refused while places are being given
 /// back.
-bool both_are_served(std::uint16_t port) {
+bool both_are_served(Door const& door) {
     auto const deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
     while (std::chrono::steady_clock::now() < deadline) {
-        Looker first(port), second(port);
+        Looker first(door), second(door);
         if (first.look() && second.look()) {
             return true;
         }
@@ -72,8 +89,8 @@ bool come_back_to(std::size_t descriptors) {
 
 /// Does what is done while an allocation may fail: one viewer was there before, one comes, sees something and comes
 /// back. Returns how many of the two sessions go on.
-int busy_moment(std::uint16_t port, Looker& earlier) {
-    Looker later(port);
+int busy_moment(Door const& door, Looker& earlier) {
+    Looker later(door);
     bool later_goes_on = later.look();
     bool earlier_goes_on = earlier.look();
     earlier.set_clock();
@@ -84,16 +101,32 @@ int busy_moment(std::uint16_t port, Looker& earlier) {
     return (later_goes_on ? 1 : 0) + (earlier_goes_on ? 1 : 0);
 }
 
-/// The parameter is how many more allocations fail in a row.
-class ServerAllocation : public testing::TestWithParam<std::uint64_t> {};
-INSTANTIATE_TEST_SUITE_P(More, ServerAllocation, testing::Values(0, 4));
+struct Missing {
+    std::uint64_t more; ///< allocations that fail in a row after the first
+    std::size_t samples; ///< how often some fail, about
+    bool tls;
+};
+
+class ServerAllocation : public testing::TestWithParam<Missing> {};
+INSTANTIATE_TEST_SUITE_P(Missing, ServerAllocation,
+                         testing::Values(Missing{0, 80, false}, Missing{4, 20, false}, Missing{0, 60, true},
+                                         Missing{4, 20, true}));
 
 TEST_P(ServerAllocation, FailsAndTheOthersGoOn) {
     SparedFromFailure const spared;
+    std::signal(SIGPIPE, SIG_IGN); // as the server does
+    auto const [more, samples, tls] = GetParam();
     ServerOptions options;
     options.max_sessions = places;
+    std::optional<Identity> identity;
+    if (tls) {
+        identity.emplace("server");
+        options.tls_certificate = identity->certificate_file();
+        options.tls_key = identity->key_file();
+    }
     RunningServer const server(options, moving_scene());
-    ASSERT_TRUE(both_are_served(server.port()));
+    Door const door{server.port(), tls};
+    ASSERT_TRUE(both_are_served(door));
     std::size_t const descriptors = [&] {
         std::size_t least = 1000;
         for (int i = 0; i < 400; ++i) { // by then the descriptors of the viewers before are closed
@@ -104,26 +137,26 @@ TEST_P(ServerAllocation, FailsAndTheOthersGoOn) {
     }();
     std::uint64_t allocations = 0;
     {
-        Looker earlier(server.port());
+        Looker earlier(door);
         ASSERT_TRUE(earlier.look());
         FailingAllocation const counts(UINT64_MAX);
-        EXPECT_EQ(busy_moment(server.port(), earlier), 2);
+        EXPECT_EQ(busy_moment(door, earlier), 2);
         allocations = counts.count();
     }
     int ended = 0;
-    for (std::uint64_t const number : sampled_allocations(allocations, GetParam() == 0 ? 80 : 20)) {
-        ASSERT_TRUE(both_are_served(server.port())) << "before allocation " << number << " fails";
+    for (std::uint64_t const number : sampled_allocations(allocations, samples)) {
+        ASSERT_TRUE(both_are_served(door)) << "before allocation " << number << " fails";
         ASSERT_TRUE(come_back_to(descriptors)) << "before allocation " << number << " fails";
         {
-            Looker earlier(server.port());
+            Looker earlier(door);
             ASSERT_TRUE(earlier.look());
-            FailingAllocation const fails(number, GetParam());
-            int const go_on = busy_moment(server.port(), earlier);
-            EXPECT_GE(go_on, GetParam() == 0 ? 1 : 0) << "both have ended after allocation " << number << " failed";
+            FailingAllocation const fails(number, more);
+            int const go_on = busy_moment(door, earlier);
+            EXPECT_GE(go_on, more == 0 ? 1 : 0) << "both have ended after allocation " << number << " failed";
             ended += 2 - go_on;
         }
     }
-    EXPECT_TRUE(both_are_served(server.port()));
+    EXPECT_TRUE(both_are_served(door));
     EXPECT_TRUE(come_back_to(descriptors));
     EXPECT_GT(ended, 0) << "some of the allocations were a session's";
 }

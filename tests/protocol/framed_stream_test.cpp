@@ -136,6 +136,19 @@ TEST_F(FramedStreamTest, LimitCanChange) {
     EXPECT_TRUE(end.wait_for_messages(2));
 }
 
+TEST_F(FramedStreamTest, WhateverFailsForAMessageEndsThatConnection) {
+    std::promise<std::string> ended;
+    boost::asio::post(thread_.io, [&] {
+        end.stream->start({[](Message const&) { throw std::runtime_error("it cannot be done"); },
+                           [&](std::string reason) { ended.set_value(std::move(reason)); },
+                           {}},
+                          max_message_bytes);
+    });
+    write(framed(encode_message(Ack{})));
+    EXPECT_EQ(ended.get_future().get(), "it cannot be done");
+    EXPECT_EQ(failure_sent(), "it cannot be done");
+}
+
 TEST_F(FramedStreamTest, GarbageIsRefused) {
     end.start(thread_);
     write(framed(Bytes(40, std::byte{0x55})));

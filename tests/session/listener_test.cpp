@@ -47,6 +47,29 @@ TEST(Listener, AcceptsAtAllAddressesThatThereAre) {
     EXPECT_EQ(accepted, here.size());
 }
 
+TEST(Listener, WhateverFailsForOneConnectionTheNextIsAccepted) {
+    Listener listener({asio::ip::address_v4::loopback()}, 0);
+    listener.listen();
+    int accepted = 0;
+    listener.accept([&](tcp::socket) {
+        switch (++accepted) {
+        case 1:
+            throw std::bad_alloc();
+        case 2:
+            throw boost::system::system_error(asio::error::access_denied);
+        default:
+            listener.close();
+        }
+    });
+    asio::io_context io;
+    std::vector<tcp::socket> viewers;
+    for (int i = 0; i < 3; ++i) {
+        viewers.emplace_back(io).connect(listener.endpoints().front());
+    }
+    listener.io.run();
+    EXPECT_EQ(accepted, 3);
+}
+
 TEST(Listener, BothVersionsOfAllAddressesGoTogether) {
     std::vector<asio::ip::address> const all{asio::ip::address_v6::any(), asio::ip::address_v4::any()};
     EXPECT_EQ(Listener(all, 0).endpoints().size(), is_here(all[0]) ? 2u : 1u);

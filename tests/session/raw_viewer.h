@@ -21,12 +21,12 @@ class RawViewer {
 public:
     explicit RawViewer(std::uint16_t port, std::uint32_t codings = coding::all, std::string const& token = {})
         : RawViewer(port, Hello{protocol_version, token, codings}) {}
-    RawViewer(std::uint16_t port, Hello const& hello) {
-        socket_.connect({boost::asio::ip::address_v4::loopback(), port});
-        timeval const most_wait{30, 0};
-        ::setsockopt(socket_.native_handle(), SOL_SOCKET, SO_RCVTIMEO, &most_wait, sizeof most_wait);
-        send(encode_message(hello));
+    RawViewer(std::uint16_t port, Hello const& hello) : RawViewer(port, Silent{}) {
+        RawViewer::write(frame_of(encode_message(hello)));
     }
+    virtual ~RawViewer() = default;
+    RawViewer(RawViewer const&) = delete;
+    RawViewer& operator=(RawViewer const&) = delete;
 
     /// Does nothing where the server has ended the connection.
     void send(Bytes const& body) { write(frame_of(body)); }
@@ -75,6 +75,29 @@ public:
         return failure_;
     }
 
+protected:
+    struct Silent {};
+    /// Connects, and says nothing.
+    RawViewer(std::uint16_t port, Silent) {
+        socket_.connect({boost::asio::ip::address_v4::loopback(), port});
+        timeval const most_wait{30, 0};
+        ::setsockopt(socket_.native_handle(), SOL_SOCKET, SO_RCVTIMEO, &most_wait, sizeof most_wait);
+    }
+
+    int socket() { return socket_.native_handle(); }
+
+    /// Does nothing where the connection has ended.
+    virtual void write(Bytes const& bytes) {
+        boost::system::error_code ignored;
+        boost::asio::write(socket_, boost::asio::buffer(bytes), ignored);
+    }
+
+    /// Reads by the system's own call, since Asio's takes a timeout for a reason to wait on. False where not as much
+    /// comes.
+    virtual bool read(void* to, std::size_t size) {
+        return ::recv(socket(), to, size, MSG_WAITALL) == static_cast<ssize_t>(size);
+    }
+
 private:
     static Bytes frame_of(Bytes const& body) {
         Bytes frame(4);
@@ -83,16 +106,6 @@ private:
         }
         frame.insert(frame.end(), body.begin(), body.end());
         return frame;
-    }
-
-    void write(Bytes const& bytes) {
-        boost::system::error_code ignored;
-        boost::asio::write(socket_, boost::asio::buffer(bytes), ignored);
-    }
-
-    /// Reads by the system's own call, since Asio's takes a timeout for a reason to wait on.
-    bool read(void* to, std::size_t size) {
-        return ::recv(socket_.native_handle(), to, size, MSG_WAITALL) == static_cast<ssize_t>(size);
     }
 
     boost::asio::io_context io_{1};

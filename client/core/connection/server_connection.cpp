@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <concepts>
+#include <exception>
 #include <future>
 #include <mutex>
 #include <new>
@@ -133,20 +134,30 @@ struct ServerConnection::Impl {
         }
     }
 
-    /// Runs the connection until there is nothing more to do or it is stopped. Where memory is missing the session
-    /// ends.
+    /// Runs the connection until there is nothing more to do or it is stopped. Where something fails, mostly because
+    /// memory is missing, the session ends.
     void run() {
-        for (bool is_to_end = false;;) {
+        for (std::exception_ptr failure;;) {
             try {
-                if (std::exchange(is_to_end, false)) {
-                    end("no memory left for what comes from the server at " + server);
+                if (failure) {
+                    end_after(std::exchange(failure, nullptr));
                 }
                 io.run();
                 return;
-            } catch (std::bad_alloc const&) {
-                is_to_end = true;
+            } catch (std::exception const&) {
+                failure = std::current_exception();
                 std::this_thread::sleep_for(std::chrono::milliseconds(5));
             }
+        }
+    }
+
+    void end_after(std::exception_ptr const& failure) {
+        try {
+            std::rethrow_exception(failure);
+        } catch (std::bad_alloc const&) {
+            end("no memory left for what comes from the server at " + server);
+        } catch (std::exception const& error) {
+            end("the session with the server at " + server + " cannot go on: " + error.what());
         }
     }
 
@@ -325,7 +336,7 @@ struct ServerConnection::Impl {
             attempted->close_after_sending();
             io.restart();
             io.run_for(most_time);
-        } catch (std::bad_alloc const&) { // the server notices by itself
+        } catch (std::exception const&) { // the server notices by itself
         }
     }
 

@@ -1,8 +1,8 @@
 #include "server/session/figures/metrics_port.h"
 
 #include <chrono>
+#include <exception>
 #include <memory>
-#include <new>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -108,7 +108,7 @@ struct MetricsPort::Impl {
                 listener.accept_again();
                 listener.io.run();
                 return;
-            } catch (std::bad_alloc const&) { // it costs the one who asked, not those who come later
+            } catch (std::exception const&) { // it costs the one who asked, not those who come later
                 std::this_thread::sleep_for(Listener::pause);
             }
         }
