@@ -35,7 +35,9 @@ protected:
         if (!std::filesystem::exists("/usr/bin/Xvfb") || !std::filesystem::exists("/usr/bin/xdotool")) {
             GTEST_SKIP() << "there is no Xvfb, or no xdotool";
         }
-        screen_.emplace("/usr/bin/Xvfb", std::vector<std::string>{"-displayfd", "1", "-screen", "0", "640x480x24"});
+        // Without -noreset a program that comes while the last one leaves finds no screen.
+        screen_.emplace("/usr/bin/Xvfb",
+                        std::vector<std::string>{"-displayfd", "1", "-noreset", "-screen", "0", "640x480x24"});
         ASSERT_TRUE(eventually([&] { return has(screen_->output(), "\n") || !screen_->running(); }));
         ::setenv("DISPLAY", (":" + screen_->output().substr(0, screen_->output().find('\n'))).c_str(), 1);
         ::unsetenv("WAYLAND_DISPLAY");
