@@ -100,7 +100,7 @@ TEST(FrameletPool, MemoryIsBoundedHoweverManyCamerasThereAre) {
     for (std::uint64_t camera = 1; camera < 500; ++camera) {
         Batch batch = seen_from(camera, camera, small_tile);
         for (Tile const tile : visible_tiles(plane, plane.max_depth())) {
-            batch.framelets.push_back(constant_framelet(plane, small_tile, 1));
+            batch.framelets.push_back(constant_framelet(plane, tile, 1));
         }
         pool.insert(batch, {});
         if (camera == 2 * FrameletPool::most_moments) {
@@ -117,7 +117,7 @@ TEST(FrameletPool, RoomForAPictureAtRestIsNotKeptByEachMoment) {
     auto const look = [&](int depth) {
         std::vector<DisplayFramelet> framelets;
         for (Tile const tile : visible_tiles(large, depth)) {
-            framelets.push_back(constant_framelet(large, small_tile, 1));
+            framelets.push_back(constant_framelet(large, tile, 1));
         }
         Batch batch = make_batch(large, ++camera, std::move(framelets));
         batch.view.number = camera;
