@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <condition_variable>
 #include <cstdio>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <thread>
 
 #include <unistd.h>
 
@@ -18,41 +20,69 @@ int percent_of(double fraction) {
     return static_cast<int>(100 * std::clamp(fraction, 0.0, 1.0));
 }
 
+/// The line, drawn anew with each report and, for the time in it, now and then between reports.
 class Bar {
 public:
+    Bar() : ticker_([this](std::stop_token const& stop) { tick(stop); }) {}
+    ~Bar() {
+        ticker_.request_stop();
+        ticker_.join();
+        end_line();
+    }
+    Bar(Bar const&) = delete;
+    Bar& operator=(Bar const&) = delete;
+
     void show(std::string_view what, double fraction) {
         std::scoped_lock const lock(mutex_);
-        Clock::time_point const now = Clock::now();
         bool const is_new = stage_ != what;
-        int const percent = percent_of(fraction);
         if (is_new) {
-            if (!stage_.empty() && percent_ < 100) {
-                std::fputc('\n', stderr);
-            }
+            end_line();
             stage_ = what;
-            began_ = now;
+            began_ = Clock::now();
             fraction_ = 0;
-        } else if (percent_ == 100 || (percent <= percent_ && now - drawn_ < least_pause)) {
-            return;
+        } else if (percent_of(fraction) <= percent_of(fraction_)) {
+            return; // of threads that report at once the later ones may be heard first
         }
-        fraction_ = std::max(fraction_, fraction); // of threads that report at once the later ones may be heard first
-        percent_ = percent_of(fraction_);
-        drawn_ = now;
-        constexpr char const* to_the_end = "\x1b[K"; // erases what is left of a longer line
-        std::string const line = progress_line(stage_, fraction_, std::chrono::duration<double>(now - began_).count());
-        std::fprintf(stderr, "\r%s%s%s", line.c_str(), to_the_end, percent_ == 100 ? "\n" : "");
-        std::fflush(stderr);
+        fraction_ = fraction;
+        draw();
     }
 
 private:
     using Clock = std::chrono::steady_clock;
-    static constexpr std::chrono::milliseconds least_pause{100}; ///< between lines that differ by their times alone
+
+    bool is_open() const { return !stage_.empty() && percent_of(fraction_) < 100; }
+
+    void end_line() const {
+        if (is_open()) {
+            std::fputc('\n', stderr);
+        }
+    }
+
+    void draw() const {
+        constexpr char const* to_the_end = "\x1b[K"; // erases what is left of a longer line
+        double const seconds = std::chrono::duration<double>(Clock::now() - began_).count();
+        std::fprintf(stderr, "\r%s%s%s", progress_line(stage_, fraction_, seconds).c_str(), to_the_end,
+                     is_open() ? "" : "\n");
+        std::fflush(stderr);
+    }
+
+    void tick(std::stop_token const& stop) {
+        constexpr std::chrono::milliseconds interval{500};
+        std::unique_lock lock(mutex_);
+        while (!stop.stop_requested()) {
+            stopped_.wait_for(lock, stop, interval, [] { return false; });
+            if (is_open() && !stop.stop_requested()) {
+                draw();
+            }
+        }
+    }
 
     std::mutex mutex_; // loading reports from several threads
     std::string stage_;
     double fraction_ = 0;
-    int percent_ = 0;
-    Clock::time_point began_, drawn_;
+    Clock::time_point began_;
+    std::condition_variable_any stopped_;
+    std::jthread ticker_; ///< after what it uses
 };
 
 } // namespace

@@ -22,7 +22,7 @@ constexpr double begin = 1; ///< scene time, seconds; the walk has begun half a 
 constexpr double settling = 1; ///< seconds of the measured walk until the error is that of any later time
 constexpr double walking = 2.5, standing = 1; ///< seconds of the run that the camera walks, then stands
 constexpr double stay = 0.5; ///< seconds that the camera stays after a jump
-constexpr double rate = 30; ///< measurements a second after a jump
+constexpr double jump_rate = 30; ///< measurements a second after a jump
 constexpr float most_turn = 40; ///< greatest turn at a jump, degrees to either side
 constexpr double most_rise = 1.02;
 
@@ -92,13 +92,13 @@ json jump(BenchScene& scene, CameraPath const& path, OwnCameraOptions const& opt
     run.frames_per_second = options.jump_machine;
     run.start = begin;
     run.seconds = stay * options.jumps;
-    run.reference_rate = rate;
+    run.reference_rate = jump_rate;
     // At the beginning of the run the first jump is due, and has just happened.
     scene.flown = [&](SceneTime time) {
         double const jumps = std::floor((time - begin) / stay + 1e-6) + 1;
         return cameras[static_cast<std::size_t>(std::clamp(jumps, 0.0, static_cast<double>(options.jumps)))];
     };
-    std::size_t const each = static_cast<std::size_t>(std::lround(stay * rate));
+    std::size_t const each = static_cast<std::size_t>(std::lround(stay * jump_rate));
     Picture reference;
     std::vector<double> const errors = errors_of(scene, run, options.costs, [&](std::size_t i) {
         if (i % each == 0) {

@@ -130,7 +130,7 @@ TEST(PartAllocation, AReloadThatFailsIsNotTheLast) {
             ++loads;
             throw InputError("a file that does not load at all, which a line says");
         };
-        SceneReloader reloader(FileWatch{}, file, {}, {}, load, [](auto const&) {});
+        SceneReloader reloader(FileWatch{}, {file}, {}, {}, load, [](auto const&) {});
         for (int i = 1; i <= 3; ++i) {
             reloader.ask();
             EXPECT_TRUE(eventually([&] { return loads >= i; }));

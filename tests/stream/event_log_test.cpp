@@ -19,7 +19,7 @@ struct TemporaryFile {
 
 TEST(EventLog, GivesBackWhatWasAdded) {
     TemporaryFile const file;
-    ServedScene const served{"a scene", "", {1, 2}, 0.1f, -0.5, 7};
+    ServedScene const served{{"a scene", "another"}, "", {1, 2}, 0.1f, -0.5, 7};
     CameraUpdate camera;
     camera.view = {3, {}, {64, 48}};
     EncodedBatch batch;
@@ -43,7 +43,7 @@ TEST(EventLog, GivesBackWhatWasAdded) {
         log.add_batch(11, batch);
     }
     EventLogReader reader(file.path);
-    EXPECT_EQ(reader.served().scene, served.scene);
+    EXPECT_EQ(reader.served().scenes, served.scenes);
     EXPECT_EQ(reader.served().clips, served.clips);
     EXPECT_EQ(reader.served().exposure, served.exposure);
     EXPECT_EQ(reader.served().bias, served.bias);

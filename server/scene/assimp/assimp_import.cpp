@@ -23,6 +23,16 @@ namespace {
 /// cannot fit is thus refused before it is read.
 constexpr std::uint64_t memory_per_file_byte = 8;
 
+/// What Assimp does once a file is read; of how far it is in one of these it says nothing.
+struct LastStep {
+    char const* name;
+    unsigned flags;
+};
+constexpr LastStep last_steps[] = {
+    {"smoothing normals", aiProcess_FlipUVs | aiProcess_TransformUVCoords | aiProcess_GenSmoothNormals},
+    {"joining vertices", aiProcess_JoinIdenticalVertices},
+};
+
 /// Normals of a file without any are smooth across edges up to this angle.
 constexpr float crease_degrees = 66;
 
@@ -59,16 +69,13 @@ public:
     bool Update(float) override {
         return held_.call([] {});
     }
-    void UpdateFileRead(int byte, int bytes) override { report("reading", byte, bytes); }
-    void UpdatePostProcess(int step, int steps) override { report("completing meshes", step, steps); }
-
-private:
-    void report(char const* what, int done, int all) {
-        if (all > 0) { // it counts bytes in 32 bits: of a file of 2 GiB nothing is said
-            held_.call([&] { progress_(what, static_cast<double>(done) / all); });
+    void UpdateFileRead(int byte, int bytes) override {
+        if (bytes > 0) { // it counts in 32 bits: of a file of 2 GiB nothing is said
+            held_.call([&] { progress_("reading", static_cast<double>(byte) / bytes); });
         }
     }
 
+private:
     Progress const& progress_;
     HeldException& held_;
 };
@@ -172,12 +179,17 @@ Scene import_assimp(std::filesystem::path const& file, SceneFolder const& folder
             limit.emplace(budget.left()); // Assimp takes memory without asking
         }
         from = importer.ReadFile(file.string(), aiProcess_ValidateDataStructure);
-        if (from && held.call([] {})) {
+        if (from && held.call([&] { progress("triangulating", 0); })) {
             for (unsigned m = 0; m < from->mNumMeshes; ++m) {
                 triangulate_faces(*from->mMeshes[m]);
+                held.call([&] { progress("triangulating", (m + 1.0) / from->mNumMeshes); });
             }
-            from = importer.ApplyPostProcessing(aiProcess_GenSmoothNormals | aiProcess_JoinIdenticalVertices |
-                                                aiProcess_FlipUVs | aiProcess_TransformUVCoords);
+        }
+        for (LastStep const& step : last_steps) {
+            if (from && held.call([&] { progress(step.name, 0); })) {
+                from = importer.ApplyPostProcessing(step.flags);
+                held.call([&] { progress(step.name, 1); });
+            }
         }
     } catch (std::bad_alloc const&) {
         throw budget.too_large();
