@@ -50,7 +50,7 @@ int main(int argc, char** argv) {
     std::string size = "1280x720";
     bool fullscreen = false;
     std::string painter = "auto";
-    DisplayArguments display;
+    DisplayChoice display;
     std::vector<std::string> scenes;
     bool needs_scene = false;
     std::vector<std::string> server_options;
@@ -139,9 +139,8 @@ int main(int argc, char** argv) {
         if (!choice.complaint.empty()) {
             std::cerr << "framelet-viewer: " << choice.complaint << std::endl;
         }
-        int const result = Viewer(window, std::move(first), options_for, opener, display.settings(),
-                                  display.lag_seconds(), memory, std::move(choice))
-                               .run();
+        int const result =
+            Viewer(window, std::move(first), options_for, opener, display, memory, std::move(choice)).run();
         remember(window, memory);
         return result;
     } catch (std::exception const& error) {

@@ -58,6 +58,7 @@ struct ClientCore::Impl {
     AskedView asked;
     ViewerSettings viewer_settings;
     PictureSettings picture_settings;
+    DrawnOver drawn_over = DrawnOver::nothing;
     bool has_picture = false; ///< something is held of the newest viewport
     std::uint64_t last_batch = 0;
     bool is_on_canvas = false; ///< the last picture is on the canvas
@@ -279,6 +280,7 @@ struct ClientCore::Impl {
             stale = std::erase_if(taken, [this](Batch const& batch) { return !asked.wants(batch); });
             wanted = asked.view();
             settings = picture_settings;
+            pictures.set_drawn_over(drawn_over);
         }
         PictureMaker& maker = pictures.prepare(wanted, settings);
         Clock::time_point const before = Clock::now();
@@ -504,11 +506,27 @@ double ClientCore::making_seconds() const {
     return impl_->making.expected();
 }
 
-void ClientCore::draw_overlay(DrawnOver overlay, Picture& picture) const {
+void ClientCore::set_drawn_over(DrawnOver what) {
+    std::lock_guard const lock(impl_->mutex);
+    impl_->drawn_over = what;
+}
+
+void ClientCore::draw_overlay(Picture& picture) {
     std::lock_guard const lock(impl_->picture_mutex);
     if (impl_->pictures.current() != nullptr) {
-        impl_->pictures.shown().draw_over(overlay, picture);
+        impl_->pictures.draw_over(picture);
     }
+}
+
+bool ClientCore::overlay_fades() const {
+    {
+        std::lock_guard const lock(impl_->mutex);
+        if (impl_->drawn_over != DrawnOver::refresh_rate) {
+            return false;
+        }
+    }
+    std::lock_guard const lock(impl_->picture_mutex);
+    return impl_->pictures.current() != nullptr && impl_->pictures.drawn_over_fades();
 }
 
 std::optional<Vec3> ClientCore::point_at(Vec2 position) const {

@@ -72,10 +72,16 @@ public:
     /// Seconds that `update_picture` will take, most likely no longer.
     double making_seconds() const;
 
+    /// Sets what `draw_overlay` draws over pictures that are made from now on.
+    void set_drawn_over(DrawnOver what);
     /// Draws over a copy of the picture that `update_picture` made: outlines of the framelets that are held, as
-    /// `draw_outlines`, or how far its pixels are to be trusted, as `draw_confidence` (outlines as well, where nothing
-    /// is moved; while the scene is smoothed, of what came last). A picture of another size stays as it is.
-    void draw_overlay(DrawnOver overlay, Picture& picture) const;
+    /// `draw_outlines`, or of the newest batch alone, as `draw_arrivals`; how far its pixels are to be trusted, as
+    /// `draw_confidence` (outlines as well, where nothing is moved; while the scene is smoothed, of what came last);
+    /// how often places are replaced, as `RefreshRates`; or what nothing is held of, as `draw_holes`. A picture of
+    /// another size stays as it is.
+    void draw_overlay(Picture& picture);
+    /// True while what is drawn over changes though the picture does not.
+    bool overlay_fades() const;
 
     /// The point of the world that the last picture shows at this position, pixel coordinates; nothing where that is
     /// not known, or infinitely far. Takes about as long as a picture.

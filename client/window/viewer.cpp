@@ -6,8 +6,10 @@
 
 #include "client/core/picture/display_timing.h"
 #include "client/processes/end_signals.h"
+#include "client/window/kept/scene_memory.h"
 #include "client/window/overlay/help_text.h"
 #include "client/window/overlay/key_table.h"
+#include "client/window/overlay/lacks.h"
 #include "common/error.h"
 
 namespace framelet {
@@ -20,11 +22,13 @@ constexpr double idle_seconds = 0.25;
 } // namespace
 
 Viewer::Viewer(Window& window, Connection connection, OptionsFor options_for, SceneOpener& opener,
-               ViewerSettings const& settings, double lag_seconds, ViewerMemory& memory, CanvasChoice painter)
+               DisplayChoice const& choice, ViewerMemory& memory, CanvasChoice painter)
     : window_(window), connection_(std::move(connection.options)), options_for_(std::move(options_for)),
-      opener_(opener), memory_(memory), overlay_(window.handle()), settings_(settings), lag_seconds_(lag_seconds),
-      chosen_lag_seconds_(lag_seconds > 0 ? lag_seconds : usual_lag_seconds), painter_(std::move(painter)),
-      steady_size_(window.framebuffer_size()) {
+      opener_(opener), memory_(memory), overlay_(window.handle()), chosen_exposure_(choice.exposure_ev),
+      settings_(choice.settings()), lag_seconds_(choice.lag_seconds.value_or(memory.lag_seconds)),
+      chosen_lag_seconds_(lag_seconds_ > 0 ? lag_seconds_ : usual_lag_seconds), painter_(std::move(painter)),
+      steady_size_(window.framebuffer_size()), drawn_over_(choice.drawn_over) {
+    settings_.bias = memory_.bias;
     adopt(std::move(connection.core));
     if (note_.empty()) {
         say(core_->notice().empty() ? "F1: help" : core_->notice());
@@ -51,10 +55,11 @@ void Viewer::adopt(std::unique_ptr<ClientCore> core) {
     }
     lost_.clear();
     meter_ = RateMeter();
-    core_->set_settings(settings_);
     core_->set_smoothing(lag_seconds_);
+    core_->set_drawn_over(drawn_over_);
     if (same_scene) {
         scene_number_ = core_->scene_number();
+        core_->set_settings(settings_);
     } else {
         look_at_scene();
     }
@@ -75,10 +80,16 @@ void Viewer::look_at_scene() {
             std::cerr << "framelet-viewer: " << bookmarks_->complaint() << std::endl;
             say(bookmarks_->complaint(), long_note_seconds);
         }
+        remember_exposure();
+        settings_.exposure_ev = chosen_exposure_
+                                    ? *chosen_exposure_
+                                    : read_scene_memory(welcome.scene_name, welcome.scene_source).exposure_ev;
     }
+    core_->set_settings(settings_);
     scene_name_ = welcome.scene_name;
     scene_source_ = welcome.scene_source;
     controller_.emplace(welcome.start_camera, welcome.scene_bounds);
+    controller_->set_speed_factor(memory_.fly_speed);
     if (before) {
         controller_->set_camera(*before);
     }
@@ -148,7 +159,15 @@ int Viewer::run() {
         recorder_->wait();
         watch_recording();
     }
+    remember_exposure();
     return lost_.empty() || is_told_to_end() ? 0 : 1;
+}
+
+/// Keeps the exposure that was set by hand for the scene, if one was.
+void Viewer::remember_exposure() {
+    if (std::exchange(has_set_exposure_, false)) {
+        write_scene_memory(scene_name_, scene_source_, {settings_.exposure_ev});
+    }
 }
 
 /// Makes the picture on the graphics card, unless something is to be drawn over it in memory. Once that has failed the
@@ -195,17 +214,18 @@ bool Viewer::update_shown_picture() {
     if (old_picture_.is_better(has_other_size, has_other_size ? core_->statistics().coverage : 1, made_)) {
         return false;
     }
-    bool const toggled = std::exchange(overlay_toggled_, false) && !picture_.rgba.empty();
-    if (!changed && !toggled && !has_other_size) {
+    bool const is_drawn_anew =
+        (std::exchange(overlay_toggled_, false) || core_->overlay_fades()) && !picture_.rgba.empty();
+    if (!changed && !is_drawn_anew && !has_other_size) {
         return false;
     }
     bool const draws = drawn_over_ != DrawnOver::nothing;
-    if (draws || toggled) { // what is drawn ages everywhere
+    if (draws || is_drawn_anew) { // what is drawn ages everywhere
         changed_.assign(1, {0, 0, picture_.width, picture_.height});
     }
     if (draws) {
         overlaid_ = picture_;
-        core_->draw_overlay(drawn_over_, overlaid_);
+        core_->draw_overlay(overlaid_);
     }
     if (is_on_canvas_) {
         window_.show_texture(painter_.canvas->texture(), painter_.canvas->size());
@@ -213,7 +233,7 @@ bool Viewer::update_shown_picture() {
         window_.upload(draws ? overlaid_ : picture_, changed_);
     }
     uploaded_size_ = size;
-    if (recorder_ && !toggled) {
+    if (recorder_ && (changed || has_other_size)) {
         recorder_->add(shown_picture(), made_ - recording_since_);
     }
     return true;
@@ -307,13 +327,14 @@ CameraMenu Viewer::camera_menu(Welcome const& welcome) const {
     };
     out.current = scene_camera_ >= 0 ? name(out.scene_cameras, scene_camera_)
                                      : name(out.bookmarks, is_at_bookmark_ ? bookmark_ : -1);
+    out.files_lack = camera_file_lacks(present_camera());
     return out;
 }
 
 OverlayContent Viewer::overlay_content() {
     OverlayContent out;
     if (show_help_) {
-        out.help = help_rows(core_->controls());
+        out.help = help_rows(clock_lacks());
     }
     if (memory_.shows_statistics) {
         out.statistics = figures_;
@@ -321,13 +342,15 @@ OverlayContent Viewer::overlay_content() {
     }
     if (memory_.shows_bar) {
         Welcome const welcome = core_->welcome();
-        out.time_line = {core_->clock(), welcome.animation_duration, clock_fixed_because(), settings_.exposure_ev};
+        out.time_line = {core_->clock(), welcome.animation_duration, clock_lacks(), settings_.exposure_ev};
         out.cameras = camera_menu(welcome);
         out.bias = settings_.bias;
+        out.overlays = {drawn_over_, confidence_lacks(settings_.reproject)};
+        out.picture_lacks = picture_lacks(!picture_.rgba.empty());
     }
     // The core draws outlines instead where nothing is moved.
-    out.legend =
-        legend_of(drawn_over_ == DrawnOver::confidence && !settings_.reproject ? DrawnOver::outlines : drawn_over_);
+    bool const draws_ages = drawn_over_ == DrawnOver::confidence && !settings_.reproject;
+    out.legend = legend_of(draws_ages ? DrawnOver::ages : drawn_over_);
     if (seconds_now() < note_until_) {
         out.note = note_;
     }

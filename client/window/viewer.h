@@ -10,6 +10,7 @@
 #include "client/core/camera/camera_controller.h"
 #include "client/core/client_core.h"
 #include "client/core/picture/making_time.h"
+#include "client/display_choice.h"
 #include "client/gpu/canvas_choice.h"
 #include "client/video/recorder.h"
 #include "client/window/attempts.h"
@@ -26,11 +27,11 @@ namespace framelet {
 
 class Viewer {
 public:
-    /// `connection` wakes the window on news; `options_for` is for servers that the user names. `lag_seconds` as in
-    /// `ClientCore::set_smoothing`. Scenes that are dropped are opened by `opener`, what is to be remembered goes into
+    /// `connection` wakes the window on news; `options_for` is for servers that the user names. What `choice` does not
+    /// say is as it is remembered. Scenes that are dropped are opened by `opener`, what is to be remembered goes into
     /// `memory`; both must outlive this. `painter` is of the window's context.
     Viewer(Window& window, Connection connection, OptionsFor options_for, SceneOpener& opener,
-           ViewerSettings const& settings, double lag_seconds, ViewerMemory& memory, CanvasChoice painter);
+           DisplayChoice const& choice, ViewerMemory& memory, CanvasChoice painter);
 
     /// Runs until the user quits, or a signal tells the program to end. Returns the exit code: 1 where the user quit
     /// and the server was gone.
@@ -49,7 +50,7 @@ private:
     void apply(OverlayActions const& asked);
     void take_pivot(WindowInput const& input);
     void apply(Command command);
-    std::string clock_fixed_because() const;
+    std::string clock_lacks() const;
     void ask_clock(std::uint8_t fields, ClockState const& state);
     void step_clock(double seconds);
     void choose_scene_camera(int number);
@@ -58,6 +59,7 @@ private:
     void change_exposure(float stops);
     void change_bias(float step);
     void toggle_smoothing();
+    void draw_over(DrawnOver what);
     void save_screenshot(bool with_depth);
     void toggle_recording();
     void watch_recording();
@@ -77,6 +79,7 @@ private:
     void take_figures();
     CameraMenu camera_menu(Welcome const& welcome) const;
     OverlayContent overlay_content();
+    void remember_exposure();
     double seconds_now() const;
 
     Window& window_;
@@ -97,6 +100,8 @@ private:
     int bookmark_ = -1; ///< the one gone to last; -1: none
     bool is_at_bookmark_ = false; ///< the camera has not been moved since
     std::optional<Vec3> grabbed_; ///< point of the world that the hands have taken hold of, until the camera moves
+    std::optional<float> const chosen_exposure_; ///< of all scenes
+    bool has_set_exposure_ = false; ///< by hand, in this scene
     ViewerSettings settings_;
     double lag_seconds_; ///< 0: the scene is not smoothed
     double const chosen_lag_seconds_; ///< the lag when it is smoothed
@@ -113,7 +118,7 @@ private:
     OldPicture old_picture_;
     std::optional<Viewport> uploaded_size_; ///< of the picture that the window has
     bool show_help_ = false;
-    DrawnOver drawn_over_ = DrawnOver::nothing;
+    DrawnOver drawn_over_;
     bool overlay_toggled_ = false; ///< since the picture was uploaded
     Picture overlaid_; ///< the picture and what is drawn over it, if anything
     RateMeter meter_;

@@ -5,6 +5,7 @@
 #include "client/window/kept/user_files.h"
 #include "client/window/overlay/help_text.h"
 #include "client/window/overlay/key_table.h"
+#include "client/window/overlay/lacks.h"
 #include "client/window/viewer.h"
 #include "common/counted.h"
 #include "common/error.h"
@@ -16,8 +17,8 @@ namespace fs = std::filesystem;
 void Viewer::choose_scene_camera(int number) {
     std::vector<SceneCameraInfo> const cameras = core_->welcome().cameras;
     if (number >= static_cast<int>(cameras.size())) {
-        say(cameras.empty() ? "the scene has no cameras of its own"
-                            : "the scene has only " + counted(cameras.size(), "camera"));
+        std::string const lacks = scene_cameras_lack(cameras.size());
+        say(lacks.empty() ? "the scene has only " + counted(cameras.size(), "camera") : lacks);
         return;
     }
     scene_camera_ = number;

@@ -8,9 +8,11 @@
 #include <utility>
 
 #include "client/window/kept/film_file.h"
+#include "client/window/kept/scene_memory.h"
 #include "client/window/kept/user_files.h"
 #include "client/window/overlay/help_text.h"
 #include "client/window/overlay/key_table.h"
+#include "client/window/overlay/lacks.h"
 #include "client/window/viewer.h"
 #include "common/counted.h"
 #include "common/error.h"
@@ -24,7 +26,6 @@ namespace {
 
 constexpr double clock_step = 1.0 / 30;
 constexpr float exposure_step = 0.25f;
-constexpr float largest_exposure = 16;
 constexpr double seek_step = 1;
 constexpr float bias_step = 0.25f;
 
@@ -51,6 +52,7 @@ bool Viewer::apply(WindowInput const& input, double seconds) {
     }
     if (input.speed != 0) {
         controller_->change_speed(input.speed);
+        memory_.fly_speed = controller_->speed_factor();
         std::ostringstream text;
         float const speed = controller_->fly_speed();
         text << "flying at " << std::fixed << std::setprecision(speed < 10 ? 2 : 0) << speed << " m/s";
@@ -105,6 +107,9 @@ void Viewer::apply(OverlayActions const& asked) {
     }
     if (asked.address) {
         try_server(*asked.address);
+    }
+    if (asked.drawn_over) {
+        draw_over(*asked.drawn_over);
     }
 }
 
@@ -208,10 +213,7 @@ void Viewer::apply(Command command) {
         memory_.shows_bar = !memory_.shows_bar;
         break;
     case Command::next_overlay:
-        drawn_over_ = drawn_over_ == DrawnOver::nothing    ? DrawnOver::outlines
-                      : drawn_over_ == DrawnOver::outlines ? DrawnOver::confidence
-                                                           : DrawnOver::nothing;
-        overlay_toggled_ = true;
+        draw_over(next_of(drawn_over_));
         break;
     case Command::toggle_reprojection:
         settings_.reproject = !settings_.reproject;
@@ -251,14 +253,13 @@ void Viewer::apply(Command command) {
     }
 }
 
-/// The reason why the clock cannot be set from here; empty: it can.
-std::string Viewer::clock_fixed_because() const {
-    bool const is_gone = interrupted_ || !lost_.empty();
-    return is_gone ? "the server is gone: its clock cannot be set" : core_->controls() ? "" : watching_text;
+std::string Viewer::clock_lacks() const {
+    return framelet::clock_lacks(interrupted_ || !lost_.empty(), core_->welcome().animation_duration > 0,
+                                 core_->controls());
 }
 
 void Viewer::ask_clock(std::uint8_t fields, ClockState const& state) {
-    if (std::string reason = clock_fixed_because(); !reason.empty()) {
+    if (std::string reason = clock_lacks(); !reason.empty()) {
         say(std::move(reason));
         return;
     }
@@ -275,6 +276,7 @@ void Viewer::step_clock(double seconds) {
 
 void Viewer::change_exposure(float stops) {
     settings_.exposure_ev = std::clamp(settings_.exposure_ev + stops, -largest_exposure, largest_exposure);
+    has_set_exposure_ = true;
     core_->set_settings(settings_);
     std::ostringstream text;
     text << "exposure " << std::showpos << settings_.exposure_ev << " EV";
@@ -283,6 +285,7 @@ void Viewer::change_exposure(float stops) {
 
 void Viewer::change_bias(float step) {
     settings_.bias = std::clamp(settings_.bias + step, -1.0f, 1.0f);
+    memory_.bias = settings_.bias;
     core_->set_settings(settings_);
     std::ostringstream text;
     text << (settings_.bias < 0   ? "sharper while things move, "
@@ -293,14 +296,26 @@ void Viewer::change_bias(float step) {
 }
 
 void Viewer::toggle_smoothing() {
+    std::string lacks = smoothing_lacks(core_->welcome().animation_duration > 0, settings_.reproject);
+    if (lag_seconds_ == 0 && !lacks.empty()) {
+        say(std::move(lacks));
+        return;
+    }
     lag_seconds_ = lag_seconds_ > 0 ? 0 : chosen_lag_seconds_;
+    memory_.lag_seconds = lag_seconds_;
     core_->set_smoothing(lag_seconds_);
     say(lag_seconds_ > 0 ? "smooth, " + lag_text(lag_seconds_) : "going on from what is newest");
 }
 
+void Viewer::draw_over(DrawnOver what) {
+    drawn_over_ = what;
+    core_->set_drawn_over(what);
+    overlay_toggled_ = true;
+}
+
 void Viewer::save_screenshot(bool with_depth) {
-    if (picture_.rgba.empty()) {
-        say("there is no picture yet");
+    if (std::string lacks = picture_lacks(!picture_.rgba.empty()); !lacks.empty()) {
+        say(std::move(lacks));
         return;
     }
     std::error_code error;
@@ -328,8 +343,8 @@ void Viewer::toggle_recording() {
         recorder_->stop(seconds_now() - recording_since_);
         return;
     }
-    if (picture_.rgba.empty()) {
-        say("there is no picture yet");
+    if (std::string lacks = picture_lacks(!picture_.rgba.empty()); !lacks.empty()) {
+        say(std::move(lacks));
         return;
     }
     std::error_code error;

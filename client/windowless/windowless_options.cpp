@@ -39,19 +39,6 @@ SIGINT or SIGTERM ends it at once.)",
         {"framelet-server", "framelet-viewer", "framelet"}};
 }
 
-/// Puts the number of the kind of overlay in place of its name, which is what CLI11 reads an enumeration from.
-CLI::Validator overlay_kind() {
-    return {[](std::string& input) {
-                bool const outlines = input == "outlines";
-                if (!outlines && input != "confidence") {
-                    return "'" + input + "' is neither outlines nor confidence";
-                }
-                input = std::to_string(static_cast<int>(outlines ? DrawnOver::outlines : DrawnOver::confidence));
-                return std::string();
-            },
-            "outlines or confidence"};
-}
-
 } // namespace
 
 void add_windowless_options(CLI::App& app, WindowlessOptions& options) {
@@ -111,11 +98,6 @@ void add_windowless_options(CLI::App& app, WindowlessOptions& options) {
         ->type_name("FILE");
     app.add_flag("--json", options.json, "Print the statistics as JSON");
     add_display_options(app, options.display);
-    app.add_flag("--overlay{outlines}", options.overlay,
-                 "Draw into the pictures the outlines of the framelets that are held, fresh ones bright, or with "
-                 "KIND confidence how old and how coarse each pixel is and which are made up")
-        ->option_text("KIND")
-        ->transform(overlay_kind());
     app.option_defaults()->group("The scene's clock");
     CLI::Option* const play = app.add_flag("--play", options.play, "Let the scene's clock run");
     app.add_flag("--pause", options.pause, "Stop the scene's clock")->excludes(play);

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "client/connection_arguments.h"
-#include "client/core/picture/picture_maker.h"
 #include "client/display_arguments.h"
 
 namespace framelet {
@@ -25,9 +24,8 @@ struct WindowlessOptions {
     std::string sheet;
     std::string frames_file;
     bool json = false;
-    DrawnOver overlay = DrawnOver::nothing;
     bool until_converged = false;
-    DisplayArguments display;
+    DisplayChoice display;
     bool play = false;
     bool pause = false;
     std::optional<double> seek;

@@ -185,10 +185,10 @@ RunFigures show(ClientCore& core, WindowlessOptions const& options, std::optiona
         }
         ++run.frames;
         if (!sinks.empty()) {
-            bool const draws = options.overlay != DrawnOver::nothing;
+            bool const draws = options.display.drawn_over != DrawnOver::nothing;
             if (draws) {
                 overlaid = picture;
-                core.draw_overlay(options.overlay, overlaid);
+                core.draw_overlay(overlaid);
             }
             ShownFrame const frame{draws ? overlaid : picture, news, choice.takes(core.clock().time),
                                    seconds_since(start)};
@@ -248,7 +248,8 @@ Session look(WindowlessOptions const& options, ConnectionOptions const& connecti
                          " of the scene, which has " + std::to_string(cameras) + " (numbered from 0)");
     }
     core.set_settings(options.display.settings());
-    core.set_smoothing(options.display.lag_seconds());
+    core.set_smoothing(options.display.lag_seconds.value_or(0));
+    core.set_drawn_over(options.display.drawn_over);
     ask_clock(core, options);
     Session session;
     session.figures = show(core, options, path, viewport, sinks, log ? &*log : nullptr, sheet ? &*sheet : nullptr);

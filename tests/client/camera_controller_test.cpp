@@ -342,5 +342,18 @@ TEST_P(CameraControllerOfSize, ProjectionsShowThePivotAtItsPlaceAndInItsSize) {
     EXPECT_NEAR(nearer, 0.9f * depth, 1e-3f * size);
 }
 
+TEST(CameraController, TheSpeedOfFlyingCanBeSetAsItWas) {
+    Bounds const scene{{-1, -1, -1}, {1, 1, 1}};
+    CameraController before({}, scene);
+    EXPECT_EQ(before.speed_factor(), 1);
+    before.change_speed(3);
+    EXPECT_GT(before.speed_factor(), 1);
+    CameraController after({}, scene);
+    after.set_speed_factor(before.speed_factor());
+    EXPECT_EQ(after.fly_speed(), before.fly_speed());
+    after.set_speed_factor(1e9f);
+    EXPECT_EQ(after.speed_factor(), CameraController::most_speed_factor);
+}
+
 } // namespace
 } // namespace framelet

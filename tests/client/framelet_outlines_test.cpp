@@ -52,5 +52,28 @@ TEST(FrameletOutlines, AnEmptyCacheLeavesThePicture) {
     EXPECT_EQ(picture, before);
 }
 
+TEST(FrameletOutlines, ArrivalsAreThoseOfTheNewestBatch) {
+    ImagePlane const plane({200, 120});
+    FrameletPool pool(plane);
+    Picture picture(200, 120);
+    draw_arrivals(pool, picture);
+    EXPECT_EQ(picture, Picture(200, 120)) << "there are none yet";
+    Tile const older = make_tile(plane.pixel_depth(), 0, 0);
+    Tile const newer = make_tile(plane.pixel_depth(), 3, 2); // pixels (48, 32) .. (64, 48)
+    pool.insert(make_batch(plane, 7, {constant_framelet(plane, older, 9)}), {});
+    pool.insert(make_batch(plane, 8, {constant_framelet(plane, newer, 9)}), {});
+    draw_arrivals(pool, picture);
+    for (int y = 0; y < picture.height; ++y) {
+        for (int x = 0; x < picture.width; ++x) {
+            bool const is_inside = x >= 48 && x < 64 && y >= 32 && y < 48;
+            bool const is_edge = is_inside && (x == 48 || x == 63 || y == 32 || y == 47);
+            ASSERT_EQ(brightness(picture, x, y) > 0, is_edge) << x << ' ' << y;
+        }
+    }
+    int const edge = brightness(picture, 56, 32);
+    EXPECT_EQ(brightness(picture, 48, 32), edge);
+    EXPECT_EQ(brightness(picture, 63, 47), edge) << "no pixel is drawn twice";
+}
+
 } // namespace
 } // namespace framelet

@@ -7,6 +7,7 @@
 #include <GLFW/glfw3.h>
 #include <gtest/gtest.h>
 
+#include "client/core/drawn_over/drawn_over.h"
 #include "client/window/overlay/help_text.h"
 
 namespace framelet {
@@ -21,7 +22,7 @@ TEST(KeyTable, NoKeyMeansTwoThings) {
 }
 
 TEST(KeyTable, EveryCommandHasAKeyAndAWordInTheHelp) {
-    TextRows const help = help_rows(true);
+    TextRows const help = help_rows("");
     for (int i = 0; i <= static_cast<int>(Command::last); ++i) {
         auto const command = static_cast<Command>(i);
         if (command == Command::quit) { // the window's own button, beside Esc
@@ -33,6 +34,12 @@ TEST(KeyTable, EveryCommandHasAKeyAndAWordInTheHelp) {
             continue; // the numbered ones are one line; to connect is told where it can be done
         }
         EXPECT_NE(std::find(help.begin(), help.end(), std::pair(keys, help_text(command))), help.end()) << keys;
+    }
+}
+
+TEST(KeyTable, TheHelpNamesEveryOverlay) {
+    for (char const* const name : drawn_over_names) {
+        EXPECT_NE(help_text(Command::next_overlay).find(name), std::string::npos) << name;
     }
 }
 

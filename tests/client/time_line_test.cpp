@@ -9,6 +9,7 @@ TEST(TimeLine, AnimationsBeginAnewAtTheirEnd) {
     EXPECT_DOUBLE_EQ((TimeLine{{3, true, 1}, 4}.place()), 3);
     EXPECT_DOUBLE_EQ((TimeLine{{4, true, 1}, 4}.place()), 0);
     EXPECT_DOUBLE_EQ((TimeLine{{13.5, true, 1}, 4}.place()), 1.5);
+    EXPECT_EQ((TimeLine{{13.5, true, 1}, 0}.place()), 0) << "nothing moves";
 }
 
 TEST(TimeLine, SeekingStaysInTheRound) {

@@ -17,6 +17,9 @@ TEST(ViewerMemory, IsTheSameInTheNextRun) {
     ViewerMemory memory{Viewport{1000, 600}, true, true, true, false, {}};
     memory.note_server("render.example:7070");
     memory.note_server("[::1]:80");
+    memory.bias = -0.25f;
+    memory.lag_seconds = 0.1;
+    memory.fly_speed = 1.5625f;
     write_viewer_memory(memory);
     EXPECT_EQ(read_viewer_memory(), memory);
     EXPECT_EQ(memory.servers.front(), "[::1]:80");
@@ -37,12 +40,16 @@ TEST(ViewerMemory, TheNewestServersStay) {
 
 TEST(ViewerMemory, WhatMakesNoSenseIsLeftOut) {
     ViewerMemory const memory = parse_viewer_memory(
-        R"({"size": [5, 99999999999], "fullscreen": "yes", "statistics": true, "servers": ["a:70707", 3, "b", ""]})");
+        R"({"size": [5, 99999999999], "fullscreen": "yes", "statistics": true, "servers": ["a:70707", 3, "b", ""],
+            "bias": 2, "smooth": -1, "fly_speed": "fast"})");
     EXPECT_EQ(memory.size, std::nullopt);
     EXPECT_FALSE(memory.fullscreen);
     EXPECT_TRUE(memory.shows_statistics);
     EXPECT_TRUE(memory.shows_bar);
     EXPECT_EQ(memory.servers, std::vector<std::string>{"b:7070"});
+    EXPECT_EQ(memory.bias, 0);
+    EXPECT_EQ(memory.lag_seconds, 0);
+    EXPECT_EQ(memory.fly_speed, 1);
     for (char const* const text : {"", "[]", "{\"size\": 3}", "{\"servers\": 3}"}) {
         EXPECT_EQ(parse_viewer_memory(text), ViewerMemory()) << text;
     }

@@ -17,7 +17,6 @@ constexpr float dolly_step = 0.9f;
 constexpr float halfway_steps = 6.5788f; ///< steps of `dolly` that go half of the way: 0.9 to this power is a half
 constexpr float fast_factor = 4;
 constexpr float speed_step = 1.25f;
-constexpr float most_speed = 100; ///< greatest factor on the speed that suits the scene, or its inverse the least
 /// Diagonal, metres, up to which all scenes are crossed in the same time; larger ones are travelled faster, but by the
 /// square root only: what one goes past in a landscape is still as large as a house.
 constexpr float room_size = 30;
@@ -169,7 +168,11 @@ float CameraController::fly_speed() const {
 }
 
 void CameraController::change_speed(float steps) {
-    speed_ = std::clamp(speed_ * std::pow(speed_step, steps), 1 / most_speed, most_speed);
+    set_speed_factor(speed_ * std::pow(speed_step, steps));
+}
+
+void CameraController::set_speed_factor(float factor) {
+    speed_ = std::clamp(factor, 1 / most_speed_factor, most_speed_factor);
 }
 
 void CameraController::fly(FlyInput const& input, double seconds) {

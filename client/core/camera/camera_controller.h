@@ -53,8 +53,12 @@ public:
     /// The speed of flying, metres a second: an eighth of the scene's diagonal, in large scenes less (2 km: 30 m/s),
     /// times the factor that `change_speed` has set.
     float fly_speed() const;
-    /// Makes flying a quarter faster (positive) or slower with each step; never more than 100 times.
+    /// Makes flying a quarter faster (positive) or slower with each step.
     void change_speed(float steps);
+    /// The factor that this has set, 1 at first: 100 at most, and no less than 1/100.
+    float speed_factor() const { return speed_; }
+    void set_speed_factor(float factor);
+    static constexpr float most_speed_factor = 100;
     /// Turns the head in place, to where the pointer goes: the picture's whole height is a quarter turn.
     void look(Vec2 pixels, Viewport viewport);
 

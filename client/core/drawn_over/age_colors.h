@@ -1,14 +1,19 @@
-// The colours of age in what is drawn over pictures.
+// The colours of what is drawn over pictures, and how they are put on one.
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 namespace framelet {
 
 /// Red, green, blue, [0, 255].
 using OverlayColor = std::array<float, 3>;
+
+/// Of pixels of which nothing is held.
+inline constexpr OverlayColor hole_color{255, 0, 255};
 
 /// The colour of an age, from bright yellow at 0 over orange and red to dark blue at 1 and beyond.
 inline OverlayColor age_color(float age) {
@@ -21,6 +26,14 @@ inline OverlayColor age_color(float age) {
         out[i] = (1 - weight) * ramp[first][i] + weight * ramp[first + 1][i];
     }
     return out;
+}
+
+/// Makes a pixel (red, green, blue) grey, and mixes this share of the colour in.
+inline void wash(std::uint8_t* pixel, OverlayColor const& color, float share) {
+    auto const grey = static_cast<float>(pixel[0] + 2 * pixel[1] + pixel[2]) / 4;
+    for (std::size_t i = 0; i < color.size(); ++i) {
+        pixel[i] = static_cast<std::uint8_t>(std::lround((1 - share) * grey + share * color[i]));
+    }
 }
 
 } // namespace framelet

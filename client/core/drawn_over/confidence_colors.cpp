@@ -11,14 +11,13 @@ namespace framelet {
 namespace {
 
 constexpr float youngest = 0.01f, oldest = 10; ///< seconds
-constexpr OverlayColor made_up{255, 0, 255};
 constexpr float coarsest = 8; ///< pixels between samples at which colours are darkest
 constexpr float darkest = 0.4f;
-constexpr float wash = 0.6f; ///< share of the colour
+constexpr float color_share = 0.6f;
 
 OverlayColor color_of(PixelConfidence const& pixel) {
     if (pixel.seconds == PixelConfidence::made_up) {
-        return made_up;
+        return hole_color;
     }
     float const age = std::log2(std::max(pixel.seconds, youngest) / youngest) / std::log2(oldest / youngest);
     OverlayColor color = age_color(age);
@@ -34,14 +33,10 @@ OverlayColor color_of(PixelConfidence const& pixel) {
 void draw_confidence(std::span<PixelConfidence const> confidence, Picture& picture) {
     FRAMELET_CHECK(confidence.size() ==
                    static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height));
-    auto pixel = picture.rgba.begin();
+    std::uint8_t* pixel = picture.rgba.data();
     for (PixelConfidence const& shown : confidence) {
-        OverlayColor const color = color_of(shown);
-        auto const grey = static_cast<float>(pixel[0] + 2 * pixel[1] + pixel[2]) / 4;
-        for (std::size_t i = 0; i < color.size(); ++i, ++pixel) {
-            *pixel = static_cast<std::uint8_t>(std::lround((1 - wash) * grey + wash * color[i]));
-        }
-        ++pixel; // alpha
+        wash(pixel, color_of(shown), color_share);
+        pixel += 4;
     }
 }
 

@@ -33,11 +33,28 @@ void blend(Picture& picture, PixelRect const& rect, OverlayColor const& color, f
     }
 }
 
+float opacity_of(PixelRect const& tile) {
+    return tile.width() <= small_side ? 0.35f : 0.8f;
+}
+
 /// Draws a tile's left and upper edges: the others are those of neighbours.
 void draw_edges(Picture& picture, PixelRect const& rect, OverlayColor const& color) {
-    float const opacity = rect.width() <= small_side ? 0.35f : 0.8f;
+    float const opacity = opacity_of(rect);
     blend(picture, {rect.left, rect.top, rect.right, rect.top + 1}, color, opacity);
     blend(picture, {rect.left, rect.top + 1, rect.left + 1, rect.bottom}, color, opacity);
+}
+
+/// Calls `visit` with each framelet that is held.
+template <class Visit>
+void for_each_held(FrameletPool const& pool, Visit visit) {
+    for (std::size_t i = 0; i < pool.slot_count(); ++i) {
+        FrameletCache const& cache = pool.slot(i);
+        for (std::size_t slot = 0; slot < cache.slot_count(); ++slot) {
+            if (CachedFramelet const* const framelet = cache.at_slot(slot)) {
+                visit(*framelet);
+            }
+        }
+    }
 }
 
 } // namespace
@@ -64,6 +81,24 @@ void draw_outlines(FrameletCache const& cache, Picture& picture) {
         draw_edges(picture, plane.tile_rect(framelet->tile),
                    color_of(held.back()->moment.batch - framelet->moment.batch));
     }
+}
+
+void draw_arrivals(FrameletPool const& pool, Picture& picture) {
+    ImagePlane const& plane = pool.plane();
+    FRAMELET_CHECK(picture.width == plane.viewport().width && picture.height == plane.viewport().height);
+    std::uint64_t newest = 0;
+    for_each_held(pool, [&](CachedFramelet const& framelet) { newest = std::max(newest, framelet.moment.batch); });
+    for_each_held(pool, [&](CachedFramelet const& framelet) {
+        if (framelet.moment.batch != newest) {
+            return;
+        }
+        OverlayColor const color = color_of(0);
+        PixelRect const rect = plane.tile_rect(framelet.tile);
+        draw_edges(picture, rect, color);
+        // Its neighbours may be of other batches, and have no edges then.
+        blend(picture, {rect.left + 1, rect.bottom - 1, rect.right, rect.bottom}, color, opacity_of(rect));
+        blend(picture, {rect.right - 1, rect.top + 1, rect.right, rect.bottom - 1}, color, opacity_of(rect));
+    });
 }
 
 } // namespace framelet

@@ -6,6 +6,7 @@
 #include "client/core/camera/camera_track.h"
 #include "client/core/drawn_over/confidence_colors.h"
 #include "client/core/drawn_over/framelet_outlines.h"
+#include "client/core/drawn_over/holes.h"
 #include "common/picture/reconstruction.h"
 #include "common/picture/shown_point.h"
 
@@ -41,6 +42,9 @@ void PictureMaker::start_smoothing() {
 }
 
 void PictureMaker::insert(Batch const& batch) {
+    if (rates_) {
+        rates_->add(batch);
+    }
     for (BodyTrack const& track : batch.tracks) {
         motions_.extend(track);
     }
@@ -124,6 +128,9 @@ Camera PictureMaker::wanted_camera(PictureRequest const& request, SceneTime time
 bool PictureMaker::show(PictureRequest const& request, Picture& picture, std::vector<PixelRect>& changed,
                         BlockCanvas* canvas) {
     changed.clear();
+    if (rates_) {
+        rates_->advance(request.now);
+    }
     if (is_empty()) {
         return false;
     }
@@ -170,17 +177,50 @@ bool PictureMaker::show(PictureRequest const& request, Picture& picture, std::ve
     return !changed.empty();
 }
 
-void PictureMaker::draw_over(DrawnOver what, Picture& picture) const {
-    if (what == DrawnOver::nothing || is_empty() || viewport() != Viewport{picture.width, picture.height}) {
+void PictureMaker::set_drawn_over(DrawnOver what) {
+    if (what == drawn_over_) {
         return;
     }
-    if (what == DrawnOver::outlines || !settings_.reproject) {
+    drawn_over_ = what;
+    rates_.reset();
+    if (what == DrawnOver::refresh_rate) {
+        rates_.emplace(pool_.plane());
+    }
+}
+
+void PictureMaker::draw_over(Picture& picture) {
+    if (is_empty() || viewport() != Viewport{picture.width, picture.height}) {
+        return;
+    }
+    switch (drawn_over_) {
+    case DrawnOver::nothing:
+        break;
+    case DrawnOver::ages:
         draw_outlines(pool_.newest(), picture);
-        return;
+        break;
+    case DrawnOver::confidence:
+        if (!settings_.reproject) { // the times of its pixels are those of its framelets
+            draw_outlines(pool_.newest(), picture);
+            break;
+        }
+        find_confidence(pool_, shown_camera_, shown_time_, motions_, confidence_);
+        draw_confidence(confidence_, picture);
+        break;
+    case DrawnOver::refresh_rate:
+        rates_->draw(picture);
+        break;
+    case DrawnOver::arrivals:
+        draw_arrivals(pool_, picture);
+        break;
+    case DrawnOver::holes:
+        if (!settings_.reproject) {
+            draw_holes(pool_.newest(), picture);
+            break;
+        }
+        find_confidence(pool_, shown_camera_, shown_time_, motions_, confidence_);
+        draw_holes(confidence_, picture);
+        break;
     }
-    std::vector<PixelConfidence> confidence;
-    find_confidence(pool_, shown_camera_, shown_time_, motions_, confidence);
-    draw_confidence(confidence, picture);
 }
 
 std::optional<Vec3> PictureMaker::point_at(Vec2 position) const {

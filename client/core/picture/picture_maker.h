@@ -5,9 +5,12 @@
 #include <optional>
 #include <vector>
 
+#include "client/core/drawn_over/drawn_over.h"
+#include "client/core/drawn_over/refresh_rates.h"
 #include "client/core/picture/late_clock.h"
 #include "common/held/framelet_pool.h"
 #include "common/image.h"
+#include "common/picture/confidence.h"
 #include "common/picture/reprojector.h"
 #include "common/picture/scene_smoother.h"
 
@@ -40,9 +43,6 @@ struct PictureRequest {
 /// The picture of a viewer that holds nothing.
 Picture bare_picture(Viewport viewport);
 
-/// The kinds of overlay that can be drawn over a picture.
-enum class DrawnOver : std::uint8_t { nothing, outlines, confidence };
-
 class PictureMaker {
 public:
     PictureMaker(Viewport viewport, PictureSettings const& settings);
@@ -68,8 +68,12 @@ public:
               BlockCanvas* canvas = nullptr);
     /// True when the last picture is not in memory but on the canvas.
     bool is_on_canvas() const { return settings_.reproject && !smoother_ && reprojector_.is_on_canvas(); }
+    /// Sets what `draw_over` draws. Refreshes are counted from then on, and only while they are to be drawn.
+    void set_drawn_over(DrawnOver what);
     /// Draws over a copy of the picture that was shown last.
-    void draw_over(DrawnOver what, Picture& picture) const;
+    void draw_over(Picture& picture);
+    /// True while what is drawn over changes as time goes by, be the picture as it was or not.
+    bool drawn_over_fades() const { return rates_ && rates_->fades(); }
     /// The point of the world that the last picture shows at this position, as `find_shown_point`.
     std::optional<Vec3> point_at(Vec2 position) const;
     /// The depths of the last picture's pixels, as `find_shown_depths`.
@@ -113,6 +117,9 @@ private:
     std::uint8_t const* shown_pixels_ = nullptr; ///< recognises the caller's picture
     std::vector<Tile> shown_tiles_; ///< scratch
     std::vector<PixelRect> arrived_; ///< scratch: where batches have changed something
+    DrawnOver drawn_over_ = DrawnOver::nothing;
+    std::optional<RefreshRates> rates_;
+    std::vector<PixelConfidence> confidence_; ///< scratch
 };
 
 } // namespace framelet

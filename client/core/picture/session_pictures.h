@@ -33,6 +33,11 @@ public:
     /// complete, which is found out by making both, or has another size and shows anything. Call it after `prepare`.
     bool show(PictureRequest const& request, Picture& picture, std::vector<PixelRect>& changed,
               BlockCanvas* canvas = nullptr);
+    /// Sets what `draw_over` draws over the pictures of all makers, from the next `prepare` on.
+    void set_drawn_over(DrawnOver what) { drawn_over_ = what; }
+    /// As of the maker whose picture is shown. Call both after `prepare`.
+    void draw_over(Picture& picture) { (earlier_ ? earlier_ : current_)->draw_over(picture); }
+    bool drawn_over_fades() const { return shown().drawn_over_fades(); }
     /// The maker whose picture is shown. Call it after `prepare`.
     PictureMaker const& shown() const { return earlier_ ? *earlier_ : *current_; }
     std::size_t memory_bytes() const;
@@ -48,6 +53,7 @@ private:
     SceneTime paused_ = 0; ///< that `earlier_` shows
     Picture unseen_; ///< this session's, while that of the one before is shown
     std::vector<PixelRect> unseen_changes_; ///< scratch
+    DrawnOver drawn_over_ = DrawnOver::nothing;
 };
 
 } // namespace framelet

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cstdio>
 #include <numbers>
 
 #include <nlohmann/json.hpp>
@@ -165,14 +164,8 @@ BookmarkFiles bookmark_files(std::string const& scene_name, std::uint64_t scene_
         return {};
     }
     std::filesystem::path const folder = config_folder() / "cameras";
-    std::string const stem = file_stem_for(scene_name);
-    std::filesystem::path const of_name = folder / (stem + ".json");
-    if (scene_source == 0) {
-        return {of_name, {}};
-    }
-    std::array<char, 24> place{};
-    std::snprintf(place.data(), place.size(), "-%016llx", static_cast<unsigned long long>(scene_source));
-    return {folder / (stem + place.data() + ".json"), of_name};
+    auto const file = [&](std::uint64_t source) { return folder / (file_stem_of_scene(scene_name, source) + ".json"); };
+    return {file(scene_source), scene_source == 0 ? std::filesystem::path() : file(0)};
 }
 
 } // namespace framelet

@@ -32,8 +32,7 @@ struct BookmarkFiles {
     std::filesystem::path older; ///< read to begin with: what earlier versions kept, for whatever scene had the name
 };
 
-/// The files in which a scene's bookmarks are kept. `scene_source` as in Welcome: scenes of the same name from other
-/// files have others; where it is not known (0) the name alone counts.
+/// The files in which a scene's bookmarks are kept, named as `file_stem_of_scene`.
 BookmarkFiles bookmark_files(std::string const& scene_name, std::uint64_t scene_source);
 
 /// The bookmarks of one scene, kept in a file.

@@ -1,6 +1,8 @@
 #include "client/window/kept/user_files.h"
 
+#include <array>
 #include <cctype>
+#include <cstdio>
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
@@ -84,6 +86,14 @@ std::string file_stem_for(std::string const& name) {
         out.insert(0, "_");
     }
     return out;
+}
+
+std::string file_stem_of_scene(std::string const& scene_name, std::uint64_t scene_source) {
+    std::array<char, 24> place{};
+    if (scene_source != 0) {
+        std::snprintf(place.data(), place.size(), "-%016llx", static_cast<unsigned long long>(scene_source));
+    }
+    return file_stem_for(scene_name) + place.data();
 }
 
 fs::path new_file_name(fs::path const& folder, std::string const& extension) {

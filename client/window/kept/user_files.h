@@ -1,6 +1,7 @@
 // Small files that the window keeps for its user. In: a text. Out: a file that is whole, whenever one looks.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -20,6 +21,10 @@ void write_user_file(std::filesystem::path const& file, std::string const& text)
 
 /// A file's name for something with this name: never one of another folder, never a hidden one, never too long.
 std::string file_stem_for(std::string const& name);
+
+/// The name, without an ending, of what is kept for a scene. `scene_source` as in Welcome: scenes of the same name from
+/// other files have others; where it is not known (0) the name alone counts.
+std::string file_stem_of_scene(std::string const& scene_name, std::uint64_t scene_source);
 
 /// The path of a new file: "framelet-20240131-235959" and `extension`, such as ".png"; with a number before that where
 /// there is such a file.

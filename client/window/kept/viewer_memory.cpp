@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "client/core/camera/camera_controller.h"
+#include "client/core/client_core.h"
 #include "client/core/connection/server_address.h"
 #include "client/window/kept/user_files.h"
 #include "common/error.h"
@@ -22,6 +24,12 @@ std::filesystem::path memory_file() {
 bool flag(Json const& document, char const* name, bool otherwise) {
     auto const found = document.find(name);
     return found != document.end() && found->is_boolean() ? found->get<bool>() : otherwise;
+}
+
+double number(Json const& document, char const* name, double least, double most, double otherwise) {
+    auto const found = document.find(name);
+    double const value = found != document.end() && found->is_number() ? found->get<double>() : otherwise;
+    return value >= least && value <= most ? value : otherwise;
 }
 
 std::optional<Viewport> size_of(Json const& value) {
@@ -56,6 +64,9 @@ std::string viewer_memory_text(ViewerMemory const& memory) {
     out["details"] = memory.shows_details;
     out["bar"] = memory.shows_bar;
     out["servers"] = memory.servers;
+    out["bias"] = memory.bias;
+    out["smooth"] = memory.lag_seconds;
+    out["fly_speed"] = memory.fly_speed;
     return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -70,6 +81,10 @@ ViewerMemory parse_viewer_memory(std::string const& text) {
     out.shows_statistics = flag(document, "statistics", out.shows_statistics);
     out.shows_details = flag(document, "details", out.shows_details);
     out.shows_bar = flag(document, "bar", out.shows_bar);
+    constexpr double most_speed = CameraController::most_speed_factor;
+    out.bias = static_cast<float>(number(document, "bias", -1, 1, out.bias));
+    out.lag_seconds = number(document, "smooth", 0, max_lag_seconds, out.lag_seconds);
+    out.fly_speed = static_cast<float>(number(document, "fly_speed", 1 / most_speed, most_speed, out.fly_speed));
     Json const servers = document.value("servers", Json());
     for (Json const& server : servers.is_array() ? servers : Json::array()) {
         try {

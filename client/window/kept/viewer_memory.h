@@ -17,6 +17,10 @@ struct ViewerMemory {
     bool shows_details = false;
     bool shows_bar = true;
     std::vector<std::string> servers; ///< HOST:PORT, the newest first
+    // What was set by hand in the window; options of the command line go before it, and are not remembered.
+    float bias = 0; ///< as in ViewerSettings
+    double lag_seconds = 0; ///< as in `ClientCore::set_smoothing`
+    float fly_speed = 1; ///< as `CameraController::speed_factor`
 
     bool operator==(ViewerMemory const&) const = default;
 

@@ -44,7 +44,7 @@ constexpr Line others[] = {
     {Command::toggle_recording, "record what is seen, or stop"},
     {Command::toggle_statistics, "statistics"},
     {Command::toggle_details, "details in them"},
-    {Command::next_overlay, "framelets' outlines, pixels' age, neither"},
+    {Command::next_overlay, "draw over it: ages, confidence, refresh-rate, arrivals, holes, none"},
     {Command::toggle_reprojection, "move what is held to where it is now, or not"},
     {Command::toggle_smoothing, "smooth motion, the scene a little late, or not"},
     {Command::toggle_time_line, "the bar at the lower edge, or not"},
@@ -61,7 +61,7 @@ void add(TextRows& rows, std::span<Line const> lines) {
 
 } // namespace
 
-TextRows help_rows(bool controls) {
+TextRows help_rows(std::string const& clock_lacks) {
     TextRows rows{
         {"left drag", "orbit around what is under the pointer"},
         {"middle or Shift+left drag", "pan"},
@@ -75,14 +75,14 @@ TextRows help_rows(bool controls) {
         {"Shift+1 .. 9", help_text(Command::bookmark)},
     };
     add(rows, cameras);
-    if (controls) {
+    if (clock_lacks.empty()) {
         add(rows, clock);
     } else {
         std::string keys;
         for (Line const& line : clock) {
             keys += (keys.empty() ? "" : " ") + key_names(line.command);
         }
-        rows.emplace_back(keys, watching_text);
+        rows.emplace_back(keys, clock_lacks);
     }
     add(rows, others);
     return rows;

@@ -1,4 +1,4 @@
-// The help that F1 shows. In: which commands have an effect now. Out: rows of keys and what they do, in two columns.
+// The help that F1 shows. In: why some commands have no effect now. Out: rows of keys and what they do, in two columns.
 #pragma once
 
 #include <string>
@@ -17,8 +17,8 @@ inline constexpr char const* watching_text = "another viewer controls the scene'
 /// Text that is shown while the mouse turns the head.
 inline constexpr char const* mouse_look_text = "the mouse looks around, W A S D Q E fly; a click or Esc ends it";
 
-/// The rows of the help. `controls`: the keys that set the scene's clock have an effect.
-TextRows help_rows(bool controls);
+/// The rows of the help. `clock_lacks`: why the keys that set the scene's clock have no effect; empty: they have one.
+TextRows help_rows(std::string const& clock_lacks);
 
 /// The help's words for one command, for the tooltip of what does the same by mouse. All numbered cameras of a kind
 /// have the same.

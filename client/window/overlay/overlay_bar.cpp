@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "client/window/overlay/key_table.h"
+#include "client/window/overlay/lacks.h"
+#include "client/window/overlay/overlay_text.h"
 
 namespace framelet {
 
@@ -24,20 +26,25 @@ std::string formatted(char const* format, Values... values) {
     return text;
 }
 
-std::string tip_of(Command command) {
-    std::string const tip = with_keys(help_text(command), command);
-    return command == Command::screenshot ? tip + "\n" + tip_of(Command::screenshot_with_depth) : tip;
-}
-
-constexpr char const* shown_buttons[] = {"photo", "rec", "stats", "ages", "?"};
+constexpr char const* shown_buttons[] = {"photo", "rec", "stats", "?"};
 
 /// Widths of the window, in font sizes, from which on the bar has these controls; in smaller ones keys do the same.
-constexpr float room_for_bias = 70;
-constexpr float room_for_exposure = 56;
-constexpr float room_for_speed = 46;
+constexpr float room_for_bias = 74;
+constexpr float room_for_exposure = 61;
+constexpr float room_for_speed = 51;
+constexpr float room_for_overlays = 42;
 
 bool has_room(float for_it) {
     return ImGui::GetIO().DisplaySize.x > for_it * ImGui::GetFontSize();
+}
+
+/// Width of the list of overlays, with room for the longest name; pixels.
+float overlays_width() {
+    float width = 0;
+    for (char const* const name : drawn_over_names) {
+        width = std::max(width, ImGui::CalcTextSize(name).x);
+    }
+    return width + 2 * ImGui::GetStyle().FramePadding.x;
 }
 
 /// Width of what stands to the right of the time line, pixels.
@@ -49,6 +56,7 @@ float right_width() {
     float width = has_room(room_for_speed) ? plus_and_minus + width_of("0.0625x") : 0;
     width += has_room(room_for_exposure) ? plus_and_minus + width_of("-16.00 EV") : 0;
     width += has_room(room_for_bias) ? width_of_button("sharp") + width_of("+0.00") + width_of_button("fresh") : 0;
+    width += has_room(room_for_overlays) ? overlays_width() + style.ItemSpacing.x : 0;
     for (char const* const text : shown_buttons) {
         width += width_of_button(text);
     }
@@ -56,31 +64,27 @@ float right_width() {
 }
 
 void clock_controls(TimeLine const& line, OverlayFrame& frame) {
-    // The tooltip of what cannot be used says why, instead of what it does.
-    auto const tip = [&](Command command) { return line.fixed_because.empty() ? tip_of(command) : line.fixed_because; };
-    ImGui::BeginDisabled(!line.fixed_because.empty());
-    button("|<", Command::seek_start, tip(Command::seek_start), frame);
-    button("<", Command::step_back, tip(Command::step_back), frame);
-    button(line.clock.playing ? "pause###play" : "play ###play", Command::play_or_pause, tip(Command::play_or_pause),
-           frame);
-    button(">", Command::step_forward, tip(Command::step_forward), frame);
+    std::string const& lacks = line.fixed_because;
+    button("|<", Command::seek_start, frame, lacks);
+    button("<", Command::step_back, frame, lacks);
+    button(line.clock.playing ? "pause###play" : "play ###play", Command::play_or_pause, frame, lacks);
+    button(">", Command::step_forward, frame, lacks);
     double place = line.place();
     double const least = 0;
     std::string const format = formatted("%%.2f of %.2f s", line.duration);
     ImGui::SetNextItemWidth(std::max(ImGui::GetContentRegionAvail().x - right_width(), 6 * ImGui::GetFontSize()));
+    begin_lack(lacks);
     if (ImGui::SliderScalar("##time", ImGuiDataType_Double, &place, &least, &line.duration, format.c_str(),
                             ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoInput)) {
         frame.actions.seek = line.time_at(place);
     }
-    tooltip(line.fixed_because.empty() ? "time of the animation: drag, or Left and Right for a second"
-                                       : line.fixed_because);
+    end_lack(lacks, "time of the animation: drag, or Left and Right for a second");
     ImGui::SameLine();
     if (has_room(room_for_speed)) {
-        button("-##speed", Command::slower, tip(Command::slower), frame);
+        button("-##speed", Command::slower, frame, lacks);
         label(formatted("%gx", static_cast<double>(line.clock.speed)).c_str());
-        button("+##speed", Command::faster, tip(Command::faster), frame);
+        button("+##speed", Command::faster, frame, lacks);
     }
-    ImGui::EndDisabled();
 }
 
 /// Ends the edit: what was typed becomes the bookmark's name, unless it is cancelled.
@@ -145,6 +149,11 @@ void draw_camera_menu(CameraMenu const& menu, OverlayFrame& frame) {
         frame.actions.commands.push_back(Command::mouse_look);
     }
     tooltip(tip_of(Command::mouse_look));
+    if (std::string const lacks = scene_cameras_lack(menu.scene_cameras.size()); !lacks.empty()) {
+        begin_lack(lacks);
+        ImGui::Selectable("cameras of the scene");
+        end_lack(lacks, "");
+    }
     for (std::size_t i = 0; i < menu.scene_cameras.size(); ++i) {
         ImGui::PushID(static_cast<int>(i));
         if (ImGui::Selectable(menu.scene_cameras[i].c_str())) {
@@ -168,11 +177,37 @@ void draw_camera_menu(CameraMenu const& menu, OverlayFrame& frame) {
     }
     ImGui::PopID();
     for (Command const command : {Command::add_bookmark, Command::copy_camera, Command::save_camera}) {
+        std::string const lacks = command == Command::add_bookmark ? "" : menu.files_lack;
+        begin_lack(lacks);
         if (ImGui::Selectable(tip_of(command).c_str(), false, ImGuiSelectableFlags_DontClosePopups)) {
             frame.actions.commands.push_back(command);
         }
+        end_lack(lacks, help_text(command));
     }
     ImGui::EndPopup();
+}
+
+void draw_overlay_menu(OverlayMenu const& menu, OverlayFrame& frame) {
+    ImGui::SetNextItemWidth(overlays_width());
+    char const* const shown = menu.current == DrawnOver::nothing ? "overlay" : name_of(menu.current);
+    if (!ImGui::BeginCombo("##overlays", shown, ImGuiComboFlags_NoArrowButton)) {
+        tooltip(with_keys(overlay_tip(menu.current), Command::next_overlay));
+    } else {
+        if (frame.closes_menu) {
+            ImGui::CloseCurrentPopup();
+        }
+        for (std::size_t i = 0; i < drawn_over_names.size(); ++i) {
+            auto const kind = static_cast<DrawnOver>(i);
+            std::string const lacks = kind == DrawnOver::confidence ? menu.confidence_lacks : "";
+            begin_lack(lacks);
+            if (ImGui::Selectable(name_of(kind), kind == menu.current)) {
+                frame.actions.drawn_over = kind;
+            }
+            end_lack(lacks, overlay_tip(kind));
+        }
+        ImGui::EndCombo();
+    }
+    ImGui::SameLine();
 }
 
 void draw_bar(OverlayContent const& content, OverlayFrame& frame) {
@@ -189,23 +224,25 @@ void draw_bar(OverlayContent const& content, OverlayFrame& frame) {
                      ImGuiWindowFlags_NoScrollWithMouse);
     take_area(frame);
     draw_camera_menu(content.cameras, frame);
-    if (line.duration > 0) {
-        clock_controls(line, frame);
-    }
+    clock_controls(line, frame);
     if (has_room(room_for_exposure)) {
-        button("-##exposure", Command::darker, tip_of(Command::darker), frame);
+        button("-##exposure", Command::darker, frame);
         label(formatted("%+.2f EV", static_cast<double>(line.exposure_ev)).c_str());
-        button("+##exposure", Command::brighter, tip_of(Command::brighter), frame);
+        button("+##exposure", Command::brighter, frame);
     }
     if (has_room(room_for_bias)) {
-        button("sharp", Command::sharper, tip_of(Command::sharper), frame);
+        button("sharp", Command::sharper, frame);
         label(formatted("%+.2f", static_cast<double>(content.bias)).c_str());
-        button("fresh", Command::fresher, tip_of(Command::fresher), frame);
+        button("fresh", Command::fresher, frame);
+    }
+    if (has_room(room_for_overlays)) {
+        draw_overlay_menu(content.overlays, frame);
     }
     constexpr Command shown_commands[] = {Command::screenshot, Command::toggle_recording, Command::toggle_statistics,
-                                          Command::next_overlay, Command::toggle_help};
+                                          Command::toggle_help};
     for (std::size_t i = 0; i < std::size(shown_commands); ++i) {
-        button(shown_buttons[i], shown_commands[i], tip_of(shown_commands[i]), frame);
+        bool const saves = shown_commands[i] == Command::screenshot || shown_commands[i] == Command::toggle_recording;
+        button(shown_buttons[i], shown_commands[i], frame, saves ? content.picture_lacks : "");
     }
     ImGui::End();
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "client/core/drawn_over/drawn_over.h"
 #include "client/window/overlay/command.h"
 #include "client/window/overlay/help_text.h"
 #include "client/window/overlay/time_line.h"
@@ -28,11 +29,12 @@ struct StatisticsPanel {
     bool operator==(StatisticsPanel const&) const = default;
 };
 
-/// The meaning of the colours of age.
+/// The meaning of the colours of what is drawn over the picture.
 struct Legend {
     std::string title;
-    std::string newest, oldest; ///< texts at both ends of the colours
+    std::string newest, oldest; ///< texts at both ends of the colours; empty: it has one colour
     std::string remark;
+    std::string tip;
     bool operator==(Legend const&) const = default;
 };
 
@@ -41,7 +43,15 @@ struct CameraMenu {
     std::string current;
     std::vector<std::string> scene_cameras; ///< names, for people
     std::vector<std::string> bookmarks; ///< their names
+    std::string files_lack{}; ///< why there is no camera file of what one looks through; empty: there may be
     bool operator==(CameraMenu const&) const = default;
+};
+
+/// The kinds of overlay that can be drawn over the picture.
+struct OverlayMenu {
+    DrawnOver current = DrawnOver::nothing;
+    std::string confidence_lacks{}; ///< why it is not to be had; empty: it is
+    bool operator==(OverlayMenu const&) const = default;
 };
 
 /// A name while it is being typed: ImGui keeps the field's text only as long as nothing else is clicked.
@@ -70,6 +80,8 @@ struct OverlayContent {
     std::optional<TimeLine> time_line; ///< along the lower edge
     CameraMenu cameras; ///< in that bar
     float bias = 0; ///< shown in that bar; -1: sharp, 1: fresh
+    OverlayMenu overlays; ///< likewise
+    std::string picture_lacks; ///< why there is nothing to be saved; empty: there is
     bool has_pointer = true; ///< the mouse may be on any of it
 
     bool operator==(OverlayContent const&) const = default;
@@ -85,6 +97,7 @@ struct OverlayActions {
     std::optional<int> scene_camera; ///< to look through
     std::optional<int> bookmark; ///< to go to
     std::optional<int> removed_bookmark;
+    std::optional<DrawnOver> drawn_over;
     struct Renamed {
         int bookmark;
         std::string name;

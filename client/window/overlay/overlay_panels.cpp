@@ -5,6 +5,7 @@
 
 #include "client/core/drawn_over/age_colors.h"
 #include "client/window/overlay/key_table.h"
+#include "client/window/overlay/overlay_text.h"
 
 namespace framelet {
 
@@ -22,11 +23,18 @@ void name_cell(std::string const& text) {
     ImGui::TextColored(name_color, "%s", text.c_str());
 }
 
+/// A figure's name and value; the tooltip of both says what it is.
+void figure_cells(std::string const& name, std::string const& value) {
+    name_cell(name);
+    tooltip(figure_tip(name));
+    cell(value);
+    tooltip(figure_tip(name));
+}
+
 void table(char const* name, TextRows const& rows) {
     if (ImGui::BeginTable(name, 2, ImGuiTableFlags_SizingFixedFit)) {
         for (auto const& [left, right] : rows) {
-            name_cell(left);
-            cell(right);
+            figure_cells(left, right);
         }
         ImGui::EndTable();
     }
@@ -39,6 +47,26 @@ void plot(Plot const& figure) {
     ImGui::TableNextColumn();
     ImGui::PlotLines(("##" + figure.name).c_str(), figure.values.data(), static_cast<int>(figure.values.size()), 0,
                      nullptr, 0, std::max(1.1f * highest, 1e-6f), ImVec2(9 * font, 1.3f * font));
+}
+
+/// Draws the colours of age, and what both their ends mean.
+void draw_ramp(Legend const& legend) {
+    float const font = ImGui::GetFontSize();
+    ImVec2 const from = ImGui::GetCursorScreenPos();
+    constexpr int steps = 48;
+    float const step = 18 * font / steps;
+    for (int i = 0; i < steps; ++i) {
+        OverlayColor const color = age_color(static_cast<float>(i) / (steps - 1));
+        std::array<int, 3> rgb{};
+        std::ranges::transform(color, rgb.begin(), [](float value) { return static_cast<int>(value); });
+        float const left = from.x + step * static_cast<float>(i);
+        ImGui::GetWindowDrawList()->AddRectFilled(ImVec2(left, from.y), ImVec2(left + step, from.y + font),
+                                                  IM_COL32(rgb[0], rgb[1], rgb[2], 255));
+    }
+    ImGui::Dummy(ImVec2(18 * font, font));
+    ImGui::TextUnformatted(legend.newest.c_str());
+    ImGui::SameLine(18 * font + ImGui::GetStyle().WindowPadding.x - ImGui::CalcTextSize(legend.oldest.c_str()).x);
+    ImGui::TextUnformatted(legend.oldest.c_str());
 }
 
 } // namespace
@@ -68,17 +96,36 @@ void take_area(OverlayFrame& frame) {
 void tooltip(std::string const& text) {
     if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) {
         ImGui::PushStyleVar(ImGuiStyleVar_Alpha, 1); // the tooltip is not as pale as what cannot be used
-        ImGui::SetTooltip("%s", text.c_str());
+        ImGui::BeginTooltip();
+        ImGui::PushTextWrapPos(36 * ImGui::GetFontSize());
+        ImGui::TextUnformatted(text.c_str());
+        ImGui::PopTextWrapPos();
+        ImGui::EndTooltip();
         ImGui::PopStyleVar();
     }
 }
 
-void button(char const* label, Command command, std::string const& tip, OverlayFrame& frame) {
+void begin_lack(std::string const& lacks) {
+    ImGui::BeginDisabled(!lacks.empty());
+}
+
+void end_lack(std::string const& lacks, std::string const& tip) {
+    ImGui::EndDisabled();
+    tooltip(lacks.empty() ? tip : lacks);
+}
+
+void button(char const* label, Command command, OverlayFrame& frame, std::string const& lacks) {
+    begin_lack(lacks);
     if (ImGui::Button(label)) {
         frame.actions.commands.push_back(command);
     }
-    tooltip(tip);
+    end_lack(lacks, tip_of(command));
     ImGui::SameLine();
+}
+
+std::string tip_of(Command command) {
+    std::string const tip = with_keys(help_text(command), command);
+    return command == Command::screenshot ? tip + "\n" + tip_of(Command::screenshot_with_depth) : tip;
 }
 
 void draw_statistics(StatisticsPanel const& panel, OverlayFrame& frame) {
@@ -87,8 +134,7 @@ void draw_statistics(StatisticsPanel const& panel, OverlayFrame& frame) {
         bool const has_plots = ImGui::GetIO().DisplaySize.x > room_for_plots * ImGui::GetFontSize();
         if (ImGui::BeginTable("figures", has_plots ? 3 : 2, ImGuiTableFlags_SizingFixedFit)) {
             for (Plot const& figure : panel.plots) {
-                name_cell(figure.name);
-                cell(figure.value);
+                figure_cells(figure.name, figure.value);
                 if (has_plots) {
                     plot(figure);
                 }
@@ -110,27 +156,18 @@ void draw_statistics(StatisticsPanel const& panel, OverlayFrame& frame) {
 }
 
 void draw_legend(Legend const& legend, OverlayFrame& frame) {
-    if (begin_panel("legend", {1, 1}, 0.75f, frame)) {
+    if (begin_panel("legend", {1, 1}, 0.75f, frame, PanelKind::takes_mouse)) {
+        ImGui::BeginGroup();
         ImGui::TextUnformatted(legend.title.c_str());
-        float const font = ImGui::GetFontSize();
-        ImVec2 const from = ImGui::GetCursorScreenPos();
-        constexpr int steps = 48;
-        float const step = 18 * font / steps;
-        for (int i = 0; i < steps; ++i) {
-            OverlayColor const color = age_color(static_cast<float>(i) / (steps - 1));
-            std::array<int, 3> rgb{};
-            std::ranges::transform(color, rgb.begin(), [](float value) { return static_cast<int>(value); });
-            float const left = from.x + step * static_cast<float>(i);
-            ImGui::GetWindowDrawList()->AddRectFilled(ImVec2(left, from.y), ImVec2(left + step, from.y + font),
-                                                      IM_COL32(rgb[0], rgb[1], rgb[2], 255));
+        if (!legend.newest.empty()) {
+            draw_ramp(legend);
         }
-        ImGui::Dummy(ImVec2(18 * font, font));
-        ImGui::TextUnformatted(legend.newest.c_str());
-        ImGui::SameLine(18 * font + ImGui::GetStyle().WindowPadding.x - ImGui::CalcTextSize(legend.oldest.c_str()).x);
-        ImGui::TextUnformatted(legend.oldest.c_str());
         if (!legend.remark.empty()) {
             ImGui::TextUnformatted(legend.remark.c_str());
         }
+        ImGui::EndGroup();
+        tooltip(legend.tip);
+        take_area(frame);
     }
     ImGui::End();
 }

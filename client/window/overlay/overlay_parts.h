@@ -42,13 +42,21 @@ bool begin_panel(char const* name, ImVec2 anchor, float opacity, OverlayFrame co
 void take_area(OverlayFrame& frame);
 /// Gives the last item a tooltip, also where it cannot be used now: that is when one asks why.
 void tooltip(std::string const& text);
-/// A button and, in its tooltip, what it does; the next thing stands beside it.
-void button(char const* label, Command command, std::string const& tip, OverlayFrame& frame);
+/// Makes what follows grey until `end_lack`, where something is lacking for it.
+void begin_lack(std::string const& lacks);
+/// Ends that; the tooltip of the last item says what it does or, where it does nothing, what it lacks.
+void end_lack(std::string const& lacks, std::string const& tip);
+/// A button and, in its tooltip, what it does; the next thing stands beside it. `lacks`: why it does nothing now.
+void button(char const* label, Command command, OverlayFrame& frame, std::string const& lacks = "");
+/// The help's words for a command, and its keys.
+std::string tip_of(Command command);
 
 /// Draws the bar along the lower edge; sets `bar_height`.
 void draw_bar(OverlayContent const& content, OverlayFrame& frame);
 /// Draws the bar's menu of what one can look through.
 void draw_camera_menu(CameraMenu const& menu, OverlayFrame& frame);
+/// Draws the bar's list of what can be drawn over the picture.
+void draw_overlay_menu(OverlayMenu const& menu, OverlayFrame& frame);
 void draw_statistics(StatisticsPanel const& panel, OverlayFrame& frame);
 void draw_legend(Legend const& legend, OverlayFrame& frame);
 void draw_help(TextRows const& rows, OverlayFrame& frame);

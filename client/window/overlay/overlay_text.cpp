@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <iomanip>
+#include <iterator>
 #include <sstream>
+#include <string_view>
+#include <utility>
 
+#include "client/window/overlay/key_table.h"
 #include "common/counted.h"
 
 namespace framelet {
@@ -113,15 +117,66 @@ TextRows detail_rows(ClientStatistics const& s, RateMeter const& meter, Viewport
     };
 }
 
+std::string figure_tip(std::string const& name) {
+    static constexpr std::pair<std::string_view, char const*> tips[] = {
+        {"pictures", "how often a second what is shown changed"},
+        {"motion to photon", "from when the camera was set, or the moment that is shown was the present, until the "
+                             "picture of it was shown: the median of half a second"},
+        {"network", "what is received in batches of framelets"},
+        {"server renders", "samples a second, for all viewers"},
+        {"server busy", "the share of the last second in which the server had something to do for viewers"},
+        {"done", "how much of the picture is known at all"},
+        {"clock", "the scene's: Space lets it run and stops it"},
+        {"picture", "the window's size, pixels"},
+        {"painted by", "what paints that which moves: the graphics card, or the processor and why"},
+        {"display", "frames a second that were drawn for the window, what lies over the picture included, and how long "
+                    "drawing one took"},
+        {"round trip", "from a camera sent to the first batch seen from it, smoothed, and the least"},
+        {"received",
+         "since the viewer first connected: batches (what comes in one message), framelets (tiles of 16x16 samples), "
+         "and bytes for each sample"},
+        {"cost", "this machine's processor time to decode a sample, and to make a pixel of the picture"},
+        {"cache", "framelets that are held, and the memory for them"},
+    };
+    auto const* const found =
+        std::ranges::find(tips, std::string_view(name), [](auto const& tip) { return tip.first; });
+    return found == std::end(tips) ? "" : found->second;
+}
+
+std::string overlay_tip(DrawnOver drawn) {
+    switch (drawn) {
+    case DrawnOver::nothing:
+        return "nothing is drawn over the picture";
+    case DrawnOver::ages:
+        return "outlines of the framelets that are held, where they were rendered, by when they came";
+    case DrawnOver::confidence:
+        return "how far each pixel is to be trusted: when it was rendered, and how coarsely";
+    case DrawnOver::refresh_rate:
+        return "how often each place has been replaced, of about the last second";
+    case DrawnOver::arrivals:
+        return "outlines of what the newest batch has brought, where it was rendered";
+    case DrawnOver::holes:
+        return "pixels that nothing is held of: what shows there is made up from what is around";
+    }
+    return "";
+}
+
 std::optional<Legend> legend_of(DrawnOver drawn) {
+    std::string const tip = with_keys(overlay_tip(drawn), Command::next_overlay);
     switch (drawn) {
     case DrawnOver::nothing:
         break;
-    case DrawnOver::outlines:
-        return Legend{"framelets that are held (F3)", "came last", "1000 batches ago", ""};
+    case DrawnOver::ages:
+        return Legend{"framelets that are held (F3)", "came last", "1000 batches ago", "", tip};
     case DrawnOver::confidence:
         return Legend{"when each pixel was rendered (F3)", "now", "10 s ago",
-                      "the darker the coarser; magenta: made up"};
+                      "the darker the coarser; magenta: made up", tip};
+    case DrawnOver::refresh_rate:
+        return Legend{"how often places are replaced (F3)", "60 a second", "0.1 a second", "grey: more rarely", tip};
+    case DrawnOver::arrivals:
+        return Legend{"yellow: what came last (F3)", "", "", "", tip};
+    case DrawnOver::holes:
+        return Legend{"magenta: nothing is held (F3)", "", "", "", tip};
     }
     return std::nullopt;
 }

@@ -18,8 +18,8 @@ struct TimeLine {
 
     bool operator==(TimeLine const&) const = default;
 
-    /// Seconds since the animation began anew, [0, duration). Only where something moves.
-    double place() const { return std::fmod(clock.time, duration); }
+    /// Seconds since the animation began anew, [0, duration); 0 where nothing moves.
+    double place() const { return duration > 0 ? std::fmod(clock.time, duration) : 0; }
     /// The clock's time that goes with another place in the same round.
     SceneTime time_at(double other_place) const {
         return std::clamp(clock.time - place() + other_place, 0.0, max_scene_time);

@@ -1,0 +1,45 @@
+#include "client/window/overlay/lacks.h"
+
+#include "client/window/overlay/help_text.h"
+#include "client/window/overlay/key_table.h"
+
+namespace framelet {
+
+namespace {
+
+constexpr char const* nothing_moves = "nothing moves in this scene";
+
+std::string samples_stay() {
+    return with_keys("pixels are shown where they were rendered", Command::toggle_reprojection);
+}
+
+} // namespace
+
+std::string clock_lacks(bool is_gone, bool moves, bool controls) {
+    return is_gone     ? "the server is gone: its clock cannot be set"
+           : !moves    ? nothing_moves
+           : !controls ? watching_text
+                       : "";
+}
+
+std::string scene_cameras_lack(std::size_t count) {
+    return count == 0 ? "the scene has no cameras of its own" : "";
+}
+
+std::string smoothing_lacks(bool moves, bool moves_samples) {
+    return !moves ? nothing_moves : moves_samples ? "" : samples_stay();
+}
+
+std::string confidence_lacks(bool moves_samples) {
+    return moves_samples ? "" : samples_stay() + ": ages say the same";
+}
+
+std::string camera_file_lacks(Camera const& camera) {
+    return camera.projection == Projection::orthographic ? "a camera file cannot hold an orthographic camera" : "";
+}
+
+std::string picture_lacks(bool has_picture) {
+    return has_picture ? "" : "there is no picture yet";
+}
+
+} // namespace framelet
