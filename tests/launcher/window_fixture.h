@@ -37,7 +37,8 @@ protected:
         }
         // Without -noreset a program that comes while the last one leaves finds no screen.
         screen_.emplace("/usr/bin/Xvfb",
-                        std::vector<std::string>{"-displayfd", "1", "-noreset", "-screen", "0", "640x480x24"});
+                        std::vector<std::string>{"-displayfd", "1", "-noreset", "-screen", "0", "640x480x24", "-fbdir",
+                                                 screen_folder_.path().string()});
         ASSERT_TRUE(eventually([&] { return has(screen_->output(), "\n") || !screen_->running(); }));
         ::setenv("DISPLAY", (":" + screen_->output().substr(0, screen_->output().find('\n'))).c_str(), 1);
         ::unsetenv("WAYLAND_DISPLAY");
@@ -96,6 +97,7 @@ protected:
     }
 
     TemporaryFolder folder_;
+    TemporaryFolder screen_folder_; ///< the X server writes what is on its screen into a file there
     std::optional<Process> screen_;
     std::optional<Process> program_;
 };

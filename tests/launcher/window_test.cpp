@@ -1,21 +1,12 @@
-// Tests of the real window with a session. What the hands did is read from the files that it saves into its folder.
-#include <algorithm>
-#include <array>
-#include <cmath>
+// Tests of the real window by its keys: cameras, screenshots, bookmarks, films.
 #include <csignal>
 #include <cstring>
 
-#include <nlohmann/json.hpp>
-
 #include "client/video/film_writer.h"
-#include "tests/launcher/window_fixture.h"
+#include "tests/launcher/window_session.h"
 
 namespace framelet::test {
 namespace {
-
-namespace fs = std::filesystem;
-std::string const scene_file = FRAMELET_SOURCE_DIR "/scenes/windmill.glb";
-constexpr int width = 320, height = 200;
 
 /// The sections of an MP4 file, in order; the table of its pictures ("moov") is written last, when the film is
 /// complete.
@@ -34,66 +25,6 @@ std::vector<std::string> sections_of(std::string const& film) {
     }
     return out;
 }
-
-class WindowTest : public WindowFixture {
-protected:
-    void SetUp() override {
-        WindowFixture::SetUp();
-        if (IsSkipped()) {
-            return;
-        }
-        server_.emplace(scene_file, server_options_);
-        start(FRAMELET_VIEWER, {server_->address(), "--size", std::to_string(width) + "x" + std::to_string(height),
-                                "--painter", painter_});
-    }
-
-    /// True where some camera that was saved looks along this axis.
-    bool has_looked_along(std::array<double, 3> const& axis) const {
-        for (fs::path const& file : saved(".camera.json")) {
-            auto const camera = nlohmann::json::parse(content_of(file), nullptr, false);
-            if (camera.is_discarded()) {
-                continue; // it is being written
-            }
-            double along = 0, squared = 0;
-            for (std::size_t i = 0; i < 3; ++i) {
-                double const way = camera.at("target")[i].get<double>() - camera.at("position")[i].get<double>();
-                along += way * axis[i];
-                squared += way * way;
-            }
-            if (along > 0.9999 * std::sqrt(squared)) {
-                return true;
-            }
-        }
-        return false;
-    }
-
-    /// The camera that the window looks from now, as it saves it.
-    nlohmann::json newest_camera() {
-        auto const before = saved(".camera.json").size();
-        std::vector<fs::path> files;
-        EXPECT_TRUE(eventually([&] {
-            press("shift+c");
-            files = saved(".camera.json");
-            return files.size() > before;
-        }));
-        auto const newest = std::ranges::max_element(
-            files, {}, [](fs::path const& file) { return std::pair(fs::last_write_time(file), file); });
-        nlohmann::json camera;
-        EXPECT_TRUE(eventually([&] {
-            camera = nlohmann::json::parse(content_of(*newest), nullptr, false);
-            return !camera.is_discarded();
-        }));
-        return camera;
-    }
-
-    static void move_mouse(int right, int down) {
-        input({"mousemove_relative", "--", std::to_string(right), std::to_string(down)});
-    }
-
-    std::vector<std::string> server_options_{"--paused", "--insecure"};
-    std::string painter_ = "auto";
-    std::optional<ServerProcess> server_;
-};
 
 TEST_F(WindowTest, TheKeypadLooksAlongAxes) {
     struct View {
