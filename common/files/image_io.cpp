@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <limits>
 #include <memory>
 #include <mutex>
-#include <string_view>
-#include <utility>
+#include <optional>
+#include <stdexcept>
 #include <vector>
 
 #include <OpenImageIO/filesystem.h>
@@ -15,6 +14,7 @@
 
 #include "common/color.h"
 #include "common/error.h"
+#include "common/files/picture_header.h"
 #include "common/files/png_reader.h"
 
 namespace framelet {
@@ -28,56 +28,118 @@ constexpr std::int64_t max_pixels = std::int64_t(1) << 28;
     throw InputError("cannot read image '" + name + "': " + (line.empty() ? "unknown or damaged format" : line));
 }
 
-void check_size(std::string const& name, int width, int height) {
-    if (width < 1 || height < 1 || std::int64_t(width) * height > max_pixels) {
-        fail(name, "its size " + std::to_string(width) + "x" + std::to_string(height) + " is out of range");
+void check_size(std::string const& name, PictureSize size) {
+    if (size.width < 1 || size.height < 1 || size.width > max_pixels / size.height) {
+        fail(name, "its size " + std::to_string(size.width) + "x" + std::to_string(size.height) + " is out of range");
     }
 }
 
-std::unique_ptr<OIIO::ImageInput> open(std::string const& name, OIIO::Filesystem::IOMemReader* memory) {
-    OIIO::ImageSpec config;
-    config.attribute("oiio:UnassociatedAlpha", 1); // colour where alpha is 0 is part of the texture
-    if (memory) {
-        OIIO::Filesystem::IOProxy* const proxy = memory;
-        config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-    }
-    std::unique_ptr<OIIO::ImageInput> input;
-    {
-        // OpenImageIO 2.4 fills its tables of metadata fields (Exif, colour profiles) unguarded when it first needs
-        // them (its issue 3756). Opening reads no more than headers; pixels are decoded side by side.
-        static std::mutex opening;
-        std::lock_guard const lock(opening);
-        input = OIIO::ImageInput::open(name, &config, memory);
-    }
-    if (!input) {
-        fail(name, OIIO::geterror());
-    }
-    OIIO::ImageSpec const& spec = input->spec();
-    check_size(name, spec.width, spec.nchannels < 1 ? 0 : spec.height);
-    return input;
+/// Says in one line that it is nothing that is read here. `format`: what it is, null where nobody knows.
+[[noreturn]] void refuse_format(std::string const& name, char const* format) {
+    constexpr char const* known = " texture, which is not supported; PNG, JPEG, WebP, TGA and BMP are";
+    fail(name, format == nullptr ? std::string() : std::string("it is a ") + format + known);
 }
 
-/// Refuses formats that scenes use for compressed textures and that nothing here decodes; throws InputError.
-void check_format(std::span<std::byte const> start, std::string const& name) {
-    constexpr std::pair<std::string_view, char const*> refused[] = {
-        {"\xabKTX 20", "KTX2"}, {"\xabKTX 11", "KTX"}, {"sB", "Basis Universal"}};
-    std::string_view const text(reinterpret_cast<char const*>(start.data()), start.size());
-    for (auto const& [signature, format] : refused) {
-        if (text.starts_with(signature)) {
-            fail(name, std::string("it is a ") + format + " texture, which is not supported; PNG, JPEG and WebP are");
+/// Name of OpenImageIO's reader of a format.
+char const* reader_name(PictureFormat format) {
+    switch (format) {
+    case PictureFormat::png:
+        return "png";
+    case PictureFormat::jpeg:
+        return "jpeg";
+    case PictureFormat::webp:
+        return "webp";
+    case PictureFormat::tga:
+        return "targa";
+    case PictureFormat::bmp:
+        return "bmp";
+    case PictureFormat::pnm:
+        return "pnm";
+    case PictureFormat::hdr:
+        return "hdr";
+    case PictureFormat::exr:
+        break;
+    }
+    return "openexr";
+}
+
+/// True for formats whose reader may take memory for all pixels as it opens a file.
+bool decodes_as_it_opens(PictureFormat format) {
+    return format == PictureFormat::jpeg || format == PictureFormat::webp || format == PictureFormat::bmp ||
+           format == PictureFormat::tga;
+}
+
+/// A picture in memory that OpenImageIO reads, opened once `check` has been told its size.
+class OpenedPicture {
+public:
+    OpenedPicture(std::span<std::byte const> bytes, PictureFormat format, std::string const& name,
+                  SizeCheck const& check)
+        : memory_(const_cast<std::byte*>(bytes.data()), bytes.size()), name_(name) {
+        PictureSize size;
+        auto const tell = [&](std::optional<PictureSize> const& found) {
+            size = found.value_or(PictureSize{});
+            check_size(name, size);
+            check(static_cast<int>(size.width), static_cast<int>(size.height));
+        };
+        bool const is_told_first = decodes_as_it_opens(format);
+        if (is_told_first) {
+            tell(header_size(format, bytes));
+        }
+        open(reader_name(format));
+        PictureSize const opened{spec().width, spec().nchannels < 1 ? 0 : spec().height};
+        if (!is_told_first) {
+            tell(opened);
+        }
+        if (opened != size) {
+            fail(name, "its header has two sizes");
         }
     }
-}
 
-Picture read_rgba(std::string const& name, OIIO::Filesystem::IOMemReader* memory, SizeCheck const& check) {
-    auto const input = open(name, memory);
-    OIIO::ImageSpec const spec = input->spec();
-    check(spec.width, spec.height);
+    OIIO::ImageSpec const& spec() const { return input_->spec(); }
+
+    void read(int channels, OIIO::TypeDesc type, void* out, OIIO::stride_t pixel_bytes) {
+        contained([&] { return input_->read_image(0, 0, 0, channels, type, out, pixel_bytes); });
+    }
+
+private:
+    void open(char const* reader) {
+        // OpenImageIO 2.4 fills its tables of metadata fields (Exif, colour profiles) unguarded when it first needs
+        // them (its issue 3756).
+        static std::mutex opening;
+        std::lock_guard const lock(opening);
+        input_ = OIIO::ImageInput::create(reader);
+        OIIO::ImageSpec config, spec;
+        config.attribute("oiio:UnassociatedAlpha", 1); // colour where alpha is 0 is part of the texture
+        if (!input_ || !input_->set_ioproxy(&memory_)) {
+            fail(name_, std::string("OpenImageIO was built without a reader of ") + reader);
+        }
+        contained([&] { return input_->open(name_, spec, config); });
+    }
+
+    /// Calls a reader. A size that it believed and for which there can be no memory is a failure of the picture.
+    void contained(auto const& call) {
+        try {
+            if (call()) {
+                return;
+            }
+        } catch (std::length_error const& error) {
+            fail(name_, error.what());
+        }
+        fail(name_, input_->geterror());
+    }
+
+    OIIO::Filesystem::IOMemReader memory_;
+    std::string const name_;
+    std::unique_ptr<OIIO::ImageInput> input_;
+};
+
+Picture read_rgba(std::span<std::byte const> bytes, PictureFormat format, std::string const& name,
+                  SizeCheck const& check) {
+    OpenedPicture opened(bytes, format, name, check);
+    OIIO::ImageSpec const& spec = opened.spec();
     int const channels = std::min(spec.nchannels, 4);
     Picture picture(spec.width, spec.height);
-    if (!input->read_image(0, 0, 0, channels, OIIO::TypeDesc::UINT8, picture.rgba.data(), 4)) {
-        fail(name, input->geterror());
-    }
+    opened.read(channels, OIIO::TypeDesc::UINT8, picture.rgba.data(), 4);
     for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
         std::uint8_t* const pixel = &picture.rgba[i];
         pixel[3] = channels == 4 ? pixel[3] : channels == 2 ? pixel[1] : std::uint8_t(255);
@@ -92,7 +154,7 @@ Picture read_rgba(std::string const& name, OIIO::Filesystem::IOMemReader* memory
 Picture read_named_png(std::span<std::byte const> bytes, std::string const& name, SizeCheck const& check) {
     try {
         return read_png(bytes, [&](int width, int height) {
-            check_size(name, width, height);
+            check_size(name, {width, height});
             check(width, height);
         });
     } catch (PngError const& error) {
@@ -100,13 +162,14 @@ Picture read_named_png(std::span<std::byte const> bytes, std::string const& name
     }
 }
 
-/// The file's first bytes, up to `most`; none where it cannot be read.
-std::vector<std::byte> read_start(std::filesystem::path const& file, std::uintmax_t most) {
+std::vector<std::byte> read_bytes(std::filesystem::path const& file) {
     std::error_code code;
-    std::uintmax_t const size = std::filesystem::file_size(file, code);
-    std::vector<std::byte> bytes(code ? 0 : static_cast<std::size_t>(std::min(size, most)));
-    std::ifstream(file, std::ios::binary)
-        .read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    std::uintmax_t const size = std::filesystem::file_size(file, code); // an error for what is no regular file
+    std::vector<std::byte> bytes(code ? 0 : static_cast<std::size_t>(size));
+    if (code || !std::ifstream(file, std::ios::binary)
+                     .read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()))) {
+        fail(file.string(), "the file cannot be read");
+    }
     return bytes;
 }
 
@@ -119,34 +182,34 @@ float finite(float value) {
 } // namespace
 
 Picture read_picture(std::filesystem::path const& file, SizeCheck const& check) {
-    constexpr std::uintmax_t signature_bytes = 16;
-    std::vector<std::byte> const start = read_start(file, signature_bytes);
-    if (is_png(start)) {
-        return read_picture(read_start(file, std::numeric_limits<std::uintmax_t>::max()), file.string(), check);
-    }
-    check_format(start, file.string());
-    return read_rgba(file.string(), nullptr, check ? check : accept_any_size);
+    return read_picture(read_bytes(file), file.string(), check);
 }
 
 Picture read_picture(std::span<std::byte const> bytes, std::string const& name, SizeCheck const& check) {
-    if (is_png(bytes)) {
-        return read_named_png(bytes, name, check ? check : accept_any_size);
+    SizeCheck const& told = check ? check : accept_any_size;
+    std::optional<PictureFormat> const format = picture_format(bytes);
+    if (!format) {
+        refuse_format(name, foreign_format(bytes));
     }
-    check_format(bytes, name);
-    OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(bytes.data()), bytes.size());
-    return read_rgba(name, &memory, check ? check : accept_any_size);
+    if (*format == PictureFormat::hdr || *format == PictureFormat::exr) {
+        refuse_format(name, *format == PictureFormat::hdr ? "Radiance HDR" : "OpenEXR"); // of a scene, not of its sky
+    }
+    return *format == PictureFormat::png ? read_named_png(bytes, name, told) : read_rgba(bytes, *format, name, told);
 }
 
 FloatImage read_float_image(std::filesystem::path const& file) {
     std::string const name = file.string();
-    auto const input = open(name, nullptr);
-    OIIO::ImageSpec const spec = input->spec();
+    std::vector<std::byte> const bytes = read_bytes(file);
+    std::optional<PictureFormat> const format = picture_format(bytes);
+    if (!format) {
+        refuse_format(name, foreign_format(bytes));
+    }
+    OpenedPicture opened(bytes, *format, name, accept_any_size);
+    OIIO::ImageSpec const& spec = opened.spec();
     int const channels = std::min(spec.nchannels, 3);
     FloatImage image(spec.width, spec.height);
     std::vector<float> stored(image.rgb.size() * static_cast<std::size_t>(channels));
-    if (!input->read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, stored.data())) {
-        fail(name, input->geterror());
-    }
+    opened.read(channels, OIIO::TypeDesc::FLOAT, stored.data(), OIIO::AutoStride);
     bool const encoded = spec.format.basetype == OIIO::TypeDesc::UINT8;
     for (std::size_t i = 0; i < image.rgb.size(); ++i) {
         float const* in = &stored[i * static_cast<std::size_t>(channels)];

@@ -3,7 +3,11 @@
 
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
+#include <utility>
+#include <vector>
 
+#include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
 #include "common/error.h"
@@ -64,6 +68,81 @@ TEST(ImageIo, TheSizeIsToldBeforeDecoding) {
     }
 }
 
+/// `count` bytes of a number, the least significant first.
+std::string little(std::uint32_t value, std::size_t count) {
+    std::string bytes;
+    for (std::size_t i = 0; i < count; ++i) {
+        bytes += static_cast<char>(value >> (8 * i));
+    }
+    return bytes;
+}
+
+/// No more than the headers of pictures of 9000x5000, which would take 180 MB: readers take it as they open such a
+/// file.
+std::vector<std::pair<std::string, std::string>> headers_of_large_pictures() {
+    std::string const sides_big = "\x13\x88\x23\x28";
+    std::string const comment("\xff\xfe\0\x04hi", 6);
+    return {{"a.jpg", "\xff\xd8" + comment + std::string("\xff\xc2\0\x11\x08", 5) + sides_big + std::string(40, '\3')},
+            {"animation.webp", "RIFF" + little(1000, 4) + "WEBPVP8X" + little(10, 4) + little(2, 4) + little(8999, 3) +
+                                   little(4999, 3) + std::string(40, '\0')},
+            {"lossless.webp", "RIFF" + little(1000, 4) + "WEBPVP8L" + little(900, 4) + "\x2f" +
+                                  little(8999 | 4999 << 14, 4) + std::string(40, '\0')},
+            {"lossy.webp", "RIFF" + little(1000, 4) + "WEBPVP8 " + little(900, 4) +
+                               std::string("\0\0\0\x9d\x01\x2a", 6) + little(9000, 2) + little(5000, 2) +
+                               std::string(40, '\0')},
+            {"a.bmp", "BM" + little(1000, 4) + little(0, 4) + little(54, 4) + little(40, 4) + little(9000, 4) +
+                          little(static_cast<std::uint32_t>(-5000), 4) + little(1, 2) + little(8, 2) + little(1, 4) +
+                          std::string(20, '\0')},
+            {"old.bmp", "BM" + little(1000, 4) + little(0, 4) + little(26, 4) + little(12, 4) + little(9000, 2) +
+                            little(5000, 2) + little(1, 2) + little(24, 2)},
+            {"a.tga", std::string("\0\0\x0b", 3) + std::string(9, '\0') + little(9000, 2) + little(5000, 2) + " \x08"}};
+}
+
+TEST(ImageIo, TheSizeIsToldBeforeAReaderOpensTheFile) {
+    for (auto const& [name, bytes] : headers_of_large_pictures()) {
+        std::pair<int, int> told;
+        EXPECT_THROW(read_picture(std::as_bytes(std::span(bytes)), name,
+                                  [&](int width, int height) {
+                                      told = {width, height};
+                                      throw std::length_error("too large");
+                                  }),
+                     std::length_error)
+            << name;
+        EXPECT_EQ(told, std::pair(9000, 5000)) << name;
+        for (std::size_t const length : {std::size_t{4}, std::size_t{19}, bytes.size() / 2, bytes.size()}) {
+            EXPECT_THROW(read_picture(std::as_bytes(std::span(bytes).first(length)), name), InputError)
+                << name << ' ' << length;
+        }
+    }
+}
+
+TEST(ImageIo, EveryFormatOfScenesIsReadWhateverItsName) {
+    auto const folder = std::filesystem::temp_directory_path();
+    for (auto const* ending : {".jpg", ".webp", ".tga", ".bmp"}) {
+        auto const file = folder / (std::string("framelet_format_test") + ending);
+        auto const output = OIIO::ImageOutput::create(file.string());
+        ASSERT_TRUE(output) << ending << OIIO::geterror();
+        OIIO::ImageSpec const spec(37, 19, 3, OIIO::TypeDesc::UINT8);
+        std::vector<std::uint8_t> texels;
+        for (int i = 0; i < 37 * 19; ++i) {
+            texels.insert(texels.end(), {200, 100, 50});
+        }
+        ASSERT_TRUE(output->open(file.string(), spec) && output->write_image(OIIO::TypeDesc::UINT8, texels.data()) &&
+                    output->close());
+        auto const disguised = folder / "framelet_format_test.png";
+        std::filesystem::rename(file, disguised);
+        std::pair<int, int> told;
+        Picture const picture = read_picture(disguised, [&](int width, int height) { told = {width, height}; });
+        std::filesystem::remove(disguised);
+        EXPECT_EQ(told, std::pair(37, 19)) << ending;
+        ASSERT_EQ(picture.rgba.size(), 37u * 19 * 4) << ending;
+        EXPECT_NEAR(picture.rgba[0], 200, 4) << ending;
+        EXPECT_NEAR(picture.rgba[1], 100, 4) << ending;
+        EXPECT_NEAR(picture.rgba[2], 50, 4) << ending;
+        EXPECT_EQ(picture.rgba[3], 255) << ending;
+    }
+}
+
 /// The error's message. Nothing may be written to stderr meanwhile: only a library would do so.
 std::string failure_of(std::string const& bytes, std::string const& name) {
     testing::internal::CaptureStderr();
@@ -106,6 +185,9 @@ TEST(ImageIo, TexturesNobodyDecodesAreNamed) {
         EXPECT_NE(line.find("KTX2 texture, which is not supported"), std::string::npos) << line;
     }
     EXPECT_NE(failure_of("sB" + rest, "a.basis").find("Basis Universal"), std::string::npos);
+    std::string const gif = "GIF89a" + little(30000, 2) + little(30000, 2) + rest;
+    EXPECT_NE(failure_of(gif, "a.gif").find("it is a GIF texture, which is not supported"), std::string::npos);
+    EXPECT_NE(failure_of("#?RADIANCE\n\n-Y 1 +X 1\n" + rest, "a.png").find("Radiance HDR"), std::string::npos);
 }
 
 } // namespace

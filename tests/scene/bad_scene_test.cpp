@@ -221,6 +221,17 @@ TEST(BadScene, PicturesAreCountedBeforeTheyAreDecoded) {
                  "more than 1 MB", with_megabytes(1));
 }
 
+/// Readers of such files take memory for the picture as they open them.
+TEST(BadScene, HeadersOfLargePicturesTakeNoMemory) {
+    TemporaryFolder const folder;
+    std::string const animation("RIFF\0\1\0\0WEBPVP8X\x0a\0\0\0\2\0\0\0\xff\x3f\0\xff\x1f\0", 30); // 16384x8192
+    folder.write("large.png", animation + std::string(200, '\0'));
+    folder.write("a.mtl", "newmtl m\nmap_Kd large.png\n");
+    auto const file =
+        folder.write("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n");
+    expect_error(file, "more than 100 MB", with_megabytes(100));
+}
+
 TEST(BadScene, OneBufferFileNamedOften) {
     TemporaryFolder const folder;
     folder.write("a.bin", std::string(1 << 20, '\0'));
