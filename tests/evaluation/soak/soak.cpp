@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <map>
 #include <memory>
-#include <span>
 #include <string>
 #include <thread>
 #include <vector>
@@ -18,6 +17,7 @@
 
 #include "tests/evaluation/figure_table.h"
 #include "tests/evaluation/measures/measures.h"
+#include "tests/evaluation/soak/memory_judgement.h"
 #include "tests/evaluation/soak/process_watch.h"
 #include "tests/evaluation/soak/soak_viewer.h"
 #include "tests/evaluation/soak/strangers.h"
@@ -33,8 +33,6 @@ constexpr auto step = std::chrono::milliseconds(50); ///< time between pictures 
 constexpr double patience = 120; ///< seconds to wait for what is to come by itself
 constexpr double still_times[] = {0.5, 1.5, 3}; ///< scene times at which the scene stands in the calms, seconds
 constexpr double least_psnr = 45; ///< least PSNR of a reference against a direct render of 64 samples a pixel, dB
-constexpr std::size_t least_pairs = 5; ///< least pairs of calms after the same storm that are compared
-constexpr double memory_noise = 0.02; ///< share of the memory that an allocator takes and gives back
 
 /// Link of a viewer: from no limit to links that are narrow, stall, or change their rate.
 LinkParameters link_of(int viewer, double seconds) {
@@ -104,8 +102,8 @@ public:
             }
         }
         json figures{{"scene", scene_.name}, {"seed", options_.seed}, {"viewers", options_.viewers}};
-        figures["memory"] = judge_memory(rounds, "the server's", "resident_bytes", true);
-        figures["viewers_memory"] = judge_memory(rounds, "the viewers'", "viewers_bytes", options_.events == 0);
+        figures["memory"] = judge(rounds, "the server's", "resident_bytes", true);
+        figures["viewers_memory"] = judge(rounds, "the viewers'", "viewers_bytes", options_.events == 0);
         figures["rounds"] = std::move(rounds);
         end();
         figures["failures"] = failures_;
@@ -283,27 +281,26 @@ private:
         }
     }
 
-    /// Compares the memory of the last quarter of the time with that of the one before. `key`: figure of a round. The
-    /// memory of viewers depends on the sizes that events give them, and is judged only where there are no events.
-    json judge_memory(json const& rounds, char const* whose, char const* key, bool is_judged) {
+    /// Judges what a figure of the calms says of memory. That of viewers depends on the sizes that events give them: it
+    /// can fail only where there are no events.
+    json judge(json const& rounds, char const* whose, char const* key, bool can_fail) {
         std::array<std::vector<double>, 4> bytes;
         for (json const& round : rounds) {
             bytes[round["quarter"].get<std::size_t>()].push_back(round[key]);
         }
-        std::size_t const pairs = std::min(bytes[2].size(), bytes[3].size());
-        if (pairs < least_pairs) {
-            return {};
+        MemoryJudgement const judgement = judge_memory(bytes, whose);
+        std::printf("%s: %s\n", scene_.name.c_str(), judgement.text.c_str());
+        if (!judgement.growth) {
+            return {{"judged", false}};
         }
-        Growth const growth = growth_of(std::span(bytes[2]).first(pairs), std::span(bytes[3]).first(pairs));
-        std::printf("%s: %s memory has grown by %+.2f MB in a quarter of the time, standard error %.2f, of %.1f MB\n",
-                    scene_.name.c_str(), whose, 1e-6 * growth.mean, 1e-6 * growth.error, 1e-6 * growth.before);
-        if (is_judged && grows(growth, memory_noise)) {
+        if (can_fail && judgement.grows) {
             fail(std::string(whose) + " memory grows");
         }
-        return {{"bytes_a_quarter", growth.mean},
-                {"standard_error", growth.error},
-                {"mean_bytes", growth.before},
-                {"pairs", growth.pairs}};
+        return {{"judged", can_fail},
+                {"bytes_a_quarter", judgement.growth->mean},
+                {"standard_error", judgement.growth->error},
+                {"mean_bytes", judgement.growth->before},
+                {"pairs", judgement.growth->pairs}};
     }
 
     void end() {

@@ -31,8 +31,8 @@ struct SoakOptions {
 ///   came for it over a link without limit, which is a direct render's but for what its samples are quantised to;
 ///   whether the server's descriptors are those of its viewers and no more;
 /// - in the calms of the last quarter of the time: whether the server holds more resident memory than in those of the
-///   quarter before (`grows`), and, where viewers only fly, whether they do. The same storms come in each quarter,
-///   since what a calm holds depends on the storm before it. Quarters of less than four calms are not compared;
+///   quarter before (`judge_memory`), and, where viewers only fly, whether they do. The same storms come in each
+///   quarter, since what a calm holds depends on the storm before it. A line says where there were too few calms;
 /// - at the end: whether without viewers it has the descriptors that it had at first, and ends without an error.
 nlohmann::json run_soak(BenchScene& scene, SoakOptions const& options);
 

@@ -13,9 +13,13 @@ TEST(Soak, AServerComesThroughABitOfIt) {
     options.viewers = 3;
     options.seconds = 6;
     options.storm_seconds = 2;
+    testing::internal::CaptureStdout();
     nlohmann::json const figures = run_soak(*scene, options);
+    std::string const printed = testing::internal::GetCapturedStdout();
     EXPECT_TRUE(figures["failures"].empty()) << figures["failures"];
     ASSERT_FALSE(figures["rounds"].empty());
+    EXPECT_NE(printed.find("the server's memory is NOT JUDGED"), std::string::npos) << printed;
+    EXPECT_EQ(figures["memory"]["judged"], false);
     int events = 0;
     for (auto const& round : figures["rounds"]) {
         events += round["events"].get<int>();
