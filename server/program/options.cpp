@@ -100,9 +100,10 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
     app.add_option("--max-sessions", options.server.max_sessions, "Most viewers at a time")
         ->check(number_in(1, 1024))
         ->capture_default_str();
-    app.add_option("--session-memory", options.server.session_megabytes,
-                   "Most memory for the pictures of all viewers together: 20 bytes a pixel and 17 MB each; a viewer "
-                   "whose picture does not fit is refused")
+    app.add_option(
+           "--session-memory", options.server.session_megabytes,
+           "Most memory for the pictures of all viewers together: about 160 bytes a pixel and 43 MB each; a viewer "
+           "whose picture does not fit is refused")
         ->type_name("MB")
         ->check(number_in(1, 1 << 20))
         ->capture_default_str();

@@ -11,15 +11,15 @@ namespace {
 constexpr Viewport large{4096, 2048}, small{640, 480};
 
 TEST(SessionMemory, GrowsWithWhatIsHeld) {
-    auto const picture_bytes = [](Viewport viewport, bool predicts) {
-        return session_bytes(viewport, predicts) - most_kept_bytes;
+    auto const bytes_a_pixel = [](Viewport viewport, bool predicts) {
+        double const pixels = static_cast<double>(viewport.width) * viewport.height;
+        return static_cast<double>(session_bytes(viewport, predicts) - session_bytes({1, 1}, predicts)) / pixels;
     };
-    EXPECT_GT(picture_bytes(large, true), 16u * 4096 * 2048);
-    EXPECT_LT(picture_bytes(large, true), 24u * 4096 * 2048);
-    EXPECT_LT(picture_bytes(small, true), picture_bytes(large, true) / 8);
-    EXPECT_LT(picture_bytes(large, false), picture_bytes(large, true) / 8);
-    EXPECT_LT(picture_bytes({max_viewport_side, max_viewport_side}, true), picture_bytes(large, true))
-        << "too large to be predicted";
+    EXPECT_NEAR(bytes_a_pixel(large, true), 160, 15) << "as the guide says";
+    EXPECT_NEAR(1e-6 * static_cast<double>(session_bytes({1, 1}, true)), 43, 3) << "as the guide says";
+    EXPECT_LT(bytes_a_pixel(large, false), bytes_a_pixel(large, true) - 12);
+    Viewport const largest{max_viewport_side, max_viewport_side};
+    EXPECT_EQ(session_bytes(largest, true), session_bytes(largest, false)) << "too large to be predicted";
 }
 
 TEST(SessionMemory, RefusesWhatIsBeyondTheRest) {

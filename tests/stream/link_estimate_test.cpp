@@ -247,5 +247,26 @@ TEST(LinkEstimate, AClockThatIsSetMakesNoQueue) {
     }
 }
 
+/// A viewer that answers at once for a while has a window of any size. Then it stops.
+TEST(LinkEstimate, WhatIsInFlightIsBounded) {
+    LinkEstimate estimate;
+    double now = 0;
+    std::uint64_t batch = 0;
+    while (estimate.window_bytes() < 4 * most_in_flight) {
+        double const bytes = estimate.window_bytes();
+        estimate.begin(bytes);
+        estimate.sent(++batch, now, bytes);
+        now += 1e-3;
+        estimate.acknowledged(batch, now, std::nullopt);
+        ASSERT_LT(batch, 1000u);
+    }
+    while (estimate.has_room(now)) {
+        estimate.begin(1e6);
+        estimate.sent(++batch, now, 1e6);
+        ASSERT_LT(estimate.in_flight_bytes(), 4 * most_in_flight);
+    }
+    EXPECT_LT(estimate.in_flight_bytes(), most_in_flight + 1e6);
+}
+
 } // namespace
 } // namespace framelet

@@ -1,6 +1,7 @@
 #include "server/session/limits/session_memory.h"
 
 #include "protocol/codec/color/reference_picture.h"
+#include "server/sampling/mirror/mirror.h"
 #include "server/sampling/plan/adaptive_refresh.h"
 #include "server/stream/flow/lossy_tiles.h"
 
@@ -8,6 +9,13 @@ namespace framelet {
 namespace {
 
 constexpr std::size_t megabyte = 1'000'000;
+
+/// Of any picture: batches that are being made, and what grows with the scene's bodies.
+constexpr std::size_t least_bytes = 4 * megabyte;
+/// Pieces for each cell of the picture, over all moments, and as many again for samples on their way to becoming some.
+/// They are a measured bound of scenes with much detail: of a picture at rest, and of a flight that is rendered whole
+/// ten times a second.
+constexpr std::size_t pieces_per_cell = 14;
 
 std::string text_of(std::size_t bytes) {
     return std::to_string((bytes + megabyte - 1) / megabyte);
@@ -17,11 +25,16 @@ std::string text_of(std::size_t bytes) {
 
 std::size_t session_bytes(Viewport viewport, bool predicts) {
     ImagePlane const plane(viewport);
-    std::size_t bytes = most_kept_bytes;
+    // Batches without an answer are kept as they are, and those that the socket has not taken as they are sent.
+    std::size_t bytes = 2 * most_kept_bytes + least_bytes;
     bytes += LumaHistory::default_entries * sizeof(LumaHistory::Entry);
     // What is known of each region, and as much again for what is worked out from it in every cycle.
     bytes += (std::size_t{2} << (2 * field_depth(plane))) * sizeof(Region);
     bytes += LossyTiles::bytes(plane);
+    auto const pixels = static_cast<std::size_t>(viewport.width) * static_cast<std::size_t>(viewport.height);
+    constexpr std::size_t bytes_per_cell = sizeof(Cell) + sizeof(std::uint64_t); // and the newest batch of each
+    constexpr std::size_t bytes_per_piece = sizeof(Piece) + sizeof(ReprojectedPiece);
+    bytes += pixels / cell_pixels * (bytes_per_cell + pieces_per_cell * bytes_per_piece);
     if (predicts && ReferencePicture::holds(viewport)) {
         bytes += ReferencePicture::bytes(viewport);
     }

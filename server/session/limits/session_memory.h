@@ -12,12 +12,12 @@
 
 namespace framelet {
 
-/// Most bytes of batches that a viewer has not answered which are kept for when it comes back.
+/// Most bytes of batches that a viewer has not answered which are kept for when it comes back: more than
+/// `most_in_flight`, so that all are.
 inline constexpr std::size_t most_kept_bytes = std::size_t{16} << 20;
 
-/// Bytes that the server keeps for one viewer, about: what it knows of its picture, what the viewer holds, and batches
-/// without an answer. `predicts`: whether framelets are predicted. What waits for its socket is bounded by
-/// `max_unsent_bytes`, and not in here.
+/// Bytes that the server keeps for one viewer, at most: what it knows of its picture, what the viewer holds, batches
+/// that are being made, and those without an answer. `predicts`: whether framelets are predicted.
 std::size_t session_bytes(Viewport viewport, bool predicts);
 
 class SessionMemory {

@@ -96,7 +96,7 @@ bool LinkEstimate::is_full() const {
 }
 
 bool LinkEstimate::has_room(double now) const {
-    return in_flight_ < window_ && (starting_ || now >= paced_ - slack_seconds);
+    return in_flight_ < std::min(window_, most_in_flight) && (starting_ || now >= paced_ - slack_seconds);
 }
 
 void LinkEstimate::restart(std::uint64_t acknowledged, std::size_t in_flight) {

@@ -16,6 +16,10 @@ namespace framelet {
 /// Seconds; a shorter round trip says nothing of a link: there is hardly one.
 inline constexpr double least_round_trip = 0.002;
 
+/// Bytes; so much in flight is enough for any link that viewers have, and bounds what a viewer that stops reading makes
+/// the server keep.
+inline constexpr double most_in_flight = 16e6;
+
 struct LinkState {
     /// Rate of the link; infinite: it has not been felt yet. While the window is still being found, the rate that the
     /// window allows.
@@ -59,8 +63,8 @@ public:
     /// are answered; `in_flight` later ones are sent once more.
     void restart(std::uint64_t acknowledged, std::size_t in_flight);
 
-    /// True when another batch may be sent: less is in flight than the window holds, and what was sent before has had
-    /// its time on the link. The batch that fills the window may exceed it.
+    /// True when another batch may be sent: less is in flight than the window holds and than `most_in_flight`, and what
+    /// was sent before has had its time on the link. The batch that fills the window may exceed it.
     bool has_room(double now) const;
     double in_flight_bytes() const { return in_flight_; }
     double window_bytes() const { return window_; }

@@ -69,8 +69,8 @@ json run_crowd(BenchScene const& scene, CrowdOptions const& options, bool with_s
     test::TemporaryFolder const folder;
     char stops[40];
     std::snprintf(stops, sizeof stops, "%.9g", std::log2(static_cast<double>(scene.exposure)));
-    test::ServerProcess server(scene.file.string(), {"--exposure", stops, "--insecure", "--max-sessions",
-                                                     std::to_string(options.viewers + 1)});
+    test::ServerProcess server(scene.file.string(), {"--exposure", stops, "--insecure", "--session-memory", "1000000",
+                                                     "--max-sessions", std::to_string(options.viewers + 1)});
     std::string const& address = server.address();
     std::unique_ptr<RawViewer> stalled;
     if (with_stalled) {

@@ -62,7 +62,13 @@ std::string server_port(test::ServerProcess const& server) {
 std::vector<std::string> server_words(BenchScene const& scene, SoakOptions const& options) {
     char stops[40];
     std::snprintf(stops, sizeof stops, "%.9g", std::log2(static_cast<double>(scene.exposure)));
-    return {"--exposure", stops, "--insecure", "--max-sessions", std::to_string(options.viewers + 8)};
+    return {"--exposure",
+            stops,
+            "--insecure",
+            "--session-memory",
+            "1000000",
+            "--max-sessions",
+            std::to_string(options.viewers + 8)};
 }
 
 class Soak {
