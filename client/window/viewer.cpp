@@ -355,17 +355,10 @@ OverlayContent Viewer::overlay_content() {
         out.note = note_;
     }
     opener_.show(out);
-    if (interrupted_ && lost_.empty()) {
-        out.sign += (out.sign.empty() ? "" : "\n") + std::string("no connection: trying again");
-    }
-    if (window_.has_mouse_look()) {
-        out.has_pointer = false;
-        out.sign += (out.sign.empty() ? "" : "\n") + std::string(mouse_look_text);
-    }
-    if (recorder_) {
-        out.sign +=
-            (out.sign.empty() ? "" : "\n") + with_keys(progress_text(recorder_->progress()), Command::toggle_recording);
-    }
+    out.has_pointer = out.has_pointer && !window_.has_mouse_look();
+    out.sign = sign_text(
+        {out.sign, interrupted_ && lost_.empty(), window_.has_mouse_look(),
+         recorder_ ? with_keys(progress_text(recorder_->progress()), Command::toggle_recording) : std::string()});
     if (!lost_.empty()) {
         out.message = attempts_ ? attempts_->message() : lost_ + "\n\nR or Enter: connect again     Esc: quit";
         out.address = {opener_.has_open() ? usual_server : connection_.server.text(), memory_.servers};

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "client/window/overlay/help_text.h"
+
 namespace framelet {
 namespace {
 
@@ -51,6 +53,14 @@ std::string value_of(TextRows const& rows, std::string const& name) {
         }
     }
     return "no such row";
+}
+
+TEST(OverlayText, TheSignSaysThatAConnectionIsTriedForAgain) {
+    EXPECT_EQ(sign_text({}), "");
+    EXPECT_EQ(sign_text({.is_interrupted = true}), "no connection: trying again");
+    EXPECT_EQ(sign_text({"opening a.glb", true, false, "0:03"}), "opening a.glb\nno connection: trying again\n0:03");
+    std::string const both = sign_text({.is_interrupted = true, .has_mouse_look = true});
+    EXPECT_EQ(both, std::string("no connection: trying again\n") + mouse_look_text);
 }
 
 TEST(OverlayText, ClockAndStatisticsReadWell) {

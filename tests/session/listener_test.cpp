@@ -1,5 +1,8 @@
 #include "server/session/listener.h"
 
+#include <set>
+#include <string>
+
 #include <gtest/gtest.h>
 
 #include "common/error.h"
@@ -73,6 +76,27 @@ TEST(Listener, WhateverFailsForOneConnectionTheNextIsAccepted) {
 TEST(Listener, BothVersionsOfAllAddressesGoTogether) {
     std::vector<asio::ip::address> const all{asio::ip::address_v6::any(), asio::ip::address_v4::any()};
     EXPECT_EQ(Listener(all, 0).endpoints().size(), is_here(all[0]) ? 2u : 1u);
+}
+
+/// What a name stands for, as far as it is here. No name stands for all addresses, and "localhost" for one or two.
+TEST(Listener, ANameStandsForAllItsAddresses) {
+    asio::io_context io;
+    for (std::string const name : {"localhost", ""}) {
+        std::set<asio::ip::address> wanted, bound;
+        std::set<std::uint16_t> ports;
+        for (auto const& found : tcp::resolver(io).resolve(name, "0", tcp::resolver::passive)) {
+            if (is_here(found.endpoint().address())) {
+                wanted.insert(found.endpoint().address());
+            }
+        }
+        for (auto const& endpoint : Listener(name, 0).endpoints()) {
+            bound.insert(endpoint.address());
+            ports.insert(endpoint.port());
+        }
+        EXPECT_FALSE(wanted.empty()) << name;
+        EXPECT_EQ(bound, wanted) << name;
+        EXPECT_EQ(ports.size(), 1u) << name;
+    }
 }
 
 TEST(Listener, AddressesOfOtherMachinesAreRefusedWhereThereIsNoOther) {

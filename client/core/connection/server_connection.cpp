@@ -15,6 +15,7 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include "client/core/connection/back_off.h"
+#include "client/core/connection/token_route.h"
 #include "common/error.h"
 #include "protocol/stream/known_servers.h"
 #include "protocol/stream/local_token.h"
@@ -37,14 +38,6 @@ std::string seconds_text(double seconds) {
 
 asio::steady_timer::duration duration_of(double seconds) {
     return std::chrono::duration_cast<asio::steady_timer::duration>(std::chrono::duration<double>(seconds));
-}
-
-/// True for an address of this machine itself.
-bool is_loopback(asio::ip::address const& address) {
-    if (address.is_v6() && address.to_v6().is_v4_mapped()) {
-        return asio::ip::make_address_v4(asio::ip::v4_mapped, address.to_v6()).is_loopback();
-    }
-    return address.is_loopback();
 }
 
 } // namespace
@@ -199,8 +192,7 @@ struct ServerConnection::Impl {
                     end("cannot connect to " + server + ": connection refused: is framelet-server running there?");
                 } else if (error) {
                     end("cannot connect to " + server + ": " + error.message());
-                } else if (!options.token.empty() && !options.tls && !options.insecure &&
-                           !is_loopback(endpoint.address())) {
+                } else if (!may_send_token(options, endpoint.address())) {
                     end("the token is not sent to " + server +
                             " in clear: use --tls, or --insecure if you know that nobody can listen",
                         Retry::never);

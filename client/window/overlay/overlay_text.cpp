@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "client/window/overlay/help_text.h"
 #include "client/window/overlay/key_table.h"
 #include "common/counted.h"
 
@@ -16,6 +17,7 @@ namespace {
 
 constexpr double interval_seconds = 0.5;
 constexpr std::size_t most_intervals = 120; // a minute
+constexpr char const* interrupted_text = "no connection: trying again";
 
 std::string fixed(double value, int digits, char const* unit) {
     std::ostringstream out;
@@ -179,6 +181,15 @@ std::optional<Legend> legend_of(DrawnOver drawn) {
         return Legend{"magenta: nothing is held (F3)", "", "", "", tip};
     }
     return std::nullopt;
+}
+
+std::string sign_text(Signs const& signs) {
+    std::string text;
+    for (std::string const& line : {signs.opening, std::string(signs.is_interrupted ? interrupted_text : ""),
+                                    std::string(signs.has_mouse_look ? mouse_look_text : ""), signs.recording}) {
+        text += (text.empty() || line.empty() ? "" : "\n") + line;
+    }
+    return text;
 }
 
 std::string opening_text(std::string const& scene, std::string const& stage) {

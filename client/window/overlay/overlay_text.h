@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "client/core/client_core.h"
@@ -68,6 +69,14 @@ std::string overlay_tip(DrawnOver drawn);
 std::optional<Legend> legend_of(DrawnOver drawn);
 /// A text about a scene that is being opened, and the stage that this has reached; empty where there is no scene.
 std::string opening_text(std::string const& scene, std::string const& stage);
+/// What the small sign at the upper edge says, a line each.
+struct Signs {
+    std::string opening = {}; ///< of the scene that is being opened; empty: none is
+    bool is_interrupted = false; ///< there is no session, and another is tried for
+    bool has_mouse_look = false;
+    std::string recording = {}; ///< of the film that is being recorded; empty: none is
+};
+std::string sign_text(Signs const& signs);
 /// The clock's state as text: "12.34 s, playing at 1x".
 std::string clock_text(ClockState const& clock);
 /// The lag as text: "the scene 100 ms late".
