@@ -28,6 +28,16 @@ TEST(ClientCore, SaysThatThereIsNoSuchHost) {
     EXPECT_TRUE(one_line_with(text, {"nowhere.invalid:7070"})) << text;
 }
 
+/// What fails on the connection's own thread is said on the one that asked for it.
+TEST(ClientCore, SaysThatNoCertificateCouldNameSuchAHost) {
+    FakeServer const server;
+    ConnectionOptions options = options_for(server);
+    options.server.host.clear(); // the loopback, to the resolver
+    options.tls = true;
+    std::string const text = why_not(options);
+    EXPECT_TRUE(one_line_with(text, {"cannot go on", "host name", "certificate"})) << text;
+}
+
 TEST(ClientCore, GivesUpOnAServerThatDoesNotAnswer) {
     FakeServer::Script script;
     script.mute = true;
