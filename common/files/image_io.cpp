@@ -35,8 +35,9 @@ void check_size(std::string const& name, PictureSize size) {
 }
 
 /// Says in one line that it is nothing that is read here. `format`: what it is, null where nobody knows.
-[[noreturn]] void refuse_format(std::string const& name, char const* format) {
-    constexpr char const* known = " texture, which is not supported; PNG, JPEG, WebP, TGA and BMP are";
+[[noreturn]] void refuse_format(std::string const& name, char const* format, bool is_sky = false) {
+    char const* const known = is_sky ? " picture, which is not supported; HDR, EXR, PNG and JPEG are"
+                                     : " texture, which is not supported; PNG, JPEG, WebP, TGA and BMP are";
     fail(name, format == nullptr ? std::string() : std::string("it is a ") + format + known);
 }
 
@@ -202,7 +203,7 @@ FloatImage read_float_image(std::filesystem::path const& file) {
     std::vector<std::byte> const bytes = read_bytes(file);
     std::optional<PictureFormat> const format = picture_format(bytes);
     if (!format) {
-        refuse_format(name, foreign_format(bytes));
+        refuse_format(name, foreign_format(bytes), true);
     }
     OpenedPicture opened(bytes, *format, name, accept_any_size);
     OIIO::ImageSpec const& spec = opened.spec();

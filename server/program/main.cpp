@@ -227,6 +227,7 @@ void serve(Options& options) {
 int main(int argc, char** argv) {
     framelet::give_back_large_blocks();
     std::signal(SIGPIPE, SIG_IGN); // whoever reads the log may go away; viewers stay
+    std::signal(SIGCHLD, SIG_DFL); // where it is ignored, perhaps since before this was started, no child is heard of
     auto parsed = framelet::parse_options(argc, argv);
     if (int const* const exit_code = std::get_if<int>(&parsed)) {
         return *exit_code;

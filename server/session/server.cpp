@@ -28,6 +28,7 @@
 #include "server/session/limits/waiting_room.h"
 #include "server/session/listener.h"
 #include "server/session/loaded_scene.h"
+#include "server/session/loop/contained.h"
 #include "server/session/loop/loop_thread.h"
 #include "server/session/welcome.h"
 
@@ -113,7 +114,11 @@ struct Server::Impl {
         SessionLoop::Sessions const sessions = connections.open_sessions();
         loop.stop();
         for (auto const& session : sessions) {
-            session->end("the scene is loaded again", true);
+            try {
+                session->end("the scene is loaded again", true);
+            } catch (std::bad_alloc const&) {
+                end_in_need(*session, true);
+            }
         }
         admission.keep_parked(0);
         welcome = std::move(next_welcome);

@@ -226,6 +226,9 @@ TEST_F(Reloading, WhoIsServedHasMemoryWhileAnotherSceneIsRead) {
 }
 
 TEST_F(Reloading, AFileThatTakesTooMuchLeavesTheSceneAsItWas) {
+#ifdef FRAMELET_SANITIZE
+    GTEST_SKIP() << "the sanitizer ends a program that is refused memory";
+#endif
     std::string const head =
         "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
         "z\nelement face 1\nproperty list uint int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n";

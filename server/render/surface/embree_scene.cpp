@@ -90,7 +90,9 @@ struct EmbreeScene::Handles {
     }
 };
 
-EmbreeScene::Handles::Handles() : device(rtcNewDevice(nullptr)) {
+EmbreeScene::Handles::Handles() {
+    rtcGetDeviceError(nullptr); // forgets what calls for handles that could not be made have left on this thread
+    device = rtcNewDevice(nullptr);
     if (device == nullptr) {
         RTCError const error = rtcGetDeviceError(nullptr);
         FRAMELET_CHECK(error == RTC_ERROR_OUT_OF_MEMORY || error == RTC_ERROR_UNKNOWN);

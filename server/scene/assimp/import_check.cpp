@@ -38,14 +38,7 @@ public:
             throw not_started(errno);
         }
         errors_ = ends[0];
-        posix_spawn_file_actions_t files;
-        ::posix_spawn_file_actions_init(&files);
-        ::posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-        ::posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-        ::posix_spawn_file_actions_adddup2(&files, ends[1], STDERR_FILENO);
-        ::posix_spawn_file_actions_addclosefrom_np(&files, STDERR_FILENO + 1); // connections must not outlive us there
-        int const error = ::posix_spawn(&id_, program.c_str(), &files, nullptr, arguments.data(), environ);
-        ::posix_spawn_file_actions_destroy(&files);
+        int const error = spawn(program, ends[1], arguments.data());
         ::close(ends[1]);
         if (error != 0) {
             ::close(errors_);
@@ -81,16 +74,42 @@ public:
         }
     }
 
-    /// How it ended, as from waitpid.
+    /// How it ended, as from waitpid; where nobody can say that, as if it had failed.
     int wait() {
+        constexpr int failed = 0xff00;
         int status = 0;
-        while (::waitpid(id_, &status, 0) < 0 && errno == EINTR) {
+        pid_t ended = 0;
+        while ((ended = ::waitpid(id_, &status, 0)) < 0 && errno == EINTR) {
         }
         has_ended_ = true;
-        return status;
+        return ended == id_ ? status : failed;
     }
 
 private:
+    /// Starts the program with `errors` as its stderr. Returns an error number, 0 where it runs.
+    int spawn(std::filesystem::path const& program, int errors, char* const* arguments) {
+        posix_spawn_file_actions_t files;
+        posix_spawnattr_t how;
+        if (int const error = ::posix_spawn_file_actions_init(&files)) {
+            return error;
+        }
+        int error = ::posix_spawnattr_init(&how);
+        if (error == 0) {
+            // A process group of its own: what a terminal sends is for us, who end it.
+            error = ::posix_spawnattr_setflags(&how, POSIX_SPAWN_SETPGROUP);
+            auto const then = [&error](auto const& step) { error = error == 0 ? step() : error; };
+            then([&] { return ::posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0); });
+            then([&] { return ::posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0); });
+            then([&] { return ::posix_spawn_file_actions_adddup2(&files, errors, STDERR_FILENO); });
+            // Connections must not outlive us there.
+            then([&] { return ::posix_spawn_file_actions_addclosefrom_np(&files, STDERR_FILENO + 1); });
+            then([&] { return ::posix_spawn(&id_, program.c_str(), &files, &how, arguments, environ); });
+            ::posix_spawnattr_destroy(&how);
+        }
+        ::posix_spawn_file_actions_destroy(&files);
+        return error;
+    }
+
     static InputError not_started(int error) {
         return InputError(std::string("no process can be started that would read it first: ") + std::strerror(error));
     }
@@ -113,7 +132,8 @@ std::string complaint(std::string text, std::filesystem::path const& file) {
 } // namespace
 
 void check_import(std::filesystem::path const& file, ImportOptions const& options, Progress const& progress) {
-    std::vector<std::string> words{"--info", "--quiet", "--scene-memory", std::to_string(options.memory_bytes >> 20)};
+    std::vector<std::string> words{"--info", "--quiet", "--scene-memory",
+                                   std::to_string(std::max<std::uint64_t>(options.memory_bytes >> 20, 1))};
     if (options.allow_outside) {
         words.emplace_back("--allow-outside");
     }

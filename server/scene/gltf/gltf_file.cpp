@@ -241,12 +241,11 @@ bool read_whole_file(std::vector<unsigned char>* out, std::string* error, std::s
     std::error_code code;
     access.budget.reserve(std::filesystem::file_size(path, code), 1); // one file may be named a thousand times
     try {
-        bool going_on = true;
-        *out = read_bytes(path,
-                          [&](std::size_t count) { going_on = access.held.call([&] { access.report_read(count); }); });
-        if (!going_on) {
-            return false;
-        }
+        *out = read_bytes(path, [&](std::size_t count) {
+            if (!access.held.call([&] { access.report_read(count); })) {
+                throw InputError("it is not wanted any more"); // what is held says why
+            }
+        });
     } catch (InputError const& problem) {
         *error += problem.what();
         return false;
