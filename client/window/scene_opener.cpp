@@ -12,12 +12,14 @@ namespace framelet {
 namespace {
 
 /// The options of a server without those for its scene alone, as a name of one of its clips, and those that cannot be
-/// had twice, as a port or a file that is written, and what its log looks like, which the window reads.
+/// had twice, as a port or a file that is written, what its log looks like, which the window reads, and who may
+/// connect.
 std::vector<std::string> kept_for_other_scenes(std::vector<std::string> const& options) {
     std::vector<std::string> out;
     for (std::size_t i = 0; i < options.size(); ++i) {
         std::string const name = options[i].substr(0, options[i].find('='));
-        bool const has_value = name == "--clip" || name == "--port" || name == "--log" ||
+        bool const has_value = name == "--clip" || name == "--port" || name == "--log" || name == "--bind" ||
+                               name == "--token-file" || name == "--control-token-file" || name.starts_with("--tls-") ||
                                name.starts_with("--metrics") || name.starts_with("--record");
         if (!has_value && name != "--allow-outside") {
             out.push_back(options[i]);

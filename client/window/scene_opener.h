@@ -51,6 +51,11 @@ public:
     bool can_reopen() const { return open_ || !asked_.files.empty(); }
     /// Opens the scene again whose server has ended, or that could not be opened; goes on where one is being opened.
     void reopen();
+    /// Gives up what is being opened.
+    void give_up() {
+        connecting_ = {};
+        opening_.reset();
+    }
     /// Ends the server of the open scene, which is not looked at any more.
     void close() { open_.reset(); }
 

@@ -47,7 +47,7 @@ Connection run_start_panel(Window& window, Start const& start, OptionsFor const&
     };
     while (!is_told_to_end()) {
         if (attempts) {
-            if (auto core = attempts->poll(is_from_command_line)) {
+            if (auto core = attempts->poll(is_from_command_line && opener.opening().empty())) {
                 return {std::move(core), attempts->options()};
             }
         }

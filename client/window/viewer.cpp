@@ -194,7 +194,7 @@ Picture const& Viewer::shown_picture() {
 }
 
 std::string Viewer::painter_text() const {
-    if (!painter_.canvas || (drawn_over_ == DrawnOver::nothing && lag_seconds_ == 0)) {
+    if (!painter_.canvas || (drawn_over_ == DrawnOver::nothing && core_->statistics().lag_seconds == 0)) {
         return painter_.painter;
     }
     return drawn_over_ == DrawnOver::nothing ? "processor, for --smooth" : "processor, for what is drawn over (F3)";
@@ -214,8 +214,8 @@ bool Viewer::update_shown_picture() {
     if (old_picture_.is_better(has_other_size, has_other_size ? core_->statistics().coverage : 1, made_)) {
         return false;
     }
-    bool const is_drawn_anew =
-        (std::exchange(overlay_toggled_, false) || core_->overlay_fades()) && !picture_.rgba.empty();
+    bool const fades = core_->overlay_fades(); // it is drawn once more when it has faded
+    bool const is_drawn_anew = (std::exchange(overlay_toggled_, fades) || fades) && !picture_.rgba.empty();
     if (!changed && !is_drawn_anew && !has_other_size) {
         return false;
     }
@@ -248,6 +248,7 @@ void Viewer::say(std::string note, double seconds) {
 void Viewer::try_server(std::string const& address) {
     try {
         attempts_.emplace(options_for_(address));
+        opener_.give_up(); // the newest wish counts
     } catch (InputError const& error) {
         say(error.what(), long_note_seconds);
     }

@@ -297,7 +297,7 @@ void Viewer::change_bias(float step) {
 
 void Viewer::toggle_smoothing() {
     std::string lacks = smoothing_lacks(core_->welcome().animation_duration > 0, settings_.reproject);
-    if (lag_seconds_ == 0 && !lacks.empty()) {
+    if (!lacks.empty()) {
         say(std::move(lacks));
         return;
     }

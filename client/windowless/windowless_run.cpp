@@ -6,6 +6,7 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <unistd.h>
@@ -143,6 +144,7 @@ RunFigures show(ClientCore& core, WindowlessOptions const& options, std::optiona
     run.viewport = viewport;
     Picture picture = bare_picture(viewport);
     Picture overlaid; //< the picture and what is drawn over it
+    bool faded = false; ///< what is drawn over it was fading in the last frame
     std::vector<PixelRect> changed;
     std::vector<double> photon_seconds;
     FrameChoice choice(options.output_times);
@@ -190,7 +192,10 @@ RunFigures show(ClientCore& core, WindowlessOptions const& options, std::optiona
                 overlaid = picture;
                 core.draw_overlay(overlaid);
             }
-            ShownFrame const frame{draws ? overlaid : picture, news, choice.takes(core.clock().time),
+            bool const fades = draws && core.overlay_fades();
+            bool const differs = news || fades || std::exchange(faded, fades);
+            faded = fades;
+            ShownFrame const frame{draws ? overlaid : picture, differs, choice.takes(core.clock().time),
                                    seconds_since(start)};
             for (std::unique_ptr<FrameSink> const& sink : sinks) {
                 sink->show(frame);

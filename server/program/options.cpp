@@ -78,6 +78,7 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
         ->capture_default_str();
     app.add_option("--port", options.server.port, "Port to listen on; 0 picks a free one")
         ->check(number_in(0, 65535))
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast) // the viewer's PrivateServer gives one first
         ->capture_default_str();
     app.add_option("--token-file", options.token_file,
                    "File whose first line a viewer has to know, at least 16 characters; without it viewers of the "
@@ -150,6 +151,7 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
         app.add_option("--log", log, "Print the log as text, or each line as a JSON object: time, level, message")
             ->type_name("text|json")
             ->check(readable_by(parse_log_format))
+            ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast) // the viewer's PrivateServer has the last word
             ->capture_default_str();
     // The viewer's PrivateServer starts the server with this.
     app.add_flag("--progress-lines", options.progress_lines)->group("")->configurable(false);

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "client/core/camera/camera_controller.h"
 #include "tests/client/own_folder.h"
 
 namespace framelet {
@@ -19,7 +20,7 @@ TEST(ViewerMemory, IsTheSameInTheNextRun) {
     memory.note_server("[::1]:80");
     memory.bias = -0.25f;
     memory.lag_seconds = 0.1;
-    memory.fly_speed = 1.5625f;
+    memory.fly_speed = 1 / CameraController::most_speed_factor;
     write_viewer_memory(memory);
     EXPECT_EQ(read_viewer_memory(), memory);
     EXPECT_EQ(memory.servers.front(), "[::1]:80");

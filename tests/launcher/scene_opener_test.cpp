@@ -169,6 +169,24 @@ TEST(SceneOpener, OtherScenesHaveTheOptionsThatCountForAny) {
     EXPECT_FALSE(other->core->clock().playing);
 }
 
+TEST(SceneOpener, ServesTheFirstSceneWithOptionsThatItGivesItself) {
+    SceneOpener opener(connect, [] {}, {"--log", "json", "--port", "0", "--paused"});
+    opener.open_first({windmill}, {});
+    std::optional<Connection> open;
+    EXPECT_TRUE(eventually([&] { return (open = opener.poll()) || opener.opening().empty(); }));
+    ASSERT_TRUE(open) << opener.take_complaint();
+    EXPECT_FALSE(open->core->clock().playing);
+}
+
+TEST(SceneOpener, WhoMayConnectIsAskedOfTheFirstSceneAlone) {
+    TemporaryFolder const folder;
+    std::string const token = folder.write("token", "0123456789abcdef0123456789abcdef\n");
+    SceneOpener opener(connect, [] {}, {"--token-file", token, "--control-token-file=" + token, "--paused"});
+    std::optional<Connection> const open = opened(opener, windmill);
+    ASSERT_TRUE(open) << opener.take_complaint();
+    EXPECT_FALSE(open->core->clock().playing);
+}
+
 TEST(SceneOpener, ServesTheFirstSceneWithAllOptionsAlsoOnceMore) {
     SceneOpener opener(connect, [] {}, {"--clip=absent"});
     opener.open_first({windmill}, {});

@@ -81,7 +81,7 @@ ViewerMemory parse_viewer_memory(std::string const& text) {
     out.shows_statistics = flag(document, "statistics", out.shows_statistics);
     out.shows_details = flag(document, "details", out.shows_details);
     out.shows_bar = flag(document, "bar", out.shows_bar);
-    constexpr double most_speed = CameraController::most_speed_factor;
+    constexpr float most_speed = CameraController::most_speed_factor;
     out.bias = static_cast<float>(number(document, "bias", -1, 1, out.bias));
     out.lag_seconds = number(document, "smooth", 0, max_lag_seconds, out.lag_seconds);
     out.fly_speed = static_cast<float>(number(document, "fly_speed", 1 / most_speed, most_speed, out.fly_speed));
