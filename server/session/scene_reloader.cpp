@@ -59,8 +59,10 @@ void SceneReloader::run(std::stop_token const& stop) {
                 watch();
             }
             return;
-        } catch (std::exception const& error) { // most likely for want of memory: the files as they were are watched on
+        } catch (std::exception const& error) { // most likely for want of memory: what was asked for still is
             spdlog::warn("cannot look at the scene's files: {}", failure_text(error));
+            std::unique_lock lock(mutex_);
+            told_.wait_for(lock, stop, interval, [] { return false; });
         }
     }
 }
@@ -77,7 +79,7 @@ bool SceneReloader::wait(std::stop_token const& stop) {
         }
         bool const changed = file_watch_ && file_watch_->look(std::chrono::steady_clock::now());
         if (asked || changed) {
-            asked_ = false;
+            asked_ = true; // until loading begins
             return true;
         }
     }
@@ -85,6 +87,10 @@ bool SceneReloader::wait(std::stop_token const& stop) {
 
 void SceneReloader::reload(std::stop_token const& stop) {
     spdlog::info("loading the scene again");
+    {
+        std::scoped_lock const lock(mutex_);
+        asked_ = false;
+    }
     try {
         auto scene = load_([&stop](std::string_view, double) {
             if (stop.stop_requested()) {
