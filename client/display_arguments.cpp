@@ -46,7 +46,7 @@ void add_display_options(CLI::App& app, DisplayChoice& choice) {
         ->excludes(unwarped);
     app.add_flag("--overlay{ages}", choice.drawn_over,
                  "Draw over pictures: outlines of the framelets that are held, fresh ones bright (ages); how old and "
-                 "how coarse each pixel is (confidence); how often a second each place is replaced (refresh-rate); "
+                 "how coarse each pixel is (confidence); how often a second 16x16 pixels are replaced (refresh-rate); "
                  "outlines of what the newest batch has brought (arrivals); what nothing is held of (holes)")
         ->option_text("KIND")
         ->transform(overlay_kind());

@@ -106,6 +106,14 @@ struct Mesh {
     std::vector<float> morph_weights; ///< defaults, one a morph target
 };
 
+inline std::size_t count_triangles(Mesh const& mesh) {
+    std::size_t count = 0;
+    for (Primitive const& primitive : mesh.primitives) {
+        count += primitive.triangles.size();
+    }
+    return count;
+}
+
 /// Translation, rotation and scale, applied as T * R * S.
 struct Transform {
     Vec3 translation{0, 0, 0};

@@ -21,7 +21,7 @@ RefreshRates after(Tile tile, double per_second) {
     return rates;
 }
 
-TEST(RefreshRates, AreHowOftenAPlaceIsReplaced) {
+TEST(RefreshRates, AreHowOftenACellIsReplaced) {
     Tile const tile = make_tile(plane.pixel_depth(), 3, 2);
     for (double const rate : {5.0, 20.0, 60.0}) {
         RefreshRates const rates = after(tile, rate);
@@ -31,7 +31,7 @@ TEST(RefreshRates, AreHowOftenAPlaceIsReplaced) {
     }
 }
 
-TEST(RefreshRates, ACoarseTileReplacesManyPlacesAFineOneAPart) {
+TEST(RefreshRates, ACoarseTileReplacesManyCellsAFineOneAPart) {
     RefreshRates const coarse = after(make_tile(plane.pixel_depth() - 2, 3, 1), 20); // pixels (192, 64) .. (256, 128)
     EXPECT_NEAR(coarse.per_second(12, 4), 20, 0.6);
     EXPECT_NEAR(coarse.per_second(12, 7), 20, 0.6);
@@ -61,7 +61,7 @@ TEST(RefreshRates, ColoursAreBrightWhereMuchComes) {
         EXPECT_LT(brightness, last) << rate;
         EXPECT_GT(brightness, 0) << rate;
         last = brightness;
-        EXPECT_EQ(picture.row(40)[4 * 47], 0) << "the next place is black, as it was";
+        EXPECT_EQ(picture.row(40)[4 * 47], 0) << "the next cell is black, as it was";
         EXPECT_EQ(picture.row(48)[4 * 50], 0);
     }
 }

@@ -232,6 +232,18 @@ TEST(BadScene, HeadersOfLargePicturesTakeNoMemory) {
     expect_error(file, "more than 100 MB", with_megabytes(100));
 }
 
+/// A file takes as much memory to be read as it is long, whatever is in it; this one takes next to nothing of a disk.
+TEST(BadScene, PictureFilesAreCountedBeforeTheyAreRead) {
+    TemporaryFolder const folder;
+    write_png(folder.path() / "long.png", Picture(4, 4));
+    std::filesystem::resize_file(folder.path() / "long.png", 100 << 20);
+    folder.write("a.mtl", "newmtl m\nmap_Kd long.png\n");
+    auto const file =
+        folder.write("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n");
+    EXPECT_EQ(import_scene(file, {}, with_megabytes(200)).images.size(), 1u);
+    expect_error(file, "more than 90 MB", with_megabytes(90));
+}
+
 TEST(BadScene, OneBufferFileNamedOften) {
     TemporaryFolder const folder;
     folder.write("a.bin", std::string(1 << 20, '\0'));

@@ -28,6 +28,9 @@ inline OverlayColor age_color(float age) {
     return out;
 }
 
+/// Share of a colour in a pixel that is washed with it and still to be recognised.
+inline constexpr float usual_share = 0.6f;
+
 /// Makes a pixel (red, green, blue) grey, and mixes this share of the colour in.
 inline void wash(std::uint8_t* pixel, OverlayColor const& color, float share) {
     auto const grey = static_cast<float>(pixel[0] + 2 * pixel[1] + pixel[2]) / 4;

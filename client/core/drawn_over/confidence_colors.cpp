@@ -13,7 +13,6 @@ namespace {
 constexpr float youngest = 0.01f, oldest = 10; ///< seconds
 constexpr float coarsest = 8; ///< pixels between samples at which colours are darkest
 constexpr float darkest = 0.4f;
-constexpr float color_share = 0.6f;
 
 OverlayColor color_of(PixelConfidence const& pixel) {
     if (pixel.seconds == PixelConfidence::made_up) {
@@ -35,7 +34,7 @@ void draw_confidence(std::span<PixelConfidence const> confidence, Picture& pictu
                    static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height));
     std::uint8_t* pixel = picture.rgba.data();
     for (PixelConfidence const& shown : confidence) {
-        wash(pixel, color_of(shown), color_share);
+        wash(pixel, color_of(shown), usual_share);
         pixel += 4;
     }
 }

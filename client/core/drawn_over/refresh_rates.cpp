@@ -12,15 +12,14 @@ namespace {
 
 /// Seconds in which what has come counts for e times less.
 constexpr double memory_seconds = 1;
-constexpr float color_share = 0.6f;
 
-void draw_place(Picture& picture, int left, int top, float per_second) {
+void draw_cell(Picture& picture, int left, int top, float per_second) {
     bool const has_color = per_second >= RefreshRates::least;
     OverlayColor const color = age_color(
         has_color ? std::log(RefreshRates::most / per_second) / std::log(RefreshRates::most / RefreshRates::least) : 1);
     for (int y = top; y < std::min(top + RefreshRates::side, picture.height); ++y) {
         for (int x = left; x < std::min(left + RefreshRates::side, picture.width); ++x) {
-            wash(picture.row(y) + 4 * static_cast<std::ptrdiff_t>(x), color, has_color ? color_share : 0);
+            wash(picture.row(y) + 4 * static_cast<std::ptrdiff_t>(x), color, has_color ? usual_share : 0);
         }
     }
 }
@@ -62,7 +61,7 @@ void RefreshRates::draw(Picture& picture) const {
     FRAMELET_CHECK(picture.width == plane_.viewport().width && picture.height == plane_.viewport().height);
     for (int row = 0; row < rows_; ++row) {
         for (int column = 0; column < columns_; ++column) {
-            draw_place(picture, column * side, row * side, per_second(column, row));
+            draw_cell(picture, column * side, row * side, per_second(column, row));
         }
     }
 }

@@ -1,4 +1,4 @@
-// How often a second each place of the picture gets new samples, of about the last second. In: batches as they come,
+// How often a second each cell of the picture gets new samples, of about the last second. In: batches as they come,
 // and the time. Out: rates, and a picture in grey that is washed with their colours. A value.
 #pragma once
 
@@ -13,14 +13,14 @@ namespace framelet {
 
 class RefreshRates {
 public:
-    /// Side of a place, pixels; places lie in rows from the picture's corner.
+    /// Side of a cell, pixels; cells lie in rows from the picture's corner.
     static constexpr int side = framelet_side;
     /// Rates at the ends of the colours, a second. What is slower has none: the picture is grey there.
     static constexpr float most = 60, least = 0.1f;
 
     explicit RefreshRates(ImagePlane const& plane);
 
-    /// Counts a batch of this plane. A framelet that covers a part of a place counts as that part.
+    /// Counts a batch of this plane. A framelet that covers a part of a cell counts as that part.
     void add(Batch const& batch);
     /// Says how late it is, seconds. Rates fade as time goes by.
     void advance(double now);

@@ -154,7 +154,7 @@ std::string overlay_tip(DrawnOver drawn) {
     case DrawnOver::confidence:
         return "how far each pixel is to be trusted: when it was rendered, and how coarsely";
     case DrawnOver::refresh_rate:
-        return "how often each place has been replaced, of about the last second";
+        return "how often each 16x16 pixels have been replaced, of about the last second";
     case DrawnOver::arrivals:
         return "outlines of what the newest batch has brought, where it was rendered";
     case DrawnOver::holes:
@@ -174,7 +174,7 @@ std::optional<Legend> legend_of(DrawnOver drawn) {
         return Legend{"when each pixel was rendered (F3)", "now", "10 s ago",
                       "the darker the coarser; magenta: made up", tip};
     case DrawnOver::refresh_rate:
-        return Legend{"how often places are replaced (F3)", "60 a second", "0.1 a second", "grey: more rarely", tip};
+        return Legend{"how often tiles are replaced (F3)", "60 a second", "0.1 a second", "grey: more rarely", tip};
     case DrawnOver::arrivals:
         return Legend{"yellow: what came last (F3)", "", "", "", tip};
     case DrawnOver::holes:

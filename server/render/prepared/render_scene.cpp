@@ -52,14 +52,6 @@ std::vector<Geometry> geometries_of(Mesh const& mesh, MaterialLibrary const& lib
     return out;
 }
 
-std::size_t count_triangles(Mesh const& mesh) {
-    std::size_t count = 0;
-    for (Primitive const& primitive : mesh.primitives) {
-        count += primitive.triangles.size();
-    }
-    return count;
-}
-
 bool is_deforming(Scene const& scene, Node const& node) {
     return node.skin != none || morphs(scene.meshes[static_cast<std::size_t>(node.mesh)]);
 }

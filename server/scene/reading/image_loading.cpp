@@ -1,6 +1,8 @@
 #include "server/scene/reading/image_loading.h"
 
+#include <filesystem>
 #include <mutex>
+#include <system_error>
 
 #include <tbb/parallel_for.h>
 
@@ -43,6 +45,11 @@ std::vector<std::shared_ptr<Picture const>> load_images(std::span<EncodedImage c
         try {
             if (image.bytes.empty() && image.file.empty()) {
                 throw InputError(image.problem.empty() ? "image '" + image.name + "' is missing" : image.problem);
+            }
+            if (image.bytes.empty()) { // else they have been counted
+                std::error_code code; // where it is set, reading says so
+                std::uintmax_t const size = std::filesystem::file_size(image.file, code);
+                budget.reserve(code ? 0 : size, 1);
             }
             pictures[i] =
                 std::make_shared<Picture const>(image.bytes.empty() ? read_picture(image.file, reserve)

@@ -141,9 +141,7 @@ std::size_t count_triangles(Scene const& scene) {
     std::size_t count = 0;
     for (Node const& node : scene.nodes) {
         if (node.mesh != none) {
-            for (Primitive const& primitive : scene.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
-                count += primitive.triangles.size();
-            }
+            count += count_triangles(scene.meshes[static_cast<std::size_t>(node.mesh)]);
         }
     }
     return count;
