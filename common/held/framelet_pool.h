@@ -19,8 +19,8 @@ namespace framelet {
 /// needed when that has gone by.
 class FrameletPool {
 public:
-    /// Largest number of moments that are held: where things move there are some ten a second, and a picture shows more
-    /// than a second of them.
+    /// Largest number of moments that are held: where things move there are up to ten a second, and a picture shows
+    /// more than a second of them.
     static constexpr std::size_t most_moments = 16;
     /// Number of the newest moments, which have hardly been shown yet.
     static constexpr std::uint64_t untried_moments = 3;

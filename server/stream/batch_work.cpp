@@ -70,7 +70,7 @@ void BatchWork::describe_shapes(PosedScene const& scene, ViewerKnowledge& viewer
     viewer.shapes.fit(rendered_, needed_, make_view_rays(order.state.view.camera, viewport), ImagePlane(viewport),
                       order.plan.moment_begun, batch_.shapes);
     viewer.shapes.track(scene.scene(), scene.clips(), scene.render_scene().bodies(), order.scene_camera,
-                        order.state.scene_time, batch_.tracks, batch_.camera_track);
+                        order.present.scene_time, order.state.scene_time, batch_.tracks, batch_.camera_track);
     for (BodyTrack const& track : batch_.tracks) {
         viewer.motions.extend(track);
     }

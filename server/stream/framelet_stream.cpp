@@ -8,9 +8,22 @@
 #include "common/error.h"
 
 namespace framelet {
+namespace {
+
+/// Seconds before a jump of the scene from when on moments are of what comes after it.
+constexpr double awaited_seconds = 0.2;
+/// Seconds by which a viewer's own camera is foreseen at most: nobody goes on as they do for long.
+constexpr double most_forecast_seconds = 0.2;
+
+/// What the scene's clock stands at so many seconds from now.
+SceneTime time_in(double seconds, Turn const& turn) {
+    return std::clamp(turn.present + turn.clock_speed * seconds, 0.0, max_scene_time);
+}
+
+} // namespace
 
 FrameletStream::FrameletStream(StreamOptions const& options, std::uint32_t codings)
-    : options_(options), codings_(codings), moments_(options.moment_seconds) {
+    : options_(options), codings_(codings) {
     viewer_.motions = BodyMotions(options_.knows_rest);
 }
 
@@ -107,37 +120,60 @@ Step FrameletStream::plan(Turn const& turn, PosedScene& scene) {
     return has_room(turn.now) ? plan_batch(turn, present, scene) : Step::wait;
 }
 
-/// The next time at which the scene jumps, where that is soon enough to be prepared for: within two moments, since what
-/// comes after the jump shares nothing with what is held.
-std::optional<SceneSwitch> FrameletStream::next_switch(Turn const& turn, PosedScene const& scene) const {
+/// What of the scene jumps within so many seconds from now, where it is to be prepared for.
+Switches FrameletStream::switches_ahead(Turn const& turn, PosedScene const& scene, double seconds) const {
     if (!options_.awaits_switches || !(turn.clock_speed > 0)) {
-        return std::nullopt;
+        return {};
     }
-    double const ahead = 2 * options_.moment_seconds * turn.clock_speed;
-    return lone_switch(scene.switches(), turn.present, std::min(turn.present + ahead, max_scene_time));
+    double const ahead = seconds * turn.clock_speed;
+    return switches_within(scene.switches(), turn.present, std::min(turn.present + ahead, max_scene_time));
 }
 
-/// A moment is of what is to be seen when it ends, if the scene's clock and the viewer's camera go on as they do: most
-/// of it is shown about then, and what enters the picture is there when it comes. Its camera is ahead of that by what
-/// the first batch of the next moment takes until it is shown: till then what newly comes into view has to be there.
-/// The scene is not. Where it is about to jump, the moment is of what comes after that, and waits with the viewer.
+/// The viewer's camera so many seconds from now, if it goes on as it does.
+Camera FrameletStream::camera_in(double seconds, Turn const& turn, PosedScene& scene) const {
+    return camera_->scene_camera < 0 ? forecast_.at(turn.now, std::min(seconds, most_forecast_seconds))
+                                     : state_at(time_in(seconds, turn), scene).view.camera;
+}
+
+/// How long a moment that begins now lasts, seconds: not long where only some of the picture is to be replaced, nor
+/// where it would still be shown when the scene jumps.
+double FrameletStream::new_moment_seconds(bool camera_moves, Turn const& turn, PosedScene const& scene) const {
+    if (options_.moment_seconds) {
+        return *options_.moment_seconds;
+    }
+    Viewport const viewport = camera_->view.viewport;
+    double const pixels = static_cast<double>(viewport.width) * viewport.height;
+    double const seconds = moment_seconds(samples_per_second(turn) / pixels);
+    bool const jumps = switches_ahead(turn, scene, awaited_seconds + seconds).any;
+    return camera_moves && !jumps ? seconds : least_moment_seconds;
+}
+
+/// A moment is of what is to be seen later, if the scene's clock and the viewer's camera go on as they do: of when it
+/// ends or, where all of the picture is replaced, of the middle of the time that it is shown, since its samples come
+/// while it lasts and show until those of the next moment have come. Its camera is ahead of that by what the first
+/// batch of the next moment takes until it is shown: till then what newly comes into view has to be there. Where the
+/// scene is about to jump, the moment is of what comes after that, which shares nothing with what is held, and waits
+/// with the viewer.
 HeldMoment FrameletStream::new_moment(Turn const& turn, PosedScene& scene) const {
+    bool const camera_moves = !(camera_in(least_moment_seconds, turn, scene) == camera_in(0, turn, scene));
+    double const seconds = new_moment_seconds(camera_moves, turn, scene);
     double const batch_seconds = 0.5 * cycle_length(false, turn.plan_seconds);
     double const lead = turn.plan_seconds + batch_seconds + link_.state().delivery_seconds;
-    double until_end = options_.looks_ahead ? options_.moment_seconds : 0;
-    double ahead = until_end + (options_.camera_leads ? std::min(lead, options_.moment_seconds) : 0);
-    auto const jump = next_switch(turn, scene);
+    double scene_ahead = options_.looks_ahead ? (camera_moves ? 1.5 : 1) * seconds : 0;
+    double camera_ahead = scene_ahead + (options_.camera_leads ? std::min(lead, least_moment_seconds) : 0);
+    auto const jump = switches_ahead(turn, scene, awaited_seconds).lone;
     if (jump) {
         constexpr SceneTime just_after = 1e-4; // more than rounding
-        until_end = ahead = (jump->time + just_after - turn.present) / turn.clock_speed;
+        scene_ahead = camera_ahead = (jump->time + just_after - turn.present) / turn.clock_speed;
     }
-    auto const scene_time = [&](double seconds) {
-        return std::clamp(turn.present + turn.clock_speed * seconds, 0.0, max_scene_time);
-    };
-    ViewState state = state_at(scene_time(until_end), scene);
-    state.view.camera =
-        camera_->scene_camera < 0 ? forecast_.at(turn.now, ahead) : state_at(scene_time(ahead), scene).view.camera;
-    return {state, turn.now, jump ? jump->time : 0, jump && jump->is_seen};
+    ViewState state = state_at(time_in(scene_ahead, turn), scene);
+    state.view.camera = camera_in(camera_ahead, turn, scene);
+    return {state, turn.now, seconds, jump ? jump->time : 0, jump && jump->is_seen};
+}
+
+/// Samples a second that renderer and link have time for.
+double FrameletStream::samples_per_second(Turn const& turn) const {
+    return options_.follows_link ? bounded_rate(link_.state(), turn.samples_per_second) : turn.samples_per_second;
 }
 
 std::optional<HeldMoment> FrameletStream::moment_at(Turn const& turn, ViewState const& present, PosedScene& scene) {
@@ -159,7 +195,7 @@ Step FrameletStream::plan_batch(Turn const& turn, ViewState const& present, Pose
     wanted.moment = moment_at(turn, present, scene);
     bool const still = !wanted.moment && viewer_.refresh.is_still(present);
     wanted.now = turn.now;
-    wanted.samples_per_second = options_.follows_link ? bounded_rate(link, rendered) : rendered;
+    wanted.samples_per_second = samples_per_second(turn);
     wanted.rendered_per_second = options_.prices_bytes ? rendered : wanted.samples_per_second;
     wanted.cycle_seconds = cycle_length(still, turn.plan_seconds);
     if (options_.follows_link) { // half a cycle is a batch

@@ -22,8 +22,8 @@ struct StreamOptions {
     bool follows_link = true; ///< rate and batches are bounded by what the link carries
     bool skips = true; ///< what the viewer has already is not sent again
     bool prices_bytes = true; ///< where the link is scarce samples cost by the bytes that they take
-    double moment_seconds = framelet::moment_seconds; ///< seconds that a moment lasts
-    bool looks_ahead = true; ///< a moment is of when it ends, not of when it begins
+    std::optional<double> moment_seconds{}; ///< how long a moment lasts; nothing: as long as is best
+    bool looks_ahead = true; ///< a moment is of when it is shown, not of when it begins
     bool awaits_switches = true; ///< a moment is of what comes after a jump that is near, and shown from then on
     bool camera_leads = true; ///< a moment's camera is ahead of it by what its first batch takes until it is shown
     bool knows_rest = true; ///< what rests is held as what stands
@@ -62,7 +62,10 @@ private:
     ViewState state_at(SceneTime clock, PosedScene& scene) const;
     int moving_camera(PosedScene const& scene) const;
     bool has_room(double now) const;
-    std::optional<SceneSwitch> next_switch(Turn const& turn, PosedScene const& scene) const;
+    Switches switches_ahead(Turn const& turn, PosedScene const& scene, double seconds) const;
+    double samples_per_second(Turn const& turn) const;
+    Camera camera_in(double seconds, Turn const& turn, PosedScene& scene) const;
+    double new_moment_seconds(bool camera_moves, Turn const& turn, PosedScene const& scene) const;
     HeldMoment new_moment(Turn const& turn, PosedScene& scene) const;
     std::optional<HeldMoment> moment_at(Turn const& turn, ViewState const& present, PosedScene& scene);
     Step plan_batch(Turn const& turn, ViewState const& present, PosedScene& scene);

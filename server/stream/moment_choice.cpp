@@ -1,27 +1,35 @@
 #include "server/stream/moment_choice.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace framelet {
+
+double moment_seconds(double samples_per_pixel_and_second) {
+    constexpr double at_one_sample = 0.25; // seconds, by measurements with 1 to 20 samples
+    double const wanted =
+        std::clamp(at_one_sample / std::sqrt(samples_per_pixel_and_second), least_moment_seconds, most_moment_seconds);
+    return std::ldexp(least_moment_seconds, static_cast<int>(std::lround(std::log2(wanted / least_moment_seconds))));
+}
 
 bool MomentChoice::goes_on(ViewState const& present, double now) const {
     if (!held_) {
         return false;
     }
     ViewState const& held = held_->state;
-    return std::floor(now / seconds_) == std::floor(held_->begun / seconds_) &&
+    return std::floor(now / held_->seconds) == std::floor(held_->begun / held_->seconds) &&
            held.view.viewport == present.view.viewport &&
            held.view.camera.projection == present.view.camera.projection && held.exposure == present.exposure;
 }
 
 bool MomentChoice::observe(ViewState const& present, double now, bool viewer_moves_samples) {
-    bool const was_resting = now - changed_ > rest_seconds;
+    bool const was_resting = rests_;
     if (!last_ || !same_picture(*last_, present)) {
         changed_ = now;
     }
-    bool const rests = now - changed_ > rest_seconds;
+    rests_ = now - changed_ > rest_seconds;
     last_ = present;
-    if (!viewer_moves_samples || rests) {
+    if (!viewer_moves_samples || rests_) {
         held_.reset();
         return false;
     }

@@ -9,15 +9,20 @@
 
 namespace framelet {
 
-/// While anything moves a moment lasts until the next multiple of this, seconds: viewers of one scene change together.
-inline constexpr double moment_seconds = 0.1;
+/// Bounds of how long a moment lasts while anything moves, seconds.
+inline constexpr double least_moment_seconds = 0.1, most_moment_seconds = 0.4;
+
+/// How long a moment lasts, seconds, where this much (> 0) is rendered and all of the picture is to be replaced: as few
+/// moments as the samples make, since each has seams with the others; but no older than what shows has to be. One of
+/// the least length and its doubles, so that viewers who get different shares change together all the same.
+double moment_seconds(double samples_per_pixel_and_second);
+
 /// Seconds after which a picture that has stayed as it is counts as at rest: longer than a slow display's frame.
 inline constexpr double rest_seconds = 0.05;
 
+/// A moment lasts until the next multiple of its length: viewers of one scene change together.
 class MomentChoice {
 public:
-    explicit MomentChoice(double seconds = moment_seconds) : seconds_(seconds) {}
-
     /// Takes in what is to be seen at present. True when another moment is to `begin` now: the last one has lasted long
     /// enough, the picture has another size, projection or exposure, or something begins to move. Never at rest, nor
     /// for a viewer that moves nothing. `now`: seconds, steady.
@@ -31,10 +36,10 @@ public:
 private:
     bool goes_on(ViewState const& present, double now) const;
 
-    double seconds_; ///< how long a moment lasts
     std::optional<HeldMoment> held_;
     std::optional<ViewState> last_; ///< present
     double changed_ = 0; ///< when `last_` was last another one, seconds
+    bool rests_ = false; ///< `last_` had been the same for long when it was seen
 };
 
 } // namespace framelet

@@ -21,7 +21,7 @@ using nlohmann::json;
 
 LinkParameters const usual_link{.bits_per_second = 5e6, .delay_seconds = 0.02};
 
-/// Number of phases at which a run is made. Moments change at multiples of `moment_seconds` of the server's clock, and
+/// Number of phases at which a run is made. Moments change at multiples of 0.05 s of the server's clock, and
 /// what is rendered when depends on the phase of these: a run is made at several phases, evenly apart, and the mean of
 /// their errors is taken.
 constexpr std::size_t phases = 4;
@@ -77,7 +77,7 @@ PartRun run_without(Part const& part, Subject const& subject, CostTable const& c
     std::vector<double> flip;
     for (std::size_t phase = 0; phase < phases; ++phase) {
         MethodSetup setup = method_setup(parameters, subject.machine, costs);
-        setup.clock_offset += moment_seconds * static_cast<double>(phase) / phases;
+        setup.clock_offset += least_moment_seconds * static_cast<double>(phase) / phases;
         if (part.left_out != nullptr) {
             setup.parts.*part.left_out = false;
         }

@@ -73,15 +73,20 @@ TEST(Switches, OfCamerasAloneAreNotSeen) {
 
 TEST(Switches, OnlyALoneOneIsFoundWhateverTurnOfTheLoopItIsIn) {
     std::vector<ClipSwitches> const clips{{4, {{0, true}, {1.5, false}}}, {3, {{1.5004, true}}}};
-    EXPECT_EQ(lone_switch(clips, 1.4, 1.6), (SceneSwitch{1.5, true})); // both clips at once
-    EXPECT_EQ(lone_switch(clips, 1.5, 1.6), (SceneSwitch{1.5004, true}));
-    EXPECT_EQ(lone_switch(clips, 5.4, 5.6), (SceneSwitch{5.5, false}));
-    EXPECT_EQ(lone_switch(clips, 1.0, 1.2), std::nullopt);
-    EXPECT_EQ(lone_switch(clips, 3.9, 4.1), (SceneSwitch{4, true}));
-    EXPECT_EQ(lone_switch(clips, 399.95, 400.05), (SceneSwitch{400, true}));
-    EXPECT_EQ(lone_switch(clips, 3.9, 4.6), std::nullopt); // 4 and 4.5004
-    EXPECT_EQ(lone_switch(clips, 0, 5), std::nullopt);
-    EXPECT_EQ(lone_switch({}, 0, 5), std::nullopt);
+    EXPECT_EQ(switches_within(clips, 1.4, 1.6).lone, (SceneSwitch{1.5, true})); // both clips at once
+    EXPECT_EQ(switches_within(clips, 1.5, 1.6).lone, (SceneSwitch{1.5004, true}));
+    EXPECT_EQ(switches_within(clips, 5.4, 5.6).lone, (SceneSwitch{5.5, false}));
+    EXPECT_EQ(switches_within(clips, 1.0, 1.2).lone, std::nullopt);
+    EXPECT_EQ(switches_within(clips, 3.9, 4.1).lone, (SceneSwitch{4, true}));
+    EXPECT_EQ(switches_within(clips, 399.95, 400.05).lone, (SceneSwitch{400, true}));
+    EXPECT_EQ(switches_within(clips, 3.9, 4.6).lone, std::nullopt); // 4 and 4.5004
+    EXPECT_EQ(switches_within(clips, 0, 5).lone, std::nullopt);
+    EXPECT_EQ(switches_within({}, 0, 5).lone, std::nullopt);
+    EXPECT_TRUE(switches_within(clips, 1.4, 1.6).any);
+    EXPECT_TRUE(switches_within(clips, 3.9, 4.6).any);
+    EXPECT_TRUE(switches_within(clips, 0, 5).any);
+    EXPECT_FALSE(switches_within(clips, 1.0, 1.2).any);
+    EXPECT_FALSE(switches_within({}, 0, 5).any);
 }
 
 /// Compares the switches found with the values that the scene takes.
@@ -94,7 +99,7 @@ TEST(Switches, OfABundledSceneAreWhereItsPoseJumps) {
     for (double time = 0.005; time < found[0].duration; time += 0.01) {
         bool const jumps = evaluate_pose(scene, clips, time).world_from_node !=
                            evaluate_pose(scene, clips, time + 0.01).world_from_node;
-        EXPECT_EQ(lone_switch(found, time, time + 0.01).has_value(), jumps) << time;
+        EXPECT_EQ(switches_within(found, time, time + 0.01).lone.has_value(), jumps) << time;
     }
 }
 

@@ -21,22 +21,47 @@ struct Served {
     void look(Camera const& camera, std::uint64_t number, double now) {
         stream.take({now, CameraUpdate{{number, camera, {64, 48}}, -1}});
     }
-    Step plan(double now, SceneTime present, double clock_speed, double plan_seconds = 1e-4) {
-        return stream.plan({now, present, clock_speed, 1e5, plan_seconds}, posed);
+    /// Moves the camera at 1 m a second along x from time 0 on; returns when the frame after the last camera begins.
+    double fly() {
+        double now = 0;
+        for (std::uint64_t number = 0; number < 10; now = static_cast<double>(number) / 60) {
+            Camera camera;
+            camera.position.x = static_cast<float>(now);
+            look(camera, ++number, now);
+        }
+        return now;
+    }
+    Step plan(double now, SceneTime present, double clock_speed, double plan_seconds = 1e-4, double samples = 1e5) {
+        return stream.plan({now, present, clock_speed, samples, plan_seconds}, posed);
     }
 };
+
+constexpr double few_samples = 64 * 48; // one a pixel and second
+constexpr double in_flight = 1.5; // share of a moment by which it is ahead before a camera that moves
 
 TEST(FrameletStream, AMomentIsOfTheTimeAtWhichItEnds) {
     for (double const speed : {1.0, -2.0, 0.0}) {
         Served served;
         served.look({}, 1, 10);
         ASSERT_EQ(served.plan(10, 0.5, speed), Step::render);
-        EXPECT_NEAR(served.stream.moment(), 0.5 + speed * moment_seconds, 1e-12);
+        EXPECT_NEAR(served.stream.moment(), 0.5 + speed * least_moment_seconds, 1e-12);
     }
     Served served;
     served.look({}, 1, 10);
     ASSERT_EQ(served.plan(10, 0.01, -1), Step::render);
     EXPECT_EQ(served.stream.moment(), 0) << "the clock stands there";
+}
+
+TEST(FrameletStream, WhatAllIsReplacedIsOfTheMiddleOfTheTimeThatItIsShown) {
+    for (double const samples : {1e5, few_samples}) {
+        Served served;
+        ASSERT_EQ(served.plan(served.fly(), 0.5, 1, 1e-4, samples), Step::render);
+        EXPECT_NEAR(served.stream.moment(), 0.5 + in_flight * moment_seconds(samples / (64 * 48)), 1e-9);
+    }
+    Served served;
+    served.look({}, 1, 10);
+    ASSERT_EQ(served.plan(10, 0.5, 1, 1e-4, few_samples), Step::render);
+    EXPECT_NEAR(served.stream.moment(), 0.5 + least_moment_seconds, 1e-9) << "the camera stands";
 }
 
 /// A scene whose triangle stays where it is but for the seconds from 1 to 1.5.
@@ -81,31 +106,33 @@ TEST(FrameletStream, BeforeAJumpAMomentIsOfWhatComesAfterAndWaits) {
     EXPECT_EQ(shown_from(served), 0);
 }
 
+TEST(FrameletStream, NoLongMomentIsShownWhenTheSceneJumps) {
+    Served served({}, jumping_scene());
+    ASSERT_EQ(served.plan(served.fly(), 0.7, 1, 1e-4, few_samples), Step::render);
+    EXPECT_NEAR(served.stream.moment(), 0.7 + in_flight * least_moment_seconds, 1e-9);
+    EXPECT_EQ(shown_from(served), 0);
+}
+
 /// Distance, metres, of the first moment's camera from where the camera is now, which goes 1 m a second.
 float rendered_ahead(double plan_seconds, StreamOptions const& options = {}) {
     Served served(options);
-    double now = 0;
-    std::uint64_t number = 0;
-    for (; number < 10; now = static_cast<double>(number) / 60) {
-        Camera camera;
-        camera.position.x = static_cast<float>(now);
-        served.look(camera, ++number, now);
-    }
+    double const now = served.fly();
     EXPECT_EQ(served.plan(now, 0.5, 0, plan_seconds), Step::render);
     served.stream.render(served.posed);
     EXPECT_TRUE(served.stream.learn(served.posed));
     Batch const& batch = served.stream.learnt_batch();
-    EXPECT_EQ(batch.view.number, number);
+    EXPECT_EQ(batch.view.number, 10u);
     return batch.view.camera.position.x - static_cast<float>(now);
 }
 
-TEST(FrameletStream, AMomentIsOfTheCameraWithWhichItIsShownLast) {
-    double const quick = moment_seconds + 0.5 * cycle_length(false, 0); // nothing has been delivered yet
+TEST(FrameletStream, AMomentsCameraIsAheadOfIt) {
+    constexpr double shown_after = in_flight * least_moment_seconds;
+    double const quick = shown_after + 0.5 * cycle_length(false, 0); // nothing has been delivered yet
     EXPECT_NEAR(rendered_ahead(0), quick, 1e-4) << "it came a frame ago";
-    double const slow = moment_seconds + 0.01 + 0.5 * cycle_length(false, 0.01);
+    double const slow = shown_after + 0.01 + 0.5 * cycle_length(false, 0.01);
     EXPECT_NEAR(rendered_ahead(0.01), slow, 1e-4);
-    EXPECT_NEAR(rendered_ahead(10), 2 * moment_seconds, 1e-4) << "no more than another moment";
-    EXPECT_NEAR(rendered_ahead(0, {.camera_leads = false}), moment_seconds, 1e-4);
+    EXPECT_NEAR(rendered_ahead(10), 0.2, 1e-4) << "nobody goes on as they do for long";
+    EXPECT_NEAR(rendered_ahead(0, {.camera_leads = false}), shown_after, 1e-4);
     EXPECT_NEAR(rendered_ahead(0, {.looks_ahead = false, .camera_leads = false}), 0, 1e-4);
 }
 

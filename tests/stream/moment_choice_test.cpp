@@ -17,27 +17,36 @@ ViewState state_at(SceneTime time, float x = 0) {
 }
 
 /// Chooses a moment of the present where one is to be begun; returns the moment that is held.
-std::optional<HeldMoment> choose(MomentChoice& moments, ViewState const& present, double now,
-                                 bool viewer_moves_samples) {
+std::optional<HeldMoment> choose(MomentChoice& moments, ViewState const& present, double now, bool viewer_moves_samples,
+                                 double seconds = 0.1) {
     if (moments.observe(present, now, viewer_moves_samples)) {
-        moments.begin({present, now});
+        moments.begin({present, now, seconds});
     }
     return moments.held();
 }
 
 TEST(MomentChoice, WhatMovesIsSeenAtAFewMomentsASecond) {
-    for (double const seconds : {moment_seconds, 0.02}) {
-        MomentChoice moments(seconds);
+    for (double const seconds : {0.1, 0.2, 0.02}) {
+        MomentChoice moments;
         std::set<SceneTime> seen;
         for (int i = 0; i < 1000; ++i) {
             double const now = 5.003 + 0.001 * i;
-            auto const moment = choose(moments, state_at(now), now, true);
+            auto const moment = choose(moments, state_at(now), now, true, seconds);
             ASSERT_TRUE(moment);
             EXPECT_LE(now - moment->begun, seconds + 1e-9);
             EXPECT_EQ(moment->state.scene_time, moment->begun);
             seen.insert(moment->begun);
         }
         EXPECT_EQ(seen.size(), static_cast<std::size_t>(std::lround(1 / seconds)) + 1);
+    }
+}
+
+TEST(MomentChoice, TheMoreIsRenderedTheSoonerAMomentEnds) {
+    EXPECT_DOUBLE_EQ(moment_seconds(1e-9), most_moment_seconds);
+    EXPECT_DOUBLE_EQ(moment_seconds(2), 0.2);
+    EXPECT_DOUBLE_EQ(moment_seconds(1e9), least_moment_seconds);
+    for (double rate = 1e-3; rate < 1e3; rate *= 1.1) {
+        EXPECT_GE(moment_seconds(rate), moment_seconds(1.1 * rate)) << rate;
     }
 }
 
@@ -64,6 +73,13 @@ TEST(MomentChoice, AtRestThePresentIsRendered) {
     auto const moment = choose(moments, state_at(1, 3), 12.01, true);
     ASSERT_TRUE(moment);
     EXPECT_EQ(moment->state.view.camera.position.x, 3);
+}
+
+TEST(MomentChoice, WhatHasNotBeenLookedAtForAWhileHasNotRested) {
+    MomentChoice moments;
+    double const begun = choose(moments, state_at(1), 5.21, true, 0.4)->begun;
+    EXPECT_EQ(choose(moments, state_at(1.2), 5.4, true, 0.4)->begun, begun);
+    EXPECT_EQ(choose(moments, state_at(1.3), 5.5, true, 0.4)->begun, begun);
 }
 
 TEST(MomentChoice, AnotherSizeOrExposureBeginsAnew) {

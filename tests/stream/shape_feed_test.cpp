@@ -31,10 +31,11 @@ struct Drive {
     }
 
     /// Number of keys that the batch of `time` took.
-    std::size_t batch(SceneTime time) {
+    std::size_t batch(SceneTime time) { return batch(time, time); }
+    std::size_t batch(SceneTime present, SceneTime time) {
         std::vector<BodyTrack> tracks;
         std::optional<BodyTrack> camera;
-        feed.track(scene, clips, bodies, -1, time, tracks, camera);
+        feed.track(scene, clips, bodies, -1, present, time, tracks, camera);
         std::size_t keys = 0;
         for (BodyTrack const& track : tracks) {
             keys += track.keys.size();
@@ -83,6 +84,14 @@ TEST(ShapeFeed, AfterALeapOfTheClockOnlyWhatIsNearIsGivenOut) {
     EXPECT_NEAR(drive.moved(1, 1.2), 0.6, 1e-4);
 }
 
+TEST(ShapeFeed, WhatIsShownUntilTheFirstMomentIsKnown) {
+    Drive drive;
+    drive.batch(2, 2.4);
+    EXPECT_NEAR(drive.moved(2, 2.7), 2.1, 1e-4);
+    drive.batch(30, 29.9);
+    EXPECT_NEAR(drive.moved(29.9, 30.1), 0.6, 1e-4) << "a clock that runs backwards";
+}
+
 TEST(ShapeFeed, TheLastMomentHasKeys) {
     Drive drive;
     drive.batch(2);
@@ -92,7 +101,7 @@ TEST(ShapeFeed, TheLastMomentHasKeys) {
 TEST(ShapeFeed, ManyBodiesAfterAPauseFitABatch) {
     Drive drive;
     drive.bodies.frames.assign(4097, 0); // as many as there may be
-    drive.batch(1);
+    EXPECT_LE(drive.batch(1, 1.5), max_batch_keys);
     for (double const time : {1.5, 2.0, 2.9, 5.0, 5.1, 6.0, 7.0, 7.5}) {
         EXPECT_LE(drive.batch(time), max_batch_keys) << time;
     }

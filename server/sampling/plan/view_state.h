@@ -19,6 +19,7 @@ struct ViewState {
 struct HeldMoment {
     ViewState state;
     double begun = 0; ///< when it was the present, seconds, steady
+    double seconds = 0; ///< the next one begins at a multiple of this, seconds, steady
     SceneTime shown_from = 0; ///< as `Batch::shown_from`
     bool outdates = false; ///< as `Batch::outdates`
 };

@@ -105,14 +105,14 @@ std::vector<ClipSwitches> find_switches(Scene const& scene, std::span<Index cons
     return out;
 }
 
-std::optional<SceneSwitch> lone_switch(std::span<ClipSwitches const> clips, SceneTime from, SceneTime to) {
+Switches switches_within(std::span<ClipSwitches const> clips, SceneTime from, SceneTime to) {
     constexpr double together = 1e-3;
     std::optional<SceneSwitch> first;
     SceneTime last = 0;
     for (ClipSwitches const& clip : clips) {
         double const turn = std::floor(from / clip.duration) * clip.duration;
         if (to - from >= clip.duration) {
-            return std::nullopt; // it comes round more than once
+            return {true, std::nullopt}; // it comes round more than once
         }
         for (double const begun : {turn, turn + clip.duration}) {
             for (SceneSwitch const& jump : clip.switches) {
@@ -124,7 +124,7 @@ std::optional<SceneSwitch> lone_switch(std::span<ClipSwitches const> clips, Scen
             }
         }
     }
-    return first && last - first->time < together ? first : std::nullopt;
+    return {first.has_value(), first && last - first->time < together ? first : std::nullopt};
 }
 
 } // namespace framelet

@@ -28,8 +28,13 @@ struct ClipSwitches {
 /// not its beginning.
 std::vector<ClipSwitches> find_switches(Scene const& scene, std::span<Index const> clips);
 
-/// The only jump in (from, to], at its scene time; nothing where there is none or several: what jumps all the time is
-/// motion. Jumps less than a millisecond apart are one, at the first of their times.
-std::optional<SceneSwitch> lone_switch(std::span<ClipSwitches const> clips, SceneTime from, SceneTime to);
+/// What jumps within a time. Jumps less than a millisecond apart are one, at the first of their times.
+struct Switches {
+    bool any = false;
+    std::optional<SceneSwitch> lone; ///< the only one, at its scene time; what jumps all the time is motion
+};
+
+/// The jumps in (from, to].
+Switches switches_within(std::span<ClipSwitches const> clips, SceneTime from, SceneTime to);
 
 } // namespace framelet

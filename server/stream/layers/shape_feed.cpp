@@ -59,7 +59,8 @@ void ShapeFeed::fit(std::span<Framelet const> rendered, std::span<std::uint8_t c
 }
 
 void ShapeFeed::track(Scene const& scene, std::span<Index const> clips, SceneBodies const& bodies, int camera,
-                      SceneTime time, std::vector<BodyTrack>& tracks, std::optional<BodyTrack>& camera_track) {
+                      SceneTime present, SceneTime time, std::vector<BodyTrack>& tracks,
+                      std::optional<BodyTrack>& camera_track) {
     tracks.clear();
     camera_track.reset();
     if (!bodies.any_moves() && camera < 0) {
@@ -70,7 +71,9 @@ void ShapeFeed::track(Scene const& scene, std::span<Index const> clips, SceneBod
     bool const goes_on = camera == camera_ && end_key_ > first_key_ && key >= first_key_ &&
                          key <= end_key_ + most_missed_keys && key_behind(time) <= end_key_ + most_keys;
     if (!goes_on) {
-        first_key_ = end_key_ = key;
+        auto const shown = static_cast<std::int64_t>(std::floor(std::min(present, time) * body_keys_per_second));
+        first_key_ = key;
+        end_key_ = std::max(shown, key_behind(time) - most_keys);
         camera_ = camera;
     }
     std::int64_t const end = key_behind(time);

@@ -27,11 +27,13 @@ public:
              ImagePlane const& plane, double now, std::vector<FrameletShape>& shapes);
 
     /// Replaces `tracks` by the keys of all bodies until `tracked_ahead_seconds` after `time` that have not been given
-    /// out yet, however late this batch comes; by those from `time` on where that has leapt by seconds or backwards.
+    /// out yet, however late this batch comes; by those from `present` or `time` on, whichever is earlier, where `time`
+    /// has leapt by seconds or backwards. `present`: the scene time that the viewer shows; it will show `time` later.
     /// `camera_track`: the same of the scene's camera `camera`, the one that the viewer looks through, where it is one
     /// that moves; -1: there is none.
-    void track(Scene const& scene, std::span<Index const> clips, SceneBodies const& bodies, int camera, SceneTime time,
-               std::vector<BodyTrack>& tracks, std::optional<BodyTrack>& camera_track);
+    void track(Scene const& scene, std::span<Index const> clips, SceneBodies const& bodies, int camera,
+               SceneTime present, SceneTime time, std::vector<BodyTrack>& tracks,
+               std::optional<BodyTrack>& camera_track);
 
 private:
     void follow(Vec3 eye, double now);
@@ -41,7 +43,7 @@ private:
     double now_ = -std::numeric_limits<double>::infinity(); ///< when the camera was there
     float speed_ = 0; ///< of the camera, metres a second
     float median_depth_ = 0; ///< of what was rendered lately, metres; 0: nothing was
-    std::int64_t first_key_ = 0;
+    std::int64_t first_key_ = 0; ///< of the first batch's time
     std::int64_t end_key_ = 0; ///< behind the last one given out
     int camera_ = -1; ///< whose keys these were
     std::vector<std::size_t> sent_; ///< indices of the framelets that are sent

@@ -87,7 +87,7 @@ public:
         shapes_.fit(grid.rendered(), all, make_view_rays(batch.view.camera, batch.view.viewport), grid.plane(),
                     input.now, batch.shapes);
         shapes_.track(input.scene.scene, input.scene.clips, input.scene.render_scene->bodies(), -1, batch.scene_time,
-                      batch.tracks, batch.camera_track);
+                      batch.scene_time, batch.tracks, batch.camera_track);
         // The message is a batch whose payload is the access unit; of its tiles only the first is kept, which tells the
         // spacing.
         EncodedBatch message = codec_.encode(batch, &sent_, false);

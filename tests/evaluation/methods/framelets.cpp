@@ -130,7 +130,9 @@ private:
         options.follows_link = parts.link_budget;
         options.skips = parts.skip;
         options.prices_bytes = parts.byte_prices;
-        options.moment_seconds = parts.few_moments ? options.moment_seconds : double{least_cycle_seconds};
+        if (!parts.few_moments) {
+            options.moment_seconds = least_cycle_seconds;
+        }
         options.looks_ahead = parts.look_ahead;
         options.awaits_switches = parts.awaited_switches;
         options.camera_leads = parts.camera_lead;

@@ -85,8 +85,8 @@ private:
         batch.scene_time = shown;
         std::vector<std::uint8_t> const all(rendered.size(), 1);
         shapes_.fit(rendered, all, make_view_rays(view_.camera, setup_.viewport), plane_, input.now, batch.shapes);
-        shapes_.track(input.scene.scene, input.scene.clips, input.scene.render_scene->bodies(), -1, shown, batch.tracks,
-                      batch.camera_track);
+        shapes_.track(input.scene.scene, input.scene.clips, input.scene.render_scene->bodies(), -1, shown, shown,
+                      batch.tracks, batch.camera_track);
         EncodedBatch const encoded = codec_.encode(batch, &sent_, false);
         mirror_.insert(codec_.decode(encoded, &mirrored_));
 

@@ -97,7 +97,7 @@ void TrueGain::compare(BenchScene const& scene, SceneTime rendered, SceneTime se
     std::vector<std::uint8_t> const all(batch.framelets.size(), 1);
     level.shapes.fit(level.rendered, all, make_view_rays(camera_, plane_.viewport()), plane_, now, batch.shapes);
     // The viewer is a new one each time, which knows nothing yet and is told of all bodies.
-    ShapeFeed().track(scene.scene, scene.clips, scene.render_scene->bodies(), -1, rendered, batch.tracks,
+    ShapeFeed().track(scene.scene, scene.clips, scene.render_scene->bodies(), -1, rendered, rendered, batch.tracks,
                       batch.camera_track);
     WarpViewer viewer(plane_.viewport(), costs_);
     viewer.insert(batch);
