@@ -121,7 +121,7 @@ struct GpuCanvas::Impl {
     GlTable lists{TexelFormat::number, 1, count};
     GlTable splats{TexelFormat::four_numbers, 4, count};
     GlTable blocks{TexelFormat::four_numbers, 4, count};
-    /// A number for each splat, 1 where it is hidden: as the first pass finds it, and as the second one does.
+    /// A number for each splat, 1 where it is hidden: as the passes find it in turn.
     std::array<GlPlane, 2> hidden;
     std::array<GlTarget, 2> hidden_targets;
     std::optional<Planes> planes;
@@ -173,21 +173,25 @@ struct GpuCanvas::Impl {
         blocks.upload(table.blocks);
     }
 
+    /// Each pass is right of splats that wait for one more of others; an even number, so that the last one writes
+    /// `hidden[1]`.
+    static constexpr std::size_t hidden_passes = 4;
+
     /// Finds which splats are mostly hidden, so that nothing of them is to show.
     void find_hidden() {
         auto const count_of_splats = static_cast<int>(table.splat_count());
         auto const height = static_cast<unsigned>((count_of_splats + table_width - 1) / table_width);
-        for (std::size_t pass = 0; pass < hidden.size(); ++pass) {
-            if (hidden[pass].height() < std::max(static_cast<int>(height), 1)) {
+        for (std::size_t i = 0; i < hidden.size(); ++i) {
+            if (hidden[i].height() < std::max(static_cast<int>(height), 1)) {
                 auto const rows_of_plane = static_cast<int>(std::bit_ceil(std::max(height, 1u)));
-                hidden[pass] = GlPlane(TexelFormat::number, table_width, rows_of_plane, count);
-                hidden_targets[pass] = GlTarget({&hidden[pass]}, count);
+                hidden[i] = GlPlane(TexelFormat::number, table_width, rows_of_plane, count);
+                hidden_targets[i] = GlTarget({&hidden[i]}, count);
             }
         }
-        for (std::size_t pass = 0; pass < hidden.size() && count_of_splats > 0; ++pass) {
-            hidden_pass.begin(hidden_targets[pass],
+        for (std::size_t pass = 0; pass < hidden_passes && count_of_splats > 0; ++pass) {
+            hidden_pass.begin(hidden_targets[pass % 2],
                               {atlas.texture(), patches.texture(), entries.texture(), lists.texture(), splats.texture(),
-                               blocks.texture(), hidden[1 - pass].texture()},
+                               blocks.texture(), hidden[(pass + 1) % 2].texture()},
                               true);
             glViewport(0, 0, table_width, static_cast<GLsizei>(height));
             hidden_pass.set("is_first", pass == 0 ? 1 : 0);

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
+#include <bitset>
 #include <cmath>
+#include <span>
 
 #include "common/warp/patch_sampling.h"
 
@@ -157,11 +159,19 @@ WideFloats tent(WideFloats distance, float scale) {
 
 /// True when the pixel nearest to the splat's middle is covered firmly, by what is near enough and no part of what the
 /// splat adds up with: most of the splat is hidden then.
-bool is_hidden(Splat const& splat, std::int32_t group, float x, float y, Layers const& layers) {
-    auto const pixel = [](float at) { return static_cast<int>(std::clamp(at + 0.5f, 0.0f, side - 1.0f)); };
-    std::size_t const at = index_of(pixel(x), pixel(y));
+bool is_hidden(Splat const& splat, std::int32_t group, int left, int top, Layers const& layers) {
+    auto const pixel = [](float at, int from) {
+        return static_cast<int>(std::clamp(at - static_cast<float>(from), 0.0f, side - 1.0f));
+    };
+    std::size_t const at = index_of(pixel(splat.x, left), pixel(splat.y, top));
     return layers.is_firm[at] != 0 && layers.group[at] != group &&
            layers.inverse_depth[at] >= (1 - same_surface) * splat.inverse_depth;
+}
+
+/// True where the tent of a splat has columns in the block.
+bool reaches(Splat const& splat, int left) {
+    float const x = splat.x - static_cast<float>(left) - 0.5f;
+    return x + splat.spacing >= 0 && x - splat.spacing <= side - 1;
 }
 
 /// Paints an outlier as a tent as wide as its neighbours are far; true when something of it shows.
@@ -171,9 +181,6 @@ bool paint_splat(Splat const& splat, std::int32_t group, int left, int top, Laye
     float const scale = 1 / splat.spacing;
     int const first_row = static_cast<int>(std::ceil(std::max(y - splat.spacing, 0.0f)));
     int const last_row = static_cast<int>(std::floor(std::min(y + splat.spacing, side - 1.0f)));
-    if (x + splat.spacing < 0 || x - splat.spacing > side - 1 || is_hidden(splat, group, x, y, layers)) {
-        return false;
-    }
     bool shows = false;
     WideFloats const zero{};
     Candidate some;
@@ -202,9 +209,14 @@ bool paint_patch(PatchView const& view, int left, int top, Layers& layers) {
     if (!patch.is_outlier) {
         return paint_layer(patch, left, top, layers);
     }
+    std::span<Splat const> const splats(view.splats + patch.first_splat, patch.splats);
+    std::bitset<framelet_samples> painted; // what is hidden is so by what was there before all of them
+    for (std::size_t k = 0; k < splats.size(); ++k) {
+        painted[k] = reaches(splats[k], left) && !is_hidden(splats[k], patch.group, left, top, layers);
+    }
     bool shows = false;
-    for (std::uint32_t k = 0; k < patch.splats; ++k) {
-        shows |= paint_splat(view.splats[patch.first_splat + k], patch.group, left, top, layers);
+    for (std::size_t k = 0; k < splats.size(); ++k) {
+        shows |= painted[k] && paint_splat(splats[k], patch.group, left, top, layers);
     }
     return shows;
 }

@@ -1,9 +1,9 @@
 // Finds whether most of a splat is hidden in a block: whether the pixel nearest to its middle is covered firmly, by
-// what is near enough and no part of what it adds up with, when its turn comes. Whether most of an earlier splat was
-// hidden is what a first pass has found, which took all of them to show: to know it they would have to wait for each
-// other.
+// what is near enough and no part of what it adds up with, when its turn comes. Whether most of a splat of an
+// earlier patch was hidden is what the pass before has found, the first of which took all of them to show: to know it
+// they would have to wait for each other.
 uniform usampler2D blocks;
-uniform usampler2D earlier; // what the first pass has found
+uniform usampler2D earlier; // what the pass before has found
 uniform int is_first;
 uniform int count; // of splats
 out uint hidden;
