@@ -17,8 +17,14 @@ namespace {
 
 namespace ssl = boost::asio::ssl;
 
-std::shared_ptr<ssl::context> make_context(ssl::context::method method) {
-    auto context = std::make_shared<ssl::context>(method);
+std::shared_ptr<ssl::context> make_context(SSL_METHOD const* method) {
+    // Made here, since Asio goes on with a null pointer where there is no memory left to note the error either.
+    std::unique_ptr<SSL_CTX, decltype(&SSL_CTX_free)> made(SSL_CTX_new(method), SSL_CTX_free);
+    if (!made) {
+        throw std::bad_alloc();
+    }
+    auto context = std::make_shared<ssl::context>(made.get());
+    made.release(); // the context frees it
     // Earlier versions have suites without forward secrecy; both sides are of one release.
     FRAMELET_CHECK(SSL_CTX_set_min_proto_version(context->native_handle(), TLS1_3_VERSION) == 1);
     SSL_CTX_set_options(context->native_handle(), SSL_OP_NO_RENEGOTIATION | SSL_OP_NO_COMPRESSION);
@@ -118,7 +124,7 @@ void require_host(SSL* ssl, std::string host) {
 
 std::shared_ptr<ssl::context> make_tls_server_context(std::string const& certificate_file,
                                                       std::string const& key_file) {
-    auto context = make_context(ssl::context::tls_server);
+    auto context = make_context(TLS_server_method());
     boost::system::error_code error;
     // A key under a password is refused; otherwise the library would ask for it on the terminal.
     context->set_password_callback([](std::size_t, ssl::context::password_purpose) { return std::string(); }, error);
@@ -131,7 +137,7 @@ std::shared_ptr<ssl::context> make_tls_server_context(std::string const& certifi
 }
 
 std::shared_ptr<ssl::context> make_tls_client_context(std::string const& authority_file, CertificateJudge judge) {
-    auto context = make_context(ssl::context::tls_client);
+    auto context = make_context(TLS_client_method());
     context->set_verify_mode(ssl::verify_peer);
     boost::system::error_code error;
     if (authority_file.empty()) {

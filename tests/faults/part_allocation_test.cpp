@@ -1,6 +1,7 @@
 // Lets memory run out in single parts that use a library: each throws, and none takes the program along.
 #include <algorithm>
 #include <atomic>
+#include <exception>
 #include <filesystem>
 #include <span>
 #include <thread>
@@ -11,6 +12,7 @@
 #include "common/files/picture_writer.h"
 #include "common/files/png_reader.h"
 #include "protocol/codec/zstd_frames.h"
+#include "protocol/stream/tls.h"
 #include "protocol/stream/token.h"
 #include "server/session/loop/cycle_recorder.h"
 #include "server/session/scene_reloader.h"
@@ -81,6 +83,24 @@ TEST(PartAllocation, RandomNumbers) {
     }
     EXPECT_GT(thrown, 1);
     EXPECT_TRUE(make_ticket());
+}
+
+TEST(PartAllocation, TlsContexts) {
+    EXPECT_GT(times_thrown([] {
+                  std::exception_ptr failure;
+                  std::thread([&failure] { // which has no memory for errors yet
+                      try {
+                          make_tls_client_context("", {});
+                      } catch (std::exception const&) {
+                          failure = std::current_exception();
+                      }
+                  })
+                      .join();
+                  if (failure) {
+                      std::rethrow_exception(failure);
+                  }
+              }),
+              2);
 }
 
 TEST(PartAllocation, PngFiles) {
