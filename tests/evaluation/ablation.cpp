@@ -21,9 +21,9 @@ using nlohmann::json;
 
 LinkParameters const usual_link{.bits_per_second = 5e6, .delay_seconds = 0.02};
 
-/// Number of phases at which a run is made. Moments change at multiples of 0.05 s of the server's clock, and
-/// what is rendered when depends on the phase of these: a run is made at several phases, evenly apart, and the mean of
-/// their errors is taken.
+/// Number of phases at which a run is made. Moments change at multiples of their length of the server's clock, and
+/// what is rendered when depends on the phase of these: a run is made at several phases, evenly apart within the
+/// shortest moment, and the mean of their errors is taken.
 constexpr std::size_t phases = 4;
 
 struct Part {
