@@ -322,14 +322,29 @@ TEST(Mirror, WhatRestsGivesWayAndLeavesAHoleWhenItSetsOut) {
     EXPECT_EQ(mirror.cell(6, 10).covered, 0) << "nothing is held of the wall that it stood before";
 }
 
-TEST(Mirror, KeepsFewMoments) {
+TEST(Mirror, KeepsTheNewestMoments) {
+    // Each moment has a camera of its own, hardly moved, and one tile.
+    constexpr int moments = 100, columns = viewport.width / 16, tiles = columns * viewport.height / 16;
+    constexpr int most = 2 * int{FrameletPool::most_moments};
+    static_assert(most < tiles && tiles < moments);
     Mirror mirror(viewport);
-    for (int i = 0; i < 100; ++i) {
-        float const x = 0.01f * static_cast<float>(i);
-        mirror.look(view_at(Vec3(x, 0, 0), i), no_motions);
-        mirror.add(view_at(Vec3(x, 0, 0), i).rays, no_motions, render_pieces(plane, plane.pixel_depth(), wall, i));
-        EXPECT_LE(mirror.moment_count(), 2 * FrameletPool::most_moments);
-        EXPECT_EQ(summary_of(mirror).holes, 0);
+    auto const view = [](int moment) { return view_at(Vec3(1e-5f * static_cast<float>(moment), 0, 0), moment); };
+    auto const tile_of = [](int moment) {
+        int const i = moment % tiles;
+        return make_tile(plane.pixel_depth(), static_cast<std::uint32_t>(i % columns),
+                         static_cast<std::uint32_t>(i / columns));
+    };
+    for (int i = 0; i < moments; ++i) {
+        mirror.look(view(i), no_motions);
+        std::vector<Piece> pieces;
+        cut_pieces(render_tile(plane, tile_of(i), wall), plane, i, pieces, static_cast<std::uint64_t>(i + 1));
+        mirror.add(view(i).rays, no_motions, pieces);
+        EXPECT_EQ(mirror.moment_count(), std::min(i + 1, most));
+    }
+    mirror.look(view(moments), no_motions);
+    for (int age = 0; age < tiles; ++age) {
+        PixelRect const rect = plane.tile_rect(tile_of(moments - 1 - age));
+        EXPECT_EQ(mirror.cell((rect.left + 8) / cell_side, (rect.top + 8) / cell_side).is_shown(), age < most) << age;
     }
 }
 
