@@ -108,6 +108,8 @@ private:
         // them (its issue 3756).
         static std::mutex opening;
         std::lock_guard const lock(opening);
+        // It takes memory for so many rows at least, even where the picture has fewer.
+        OIIO::attribute("read_chunk", 1);
         input_ = OIIO::ImageInput::create(reader);
         OIIO::ImageSpec config, spec;
         config.attribute("oiio:UnassociatedAlpha", 1); // colour where alpha is 0 is part of the texture
@@ -198,14 +200,14 @@ Picture read_picture(std::span<std::byte const> bytes, std::string const& name, 
     return *format == PictureFormat::png ? read_named_png(bytes, name, told) : read_rgba(bytes, *format, name, told);
 }
 
-FloatImage read_float_image(std::filesystem::path const& file) {
+FloatImage read_float_image(std::filesystem::path const& file, SizeCheck const& check) {
     std::string const name = file.string();
     std::vector<std::byte> const bytes = read_bytes(file);
     std::optional<PictureFormat> const format = picture_format(bytes);
     if (!format) {
         refuse_format(name, foreign_format(bytes), true);
     }
-    OpenedPicture opened(bytes, *format, name, accept_any_size);
+    OpenedPicture opened(bytes, *format, name, check ? check : accept_any_size);
     OIIO::ImageSpec const& spec = opened.spec();
     int const channels = std::min(spec.nchannels, 3);
     FloatImage image(spec.width, spec.height);

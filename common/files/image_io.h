@@ -19,7 +19,7 @@ Picture read_picture(std::filesystem::path const& file, SizeCheck const& check =
 Picture read_picture(std::span<std::byte const> bytes, std::string const& name, SizeCheck const& check = {});
 
 /// Reads a linear float picture (.hdr, .exr; those of `read_picture` are sRGB-decoded where they have 8 bits). NaN, Inf
-/// and negatives become finite >= 0.
-FloatImage read_float_image(std::filesystem::path const& file);
+/// and negatives become finite >= 0. `check` as above.
+FloatImage read_float_image(std::filesystem::path const& file, SizeCheck const& check = {});
 
 } // namespace framelet

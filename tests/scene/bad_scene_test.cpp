@@ -1,13 +1,16 @@
 // Files that cannot be loaded: each gives one InputError with one line.
 #include "server/scene/scene_import.h"
 
+#include <algorithm>
 #include <random>
 
 #include <gtest/gtest.h>
 
 #include "common/error.h"
+#include "common/files/image_io.h"
 #include "common/files/picture_writer.h"
 #include "gltf_writer.h"
+#include "server/scene/assimp/memory_limit.h"
 #include "server/scene/motion/animation.h"
 
 namespace framelet {
@@ -242,6 +245,20 @@ TEST(BadScene, PictureFilesAreCountedBeforeTheyAreRead) {
         folder.write("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n");
     EXPECT_EQ(import_scene(file, {}, with_megabytes(200)).images.size(), 1u);
     expect_error(file, "more than 90 MB", with_megabytes(90));
+}
+
+/// OpenImageIO would take memory for 256 rows, 768 MB, though there is one.
+TEST(BadScene, WideFlatPicturesTakeLittleMemory) {
+#ifdef FRAMELET_SANITIZE
+    GTEST_SKIP() << "the sanitizer ends a program that is refused memory";
+#endif
+    TemporaryFolder const folder;
+    auto const file = folder.path() / "wide.ppm";
+    Picture wide(1'000'000, 1);
+    std::ranges::fill(wide.rgba, std::uint8_t{255});
+    write_ppm(file, wide);
+    MemoryLimit const limit(256 << 20);
+    EXPECT_EQ(read_picture(file), wide);
 }
 
 TEST(BadScene, OneBufferFileNamedOften) {
